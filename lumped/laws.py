@@ -1,0 +1,102 @@
+"""Coefficient laws: an input factor (NumPy, once for the whole record) times one temperature law.
+
+The compiled kernel knows only the temperature laws below, so any correlation, written in ordinary
+NumPy, runs at compiled speed.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Inputs = Mapping[str, Array]
+
+
+@dataclass(frozen=True)
+class TemperatureLaw:
+    """Base of the temperature laws; `hot` and `cold` are the temperatures (degC) at both ends of the link."""
+
+
+@dataclass(frozen=True)
+class Constant(TemperatureLaw):
+    """1."""
+
+
+@dataclass(frozen=True)
+class Power(TemperatureLaw):
+    """(|hot - cold| / 1 K) ** exponent."""
+
+    exponent: float
+
+
+@dataclass(frozen=True)
+class Radiation(TemperatureLaw):
+    """sigma (Th^2 + Tc^2)(Th + Tc) with absolute temperatures (W/m2/K)."""
+
+
+@dataclass(frozen=True)
+class Linear(TemperatureLaw):
+    """1 + alpha (hot - reference): copper resistance, alpha (1/K), reference (degC)."""
+
+    alpha: float
+    reference: float
+
+
+@dataclass(frozen=True)
+class Table(TemperatureLaw):
+    """Piecewise linear in |hot - cold|: `value` at `difference` (K, increasing from 0), held flat outside."""
+
+    difference: tuple[float, ...]
+    value: tuple[float, ...]
+
+
+CONSTANT = Constant()
+
+
+class Law(ABC):
+    """A coefficient g(t, T) = factor(inputs) * temperature(T)."""
+
+    temperature: TemperatureLaw = CONSTANT
+    reads: tuple[str, ...] = ()
+
+    @abstractmethod
+    def factor(self, inputs: Inputs) -> Array | float:
+        """The input factor: a number, or one value per time of the record."""
+
+
+@dataclass(frozen=True)
+class Fixed(Law):
+    """A number with a temperature law: conductance (W/K), film or contact coefficient (W/m2/K), loss (W)."""
+
+    value: float
+    temperature: TemperatureLaw = CONSTANT
+
+    def factor(self, inputs: Inputs) -> float:
+        return self.value
+
+
+@dataclass(frozen=True)
+class InputPower(Law):
+    """value * prod(|input / scale| ** exponent): forced films, friction, copper, iron.
+
+    terms : (input name, scale in the input's unit, exponent)
+    """
+
+    value: float
+    terms: tuple[tuple[str, float, float], ...]
+    temperature: TemperatureLaw = CONSTANT
+
+    @property
+    def reads(self) -> tuple[str, ...]:  # type: ignore[override]
+        return tuple(name for name, _, _ in self.terms)
+
+    def factor(self, inputs: Inputs) -> Array | float:
+        out: Array | float = self.value
+        for name, scale, exponent in self.terms:
+            out = out * np.abs(np.asarray(inputs[name], float) / scale) ** exponent
+        return out
