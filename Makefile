@@ -1,0 +1,24 @@
+# Each target sets up what it needs by itself; none needs another to have been run.
+export OMP_NUM_THREADS ?= 1
+export OPENBLAS_NUM_THREADS ?= 1
+BIN := .venv/bin
+
+.PHONY: demo test setup check lock clean
+
+demo: setup  ## the whole loop on the shipped hidden-effect case
+	@$(BIN)/thermoscope demo --out out/demo
+
+test: setup  ## every check: style, types, import contracts, tests
+	@$(BIN)/python -m pytest
+
+setup:
+	@scripts/setup
+
+check: setup  ## what this computer lacks, with the command that fixes it
+	@$(BIN)/thermoscope check
+
+lock: setup  ## refresh the locked dependencies from pyproject.toml
+	@$(BIN)/uv pip compile pyproject.toml --universal --generate-hashes --group dev --no-annotate --no-header --quiet -o requirements.lock
+
+clean:
+	rm -rf out .pytest_cache .mypy_cache .ruff_cache .hypothesis dist

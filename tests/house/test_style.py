@@ -1,0 +1,42 @@
+"""The house rules that a program can check: style, types, import directions."""
+
+import subprocess
+import sys
+
+import pytest
+
+ROOMS = ["geom", "fem", "lumped", "validation", "viz", "thermoscope"]
+
+
+def run(root, *command):
+    return subprocess.run([sys.executable, "-m", *command], cwd=root, capture_output=True, text=True)
+
+
+@pytest.mark.parametrize("command", [["ruff", "check", "."], ["ruff", "format", "--check", "."]], ids=["lint", "format"])
+def test_ruff(root, command):
+    done = run(root, *command)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_types(root):
+    done = run(root, "mypy")
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_import_directions(root):
+    done = subprocess.run(
+        [sys.executable, "-c", "from importlinter.cli import lint_imports_command; lint_imports_command()"],
+        cwd=root,
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_rooms_load_nothing_heavy(room):
+    """CAD, VTK, viewers and plotting are loaded by the functions that need them, not by `import room`."""
+    heavy = ["cadquery", "OCP", "vtkmodules", "pyvista", "rerun", "plotly", "netgen", "matplotlib"]
+    code = f"import sys, {room}; print([m for m in {heavy} if m in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert done.stdout.strip() == "[]", done.stdout + done.stderr
