@@ -1,0 +1,83 @@
+"""Dense LU that skips zeros: condensed networks are one third to nine tenths zeros and n is at most some hundreds."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+
+@njit(cache=True, nogil=True)
+def lu(A, pivot):
+    """LU in place, rows swapped only where the diagonal is below a tenth of its column; False if singular."""
+    n = A.shape[0]
+    for k in range(n):
+        best = k
+        for i in range(k + 1, n):
+            if abs(A[i, k]) > abs(A[best, k]):
+                best = i
+        best = k if abs(A[k, k]) >= 0.1 * abs(A[best, k]) else best
+        pivot[k] = best
+        if A[best, k] == 0.0 or not np.isfinite(A[best, k]):
+            return False
+        if best != k:
+            for j in range(n):
+                A[k, j], A[best, j] = A[best, j], A[k, j]
+        inverse = 1.0 / A[k, k]
+        for i in range(k + 1, n):
+            if A[i, k] != 0.0:
+                factor = A[i, k] * inverse
+                A[i, k] = factor
+                for j in range(k + 1, n):
+                    A[i, j] -= factor * A[k, j]
+    return True
+
+
+@njit(cache=True, nogil=True, fastmath={"reassoc", "contract"})
+def solve(A, pivot, b):
+    """One right-hand side, in place."""
+    n = A.shape[0]
+    for i in range(n):
+        b[i], b[pivot[i]] = b[pivot[i]], b[i]
+    for i in range(1, n):
+        acc = 0.0
+        for j in range(i):
+            acc += A[i, j] * b[j]
+        b[i] -= acc
+    for i in range(n - 1, -1, -1):
+        acc = 0.0
+        for j in range(i + 1, n):
+            acc += A[i, j] * b[j]
+        b[i] = (b[i] - acc) / A[i, i]
+
+
+@njit(cache=True, nogil=True)
+def axpy(a, x, y):
+    if a != 0.0:
+        for j in range(x.size):
+            y[j] += a * x[j]
+
+
+@njit(cache=True, nogil=True)
+def solve_many(A, pivot, B):
+    """Right-hand sides in the columns of B (n, p), in place."""
+    n, p = B.shape
+    for i in range(n):
+        if pivot[i] != i:
+            for j in range(p):
+                B[i, j], B[pivot[i], j] = B[pivot[i], j], B[i, j]
+    for i in range(1, n):
+        for j in range(i):
+            axpy(-A[i, j], B[j], B[i])
+    for i in range(n - 1, -1, -1):
+        for j in range(i + 1, n):
+            axpy(-A[i, j], B[j], B[i])
+        for j in range(p):
+            B[i, j] /= A[i, i]
+
+
+@njit(cache=True, nogil=True)
+def subtract_product(A, X, out):
+    """out -= A X."""
+    for i in range(A.shape[0]):
+        for j in range(A.shape[1]):
+            axpy(-A[i, j], X[j], out[i])
