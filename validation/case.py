@@ -41,7 +41,7 @@ class Test:
     time : (n_time,) s, increasing;  inputs : name -> (n_time,)  e.g. "current_A"
     boundaries : boundary name -> (n_time,) degC
     initial : degC for the whole machine, or per place
-    role : calibrate (parameters are fitted to it), validate (effects are chosen with it), hold-out (only ever predicted)
+    role : calibrate (parameters are fitted to it), validate (effects are chosen with it), hold-out (only predicted)
     """
 
     name: str

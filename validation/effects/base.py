@@ -1,0 +1,93 @@
+"""What an effect is: one small frozen object that adds zero-amplitude physics to a network."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import ClassVar, Literal
+
+from lumped.network import Network, Parameter
+
+
+@dataclass(frozen=True)
+class Scene:
+    """What the tests offer an effect: the network, the recorded inputs and the channels.
+
+    inputs : names of the recorded signals ("current_A", "time_s", ...)
+    channels : names of the measured temperatures
+    """
+
+    network: Network
+    inputs: frozenset[str] = frozenset()
+    channels: tuple[str, ...] = ()
+    tests: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Effect(ABC):
+    """Physics that a network may lack, at one place. With its parameter at neutral it changes nothing.
+
+    kind, title : short name and words;  place : where it sits
+    unit, sign, prior_sd, low, high : of its one parameter; sign is what physics allows (0: both)
+    typical : usual magnitude in `unit`
+    confused_with : kinds that leave a similar trace;  isolating_test : the test that sets it apart
+    needs : inputs that must be recorded for it to act
+    fault : True when it is a fault of the measurement, not heat
+    """
+
+    place: str
+
+    kind: ClassVar[str]
+    title: ClassVar[str]
+    unit: ClassVar[str]
+    source: ClassVar[str]
+    isolating_test: ClassVar[str]
+    typical: ClassVar[tuple[float, float]]
+    sign: ClassVar[int] = 1
+    prior_sd: ClassVar[float] = 1.0
+    low: ClassVar[float] = 0.0
+    high: ClassVar[float] = 1e6
+    neutral: ClassVar[float] = 0.0
+    mapping: ClassVar[Literal["amplitude", "relative", "offset"]] = "amplitude"
+    confused_with: ClassVar[tuple[str, ...]] = ()
+    needs: ClassVar[tuple[str, ...]] = ()
+    fault: ClassVar[bool] = False
+
+    @property
+    def name(self) -> str:
+        return f"{self.kind}@{self.place}"
+
+    @classmethod
+    def places(cls, scene: Scene) -> tuple[str, ...]:
+        """Where it can sit on this network with these recordings."""
+        return tuple(cls.where(scene)) if set(cls.needs) <= scene.inputs else ()
+
+    @classmethod
+    @abstractmethod
+    def where(cls, scene: Scene) -> Iterable[str]:
+        """Places that suit it, supposing that the inputs it needs are recorded."""
+
+    @abstractmethod
+    def extend(self, network: Network) -> Network:
+        """The network with this effect at zero amplitude and one Parameter named like the effect."""
+
+    def parameter(self, *targets: str, scale: float = 1.0, unit: str | None = None) -> Parameter:
+        """Its parameter; `scale` multiplies prior and upper bound (bare nodes count in W/K instead of W/m2/K)."""
+        return Parameter(
+            name=self.name,
+            targets=tuple((t, 1.0) for t in targets),
+            value=self.neutral,
+            unit=unit or self.unit,
+            low=self.low,
+            high=self.high * scale,
+            prior_sd=self.prior_sd * scale,
+            mapping=self.mapping,
+            neutral=self.neutral,
+            sign=self.sign,
+            source=self.source,
+        )
+
+
+def with_parameter(network: Network, parameter: Parameter) -> Network:
+    return replace(network, parameters=(*network.parameters, parameter))

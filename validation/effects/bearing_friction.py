@@ -1,0 +1,34 @@
+"""Friction in a bearing."""
+
+from dataclasses import dataclass
+
+from lumped.laws import InputPower
+from lumped.network import Network
+from validation.effects.base import Effect, Scene, with_parameter
+from validation.effects.build import heat, power_scale
+from validation.effects.sites import named
+
+
+@dataclass(frozen=True)
+class BearingFriction(Effect):
+    """P = a (n / 1000 rpm)^(5/3), a the loss (W) at 1000 rpm."""
+
+    kind = "bearing.friction"
+    title = "bearing friction"
+    unit = "W"
+    source = "Palmgren 1959: viscous moment ~ (nu n)^(2/3), so power ~ n^(5/3)"
+    isolating_test = "back-driven spin, uncoupled; vary the grease temperature"
+    typical = (5.0, 100.0)
+    prior_sd = 0.5
+    high = 20.0
+    confused_with = ("windage", "iron")
+    needs = ("speed_rpm",)
+
+    @classmethod
+    def where(cls, scene: Scene) -> list[str]:
+        return named(scene.network, "bearing")
+
+    def extend(self, network: Network) -> Network:
+        source = heat(network, self.name, "friction", self.place, InputPower(1.0, (("speed_rpm", 1000.0, 5.0 / 3.0),)))
+        network = network.extended(sources=[source])
+        return with_parameter(network, self.parameter(source.name, scale=power_scale(network)))

@@ -1,0 +1,98 @@
+"""The few ways an effect changes a network: a link, a source, a copy of what is there."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from lumped.laws import CONSTANT, Array, Inputs, Law, TemperatureLaw
+from lumped.network import Link, Network, Parameter, Row, Source
+from validation.effects.sites import faces
+
+HOUR = 3600.0
+
+
+@dataclass(frozen=True)
+class Shaped(Law):
+    """Another law's input factor times `shape(inputs)`, with a temperature law of its own."""
+
+    base: Law
+    shape: Callable[[Inputs], Array | float]
+    temperature: TemperatureLaw = CONSTANT
+    also_reads: tuple[str, ...] = ()
+    reads: tuple[str, ...] = field(init=False, default=())
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "reads", (*self.base.reads, *self.also_reads))
+
+    def factor(self, inputs: Inputs) -> Array | float:
+        return self.base.factor(inputs) * self.shape(inputs)
+
+
+def conductance_scale(network: Network) -> float:
+    """A conductance (W/K) of this machine's size: what cools all of it with a time constant of one hour."""
+    return float(np.sum(network.C)) / HOUR
+
+
+def power_scale(network: Network) -> float:
+    """A power (W) of this machine's size: 10 K of rise through `conductance_scale`."""
+    return 10.0 * conductance_scale(network)
+
+
+def row_of(network: Network, name: str) -> Row:
+    """Mean temperature of a place, state or boundary as a row over z."""
+    if name in network.places:
+        return network.places[name].mean
+    return Row(np.array([network.column(name)]), np.array([1.0]))
+
+
+def exchange(network: Network, name: str, a: str, b: str, law: Law) -> Link:
+    """A link g (T_a - T_b) between the means of two places, states or boundaries."""
+    ra, rb = row_of(network, a), row_of(network, b)
+    index = np.concatenate([ra.index, rb.index])
+    weights = np.concatenate([ra.weights, -rb.weights])
+    state = index < len(network.states)
+    rows, cols = np.meshgrid(index[state], index, indexing="ij")
+    vals = np.outer(weights[state], weights)
+    return Link(name, "link", (a, b), rows.ravel(), cols.ravel(), vals.ravel(), law, ra, rb)
+
+
+def to_fluid(network: Network, name: str, part: str, fluid: str, law: Law) -> list[Link]:
+    """Film links from every face of a part on a fluid (law in W/m2/K), or one from a bare node (law in W/K)."""
+    wet = faces(network, part, fluid)
+    if not wet:
+        return [exchange(network, name, part, fluid, law)]
+    return [network.surface_link(f"{name}:{face.name}", "film", face.name, fluid, law) for face in wet]
+
+
+def film_unit(network: Network, part: str, fluid: str) -> tuple[str, float]:
+    """Unit of a coefficient there, and how much larger its numbers are than in W/m2/K."""
+    bare = not faces(network, part, fluid)
+    return ("W/K", conductance_scale(network) / 20.0) if bare else ("W/m2/K", 1.0)
+
+
+def heat(network: Network, name: str, kind: str, place: str, law: Law) -> Source:
+    """Heat into the mean of a place."""
+    row = row_of(network, place)
+    return Source(name, kind, place, row.index, row.weights, law, row)
+
+
+def follow(parameters: tuple[Parameter, ...], original: str, copy: str) -> tuple[Parameter, ...]:
+    """Parameters that also act on the copy of a link or source as they do on the original."""
+    return tuple(
+        replace(p, targets=(*p.targets, *((copy, e) for t, e in p.targets if t == original))) for p in parameters
+    )
+
+
+def copy_link(network: Network, link: Link, name: str, law: Law) -> Network:
+    """The network with a second link of the same pattern that follows the original's multipliers."""
+    parameters = follow(network.parameters, link.name, name)
+    return replace(network, links=(*network.links, replace(link, name=name, law=law)), parameters=parameters)
+
+
+def copy_source(network: Network, source: Source, name: str, law: Law) -> Network:
+    """The network with a second source of the same pattern that follows the original's multipliers."""
+    parameters = follow(network.parameters, source.name, name)
+    return replace(network, sources=(*network.sources, replace(source, name=name, law=law)), parameters=parameters)

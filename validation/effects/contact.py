@@ -1,0 +1,42 @@
+"""A joint worse than assumed."""
+
+from dataclasses import dataclass
+
+from lumped.network import Link, Network
+from validation.effects.base import Effect, Scene, with_parameter
+
+
+def joints(network: Network) -> list[Link]:
+    """Links between two solids: contacts, and hand-declared links that touch no boundary."""
+    inner = [link for link in network.links if link.kind in ("contact", "link")]
+    return [link for link in inner if not set(link.places) & set(network.boundaries) and "@" not in link.name]
+
+
+def label(link: Link) -> str:
+    return link.name.split(":", 1)[-1]
+
+
+@dataclass(frozen=True)
+class ContactResistance(Effect):
+    """A contact, fit or liner that conducts less than assumed: g = g0 (1 + a), -0.95 <= a <= 0."""
+
+    kind = "contact"
+    title = "contact resistance larger than assumed"
+    unit = "1"
+    source = "interface gap, R = gap / k_air (Motor-CAD default gaps, Staton 2005)"
+    isolating_test = "DC heating at standstill with sensors on both sides of the joint"
+    typical = (-0.8, -0.2)
+    sign = -1
+    prior_sd = 0.4
+    low = -0.95
+    high = 0.0
+    mapping = "relative"
+    confused_with = ("contact", "loss.winding", "mass")
+
+    @classmethod
+    def where(cls, scene: Scene) -> list[str]:
+        return [label(link) for link in joints(scene.network)]
+
+    def extend(self, network: Network) -> Network:
+        hit = [link.name for link in joints(network) if label(link) == self.place]
+        return with_parameter(network, self.parameter(*hit))

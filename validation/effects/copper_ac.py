@@ -1,0 +1,40 @@
+"""Eddy currents and proximity in the conductors."""
+
+from dataclasses import dataclass
+
+from lumped.laws import InputPower
+from lumped.network import Network
+from validation.effects.base import Effect, Scene, with_parameter
+from validation.effects.build import heat, power_scale
+from validation.effects.sites import heated
+
+
+@dataclass(frozen=True)
+class AcCopper(Effect):
+    """P = a (n / 1000 rpm)^2 (I / 100 A)^2, a the loss (W) at 1000 rpm and 100 A."""
+
+    kind = "copper.ac"
+    title = "AC copper loss"
+    unit = "W"
+    source = "Dowell 1966, low-frequency limit, P ~ f^2 I^2"
+    isolating_test = "DC against AC at the same current"
+    typical = (5.0, 300.0)
+    prior_sd = 0.5
+    high = 20.0
+    confused_with = ("copper.feedback", "iron")
+    needs = ("speed_rpm", "current_A")
+
+    @classmethod
+    def where(cls, scene: Scene) -> list[str]:
+        return heated(scene.network, "copper", "winding")
+
+    def extend(self, network: Network) -> Network:
+        source = heat(
+            network,
+            self.name,
+            "copper.ac",
+            self.place,
+            InputPower(1.0, (("speed_rpm", 1000.0, 2.0), ("current_A", 100.0, 2.0))),
+        )
+        network = network.extended(sources=[source])
+        return with_parameter(network, self.parameter(source.name, scale=power_scale(network)))

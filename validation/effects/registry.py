@@ -1,0 +1,63 @@
+"""The catalogue: every effect at every place of a network where it can sit, ours and other people's."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from importlib import import_module
+from importlib.metadata import entry_points
+from pkgutil import iter_modules
+from typing import Any
+
+from geom.errors import InputError
+from lumped.network import Network
+from validation.effects.base import Effect, Scene
+
+GROUP = "thermoscope.effects"
+
+
+def _concrete(base: type[Effect]) -> Iterable[type[Effect]]:
+    for sub in base.__subclasses__():
+        yield from _concrete(sub)
+        if not getattr(sub, "__abstractmethods__", None):
+            yield sub
+
+
+def kinds() -> dict[str, type[Effect]]:
+    """Every kind of effect by name: the files of this folder, then entry points of group 'thermoscope.effects'."""
+    import validation.effects as here
+
+    for module in iter_modules(here.__path__):
+        import_module(f"validation.effects.{module.name}")
+    root: Any = Effect
+    own = {c.kind: c for c in _concrete(root) if c.__module__.startswith("validation.effects.")}
+    return dict(sorted(own.items())) | {c.kind: c for c in (entry.load() for entry in entry_points(group=GROUP))}
+
+
+def catalogue(scene: Scene, only: Iterable[str] | None = None) -> tuple[Effect, ...]:
+    """All effects that can sit somewhere in the scene; `only` restricts the kinds."""
+    chosen = kinds() if only is None else {k: kinds()[k] for k in only}
+    return tuple(cls(place) for cls in chosen.values() for place in cls.places(scene))
+
+
+def effect(name: str, scene: Scene | None = None) -> Effect:
+    """The effect called 'kind@place'; with a scene, only if it can sit there."""
+    kind, _, place = name.partition("@")
+    known = kinds()
+    if kind not in known:
+        raise InputError(f"unknown effect '{kind}'", f"effect '{name}'", f"known: {', '.join(known)}")
+    if scene is not None and place not in (places := known[kind].places(scene)):
+        needs = ", ".join(known[kind].needs)
+        right = (
+            f"it can sit at: {', '.join(places)}"
+            if places
+            else f"it can sit nowhere here; it needs: {needs or 'a place'}"
+        )
+        raise InputError(f"'{kind}' cannot sit at '{place}'", f"effect '{name}'", right)
+    return known[kind](place)
+
+
+def extended(network: Network, effects: Iterable[Effect]) -> Network:
+    """The network with several effects at zero amplitude."""
+    for one in effects:
+        network = one.extend(network)
+    return network

@@ -1,0 +1,34 @@
+"""Air friction of the rotor."""
+
+from dataclasses import dataclass
+
+from lumped.laws import InputPower
+from lumped.network import Network
+from validation.effects.base import Effect, Scene, with_parameter
+from validation.effects.build import heat, power_scale
+from validation.effects.sites import named
+
+
+@dataclass(frozen=True)
+class Windage(Effect):
+    """P = a (n / 1000 rpm)^3, a the loss (W) at 1000 rpm."""
+
+    kind = "windage"
+    title = "windage"
+    unit = "W"
+    source = "Saari 1998, rotating cylinder, P ~ n^3 at constant friction factor"
+    isolating_test = "spin at two gas pressures, or with the fan taken off"
+    typical = (2.0, 100.0)
+    prior_sd = 0.5
+    high = 20.0
+    confused_with = ("bearing.friction", "iron")
+    needs = ("speed_rpm",)
+
+    @classmethod
+    def where(cls, scene: Scene) -> list[str]:
+        return named(scene.network, "rotor")
+
+    def extend(self, network: Network) -> Network:
+        source = heat(network, self.name, "windage", self.place, InputPower(1.0, (("speed_rpm", 1000.0, 3.0),)))
+        network = network.extended(sources=[source])
+        return with_parameter(network, self.parameter(source.name, scale=power_scale(network)))

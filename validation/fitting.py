@@ -1,0 +1,107 @@
+"""The unknowns of a fit: their coordinates, priors and bounds, and the nuisances every measurement brings along."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from fnmatch import fnmatchcase
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.network import Network, Parameter
+from validation.case import Case, Model, Test
+from validation.effects import Effect, Scene, effect, extended
+
+Array = NDArray[np.float64]
+START_SD = 0.5
+BOUNDARY_SD = 0.5
+
+
+@dataclass(frozen=True)
+class Unknowns:
+    """Free parameters in fitting coordinates: log(value / prior median) for "log", else value minus neutral.
+
+    prior mean 0, prior sd `sd`, hard bounds `low`, `high`, all (p,)
+    """
+
+    parameters: tuple[Parameter, ...]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return tuple(p.name for p in self.parameters)
+
+    @property
+    def sd(self) -> Array:
+        return np.array([p.prior_sd for p in self.parameters])
+
+    @property
+    def bounds(self) -> tuple[Array, Array]:
+        low = np.array([to_coordinate(p, p.low) for p in self.parameters])
+        high = np.array([to_coordinate(p, p.high) for p in self.parameters])
+        return low, high
+
+    def coordinates(self, values: Mapping[str, float]) -> Array:
+        return np.array([to_coordinate(p, values.get(p.name, p.value)) for p in self.parameters])
+
+    def values(self, theta: Array) -> dict[str, float]:
+        return {p.name: to_value(p, float(t)) for p, t in zip(self.parameters, theta, strict=True)}
+
+
+def to_coordinate(p: Parameter, value: float) -> float:
+    return float(np.log(max(value, 1e-300) / p.value)) if p.mapping == "log" else value - p.neutral
+
+
+def to_value(p: Parameter, theta: float) -> float:
+    return p.value * float(np.exp(theta)) if p.mapping == "log" else p.neutral + theta
+
+
+def nuisances(tests: Sequence[Test]) -> list[Parameter]:
+    """What no measurement is free of: sensor bias, boundary sensor bias, start temperature."""
+    sigma = {c.name: c.sigma_K for test in tests for c in test.channels}
+    boundaries = dict.fromkeys(b for test in tests for b in test.boundaries)
+    biases = [_offset(f"bias of {c}", f"bias:{c}", s, "calibration of the sensor") for c, s in sigma.items()]
+    air = [_offset(f"bias of {b}", f"boundary:{b}", BOUNDARY_SD, "sensor of the boundary") for b in boundaries]
+    start = [_offset(f"start of {t.name}", f"initial:{t.name}", START_SD, "uneven start") for t in tests]
+    return [*biases, *air, *start]
+
+
+def _offset(name: str, target: str, sd: float, source: str) -> Parameter:
+    return Parameter(
+        name, ((target, 1.0),), value=0.0, unit="K", low=-20 * sd, high=20 * sd, prior_sd=sd, mapping="offset",
+        neutral=0.0, source=source,
+    )  # fmt: skip
+
+
+def scene_of(case: Case) -> Scene:
+    """What the case's tests record; an input counts when every test that is fitted or chosen with has it."""
+    used = [t for t in case.tests if t.role != "hold-out"] or list(case.tests)
+    inputs = frozenset.union(*(frozenset(t.inputs) for t in used)) | {"time_s"}
+    channels = tuple(dict.fromkeys(c.name for t in used for c in t.channels))
+    return Scene(case.model.network, inputs, channels, tuple(t.name for t in used))
+
+
+def effects_of(case: Case) -> tuple[Effect, ...]:
+    return tuple(effect(e.name) for e in case.model.effects)
+
+
+def working(case: Case, more: Sequence[Effect] = ()) -> tuple[Network, Unknowns]:
+    """The network with the model's effects, `more` effects and measurement nuisances, and what is free in it.
+
+    Free are the case's nuisances (all declared parameters when it names none), the effects and the measurement's.
+    """
+    inside, extra = effects_of(case), nuisances(case.tests)
+    network = extended(case.model.network, (*inside, *more))
+    network = replace(network, parameters=(*network.parameters, *extra))
+    chosen = {p.name for p in (case.nuisances or case.model.network.parameters)}
+    chosen |= {e.name for e in (*inside, *more)} | {p.name for p in extra}
+    return network, Unknowns(tuple(p for p in network.parameters if p.name in chosen))
+
+
+def with_model(case: Case, model: Model) -> Case:
+    return replace(case, model=model)
+
+
+def matching(network: Network, patterns: Sequence[str]) -> tuple[Parameter, ...]:
+    """Parameters whose names match any of the globs."""
+    return tuple(p for p in network.parameters if any(fnmatchcase(p.name, g) for g in patterns))

@@ -1,0 +1,77 @@
+"""Residuals and Jacobians of all tests, channel by channel, averaged to a few hundred instants."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.network import Network, Parameter
+from validation.case import Test
+from validation.predict import predict
+
+Array = NDArray[np.float64]
+INSTANTS = 180
+
+
+@dataclass(frozen=True)
+class Segment:
+    """One channel of one test.
+
+    time : (n,) s;  r : (n,) measured minus predicted (K);  J : (n, p) d predicted / d parameter
+    """
+
+    test: str
+    channel: str
+    time: Array
+    r: Array
+    J: Array
+    sigma_K: float
+
+
+def groups(nt: int, instants: int = INSTANTS) -> NDArray[np.int64]:
+    """Start of each block when `nt` samples are averaged to at most `instants`."""
+    return np.arange(0, nt, max(1, -(-nt // instants)))
+
+
+def block_mean(a: Array, weight: Array, start: NDArray[np.int64]) -> tuple[Array, NDArray[np.bool_]]:
+    """Weighted means of the blocks of a (n, ...), and which blocks hold at least half their samples."""
+    w = weight.reshape(-1, *(1,) * (a.ndim - 1))
+    total = np.add.reduceat(weight, start)
+    full = total >= 0.5 * np.add.reduceat(np.ones_like(weight), start)
+    mean = np.add.reduceat(np.where(w > 0, a, 0.0), start, axis=0)[full]
+    return mean / total[full].reshape(-1, *(1,) * (a.ndim - 1)), full
+
+
+def segments(
+    network: Network,
+    tests: Sequence[Test],
+    values: Mapping[str, float],
+    tangents: Sequence[Parameter] = (),
+    instants: int = INSTANTS,
+) -> list[Segment]:
+    """Every channel of every test with residual and derivatives."""
+    out = []
+    for test in tests:
+        seen = predict(network, test, values, tangents)
+        start = groups(len(test.time), instants)
+        for j, c in enumerate(test.channels):
+            read = np.isfinite(c.y).astype(float)
+            if read.sum() < 3:
+                continue
+            both = np.column_stack([np.nan_to_num(c.y) - seen.y[:, j], seen.J[:, j], test.time])
+            mean, _ = block_mean(both, read, start)
+            out.append(Segment(test.name, c.name, mean[:, -1], mean[:, 0], mean[:, 1:-1], c.sigma_K))
+    return out
+
+
+def stacked(parts: Sequence[Segment]) -> Array:
+    """All residuals one after the other."""
+    return np.concatenate([s.r for s in parts]) if parts else np.zeros(0)
+
+
+def rmse(parts: Sequence[Segment]) -> float:
+    """Root mean square residual (K) over all channels and tests."""
+    return float(np.sqrt(np.mean(stacked(parts) ** 2))) if parts else float("nan")
