@@ -1,0 +1,19 @@
+"""See it: fields, residuals and the error falling. Nothing heavy is loaded before the first picture."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any
+
+_HOME = {
+    "Comparison": "data", "Sensor": "data", "sensors": "data", "split": "split",
+    "require_gl": "gl", "off_screen_window": "gl",
+    "Wedge": "cut", "HALF": "cut", "QUARTER": "cut", "cutaway": "field", "pair": "field",
+}  # fmt: skip
+__all__ = sorted(_HOME)
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module 'viz' has no attribute '{name}'; known: {', '.join(__all__)}")
+    return getattr(import_module(f"viz.{_HOME[name]}"), name)

@@ -1,0 +1,103 @@
+"""Markers on the machine, each with a label beside the machine at the end of a leader line."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from viz.colours import LIGHT, Theme
+from viz.scene import View, set_font
+
+if TYPE_CHECKING:
+    import pyvista
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Label:
+    """A text at the end of a leader line that starts at `xyz` (m)."""
+
+    xyz: tuple[float, float, float]
+    text: str
+    colour: str
+
+
+def callouts(
+    p: pyvista.Plotter, labels: Sequence[Label], points: Array, view: View, theme: Theme = LIGHT, size: int = 15
+) -> None:
+    """Markers on the machine with labels beside it, in the order of their heights so that lines seldom cross."""
+    towards, right, up = view.axes()
+    across, above = points @ right, points @ up
+    front = (points @ towards).max()
+    middle = (across.max() + across.min()) / 2
+    for side in (-1, 1):
+        mine = sorted(
+            (q for q in labels if (np.dot(q.xyz, right) > middle) == (side > 0)), key=lambda q: np.dot(q.xyz, up)
+        )
+        heights = _spread([float(np.dot(q.xyz, up)) for q in mine], above.min(), above.max(), 0.075 * np.ptp(above))
+        edge = middle + side * (0.5 + 0.03) * np.ptp(across)
+        for q, height in zip(mine, heights, strict=True):
+            _callout(p, q, edge * right + height * up + front * towards, side, theme, size)
+
+
+def _spread(heights: Sequence[float], low: float, high: float, gap: float) -> list[float]:
+    """Heights in rising order moved apart to at least `gap`, kept near where they were and within low..high."""
+    if not heights:
+        return []
+    out = np.clip(np.asarray(heights, float), low, high)
+    for i in range(1, len(out)):
+        out[i] = max(out[i], out[i - 1] + gap)
+    out -= max(out[-1] - high, 0.0)
+    for i in range(len(out) - 2, -1, -1):
+        out[i] = min(out[i], out[i + 1] - gap)
+    return out.tolist()
+
+
+def _callout(p: pyvista.Plotter, label: Label, end: Array, side: int, theme: Theme, size: int) -> None:
+    import pyvista
+
+    flat = {"lighting": False, "render_points_as_spheres": True}
+    line = p.add_mesh(pyvista.Line(label.xyz, end), color=theme.ink, line_width=2.0, opacity=0.8, lighting=False)
+    here = pyvista.PolyData(np.array([label.xyz]))
+    halo = p.add_mesh(here, color="white", point_size=26, **flat)
+    dot = p.add_mesh(here.copy(), color=label.colour, point_size=19, **flat)
+    for actor, order in ((line, 1), (halo, 2), (dot, 3)):
+        _on_top(actor, order)
+    p.add_actor(_text(label.text, end, label.colour, side, size), reset_camera=False, pickable=False)
+
+
+def _text(text: str, at: Array, colour: str, side: int, size: int) -> Any:
+    """White text on a coloured ground, pinned to a point in space."""
+    import pyvista
+    from vtkmodules.vtkRenderingCore import vtkTextActor
+
+    actor, ground = vtkTextActor(), pyvista.Color(colour).float_rgb
+    actor.SetInput(f" {text} ")
+    actor.GetPositionCoordinate().SetCoordinateSystemToWorld()
+    actor.GetPositionCoordinate().SetValue(*at)
+    style = actor.GetTextProperty()
+    set_font(style)
+    style.SetFontSize(size)
+    style.SetColor(1.0, 1.0, 1.0)
+    style.SetBackgroundColor(*ground)
+    style.SetBackgroundOpacity(1.0)
+    style.SetFrame(True)
+    style.SetFrameColor(*ground)
+    style.SetFrameWidth(4)
+    style.SetVerticalJustificationToCentered()
+    style.SetJustificationToLeft() if side > 0 else style.SetJustificationToRight()
+    return actor
+
+
+def _on_top(actor: Any, order: int) -> None:
+    """Draw the actor over everything else: a thermocouple inside the machine must be seen."""
+    mapper = actor.GetMapper()
+    mapper.SetResolveCoincidentTopologyToPolygonOffset()
+    mapper.SetRelativeCoincidentTopologyLineOffsetParameters(0, -22000 * order)
+    mapper.SetRelativeCoincidentTopologyPointOffsetParameter(-22000 * order)
+    mapper.SetRelativeCoincidentTopologyPolygonOffsetParameters(0, -22000 * order)

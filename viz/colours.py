@@ -1,0 +1,77 @@
+"""Colours, chosen once: few, safe for colour-blind readers, light enough that shading and edges stay visible."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from matplotlib.colors import LinearSegmentedColormap
+
+# Okabe & Ito 2008, the colour-blind safe set
+BLUE, ORANGE, GREEN, VERMILION, SKY, PURPLE, YELLOW = (
+    "#0072B2", "#E69F00", "#009E73", "#D55E00", "#56B4E9", "#CC79A7", "#F0E442",
+)  # fmt: skip
+VERDICT = {"within": GREEN, "hot": VERMILION, "cold": BLUE, "unknown": "#6B7280"}
+
+
+@dataclass(frozen=True)
+class Theme:
+    """Colours of paper and ink."""
+
+    paper: str
+    ink: str
+    faint: str
+
+
+LIGHT = Theme("#ffffff", "#1f2933", "#9aa5b1")
+DARK = Theme("#14181d", "#e6e9ed", "#66707c")
+
+
+@lru_cache(maxsize=1)
+def heat() -> LinearSegmentedColormap:
+    """Blue through magenta to yellow; lightness rises evenly from 0.47 to 0.93 (OKLab), so nothing turns black."""
+    from matplotlib.colors import LinearSegmentedColormap
+
+    s = np.linspace(0.0, 1.0, 33)
+    hue = np.deg2rad(np.interp(s, [0, 0.25, 0.5, 0.75, 1], [265, 315, 360 + 10, 360 + 52, 360 + 100]))
+    chroma = np.interp(s, [0, 0.3, 0.6, 0.8, 1], [0.15, 0.19, 0.18, 0.16, 0.14])
+    rgb = _oklab_to_srgb(0.47 + 0.46 * s, chroma * np.cos(hue), chroma * np.sin(hue))
+    return LinearSegmentedColormap.from_list("thermoscope.heat", [tuple(c) for c in rgb], N=256)
+
+
+def _oklab_to_srgb(L: NDArray[np.float64], a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
+    """OKLab to sRGB in 0..1, clipped to the gamut (Ottosson 2020)."""
+    lms = (
+        np.stack(
+            [
+                L + 0.3963377774 * a + 0.2158037573 * b,
+                L - 0.1055613458 * a - 0.0638541728 * b,
+                L - 0.0894841775 * a - 1.2914855480 * b,
+            ]
+        )
+        ** 3
+    )
+    matrix = np.array(
+        [
+            [4.0767416621, -3.3077115913, 0.2309699292],
+            [-1.2684380046, 2.6097574011, -0.3413193965],
+            [-0.0041960863, -0.7034186147, 1.7076147010],
+        ]
+    )
+    linear = np.clip(matrix @ lms, 0.0, 1.0)
+    return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055).T
+
+
+def part_colours(names: tuple[str, ...]) -> dict[str, str]:
+    """A muted colour per part by what it is: copper for windings, steel for iron, aluminium for the shell."""
+    families = (
+        (("winding", "field"), "#C77B4A"), (("insulation", "liner"), "#E3C565"), (("commutator",), "#B08D57"),
+        (("rotor", "pole"), "#7C8FA6"), (("yoke", "stator"), "#98A7B8"), (("shaft", "bearing"), "#5B6B7B"),
+        (("housing",), "#B9C6C9"), (("flange",), "#A7B9AE"), (("feet", "base"), "#8B8F94"),
+    )  # fmt: skip
+    return {n: next((c for keys, c in families if any(k in n for k in keys)), "#A9A9B8") for n in names}
