@@ -1,0 +1,37 @@
+"""geom: what is the machine? Named prismatic parts, solids, a named mesh."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any
+
+_HOME = {
+    "load_machine": "machine",
+    "library": "machine",
+    "Machine": "machine",
+    "Part": "part",
+    "Material": "materials",
+    "material": "materials",
+    "materials": "materials",
+    "winding_conductivity": "materials",
+    "build_mesh": "mesher",
+    "COARSE": "mesher",
+    "FINE": "mesher",
+    "export_cad": "cad",
+    "check_cad": "cad",
+    "NamedMesh": "mesh",
+    "Patch": "mesh",
+    "Contact": "mesh",
+    "InputError": "errors",
+    "ThermoscopeError": "errors",
+    "MissingDependency": "errors",
+    "read_vtu": "meshio_io",
+    "write_vtu": "meshio_io",
+}
+__all__ = [*_HOME]  # noqa: PLE0604
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module 'geom' has no attribute {name!r}")
+    return getattr(import_module(f"geom.{_HOME[name]}"), name)

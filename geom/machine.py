@@ -1,0 +1,140 @@
+"""A machine: its parts, its fluids, its materials, and the sections others read."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from geom.errors import InputError
+from geom.families import Family, families
+from geom.materials import Material, material
+from geom.parameters import read_geometry
+from geom.part import Part
+from geom.profile import ArcGrid
+
+LIBRARY = Path(__file__).parent / "machines"
+SECTIONS = (
+    "machine", "ratings", "geometry", "materials", "contacts", "films", "losses", "fans", "cooling", "sensors"
+)  # fmt: skip
+_HEADER = ("name", "family", "description", "assumed")
+
+
+@dataclass(frozen=True)
+class Machine:
+    """Named prismatic parts and fluids, and what the file says beyond geometry.
+
+    parts : solids; fluids : declared fluid spaces ("ambient" is everything else)
+    sections : raw tables of the file, e.g. sections["ratings"]
+    geometry : the family's parameters in SI, as groups (machine.geometry.rotor.stack_length)
+    """
+
+    name: str
+    family: str
+    description: str
+    parts: tuple[Part, ...]
+    fluids: tuple[Part, ...]
+    sections: Mapping[str, Any]
+    geometry: Any
+    face_names: Mapping[tuple[str, str], str]
+
+    def part(self, name: str) -> Part:
+        """The solid or fluid of this name; InputError if there is none."""
+        known = {part.name: part for part in (*self.parts, *self.fluids)}
+        if name not in known:
+            raise InputError(f"unknown part {name!r}", self.name, f"known: {', '.join(known)}")
+        return known[name]
+
+    def material_of(self, name: str) -> Material:
+        """What the part is made of, [materials] overrides included."""
+        return material(self.part(name).material)
+
+    def conductivity(self, name: str) -> tuple[float, float]:
+        """Conductivity of the part across and along the axis (W/m/K)."""
+        found = self.material_of(name)
+        return found.k_plane, found.k_axial
+
+    def face_name(self, part: str, fluid: str) -> str:
+        """Name of the face where a part meets a fluid, e.g. "flange.right.outer"."""
+        usual = {"ambient": f"{part}.outer", "airgap": f"{part}.gap"}.get(fluid, f"{part}.{fluid}")
+        return self.face_names.get((part, fluid), usual)
+
+    def point_in(self, name: str) -> tuple[float, float, float]:
+        """A point (m) well inside the part: in the plane inside its largest prism, at half its length."""
+        import shapely
+
+        prisms = self.part(name).prisms
+        profile, z0, z1 = max(prisms, key=lambda prism: prism[0].area * (prism[2] - prism[1]))
+        inside = shapely.maximum_inscribed_circle(profile.to_polygon(ArcGrid([profile], 72)))
+        return float(inside.coords[0][0]), float(inside.coords[0][1]), (z0 + z1) / 2
+
+
+def library() -> dict[str, Path]:
+    """The machines that come with the tool, by name."""
+    return {path.stem: path for path in sorted(LIBRARY.glob("*.toml"))}
+
+
+def load_machine(source: str | Path) -> Machine:
+    """The machine described by a file, or one of the library by name.
+
+    Raises InputError for a missing file, broken TOML, unknown sections or keys, missing units, values out
+    of range, and geometry that does not fit.
+    """
+    path = library().get(str(source), Path(source))
+    if path.suffix != ".toml" or not path.is_file():
+        raise InputError(f"no machine {str(source)!r}", "", f"a .toml file, or one of: {', '.join(library())}")
+    try:
+        sections = tomllib.loads(path.read_text(encoding="utf-8"))
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise InputError(f"not valid TOML: {error}", str(path)) from error
+    return machine_from(sections, path.name)
+
+
+def machine_from(sections: Mapping[str, Any], where: str = "machine") -> Machine:
+    """The machine described by the tables of a machine file; `where` names it in errors."""
+    for section, table in sections.items():
+        if section not in SECTIONS:
+            raise InputError(f"unknown section [{section}]", where, f"known: {', '.join(SECTIONS)}")
+        if not isinstance(table, Mapping):
+            raise InputError(f"{section!r} is not a section", where, f"write [{section}]")
+    header = sections.get("machine", {})
+    family = _family(header, where)
+    values = read_geometry(family.parameters, sections.get("geometry", {}), where)
+    try:
+        built = family.build(values)
+    except InputError as error:
+        raise InputError(error.what, f"{where} {error.where}", error.right) from error
+    built = _with_materials(built, sections.get("materials", {}), where)
+    return Machine(
+        name=header.get("name", Path(where).stem),
+        family=family.name,
+        description=header.get("description", family.doc),
+        parts=tuple(part for part in built if part.solid),
+        fluids=tuple(part for part in built if not part.solid),
+        sections={name: table for name, table in sections.items() if name not in ("machine", "geometry")},
+        geometry=values,
+        face_names=family.face_names,
+    )
+
+
+def _family(header: Mapping[str, Any], where: str) -> Family:
+    for key in header:
+        if key not in _HEADER:
+            raise InputError(f"unknown key {key!r}", f"{where} [machine]", f"known: {', '.join(_HEADER)}")
+    known = families()
+    if header.get("family") not in known:
+        raise InputError(f"{header.get('family')!r} is no family", f"{where} [machine] family", f"known: {', '.join(known)}")
+    return known[header["family"]]
+
+
+def _with_materials(parts: tuple[Part, ...], chosen: Mapping[str, Any], where: str) -> tuple[Part, ...]:
+    from dataclasses import replace
+
+    names = [part.name for part in parts]
+    for part, name in chosen.items():
+        if part not in names:
+            raise InputError(f"unknown part {part!r}", f"{where} [materials]", f"known: {', '.join(names)}")
+        material(name)
+    return tuple(replace(part, material=chosen.get(part.name, part.material)) for part in parts)

@@ -1,0 +1,154 @@
+"""The plane partition: all profiles of a machine overlaid, every face labelled at every axial slab."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from geom.errors import InputError
+from geom.part import Part
+from geom.profile import ArcGrid, Profile
+
+GRID = 1e-7  # m; coordinates are snapped to this, far below any tolerance of a motor
+_OVERLAP = 1e-8  # m2; a common area below this is rounding
+AMBIENT = -1
+
+
+@dataclass(frozen=True)
+class Partition:
+    """Faces of the plane and what fills each of them between neighbouring levels.
+
+    levels : (n_slab + 1,) axial positions where anything begins or ends (m)
+    faces : (n_face,) shapely polygons that tile a box around the machine; the last is not special
+    labels : (n_face, n_slab) index into parts; AMBIENT where nothing is declared
+    points, edges : (n, 2) coordinates (m) and (m, 2) point numbers of the faces' borders
+    left, right : (m,) face on either side of each edge, -1 beyond the box
+    parts : solids and fluids in the order of the labels
+    """
+
+    levels: NDArray[np.float64]
+    faces: NDArray[np.object_]
+    labels: NDArray[np.int64]
+    points: NDArray[np.float64]
+    edges: NDArray[np.int64]
+    left: NDArray[np.int64]
+    right: NDArray[np.int64]
+    parts: tuple[Part, ...]
+
+    @property
+    def solid(self) -> NDArray[np.bool_]:
+        """(n_face, n_slab) True where a solid part is."""
+        is_solid = np.array([part.solid for part in self.parts] + [False])
+        return is_solid[self.labels]
+
+    def area(self) -> NDArray[np.float64]:
+        return shapely.area(self.faces)
+
+
+def partition(parts: Sequence[Part], segments: int = 72) -> Partition:
+    """Overlay the profiles of all parts and label the pieces.
+
+    Raises InputError where two solids overlap.
+    """
+    profiles = list(dict.fromkeys(profile for part in parts for profile, _, _ in part.prisms))
+    grid = ArcGrid(profiles, segments)
+    polygons = np.array([profile.to_polygon(grid) for profile in profiles], dtype=object)
+    faces = _tile(polygons)
+    levels = axial_levels(parts)
+    labels = _label(parts, profiles, polygons, faces, levels)
+    return Partition(levels, faces, labels, *half_edges(faces), tuple(parts))
+
+
+def axial_levels(parts: Sequence[Part]) -> NDArray[np.float64]:
+    """Sorted distinct end planes of all prisms (m)."""
+    return np.unique(np.round([z for part in parts for _, z0, z1 in part.prisms for z in (z0, z1)], 7))
+
+
+def _tile(polygons: NDArray[np.object_]) -> NDArray[np.object_]:
+    box = shapely.box(*shapely.total_bounds(polygons)).buffer(0.02, join_style="mitre")
+    lines = shapely.union_all([*shapely.boundary(polygons), box.exterior], grid_size=GRID)
+    faces = np.array(shapely.get_parts(shapely.polygonize([lines])), dtype=object)
+    return shapely.orient_polygons(faces)
+
+
+def _label(
+    parts: Sequence[Part],
+    profiles: list[Profile],
+    polygons: NDArray[np.object_],
+    faces: NDArray[np.object_],
+    levels: NDArray[np.float64],
+) -> NDArray[np.int64]:
+    inside = shapely.STRtree(shapely.point_on_surface(faces))
+    which, members = inside.query(polygons, predicate="contains")
+    faces_of = {profile: members[which == i] for i, profile in enumerate(profiles)}
+    labels = np.full((len(faces), len(levels) - 1), AMBIENT, dtype=np.int64)
+    order = sorted(range(len(parts)), key=lambda i: (not parts[i].solid, i))
+    for index in order:
+        for profile, z0, z1 in parts[index].prisms:
+            slabs = slice(*np.searchsorted(levels, np.round([z0, z1], 7)))
+            block = labels[faces_of[profile], slabs]
+            if parts[index].solid:
+                _refuse_overlap(parts, index, block, faces[faces_of[profile]])
+            labels[faces_of[profile], slabs] = np.where(block == AMBIENT, index, block)
+    return labels
+
+
+def _refuse_overlap(
+    parts: Sequence[Part], index: int, block: NDArray[np.int64], faces: NDArray[np.object_]
+) -> None:
+    taken = block != AMBIENT
+    if not taken.any() or shapely.area(faces)[taken.any(axis=1)].sum() < _OVERLAP:
+        return
+    other = parts[block[taken][0]].name
+    raise InputError(f"{parts[index].name} and {other} overlap", "geometry", "parts may touch, not overlap")
+
+
+def half_edges(faces: NDArray[np.object_]) -> tuple[NDArray[np.float64], ...]:
+    """Points, edges and the faces left and right of each edge, from anticlockwise polygons."""
+    rings, owner = shapely.get_rings(faces, return_index=True)
+    xy, ring = shapely.get_coordinates(rings, return_index=True)
+    keys, number = np.unique(np.round(xy / GRID).astype(np.int64), axis=0, return_inverse=True)
+    follows = ring[1:] == ring[:-1]
+    start, end = number[:-1][follows], number[1:][follows]
+    face = owner[ring[:-1][follows]]
+    forward = start < end
+    edges, which = np.unique(np.sort(np.column_stack([start, end]), axis=1), axis=0, return_inverse=True)
+    left, right = np.full(len(edges), -1), np.full(len(edges), -1)
+    left[which[forward]] = face[forward]
+    right[which[~forward]] = face[~forward]
+    return keys * GRID, edges, left, right
+
+
+def refuse_hidden_voids(cut: Partition) -> None:
+    """Raise InputError for a void that neither a fluid fills nor the outside reaches."""
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+
+    void = cut.labels == AMBIENT
+    n_face, n_slab = void.shape
+    cell = np.arange(n_face * n_slab).reshape(n_face, n_slab)
+    outside = n_face * n_slab
+    inner = (cut.left >= 0) & (cut.right >= 0)
+    a, b = cut.left[inner], cut.right[inner]
+    beside = void[a] & void[b]
+    above = void[:, :-1] & void[:, 1:]
+    rim = np.concatenate([cut.left[cut.right < 0], cut.right[cut.left < 0]])
+    open_cells = np.concatenate([cell[rim].ravel(), cell[:, 0][void[:, 0]], cell[:, -1][void[:, -1]]])
+    first = np.concatenate([cell[a][beside], cell[:, :-1][above], open_cells])
+    second = np.concatenate([cell[b][beside], cell[:, 1:][above], np.full(len(open_cells), outside)])
+    graph = coo_matrix((np.ones(len(first)), (first, second)), shape=(outside + 1, outside + 1))
+    component = connected_components(graph, directed=False)[1]
+    hidden = void & (component[:-1].reshape(n_face, n_slab) != component[-1])
+    if hidden.any():
+        raise InputError(_where(cut, hidden), "geometry", "declare the fluid that fills it, or close it")
+
+
+def _where(cut: Partition, hidden: NDArray[np.bool_]) -> str:
+    face, slab = np.argwhere(hidden)[0]
+    point = shapely.point_on_surface(cut.faces[face])
+    z = cut.levels[slab : slab + 2].mean()
+    return f"closed void around x, y, z = {point.x * 1e3:.1f}, {point.y * 1e3:.1f}, {z * 1e3:.1f} mm"

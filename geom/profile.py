@@ -1,0 +1,191 @@
+"""2-D profiles with exact arcs: the one description that CAD, mesh and hand formulas share."""
+
+from __future__ import annotations
+
+import math
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from shapely import Polygon
+
+Vertex = tuple[float, float, float]
+Loop = tuple[Vertex, ...]
+_CENTRED = 1e-8  # m; an arc whose centre is nearer to the axis than this is concentric with the machine
+_THIN = 0.05  # radii of one profile nearer than this share their break points
+_RADIUS_GRID = 1e-8  # m; radii are equal when they round to the same multiple
+
+
+@dataclass(frozen=True)
+class Arc:
+    """A circular edge: centre (m), radius (m), start angle and signed sweep (rad, positive anticlockwise)."""
+
+    x: float
+    y: float
+    radius: float
+    start: float
+    sweep: float
+
+    @property
+    def concentric(self) -> bool:
+        return math.hypot(self.x, self.y) < _CENTRED
+
+    def at(self, angle: float) -> tuple[float, float]:
+        return self.x + self.radius * math.cos(angle), self.y + self.radius * math.sin(angle)
+
+
+@dataclass(frozen=True)
+class Profile:
+    """A plane region: an outer loop and holes.
+
+    Each loop is a closed ring of vertices (x (m), y (m), bulge); as in DXF, bulge = tan(sweep / 4) of the
+    edge that leaves the vertex: 0 is a straight edge, 1 an anticlockwise half circle.
+    """
+
+    outer: Loop
+    holes: tuple[Loop, ...] = ()
+
+    @property
+    def loops(self) -> tuple[Loop, ...]:
+        return (self.outer, *self.holes)
+
+    @property
+    def area(self) -> float:
+        """Exact area (m2), arcs included."""
+        return abs(loop_area(self.outer)) - sum(abs(loop_area(hole)) for hole in self.holes)
+
+    def rotated(self, angle: float) -> Profile:
+        """The same profile turned about the axis by `angle` (rad, anticlockwise)."""
+        return Profile(_turned(self.outer, angle), tuple(_turned(hole, angle) for hole in self.holes))
+
+    def to_polygon(self, grid: ArcGrid) -> Polygon:
+        """Faceted shapely polygon; profiles faceted on the same grid share their vertices."""
+        from shapely import Polygon
+
+        return Polygon(grid.facet(self.outer), [grid.facet(hole) for hole in self.holes])
+
+    def to_face(self) -> object:
+        """Exact cadquery face in the plane z = 0."""
+        import cadquery as cq
+
+        return cq.Face.makeFromWires(_wire(self.outer), [_wire(hole) for hole in self.holes])
+
+
+class ArcGrid:
+    """Where concentric arcs are cut into chords, the same for every profile of a machine.
+
+    On each radius the break points are the arc ends of all profiles; each piece between two neighbouring
+    breaks is cut evenly into chords of at most 1 / `segments` turn. The two circles of a thin ring borrow
+    each other's breaks: cut at different angles, the ring would gain or lose several per cent of its area.
+    """
+
+    def __init__(self, profiles: Iterable[Profile], segments: int = 72) -> None:
+        self.step = 2 * math.pi / segments
+        ends: dict[int, set[float]] = defaultdict(set)
+        borrowed: dict[int, set[float]] = defaultdict(set)
+        for profile in profiles:
+            own = _arc_ends(profile)
+            for radius, angles in own.items():
+                ends[radius] |= angles
+                for other in own:
+                    if other != radius and abs(other / radius - 1) < _THIN:
+                        borrowed[radius] |= own[other]
+        self._cuts = {r: self._divide(self._merged(ends[r], borrowed[r])) for r in ends}
+
+    def _merged(self, own: set[float], others: set[float]) -> list[float]:
+        """All own breaks, and those of others that are not near one already there."""
+        breaks = sorted(own)
+        for angle in sorted(others):
+            if min(abs((angle - b + math.pi) % (2 * math.pi) - math.pi) for b in breaks) > 0.3 * self.step:
+                breaks.append(angle)
+        return sorted(breaks)
+
+    def _divide(self, breaks: list[float]) -> list[float]:
+        cuts: list[float] = []
+        for here, following in zip(breaks, [*breaks[1:], breaks[0] + 2 * math.pi]):
+            pieces = max(1, math.ceil((following - here) / self.step - 1e-6))
+            cuts += [here + (following - here) * i / pieces for i in range(pieces)]
+        return cuts
+
+    def facet(self, loop: Loop) -> list[tuple[float, float]]:
+        """Corner points of the faceted loop (m)."""
+        points: list[tuple[float, float]] = []
+        for (x, y, _), arc in edges(loop):
+            points.append((x, y))
+            if arc is not None:
+                points += [arc.at(angle) for angle in self._inner_angles(arc)]
+        return points
+
+    def _inner_angles(self, arc: Arc) -> list[float]:
+        if not arc.concentric:
+            pieces = max(2, math.ceil(abs(arc.sweep) / self.step - 1e-6))
+            return [arc.start + arc.sweep * i / pieces for i in range(1, pieces)]
+        sign = math.copysign(1.0, arc.sweep)
+        offsets = (_wrap(sign * (cut - arc.start)) for cut in self._cuts[_radius_key(arc.radius)])
+        inside = sorted(offset for offset in offsets if 1e-7 < offset < abs(arc.sweep) - 1e-7)
+        return [arc.start + sign * offset for offset in inside]
+
+
+def edges(loop: Loop) -> Iterator[tuple[Vertex, Arc | None]]:
+    """Each vertex of the loop with the arc that leaves it (None for a straight edge)."""
+    for vertex, following in zip(loop, (*loop[1:], loop[0])):
+        yield vertex, arc_between(vertex, following) if vertex[2] else None
+
+
+def arc_between(a: Vertex, b: Vertex) -> Arc:
+    """The arc from a to b with a's bulge."""
+    bulge = a[2]
+    dx, dy = b[0] - a[0], b[1] - a[1]
+    offset = (1 - bulge**2) / (4 * bulge)
+    x, y = (a[0] + b[0]) / 2 - offset * dy, (a[1] + b[1]) / 2 + offset * dx
+    return Arc(x, y, math.hypot(a[0] - x, a[1] - y), math.atan2(a[1] - y, a[0] - x), 4 * math.atan(bulge))
+
+
+def loop_area(loop: Loop) -> float:
+    """Signed area (m2), positive anticlockwise: the shoelace sum plus one circular segment per arc."""
+    area = 0.0
+    for (vertex, arc), following in zip(edges(loop), (*loop[1:], loop[0])):
+        area += (vertex[0] * following[1] - following[0] * vertex[1]) / 2
+        if arc is not None:
+            area += arc.radius**2 * (arc.sweep - math.sin(arc.sweep)) / 2
+    return area
+
+
+def _arc_ends(profile: Profile) -> dict[int, set[float]]:
+    """Angles (rad) at which concentric arcs of the profile begin or end, by radius key."""
+    ends: dict[int, set[float]] = defaultdict(set)
+    for loop in profile.loops:
+        for _, arc in edges(loop):
+            if arc is not None and arc.concentric:
+                ends[_radius_key(arc.radius)].update((_wrap(arc.start), _wrap(arc.start + arc.sweep)))
+    return ends
+
+
+def _turned(loop: Loop, angle: float) -> Loop:
+    c, s = math.cos(angle), math.sin(angle)
+    return tuple((c * x - s * y, s * x + c * y, bulge) for x, y, bulge in loop)
+
+
+def _wrap(angle: float) -> float:
+    """Into [0, 2 pi), with angles within rounding of a full turn sent to 0."""
+    wrapped = round(angle % (2 * math.pi), 12)
+    return 0.0 if wrapped >= round(2 * math.pi, 12) else wrapped
+
+
+def _radius_key(radius: float) -> int:
+    return round(radius / _RADIUS_GRID)
+
+
+def _wire(loop: Loop) -> object:
+    import cadquery as cq
+
+    pieces = []
+    for (vertex, arc), following in zip(edges(loop), (*loop[1:], loop[0])):
+        a, b = cq.Vector(*vertex[:2]), cq.Vector(*following[:2])
+        if arc is None:
+            pieces.append(cq.Edge.makeLine(a, b))
+        else:
+            pieces.append(cq.Edge.makeThreePointArc(a, cq.Vector(*arc.at(arc.start + arc.sweep / 2)), b))
+    return cq.Wire.assembleEdges(pieces)
