@@ -46,7 +46,7 @@ class Fit:
 
     @property
     def covariance(self) -> Array:
-        return np.linalg.inv(self.H)
+        return np.asarray(np.linalg.inv(self.H), float)
 
     @property
     def sd(self) -> Array:

@@ -10,11 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.network import Network, Parameter
-from validation.case import Case, Model, Test
+from validation.case import Case, Channel, Model, Test
 from validation.effects import Effect, Scene, effect, extended
 
 Array = NDArray[np.float64]
 START_SD = 0.5
+GAIN_SD = 0.02
+LAG_SD = 3.0
 BOUNDARY_SD = 0.5
 
 
@@ -57,13 +59,20 @@ def to_value(p: Parameter, theta: float) -> float:
 
 
 def nuisances(tests: Sequence[Test]) -> list[Parameter]:
-    """What no measurement is free of: sensor bias, boundary sensor bias, start temperature."""
-    sigma = {c.name: c.sigma_K for test in tests for c in test.channels}
+    """What no measurement is free of: bias, slope and lag of sensors, bias of boundary sensors, start temperature."""
+    channels = {c.name: c for test in tests for c in test.channels}
     boundaries = dict.fromkeys(b for test in tests for b in test.boundaries)
-    biases = [_offset(f"bias of {c}", f"bias:{c}", s, "calibration of the sensor") for c, s in sigma.items()]
+    sensors = [p for c in channels.values() for p in _sensor(c)]
     air = [_offset(f"bias of {b}", f"boundary:{b}", BOUNDARY_SD, "sensor of the boundary") for b in boundaries]
     start = [_offset(f"start of {t.name}", f"initial:{t.name}", START_SD, "uneven start") for t in tests]
-    return [*biases, *air, *start]
+    return [*sensors, *air, *start]
+
+
+def _sensor(c: Channel) -> list[Parameter]:
+    bias = _offset(f"bias of {c.name}", f"bias:{c.name}", c.sigma_K, "calibration of the sensor")
+    gain = _offset(f"slope of {c.name}", f"gain:{c.name}", GAIN_SD, "placement of the sensor")
+    lag = _offset(f"lag of {c.name}", f"lag:{c.name}", max(LAG_SD, 0.3 * c.lag_s), "mounting of the sensor")
+    return [bias, replace(gain, unit="1"), replace(lag, unit="s", low=-c.lag_s)]
 
 
 def _offset(name: str, target: str, sd: float, source: str) -> Parameter:

@@ -1,7 +1,7 @@
 """The nuisance-projected score: what each effect would explain once the calibration has taken what it can.
 
-Everything follows from one Gram matrix G = [J Z r]' Sigma^-1 [J Z r], accumulated segment by segment, so memory does not
-depend on the length of the record. See method in docs/diagnosis: MI = u^2 / V, amplitude u / V, absorbed share 1 - V / Z'Z.
+Everything follows from one Gram matrix G = [J Z r]' Sigma^-1 [J Z r], accumulated segment by segment, so memory does
+not depend on the length of the record. Expected deviance drop u^2 / V, amplitude u / V, absorbed share 1 - V / Z'Z.
 Source: Rao 1948 (score test); Sorbom 1989 (modification index); marginal form by the Woodbury identity.
 """
 

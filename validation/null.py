@@ -1,0 +1,183 @@
+"""The simulated null: what the score looks like when nothing of the catalogue is missing.
+
+Data sets are drawn from a disturbed machine (see disturb.py), recalibrated with the Jacobian held, and scored as the
+measurements are. From them come the threshold for the best of all effects and the factor kappa by which each
+effect's formal uncertainty is too small.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import multiprocessing
+from collections.abc import Callable, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.network import Network
+from validation.calibrate import Fit, bounded_step, normal, silent
+from validation.case import Test
+from validation.disturb import USUAL, Spread, disturbed, disturbed_test, reading_errors
+from validation.noise import first_noise, fit_noise
+from validation.predict import predict
+from validation.score import gram, score, total
+from validation.sheet import Segment, segments
+
+Array = NDArray[np.float64]
+Drawn = tuple[Array, Array, Array]
+EULER = 0.5772156649
+
+
+@dataclass(frozen=True)
+class Null:
+    """Of m draws: z (m, K) scores, pulls (m, p) calibrated shift over its prior sd, rms (m, n_channel) residuals (K)."""
+
+    z: Array
+    pulls: Array
+    rms: Array
+
+    @property
+    def kappa(self) -> Array:
+        """How much each effect's formal standard deviation is too small (K,), at least 1, shrunk to the typical."""
+        m, square = self.z.shape[0], np.mean(self.z**2, axis=0)
+        typical = np.median(square)
+        return np.sqrt(np.maximum((m * square + 10.0 * typical) / (m + 10.0), 1.0))
+
+    def threshold(self, alpha: float = 0.05) -> float:
+        """Level that the best scaled score passes with probability alpha when nothing is missing: Gumbel by moments."""
+        best = np.max(self.z / self.kappa, axis=1)
+        scale = np.std(best, ddof=1) * np.sqrt(6.0) / np.pi
+        return float(np.mean(best) - EULER * scale - scale * np.log(-np.log1p(-alpha)))
+
+    @property
+    def pull_scale(self) -> Array:
+        return np.maximum(1.0, np.sqrt(np.mean(self.pulls**2, axis=0)))
+
+    @property
+    def floor(self) -> Array:
+        """Residual (K) per channel that the calibrated model reaches in 95 % of the draws."""
+        return np.asarray(np.quantile(self.rms, 0.95, axis=0))
+
+
+@dataclass(frozen=True)
+class Setting:
+    """What a draw needs: the fit, its segments with nuisance and effect columns, and the tests."""
+
+    fit: Fit
+    network: Network
+    tests: tuple[Test, ...]
+    parts: tuple[Segment, ...]
+    sign: NDArray[np.int64]
+    spread: Spread
+    seed: int
+
+
+_shared: list[Setting] = []
+
+
+def simulated_null(
+    fit: Fit,
+    network: Network,
+    tests: Sequence[Test],
+    parts: Sequence[Segment],
+    sign: NDArray[np.int64],
+    draws: int = 60,
+    seed: int = 0,
+    workers: int = 2,
+    cache: Path | None = None,
+    progress: Callable[[str], None] = silent,
+    spread: Spread = USUAL,
+) -> Null:
+    """Run `draws` data sets with nothing missing.
+
+    network : the model's own network, without candidate effects;  parts : segments whose J holds nuisances then effects
+    """
+    setting = Setting(fit, network, tuple(tests), tuple(parts), sign, spread, seed)
+    file = cache / f"null-{fingerprint(setting, draws)}.npz" if cache else None
+    if file and file.exists():
+        with np.load(file) as saved:
+            return Null(saved["z"], saved["pulls"], saved["rms"])
+    rows = _run(setting, draws, workers, progress)
+    z, pulls, rms = (np.array(column) for column in zip(*rows, strict=True))
+    if file:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        np.savez(file, z=z, pulls=pulls, rms=rms)
+    return Null(z, pulls, rms)
+
+
+def fingerprint(setting: Setting, draws: int) -> str:
+    """Hash of what the null depends on."""
+    h = hashlib.sha256(repr((draws, setting.seed, setting.spread, setting.fit.unknowns.names)).encode())
+    h.update(np.round(setting.fit.theta, 3).tobytes())
+    for s in setting.parts:
+        h.update(f"{s.test}/{s.channel}".encode() + np.float32(s.J[:: max(1, len(s.J) // 8)]).tobytes())
+    return h.hexdigest()[:20]
+
+
+def _run(
+    setting: Setting, draws: int, workers: int, progress: Callable[[str], None]
+) -> list[tuple[Array, Array, Array]]:
+    done: list[tuple[Array, Array, Array]] = []
+    if workers < 2 or "fork" not in multiprocessing.get_all_start_methods():
+        for i in range(draws):
+            done.append(draw(setting, i))
+            progress(f"simulated null {i + 1}/{draws}")
+        return done
+    _shared[:] = [setting]
+    with ProcessPoolExecutor(workers, multiprocessing.get_context("fork")) as pool:
+        for i, row in enumerate(pool.map(_draw_shared, range(draws))):
+            done.append(row)
+            progress(f"simulated null {i + 1}/{draws}")
+    return done
+
+
+def _draw_shared(i: int) -> Drawn:
+    return draw(_shared[0], i)
+
+
+def draw(setting: Setting, i: int) -> Drawn:
+    """One data set: simulate, calibrate with the Jacobian held, score."""
+    fit, p = setting.fit, len(setting.fit.unknowns.parameters)
+    rng = np.random.default_rng([setting.seed, i])
+    tests = data(setting, rng)
+    weight, (low, high) = fit.unknowns.sd**-2.0, fit.unknowns.bounds
+    low, high = low - fit.theta, high - fit.theta
+    delta, parts = np.zeros(p), _residuals(setting, tests, np.zeros(p))
+    noise = first_noise(parts)
+    for round_ in range(3):
+        A, b, _ = normal([replace(s, J=s.J[:, :p]) for s in parts], noise)
+        new = bounded_step(A + np.diag(weight), b - weight * delta, delta, low, high)
+        if round_ == 1:
+            parts = _residuals(setting, tests, new)
+        else:
+            parts = [replace(s, r=s.r - s.J[:, :p] @ (new - delta)) for s in parts]
+        delta, noise = new, fit_noise(parts)
+    S = score(total(gram(parts, noise, p)), delta, fit.unknowns.sd, setting.sign)
+    rms = [np.sqrt(np.mean(np.concatenate([s.r for s in parts if s.channel == c]) ** 2)) for c in noise.shape]
+    return S.z, delta / fit.unknowns.sd, np.array(rms)
+
+
+def data(setting: Setting, rng: np.random.Generator) -> list[Test]:
+    """The tests with readings of a disturbed machine near the calibrated state."""
+    fit, spread = setting.fit, setting.spread
+    low, high = fit.unknowns.bounds
+    root = np.linalg.cholesky(np.linalg.inv(fit.H))
+    values = fit.unknowns.values(np.clip(fit.theta + root @ rng.standard_normal(fit.theta.size), low, high))
+    real = disturbed(setting.network, rng, spread)
+    out = []
+    for test in setting.tests:
+        seen = disturbed_test(test, setting.network, real, rng, spread)
+        white = [min(fit.noise.scale[c.name], c.sigma_K) for c in test.channels]
+        y = reading_errors(test, predict(real, seen, values).y, rng, spread, white)
+        out.append(replace(test, channels=tuple(replace(c, y=y[:, j]) for j, c in enumerate(test.channels))))
+    return out
+
+
+def _residuals(setting: Setting, tests: Sequence[Test], delta: Array) -> list[Segment]:
+    """Residuals of the model at theta + delta with the columns of the fit."""
+    values = setting.fit.unknowns.values(setting.fit.theta + delta)
+    fresh = segments(setting.network, tests, values)
+    return [replace(new, J=old.J) for new, old in zip(fresh, setting.parts, strict=True)]
