@@ -18,7 +18,7 @@ import numpy as np
 from numba import njit
 
 from lumped.dense import axpy, lu, solve, solve_many, subtract_product
-from lumped.terms import Floats, Ints, Terms, bend, directional, evaluate, force, jacobian, patterns
+from lumped.terms import Floats, Ints, bend, directional, evaluate, force, jacobian, patterns
 
 GAMMA = 1.0 - 1.0 / np.sqrt(2.0)
 
@@ -52,7 +52,7 @@ class Stage(NamedTuple):
 
 
 class Work(NamedTuple):
-    """Scratch: df (ne,) slopes of the factors, F and F_t (n,), matrices (n, n), tangents (n, p), pivots, last factors."""
+    """Scratch: df (ne,) factor slopes, F and F_t (n,), matrices (n, n), tangents (n, p), pivots, last factors."""
 
     df: Floats
     F: Floats

@@ -1,0 +1,73 @@
+"""Forced flow inside ducts, jackets and channels."""
+
+from __future__ import annotations
+
+import math
+
+import fluids
+import ht
+
+from lumped.correlations.info import Info, checked
+from lumped.properties import Fluid, air
+
+LAMINAR, TURBULENT = 2300.0, 4000.0
+
+
+def hausen_laminar(Re: float, Pr: float, diameter: float, length: float, developed: float = 3.66) -> float:
+    """Nu = developed + 0.065 X / (1 + 0.04 X^(2/3)), X = diameter/length Re Pr: laminar, entering with even speed.
+
+    Source: Hausen 1943 in the form of Mills 1995; developed = 3.66 for a circle at constant wall temperature.
+    """
+    X = diameter / length * Re * Pr
+    return developed + 0.065 * X / (1.0 + 0.04 * X ** (2.0 / 3.0))
+
+
+def gnielinski_turbulent(Re: float, Pr: float) -> float:
+    """Nu of turbulent flow in a smooth duct, f = (0.79 ln Re - 1.64)^-2.
+
+    Range: 3000 < Re < 5e6, 0.5 < Pr < 2000. Source: Gnielinski 1976, Int. Chem. Eng. 16, 359 (ht).
+    """
+    return ht.turbulent_Gnielinski(Re, Pr, (0.79 * math.log(Re) - 1.64) ** -2)
+
+
+def duct_film(
+    speed: float, diameter: float, length: float, fluid: Fluid | None = None, developed: float = 3.66
+) -> tuple[float, Info]:
+    """Mean film of a duct, h (W/m2/K): laminar with entry below Re 2300, Gnielinski above 4000, linear between.
+
+    speed (m/s), diameter: hydraulic, 4 A/P (m), length (m); fluid defaults to air at 40 degC;
+    developed: laminar Nu far from the entry (3.66 circle, shah_london for rectangles, 7.54 parallel plates).
+    Range: Re < 5e6, 0.5 < Pr < 2000. Source: Gnielinski 2013, Int. J. Heat Mass Transfer 63, 134 (transition).
+    """
+    fluid = fluid or air(40.0)
+    Re, Pr = abs(speed) * diameter / fluid.nu, fluid.Pr
+    share = min(max((Re - LAMINAR) / (TURBULENT - LAMINAR), 0.0), 1.0)
+    Nu = (1.0 - share) * hausen_laminar(min(Re, LAMINAR), Pr, diameter, length, developed)
+    if share > 0.0:
+        Nu += share * gnielinski_turbulent(max(Re, TURBULENT), Pr)
+    info = checked("duct_film", "Gnielinski 2013", {"Nu": Nu, "Re": Re, "Pr": Pr}, {"Re": (0, 5e6), "Pr": (0.5, 2000)})
+    return Nu * fluid.k / diameter, info
+
+
+def shah_london(side_ratio: float) -> float:
+    """Developed laminar Nu of a rectangle at constant wall temperature; side_ratio 0 to 1 (Shah and London 1978, ht)."""
+    return ht.Nu_laminar_rectangular_Shan_London(side_ratio)
+
+
+def schmidt_helical(speed: float, diameter: float, coil_diameter: float, fluid: Fluid) -> tuple[float, Info]:
+    """Film of a helical channel (spiral jacket), h (W/m2/K).
+
+    Laminar below Re_crit(coil): Nu = 3.66 + 0.08 (1 + 0.8 (d/D)^0.9) Re^m Pr^(1/3), m = 0.5 + 0.2903 (d/D)^0.194;
+    turbulent above 22000 by ht; linear in Re between. diameter: hydraulic (m), coil_diameter: of the helix (m).
+    Source: E. F. Schmidt 1967, Chem. Ing. Tech. 39, 781; VDI Heat Atlas G3.
+    """
+    Re, Pr, ratio = abs(speed) * diameter / fluid.nu, fluid.Pr, diameter / coil_diameter
+    critical = fluids.helical_transition_Re_Schmidt(diameter, coil_diameter)
+    share = min(max((Re - critical) / (22000.0 - critical), 0.0), 1.0)
+    low, high = min(Re, critical), max(Re, 22000.0)
+    laminar = 3.66 + 0.08 * (1 + 0.8 * ratio**0.9) * low ** (0.5 + 0.2903 * ratio**0.194) * Pr ** (1 / 3)
+    Nu = (1.0 - share) * laminar
+    if share > 0.0:
+        Nu += share * ht.helical_turbulent_Nu_Schmidt(high, Pr, diameter, coil_diameter)
+    info = checked("schmidt_helical", "Schmidt 1967", {"Nu": Nu, "Re": Re, "Pr": Pr}, {"Re": (0, 2e5)})
+    return Nu * fluid.k / diameter, info

@@ -1,0 +1,41 @@
+"""What a correlation says about its own answer."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+
+class RangeWarning(UserWarning):
+    """A correlation was used outside the range of its source."""
+
+
+@dataclass(frozen=True)
+class Info:
+    """name and source of the correlation; numbers: Nu, Re, Ra, ... it went through; range_ok: all inside `limits`."""
+
+    name: str
+    source: str
+    numbers: Mapping[str, float]
+    limits: Mapping[str, tuple[float, float]]
+
+    @property
+    def outside(self) -> tuple[str, ...]:
+        """The dimensionless numbers that lie outside the source's range."""
+        return tuple(k for k, (low, high) in self.limits.items() if not low <= self.numbers[k] <= high)
+
+    @property
+    def range_ok(self) -> bool:
+        return not self.outside
+
+
+def checked(name: str, source: str, numbers: Mapping[str, float], limits: Mapping[str, tuple[float, float]]) -> Info:
+    """Info, with one RangeWarning for every number outside its range."""
+    info = Info(name, source, dict(numbers), dict(limits))
+    for key in info.outside:
+        low, high = limits[key]
+        warnings.warn(
+            f"{name}: {key} = {numbers[key]:.4g} outside {low:g} to {high:g} ({source})", RangeWarning, stacklevel=3
+        )
+    return info

@@ -1,0 +1,64 @@
+"""Natural convection from plain outer surfaces."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import ht
+
+from lumped.correlations.info import Info, checked
+from lumped.properties import Fluid, air
+
+G = 9.80665
+Of = Callable[[float], Fluid]
+
+
+def _grashof(L: float, hot: float, cold: float, fluid: Fluid) -> float:
+    return G * fluid.beta * abs(hot - cold) * L**3 / fluid.nu**2
+
+
+def churchill_chu_cylinder(diameter: float, surface: float, ambient: float, of: Of = air) -> tuple[float, Info]:
+    """Horizontal cylinder in still fluid, h (W/m2/K).
+
+    Nu = (0.60 + 0.387 Ra^(1/6) / (1 + (0.559/Pr)^(9/16))^(8/27))^2, properties at film temperature.
+    diameter (m); surface, ambient (degC); of: T (degC) -> Fluid.
+    Range: Ra < 1e12. Source: Churchill and Chu 1975, Int. J. Heat Mass Transfer 18, 1049 (ht).
+    """
+    fluid = of(0.5 * (surface + ambient))
+    Gr = _grashof(diameter, surface, ambient, fluid)
+    Nu = ht.Nu_horizontal_cylinder_Churchill_Chu(fluid.Pr, Gr)
+    info = checked("churchill_chu_cylinder", "Churchill & Chu 1975", {"Nu": Nu, "Ra": Gr * fluid.Pr}, {"Ra": (0, 1e12)})
+    return Nu * fluid.k / diameter, info
+
+
+def churchill_chu_plate(height: float, surface: float, ambient: float, of: Of = air) -> tuple[float, Info]:
+    """Vertical plate or end shield in still fluid, h (W/m2/K).
+
+    Nu = (0.825 + 0.387 Ra^(1/6) / (1 + (0.492/Pr)^(9/16))^(8/27))^2, properties at film temperature.
+    height (m); surface, ambient (degC).  Worked value: test_natural.py.
+    Range: Ra < 1e12. Source: Churchill and Chu 1975, Int. J. Heat Mass Transfer 18, 1323 (ht).
+    """
+    fluid = of(0.5 * (surface + ambient))
+    Gr = _grashof(height, surface, ambient, fluid)
+    Nu = ht.Nu_vertical_plate_Churchill(fluid.Pr, Gr)
+    info = checked("churchill_chu_plate", "Churchill & Chu 1975", {"Nu": Nu, "Ra": Gr * fluid.Pr}, {"Ra": (0, 1e12)})
+    return Nu * fluid.k / height, info
+
+
+def mcadams_plate(
+    area_over_perimeter: float, surface: float, ambient: float, upward: bool = True, of: Of = air
+) -> tuple[float, Info]:
+    """Horizontal plate in still fluid, h (W/m2/K): base, feet, top of a box.
+
+    Heat carried away freely (hot facing up): 0.54 Ra^(1/4) below 1e7, 0.15 Ra^(1/3) above; held back: 0.27 Ra^(1/4).
+    area_over_perimeter (m); upward: the hot side faces up (or the cold side down). The two branches meet at their
+    crossing Ra = 4.8e6 instead of jumping at 1e7.
+    Range: Ra 1e4 to 1e11 (free), 1e5 to 1e10 (held back).
+    Source: McAdams 1954, Heat Transmission, in Incropera et al. 2007 eq. 9.30-9.32.
+    """
+    fluid = of(0.5 * (surface + ambient))
+    Ra = _grashof(area_over_perimeter, surface, ambient, fluid) * fluid.Pr
+    Nu = max(0.54 * Ra**0.25, 0.15 * Ra ** (1 / 3)) if upward else 0.27 * Ra**0.25
+    limits = (1e4, 1e11) if upward else (1e5, 1e10)
+    info = checked("mcadams_plate", "McAdams 1954", {"Nu": Nu, "Ra": Ra}, {"Ra": limits})
+    return Nu * fluid.k / area_over_perimeter, info

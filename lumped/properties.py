@@ -1,0 +1,90 @@
+"""Properties of the fluids that cool motors, from kept libraries."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+
+from geom.errors import InputError
+
+ZERO_C = 273.15
+GAS_CONSTANT_AIR = 287.0528  # J/kg/K
+CP_AIR = 1005.7  # J/kg/K, dry air, within 0.3 % from -20 to 120 degC (Lemmon et al. 2000)
+
+
+@dataclass(frozen=True)
+class Fluid:
+    """rho (kg/m3), cp (J/kg/K), k (W/m/K), mu (Pa s), beta: thermal expansion (1/K), at one temperature."""
+
+    rho: float
+    cp: float
+    k: float
+    mu: float
+    beta: float
+
+    @property
+    def nu(self) -> float:
+        """Kinematic viscosity (m2/s)."""
+        return self.mu / self.rho
+
+    @property
+    def Pr(self) -> float:
+        """Prandtl number."""
+        return self.mu * self.cp / self.k
+
+
+def air(T: float, altitude_m: float = 0.0) -> Fluid:
+    """Dry air at T (degC) and the standard pressure of an altitude (fluids: US Standard Atmosphere 1976, Sutherland)."""
+    from fluids import ATMOSPHERE_1976
+
+    absolute = T + ZERO_C
+    rho = _pressure(altitude_m) / (GAS_CONSTANT_AIR * absolute)
+    k, mu = ATMOSPHERE_1976.thermal_conductivity(absolute), ATMOSPHERE_1976.viscosity(absolute)
+    return Fluid(rho, CP_AIR, k, mu, 1.0 / absolute)
+
+
+@cache
+def _pressure(altitude_m: float) -> float:
+    from fluids import ATMOSPHERE_1976
+
+    return float(ATMOSPHERE_1976(altitude_m).P)
+
+
+def _liquid(source, T: float) -> Fluid:
+    if not source.t_min <= T <= source.t_max:
+        raise InputError(f"T = {T:g} degC", source.fluid_name, f"{source.t_min:g} to {source.t_max:g} degC")
+    step = 0.1 if T + 0.1 <= source.t_max else -0.1
+    rho = source.density(T)
+    beta = -(source.density(T + step) - rho) / step / rho
+    return Fluid(rho, source.specific_heat(T), source.conductivity(T), source.viscosity(T), beta)
+
+
+def water(T: float) -> Fluid:
+    """Liquid water at T (degC) (SecondaryCoolantProps)."""
+    from scp.water import Water
+
+    return _liquid(Water(), T)
+
+
+def ethylene_glycol(T: float, mass_fraction: float) -> Fluid:
+    """Water with ethylene glycol by MASS fraction (0 to 0.6) at T (degC) (SecondaryCoolantProps: Melinder 2010)."""
+    from scp.ethylene_glycol import EthyleneGlycol
+
+    return _liquid(EthyleneGlycol(mass_fraction), T)
+
+
+def propylene_glycol(T: float, mass_fraction: float) -> Fluid:
+    """Water with propylene glycol by MASS fraction (0 to 0.6) at T (degC) (SecondaryCoolantProps: Melinder 2010)."""
+    from scp.propylene_glycol import PropyleneGlycol
+
+    return _liquid(PropyleneGlycol(mass_fraction), T)
+
+
+GLYCOL_DENSITY = {"ethylene": 1113.2, "propylene": 1036.1}  # kg/m3 at 20 degC, CRC Handbook
+WATER_DENSITY = 998.2
+
+
+def mass_fraction_of(volume_fraction: float, glycol: str = "ethylene") -> float:
+    """Mass fraction of a mixture declared by volume of the parts before mixing, at 20 degC."""
+    heavy = volume_fraction * GLYCOL_DENSITY[glycol]
+    return heavy / (heavy + (1.0 - volume_fraction) * WATER_DENSITY)
