@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from viz.colours import LIGHT, Theme
+from viz.labels import spread
 from viz.scene import View, set_font
 
 if TYPE_CHECKING:
@@ -39,29 +40,16 @@ def callouts(
         mine = sorted(
             (q for q in labels if (np.dot(q.xyz, right) > middle) == (side > 0)), key=lambda q: np.dot(q.xyz, up)
         )
-        heights = _spread([float(np.dot(q.xyz, up)) for q in mine], above.min(), above.max(), 0.075 * np.ptp(above))
+        heights = spread([float(np.dot(q.xyz, up)) for q in mine], above.min(), above.max(), 0.075 * np.ptp(above))
         edge = middle + side * (0.5 + 0.03) * np.ptp(across)
         for q, height in zip(mine, heights, strict=True):
             _callout(p, q, edge * right + height * up + front * towards, side, theme, size)
 
 
-def _spread(heights: Sequence[float], low: float, high: float, gap: float) -> list[float]:
-    """Heights in rising order moved apart to at least `gap`, kept near where they were and within low..high."""
-    if not heights:
-        return []
-    out = np.clip(np.asarray(heights, float), low, high)
-    for i in range(1, len(out)):
-        out[i] = max(out[i], out[i - 1] + gap)
-    out -= max(out[-1] - high, 0.0)
-    for i in range(len(out) - 2, -1, -1):
-        out[i] = min(out[i], out[i + 1] - gap)
-    return out.tolist()
-
-
 def _callout(p: pyvista.Plotter, label: Label, end: Array, side: int, theme: Theme, size: int) -> None:
     import pyvista
 
-    flat = {"lighting": False, "render_points_as_spheres": True}
+    flat: dict[str, Any] = {"lighting": False, "render_points_as_spheres": True}
     line = p.add_mesh(pyvista.Line(label.xyz, end), color=theme.ink, line_width=2.0, opacity=0.8, lighting=False)
     here = pyvista.PolyData(np.array([label.xyz]))
     halo = p.add_mesh(here, color="white", point_size=26, **flat)

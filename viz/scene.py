@@ -92,7 +92,7 @@ def look(p: pyvista.Plotter, points: Array, view: View, room: tuple[float, float
 
 def colour_bar(p: pyvista.Plotter, title: str, theme: Theme = LIGHT, **options: Any) -> None:
     """A vertical bar at the right edge, its title above it."""
-    style = {
+    style: dict[str, Any] = {
         "title": title, "vertical": True, "position_x": 0.905, "position_y": 0.14, "width": 0.045, "height": 0.66,
         "n_labels": 6, "fmt": "%.0f", "label_font_size": 17, "title_font_size": 17, "color": theme.ink,
     }  # fmt: skip

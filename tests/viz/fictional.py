@@ -1,0 +1,63 @@
+"""A small fictional case for the pictures' tests: two tests, three sensors, one wrong at the right flange."""
+
+import numpy as np
+
+from lumped.network import Row
+from validation.case import Channel, Test
+from viz.data import Comparison
+
+TIME = np.arange(0.0, 3601.0, 30.0)
+PLACES = ("flange.left", "flange.right", "winding.field", "yoke", "housing")
+POSITIONS = {
+    "flange.left": (-0.12, 0.05, 0.10), "flange.right": (-0.08, -0.12, 0.65), "winding.field": (-0.14, 0.0, 0.30),
+    "yoke": (0.0, 0.17, 0.30), "housing": (0.0, 0.20, 0.40),
+}  # fmt: skip
+HISTORY = [
+    {"number": 1, "action": "calibrate", "effect": None, "tests": [
+        {"name": "stand-1", "role": "calibrate", "rmse_K": {"before": 3.1, "after": 0.71}},
+        {"name": "road-2", "role": "hold-out", "rmse_K": {"before": 6.4, "after": 4.85}}]},
+    {"number": 2, "action": "add", "effect": "convection@flange.right", "tests": [
+        {"name": "stand-1", "role": "calibrate", "rmse_K": {"before": 0.71, "after": 0.68}},
+        {"name": "road-2", "role": "hold-out", "rmse_K": {"before": 4.85, "after": 0.93}}]},
+]  # fmt: skip
+
+
+def curve(end: float, tau: float) -> np.ndarray:
+    return 20.0 + (end - 20.0) * (1.0 - np.exp(-TIME / tau))
+
+
+def comparison(wrong_K: float = 6.2, before: bool = False) -> Comparison:
+    """Five sensors; the machine's right flange is `wrong_K` colder than the model at the end."""
+    rng = np.random.default_rng(0)
+    model = {p: curve(60 + 12 * i, 700 + 150 * i) for i, p in enumerate(PLACES)}
+    truth = {**model, "flange.right": curve(72 - wrong_K, 850)}
+    row = Row(np.array([0]), np.array([1.0]))
+    channels = tuple(Channel(p, p, row, truth[p] + rng.normal(0, 0.3, len(TIME))) for p in PLACES)
+    test = Test(
+        "road-2",
+        "hold-out",
+        TIME,
+        {"current_A": np.full(len(TIME), 250.0)},
+        {"ambient": np.full(len(TIME), 20.0)},
+        channels,
+    )
+    return Comparison(test, model, {p: y + 4.0 for p, y in model.items()} if before else None)
+
+
+def candidate(effect: str, score: float, decision: str) -> dict:
+    return {
+        "effect": effect, "score": score, "threshold": 7.9, "decision": decision, "explained": 0.91,
+        "amplitude": {"value": 12.34, "unit": "W/m2/K", "ci95": [10.1, 14.6]},
+        "rmse_K": {"before": 4.85, "after": 0.93}, "holdout_rmse_K": {"before": 4.85, "after": 0.93},
+        "confused_with": [],
+    }  # fmt: skip
+
+
+def candidates() -> list[dict]:
+    rng = np.random.default_rng(1)
+    noise = [candidate(f"effect{i}@yoke", float(s), "no") for i, s in enumerate(2.2 * rng.normal(size=17))]
+    return [
+        candidate("convection@flange.right", 31.4, "named"),
+        candidate("radiation@flange.right", 14.0, "group"),
+        *noise,
+    ]

@@ -1,0 +1,92 @@
+"""What might be missing: scores of the candidate effects, and which of them cannot be told apart."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import halfnorm
+
+from viz import paper
+from viz.colours import LIGHT, ORANGE, PURPLE, VERMILION
+from viz.labels import spread
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+DECISION = {"named": VERMILION, "group": ORANGE, "cannot-tell": PURPLE, "no": LIGHT.faint}
+
+
+@paper.styled
+def scores(candidates: Sequence[Mapping[str, Any]], *, most: int = 12, png: str | Path | None = None) -> Figure:
+    """The highest scores as bars with each candidate's threshold, coloured by decision."""
+    best = sorted(candidates, key=lambda c: c["score"], reverse=True)[:most][::-1]
+    figure, (ax,) = paper.subplots(8.4, 0.3 * len(best) + 1.2)
+    for y, c in enumerate(best):
+        ax.barh(y, c["score"], height=0.62, color=DECISION[c["decision"]])
+        ax.plot([c["threshold"]] * 2, [y - 0.42, y + 0.42], color=LIGHT.ink, lw=1.4)
+        note = amplitude(c) if c["decision"] != "no" else ""
+        ax.text(max(c["score"], c["threshold"], 0), y, f"  {note}", va="center", fontsize=8.5)
+    ax.set_yticks(range(len(best)), [c["effect"] for c in best])
+    for label, c in zip(ax.get_yticklabels(), best, strict=True):
+        label.set_fontweight("bold" if c["decision"] == "named" else "normal")
+    ax.grid(False, axis="y")
+    ax.margins(x=0.2, y=0.02)
+    ax.set(xlabel="score (signed, in units of its own noise); black mark: threshold from simulated nulls")
+    return paper.saved(figure, png)
+
+
+@paper.styled
+def half_normal(candidates: Sequence[Mapping[str, Any]], *, png: str | Path | None = None) -> Figure:
+    """Sorted |score| against half-normal quantiles: pure noise lies on a line, what is real leaves it."""
+    ranked = sorted(candidates, key=lambda c: abs(c["score"]))
+    x = halfnorm.ppf((np.arange(len(ranked)) + 0.5) / len(ranked))
+    y = np.array([abs(c["score"]) for c in ranked])
+    figure, (ax,) = paper.subplots(6.4, 4.6)
+    ax.scatter(
+        x, y, s=26, c=[DECISION[c["decision"]] for c in ranked], zorder=3, edgecolors=LIGHT.paper, linewidths=0.6
+    )
+    threshold = float(np.median([c["threshold"] for c in ranked]))
+    ax.axhline(threshold, color=LIGHT.ink, lw=1.0, ls=":")
+    ax.text(0, threshold, "threshold (simulated nulls)", va="bottom", fontsize=8)
+    quiet = max(1, int(0.7 * len(ranked)))
+    slope = float(x[:quiet] @ y[:quiet] / (x[:quiet] @ x[:quiet]))
+    ax.plot([0, x[-1]], [0, slope * x[-1]], color=LIGHT.faint, lw=1.0)
+    shown = [i for i in range(len(ranked)) if ranked[i]["decision"] != "no"][-8:]
+    top = max(float(y.max()), threshold) * 1.08
+    for i, at in zip(shown, spread([y[i] for i in shown], 0, top, 0.05 * top), strict=True):
+        ax.annotate(f"{ranked[i]['effect']}  ", (x[i], y[i]), (x[i] - 0.05, at), ha="right", va="center", fontsize=8.5)
+    ax.set_ylim(0, top)
+    ax.set(xlabel="half-normal quantile", ylabel="|score|")
+    return paper.saved(figure, png)
+
+
+@paper.styled
+def confusion(names: Sequence[str], cosine: NDArray[np.float64], *, png: str | Path | None = None) -> Figure:
+    """|cosine| between the signatures of candidate effects: 1 cannot be told apart with these sensors and tests.
+
+    cosine : (n, n)
+    """
+    c = np.abs(np.asarray(cosine, float))
+    side = 0.34 * len(names) + 2.4
+    figure, (ax,) = paper.subplots(side + 0.6, side)
+    ax.imshow(c, cmap="Blues", vmin=0, vmax=1)
+    for i, j in np.ndindex(c.shape):
+        if i != j and c[i, j] >= 0.5:
+            ax.text(j, i, f"{c[i, j]:.2f}".lstrip("0"), ha="center", va="center", fontsize=7.5,
+                    color="white" if c[i, j] > 0.6 else "black")  # fmt: skip
+    ax.set_xticks(range(len(names)), names, rotation=60, ha="right", rotation_mode="anchor")
+    ax.set_yticks(range(len(names)), names)
+    ax.grid(False)
+    ax.set_title("Signatures in common (1: cannot be told apart)")
+    return paper.saved(figure, png)
+
+
+def amplitude(candidate: Mapping[str, Any]) -> str:
+    """'12.3 W/m2/K (95 %: 8.1 ... 16.5)'"""
+    a = candidate["amplitude"]
+    text = f"{a['value']:.3g} {a['unit']}"
+    return f"{text} (95 %: {a['ci95'][0]:.3g} … {a['ci95'][1]:.3g})" if a.get("ci95") else text

@@ -1,0 +1,102 @@
+"""Measured against modelled over time, sensor by sensor.
+
+Measured is ink, the model is blue, an earlier model is dashed orange; nothing else has a colour unless it is wrong.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from viz import paper
+from viz.colours import BLUE, LIGHT, ORANGE, VERMILION
+from viz.data import Comparison
+from viz.labels import beside
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from validation.case import Channel
+
+
+@paper.styled
+def measured_and_model(comparison: Comparison, *, columns: int = 3, png: str | Path | None = None) -> Figure:
+    """One small panel per sensor: readings with their 2-sigma band, the model, and the earlier model if given."""
+    channels = comparison.test.channels
+    columns = min(columns, len(channels))
+    rows = -(-len(channels) // columns)
+    figure, axes = paper.subplots(3.4 * columns, 2.2 * rows + 0.4, rows, columns)
+    for ax, channel in zip(axes, channels, strict=False):
+        _panel(ax, comparison, channel)
+    for ax in axes[len(channels) :]:
+        ax.set_visible(False)
+    _name_lines(axes[0], comparison, channels[0])
+    figure.supxlabel("time (min)", fontsize=9.5, color=LIGHT.ink)
+    figure.supylabel("temperature (°C)", fontsize=9.5, color=LIGHT.ink)
+    return paper.saved(figure, png)
+
+
+@paper.styled
+def residuals(comparison: Comparison, *, png: str | Path | None = None) -> Figure:
+    """Measured - modelled per sensor over time; sensors that leave the 2-sigma band are coloured and named in bold."""
+    figure, (ax,) = paper.subplots(8.4, 3.8)
+    band = 2 * max(c.sigma_K for c in comparison.test.channels)
+    ax.axhspan(-band, band, color=LIGHT.faint, alpha=0.25, lw=0)
+    ends, names, colours = [], [], []
+    for channel in comparison.test.channels:
+        r = comparison.residual(channel)
+        colour = _wrongness(r, 2 * channel.sigma_K)
+        ax.plot(comparison.minutes, r, color=colour, lw=1.6 if colour != LIGHT.faint else 1.0)
+        ends.append(float(r[np.isfinite(r)][-1]))
+        names.append(channel.name)
+        colours.append(colour)
+    beside(ax, ends, names, [LIGHT.ink if c == LIGHT.faint else c for c in colours])
+    ax.axhline(0, color=LIGHT.ink, lw=0.8)
+    ax.margins(x=0)
+    ax.set(xlabel="time (min)", ylabel="measured − model (K)", title=f"{comparison.test.name}: what the model misses")
+    ax.text(
+        0.01,
+        band,
+        " what the sensors' uncertainty explains",
+        va="bottom",
+        fontsize=8,
+        transform=ax.get_yaxis_transform(),
+    )
+    return paper.saved(figure, png)
+
+
+def _panel(ax: Axes, comparison: Comparison, channel: Channel) -> None:
+    t, y = comparison.minutes, np.asarray(channel.y, float)
+    ax.fill_between(t, y - 2 * channel.sigma_K, y + 2 * channel.sigma_K, color=LIGHT.faint, alpha=0.45, lw=0)
+    ax.plot(t, y, color=LIGHT.ink, lw=1.0)
+    if comparison.before is not None:
+        ax.plot(t, comparison.before[channel.name], color=ORANGE, lw=1.4, ls=(0, (4, 2)))
+    ax.plot(t, comparison.model[channel.name], color=BLUE)
+    ax.set_title(channel.name)
+    ax.margins(x=0)
+    over = comparison.rmse(channel) > 2 * channel.sigma_K
+    ax.text(
+        0.97, 0.06, f"rms {comparison.rmse(channel):.1f} K", transform=ax.transAxes, ha="right", fontsize=9,
+        color=VERMILION if over else LIGHT.ink, weight="bold" if over else "normal",
+    )  # fmt: skip
+
+
+def _name_lines(ax: Axes, comparison: Comparison, channel: Channel) -> None:
+    """Names written once, top left of the first panel, in the colour of their lines."""
+    lines = [("measured ± 2σ", LIGHT.ink), ("model", BLUE)] + [("earlier model", ORANGE)] * (
+        comparison.before is not None
+    )
+    for i, (text, colour) in enumerate(lines):
+        ax.text(0.03, 0.97 - 0.12 * i, text, transform=ax.transAxes, va="top", color=colour, fontsize=8.5)
+
+
+def _wrongness(residual: np.ndarray, limit: float) -> str:
+    """Faint within the limit; else vermilion where the machine is hotter than the model, blue where it is colder."""
+    late = residual[int(0.5 * len(residual)) :]
+    mean = float(np.nanmean(late)) if np.isfinite(late).any() else 0.0
+    if abs(mean) <= limit:
+        return LIGHT.faint
+    return VERMILION if mean > 0 else BLUE

@@ -1,0 +1,38 @@
+"""Labels that do not sit on each other."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+def spread(values: Sequence[float], low: float, high: float, gap: float) -> list[float]:
+    """Rising values moved apart to at least `gap` (less if they do not fit), within low..high, near where they were."""
+    if not len(values):
+        return []
+    gap = min(gap, (high - low) / max(len(values) - 1, 1))
+    out = np.clip(np.asarray(values, float), low, high)
+    for i in range(1, len(out)):
+        out[i] = max(out[i], out[i - 1] + gap)
+    out[-1] = min(out[-1], high)
+    for i in range(len(out) - 2, -1, -1):
+        out[i] = min(out[i], out[i + 1] - gap)
+    return out.tolist()
+
+
+def beside(ax: Axes, ends: Sequence[float], names: Sequence[str], colours: Sequence[str], size: float = 8.5) -> None:
+    """Names at the right edge of the axes, each at the height where its line ends."""
+    low, high = ax.get_ylim()
+    order = np.argsort(ends)
+    heights = spread([float(ends[i]) for i in order], low, high, 0.055 * (high - low))
+    ax.set_ylim(low, high)
+    for i, y in zip(order, heights, strict=True):
+        ax.annotate(
+            names[i], (1.0, y), xycoords=("axes fraction", "data"), xytext=(6, 0), textcoords="offset points",
+            va="center", color=colours[i], fontsize=size, annotation_clip=False,
+        )  # fmt: skip
