@@ -6,6 +6,8 @@ import hashlib
 from pathlib import Path
 from typing import Any
 
+from geom.blocks import find_blocks, find_columns
+from geom.blocks import find_blocks, find_columns
 from geom.extrude import extrude
 from geom.machine import Machine
 from geom.mesh import NamedMesh
@@ -42,7 +44,9 @@ def build_mesh(
     parts = (*machine.parts, *machine.fluids)
     cut = partition(parts, segments)
     refuse_hidden_voids(cut)
-    mesh = extrude(triangulate(cut, size_m, across), cut.levels, axial, parts, machine.face_name)
+    blocks = find_blocks(cut)
+    columns = find_columns(cut, blocks)
+    mesh = extrude(cut, blocks, columns, triangulate(columns, size_m, across), axial, machine.face_name)
     if kept is not None:
         write_npz(mesh, kept)
     return mesh

@@ -23,18 +23,15 @@ class Partition:
     """Faces of the plane and what fills each of them between neighbouring levels.
 
     levels : (n_slab + 1,) axial positions where anything begins or ends (m)
-    faces : (n_face,) shapely polygons that tile a box around the machine; the last is not special
+    faces : (n_face,) shapely polygons that tile a box around the machine
     labels : (n_face, n_slab) index into parts; AMBIENT where nothing is declared
-    points, edges : (n, 2) coordinates (m) and (m, 2) point numbers of the faces' borders
-    left, right : (m,) face on either side of each edge, -1 beyond the box
+    left, right : (n_edge,) faces on either side of each border edge, -1 beyond the box
     parts : solids and fluids in the order of the labels
     """
 
     levels: NDArray[np.float64]
     faces: NDArray[np.object_]
     labels: NDArray[np.int64]
-    points: NDArray[np.float64]
-    edges: NDArray[np.int64]
     left: NDArray[np.int64]
     right: NDArray[np.int64]
     parts: tuple[Part, ...]
@@ -60,7 +57,7 @@ def partition(parts: Sequence[Part], segments: int = 72) -> Partition:
     faces = _tile(polygons)
     levels = axial_levels(parts)
     labels = _label(parts, profiles, polygons, faces, levels)
-    return Partition(levels, faces, labels, *half_edges(faces), tuple(parts))
+    return Partition(levels, faces, labels, *_neighbours(faces), tuple(parts))
 
 
 def axial_levels(parts: Sequence[Part]) -> NDArray[np.float64]:
@@ -108,19 +105,23 @@ def _refuse_overlap(
 
 
 def half_edges(faces: NDArray[np.object_]) -> tuple[NDArray[np.float64], ...]:
-    """Points, edges and the faces left and right of each edge, from anticlockwise polygons."""
+    """Points (n, 2), and start, end (point numbers) and face of every directed border edge, face on its left."""
     rings, owner = shapely.get_rings(faces, return_index=True)
     xy, ring = shapely.get_coordinates(rings, return_index=True)
     keys, number = np.unique(np.round(xy / GRID).astype(np.int64), axis=0, return_inverse=True)
     follows = ring[1:] == ring[:-1]
-    start, end = number[:-1][follows], number[1:][follows]
-    face = owner[ring[:-1][follows]]
+    return keys * GRID, number[:-1][follows], number[1:][follows], owner[ring[:-1][follows]]
+
+
+def _neighbours(faces: NDArray[np.object_]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Pairs of faces with a common edge; -1 is the plane beyond the box."""
+    _, start, end, face = half_edges(faces)
     forward = start < end
     edges, which = np.unique(np.sort(np.column_stack([start, end]), axis=1), axis=0, return_inverse=True)
     left, right = np.full(len(edges), -1), np.full(len(edges), -1)
     left[which[forward]] = face[forward]
     right[which[~forward]] = face[~forward]
-    return keys * GRID, edges, left, right
+    return left, right
 
 
 def refuse_hidden_voids(cut: Partition) -> None:
