@@ -127,7 +127,8 @@ def section(nodes: SplitMesh, normal: Array) -> Surface:
     ac, ae, be, bc = mixes.edge(a, c), mixes.edge(a, e), mixes.edge(b, e), mixes.edge(b, c)
     triangles += [np.stack([ac, ae, be], axis=1), np.stack([ac, be, bc], axis=1)]
     part += [nodes.region[two]] * 2
-    return Surface(nodes, mixes.matrix(), np.concatenate(triangles), np.concatenate(part)).compact()
+    flat = Surface(nodes, mixes.matrix(), np.concatenate(triangles), np.concatenate(part)).compact()
+    return _facing(flat, normal)
 
 
 def cut_away(nodes: SplitMesh, wedge: Wedge | None = QUARTER) -> Surface:
@@ -175,6 +176,13 @@ class _Mixes:
             (np.concatenate([1 - share, share]), (np.concatenate([rows, rows]), np.concatenate([i, j]))),
             shape=(n, len(self.distance)),
         )
+
+
+def _facing(flat: Surface, normal: Array) -> Surface:
+    """The same triangles, all turned towards `normal`."""
+    a, b, c = flat.points[flat.triangles].transpose(1, 0, 2)
+    turned = np.where((np.cross(b - a, c - a) @ normal < 0)[:, None], flat.triangles[:, ::-1], flat.triangles)
+    return Surface(flat.nodes, flat.weights, turned, flat.part)
 
 
 def _first(cells: Index, flag: NDArray[np.bool_], count: int) -> Index:

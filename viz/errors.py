@@ -21,7 +21,7 @@ _PALE = "#8DB9DB"
 def before_after(
     tests: Sequence[Mapping[str, Any]], *, floor_K: float | None = None, title: str = "", png: str | Path | None = None
 ) -> Figure:
-    """Error of every test before and after, from the `tests` of an `add` document; tests never used for fitting in bold.
+    """Error of every test before and after, as an `add` document lists them; held-out tests in bold.
 
     tests : [{"name", "role", "rmse_K": {"before", "after"}}]
     """

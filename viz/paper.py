@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable
 from functools import wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, ParamSpec
+from typing import TYPE_CHECKING, Any, ParamSpec
 
 from viz.colours import LIGHT
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 P = ParamSpec("P")
 DPI = 150
-_STYLE = {
+_STYLE: dict[Any, Any] = {
     "font.size": 9.5, "axes.titlesize": 10, "axes.titleweight": "bold", "axes.titlelocation": "left",
     "axes.spines.top": False, "axes.spines.right": False, "axes.edgecolor": LIGHT.faint, "axes.labelcolor": LIGHT.ink,
     "axes.titlecolor": LIGHT.ink, "text.color": LIGHT.ink, "xtick.color": LIGHT.ink, "ytick.color": LIGHT.ink,

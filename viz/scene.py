@@ -58,7 +58,7 @@ def polydata(surface: Surface, shift: Array | None = None) -> pyvista.PolyData:
     points = surface.points
     if shift is not None:
         points = points + shift[surface.owner]
-    data = pyvista.PolyData.from_regular_faces(points, surface.triangles)
+    data = pyvista.PolyData.from_regular_faces(points, surface.triangles)  # type: ignore[arg-type]
     data.cell_data["part"] = surface.part
     return data
 
