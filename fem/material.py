@@ -1,0 +1,78 @@
+"""Thermal conductivity, direction by direction."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geom.errors import InputError
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Conductivity:
+    """Orthotropic conductivity (W/m/K) along r, theta and z of the machine's axis."""
+
+    k_r: float
+    k_theta: float
+    k_z: float
+
+    def __post_init__(self) -> None:
+        if not min(self.k_r, self.k_theta, self.k_z) > 0:
+            raise InputError(f"conductivity {self.k_r}, {self.k_theta}, {self.k_z} W/m/K", right="give values above 0")
+
+    def tensor(self, x: Floats) -> Floats:
+        """(n, 3, 3) tensor in x, y, z (W/m/K) at points x (n, 3)."""
+        theta = np.arctan2(x[:, 1], x[:, 0])
+        c, s = np.cos(theta), np.sin(theta)
+        k = np.zeros((len(x), 3, 3))
+        k[:, 0, 0] = self.k_r * c * c + self.k_theta * s * s
+        k[:, 1, 1] = self.k_r * s * s + self.k_theta * c * c
+        k[:, 0, 1] = k[:, 1, 0] = (self.k_r - self.k_theta) * c * s
+        k[:, 2, 2] = self.k_z
+        return k
+
+
+@dataclass(frozen=True)
+class LoopWound:
+    """Coils around radial poles: wires run in loops about each pole's axis, layers stack along the radius.
+
+    along, across : conductivity along the wire and across it (W/m/K)
+    axes : angles of the pole axes (rad);  half_length : half of the pole's length in z (m);  half_width : of its width (m)
+    """
+
+    along: float
+    across: float
+    axes: tuple[float, ...]
+    half_length: float
+    half_width: float
+    z_centre: float = 0.0
+
+    def tensor(self, x: Floats) -> Floats:
+        """(n, 3, 3) tensor (W/m/K): the wire runs along z beside the pole and sideways beyond its ends."""
+        angle = np.arctan2(x[:, 1], x[:, 0])[:, None] - np.array(self.axes)
+        nearest = np.argmin(np.abs(np.angle(np.exp(1j * angle))), axis=1)
+        axis = np.array(self.axes)[nearest]
+        side = np.stack([-np.sin(axis), np.cos(axis), np.zeros(len(x))], -1)
+        beside = np.abs((x * side).sum(1)) / self.half_width
+        beyond = np.abs(x[:, 2] - self.z_centre) / self.half_length
+        wire = np.where((beyond > beside)[:, None], side, np.array([0.0, 0.0, 1.0]))
+        return self.across * np.eye(3) + (self.along - self.across) * wire[:, :, None] * wire[:, None, :]
+
+
+def isotropic(k: float) -> Conductivity:
+    """The same conductivity k (W/m/K) in every direction."""
+    return Conductivity(k, k, k)
+
+
+def laminated(in_plane: float, through: float) -> Conductivity:
+    """A stack of sheets along z: in_plane and through the stack (W/m/K)."""
+    return Conductivity(in_plane, in_plane, through)
+
+
+def wound(along: float, across: float) -> Conductivity:
+    """Wires along z: conductivity along and across them (W/m/K)."""
+    return Conductivity(across, across, along)
