@@ -46,7 +46,7 @@ def motor_network(machine: Any, condensed: Network) -> Network:
     """The condensed network of a series-wound DC motor, completed to a model that can run a test."""
     films, sizes = _settings(machine, "films", Films), _sizes(machine)
     fan, losses = _settings(machine, "fans", Fan), _settings(machine, "losses", Losses)
-    ratings = {key: float(value) for key, value in machine.sections["ratings"].items()}
+    ratings = machine.sections["ratings"]
     volumes = {part.name: part.volume for part in machine.parts}
     faces = [place for place in condensed.places.values() if place.kind == "surface" and place.fluid]
     links = [link for face in faces for link in _film_links(condensed, face, films, sizes)]

@@ -14,6 +14,7 @@ from lumped.correlations.natural import churchill_chu_cylinder, churchill_chu_pl
 from lumped.laws import Array, Fixed, Inputs, Law, Radiation, Table
 from lumped.motor_settings import Films
 
+ROTATING = ("winding.armature", "rotor", "shaft", "commutator", "slot")
 STILL_AIR_K = tuple(np.concatenate([[0.0, 0.5], np.geomspace(1.0, 200.0, 30)]))
 
 
@@ -63,11 +64,12 @@ def face_films(part: str, fluid: str, films: Films, sizes: Sizes) -> dict[str, L
     if fluid == "ambient":
         return _outer(part, films, sizes)
     if fluid in ("air.left", "air.right"):
-        return {"": _end_space(part, films, sizes)}
+        moving = part.startswith(ROTATING)
+        return {"": _stirred(films.moving_wall_share if moving else films.still_wall_share, films, sizes)}
     if fluid == "airgap":
         return {"": _gap(sizes)}
     if fluid == "air.interpolar":
-        return {"": _channel(sizes)}
+        return {"axial": _channel(sizes), "stirred": _stirred(films.channel_wall_share, films, sizes)}
     return {}
 
 
@@ -84,9 +86,8 @@ def _outer(part: str, films: Films, sizes: Sizes) -> dict[str, Law]:
     }
 
 
-def _end_space(part: str, films: Films, sizes: Sizes) -> Law:
-    moving = part.startswith(("winding.armature", "rotor", "shaft", "commutator", "slot"))
-    share = films.moving_wall_share if moving else films.still_wall_share
+def _stirred(share: float, films: Films, sizes: Sizes) -> Law:
+    """Walls of air that the rotor stirs; `share` of its tip speed passes the wall."""
     speed = np.linspace(0.0, 6000.0, 121)
     tip = speed * 2 * np.pi / 60 * sizes.tip_radius * share
     h = end_space(tip, films.end_space_k1_W_m2K, films.end_space_k2, films.end_space_k3)[0]

@@ -37,7 +37,11 @@ class Losses:
 
 @dataclass(frozen=True)
 class Films:
-    """Surfaces and films: emissivity (1), local share of the rotor's tip speed at still walls (1), end-space set k1 (1 + k2 v^k3)."""
+    """Surfaces and films: emissivity (1), the end-space set k1 (1 + k2 v^k3), and which share of the rotor's tip speed v is.
+
+    Sets and shares: Schubert's, as collected by Staton, Boglietti and Cavagnino 2005; the channel between the poles
+    is taken as half as well stirred as an end shield.
+    """
 
     emissivity: float = 0.9
     end_space_k1_W_m2K: float = 15.0
@@ -45,6 +49,7 @@ class Films:
     end_space_k3: float = 0.9
     still_wall_share: float = 0.2
     moving_wall_share: float = 1.0
+    channel_wall_share: float = 0.1
 
 
 @dataclass(frozen=True)
