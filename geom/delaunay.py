@@ -9,6 +9,8 @@ from scipy.spatial import Delaunay
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+_STRAIGHT = 1e-4  # rad; a border that turns by less goes straight on
+_NUDGE = 1e-6  # of the length of a straight border: far below any tolerance, far above rounding
 
 
 def interior_points(face: shapely.Polygon, size: float) -> Floats:
@@ -32,23 +34,41 @@ def interior_points(face: shapely.Polygon, size: float) -> Floats:
     return grid[shapely.contains_xy(room, grid)]
 
 
+def nudged(ring: Floats) -> Floats:
+    """The ring (n, 2), face on its left, with points on straight stretches moved a hair into the face.
+
+    Three points exactly in a line come out of a Delaunay triangulation as a triangle now and then. On a
+    slightly concave border they do so only outside the face.
+    """
+    before, after = ring - np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0) - ring
+    turn = np.abs(_cross(before, after)) / (np.linalg.norm(before, axis=1) * np.linalg.norm(after, axis=1))
+    corners = np.flatnonzero(turn > _STRAIGHT)
+    moved = ring.copy()
+    for a, b in zip(corners, [*corners[1:], corners[0] + len(ring)]):
+        between = np.arange(a + 1, b) % len(ring)
+        along = ring[b % len(ring)] - ring[a]
+        share = (ring[between] - ring[a]) @ along / (along @ along)
+        moved[between] += (_NUDGE * 4 * share * (1 - share))[:, None] * np.array([-along[1], along[0]])
+    return moved
+
+
 def triangulate_face(points: Floats, border: Ints, face: shapely.Polygon) -> Ints:
     """Triangles (n, 3), anticlockwise, of the face whose border edges (m, 2) all appear.
 
-    points : (n, 2) corners first, interior points after. Falls back to the border points alone if rounding
+    points : (n, 2) corners first, interior points after, no three on the border in a line. Falls back to the border points alone if rounding
     spoils the Delaunay triangulation.
     """
     triangles = _oriented(points, Delaunay(points * 1e3).simplices.astype(np.int64))
     for a, b in _missing(triangles, border):
         triangles = _force_edge(points, triangles, int(a), int(b))
-    inside = shapely.contains_xy(face, points[triangles].mean(axis=1)) & (_doubled_area(points, triangles) > 1e-14)
-    triangles = triangles[inside]
-    if abs(_doubled_area(points, triangles).sum() / 2 / face.area - 1) < 1e-9 and not len(_missing(triangles, border)):
+    triangles = triangles[shapely.contains_xy(face, points[triangles].mean(axis=1))]
+    complete = abs(_doubled_area(points, triangles).sum() / 2 / face.area - 1) < 1e-9
+    if complete and not len(_missing(triangles, border)):
         return triangles
-    return _plain(points, border, face)
+    return _plain(points, face)
 
 
-def _plain(points: Floats, border: Ints, face: shapely.Polygon) -> Ints:
+def _plain(points: Floats, face: shapely.Polygon) -> Ints:
     """Constrained Delaunay triangles between border points only (GEOS, robust)."""
     corners = shapely.get_coordinates(shapely.get_parts(shapely.constrained_delaunay_triangles(face)))
     tree = shapely.STRtree(shapely.points(points))

@@ -15,7 +15,7 @@ from geom.meshio_io import read_npz, write_npz
 from geom.partition import partition, refuse_hidden_voids
 from geom.triangulate import triangulate
 
-COARSE: dict[str, Any] = {"size_m": 0.06, "segments": 36, "across": 1}
+COARSE: dict[str, Any] = {"size_m": 0.06, "segments": 44, "across": 1}
 FINE: dict[str, Any] = {"size_m": 0.012, "segments": 72, "across": 4}
 
 

@@ -53,7 +53,8 @@ def partition(parts: Sequence[Part], segments: int = 72) -> Partition:
     """
     profiles = list(dict.fromkeys(profile for part in parts for profile, _, _ in part.prisms))
     grid = ArcGrid(profiles, segments)
-    polygons = np.array([profile.to_polygon(grid) for profile in profiles], dtype=object)
+    exact = np.array([profile.to_polygon(grid) for profile in profiles], dtype=object)
+    polygons = shapely.set_precision(exact, GRID, mode="pointwise")  # equal corners become equal to the bit
     faces = _tile(polygons)
     levels = axial_levels(parts)
     labels = _label(parts, profiles, polygons, faces, levels)

@@ -60,6 +60,10 @@ class Profile:
         """The same profile turned about the axis by `angle` (rad, anticlockwise)."""
         return Profile(_turned(self.outer, angle), tuple(_turned(hole, angle) for hole in self.holes))
 
+    def scaled(self, factor: float) -> Profile:
+        """The same profile in other units."""
+        return Profile(_scaled(self.outer, factor), tuple(_scaled(hole, factor) for hole in self.holes))
+
     def to_polygon(self, grid: ArcGrid) -> Polygon:
         """Faceted shapely polygon; profiles faceted on the same grid share their vertices."""
         from shapely import Polygon
@@ -166,6 +170,10 @@ def _arc_ends(profile: Profile) -> dict[int, set[float]]:
 def _turned(loop: Loop, angle: float) -> Loop:
     c, s = math.cos(angle), math.sin(angle)
     return tuple((c * x - s * y, s * x + c * y, bulge) for x, y, bulge in loop)
+
+
+def _scaled(loop: Loop, factor: float) -> Loop:
+    return tuple((x * factor, y * factor, bulge) for x, y, bulge in loop)
 
 
 def _wrap(angle: float) -> float:

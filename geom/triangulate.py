@@ -13,7 +13,7 @@ import shapely
 from numpy.typing import NDArray
 
 from geom.blocks import Column
-from geom.delaunay import interior_points, triangulate_face
+from geom.delaunay import interior_points, nudged, triangulate_face
 from geom.partition import GRID, half_edges
 
 Floats = NDArray[np.float64]
@@ -85,9 +85,12 @@ def _borders(faces: NDArray[np.object_], points: Floats, edges: Ints, inner: lis
 def _mesh_face(points: Floats, face: shapely.Polygon, rings: list[Ints], size: float) -> tuple[Ints, Floats]:
     """Triangles of one face in global point numbers, and the points with those inside the face added."""
     corners, added = np.unique(np.concatenate(rings)), interior_points(face, size)
+    outline = [nudged(points[ring]) for ring in rings]
     local = np.vstack([points[corners], added])
+    for ring, moved in zip(rings, outline):
+        local[np.searchsorted(corners, ring)] = moved
     border = np.vstack([np.column_stack([ring, np.roll(ring, -1)]) for ring in rings])
-    outline = shapely.Polygon(points[rings[0]], [points[ring] for ring in rings[1:]])
-    triangles = triangulate_face(local, np.searchsorted(corners, border), outline)
+    polygon = shapely.Polygon(outline[0], outline[1:])
+    triangles = triangulate_face(local, np.searchsorted(corners, border), polygon)
     number = np.concatenate([corners, len(points) + np.arange(len(added))])
     return number[triangles], np.vstack([points, added])

@@ -1,0 +1,124 @@
+"""Exact solids of a machine (cadquery), their export, and the check of their surfaces (trimesh)."""
+
+from __future__ import annotations
+
+import colorsys
+import hashlib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from geom.errors import InputError
+from geom.machine import Machine
+from geom.part import Part
+
+if TYPE_CHECKING:
+    import cadquery as cq
+    import trimesh
+
+FORMATS = ("step", "stl", "glb")
+
+
+@dataclass(frozen=True)
+class CadCheck:
+    """One part's surface: volumes of formula, solid and triangulated surface (m3), pieces, watertight or not."""
+
+    part: str
+    volume: float
+    solid_volume: float
+    surface_volume: float
+    pieces: int
+    watertight: bool
+
+
+def solids(part: Part) -> list[cq.Solid]:
+    """Exact solids (mm), touching prisms of the part fused into one."""
+    import cadquery as cq
+
+    prisms = [_prism(profile, z0, z1) for profile, z0, z1 in part.prisms]
+    if len(_stacked(part)) == len(prisms):
+        return prisms
+    whole = prisms[0].fuse(*prisms[1:]).clean()
+    return [cq.Solid(solid.wrapped) for solid in whole.Solids()]
+
+
+def _prism(profile: Any, z0: float, z1: float) -> cq.Solid:
+    import cadquery as cq
+
+    face = profile.scaled(1e3).to_face()
+    return cq.Solid.extrudeLinear(face, cq.Vector(0, 0, (z1 - z0) * 1e3)).translate(cq.Vector(0, 0, z0 * 1e3))
+
+
+def _stacked(part: Part) -> set[int]:
+    """Indices of prisms that touch no other prism of the part at an end plane."""
+    starts = [round(z0, 7) for _, z0, _ in part.prisms]
+    ends = [round(z1, 7) for _, _, z1 in part.prisms]
+    return {i for i, (a, b) in enumerate(zip(starts, ends)) if a not in ends and b not in starts}
+
+
+def assembly(machine: Machine) -> cq.Assembly:
+    """All parts as a coloured assembly (mm), named as everywhere else."""
+    import cadquery as cq
+
+    whole = cq.Assembly(name=machine.name)
+    for part in machine.parts:
+        whole.add(cq.Compound.makeCompound(solids(part)), name=part.name, color=cq.Color(*colour(part.material)))
+    return whole
+
+
+def colour(material: str) -> tuple[float, float, float]:
+    """A steady colour (r, g, b in 0 ... 1) for a material: copper is copper, others by their name."""
+    known = {"winding": (0.85, 0.45, 0.2), "insul": (0.95, 0.9, 0.55), "liner": (0.95, 0.9, 0.55)}
+    for word, rgb in known.items():
+        if word in material:
+            return rgb
+    hue = int(hashlib.sha256(material.encode()).hexdigest()[:4], 16) / 65535
+    return colorsys.hsv_to_rgb(hue, 0.15, 0.75)
+
+
+def export_cad(machine: Machine, folder: Path | str, formats: tuple[str, ...] = FORMATS) -> dict[str, Path]:
+    """Write the machine as STEP and GLB assemblies and one STL per part (mm); returns what was written.
+
+    Keys are "step", "glb" and "stl:<part>". Raises InputError for an unknown format.
+    """
+    for name in formats:
+        if name not in FORMATS:
+            raise InputError(f"unknown format {name!r}", "export", f"known: {', '.join(FORMATS)}")
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    whole = assembly(machine)
+    written = {}
+    for name in [name for name in ("step", "glb") if name in formats]:
+        written[name] = folder / f"{machine.name}.{name}"
+        whole.export(str(written[name]), tolerance=0.1, angularTolerance=0.1)
+    if "stl" in formats:
+        for child in whole.children:
+            path = written[f"stl:{child.name}"] = folder / f"{child.name}.stl"
+            child.obj.exportStl(str(path), tolerance=0.05, angularTolerance=0.1)
+    return written
+
+
+def check_cad(machine: Machine, tolerance_mm: float = 0.02) -> list[CadCheck]:
+    """Volume and watertightness of every part; the surface is triangulated to the tolerance."""
+    return [_checked(part, tolerance_mm) for part in machine.parts]
+
+
+def _checked(part: Part, tolerance_mm: float) -> CadCheck:
+    found = solids(part)
+    surfaces = [surface(solid, tolerance_mm) for solid in found]
+    return CadCheck(
+        part=part.name,
+        volume=part.volume,
+        solid_volume=sum(solid.Volume() for solid in found) * 1e-9,
+        surface_volume=sum(float(mesh.volume) for mesh in surfaces) * 1e-9,
+        pieces=len(found),
+        watertight=all(bool(mesh.is_watertight) for mesh in surfaces),
+    )
+
+
+def surface(solid: cq.Solid, tolerance_mm: float) -> trimesh.Trimesh:
+    """Triangulated surface (mm) with equal points merged."""
+    import trimesh
+
+    points, triangles = solid.tessellate(tolerance_mm, 0.1)
+    return trimesh.Trimesh([point.toTuple() for point in points], triangles, process=True)
