@@ -88,14 +88,14 @@ def _outer(part: str, films: Films, sizes: Sizes) -> dict[str, Law]:
 
 def _stirred(share: float, films: Films, sizes: Sizes) -> Law:
     """Walls of air that the rotor stirs; `share` of its tip speed passes the wall."""
-    speed = np.linspace(0.0, 6000.0, 121)
+    speed = np.linspace(0.0, 3000.0, 121)
     tip = speed * 2 * np.pi / 60 * sizes.tip_radius * share
     h = end_space(tip, films.end_space_k1_W_m2K, films.end_space_k2, films.end_space_k3)[0]
     return OfSpeed(tuple(speed), tuple(np.asarray(h)))
 
 
 def _gap(sizes: Sizes) -> Law:
-    speed = np.linspace(0.0, 6000.0, 121)
+    speed = np.linspace(0.0, 3000.0, 121)
     h = [taylor_film(n * 2 * np.pi / 60, sizes.tip_radius, sizes.air_gap)[0] for n in speed]
     return OfSpeed(tuple(speed), tuple(h))
 

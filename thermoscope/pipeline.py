@@ -46,7 +46,7 @@ def field_of(machine: Machine, mesh: NamedMesh) -> FieldModel:
 
 
 def build(
-    machine: Machine, size_m: float = 0.06, segments: int = 36, recipe: Recipe = Recipe(), progress: Progress = silent
+    machine: Machine, size_m: float = 0.06, segments: int = 48, recipe: Recipe = Recipe(), progress: Progress = silent
 ) -> Built:
     """Everything from the machine file to the network, at one mesh size."""
     cache = cache_folder()
