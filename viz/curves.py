@@ -48,7 +48,7 @@ def residuals(comparison: Comparison, *, png: str | Path | None = None) -> Figur
     ends, names, colours = [], [], []
     for channel in comparison.test.channels:
         r = comparison.residual(channel)
-        colour = _wrongness(r, 2 * channel.sigma_K)
+        colour = wrongness(r, 2 * channel.sigma_K)
         ax.plot(comparison.minutes, r, color=colour, lw=1.6 if colour != LIGHT.faint else 1.0)
         ends.append(float(r[np.isfinite(r)][-1]))
         names.append(channel.name)
@@ -93,7 +93,7 @@ def _name_lines(ax: Axes, comparison: Comparison, channel: Channel) -> None:
         ax.text(0.03, 0.97 - 0.12 * i, text, transform=ax.transAxes, va="top", color=colour, fontsize=8.5)
 
 
-def _wrongness(residual: np.ndarray, limit: float) -> str:
+def wrongness(residual: np.ndarray, limit: float) -> str:
     """Faint within the limit; else vermilion where the machine is hotter than the model, blue where it is colder."""
     late = residual[int(0.5 * len(residual)) :]
     mean = float(np.nanmean(late)) if np.isfinite(late).any() else 0.0

@@ -14,7 +14,7 @@ from viz.labels import beside
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_PALE = "#8DB9DB"
+PALE = "#8DB9DB"
 
 
 @paper.styled
@@ -63,12 +63,12 @@ def staircase(
     ends, names, colours = [], [], []
     for (name, role), errors in paths.items():
         strong = role == "hold-out"
-        colour, width = (BLUE, 2.4) if strong else (_PALE, 1.4)
+        colour, width = (BLUE, 2.4) if strong else (PALE, 1.4)
         ax.step(range(len(errors)), errors, where="post", color=colour, lw=width)
         ax.plot(
             [len(errors) - 1, len(errors) - 0.5],
             [errors[-1]] * 2,
-            color=BLUE if strong else _PALE,
+            color=BLUE if strong else PALE,
             lw=2.4 if strong else 1.4,
         )
         ends.append(errors[-1])

@@ -20,11 +20,12 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError, MissingDependency
 from viz.arrangement import blueprint
-from viz.colours import BLUE, LIGHT, VERDICT, VERMILION, heat
+from viz.colours import BLUE, LIGHT, ORANGE, VERDICT, heat
+from viz.curves import wrongness
 from viz.cut import QUARTER, Surface, Wedge, cut_away
 from viz.data import Comparison, Sensor
 from viz.edges import outline_strips
-from viz.errors import error_paths
+from viz.errors import PALE, error_paths
 from viz.split import SplitMesh, on_nodes
 
 if TYPE_CHECKING:
@@ -61,8 +62,9 @@ def write_recording(
     path.parent.mkdir(parents=True, exist_ok=True)
     stream = rr.RecordingStream("thermoscope", recording_id=f"{comparison.test.name}", send_properties=False)
     worst = max(comparison.test.channels, key=comparison.rmse).name
-    stream.save(path, default_blueprint=blueprint(comparison, worst, bool(history)))
-    _machine(stream, cut_away(nodes, wedge), times, fields, revision_fields)
+    surface = cut_away(nodes, wedge)
+    stream.save(path, default_blueprint=blueprint(comparison, worst, surface.points, bool(history)))
+    _machine(stream, surface, times, fields, revision_fields)
     _sensors(stream, comparison, times, positions)
     _curves(stream, comparison)
     _revisions(stream, history)
@@ -134,27 +136,26 @@ def _sensors(stream: rr.RecordingStream, c: Comparison, times: Array, positions:
         for row in residual
         for channel, r in zip(placed, row, strict=True)
     ]
-    rgb = [int(colour[1:] + "ff", 16) for colour in colours]
-    columns = rr.Points3D.columns(colors=rgb).partition([len(placed)] * len(times))
+    columns = rr.Points3D.columns(colors=[_rgba(colour) for colour in colours]).partition([len(placed)] * len(times))
     stream.send_columns("machine/sensors", indexes=[rr.TimeColumn(TIME, duration=times)], columns=columns)
 
 
 def _curves(stream: rr.RecordingStream, c: Comparison) -> None:
     for channel in c.test.channels:
-        _series(stream, f"curves/{channel.name}/measured", c.test.time, channel.y, LIGHT.ink, "measured")
+        _series(stream, f"curves/{channel.name}/measured", c.test.time, channel.y, LIGHT.faint, "measured")
         _series(stream, f"curves/{channel.name}/model", c.test.time, c.model[channel.name], BLUE, "model")
         if c.before is not None:
             earlier = c.before[channel.name]
-            _series(stream, f"curves/{channel.name}/earlier", c.test.time, earlier, VERMILION, "earlier model")
-        _series(stream, f"residual/{channel.name}", c.test.time, c.residual(channel), None, channel.name)
+            _series(stream, f"curves/{channel.name}/earlier", c.test.time, earlier, ORANGE, "earlier model")
+        colour = wrongness(c.residual(channel), 2 * channel.sigma_K)
+        _series(stream, f"residual/{channel.name}", c.test.time, c.residual(channel), colour, channel.name)
 
 
-def _series(stream: rr.RecordingStream, path: str, time: Array, values: Array, colour: str | None, name: str) -> None:
+def _series(stream: rr.RecordingStream, path: str, time: Array, values: Array, colour: str, name: str) -> None:
     import rerun as rr
 
     seen = np.isfinite(values)
-    colours = None if colour is None else [int(colour[1:] + "ff", 16)]
-    stream.log(path, rr.SeriesLines(colors=colours, widths=2.0, names=name), static=True)
+    stream.log(path, rr.SeriesLines(colors=_rgba(colour), widths=2.0, names=name), static=True)
     index = rr.TimeColumn(TIME, duration=np.asarray(time, float)[seen])
     stream.send_columns(path, indexes=[index], columns=rr.Scalars.columns(scalars=np.asarray(values)[seen]))
 
@@ -163,10 +164,10 @@ def _revisions(stream: rr.RecordingStream, history: Sequence[Mapping[str, Any]])
     import rerun as rr
 
     for (name, role), errors in error_paths(history).items():
-        path = f"error/{name}"
-        stream.log(
-            path, rr.SeriesLines(widths=4.0 if role == "hold-out" else 2.0, names=f"{name} ({role})"), static=True
-        )
+        path, (colour, width) = f"error/{name}", (BLUE, 4.0) if role == "hold-out" else (PALE, 2.0)
+        name = f"{name} ({role})"
+        style = rr.SeriesLines(colors=_rgba(colour), widths=width, names=name, interpolation_mode="StepAfter")
+        stream.log(path, style, static=True)
         index = rr.TimeColumn(REVISION, sequence=range(len(errors)))
         stream.send_columns(path, indexes=[index], columns=rr.Scalars.columns(scalars=errors))
     for i, text in enumerate(["as built", *(f"{r['action']} {r.get('effect') or ''}" for r in history)]):
@@ -175,9 +176,14 @@ def _revisions(stream: rr.RecordingStream, history: Sequence[Mapping[str, Any]])
             stream.log("step", rr.TextDocument(f"# Revision {i}\n\n{text}", media_type="text/markdown"))
 
 
+def _rgba(colour: str) -> int:
+    """'#rrggbb' as rerun's 0xRRGGBBAA."""
+    return int(colour[1:] + "ff", 16)
+
+
 _LEGEND = """
 
 Sensors: green within their uncertainty, vermilion where the machine is hotter than the model, blue where it is colder.
 
-Timelines (bottom left): **test_time** runs through the test, **revision** through the model's history.
+Timelines (chosen at the bottom left): **test_time** runs through the test; for the tab *revisions* choose **revision**.
 """
