@@ -133,22 +133,37 @@ def _ints(parts: Sequence[Sequence | NDArray]) -> NDArray[np.int64]:
 def pack(terms: Sequence[Term], n: int, nt: int) -> Terms:
     """Flat arrays of the terms; a term stands in the constant matrix (dynamic 0) when it is steady."""
     unique = [np.unique(t.rows, return_inverse=True) for t in terms]
-    codes = [_law_code(t.law.temperature) for t in terms]
-    tables = [_table(t.law.temperature) for t in terms]
+    laws_of = [t.law.temperature for t in terms]
+    codes, tables = [_law_code(x) for x in laws_of], [_table(x) for x in laws_of]
+    rows, vals = [u[0] for u in unique], [t.vals for t in terms]
+    hot, cold = [t.hot for t in terms], [t.cold for t in terms]
     factor = np.empty((nt, len(terms)))
     for e, t in enumerate(terms):
         factor[:, e] = t.factor
     return Terms(
-        _start([t.vals for t in terms]), _ints([u[1] for u in unique]), _ints([t.cols for t in terms]),
-        _floats([t.vals for t in terms]), _start([u[0] for u in unique]), _ints([u[0] for u in unique]),
-        _start([t.hot.index for t in terms]), _ints([t.hot.index for t in terms]), _floats([t.hot.weights for t in terms]),
-        _start([t.cold.index for t in terms]), _ints([t.cold.index for t in terms]), _floats([t.cold.weights for t in terms]),
-        np.array([c[0] for c in codes], np.int64), np.array([c[1:] for c in codes], float).reshape(-1, 2),
-        _start([x for x, _ in tables]), _floats([x for x, _ in tables]), _floats([y for _, y in tables]),
-        np.array([t.m for t in terms], float), factor,
-        np.array([not t.steady for t in terms], np.int64), np.array([t.stiff(n) for t in terms], np.int64),
-        np.array([t.bends for t in terms], np.int64),
-    )  # fmt: skip
+        start=_start(vals),
+        slot=_ints([u[1] for u in unique]),
+        col=_ints([t.cols for t in terms]),
+        val=_floats(vals),
+        row_start=_start(rows),
+        row=_ints(rows),
+        hot_start=_start([r.index for r in hot]),
+        hot_at=_ints([r.index for r in hot]),
+        hot_w=_floats([r.weights for r in hot]),
+        cold_start=_start([r.index for r in cold]),
+        cold_at=_ints([r.index for r in cold]),
+        cold_w=_floats([r.weights for r in cold]),
+        code=np.array([c[0] for c in codes], np.int64),
+        par=np.array([c[1:] for c in codes], float).reshape(-1, 2),
+        table_start=_start([x for x, _ in tables]),
+        table_x=_floats([x for x, _ in tables]),
+        table_y=_floats([y for _, y in tables]),
+        m=np.array([t.m for t in terms], float),
+        factor=factor,
+        dynamic=np.array([not t.steady for t in terms], np.int64),
+        stiff=np.array([t.stiff(n) for t in terms], np.int64),
+        bends=np.array([t.bends for t in terms], np.int64),
+    )
 
 
 def constant_matrix(terms: Sequence[Term], n: int, size: int) -> Array:

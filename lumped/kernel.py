@@ -21,6 +21,7 @@ from lumped.dense import axpy, lu, solve, solve_many, subtract_product
 from lumped.terms import Floats, Ints, bend, directional, evaluate, force, jacobian, patterns
 
 GAMMA = 1.0 - 1.0 / np.sqrt(2.0)
+MOST_ITERATIONS, CONVERGED_K = 50, 1e-9
 
 
 class Tangents(NamedTuple):
@@ -234,6 +235,46 @@ def _tangents(T, S, K0, C, f, f2, h, curved, a, b, q):
 
 
 @njit(cache=True, nogil=True)
+def _balance_rows(T, K0, C, f, a, q):
+    """W = G in the rows without capacity, identity elsewhere; F at a.z. False if singular."""
+    evaluate(T, a.z, a.tau)
+    patterns(T, a.z, a.v)
+    force(T, K0, a.z, f, a.tau, a.v, q.F)
+    jacobian(T, K0, f, a.tau, a.v, q.W)
+    for i in range(C.size):
+        if C[i] > 0.0:
+            q.F[i] = 0.0
+            q.W[i] = 0.0
+            q.W[i, i] = 1.0
+    return lu(q.W, q.pivot)
+
+
+@njit(cache=True, nogil=True)
+def settle(T, S, K0, C, f, a, q):
+    """Bring the states without capacity to their balance at fixed others (Newton), tangents with them."""
+    n = C.size
+    for _ in range(MOST_ITERATIONS):
+        if not _balance_rows(T, K0, C, f, a, q):
+            return False
+        solve(q.W, q.pivot, q.F)
+        a.z[:n] += q.F
+        if np.max(np.abs(q.F)) < CONVERGED_K:
+            break
+    if S.dC.shape[1] > 0:
+        _balance_rows(T, K0, C, f, a, q)
+        q.D1[:, :] = 0.0
+        a.w[:] = 0.0
+        a.vw[:] = 0.0
+        _moved(T, S, f, f, q.df, 0.0, a, a, 0.0, q.D1)
+        for i in range(n):
+            if C[i] > 0.0:
+                q.D1[i] = q.D[i]
+        solve_many(q.W, q.pivot, q.D1)
+        q.D[:, :] = q.D1
+    return np.all(np.isfinite(a.z))
+
+
+@njit(cache=True, nogil=True)
 def _outputs(R, z, D, y, dy):
     n, p = D.shape
     for r in range(y.size):
@@ -245,7 +286,7 @@ def _outputs(R, z, D, y, dy):
 
 @njit(cache=True, nogil=True)
 def integrate(time, u, x0, C, K0, T, S, R, through, z_out, y, dy, heat):
-    """March over the record; 0, or the step (counted from 1) at which the matrix was singular or x not finite.
+    """March over the record; -1, or the index of the time at which the matrix was singular or x not finite.
 
     u (nt, nb); x0, C (n,); K0 (n, n + nb + 1) constant terms; T, S, R as declared above
     through : (rows of all terms,) weights that sum a term's rows to the heat through it
@@ -256,7 +297,8 @@ def integrate(time, u, x0, C, K0, T, S, R, through, z_out, y, dy, heat):
     q = _work(n, ne, S.dC.shape[1])
     p, count = S.dC.shape[1], heat.shape[0] > 0
     curved = np.any(T.dynamic * T.stiff == 1)
-    a.z[:n] = x0
+    a.z[:n], a.z[n : n + nb] = x0, u[0]
+    massless = np.any(C == 0.0)
     h_last = -1.0
     for t in range(time.size):
         h = time[t] - time[max(t - 1, 0)]
@@ -282,7 +324,11 @@ def integrate(time, u, x0, C, K0, T, S, R, through, z_out, y, dy, heat):
         elif count and t > 0:
             heat[t] = heat[t - 1]
         a.z[n : n + nb] = u[t]
+        if h == 0.0 and massless:
+            h_last = -1.0
+            if not settle(T, S, K0, C, T.factor[t], a, q):
+                return t
         if z_out.shape[0] > 0:
             z_out[t] = a.z[: n + nb]
         _outputs(R, a.z, q.D, y[t], dy[t])
-    return 0
+    return -1

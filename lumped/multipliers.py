@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 from geom.errors import InputError
 from lumped.network import Network, Parameter
@@ -32,7 +33,7 @@ def values_of(network: Network, values: Mapping[str, float] | None) -> dict[str,
 
 def _known_targets(network: Network) -> set[str]:
     groups = {f"capacity:{g}" for g in network.capacity_group}
-    return {item.name for item in (*network.links, *network.sources)} | groups
+    return {link.name for link in network.links} | {source.name for source in network.sources} | groups
 
 
 def _targets(network: Network, parameter: Parameter, known: set[str]) -> list[tuple[str, float]]:
@@ -63,7 +64,8 @@ def slopes(network: Network, values: Mapping[str, float] | None, parameter: Para
     now, known = values_of(network, values), _known_targets(network)
     own = network_parameter(network, parameter)
     f, df = factor(own, now[own.name])
-    others = multipliers(_without(network, own), {k: v for k, v in now.items() if k != own.name})
+    rest = replace(network, parameters=tuple(p for p in network.parameters if p.name != own.name))
+    others = multipliers(rest, {k: v for k, v in now.items() if k != own.name})
     out: dict[str, float] = {}
     exponents: dict[str, float] = {}
     for target, exponent in _targets(network, own, known):
@@ -81,9 +83,3 @@ def network_parameter(network: Network, parameter: Parameter) -> Parameter:
     raise InputError(
         f"unknown parameter '{parameter.name}'", f"network '{network.name}'", "tangents are of its own parameters"
     )
-
-
-def _without(network: Network, parameter: Parameter) -> Network:
-    from dataclasses import replace
-
-    return replace(network, parameters=tuple(p for p in network.parameters if p.name != parameter.name))

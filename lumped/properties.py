@@ -34,7 +34,7 @@ class Fluid:
 
 
 def air(T: float, altitude_m: float = 0.0) -> Fluid:
-    """Dry air at T (degC) and the standard pressure of an altitude (fluids: US Standard Atmosphere 1976, Sutherland)."""
+    """Dry air at T (degC) and the standard pressure of an altitude (fluids: US Standard Atmosphere 1976)."""
     from fluids import ATMOSPHERE_1976
 
     absolute = T + ZERO_C
@@ -53,7 +53,7 @@ def _pressure(altitude_m: float) -> float:
 def _liquid(source, T: float) -> Fluid:
     if not source.t_min <= T <= source.t_max:
         raise InputError(f"T = {T:g} degC", source.fluid_name, f"{source.t_min:g} to {source.t_max:g} degC")
-    step = 0.1 if T + 0.1 <= source.t_max else -0.1
+    step = 0.1 if source.t_max - 0.1 > T else -0.1
     rho = source.density(T)
     beta = -(source.density(T + step) - rho) / step / rho
     return Fluid(rho, source.specific_heat(T), source.conductivity(T), source.viscosity(T), beta)

@@ -73,6 +73,8 @@ def boundary_table(network: Network, boundaries: Mapping[str, Array], nt: int) -
 def initial_state(network: Network, initial: float | Mapping[str, float]) -> Array:
     """Mean nodes and fluids at the given temperature, hidden shapes "PART#k" at 0 (they have no mean).
 
+    Nodes without heat capacity then take the temperature at which they balance.
+
     Per place: nodes by name (or by a place on them), the others at the mean of the given ones.
     """
     hidden = np.array(["#" in s for s in network.states], bool)
@@ -127,7 +129,7 @@ def march(
     failed = integrate(
         time, u, x0, core.C, core.K0, core.terms, core.tangents, core.rows, through, z, y, dy, heat
     )  # fmt: skip
-    if failed:
+    if failed >= 0:
         raise ThermoscopeError(_failure(network, core, time[failed]))
     return Run(time, z if keep_states else None, y, dy if p else None, heat if count else None)
 

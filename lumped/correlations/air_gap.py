@@ -15,8 +15,8 @@ def taylor_film(omega: float, rotor_radius: float, gap: float, fluid: Fluid | No
     0.212 Ta^0.63 Pr^0.27 (41 to 100), 0.386 Ta^0.5 Pr^0.27 (above); the branches meet at their crossings.
     Two films of Nu = 2 in series are pure conduction k / gap.
     omega (rad/s), rotor_radius (m), gap (m); fluid defaults to air at 80 degC.
-    Range: gap/rotor_radius < 0.25, Ta < 1e4. Source: G. I. Taylor 1935, Proc. R. Soc. A 151, 494, after Boglietti et al.
-    2009, IEEE Trans. Ind. Electron. 56, 871 (some prints say 0.202, which jumps at Ta = 41).
+    Range: gap/rotor_radius < 0.25, Ta < 1e4. Source: G. I. Taylor 1935, Proc. R. Soc. A 151, 494, after Boglietti et
+    al. 2009, IEEE Trans. Ind. Electron. 56, 871 (some prints say 0.202, which jumps at Ta = 41).
     """
     fluid = fluid or air(80.0)
     Ta = abs(omega) * rotor_radius * gap / fluid.nu * math.sqrt(gap / rotor_radius)

@@ -50,7 +50,7 @@ def duct_film(
 
 
 def shah_london(side_ratio: float) -> float:
-    """Developed laminar Nu of a rectangle at constant wall temperature; side_ratio 0 to 1 (Shah and London 1978, ht)."""
+    """Developed laminar Nu of a rectangle at constant wall temperature; side_ratio 0 to 1 (Shah, London 1978, ht)."""
     return ht.Nu_laminar_rectangular_Shan_London(side_ratio)
 
 

@@ -1,0 +1,213 @@
+"""Networks declared by hand in network.toml. Every key is described in docs/network-toml.md."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from geom.errors import InputError
+from lumped.build import bare_network, node_link, node_source, stream, surface_place
+from lumped.declared_laws import flow_law, loss_laws, mechanisms
+from lumped.network import Link, Network, Parameter, Place, Source
+from lumped.reader import Table, known
+
+MAPPINGS = {
+    "log": (1.0, 1e-3, 1e3),
+    "amplitude": (0.0, -1e6, 1e6),
+    "relative": (0.0, -1.0, 1e3),
+    "offset": (0.0, -1e3, 1e3),
+}
+
+
+def load_network(path: str | Path) -> Network:
+    """The network of a TOML file.
+
+    Raises InputError that names the file, the table, the key and what would be right.
+    """
+    file = Path(path)
+    try:
+        data = tomllib.loads(file.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise InputError("no such file", str(file), "a network.toml (docs/network-toml.md)") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as fault:
+        raise InputError(f"not readable as TOML: {fault}", str(file), "see docs/network-toml.md") from None
+    return read_network(data, file.name)
+
+
+def read_network(data: Mapping[str, Any], where: str = "network.toml") -> Network:
+    """The network of a TOML document already read."""
+    top = Table(data, where)
+    head, nodes = top.table("network"), top.tables("nodes")
+    if not nodes:
+        raise top.error("no nodes", "[nodes.NAME] with C_J_K = ...")
+    name, boundaries = head.word("name"), head.words("boundaries")
+    head.close()
+    network = bare_network(name, {n: _capacity(t) for n, t in nodes.items()}, boundaries)
+    clash = set(nodes) & set(boundaries)
+    if clash:
+        raise head.error(f"'{min(clash)}' is a node and a boundary", "one or the other")
+    network = replace(network, places=_places(network, top, nodes))
+    links = [*_links(network, top), *_streams(network, top)]
+    network = replace(network, links=tuple(links), sources=tuple(_sources(network, top)))
+    network = replace(network, parameters=(*_inline(network, top, nodes), *_parameters(top)))
+    for table in nodes.values():
+        table.close()
+    top.close()
+    return _checked(network, where)
+
+
+def _capacity(table: Table) -> float:
+    if "C_J_K" in table and "mass_kg" in table:
+        raise table.error("C_J_K and mass_kg both given", "C_J_K, or mass_kg with cp_J_kgK")
+    if "mass_kg" in table:
+        return table.number("mass_kg") * table.number("cp_J_kgK")
+    return table.number("C_J_K", 0.0)
+
+
+def _places(network: Network, top: Table, nodes: Mapping[str, Table]) -> dict[str, Place]:
+    places = dict(network.places)
+    for i, (name, table) in enumerate(nodes.items()):
+        kind = table.word("kind", "node", ("node", "part", "fluid"))
+        places[name] = replace(places[name], kind=kind)  # type: ignore[arg-type]
+        if "area_m2" in table:
+            face = f"{name}.outer"
+            fluid = _end(network, table, table.word("washed_by"))
+            places[face] = surface_place(face, name, i, table.number("area_m2"), fluid)
+    for name, table in top.tables("surfaces").items():
+        node, fluid = table.word("of", None, network.states), _end(network, table, table.word("washed_by"))
+        places[name] = surface_place(name, node, network.column(node), table.number("area_m2"), fluid)
+        table.close()
+    for name, table in top.tables("means").items():
+        places[name] = _mean(network, name, table)
+    return places
+
+
+def _mean(network: Network, name: str, table: Table) -> Place:
+    """A sensor place that averages nodes, e.g. a winding's resistance."""
+    shares = table.shares("of")
+    states = np.array([network.column(_end(network, table, node)) for node in shares])
+    weights = np.array(list(shares.values()))
+    if abs(weights.sum() - 1.0) > 1e-9 or states.max() >= len(network.states):
+        raise table.error(f"shares sum to {weights.sum():g}", "shares of nodes that sum to 1")
+    table.close()
+    return Place(name, "node", max(shares, key=lambda node: shares[node]), states, np.diag(weights), weights)
+
+
+def _end(network: Network, table: Table, name: str) -> str:
+    names = [*network.states, *network.boundaries]
+    if name not in names:
+        raise table.error(f"joins unknown node '{name}'", known(name, names))
+    return name
+
+
+def _links(network: Network, top: Table) -> list[Link]:
+    out: list[Link] = []
+    for name, table in top.tables("links").items():
+        ends = table.words("between")
+        if len(ends) != 2:
+            raise table.error(f"between = {list(ends)}", "two names")
+        face = network.places.get(ends[0])
+        surface = face if face is not None and face.kind == "surface" else None
+        a = surface.part if surface is not None else _end(network, table, ends[0])
+        b = _end(network, table, ends[1])
+        area = surface.area if surface is not None and surface.area is not None else table.number("area_m2", 0.0)
+        for suffix, law, per_area in mechanisms(table, area > 0.0):
+            full = f"link:{name}{suffix}"
+            kind = "film" if surface is not None else "link"
+            link = node_link(network, full, kind, a, b, law, area if per_area else 1.0)
+            out.append(replace(link, places=(ends[0], b)))
+        table.raw("prior_sd")
+        table.close()
+    return out
+
+
+def _streams(network: Network, top: Table) -> list[Link]:
+    out = []
+    for name, table in top.tables("streams").items():
+        path = [_end(network, table, node) for node in table.words("path")]
+        out.append(stream(network, f"stream:{name}", path, flow_law(table)))
+        table.raw("prior_sd")
+        table.close()
+    return out
+
+
+def _sources(network: Network, top: Table) -> list[Source]:
+    tables = top.tables("losses")
+    laws = loss_laws(tables)
+    out = []
+    for name, table in tables.items():
+        shares = {_end(network, table, node): share for node, share in table.shares("at").items()}
+        if abs(sum(shares.values()) - 1.0) > 1e-9:
+            raise table.error(f"shares of 'at' sum to {sum(shares.values()):g}", "shares that sum to 1")
+        probe = _end(network, table, table.word("temperature_of", max(shares, key=lambda node: shares[node])))
+        out.append(node_source(network, f"loss:{name}", table.word("kind"), shares, laws[name], probe))
+        table.raw("prior_sd")
+        table.close()
+    return out
+
+
+def _inline(network: Network, top: Table, nodes: Mapping[str, Table]) -> list[Parameter]:
+    """One parameter for every table that carries prior_sd: the multiplier of what it declares."""
+    out = []
+    items: list[Link | Source] = [*network.links, *network.sources]
+    for section, prefix, target in (
+        ("links", "link", "link:"),
+        ("streams", "stream", "stream:"),
+        ("losses", "loss", "loss:"),
+    ):
+        for name, table in top.tables(section).items():
+            if "prior_sd" in table:
+                own = f"{target}{name}"
+                acts = tuple((i.name, 1.0) for i in items if i.name == own or i.name.startswith(f"{own}:"))
+                out.append(Parameter(f"{prefix}.{name}", acts, prior_sd=table.number("prior_sd", low=1e-6)))
+    for name, table in nodes.items():
+        if "prior_sd" in table:
+            sd = table.number("prior_sd", low=1e-6)
+            out.append(Parameter(f"capacity.{name}", ((f"capacity:{name}", 1.0),), prior_sd=sd))
+    return out
+
+
+def _parameters(top: Table) -> list[Parameter]:
+    out = []
+    for name, table in top.tables("parameters").items():
+        mapping = table.word("mapping", "log", MAPPINGS)
+        neutral, low, high = MAPPINGS[mapping]
+        acts = table.raw("acts_on")
+        targets = {t: 1.0 for t in acts} if isinstance(acts, list) else table.shares("acts_on")
+        out.append(
+            Parameter(
+                name,
+                tuple(targets.items()),
+                table.number("value", neutral, low=-1e12),
+                table.word("unit", "1"),
+                table.number("low", low, low=-1e12),
+                table.number("high", high, low=-1e12),
+                table.number("prior_sd", 0.3, low=1e-9),
+                mapping,  # type: ignore[arg-type]
+                neutral,
+                int(table.number("sign", 0, -1, 1)),
+                table.word("source", ""),
+            )
+        )
+        table.close()
+    return out
+
+
+def _checked(network: Network, where: str) -> Network:
+    """Names that parameters act on exist, and every node is joined to something."""
+    items: list[Link | Source] = [*network.links, *network.sources]
+    names = {i.name for i in items} | {f"capacity:{s}" for s in network.states}
+    for p in network.parameters:
+        for target, _ in p.targets:
+            if target not in names and not target.startswith(("bias:", "gain:", "lag:")):
+                raise InputError(f"acts on unknown '{target}'", f"{where} [parameters.{p.name}]", known(target, names))
+    joined = {int(i) for link in network.links for i in (*link.rows, *link.cols)}
+    for i, node in enumerate(network.states):
+        if i not in joined:
+            raise InputError(f"node '{node}' is joined to nothing", where, f"a link or stream with '{node}'")
+    return network

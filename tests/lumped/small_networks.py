@@ -1,0 +1,69 @@
+"""Small networks that several tests share."""
+
+import numpy as np
+
+from lumped.build import bare_network, node_link, node_source
+from lumped.laws import Fixed, InputPower, Linear, Power, Radiation, Table
+from lumped.network import Parameter
+
+G12, G2A, C1, C2 = 10.0, 25.0, 2500.0, 25000.0
+
+
+def two_masses(loss=None, core=None, middle=False):
+    """Winding and core to ambient; `middle` puts a node without capacity half-way between them."""
+    masses = {"winding": C1, "core": C2, **({"middle": 0.0} if middle else {})}
+    net = bare_network("two masses", masses, ("ambient",))
+    if middle:
+        links = [
+            node_link(net, "a", "link", "winding", "middle", Fixed(2 * G12)),
+            node_link(net, "b", "link", "middle", "core", Fixed(2 * G12)),
+        ]
+    else:
+        links = [node_link(net, "a", "link", "winding", "core", Fixed(G12))]
+    links.append(node_link(net, "out", "link", "core", "ambient", Fixed(G2A)))
+    sources = [node_source(net, "loss:winding", "copper", {"winding": 1.0}, loss or Fixed(100.0))]
+    if core is not None:
+        sources.append(node_source(net, "loss:core", "iron", {"core": 1.0}, core))
+    return net.extended(links, sources)
+
+
+def every_law():
+    """Four nodes, one of them without capacity, with every temperature law, time-varying inputs and every mapping."""
+    net = bare_network("every law", {"a": 300.0, "b": 500.0, "c": 800.0, "skin": 0.0}, ("ambient", "bench"))
+    table = Table((0.0, 2.0, 10.0, 60.0), (1.0, 1.5, 2.0, 2.6))
+    links = [
+        node_link(net, "constant", "link", "a", "b", Fixed(4.0)),
+        node_link(net, "linear", "link", "b", "c", Fixed(3.0, Linear(0.002, 20.0))),
+        node_link(net, "skin", "link", "c", "skin", Fixed(6.0)),
+        node_link(net, "power", "film", "skin", "ambient", Fixed(0.8, Power(0.25))),
+        node_link(net, "radiation", "film", "skin", "ambient", Fixed(0.05, Radiation())),
+        node_link(net, "table", "film", "a", "bench", Fixed(0.4, table)),
+        node_link(net, "forced", "film", "b", "ambient", InputPower(1.5, (("speed_rpm", 1000.0, 0.8),))),
+        node_link(net, "both", "film", "c", "bench", InputPower(0.3, (("speed_rpm", 1000.0, 0.8),), Power(0.33))),
+    ]
+    sources = [
+        node_source(
+            net, "copper", "copper", {"a": 1.0}, InputPower(60.0, (("current_A", 10.0, 2.0),), Linear(0.0039, 20.0))
+        ),
+        node_source(net, "iron", "iron", {"b": 0.7, "c": 0.3}, InputPower(30.0, (("speed_rpm", 1000.0, 1.5),))),
+    ]
+    return net.extended(links, sources, (*MULTIPLIERS, *SPECIAL))
+
+
+NAMES = ("constant", "linear", "skin", "power", "radiation", "table", "forced", "both", "copper", "iron", "capacity:a")
+MULTIPLIERS = tuple(Parameter(f"log {n}", ((n, 1.0),)) for n in NAMES)
+SPECIAL = (
+    Parameter("relative", (("power", 1.0), ("iron", 0.5)), 0.2, mapping="relative", neutral=0.0),
+    Parameter("amplitude", (("forced", 1.0),), 0.7, mapping="amplitude", neutral=0.0),
+    Parameter("square", (("constant", 2.0), ("capacity:b", 1.0), ("capacity:c", 1.0)), 1.1),
+)
+
+
+def inputs(time):
+    """Varying current and speed, with a stop."""
+    speed = np.clip(1000 + 900 * np.sin(time / 250.0), 0.0, None) * (time < 900)
+    return {"current_A": 10 + 4 * np.sin(time / 130.0), "speed_rpm": speed}
+
+
+def boundaries(time):
+    return {"ambient": 20 + 4 * np.sin(time / 300.0), "bench": np.asarray(25.0)}

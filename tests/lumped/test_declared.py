@@ -1,0 +1,112 @@
+"""Hand-declared networks: the documented example, and the messages for every kind of slip."""
+
+import copy
+import re
+import tomllib
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from geom.errors import InputError
+from lumped.declared import load_network, read_network
+from lumped.simulate import Record, simulate
+
+
+@pytest.fixture(scope="module")
+def example(root):
+    text = (root / "docs/network-toml.md").read_text()
+    return re.search(r"```toml\n(.*?)```", text, re.S).group(1)
+
+
+@pytest.fixture
+def data(example):
+    return copy.deepcopy(tomllib.loads(example))
+
+
+TIME = np.arange(0.0, 20000.0, 20.0)
+INPUTS = {"id_A": -40.0, "iq_A": 90.0, "speed_rpm": 2000.0, "flow_l_min": 8.0}
+AROUND = {"ambient": 22.0, "coolant": 30.0}
+
+
+def test_the_documented_example_reads_and_runs(example, tmp_path):
+    file = tmp_path / "network.toml"
+    file.write_text(example)
+    network = load_network(file)
+    run = simulate(
+        network, Record(TIME, INPUTS, AROUND), rows=[network.place("winding-resistance").mean], keep_states=True
+    )
+    winding, stator = run.z[-1, :2]
+    assert run.y[-1, 0] == pytest.approx(0.9 * winding + 0.1 * stator)
+    assert winding > stator > 30.0
+
+
+def test_the_example_declares_what_its_comments_say(data):
+    network = read_network(data)
+    assert {p.name for p in network.parameters} == {
+        "capacity.stator", "link.winding-stator", "stream.water", "loss.copper", "iron and friction",
+    }  # fmt: skip
+    assert network.C[0] == pytest.approx(9.6 * 385)
+    assert network.place("flange.outer").area == 0.05
+    assert {k.name for k in network.links if k.name.startswith("link:flange-air")} == {
+        "link:flange-air:natural", "link:flange-air:radiation",
+    }  # fmt: skip
+
+
+def test_copper_loss_is_the_published_formula(data):
+    """Liu et al. 2024: 1.5 Rs (id^2 + iq^2) (1 + alpha (T - 20)) (1 + 0.02174 f + 0.3874 f^2), f = rpm / 4000."""
+    copper = next(s for s in read_network(data).sources if s.name == "loss:copper")
+    f = 0.5
+    by_hand = 1.5 * 4.67e-3 * (40.0**2 + 90.0**2) * (1 + 0.02174 * f + 0.3874 * f * f)
+    assert copper.law.factor(INPUTS) == pytest.approx(by_hand, rel=1e-12)
+    assert (copper.law.temperature.alpha, copper.law.temperature.reference) == (0.0039, 20.0)
+
+
+def test_measured_loss_less_copper_injects_the_measured_sum(data):
+    data["losses"]["iron"] = {
+        "kind": "measured", "at": "stator", "less": ["copper"],
+        "electrical": {"product": ["electrical_W"]}, "mechanical": {"product": ["torque_Nm", "speed_rpm"]},
+    }  # fmt: skip
+    given = {**INPUTS, "electrical_W": 12000.0, "torque_Nm": 50.0}
+    laws = {s.name: s.law for s in read_network(data).sources}
+    total = laws["loss:copper"].factor(given) + laws["loss:iron"].factor(given)
+    assert_allclose(total, 12000.0 - 50.0 * 2000.0 * np.pi / 30, rtol=1e-12)
+
+
+SLIPS = {
+    "missing unit": (lambda d: d["nodes"]["rotor"].update(C=1.0), r"nodes.rotor.*'C'.*C_J_K"),
+    "unknown key": (lambda d: d["links"]["winding-stator"].update(colour=1), "links.winding-stator.*'colour'"),
+    "unknown section": (lambda d: d.update(link={}), "'link'.*did you mean 'links'"),
+    "unknown node": (lambda d: d["links"]["winding-stator"].update(between=["winding", "statr"]), "'statr'.*'stator'"),
+    "no coefficient": (lambda d: d["links"]["winding-stator"].pop("R_K_W"), "winding-stator.*mechanism.*G_W_K"),
+    "two coefficients": (lambda d: d["links"]["winding-stator"].update(G_W_K=1.0), "G_W_K and R_K_W both given"),
+    "h without area": (lambda d: d["links"]["stator-jacket"].pop("area_m2"), "stator-jacket.*area_m2"),
+    "negative": (lambda d: d["nodes"]["stator"].update(C_J_K=-5.0), "C_J_K = -5.0"),
+    "text for a number": (lambda d: d["nodes"]["stator"].update(C_J_K="5616"), "C_J_K = '5616'"),
+    "shares": (lambda d: d["losses"]["copper"].update(at={"winding": 0.5}), "losses.copper.*sum to 0.5"),
+    "loss class": (lambda d: d["losses"]["copper"].update(kind="coper"), "'coper'.*did you mean 'copper'"),
+    "no currents": (lambda d: d["losses"]["copper"].pop("currents"), "losses.copper.*'currents' is missing"),
+    "lonely node": (lambda d: d["nodes"].update(lost={"C_J_K": 1.0}), "'lost' is joined to nothing"),
+    "parameter": (lambda d: d["parameters"]["iron and friction"].update(acts_on=["loss:irn"]), "loss:irn.*loss:iron"),
+    "flow": (lambda d: d["streams"]["water"].pop("flow_l_min_input"), "streams.water.*no flow"),
+    "heated boundary": (lambda d: d["losses"]["bearing"].update(at="ambient"), "bearing.*boundary"),
+    "name": (lambda d: d["network"].pop("name"), "'name' is missing"),
+}
+
+
+@pytest.mark.parametrize("slip, message", SLIPS.values(), ids=SLIPS)
+def test_every_slip_is_one_message_that_says_what_would_be_right(data, slip, message):
+    slip(data)
+    with pytest.raises(InputError, match=message):
+        read_network(data)
+
+
+def test_a_file_that_is_not_there(tmp_path):
+    with pytest.raises(InputError, match="no such file"):
+        load_network(tmp_path / "network.toml")
+
+
+def test_a_file_that_is_no_toml(tmp_path):
+    (tmp_path / "network.toml").write_text("[network\n")
+    with pytest.raises(InputError, match="not readable as TOML"):
+        load_network(tmp_path / "network.toml")

@@ -1,0 +1,177 @@
+"""The scheme against closed forms, a published example and its own order."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+from scipy.linalg import expm
+from small_networks import C1, C2, G2A, G12, boundaries, every_law, inputs, two_masses
+
+from geom.errors import InputError, ThermoscopeError
+from lumped.build import bare_network, node_link, node_source
+from lumped.laws import Fixed, InputPower, Law, Linear
+from lumped.simulate import Record, simulate
+
+
+def exact_two_masses(t, loss=100.0, start=20.0, ambient=20.0):
+    A = np.array([[-G12 / C1, G12 / C1], [G12 / C2, -(G12 + G2A) / C2]])
+    end = -np.linalg.solve(A, [loss / C1, G2A * ambient / C2])
+    return end + expm(A * t) @ (np.full(2, start) - end)
+
+
+def last(network, time, bounds=20.0, given=None):
+    run = simulate(network, Record(time, given or {}, {"ambient": bounds}), keep_states=True)
+    return run.z[-1, : len(network.states)]
+
+
+def test_two_masses_have_their_exact_solution_in_the_limit_of_small_steps():
+    assert_allclose(last(two_masses(), np.arange(0, 3601, 1.0)), exact_two_masses(3600), atol=1e-5)
+
+
+def test_the_error_falls_with_the_square_of_the_step():
+    errors = [
+        np.abs(last(two_masses(), np.arange(0, 1201, h)) - exact_two_masses(1200)).max() for h in (60.0, 30.0, 15.0)
+    ]
+    rates = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert_allclose(rates, 2.0, atol=0.15)
+
+
+def test_with_every_law_and_an_algebraic_node_the_order_is_still_two():
+    """Against a far finer grid of the same piecewise linear record, at the coarse times, all states."""
+    coarse = np.arange(0.0, 801.0, 40.0)
+    fine = np.linspace(0.0, 800.0, 12801)
+    given = {k: np.interp(fine, coarse, v) for k, v in inputs(coarse).items()}
+    around = {"ambient": np.interp(fine, coarse, boundaries(coarse)["ambient"]), "bench": 25.0}
+
+    def curve(step):
+        pick = slice(None, None, int(step / 0.0625))
+        here = {**around, "ambient": around["ambient"][pick]}
+        record = Record(fine[pick], {k: v[pick] for k, v in given.items()}, here, 40.0)
+        return simulate(every_law(), record, keep_states=True).z[:: int(40.0 / step)][1:]
+
+    errors = [np.sqrt(np.mean((curve(h) - curve(0.0625)) ** 2)) for h in (10.0, 5.0, 2.5)]
+    assert_allclose(np.log2(np.array(errors[:-1]) / errors[1:]), 2.0, atol=0.25)
+
+
+class Duty(Law):
+    """100 W for 360 s, 1000 W for 240 s, in turn, times 1 + 3.03e-3 (T - 95 degC)."""
+
+    temperature = Linear(3.03e-3, 95.0)
+    reads = ("winding_W",)
+
+    def factor(self, inputs):
+        return inputs["winding_W"]
+
+
+def test_modelica_heat_transfer_motor_example():
+    """Modelica.Thermal.HeatTransfer.Examples.Motor: 134.3293 and 59.3203 degC at 7200 s."""
+    edges = np.cumsum(np.tile([360.0, 240.0], 12))
+    time = np.sort(np.concatenate([np.arange(0, 7201.0), edges[:-1]]))  # a time given twice is a jump
+    loss = np.where(np.mod(time, 600.0) < 360.0, 100.0, 1000.0)
+    first_of_pair = np.concatenate([time[1:] == time[:-1], [True]])
+    loss[first_of_pair] = np.where(np.mod(time[first_of_pair] - 1e-6, 600.0) < 360.0, 100.0, 1000.0)
+    network = two_masses(Duty(), Fixed(500.0))
+    assert_allclose(last(network, time, given={"winding_W": loss}), [134.3293, 59.3203], atol=0.01)
+
+
+def test_a_node_without_capacity_is_where_its_links_balance():
+    network = two_masses(middle=True)
+    z = simulate(network, Record(np.arange(0, 3600.0), {}, {"ambient": 20.0}), keep_states=True).z
+    assert_allclose(z[1:, 2], z[1:, :2].mean(axis=1), atol=1e-11)
+    assert_allclose(z[-1, :2], exact_two_masses(3599), atol=1e-5)
+
+
+def test_a_film_without_capacity_follows_a_moving_boundary_without_lag():
+    net = bare_network("film", {"core": 1e9, "film": 0.0}, ("ambient",))
+    links = [
+        node_link(net, "a", "link", "core", "film", Fixed(1.0)),
+        node_link(net, "b", "link", "film", "ambient", Fixed(3.0)),
+    ]
+    time = np.arange(0, 100.0, 5.0)
+    ambient = 20 + 3 * np.sin(time / 9)
+    z = simulate(net.extended(links), Record(time, {}, {"ambient": ambient}), keep_states=True).z
+    assert_allclose(z[1:, 1], 0.25 * 20 + 0.75 * ambient[1:], atol=1e-6)
+
+
+def test_very_stiff_nodes_do_not_ring():
+    """A 1 microjoule air node among kilojoule parts, one-minute steps: monotone, no overshoot (L-stability)."""
+    net = bare_network("stiff", {"part": 1000.0, "air": 1e-6}, ("ambient",))
+    links = [
+        node_link(net, "a", "link", "part", "air", Fixed(5.0)),
+        node_link(net, "b", "link", "air", "ambient", Fixed(5.0)),
+    ]
+    z = simulate(
+        net.extended(links),
+        Record(np.arange(0, 1800, 60.0), {}, {"ambient": 20.0}, {"part": 100.0, "air": -200.0}),
+        keep_states=True,
+    ).z
+    assert np.all(np.diff(z[2:, 1]) < 0)
+    assert_allclose(z[2:, 1], 0.5 * (z[2:, 0] + 20.0), atol=1e-3)
+
+
+def test_uneven_and_even_steps_give_the_same_curve():
+    even = np.arange(0.0, 1001.0)
+    uneven = np.unique(np.concatenate([np.linspace(0, 10, 30), np.geomspace(10, 1000, 900)]))
+    assert_allclose(last(two_masses(), uneven), last(two_masses(), even), atol=1e-4)
+
+
+def test_a_node_without_capacity_starts_in_balance():
+    z = simulate(
+        two_masses(middle=True),
+        Record(np.array([0.0]), {}, {"ambient": 20.0}, {"winding": 80.0, "core": 30.0}),
+        keep_states=True,
+    ).z
+    assert_allclose(z[0, 2], 55.0, rtol=1e-12)
+
+
+def test_initial_temperatures_by_place_fill_the_others_with_their_mean():
+    record = Record(np.array([0.0]), {}, {"ambient": 20.0}, {"a": 30.0, "b": 40.0})
+    record = Record(record.time, inputs(record.time), {"ambient": 20.0, "bench": 25.0}, record.initial)
+    z = simulate(every_law(), record, keep_states=True).z
+    assert_array_equal(z[0, [0, 1, 2, 4, 5]], [30.0, 40.0, 35.0, 20.0, 25.0])
+
+
+@pytest.mark.parametrize("missing", ["current_A", "speed_rpm"])
+def test_a_missing_input_is_named(missing):
+    time = np.arange(3.0)
+    given = {k: v for k, v in inputs(time).items() if k != missing}
+    with pytest.raises(InputError, match=missing):
+        simulate(every_law(), Record(time, given, boundaries(time)))
+
+
+def test_a_missing_boundary_is_named():
+    with pytest.raises(InputError, match="ambient"):
+        simulate(two_masses(), Record(np.arange(3.0), {}, {"coolant": 20.0}))
+
+
+def test_not_a_number_in_an_input_is_refused():
+    time = np.arange(3.0)
+    given = {**inputs(time), "current_A": np.array([1.0, np.nan, 2.0])}
+    with pytest.raises(InputError, match="current_A"):
+        simulate(every_law(), Record(time, given, boundaries(time)))
+
+
+def test_falling_times_are_refused():
+    with pytest.raises(InputError, match="times"):
+        simulate(two_masses(), Record(np.array([0.0, 2.0, 1.0]), {}, {"ambient": 20.0}))
+
+
+def test_a_node_that_nothing_holds_is_an_error_that_names_it():
+    net = bare_network("loose", {"a": 1.0, "loose": 0.0}, ("ambient",))
+    net = net.extended([node_link(net, "a", "link", "a", "ambient", Fixed(1.0))])
+    with pytest.raises(ThermoscopeError, match="loose"):
+        simulate(net, Record(np.arange(3.0), {}, {"ambient": 20.0}))
+
+
+def test_a_source_gives_the_trapezium_of_its_input_factor():
+    net = bare_network("adiabatic", {"a": 50.0}, ("ambient",))
+    law = InputPower(7.0, (("current_A", 1.0, 2.0),))
+    link, source = (
+        node_link(net, "none", "link", "a", "ambient", Fixed(0.0)),
+        node_source(net, "s", "copper", {"a": 1.0}, law),
+    )
+    time = np.array([0.0, 1.0, 1.5, 4.0, 9.0])
+    current = np.array([0.0, 3.0, -2.0, 1.0, 5.0])
+    z = simulate(
+        net.extended([link], [source]), Record(time, {"current_A": current}, {"ambient": 0.0}), keep_states=True
+    ).z
+    assert_allclose(z[-1, 0], 20.0 + np.trapezoid(7 * current**2, time) / 50.0, rtol=1e-13)

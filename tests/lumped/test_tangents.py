@@ -1,0 +1,86 @@
+"""Tangents are the derivative of the discrete scheme itself; links without strength change nothing, to the bit."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+from small_networks import boundaries, every_law, inputs
+
+from lumped.build import node_link
+from lumped.laws import Fixed, InputPower, Power, Radiation
+from lumped.multipliers import multipliers
+from lumped.network import Parameter
+from lumped.simulate import Record, simulate
+
+NETWORK = every_law()
+TIME = np.arange(0.0, 1200.0, 10.0)
+RECORD = Record(TIME, inputs(TIME), boundaries(TIME), 35.0)
+ROWS = [NETWORK.place(node).mean for node in NETWORK.states]
+
+
+def moved(parameter, step):
+    value = parameter.value * np.exp(step) if parameter.mapping == "log" else parameter.value + step
+    return simulate(NETWORK, RECORD, {parameter.name: value}, ROWS).y
+
+
+@pytest.mark.parametrize("parameter", NETWORK.parameters, ids=lambda p: p.name)
+def test_tangent_is_the_finite_difference(parameter):
+    """Fourth-order central difference: truncation and rounding both near 1e-9 of the largest tangent."""
+    h = 1e-3
+    difference = (
+        8 * (moved(parameter, h) - moved(parameter, -h)) - moved(parameter, 2 * h) + moved(parameter, -2 * h)
+    ) / (12 * h)
+    dy = simulate(NETWORK, RECORD, None, ROWS, [parameter]).dy[:, :, 0]
+    assert np.abs(dy).max() > 1e-3
+    assert_allclose(dy, difference, atol=1e-6 * np.abs(dy).max())
+
+
+def test_many_tangents_at_once_are_the_tangents_one_by_one():
+    together = simulate(NETWORK, RECORD, None, ROWS, NETWORK.parameters).dy
+    alone = [simulate(NETWORK, RECORD, None, ROWS, [p]).dy[:, :, 0] for p in NETWORK.parameters]
+    assert_allclose(together, np.stack(alone, axis=-1), atol=1e-10)
+
+
+def test_asking_for_tangents_leaves_the_answer_as_it_is():
+    assert_array_equal(
+        simulate(NETWORK, RECORD, None, ROWS, NETWORK.parameters).y, simulate(NETWORK, RECORD, None, ROWS).y
+    )
+
+
+def test_channel_operators_have_no_tangent_here():
+    bias = Parameter("bias", (("bias:T1", 1.0),), 0.0, "K", mapping="offset", neutral=0.0)
+    run = simulate(NETWORK.extended(parameters=[bias]), RECORD, None, ROWS, [bias])
+    assert_array_equal(run.dy, 0.0)
+
+
+LAWS = {
+    "constant": Fixed(9.0),
+    "input": InputPower(9.0, (("speed_rpm", 700.0, 0.8),)),
+    "power": Fixed(9.0, Power(0.25)),
+    "radiation": InputPower(0.9, (("current_A", 1.0, 1.0),), Radiation()),
+}
+
+
+@pytest.mark.parametrize("tangent", [False, True], ids=["plain", "with its tangent"])
+@pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
+def test_a_neutral_link_changes_nothing_to_the_bit(law, tangent):
+    amplitude = Parameter("new", (("new", 1.0),), 0.0, mapping="amplitude", neutral=0.0)
+    more = NETWORK.extended([node_link(NETWORK, "new", "film", "a", "ambient", law)], parameters=[amplitude])
+    y = simulate(more, RECORD, None, ROWS, [amplitude] if tangent else []).y
+    assert_array_equal(y, simulate(NETWORK, RECORD, None, ROWS).y)
+
+
+@pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
+def test_the_tangent_of_a_neutral_link_is_its_finite_difference(law):
+    amplitude = Parameter("new", (("new", 1.0),), 0.0, mapping="amplitude", neutral=0.0)
+    more = NETWORK.extended([node_link(NETWORK, "new", "film", "a", "ambient", law)], parameters=[amplitude])
+    dy = simulate(more, RECORD, None, ROWS, [amplitude]).dy[:, :, 0]
+    h = 1e-5
+    difference = (simulate(more, RECORD, {"new": h}, ROWS).y - simulate(more, RECORD, {"new": -h}, ROWS).y) / (2 * h)
+    assert_allclose(dy, difference, atol=1e-5 * np.abs(dy).max())
+
+
+def test_parameters_on_one_target_multiply():
+    m = multipliers(NETWORK, {"log constant": 2.0, "square": 3.0, "relative": 0.5})
+    assert m["constant"] == pytest.approx(2.0 * 9.0)
+    assert m["power"] == pytest.approx(1.5)
+    assert m["iron"] == pytest.approx(np.sqrt(1.5))
