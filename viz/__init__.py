@@ -6,9 +6,12 @@ from importlib import import_module
 from typing import Any
 
 _HOME = {
-    "Comparison": "data", "Sensor": "data", "sensors": "data", "split": "split",
-    "require_gl": "gl", "off_screen_window": "gl",
+    "Comparison": "data", "Sensor": "data", "sensors": "data",
+    "SplitMesh": "nodes", "split": "nodes", "require_gl": "gl", "off_screen_window": "gl",
     "Wedge": "cut", "HALF": "cut", "QUARTER": "cut", "cutaway": "field", "pair": "field",
+    "measured_and_model": "curves", "residuals": "curves", "before_after": "errors", "staircase": "errors",
+    "scores": "candidates", "half_normal": "candidates", "confusion": "candidates",
+    "write_recording": "recording", "verify": "recording", "Report": "report", "write_report": "report",
 }  # fmt: skip
 __all__ = sorted(_HOME)
 

@@ -29,7 +29,7 @@ def scores(candidates: Sequence[Mapping[str, Any]], *, most: int = 12, png: str 
         ax.barh(y, c["score"], height=0.62, color=DECISION[c["decision"]])
         ax.plot([c["threshold"]] * 2, [y - 0.42, y + 0.42], color=LIGHT.ink, lw=1.4)
         note = amplitude(c) if c["decision"] != "no" else ""
-        ax.text(max(c["score"], c["threshold"], 0), y, f"  {note}", va="center", fontsize=8.5)
+        ax.text(max(c["score"], c["threshold"], 0), y, f"\u00a0{note}", va="center", fontsize=8.5)
     ax.set_yticks(range(len(best)), [c["effect"] for c in best])
     for label, c in zip(ax.get_yticklabels(), best, strict=True):
         label.set_fontweight("bold" if c["decision"] == "named" else "normal")

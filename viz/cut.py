@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_matrix, identity, vstack
 
 from geom.errors import InputError
-from viz.split import SplitMesh
+from viz.nodes import SplitMesh
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]

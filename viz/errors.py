@@ -33,15 +33,21 @@ def before_after(
         ax.barh(y + 0.19, before, height=0.34, color=ORANGE)
         ax.barh(y - 0.19, after, height=0.34, color=BLUE)
         ax.text(
-            before, y + 0.19, f" {before:.2f} K{' before' if y == len(tests) - 1 else ''}", va="center", fontsize=8.5
+            before,
+            y + 0.19,
+            f"\u00a0{before:.2f} K{' before' if y == len(tests) - 1 else ''}",
+            va="center",
+            fontsize=8.5,
         )
-        ax.text(after, y - 0.19, f" {after:.2f} K{' after' if y == len(tests) - 1 else ''}", va="center", fontsize=8.5)
+        ax.text(
+            after, y - 0.19, f"\u00a0{after:.2f} K{' after' if y == len(tests) - 1 else ''}", va="center", fontsize=8.5
+        )
     ax.set_yticks(range(len(tests)), [f"{t['name']}\n({t['role']})" for t in reversed(tests)])
     for label, test in zip(ax.get_yticklabels(), reversed(tests), strict=True):
         label.set_fontweight("bold" if test["role"] == "hold-out" else "normal")
     if floor_K is not None:
         ax.axvline(floor_K, color=LIGHT.ink, lw=0.9, ls=":")
-        ax.text(floor_K, 0.5, " sensors' uncertainty", transform=ax.get_xaxis_transform(), fontsize=8, va="center")
+        ax.text(floor_K, 0.5, "\u00a0sensors' uncertainty", transform=ax.get_xaxis_transform(), fontsize=8, va="center")
     ax.grid(False, axis="y")
     ax.set(xlabel="rms error (K)", title=title)
     ax.margins(x=0.12)

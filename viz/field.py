@@ -17,8 +17,8 @@ from viz.callouts import Label, callouts
 from viz.colours import LIGHT, VERDICT, Theme, heat
 from viz.cut import QUARTER, Surface, Wedge, cut_away
 from viz.data import Sensor
+from viz.nodes import SplitMesh, on_nodes
 from viz.scene import View
-from viz.split import SplitMesh, on_nodes
 
 if TYPE_CHECKING:
     import pyvista

@@ -9,7 +9,7 @@ from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ParamSpec
 
-from viz.colours import LIGHT
+from viz.colours import BLUE, LIGHT, VERMILION
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -25,7 +25,7 @@ _STYLE: dict[Any, Any] = {
     "ytick.major.size": 0, "lines.linewidth": 1.6, "svg.fonttype": "none", "svg.hashsalt": "thermoscope",
     "figure.constrained_layout.use": True,
 }  # fmt: skip
-_CSS = {LIGHT.ink: "--ink", LIGHT.faint: "--faint", LIGHT.paper: "--paper"}
+_CSS = {LIGHT.ink: "ink", LIGHT.faint: "faint", LIGHT.paper: "paper", BLUE: "blue", VERMILION: "red"}
 
 
 def subplots(width: float, height: float, rows: int = 1, columns: int = 1) -> tuple[Figure, list[Axes]]:
@@ -68,6 +68,6 @@ def svg(figure: Figure, name: str) -> str:
     text = out.getvalue()
     text = re.sub(r"<metadata>.*?</metadata>", "", text[text.index("<svg") :], flags=re.S)
     for colour, variable in _CSS.items():
-        text = text.replace(colour, f"var({variable}, {colour})")
+        text = text.replace(colour.lower(), f"var(--{variable}, {colour})")
     text = re.sub(r'(width|height)="[\d.]+pt" ', "", text, count=2)
     return re.sub(r'(id="|url\(#|href="#)', rf"\g<1>{re.sub(r'[^a-z0-9]+', '-', name.lower())}-", text)

@@ -26,7 +26,7 @@ from viz.cut import QUARTER, Surface, Wedge, cut_away
 from viz.data import Comparison, Sensor
 from viz.edges import outline_strips
 from viz.errors import PALE, error_paths
-from viz.split import SplitMesh, on_nodes
+from viz.nodes import SplitMesh, on_nodes
 
 if TYPE_CHECKING:
     import rerun as rr

@@ -61,3 +61,30 @@ def candidates() -> list[dict]:
         candidate("radiation@flange.right", 14.0, "group"),
         *noise,
     ]
+
+
+def documents() -> tuple[dict, dict]:
+    """(compare, diagnose) documents."""
+    channels = [
+        {
+            "channel": p, "place": p, "n": 121, "rmse_K": 5.07 if p == "flange.right" else 0.31, "bias_K": -4.21,
+            "max_abs_K": 7.13, "sigma_K": 0.5, "percent_of_rise": 9.14,
+            "verdict": "over" if p == "flange.right" else "within",
+        }
+        for p in PLACES
+    ]  # fmt: skip
+    test = {"name": "road-2", "role": "hold-out", "rmse_K": 4.85, "channels": channels}
+    compare = {
+        "case": "road-test",
+        "model": {"revision": 2, "effects": []},
+        "tests": [test],
+        "rmse_K": 4.85,
+        "floor_K": 0.62,
+    }
+    diagnose = {
+        "verdict": "named", "candidates": candidates(),
+        "where": [{"place": "flange.right", "evidence_nats": 41.0}],
+        "cannot_see": [{"effect": "contact@yoke", "smallest_detectable": 123.0, "unit": "W/m2/K"}],
+        "next_tests": [{"test": "blower on", "separates": ["radiation@flange.right"], "predicted_gain": 44.0}],
+    }  # fmt: skip
+    return compare, diagnose

@@ -1,0 +1,77 @@
+"""Cuts against closed forms: areas of the polygon the ring mesh really is."""
+
+import numpy as np
+import pytest
+from small_motor import LEVELS, RADII, motor
+
+from geom.errors import InputError
+from viz.cut import HALF, QUARTER, Wedge, cut_away, exposed, section
+from viz.edges import feature_edges
+from viz.nodes import on_nodes, split
+
+NODES = split(motor(32))
+
+
+def area(surface):
+    a, b, c = surface.points[surface.triangles].transpose(1, 0, 2)
+    return np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2
+
+
+def test_parts_share_no_node():
+    assert all(len(np.unique(NODES.owner[NODES.tets[NODES.region == i]])) == 1 for i in range(len(NODES.parts)))
+
+
+def test_section_through_mesh_lines_has_the_area_of_the_half_planes():
+    shaft = 2 * RADII[1] * LEVELS[-1]
+    flange = 2 * (RADII[-1] - RADII[1]) * (LEVELS[2] - LEVELS[1])
+    cut = section(NODES, np.array([1.0, 0.0, 0.0]))
+    for part, expected in (("shaft", shaft), ("flange.left", flange)):
+        only = cut.part == NODES.parts.index(part)
+        assert area(type(cut)(cut.nodes, cut.weights, cut.triangles[only], cut.part[only])) == pytest.approx(expected)
+
+
+@pytest.mark.parametrize("start", [0.0, 13.7, 90.0])
+def test_wedge_and_the_rest_make_up_the_outside(start):
+    """Two complementary half cuts have the whole outside and the section twice."""
+    normal = np.array([-np.sin(np.deg2rad(start)), np.cos(np.deg2rad(start)), 0.0])
+    both = area(cut_away(NODES, Wedge(start, 180))) + area(cut_away(NODES, Wedge(start + 180, 180)))
+    assert both == pytest.approx(area(exposed(NODES)) + 2 * area(section(NODES, normal)))
+
+
+@pytest.mark.parametrize("wedge", [QUARTER, HALF, Wedge(33.3, 71.0)])
+def test_a_linear_field_is_drawn_exactly(wedge):
+    surface = cut_away(NODES, wedge)
+    field = NODES.points @ [30.0, -20.0, 55.0] + 40.0
+    np.testing.assert_allclose(surface.values(field), surface.points @ [30.0, -20.0, 55.0] + 40.0, atol=1e-9)
+
+
+def test_nothing_is_left_inside_the_wedge():
+    points = cut_away(NODES, QUARTER).points
+    assert not ((points[:, 0] < -1e-9) & (points[:, 1] > 1e-9)).any()
+
+
+def test_flat_sections_have_no_lines_inside_a_part():
+    """The yoke's section is two rectangles: their edges are on its outline only."""
+    cut = section(NODES, np.array([np.sin(0.3), np.cos(0.3), 0.0]))
+    only = cut.part == NODES.parts.index("yoke")
+    yoke = type(cut)(cut.nodes, cut.weights, cut.triangles[only], cut.part[only]).compact()
+    ends = yoke.points[feature_edges(yoke)]
+    length = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1).sum()
+    z = LEVELS[8] - LEVELS[2]
+    radial = np.ptp(np.hypot(*yoke.points[:, :2].T))
+    assert length == pytest.approx(4 * (z + radial), rel=1e-3)
+
+
+def test_wrong_number_of_temperatures_says_how_many_fit():
+    with pytest.raises(InputError, match=f"{NODES.size} values"):
+        on_nodes(NODES, np.zeros(7))
+
+
+def test_temperatures_must_be_finite():
+    with pytest.raises(InputError, match="finite"):
+        on_nodes(NODES, np.full(NODES.size, np.nan))
+
+
+def test_wedge_wider_than_half_is_refused():
+    with pytest.raises(InputError, match="at most 180"):
+        Wedge(0.0, 200.0)

@@ -1,0 +1,81 @@
+"""Figures: written, not blank, and carrying the numbers they were given."""
+
+import re
+
+import numpy as np
+import pytest
+from fictional import HISTORY, candidates, comparison
+from PIL import Image
+
+from geom.errors import InputError
+from viz import candidates as scores
+from viz import curves, errors, paper
+from viz.data import Comparison
+from viz.labels import spread
+
+DRAW = {
+    "curves": lambda png: curves.measured_and_model(comparison(before=True), png=png),
+    "residuals": lambda png: curves.residuals(comparison(), png=png),
+    "before_after": lambda png: errors.before_after(HISTORY[-1]["tests"], floor_K=0.6, png=png),
+    "staircase": lambda png: errors.staircase(HISTORY, floor_K=0.6, png=png),
+    "scores": lambda png: scores.scores(candidates(), png=png),
+    "half_normal": lambda png: scores.half_normal(candidates(), png=png),
+    "confusion": lambda png: scores.confusion(["a@x", "b@y"], np.array([[1.0, 0.83], [0.83, 1.0]]), png=png),
+}
+SHOWS = {
+    "curves": ["flange.right", "earlier model", "temperature (°C)"],
+    "residuals": ["flange.right", "measured − model (K)", "time (min)"],
+    "before_after": ["4.85 K", "0.93 K", "road-2", "rms error (K)"],
+    "staircase": ["road-2 (hold-out)", "convection", "rms error (K)"],
+    "scores": ["convection@flange.right", "12.3 W/m2/K", "threshold"],
+    "half_normal": ["convection@flange.right", "threshold (simulated nulls)"],
+    "confusion": ["a@x", "b@y", ".83"],
+}
+
+
+@pytest.mark.parametrize("name", DRAW)
+def test_figure_is_drawn_and_labelled(name, tmp_path):
+    figure = DRAW[name](tmp_path / "f.png")
+    assert np.asarray(Image.open(tmp_path / "f.png").convert("L")).std() > 8
+    text = paper.svg(figure, name).replace("\u00a0", " ")
+    assert [word for word in SHOWS[name] if word not in text] == []
+
+
+def test_wrong_sensor_is_coloured_and_the_others_are_faint():
+    c = comparison()
+    colours = {ch.name: curves.wrongness(c.residual(ch), 2 * ch.sigma_K) for ch in c.test.channels}
+    assert colours.pop("flange.right") == curves.BLUE
+    assert set(colours.values()) == {curves.LIGHT.faint}
+
+
+def test_staircase_path_starts_before_the_first_revision():
+    assert errors.error_paths(HISTORY)["road-2", "hold-out"] == [6.4, 4.85, 0.93]
+
+
+def test_svg_ids_of_two_plots_do_not_meet():
+    ids = [set(re.findall(r'id="([^"]+)"', paper.svg(DRAW["staircase"](None), name))) for name in ("one", "two")]
+    assert ids[0]
+    assert not ids[0] & ids[1]
+
+
+def test_svg_follows_the_page_theme():
+    svg = paper.svg(DRAW["residuals"](None), "r")
+    assert "var(--ink, #1f2933)" in svg
+    assert not re.search(r"(?<!, )#1f2933", svg)
+
+
+def test_labels_keep_their_distance_and_order():
+    out = np.array(spread([0.0, 0.01, 0.02, 1.0], 0.0, 1.0, 0.1))
+    assert (np.diff(out) >= 0.1 - 1e-12).all()
+    assert 0 <= out.min() <= out.max() <= 1
+
+
+def test_channel_without_model_curve_is_named():
+    c = comparison()
+    with pytest.raises(InputError, match=r"no model curve for flange\.right"):
+        Comparison(c.test, {k: v for k, v in c.model.items() if k != "flange.right"})
+
+
+def test_empty_history_is_refused():
+    with pytest.raises(InputError, match="at least one revision"):
+        errors.staircase([])

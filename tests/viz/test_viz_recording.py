@@ -1,0 +1,75 @@
+"""The recording: valid to rerun's own checker, complete, and refused when it does not fit."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from fictional import HISTORY, PLACES, POSITIONS, TIME, comparison
+from small_motor import motor
+
+from geom.errors import InputError
+from viz.nodes import split
+from viz.recording import verify, write_recording
+
+NODES = split(motor(12))
+FRAMES = 7
+
+
+@pytest.fixture(scope="module")
+def recording(tmp_path_factory):
+    times = np.linspace(0.0, 3600.0, FRAMES)
+    fields = 20.0 + 50.0 * (times / 3600.0)[:, None] * np.linspace(0.2, 1.0, NODES.size)
+    path = tmp_path_factory.mktemp("rrd") / "road.rrd"
+    return write_recording(
+        path, NODES, comparison(), (times, fields), POSITIONS, history=HISTORY,
+        revision_fields=np.stack([fields[-1] + k for k in (4.0, 2.0, 0.0)]),
+    )  # fmt: skip
+
+
+def chunks(path):
+    """(rows, entity, component) of every chunk, as rerun's own tool lists them."""
+    tool = Path(sys.executable).with_name("rerun")
+    home = {"HOME": str(path.parent), "XDG_CONFIG_HOME": str(path.parent)}
+    subprocess.run([tool, "analytics", "disable"], env=home, capture_output=True, check=True)
+    done = subprocess.run([tool, "rrd", "print", "-v", path], env=home, capture_output=True, text=True, check=True)
+    found = re.findall(r"with (\d+) rows .* - (/\S+) - data columns: \[(.*)\]", done.stdout)
+    return [(int(n), entity, columns.rsplit(":", 1)[-1]) for n, entity, columns in found]
+
+
+def test_recording_is_valid(recording):
+    verify(recording)
+
+
+def test_recording_holds_every_frame_and_revision(recording):
+    colours = sorted(n for n, entity, column in chunks(recording) if column == "vertex_colors")
+    assert colours == [len(HISTORY) + 1, FRAMES]
+
+
+def test_geometry_is_written_once(recording):
+    positions = [n for n, entity, column in chunks(recording) if column == "vertex_positions"]
+    assert positions == [1]
+
+
+def test_every_sensor_has_its_curves(recording):
+    series = {entity for n, entity, column in chunks(recording) if column == "scalars" and n == len(TIME)}
+    assert series == {
+        f"/{kind}" for p in PLACES for kind in (f"curves/{p}/measured", f"curves/{p}/model", f"residual/{p}")
+    }
+
+
+def test_a_broken_file_is_not_valid(recording, tmp_path):
+    broken = tmp_path / "broken.rrd"
+    broken.write_bytes(recording.read_bytes()[:2000])
+    with pytest.raises(InputError, match="not a valid recording"):
+        verify(broken)
+
+
+def test_fields_and_times_must_pair(tmp_path):
+    with pytest.raises(InputError, match="3 times but 2 fields"):
+        write_recording(
+            tmp_path / "x.rrd", NODES, comparison(), (np.arange(3.0), np.full((2, NODES.size), 20.0)), POSITIONS
+        )
+    assert not (tmp_path / "x.rrd").exists()

@@ -1,0 +1,106 @@
+"""The report: one file, nothing loaded from elsewhere, carrying the numbers it was given."""
+
+import re
+from html.parser import HTMLParser
+
+import pytest
+from fictional import HISTORY, comparison, documents
+from PIL import Image
+
+from viz.report import Report, render, write_report
+from viz.words import verdict
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("report")
+    Image.new("RGB", (64, 40), "#123456").save(folder / "field.png")
+    compare, diagnose = documents()
+    value = {
+        "name": "h.flange.right.outer",
+        "value": 1.134,
+        "unit": "1",
+        "ci95": [1.021, 1.257],
+        "prior": None,
+        "identified": False,
+    }
+    report = Report(
+        "road <test>", "A fictional motor.", compare, diagnose, HISTORY, [value], [comparison()],
+        {"Field after an hour": folder / "field.png"}, ["Losses as rated."],
+        ["thermoscope report CASE"], "today",
+    )  # fmt: skip
+    return write_report(report, folder / "report.html").read_text(encoding="utf-8")
+
+
+class Loads(HTMLParser):
+    """Collects everything a browser would fetch."""
+
+    def __init__(self):
+        super().__init__()
+        self.found = []
+
+    def handle_starttag(self, tag, attributes):
+        self.found += [v for k, v in attributes if k in ("src", "href", "xlink:href", "srcset", "data", "poster") and v]
+        assert tag not in ("script", "link", "iframe", "object", "embed")
+
+
+def test_nothing_is_loaded_from_elsewhere(page):
+    loads = Loads()
+    loads.feed(page)
+    assert loads.found
+    assert [v[:60] for v in loads.found if not v.startswith(("data:", "#"))] == []
+    assert re.findall(r"url\((?!#|\"#)[^)]*\)|@import", page) == []
+
+
+def test_it_carries_the_numbers_it_was_given(page):
+    text = re.sub(r"<[^>]+>", " ", page).replace("\u00a0", " ")
+    numbers = [
+        "4.85",
+        "0.93",
+        "0.62",
+        "31.4",
+        "7.9",
+        "12.3 W/m2/K (95 %: 10.1 … 14.6)",
+        "1.13",
+        "1.02 … 1.26",
+        "123",
+        "5.07",
+        "9.14",
+    ]
+    assert [n for n in numbers if n not in text] == []
+
+
+def test_the_verdict_comes_first_and_names_the_effect(page):
+    body = page[page.index("<main>") :]
+    assert body.index("Missing from the model: convection at flange.right") < body.index("<h2>")
+
+
+def test_sections_follow_the_parts_given(page):
+    titles = re.findall(r"<h2>(.*?)</h2>", page)
+    assert titles[:3] == ["The error, step by step", "The machine", "Measured and modelled"]
+    assert "How to repeat this" in titles
+    assert re.findall(r"<h2>", render(Report("empty"))) == []
+
+
+def test_words_from_outside_are_escaped(page):
+    assert "road &lt;test&gt;" in page
+    assert "road <test>" not in page
+
+
+def test_ids_are_unique(page):
+    ids = re.findall(r'\bid="([^"]+)"', page)
+    assert len(ids) == len(set(ids))
+
+
+def test_pictures_travel_inside(page):
+    assert page.count("data:image/png;base64,") == 1
+
+
+@pytest.mark.parametrize(
+    ("code", "word"),
+    [("adequate", "agrees"), ("group", "one of"), ("several", "and"), ("outside", "near flange.right"),
+     ("absorbed", "hides"), ("data", "sensors")],
+)  # fmt: skip
+def test_every_verdict_has_its_words(code, word):
+    compare, diagnose = documents()
+    assert word in verdict({**diagnose, "verdict": code}, compare)[1]

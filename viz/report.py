@@ -1,0 +1,220 @@
+"""One self-contained page to hand on: verdict first, pictures, numbers with uncertainty, how to repeat it.
+
+Plots are inline SVG and pictures inline PNG, so the page is about 1 MB, opens without a network or scripts, prints, and
+follows the reader's light or dark theme. (plotly's script alone would be 4.8 MB; viz.interactive has it for notebooks.)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from html import escape
+from pathlib import Path
+from typing import Any
+
+from viz import candidates, curves, errors, html, words
+from viz.data import Comparison
+
+Document = Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Report:
+    """What the page is made from; every part but the case's name may be missing.
+
+    comparison, diagnosis : documents of `compare` and `diagnose`
+    history : revisions, each with number, action, effect and tests as in `add`
+    parameters : as in `add` and `calibrate`
+    curves : one Comparison per test, the most telling first
+    pictures : caption -> PNG (path or bytes)
+    assumptions : one sentence each;  commands : what repeats the result;  made : date, versions, computer
+    """
+
+    case: str
+    description: str = ""
+    comparison: Document | None = None
+    diagnosis: Document | None = None
+    history: Sequence[Document] = ()
+    parameters: Sequence[Document] = ()
+    curves: Sequence[Comparison] = ()
+    pictures: Mapping[str, str | Path | bytes] = field(default_factory=dict)
+    assumptions: Sequence[str] = ()
+    commands: Sequence[str] = ()
+    made: str = ""
+
+
+def write_report(report: Report, path: str | Path) -> Path:
+    """Write the page and return its path."""
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(render(report), encoding="utf-8")
+    return path
+
+
+def render(report: Report) -> str:
+    """The page as text."""
+    parts = [_top(report), _error(report), _pictures(report), _curves(report), _missing(report), _hidden(report)]
+    parts += [_values(report), _sensors(report), _assumed(report), _repeat(report)]
+    return html.page(f"thermoscope: {report.case}", parts)
+
+
+def _top(r: Report) -> str:
+    tone, sentence = words.verdict(r.diagnosis, r.comparison)
+    head = f"<h1>thermoscope report: {escape(r.case)}</h1>"
+    head += f'<p class="verdict"><span class="{tone}">{escape(sentence)}</span></p>'
+    return head + html.text(words.story(r.history), words.detail(r.diagnosis), r.description) + _cards(r)
+
+
+def _cards(r: Report) -> str:
+    items = []
+    for (name, role), path in errors.error_paths(r.history).items():
+        if role == "hold-out":
+            items.append((f"{path[0]:.2f} → {path[-1]:.2f} K", f"error on {name}, never used to fit or choose"))
+    if r.comparison is not None:
+        items.append((f"{r.comparison['rmse_K']:.2f} K", "rms error over all tests, model as it stands"))
+        items.append((f"{r.comparison['floor_K']:.2f} K", "what the sensors' own uncertainty explains"))
+    return html.cards(items) if items else ""
+
+
+def _error(r: Report) -> str:
+    if not r.history:
+        return ""
+    floor = None if r.comparison is None else float(r.comparison["floor_K"])
+    last = r.history[-1]
+    bars = errors.before_after(last["tests"], floor_K=floor)
+    title = f"Last step ({last['action']} {last.get('effect') or ''}".strip() + "): tests in bold were never used."
+    stairs = errors.staircase(r.history, floor_K=floor)
+    return html.section(
+        "The error, step by step",
+        html.plot(stairs, "stairs", "Rms error of every test over the revisions of the model."),
+        html.plot(bars, "bars", title),
+    )
+
+
+def _pictures(r: Report) -> str:
+    return html.section("The machine", *(html.picture(png, caption) for caption, png in r.pictures.items()))
+
+
+def _curves(r: Report) -> str:
+    parts = []
+    for i, c in enumerate(r.curves):
+        name = f"{c.test.name} ({c.test.role})"
+        both = html.plot(curves.residuals(c), f"residual{i}", f"{name}: measured − model per sensor.")
+        both += html.plot(
+            curves.measured_and_model(c), f"curves{i}", f"{name}: readings, their 2σ band, and the model."
+        )
+        parts.append(html.more(name, both, opened=i == 0))
+    return html.section("Measured and modelled", *parts)
+
+
+def _missing(r: Report) -> str:
+    if r.diagnosis is None or not r.diagnosis["candidates"]:
+        return ""
+    ranked = sorted(r.diagnosis["candidates"], key=lambda c: c["score"], reverse=True)
+    rows = [
+        (
+            c["effect"], float(c["score"]), float(c["threshold"]), candidates.amplitude(c), c["rmse_K"]["before"],
+            c["rmse_K"]["after"], c["holdout_rmse_K"]["after"] if c.get("holdout_rmse_K") else None,
+            ", ".join(c["confused_with"]), c["decision"],
+        )
+        for c in ranked[:12]
+    ]  # fmt: skip
+    headers = [
+        "effect",
+        "score",
+        "threshold",
+        "amplitude",
+        "error now (K)",
+        "with it (K)",
+        "held-out (K)",
+        "confused with",
+        "decision",
+    ]
+    return html.section(
+        "What is missing",
+        html.plot(
+            candidates.scores(ranked), "scores", "Candidates by score. Those beyond the black mark are not chance."
+        ),
+        html.table(headers, rows, [c["decision"] == "named" for c in ranked]),
+    )
+
+
+def _hidden(r: Report) -> str:
+    """What these tests cannot see, and which test would show more."""
+    if r.diagnosis is None:
+        return ""
+    blind = [(b["effect"], _number(b["smallest_detectable"]), b["unit"]) for b in r.diagnosis.get("cannot_see", [])]
+    tests = [
+        (t["test"], ", ".join(t["separates"]), _number(t["predicted_gain"])) for t in r.diagnosis.get("next_tests", [])
+    ]
+    seen = html.table(["effect", "smallest that would be seen", "unit"], blind)
+    following = html.table(["test", "separates", "predicted gain"], tests)
+    return html.section(
+        "What these tests cannot see, and what would help",
+        seen and html.more("Effects that could be there unseen", seen),
+        following and "<h3>Tests that would decide</h3>" + following,
+    )
+
+
+def _values(r: Report) -> str:
+    rows = [
+        (
+            p["name"], _number(p["value"]), p["unit"], _interval(p.get("ci95")), _prior(p.get("prior")),
+            "yes" if p.get("identified", True) else "no: the data do not fix it",
+        )
+        for p in r.parameters
+    ]  # fmt: skip
+    headers = ["parameter", "value", "unit", "95 % interval", "expected before", "fixed by the data"]
+    return html.section("Calibrated values", html.table(headers, rows))
+
+
+def _sensors(r: Report) -> str:
+    if r.comparison is None:
+        return ""
+    parts = []
+    for test in r.comparison["tests"]:
+        rows = [
+            (
+                c["channel"], c["place"], c["n"], _number(c["rmse_K"]), _number(c["bias_K"]), _number(c["max_abs_K"]),
+                _number(c["sigma_K"]), _number(c["percent_of_rise"]), c["verdict"],
+            )
+            for c in test["channels"]
+        ]  # fmt: skip
+        headers = [
+            "sensor",
+            "place",
+            "readings",
+            "rms (K)",
+            "bias (K)",
+            "largest (K)",
+            "1σ (K)",
+            "% of rise",
+            "verdict",
+        ]
+        name = f"{test['name']} ({test['role']}), rms {test['rmse_K']:.2f} K"
+        parts.append(html.more(name, html.table(headers, rows), opened=test["role"] == "hold-out"))
+    return html.section("Every sensor", *parts)
+
+
+def _assumed(r: Report) -> str:
+    items = "".join(f"<li>{escape(a)}</li>" for a in r.assumptions)
+    return html.section("What was assumed", f"<ul>{items}</ul>" if items else "")
+
+
+def _repeat(r: Report) -> str:
+    commands = f"<pre>{escape(chr(10).join(r.commands))}</pre>" if r.commands else ""
+    return html.section("How to repeat this", commands) + (f"<footer>{escape(r.made)}</footer>" if r.made else "")
+
+
+def _number(value: Any) -> float | None:
+    return None if value is None else float(value)
+
+
+def _interval(ci95: Sequence[float] | None) -> str:
+    return f"{ci95[0]:.3g} … {ci95[1]:.3g}" if ci95 else ""
+
+
+def _prior(prior: Any) -> str:
+    if isinstance(prior, Mapping):
+        return ", ".join(f"{k} {v:.3g}" if isinstance(v, float) else f"{k} {v}" for k, v in prior.items())
+    return "" if prior is None else str(prior)
