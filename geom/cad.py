@@ -38,7 +38,7 @@ def solids(part: Part) -> list[cq.Solid]:
     prisms = [_prism(profile, z0, z1) for profile, z0, z1 in part.prisms]
     if len(_stacked(part)) == len(prisms):
         return prisms
-    whole = prisms[0].fuse(*prisms[1:]).clean()
+    whole = prisms[0].fuse(*prisms[1:])  # clean() is slow and has made invalid solids
     return [cq.Solid(solid.wrapped) for solid in whole.Solids()]
 
 

@@ -1,0 +1,150 @@
+"""The motor's mesh: conformal, complete, named, and true to the exact geometry."""
+
+import math
+
+import numpy as np
+import pytest
+
+from geom import build_mesh
+from measures import area, facets_of_tets, keys, tet_volumes
+
+
+def test_every_tetrahedron_is_positive(motor_mesh):
+    assert tet_volumes(motor_mesh).min() > 0
+
+
+def test_no_facet_belongs_to_more_than_two_tetrahedra(motor_mesh):
+    assert np.unique(facets_of_tets(motor_mesh)[0], return_counts=True)[1].max() == 2
+
+
+def test_every_outer_facet_has_exactly_one_patch(motor_mesh):
+    facets, counts = np.unique(facets_of_tets(motor_mesh)[0], return_counts=True)
+    named = np.concatenate([keys(motor_mesh, patch.facets) for patch in motor_mesh.patches.values()])
+    assert np.array_equal(np.sort(named), facets[counts == 1])
+
+
+def test_every_facet_between_two_parts_has_exactly_one_contact(motor_mesh):
+    key, region = facets_of_tets(motor_mesh)
+    order = np.argsort(key, kind="stable")
+    key, region = key[order], region[order]
+    between = (key[1:] == key[:-1]) & (region[1:] != region[:-1])
+    named = np.concatenate([keys(motor_mesh, contact.facets) for contact in motor_mesh.contacts.values()])
+    assert np.array_equal(np.sort(named), key[1:][between])
+
+
+def test_patch_facets_belong_to_the_part_they_name(motor_mesh):
+    key, region = facets_of_tets(motor_mesh)
+    owner = dict(zip(key.tolist(), region.tolist()))
+    for patch in motor_mesh.patches.values():
+        assert {owner[k] for k in keys(motor_mesh, patch.facets).tolist()} == {motor_mesh.parts.index(patch.part)}
+
+
+def test_part_volumes_are_within_one_per_cent(motor, motor_mesh):
+    volumes = tet_volumes(motor_mesh)
+    for index, name in enumerate(motor_mesh.parts):
+        assert volumes[motor_mesh.region == index].sum() == pytest.approx(motor.part(name).volume, rel=0.01), name
+
+
+def test_contact_areas_follow_from_radii_and_lengths(motor, motor_mesh):
+    g = motor.geometry
+    expected = {
+        "rotor.core|shaft": math.pi * g.shaft.core_diameter * g.rotor.stack_length,
+        "housing|yoke": math.pi
+        * (g.stator.yoke_inner_diameter + 2 * g.stator.yoke_thickness)
+        * (g.rotor.stack_length + 2 * g.stator.yoke_overhang),
+        "bearing.left|flange.left": math.pi * g.bearing.outer_diameter * g.flange.thickness,
+        "bearing.right|shaft": math.pi * g.shaft.bearing_diameter * g.flange.thickness,
+        "base|feet": 4 * g.feet.width * g.feet.length,
+        # two sides and two end caps on each of four poles
+        "field.insulation|poles": 8 * g.field.coil_height * (g.rotor.stack_length + g.stator.body_width),
+    }
+    for name, exact in expected.items():
+        assert area(motor_mesh, motor_mesh.contacts[name].facets) == pytest.approx(exact, rel=0.02), name
+
+
+def test_rotor_surface_is_the_whole_cylinder(motor, motor_mesh):
+    g = motor.geometry.rotor
+    found = sum(area(motor_mesh, motor_mesh.patches[f"{part}.gap"].facets) for part in ("rotor.core", "slot.liner"))
+    assert found == pytest.approx(math.pi * g.outer_diameter * g.stack_length, rel=0.01)
+
+
+def test_names_of_the_motor(motor_mesh):
+    assert set(motor_mesh.parts) == {
+        "shaft", "rotor.core", "slot.liner", "winding.armature", "winding.armature.left", "winding.armature.right",
+        "commutator", "yoke", "poles", "winding.field", "field.insulation", "housing", "flange.left", "flange.right",
+        "bearing.left", "bearing.right", "feet", "base",
+    }  # fmt: skip
+    for name in ("flange.right.outer", "flange.right.air.right", "housing.fins", "poles.gap", "base.outer"):
+        assert name in motor_mesh.patches
+    for name, contact in motor_mesh.contacts.items():
+        assert name == f"{contact.a}|{contact.b}"
+        assert contact.a < contact.b
+
+
+def test_parts_that_must_not_touch_do_not(motor_mesh):
+    for pair in ("poles|rotor.core", "winding.field|yoke", "rotor.core|winding.armature", "housing|winding.field"):
+        assert pair not in motor_mesh.contacts
+
+
+def test_all_parts_hang_together(motor_mesh):
+    reached = {motor_mesh.parts[0]}
+    for _ in motor_mesh.parts:
+        reached |= {name for c in motor_mesh.contacts.values() if {c.a, c.b} & reached for name in (c.a, c.b)}
+    assert reached == set(motor_mesh.parts)
+
+
+def test_coarse_mesh_is_small(motor_mesh):
+    assert len(motor_mesh.points) <= 25_000
+
+
+def test_volume_error_falls_with_the_square_of_the_chord(motor):
+    """An inscribed n-gon loses (2 pi / n)^2 / 6 of the circle."""
+    shaft = motor.part("shaft").volume
+    errors = []
+    for segments in (36, 72):
+        mesh = build_mesh(motor, size_m=0.06, segments=segments, across=1)
+        inside = mesh.region == mesh.parts.index("shaft")
+        errors.append(1 - tet_volumes(mesh)[inside].sum() / shaft)
+    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.02)
+
+
+def test_finer_in_every_direction(motor, motor_mesh):
+    finer = build_mesh(motor, size_m=0.03, segments=48, across=2)
+    assert len(finer.tets) > 1.8 * len(motor_mesh.tets)
+
+
+def test_cached_mesh_is_the_same_and_follows_the_content(motor, tmp_path, monkeypatch):
+    first = build_mesh(motor, size_m=0.08, segments=36, across=1, cache=tmp_path)
+    monkeypatch.setattr("geom.mesher.partition", None)
+    again = build_mesh(motor, size_m=0.08, segments=36, across=1, cache=tmp_path)
+    assert np.array_equal(first.points, again.points)
+    assert np.array_equal(first.tets, again.tets)
+    assert first.patches.keys() == again.patches.keys()
+    with pytest.raises(TypeError):
+        build_mesh(motor, size_m=0.07, segments=36, across=1, cache=tmp_path)
+
+
+def test_point_in_lies_in_the_part(motor, motor_mesh):
+    for index, name in enumerate(motor_mesh.parts):
+        corners = motor_mesh.points[motor_mesh.tets[motor_mesh.region == index]]
+        local = np.linalg.solve(
+            np.moveaxis(corners[:, 1:] - corners[:, :1], 1, 2), (np.array(motor.point_in(name)) - corners[:, 0])[..., None]
+        )[..., 0]
+        assert ((local > -1e-9).all(axis=1) & (local.sum(axis=1) < 1 + 1e-9)).any(), name
+
+
+def test_machine_without_fins_or_with_ducts_meshes_too():
+    from geom.machine import machine_from
+
+    table = {"machine": {"family": "series-dc"}, "geometry": {"housing": {"fins": 0}, "rotor": {"ducts": 8}}}
+    mesh = build_mesh(machine_from(table), size_m=0.08, segments=36, across=1)
+    ducts = area(mesh, mesh.patches["rotor.core.air.ducts"].facets)
+    assert ducts == pytest.approx(8 * math.pi * 0.016 * 0.2, rel=0.01)
+
+
+def test_library_machine_fits_its_published_envelope(motor, motor_mesh):
+    length, width, height = (1e-3 * value for value in motor.sections["ratings"]["envelope_mm"])
+    x, y, z = np.ptp(motor_mesh.points, axis=0)
+    assert x <= width
+    assert y <= height
+    assert z <= length + 1e-9

@@ -1,0 +1,63 @@
+"""Profiles: exact areas against closed forms, and faceting that neighbours share."""
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from geom import shapes
+from geom.profile import ArcGrid, Profile
+
+angles = st.floats(0.05, 3.0)
+
+
+@given(st.floats(0.01, 1.0), st.floats(0.1, 0.9))
+def test_ring_area_is_pi_times_the_difference_of_squares(outer, ratio):
+    assert shapes.ring(outer * ratio, outer).area == pytest.approx(math.pi * outer**2 * (1 - ratio**2))
+
+
+@given(angles)
+def test_sector_area_is_its_share_of_the_ring(sweep):
+    assert shapes.sector(0.1, 0.2, 0.3, 0.3 + sweep).area == pytest.approx(sweep * (0.2**2 - 0.1**2) / 2)
+
+
+@given(st.floats(0.0, 6.28))
+def test_turning_keeps_the_area(angle):
+    bar = Profile(shapes.bar_loop(0.1, 0.15, 0.02))
+    assert bar.rotated(angle).area == pytest.approx(bar.area)
+
+
+def test_slots_and_bars_together_fill_the_disc():
+    turns = shapes.evenly(12)
+    core = Profile(shapes.slotted_loop(0.1, 0.01, 0.07, turns))
+    assert core.area + 12 * Profile(shapes.bar_loop(0.07, 0.1, 0.01)).area == pytest.approx(math.pi * 0.01)
+
+
+def test_fin_adds_its_rectangle_less_the_circular_segment_it_stands_on():
+    r, w, tip, n = 0.1, 0.004, 0.12, 20
+    root = shapes.on_circle(r, w / 2)
+    half = math.asin(w / 2 / r)
+    segment = r**2 * (2 * half - math.sin(2 * half)) / 2
+    expected = math.pi * r**2 + n * (w * (tip - root) - segment)
+    assert Profile(shapes.finned_loop(r, w, tip, shapes.evenly(n))).area == pytest.approx(expected)
+
+
+@given(angles, st.integers(12, 90))
+def test_neighbours_across_an_arc_leave_neither_gap_nor_overlap(sweep, segments):
+    inner, outer = shapes.sector(0.05, 0.1, 0.0, sweep), shapes.ring(0.1, 0.12)
+    grid = ArcGrid([inner, outer], segments)
+    a, b = inner.to_polygon(grid), outer.to_polygon(grid)
+    assert a.intersection(b).area < 1e-15
+    assert a.distance(b) < 1e-15
+
+
+def test_faceted_circle_loses_the_area_of_an_inscribed_polygon():
+    circle = shapes.disc(0.1)
+    n = 72
+    assert circle.to_polygon(ArcGrid([circle], n)).area == pytest.approx(n / 2 * 0.01 * math.sin(2 * math.pi / n))
+
+
+def test_thin_ring_keeps_its_area_though_only_one_side_has_fins():
+    shell = Profile(shapes.finned_loop(0.24, 0.004, 0.26, shapes.evenly(36)), (shapes.circle_loop(0.234),))
+    assert shell.to_polygon(ArcGrid([shell], 36)).area == pytest.approx(shell.area, rel=0.02)
