@@ -12,7 +12,7 @@ _HOME = {
     "Part": "part",
     "Material": "materials",
     "material": "materials",
-    "materials": "materials",
+    "material_table": "materials",
     "winding_conductivity": "materials",
     "build_mesh": "mesher",
     "COARSE": "mesher",

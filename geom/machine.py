@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -61,6 +61,17 @@ class Machine:
         usual = {"ambient": f"{part}.outer", "airgap": f"{part}.gap"}.get(fluid, f"{part}.{fluid}")
         return self.face_names.get((part, fluid), usual)
 
+    @property
+    def extent(self) -> tuple[float, float, float]:
+        """Overall size (m): along the axis, across it, and high."""
+        import shapely
+
+        profiles = [profile for part in self.parts for profile, _, _ in part.prisms]
+        grid = ArcGrid(profiles, 72)
+        x0, y0, x1, y1 = shapely.total_bounds([profile.to_polygon(grid) for profile in profiles])
+        spans = [part.span for part in self.parts]
+        return max(z1 for _, z1 in spans) - min(z0 for z0, _ in spans), float(x1 - x0), float(y1 - y0)
+
     def point_in(self, name: str) -> tuple[float, float, float]:
         """A point (m) well inside the part: in the plane inside its largest prism, at half its length."""
         import shapely
@@ -107,7 +118,7 @@ def machine_from(sections: Mapping[str, Any], where: str = "machine") -> Machine
     except InputError as error:
         raise InputError(error.what, f"{where} {error.where}", error.right) from error
     built = _with_materials(built, sections.get("materials", {}), where)
-    return Machine(
+    machine = Machine(
         name=header.get("name", Path(where).stem),
         family=family.name,
         description=header.get("description", family.doc),
@@ -117,6 +128,21 @@ def machine_from(sections: Mapping[str, Any], where: str = "machine") -> Machine
         geometry=values,
         face_names=family.face_names,
     )
+    _refuse_outside_envelope(machine, where)
+    return machine
+
+
+def _refuse_outside_envelope(machine: Machine, where: str) -> None:
+    """[ratings] envelope_mm = [length, width, height], where given, holds the whole machine."""
+    allowed = machine.sections.get("ratings", {}).get("envelope_mm")
+    if allowed is None:
+        return
+    place = f"{where} [ratings] envelope_mm"
+    if not isinstance(allowed, list) or len(allowed) != 3 or not all(isinstance(v, (int, float)) for v in allowed):
+        raise InputError(f"{allowed!r} is not an envelope", place, "write [length, width, height]")
+    for word, size, limit in zip(("length", "width", "height"), machine.extent, allowed):
+        if size * 1e3 > limit + 1e-6:
+            raise InputError(f"the machine's {word} of {size * 1e3:.4g} mm exceeds {limit:.4g} mm", place, "make it fit")
 
 
 def _family(header: Mapping[str, Any], where: str) -> Family:
@@ -125,13 +151,12 @@ def _family(header: Mapping[str, Any], where: str) -> Family:
             raise InputError(f"unknown key {key!r}", f"{where} [machine]", f"known: {', '.join(_HEADER)}")
     known = families()
     if header.get("family") not in known:
-        raise InputError(f"{header.get('family')!r} is no family", f"{where} [machine] family", f"known: {', '.join(known)}")
+        where = f"{where} [machine] family"
+        raise InputError(f"{header.get('family')!r} is no family", where, f"known: {', '.join(known)}")
     return known[header["family"]]
 
 
 def _with_materials(parts: tuple[Part, ...], chosen: Mapping[str, Any], where: str) -> tuple[Part, ...]:
-    from dataclasses import replace
-
     names = [part.name for part in parts]
     for part, name in chosen.items():
         if part not in names:

@@ -33,7 +33,7 @@ class Material:
 
 
 @cache
-def materials() -> Mapping[str, Material]:
+def material_table() -> Mapping[str, Material]:
     """The whole table by name."""
     table = tomllib.loads(TABLE.read_text(encoding="utf-8"))
     return {name: _read(name, values) for name, values in table.items()}
@@ -41,9 +41,9 @@ def materials() -> Mapping[str, Material]:
 
 def material(name: str) -> Material:
     """One material; InputError names the known ones."""
-    if name not in materials():
-        raise InputError(f"unknown material {name!r}", "[materials]", f"known: {', '.join(sorted(materials()))}")
-    return materials()[name]
+    if name not in material_table():
+        raise InputError(f"unknown material {name!r}", "[materials]", f"known: {', '.join(sorted(material_table()))}")
+    return material_table()[name]
 
 
 def _read(name: str, values: Mapping[str, float | str]) -> Material:

@@ -1,0 +1,118 @@
+"""Machine files: what is right is read, what is wrong is refused in one message that says where."""
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from geom import InputError, library, load_machine
+from geom.families import families
+from geom.machine import machine_from
+from geom.partition import partition, refuse_hidden_voids
+
+
+def series(**geometry):
+    return {"machine": {"family": "series-dc"}, "geometry": geometry}
+
+
+WRONG = {
+    "a key nobody knows": (series(rotor={"slot_count": 46}), ["slot_count", "slots", "[geometry.rotor]"]),
+    "a unit forgotten": (series(housing={"fin_height": 18}), ["fin_height", "unit", "fin_height_mm"]),
+    "another unit": (series(housing={"fin_height_cm": 1.8}), ["fin_height_cm", "fin_height_mm"]),
+    "a group nobody knows": (series(rotr={}), ["geometry.rotr", "rotor"]),
+    "a section nobody knows": ({"machnie": {}}, ["machnie", "machine"]),
+    "a family nobody knows": ({"machine": {"family": "steam"}}, ["steam", "series-dc"]),
+    "no family": ({"machine": {}}, ["family", "series-dc"]),
+    "a part nobody knows": (series() | {"materials": {"wheel": "steel"}}, ["wheel", "[materials]", "shaft"]),
+    "a material nobody knows": (series() | {"materials": {"shaft": "cheese"}}, ["cheese", "steel"]),
+    "text for a number": (series(rotor={"liner_mm": "thin"}), ["liner_mm", "thin", "0.05", "3"]),
+    "true for a number": (series(rotor={"slots": True}), ["slots", "True"]),
+    "half a slot": (series(rotor={"slots": 46.5}), ["slots", "46.5", "integer"]),
+    "not a number": (series(rotor={"liner_mm": float("nan")}), ["liner_mm", "nan"]),
+    "no air gap": (series(stator={"air_gap_mm": 0.0}), ["air_gap_mm", "0.0", "0.3"]),
+    "a negative air gap": (series(stator={"air_gap_mm": -1.0}), ["air_gap_mm", "-1.0", "0.3"]),
+    "fins that overlap": (series(housing={"fins": 200, "fin_thickness_mm": 9.0}), ["fin_thickness_mm", "overlap"]),
+    "slots wider than their pitch": (series(rotor={"slot_width_mm": 16.0}), ["slot_width_mm", "16", "pitch"]),
+    "a liner thicker than the slot": (
+        series(rotor={"slot_width_mm": 4.0, "liner_mm": 2.5}), ["liner_mm", "2.5", "less than 1.6"]),
+    "a slot that reaches the shaft": (series(rotor={"slot_depth_mm": 110.0}), ["slot_depth_mm", "110"]),
+    "coils in the yoke": (series(field={"coil_height_mm": 40.0}), ["yoke_inner_diameter_mm", "field coils"]),
+    "coils that meet": (series(field={"coil_width_mm": 200.0}), ["coil_width_mm"]),
+    "a machine too short": (series(shaft={"length_mm": 400.0}), ["length_mm", "400"]),
+    "a base narrower than the feet": (series(base={"width_mm": 200.0}), ["base", "width_mm"]),
+    "larger than its envelope": (
+        series() | {"ratings": {"envelope_mm": [440, 500, 1155]}}, ["envelope_mm", "width", "700"]),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", WRONG)
+def test_wrong_input_is_one_message_with_place_value_and_range(case):
+    table, expected = WRONG[case]
+    with pytest.raises(InputError) as caught:
+        machine_from(table, "my.toml")
+    message = str(caught.value)
+    assert "my.toml" in message or case == "a material nobody knows"
+    assert "\n" not in message
+    for word in expected:
+        assert word in message
+
+
+@pytest.mark.parametrize("content", ["[machine", "\xff\xfe"])
+def test_broken_toml_is_an_input_error(tmp_path, content):
+    path = tmp_path / "broken.toml"
+    path.write_bytes(content.encode("latin-1"))
+    with pytest.raises(InputError, match=r"broken\.toml"):
+        load_machine(path)
+
+
+def test_missing_machine_lists_the_library():
+    with pytest.raises(InputError, match="series-dc-100kw"):
+        load_machine("series-dc-1000kw")
+
+
+@pytest.mark.parametrize("name", library())
+def test_library_machine_loads_and_carries_its_name(name):
+    assert load_machine(name).name == name
+
+
+def test_material_override_changes_only_that_part():
+    machine = machine_from(series() | {"materials": {"housing": "steel"}})
+    assert machine.part("housing").material == "steel"
+    assert machine.part("flange.left").material == "aluminium-cast"
+
+
+@pytest.mark.parametrize("family", families().values(), ids=lambda family: family.name)
+def test_every_parameter_says_what_it_is_and_accepts_its_default(family):
+    for parameter in family.parameters:
+        assert parameter.doc, parameter.key
+        parameter.checked(parameter.default, "test")
+
+
+@st.composite
+def geometry(draw, family):
+    """Values within 12 per cent of the defaults (counts within 2), inside their ranges."""
+    table = {}
+    for parameter in draw(st.lists(st.sampled_from(family.parameters), min_size=1, max_size=8, unique=True)):
+        if parameter.choices:
+            value = draw(st.sampled_from(parameter.choices))
+        elif isinstance(parameter.default, int):
+            low, high = max(parameter.low, parameter.default - 2), min(parameter.high, parameter.default + 2)
+            value = draw(st.integers(int(low), int(high)))
+        else:
+            low, high = max(parameter.low, 0.88 * parameter.default), min(parameter.high, 1.12 * parameter.default)
+            value = draw(st.floats(low, high))
+        table.setdefault(parameter.group, {})[parameter.name] = value
+    return table
+
+
+@pytest.mark.parametrize("family", families().values(), ids=lambda family: family.name)
+@settings(max_examples=40, deadline=None)
+@given(data=st.data())
+def test_random_machine_is_refused_in_one_line_or_fits_together(family, data):
+    table = data.draw(geometry(family))
+    try:
+        machine = machine_from({"machine": {"family": family.name}, "geometry": table}, "random.toml")
+    except InputError as error:
+        assert "random.toml [geometry." in str(error)
+        assert "must be" in str(error)
+        return
+    refuse_hidden_voids(partition((*machine.parts, *machine.fluids), 36))

@@ -1,0 +1,70 @@
+"""Triangulation of single faces: all borders kept, areas exact, also on bad shapes."""
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from geom import shapes
+from geom.blocks import find_blocks, find_columns
+from geom.delaunay import interior_points, nudged, triangulate_face
+from geom.part import Part
+from geom.partition import partition
+from geom.triangulate import triangulate
+
+
+def flat_area(points, triangles):
+    a, b, c = (points[triangles[:, i]] for i in range(3))
+    return ((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]).sum() / 2
+
+
+def meshed(*profiles, size, across=1):
+    parts = [Part(f"p{i}", "steel", ((profile, 0.0, 1.0),)) for i, profile in enumerate(profiles)]
+    cut = partition(parts, 36)
+    return triangulate(find_columns(cut, find_blocks(cut)), size, across)
+
+
+@given(st.floats(0.005, 0.2), st.floats(0.001, 0.1))
+@settings(max_examples=60, deadline=None)
+def test_comb_with_thin_gaps_is_covered_exactly(size, width):
+    """A comb has borders that an unconstrained Delaunay triangulation would cut across."""
+    teeth = shapely.union_all([shapely.box(i * 0.2, 0, i * 0.2 + width, 1) for i in range(4)] + [shapely.box(0, -0.1, 1, 0)])
+    ring = shapely.get_coordinates(shapely.orient_polygons(teeth).exterior)[:-1]
+    points, n = nudged(ring), len(ring)
+    border = np.column_stack([np.arange(n), (np.arange(n) + 1) % n])
+    inside = interior_points(teeth, size)
+    triangles = triangulate_face(np.vstack([points, inside]), border, shapely.Polygon(points))
+    assert flat_area(np.vstack([ring, inside]), triangles) == pytest.approx(teeth.area, rel=1e-9)
+
+
+@pytest.mark.parametrize("size", [0.004, 0.02, 0.1])
+def test_thin_layer_is_one_element_across(size):
+    layer, plate = shapes.rectangle(0, 0.1, 0, 3e-4), shapes.rectangle(0, 0.1, 3e-4, 0.05)
+    flat = meshed(layer, plate, size=size)
+    assert len(flat.triangles[0]) <= 2 * np.ceil(0.1 / size) + 2
+
+
+def test_winding_in_a_slot_has_points_inside_even_when_coarse():
+    flat = meshed(shapes.rectangle(0.1, 0.13, -0.004, 0.004), size=1.0, across=1)
+    inside = (np.abs(flat.points[:, 1]) < 0.0039) & (flat.points[:, 0] > 0.1001) & (flat.points[:, 0] < 0.1299)
+    assert inside.sum() >= 2
+
+
+@pytest.mark.parametrize("size", [0.01, 0.03])
+def test_areas_add_up(size):
+    flat = meshed(shapes.disc(0.05), shapes.rectangle(0.1, 0.3, -0.1, 0.1), size=size)
+    total = sum(flat_area(flat.points, triangles) for triangles in flat.triangles)
+    assert total == pytest.approx(18 * 0.05**2 * np.sin(np.pi / 18) + 0.04, rel=1e-6)
+
+
+@pytest.mark.parametrize("size", [0.01, 0.02])
+def test_triangles_of_a_square_are_good(size):
+    flat = meshed(shapes.rectangle(0, 0.1, 0, 0.1), size=size)
+    corners = flat.points[flat.triangles[0]]
+    sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
+    first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    area = (first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]) / 2
+    quality = 4 * np.sqrt(3) * area / (sides**2).sum(axis=1)  # 1 for an equilateral triangle
+    assert np.median(quality) > 0.8
+    assert quality.min() > 0.2
