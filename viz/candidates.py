@@ -86,7 +86,15 @@ def confusion(names: Sequence[str], cosine: NDArray[np.float64], *, png: str | P
 
 
 def amplitude(candidate: Mapping[str, Any]) -> str:
-    """'12.3 W/m2/K (95 %: 8.1 ... 16.5)'"""
+    """'12.3 W/m2/K (95 %: 8.1 ... 16.5)'; empty where it has none."""
     a = candidate["amplitude"]
+    if a["value"] is None or not np.isfinite(a["value"]):
+        return ""
     text = f"{a['value']:.3g} {a['unit']}"
-    return f"{text} (95 %: {a['ci95'][0]:.3g} … {a['ci95'][1]:.3g})" if a.get("ci95") else text
+    known = a.get("ci95") and np.isfinite(a["ci95"]).all()
+    return f"{text} (95 %: {a['ci95'][0]:.3g} … {a['ci95'][1]:.3g})" if known else text
+
+
+def matrix(cosines: Mapping[str, Mapping[str, float]], names: Sequence[str]) -> NDArray[np.float64]:
+    """(n, n) |cosine| of the named effects from a diagnosis' `confusion`; what it leaves out counts as 0."""
+    return np.array([[1.0 if a == b else abs(cosines.get(a, {}).get(b, 0.0)) for b in names] for a in names])

@@ -6,6 +6,7 @@ import base64
 from collections.abc import Iterable, Sequence
 from html import escape
 from importlib.resources import files
+from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -89,6 +90,8 @@ def _cell(value: Cell) -> str:
     if value is None or value == "":
         return "–"
     if isinstance(value, float):
+        if not isfinite(value):
+            return "–"
         return f"{value:.4g}" if abs(value) >= 1000 or 0 < abs(value) < 0.01 else f"{value:.3g}"
     marked = {"over": "bad", "within": "ok"}.get(str(value))
     return f'<span class="{marked}">{escape(str(value))}</span>' if marked else escape(str(value))

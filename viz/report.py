@@ -12,7 +12,7 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-from viz import candidates, curves, errors, html, words
+from viz import candidates, curves, errors, heat, html, words
 from viz.data import Comparison
 
 Document = Mapping[str, Any]
@@ -111,32 +111,29 @@ def _missing(r: Report) -> str:
     if r.diagnosis is None or not r.diagnosis["candidates"]:
         return ""
     ranked = sorted(r.diagnosis["candidates"], key=lambda c: c["score"], reverse=True)
-    rows = [
-        (
-            c["effect"], float(c["score"]), float(c["threshold"]), candidates.amplitude(c), c["rmse_K"]["before"],
-            c["rmse_K"]["after"], c["holdout_rmse_K"]["after"] if c.get("holdout_rmse_K") else None,
-            ", ".join(c["confused_with"]), c["decision"],
-        )
-        for c in ranked[:12]
-    ]  # fmt: skip
-    headers = [
-        "effect",
-        "score",
-        "threshold",
-        "amplitude",
-        "error now (K)",
-        "with it (K)",
-        "held-out (K)",
-        "confused with",
-        "decision",
+    parts = [
+        html.plot(candidates.scores(ranked), "scores", "Candidates by score; beyond the black mark is not chance.")
     ]
-    return html.section(
-        "What is missing",
-        html.plot(
-            candidates.scores(ranked), "scores", "Candidates by score. Those beyond the black mark are not chance."
-        ),
-        html.table(headers, rows, [c["decision"] == "named" for c in ranked]),
-    )
+    parts.append(html.table(_HEADERS, [_row(c) for c in ranked[:12]], [c["decision"] == "named" for c in ranked]))
+    if r.diagnosis.get("where") and r.diagnosis["where"][0].get("heat"):
+        caption = "Heat that would have to enter (or leave, below zero) at the likeliest place, with its 2σ band."
+        parts.append(html.plot(heat.missing_heat(r.diagnosis["where"]), "heat", caption))
+    names = [c["effect"] for c in ranked[:10]]
+    if r.diagnosis.get("confusion"):
+        drawn = candidates.confusion(names, candidates.matrix(r.diagnosis["confusion"], names))
+        parts.append(html.more("Which of them look alike", html.plot(drawn, "confusion", "Likeness of their traces.")))
+    return html.section("What is missing", *parts)
+
+
+_HEADERS = ["effect", "score", "threshold", "amplitude", "error now (K)", "with it (K)", "held-out (K)"]
+_HEADERS += ["confused with", "decision"]
+
+
+def _row(c: Document) -> list[html.Cell]:
+    rmse, held = c.get("rmse_K") or {}, c.get("holdout_rmse_K") or {}
+    numbers = [rmse.get("before"), rmse.get("after"), held.get("after")]
+    alike = ", ".join(c["confused_with"])
+    return [c["effect"], c["score"], c["threshold"], candidates.amplitude(c), *numbers, alike, c["decision"]]
 
 
 def _hidden(r: Report) -> str:

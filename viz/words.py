@@ -43,15 +43,13 @@ def story(history: Sequence[Document]) -> str:
 
 
 def detail(diagnosis: Document | None) -> str:
-    """Amplitude and expected gain of the best candidate; empty when nothing is named."""
+    """Amplitude and gain of the best named candidate; empty when nothing is named."""
     best = next((c for c in (diagnosis or {}).get("candidates", []) if c["decision"] == "named"), None)
     if best is None:
         return ""
-    rmse = best["rmse_K"]
-    return (
-        f"{spoken([best['effect']]).capitalize()}: {amplitude(best)}. "
-        f"It would bring the error from {rmse['before']:.2f} K to {rmse['after']:.2f} K."
-    )
+    rmse, name = best.get("rmse_K"), spoken([best["effect"]])
+    gain = f" It would bring the error from {rmse['before']:.2f} K to {rmse['after']:.2f} K." if rmse else ""
+    return f"{name[0].upper()}{name[1:]}: {amplitude(best)}.{gain}"
 
 
 def spoken(effects: Sequence[str], last: str = "and") -> str:

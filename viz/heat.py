@@ -1,0 +1,41 @@
+"""Heat: where it is missing and when, and where it goes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from viz import paper
+from viz.colours import LIGHT, VERMILION
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+@paper.styled
+def missing_heat(where: Sequence[Mapping[str, Any]], *, png: str | Path | None = None) -> Figure:
+    """Missing heat (W) over each test at the likeliest place, with its 2-sigma band.
+
+    where : [{"place", "evidence_nats", "heat": {test: {"time_s", "heat_W", "sd_W"}}}], as in a `diagnose` document
+    """
+    best = max(where, key=lambda w: w["evidence_nats"])
+    tests = list(best["heat"].items())
+    columns = min(3, len(tests))
+    rows = -(-len(tests) // columns)
+    figure, axes = paper.subplots(3.2 * columns, 2.1 * rows + 0.5, rows, columns)
+    for ax, (name, series) in zip(axes, tests, strict=False):
+        t, q, sd = (np.asarray(series[key], float) for key in ("time_s", "heat_W", "sd_W"))
+        ax.fill_between(t / 60, q - 2 * sd, q + 2 * sd, color=LIGHT.faint, alpha=0.4, lw=0)
+        ax.plot(t / 60, q, color=VERMILION)
+        ax.axhline(0, color=LIGHT.ink, lw=0.8)
+        ax.margins(x=0)
+        ax.set_title(name)
+    for ax in axes[len(tests) :]:
+        ax.set_visible(False)
+    figure.suptitle(f"{best['place']}: {best['evidence_nats']:.0f} nats", fontsize=10, color=LIGHT.ink)
+    figure.supxlabel("time (min)", fontsize=9.5, color=LIGHT.ink)
+    figure.supylabel("missing heat (W)", fontsize=9.5, color=LIGHT.ink)
+    return paper.saved(figure, png)
