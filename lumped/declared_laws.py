@@ -110,6 +110,7 @@ def mechanisms(table: Table, has_area: bool) -> list[Mechanism]:
             out.append((f":{word}", *read(inner, has_area)))
             inner.close()
     if not out:
+        table.raw("prior_sd")
         table.close()
         raise table.error("a link without a mechanism", f"G_W_K, R_K_W, h_W_m2K, {', '.join(MECHANISMS)}")
     return out

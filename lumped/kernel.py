@@ -260,6 +260,8 @@ def settle(T, S, K0, C, f, a, q):
         a.z[:n] += q.F
         if np.max(np.abs(q.F)) < CONVERGED_K:
             break
+    else:
+        return False
     if S.dC.shape[1] > 0:
         _balance_rows(T, K0, C, f, a, q)
         q.D1[:, :] = 0.0
@@ -332,3 +334,22 @@ def integrate(time, u, x0, C, K0, T, S, R, through, z_out, y, dy, heat):
             z_out[t] = a.z[: n + nb]
         _outputs(R, a.z, q.D, y[t], dy[t])
     return -1
+
+
+@njit(cache=True, nogil=True)
+def rest(u, x0, K0, T, S, R, z, y, dy, G):
+    """The state at which nothing changes any more (all capacities set aside); False if there is none.
+
+    u (1, nb); x0 (n,) first guess; z (n + nb,), y (1, nr), dy (1, nr, p) and G = -dF/dx (n, n) are filled here.
+    """
+    n, nb, ne = x0.size, u.shape[1], T.m.size
+    a, q = _stage(n, nb, T.row.size, ne), _work(n, ne, S.dC.shape[1])
+    a.z[:n], a.z[n : n + nb] = x0, u[0]
+    if not settle(T, S, K0, np.zeros(n), T.factor[0], a, q):
+        return False
+    evaluate(T, a.z, a.tau)
+    patterns(T, a.z, a.v)
+    jacobian(T, K0, T.factor[0], a.tau, a.v, G)
+    z[:] = a.z[: n + nb]
+    _outputs(R, a.z, q.D, y[0], dy[0])
+    return True

@@ -94,7 +94,7 @@ SLIPS = {
 }
 
 
-@pytest.mark.parametrize("slip, message", SLIPS.values(), ids=SLIPS)
+@pytest.mark.parametrize(("slip", "message"), SLIPS.values(), ids=SLIPS)
 def test_every_slip_is_one_message_that_says_what_would_be_right(data, slip, message):
     slip(data)
     with pytest.raises(InputError, match=message):
