@@ -100,10 +100,10 @@ def _bent_source(source: Source, rng: np.random.Generator, spread: Spread) -> So
 
 
 def with_cores(network: Network, rng: np.random.Generator, spread: Spread) -> Network:
-    """Every node with mass keeps a share of it behind a resistance of 20 to 80 s: twice as fine a network."""
+    """Every node with mass keeps a share of it behind a resistance of 10 to 60 s: twice as fine a network."""
     n, heavy = len(network.states), [i for i, c in enumerate(network.C) if c > 0]
     m = len(heavy)
-    share, tau = rng.uniform(0.3, spread.core, m), rng.uniform(20.0, 80.0, m)
+    share, tau = rng.uniform(0.3, spread.core, m), rng.uniform(10.0, 60.0, m)
     C = np.concatenate([network.C, network.C[heavy] * share])
     C[heavy] = network.C[heavy] * (1.0 - share)
     G = network.C[heavy] * share * (1.0 - share) / tau
@@ -111,11 +111,21 @@ def with_cores(network: Network, rng: np.random.Generator, spread: Spread) -> Ne
     groups = network.capacity_group or network.states
     moved = tuple(moved_link(link, n, m) for link in network.links)
     inner = tuple(_pair(f"core:{names[k]}", i, n + k, G[k]) for k, i in enumerate(heavy))
-    sources = tuple(replace(s, probe=moved_row(s.probe, n, m)) for s in network.sources)
+    shares = {i: (n + k, share[k]) for k, i in enumerate(heavy)}
+    sources = tuple(_spread_source(s, shares, n, m) for s in network.sources)
     return replace(
         network, states=(*network.states, *names), C=C, links=(*moved, *inner), sources=sources,
         capacity_group=(*groups, *(groups[i] for i in heavy)),
     )  # fmt: skip
+
+
+def _spread_source(source: Source, shares: Mapping[int, tuple[int, float]], n: int, m: int) -> Source:
+    """The heat of a source shared between skin and core as their masses."""
+    inner = [(w, *shares[int(i)]) for i, w in zip(source.index, source.weights, strict=True) if int(i) in shares]
+    skin = [w * (1.0 - shares[int(i)][1]) if int(i) in shares else w for i, w in zip(source.index, source.weights)]
+    index = np.concatenate([source.index, np.array([core for _, core, _ in inner], int)])
+    weights = np.array([*skin, *(w * s for w, _, s in inner)])
+    return replace(source, index=index, weights=weights, probe=moved_row(source.probe, n, m))
 
 
 def _pair(name: str, i: int, j: int, G: float) -> Link:

@@ -33,7 +33,7 @@ EULER = 0.5772156649
 
 @dataclass(frozen=True)
 class Null:
-    """Of m draws: z (m, K) scores, pulls (m, p) calibrated shift over its prior sd, rms (m, n_channel) residuals (K)."""
+    """Of m draws: z (m, K) scores, pulls (m, p) calibrated shifts over prior sd, rms (m, n_channel) residuals (K)."""
 
     z: Array
     pulls: Array
@@ -150,7 +150,7 @@ def draw(setting: Setting, i: int) -> Drawn:
     for round_ in range(3):
         A, b, _ = normal([replace(s, J=s.J[:, :p]) for s in parts], noise)
         new = bounded_step(A + np.diag(weight), b - weight * delta, delta, low, high)
-        if round_ == 1:
+        if round_ < 2:
             parts = _residuals(setting, tests, new)
         else:
             parts = [replace(s, r=s.r - s.J[:, :p] @ (new - delta)) for s in parts]

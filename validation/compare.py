@@ -1,0 +1,136 @@
+"""The model against each test: error per sensor against the sensor's uncertainty and the 3-4 % rule."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from validation.case import Case, Channel, Test
+from validation.fitting import working
+from validation.predict import predict
+
+RULE_PERCENT = 4.0
+COVERAGE = 2.0
+
+
+@dataclass(frozen=True)
+class ChannelError:
+    """Error of one sensor in one test (K); percent_of_rise: rmse over the largest rise measured in the test.
+
+    verdict : "within" when rmse is inside 2 sigma or inside 4 % of the rise, else "over"
+    """
+
+    channel: str
+    place: str
+    n: int
+    rmse_K: float
+    bias_K: float
+    max_abs_K: float
+    sigma_K: float
+    percent_of_rise: float
+
+    @property
+    def verdict(self) -> str:
+        close = self.rmse_K <= COVERAGE * self.sigma_K or self.percent_of_rise <= RULE_PERCENT
+        return "within" if close else "over"
+
+    def document(self) -> dict:
+        return {**vars(self), "verdict": self.verdict}
+
+
+@dataclass(frozen=True)
+class TestError:
+    """Errors of one test."""
+
+    name: str
+    role: str
+    channels: tuple[ChannelError, ...]
+    __test__ = False
+
+    @property
+    def rmse_K(self) -> float:
+        return pooled(self.channels)
+
+    def document(self) -> dict:
+        rows = [c.document() for c in self.channels]
+        return {"name": self.name, "role": self.role, "rmse_K": self.rmse_K, "channels": rows}
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """A model held against the tests of its case; floor_K is what the sensors alone would leave."""
+
+    case: str
+    revision: int
+    effects: tuple[str, ...]
+    tests: tuple[TestError, ...]
+
+    @property
+    def rmse_K(self) -> float:
+        return pooled([c for t in self.tests for c in t.channels])
+
+    @property
+    def floor_K(self) -> float:
+        channels = [c for t in self.tests for c in t.channels]
+        return float(np.sqrt(np.average([c.sigma_K**2 for c in channels], weights=[c.n for c in channels])))
+
+    @property
+    def agrees(self) -> bool:
+        return all(c.verdict == "within" for t in self.tests for c in t.channels)
+
+    def document(self) -> dict:
+        return {
+            "case": self.case,
+            "model": {"revision": self.revision, "effects": list(self.effects)},
+            "tests": [t.document() for t in self.tests],
+            "rmse_K": self.rmse_K,
+            "floor_K": self.floor_K,
+        }
+
+
+def pooled(channels: list[ChannelError] | tuple[ChannelError, ...]) -> float:
+    """Root mean square error (K) over all readings of several channels."""
+    if not channels:
+        return float("nan")
+    return float(np.sqrt(np.average([c.rmse_K**2 for c in channels], weights=[c.n for c in channels])))
+
+
+def compare(case: Case, values: Mapping[str, float] | None = None) -> Comparison:
+    """Run the model as it stands on every test. Fitted sensor biases are not used: the raw reading counts."""
+    network, _ = working(case)
+    now = physical(values if values is not None else case.model.values)
+    tests = tuple(test_error(network, t, now) for t in case.tests)
+    return Comparison(case.name, case.model.revision, tuple(e.name for e in case.model.effects), tests)
+
+
+def physical(values: Mapping[str, float]) -> dict[str, float]:
+    """Values without the measurement's own nuisances ('bias of ...', 'slope of ...', 'lag of ...', 'start of ...')."""
+    return {k: v for k, v in values.items() if " of " not in k}
+
+
+def test_error(network, test: Test, values: Mapping[str, float]) -> TestError:
+    y = predict(network, test, values).y
+    rows = [channel_error(c, y[:, j]) for j, c in enumerate(test.channels) if np.isfinite(c.y).any()]
+    return TestError(test.name, test.role, tuple(rows))
+
+
+def channel_error(channel: Channel, predicted: np.ndarray) -> ChannelError:
+    read = np.isfinite(channel.y)
+    e, seen = predicted[read] - channel.y[read], channel.y[read]
+    rmse, rise = float(np.sqrt(np.mean(e**2))), float(np.max(np.abs(seen - seen[0])))
+    percent = 100.0 * rmse / rise if rise > 0 else float("inf")
+    return ChannelError(  # fmt: skip
+        channel.name,
+        channel.place,
+        int(read.sum()),
+        rmse,
+        float(e.mean()),
+        float(np.abs(e).max()),
+        channel.sigma_K,
+        percent,
+    )
+
+
+test_error.__test__ = False  # type: ignore[attr-defined]

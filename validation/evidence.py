@@ -1,0 +1,141 @@
+"""What a diagnosis rests on: the calibrated model, the score of every candidate effect, the simulated null."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.network import Network, Parameter
+from validation.calibrate import Fit, calibrated, minimise, silent
+from validation.case import Case, Test
+from validation.effects import Effect, catalogue, extended
+from validation.fitting import Unknowns, effects_of, scene_of, working
+from validation.noise import Noise, fit_noise
+from validation.null import Null, simulated_null
+from validation.score import Gram, Score, gram, score, total
+from validation.sheet import Segment, segments
+
+Array = NDArray[np.float64]
+TWIN = 0.9995
+WIDER = 3.0
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """The score of candidates at one calibrated state.
+
+    network : the model with all candidates at zero;  parts : segments with nuisance, then candidate columns
+    """
+
+    tests: tuple[Test, ...]
+    fit: Fit
+    network: Network
+    effects: tuple[Effect, ...]
+    parameters: tuple[Parameter, ...]
+    parts: tuple[Segment, ...]
+    grams: Mapping[str, Gram]
+    score: Score
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return tuple(e.name for e in self.effects)
+
+    @property
+    def twins(self) -> list[str | None]:
+        """For each effect the free parameter that does the same, if there is one."""
+        G = total(self.grams)
+        scale = np.sqrt(np.outer(np.diag(G.JJ), np.diag(G.ZZ)))
+        alike = np.abs(G.JZ) / np.where(scale > 0, scale, np.inf)
+        best = np.argmax(alike, axis=0)
+        return [self.fit.unknowns.names[j] if alike[j, k] > TWIN else None for k, j in enumerate(best)]
+
+    def resharpened(self, noise: Noise) -> Score:
+        """The score under another noise."""
+        p = len(self.fit.unknowns.parameters)
+        G = total(gram(self.parts, noise, p))
+        return score(G, self.fit.theta, self.fit.unknowns.sd, self.score.sign)
+
+
+def diagnosing(case: Case) -> tuple[Test, ...]:
+    """The tests an effect may be chosen on: all but the held-out ones."""
+    return tuple(t for t in case.tests if t.role != "hold-out")
+
+
+def candidates(case: Case, kinds: Sequence[str] | None = None) -> tuple[Effect, ...]:
+    """The catalogue on this case, less what the model has already."""
+    inside = {e.name for e in case.model.effects}
+    return tuple(e for e in catalogue(scene_of(case), kinds) if e.name not in inside)
+
+
+def scored(case: Case, effects: Sequence[Effect], fit: Fit) -> Evidence:
+    """One run of every test with all candidates' tangents at a calibrated state."""
+    network = extended(fit.network, effects)
+    by_name = {p.name: p for p in network.parameters}
+    parameters = tuple(by_name[e.name] for e in effects)
+    tests, p = diagnosing(case), len(fit.unknowns.parameters)
+    values = {**{q.name: case.model.values.get(q.name, q.value) for q in network.parameters}, **fit.values}
+    parts = tuple(segments(network, tests, values, (*fit.unknowns.parameters, *parameters)))
+    grams = gram(parts, fit.noise, p)
+    sign = np.array([q.sign for q in parameters], int)
+    found = score(total(grams), fit.theta, fit.unknowns.sd, sign)
+    return Evidence(tests, fit, network, tuple(effects), parameters, parts, grams, found)
+
+
+def calibrated_case(
+    case: Case, progress: Callable[[str], None] = silent, start: Mapping[str, float] | None = None
+) -> Fit:
+    """The model calibrated on every test but the held-out ones."""
+    network, unknowns = working(case)
+    return calibrated(network, diagnosing(case), unknowns, {**case.model.values, **(start or {})}, progress=progress)
+
+
+def null_of(
+    evidence: Evidence,
+    draws: int,
+    seed: int = 0,
+    workers: int = 2,
+    cache: Path | None = None,
+    progress: Callable[[str], None] = silent,
+) -> Null:
+    """The simulated null of this model and test plan."""
+    e = evidence
+    return simulated_null(
+        e.fit, e.fit.network, e.tests, e.parts, e.score.sign, draws, seed, workers, cache, progress
+    )  # fmt: skip
+
+
+def widened(parameter: Parameter) -> Parameter:
+    """A candidate's parameter with so wide a prior that the data decide."""
+    return replace(parameter, prior_sd=WIDER * parameter.prior_sd)
+
+
+def refit(evidence: Evidence, members: Sequence[int], noise: Noise | None = None, start: Fit | None = None) -> Fit:
+    """All free parameters and the amplitudes of some candidates, fitted anew."""
+    fit, chosen = evidence.fit, [evidence.parameters[k] for k in members]
+    network = extended(fit.network, [evidence.effects[k] for k in members])
+    unknowns = Unknowns((*fit.unknowns.parameters, *(widened(p) for p in chosen)))
+    theta = start.theta if start else np.concatenate([fit.theta, first_amplitudes(evidence, members)])
+    held = {p.name: p.value for p in network.parameters} | fit.values
+    return minimise(network, evidence.tests, unknowns, theta, noise or fit.noise, held, iterations=8)
+
+
+def first_amplitudes(evidence: Evidence, members: Sequence[int]) -> Array:
+    """Linear estimates, kept to the admissible side and within three prior deviations."""
+    a = evidence.score.amplitude[list(members)]
+    sd = np.array([evidence.parameters[k].prior_sd for k in members])
+    low = np.array([evidence.parameters[k].low for k in members])
+    high = np.array([evidence.parameters[k].high for k in members])
+    return np.clip(np.clip(a, -3.0 * sd, 3.0 * sd), 0.9 * low, 0.9 * high)
+
+
+def sharpened(fit: Fit) -> Noise:
+    """The noise of the residual that this fit leaves."""
+    return fit_noise(fit.parts)
+
+
+def inside(case: Case) -> tuple[Effect, ...]:
+    return effects_of(case)

@@ -1,0 +1,115 @@
+"""What a diagnosis says: the seven verdicts, and the rows of its tables."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+from validation.where import Latent
+
+Verdict = Literal["adequate", "named", "group", "several", "outside", "absorbed", "data"]
+Decision = Literal["named", "group", "no", "cannot-tell"]
+Pair = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """One effect in the race.
+
+    score : signed significance over its own null scatter; threshold : what the best of all exceeds in 5 % of the cases
+    with nothing missing; explained : share of the residual's sum of squares it removes; rmse_K, holdout_rmse_K : (before,
+    after) on the tests used and on the held-out ones, where it was refitted; absorbed : share of its trace that the
+    calibration takes; title, isolating_test : in words
+    """
+
+    effect: str
+    score: float
+    threshold: float
+    value: float
+    unit: str
+    ci95: Pair
+    decision: Decision
+    explained: float | None = None
+    rmse_K: Pair | None = None
+    holdout_rmse_K: Pair | None = None
+    confused_with: tuple[str, ...] = ()
+    absorbed: float = 0.0
+    smallest_detectable: float = float("inf")
+    same_over_tests: float | None = None
+    twin: str | None = None
+    title: str = ""
+    isolating_test: str = ""
+    note: str = ""
+
+    def document(self) -> dict:
+        out = {k: v for k, v in vars(self).items() if k not in ("value", "unit", "ci95", "rmse_K", "holdout_rmse_K")}
+        out["amplitude"] = {"value": self.value, "unit": self.unit, "ci95": list(self.ci95)}
+        out["rmse_K"], out["holdout_rmse_K"] = _pair(self.rmse_K), _pair(self.holdout_rmse_K)
+        return {**out, "confused_with": list(self.confused_with)}
+
+
+def _pair(pair: Pair | None) -> dict | None:
+    return None if pair is None else {"before": pair[0], "after": pair[1]}
+
+
+@dataclass(frozen=True)
+class Hidden:
+    """An effect that these tests could not have shown unless it were larger than this."""
+
+    effect: str
+    smallest_detectable: float
+    unit: str
+    absorbed_by: str | None = None
+
+    def document(self) -> dict:
+        return dict(vars(self))
+
+
+@dataclass(frozen=True)
+class NextTest:
+    """A test of the engineer's menu: the pairs it would separate and the deviance by which (20 is decisive)."""
+
+    test: str
+    separates: tuple[str, ...]
+    predicted_gain: float
+    hours: float
+    why: str = ""
+
+    def document(self) -> dict:
+        return {**vars(self), "separates": list(self.separates)}
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """The answer. named : the effects to add, best first (one per group); words : the verdict in a sentence."""
+
+    verdict: Verdict
+    words: str
+    named: tuple[str, ...]
+    groups: tuple[tuple[str, ...], ...]
+    candidates: tuple[Candidate, ...]
+    cannot_see: tuple[Hidden, ...]
+    where: tuple[Latent, ...]
+    next_tests: tuple[NextTest, ...]
+    rmse_K: float
+    floor_K: float
+    threshold: float
+    pulls: tuple[tuple[str, float, float], ...] = ()
+    cosine: dict[str, dict[str, float]] = field(default_factory=dict)
+
+    def document(self) -> dict:
+        return {
+            "verdict": self.verdict,
+            "words": self.words,
+            "named": list(self.named),
+            "groups": [list(g) for g in self.groups],
+            "candidates": [c.document() for c in self.candidates],
+            "cannot_see": [h.document() for h in self.cannot_see],
+            "where": [w.document() for w in self.where],
+            "next_tests": [t.document() for t in self.next_tests],
+            "rmse_K": self.rmse_K,
+            "floor_K": self.floor_K,
+            "threshold": self.threshold,
+            "pulls": [{"parameter": n, "value": v, "prior_deviations": p} for n, v, p in self.pulls],
+            "confusion": self.cosine,
+        }

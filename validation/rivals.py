@@ -1,0 +1,88 @@
+"""Which candidates explain the residual as well as the best one: nonlinear refits under the sharpened noise."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import chi2
+
+from validation.calibrate import Fit, silent
+from validation.evidence import Evidence, refit, sharpened
+from validation.noise import Noise
+from validation.score import per_test
+
+Array = NDArray[np.float64]
+GAP = 10.0
+REFITS = 6
+
+
+@dataclass(frozen=True)
+class Race:
+    """The refitted candidates, best first.
+
+    index : candidates;  fits : their refits under `noise`;  gap : deviance behind the best over kappa^2;
+    group : the candidates that cannot be told from the best
+    """
+
+    index: tuple[int, ...]
+    fits: tuple[Fit, ...]
+    gap: tuple[float, ...]
+    noise: Noise
+
+    @property
+    def group(self) -> tuple[int, ...]:
+        return tuple(k for k, g in zip(self.index, self.gap, strict=True) if g < GAP)
+
+    @property
+    def best(self) -> Fit:
+        return self.fits[0]
+
+
+def race(evidence: Evidence, kappa: Array, threshold: float, progress: Callable[[str], None] = silent) -> Race:
+    """Refit the most likely candidates, take the best one's residual as noise, and compare all under it."""
+    level = evidence.score.z / kappa
+    order = [int(k) for k in np.argsort(-level)]
+    first = [k for k in order if level[k] > threshold][:3]
+    progress(f"refitting {', '.join(evidence.names[k] for k in first)}")
+    fits = {k: refit(evidence, [k]) for k in first}
+    leader = min(first, key=lambda k: fits[k].objective)
+    for _ in range(2):
+        noise = sharpened(fits[leader])
+        runners = shortlist(evidence, noise, kappa, leader)
+        progress(f"comparing {evidence.names[leader]} with {len(runners) - 1} rivals")
+        fits = {k: refit(evidence, [k], noise, fits.get(k)) for k in runners}
+        best = min(runners, key=lambda k: fits[k].objective)
+        if best == leader:
+            break
+        leader = best
+    runners.sort(key=lambda k: fits[k].objective)
+    gap = [behind(fits[k], fits[leader], max(kappa[k], kappa[leader])) for k in runners]
+    return Race(tuple(runners), tuple(fits[k] for k in runners), tuple(gap), noise)
+
+
+def behind(fit: Fit, best: Fit, kappa: float) -> float:
+    """Deviance by which a fit is worse, in units of the calibrated noise."""
+    return 2.0 * (fit.objective - best.objective) / kappa**2
+
+
+def shortlist(evidence: Evidence, noise: Noise, kappa: Array, leader: int) -> list[int]:
+    """The leader and the candidates whose expected deviance comes closest to its own under this noise."""
+    s = evidence.resharpened(noise)
+    drop = np.where(s.z > 0, s.z, 0.0) ** 2
+    near = [int(k) for k in np.argsort(-drop) if k != leader and s.visible[k]]
+    slack = 4.0 * GAP * kappa[leader] ** 2 + 0.2 * drop[leader]
+    return [leader, *(k for k in near[: REFITS - 1] if drop[k] > drop[leader] - slack)]
+
+
+def constancy(evidence: Evidence, k: int, kappa: float) -> float:
+    """Probability that an effect of one amplitude differs as much between tests as it seems to."""
+    fit = evidence.fit
+    G_JZ = sum(g.JZ for g in evidence.grams.values())
+    a, var = per_test(evidence.grams, k, np.asarray(np.linalg.solve(fit.H, G_JZ), float))
+    if a.size < 2:
+        return 1.0
+    mean = np.sum(a / var) / np.sum(1.0 / var)
+    return float(chi2.sf(np.sum((a - mean) ** 2 / var) / kappa**2, a.size - 1))
