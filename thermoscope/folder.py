@@ -1,0 +1,199 @@
+"""A case folder: case.toml, tests/NAME.csv with tests/NAME.toml, model.toml -> the case the rooms work on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from geom.errors import InputError
+from lumped.network import Network, Parameter
+from lumped.reader import Table, known
+from thermoscope.history import History, checked_values, load_history
+from thermoscope.readings import read_test
+from thermoscope.sheet import Sheet, load_sheet, read_toml
+from thermoscope.tables import Samples, load_table
+from validation.case import AddedEffect, Case, Model, Role, Test
+from validation.fitting import matching
+
+if TYPE_CHECKING:
+    from geom import Machine
+    from thermoscope.pipeline import Built
+
+Progress = Callable[[str], None]
+ROLES = ("calibrate", "validate", "hold-out")
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A test as case.toml lists it."""
+
+    name: str
+    role: Role
+    file: Path
+    sheet: Path
+
+
+@dataclass(frozen=True)
+class Settings:
+    """case.toml.  machine or network is set, the other None;  free : globs of what calibration may move, () for all"""
+
+    path: Path
+    name: str
+    description: str
+    machine: Path | None
+    network: Path | None
+    sample_s: float
+    tests: tuple[Entry, ...]
+    free: tuple[str, ...] = ()
+
+    @property
+    def out(self) -> Path:
+        return self.path / "out"
+
+    @property
+    def model_file(self) -> Path:
+        return self.path / "model.toml"
+
+
+@dataclass(frozen=True)
+class Folder:
+    """An open case.  positions : channel -> (x, y, z) m where the sheet gives them;  notes : doubts about the data"""
+
+    settings: Settings
+    case: Case
+    history: History
+    notes: tuple[str, ...]
+    positions: dict[str, tuple[float, ...]]
+    built: Built | None = None
+
+
+def read_settings(path: Path) -> Settings:
+    file = path / "case.toml"
+    if path.is_file():
+        raise InputError("is a file", str(path), "a folder with a case.toml")
+    top = Table(read_toml(file, "a case folder with a case.toml"), str(file))
+    head, tests, calibration = top.table("case"), top.tables("tests"), top.table("calibration")
+    top.close()
+    name, description = head.word("name", path.name), head.word("description", "")
+    machine, network = head.raw("machine"), head.raw("network")
+    if (machine is None) == (network is None):
+        raise head.error(
+            "neither or both of machine and network given", 'machine = "NAME.toml" or network = "network.toml"'
+        )
+    sample, free = head.number("sample_s", 10.0, low=1e-3), calibration.words("free", [])
+    head.close()
+    calibration.close()
+    if not tests:
+        raise InputError("no tests", str(file), '[tests.NAME] with role = "calibrate"')
+    entries = tuple(_entry(path, n, t) for n, t in tests.items())
+    return Settings(
+        path, name, description, machine and path / machine, network and path / network, sample, entries, free
+    )
+
+
+def _entry(path: Path, name: str, table: Table) -> Entry:
+    file = path / table.word("file", f"tests/{name}.csv")
+    plain = file.with_suffix("") if file.suffix == ".gz" else file
+    role, beside = table.word("role", None, ROLES), plain.with_suffix(".toml")
+    sheet = path / table.word("sheet") if "sheet" in table else beside
+    table.close()
+    return Entry(name, role, plain, sheet)  # type: ignore[arg-type]
+
+
+def load_case(path: str | Path, progress: Progress = lambda message: None, bare: bool = False) -> Folder:
+    """Open a case. All files are read and checked before anything is computed; `bare` skips model.toml."""
+    settings = read_settings(Path(path))
+    history = History() if bare else load_history(settings.model_file)
+    sheets = {e.name: load_sheet(e.sheet) for e in settings.tests}
+    samples: dict[str, Samples] = {}
+    for entry in settings.tests:
+        progress(f"reading {entry.name}")
+        samples[entry.name] = load_table(entry.file, sheets[entry.name])
+    network, built = _network(settings, progress)
+    read = [
+        read_test(e.name, e.role, samples[e.name], sheets[e.name], network, settings.sample_s) for e in settings.tests
+    ]
+    notes = tuple(dict.fromkeys(note for _, doubts in read for note in doubts))
+    case = Case(settings.name, _model(network, history), tuple(t for t, _ in read), _free(network, settings))
+    return Folder(settings, _checked(case, history), history, notes, _positions(sheets.values()), built)
+
+
+def _positions(sheets: Iterable[Sheet]) -> dict[str, tuple[float, ...]]:
+    columns = [c for sheet in sheets for c in sheet.columns if c.position_mm]
+    return {c.name: tuple(1e-3 * x for x in c.position_mm) for c in columns}
+
+
+def find_case(name: str | Path) -> Path:
+    """A case folder by its path, or by the name of a case that comes with the tool."""
+    path = Path(name)
+    if path.is_dir():
+        return path
+    shipped = {p.parent.name: p.parent for home in _homes() for p in sorted(home.glob("*/case.toml"))}
+    if str(name) in shipped:
+        return shipped[str(name)]
+    if path.exists():
+        raise InputError("is a file", str(path), "a folder with a case.toml")
+    raise InputError("no such case folder", str(path), known(str(name), shipped or ["no case came along"]))
+
+
+def _homes() -> list[Path]:
+    """Where shipped cases lie: in the wheel inside this package, in a checkout beside it; the latter wins."""
+    here = Path(__file__).resolve().parent
+    return [home for home in (here / "cases", here.parent / "cases") if home.is_dir()]
+
+
+def _free(network: Network, settings: Settings) -> tuple[Parameter, ...]:
+    """The parameters that calibration may move; a pattern that matches nothing is an error."""
+    for pattern in settings.free:
+        if not matching(network, [pattern]):
+            right = known(pattern, [p.name for p in network.parameters])
+            raise InputError(
+                f"'{pattern}' matches no parameter", f"{settings.path / 'case.toml'} [calibration] free", right
+            )
+    return matching(network, settings.free)
+
+
+def _network(settings: Settings, progress: Progress) -> tuple[Network, Built | None]:
+    if settings.network is not None:
+        from lumped.declared import load_network
+
+        return load_network(settings.network), None
+    from thermoscope.pipeline import build
+
+    built = build(load_machine_file(settings.machine), progress=progress)  # type: ignore[arg-type]
+    return built.network, built
+
+
+def load_machine_file(path: Path) -> Machine:
+    """A machine by its file, or by the name of a machine that comes with the tool."""
+    from geom import library, load_machine
+
+    if path.exists():
+        return load_machine(path)
+    shipped = library()
+    name = path.name.removesuffix(".toml")
+    if name in shipped:
+        return load_machine(name)
+    raise InputError(
+        "no such machine file", str(path), f"a file, or one of the machines that come along: {', '.join(shipped)}"
+    )
+
+
+def _model(network: Network, history: History) -> Model:
+    last = history.last
+    effects = tuple(AddedEffect(*name.partition("@")[::2]) for name in last.effects)
+    return Model(network, effects, dict(last.values), last.number)
+
+
+def _checked(case: Case, history: History) -> Case:
+    """The model's effects can sit where model.toml has them, and its values belong to parameters."""
+    from validation.effects import effect
+    from validation.fitting import scene_of, working
+
+    for one in case.model.effects:
+        effect(one.name, scene_of(case))
+    names = [p.name for p in working(case)[0].parameters]
+    checked_values(history.last, names, "model.toml")
+    return case

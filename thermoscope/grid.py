@@ -1,0 +1,46 @@
+"""Samples onto the analysis grid: averages around each instant, gaps kept as gaps."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geom.errors import InputError
+from thermoscope.tables import Samples
+
+Array = NDArray[np.float64]
+
+
+def grid_of(samples: Samples, step: float) -> Array:
+    """Instants 0, step, 2 step, ... (s) that lie inside the record; never finer than the record itself."""
+    usual = float(np.median(np.diff(samples.time)))
+    return np.arange(0.0, samples.time[-1] + 1e-9, max(step, usual))
+
+
+def averaged(time: Array, values: Array, grid: Array) -> Array:
+    """Mean of the readings within half a step of each instant, NaN where there is none."""
+    if grid.size < 2:
+        return np.full(grid.size, np.nanmean(values))
+    cell = np.floor(time / (grid[1] - grid[0]) + 0.5).astype(np.int64)
+    seen = np.isfinite(values) & (cell < grid.size)
+    count = np.bincount(cell[seen], minlength=grid.size)
+    total = np.bincount(cell[seen], values[seen], minlength=grid.size)
+    return np.where(count > 0, total / np.maximum(count, 1), np.nan)
+
+
+def rms(time: Array, values: Array, grid: Array) -> Array:
+    """Root mean square with the sign of the mean: a current whose heat is that of the record."""
+    return np.copysign(np.sqrt(averaged(time, values**2, grid)), averaged(time, values, grid))
+
+
+def bridged(grid: Array, values: Array, max_gap_s: float, where: str) -> tuple[Array, list[str]]:
+    """An input or boundary with short holes drawn straight across; a longer one is refused."""
+    seen = np.flatnonzero(np.isfinite(values))
+    if seen.size == grid.size:
+        return values, []
+    edges = np.concatenate([[0.0], grid[seen], [grid[-1]]])
+    worst = int(np.argmax(np.diff(edges)))
+    if edges[worst + 1] - edges[worst] > max(max_gap_s, 2 * (grid[1] - grid[0])):
+        raise InputError(f"nothing known from {edges[worst]:g} s to {edges[worst + 1]:g} s", where,
+                         f"gaps of at most {max_gap_s:g} s: split the test there, or raise max_gap_s in its sheet")  # fmt: skip
+    return np.interp(grid, grid[seen], values[seen]), [f"{where}: {grid.size - seen.size} instants interpolated"]

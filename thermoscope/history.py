@@ -1,0 +1,134 @@
+"""model.toml: the model as it stands, revision by revision. Revisions are only ever added; the last one counts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import tomlkit
+
+from geom.errors import InputError
+from lumped.reader import Table, known
+from thermoscope.files import write_whole
+from thermoscope.sheet import read_toml
+
+ACTIONS = ("calibrate", "add", "remove", "step back")
+HEADER = "Written by thermoscope: one [[revision]] per step, the last one counts. Delete this file to start again."
+Pair = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Revision:
+    """One step of the model.
+
+    effects : in the model after this step;  values : parameter -> value;  intervals : parameter -> (low, high) 95 %
+    rmse_K : test -> (before, after);  evidence : what spoke for the step
+    """
+
+    number: int
+    action: str
+    effects: tuple[str, ...] = ()
+    effect: str = ""
+    values: Mapping[str, float] = field(default_factory=dict)
+    intervals: Mapping[str, Pair] = field(default_factory=dict)
+    rmse_K: Mapping[str, Pair] = field(default_factory=dict)
+    why: str = ""
+    evidence: Mapping[str, float | str] = field(default_factory=dict)
+
+    def document(self) -> dict[str, Any]:
+        """As model.toml holds it."""
+        out: dict[str, Any] = {"number": self.number, "action": self.action}
+        if self.effect:
+            out["effect"] = self.effect
+        out["effects"], out["why"] = list(self.effects), self.why
+        out["values"] = {k: float(f"{v:.8g}") for k, v in self.values.items()}
+        out["intervals"] = {k: [float(f"{x:.5g}") for x in pair] for k, pair in self.intervals.items()}
+        out["rmse_K"] = {t: {"before": round(a, 4), "after": round(b, 4)} for t, (a, b) in self.rmse_K.items()}
+        return {**out, "evidence": dict(self.evidence)} if self.evidence else out
+
+
+@dataclass(frozen=True)
+class History:
+    """All revisions, numbered from 1; revision 0 is the model as declared."""
+
+    revisions: tuple[Revision, ...] = ()
+
+    @property
+    def last(self) -> Revision:
+        return self.revisions[-1] if self.revisions else Revision(0, "calibrate")
+
+    def and_then(self, revision: Revision) -> History:
+        return History((*self.revisions, replace(revision, number=self.last.number + 1)))
+
+    def back_to(self, number: int) -> History:
+        """One more revision, equal to an earlier one."""
+        found = {0: Revision(0, "step back"), **{r.number: r for r in self.revisions}}
+        if number not in found:
+            raise InputError(f"no revision {number}", "model.toml", f"0 to {self.last.number}")
+        again, now = found[number], {test: after for test, (_, after) in self.last.rmse_K.items()}
+        rmse = {t: (now.get(t, after), after) for t, (_, after) in again.rmse_K.items()}
+        return self.and_then(replace(again, action="step back", effect="", rmse_K=rmse, why=f"as in revision {number}"))
+
+
+def load_history(path: Path) -> History:
+    """The history of a case; none when there is no model.toml yet."""
+    if not path.exists():
+        return History()
+    top = Table(read_toml(path, "a model.toml written by thermoscope"), str(path))
+    revisions = tuple(_revision(t) for t in top.listed("revision"))
+    top.close()
+    if [r.number for r in revisions] != list(range(1, len(revisions) + 1)):
+        raise top.error("revisions are not numbered 1, 2, 3, ...", "the file as thermoscope wrote it")
+    return History(revisions)
+
+
+def save_history(path: Path, history: History) -> Path:
+    document, revisions = tomlkit.document(), tomlkit.aot()
+    document.add(tomlkit.comment(HEADER))
+    for revision in history.revisions:
+        revisions.append(tomlkit.item(revision.document()))
+    document.add("revision", revisions)
+    return write_whole(path, tomlkit.dumps(document))
+
+
+def checked_values(revision: Revision, names: Iterable[str], where: str) -> None:
+    """Every value belongs to a parameter the model has."""
+    have = set(names)
+    for name in revision.values:
+        if name not in have:
+            raise InputError(f"unknown parameter '{name}'", f"{where} revision {revision.number}", known(name, have))
+
+
+def _revision(table: Table) -> Revision:
+    out = Revision(
+        int(table.number("number", low=1)), table.word("action", None, ACTIONS), table.words("effects", []),
+        table.word("effect", ""), _numbers(_inner(table, "values")), _pairs(_inner(table, "intervals")),
+        _before_after(_inner(table, "rmse_K")), table.word("why", ""), dict(table.raw("evidence", {})),
+    )  # fmt: skip
+    table.close()
+    return out
+
+
+def _inner(table: Table, key: str) -> Table:
+    return Table(table.raw(key, {}), f"{table.where} {key}")
+
+
+def _numbers(table: Table) -> dict[str, float]:
+    return {name: table.number(name, low=-1e12) for name in table.data}
+
+
+def _pairs(table: Table) -> dict[str, Pair]:
+    out = {}
+    for name in table.data:
+        pair = table.numbers(name)
+        if len(pair) != 2:
+            raise table.error(f"{name} has {len(pair)} numbers", "[low, high]")
+        out[name] = (pair[0], pair[1])
+    return out
+
+
+def _before_after(table: Table) -> dict[str, Pair]:
+    tests = {name: _inner(table, name) for name in table.data}
+    return {name: (t.number("before"), t.number("after")) for name, t in tests.items()}

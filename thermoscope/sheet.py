@@ -1,0 +1,149 @@
+"""The sheet beside a CSV: what each column is. tests/NAME.toml, read key by key."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from geom.errors import InputError
+from lumped.reader import Table
+from thermoscope.units import QUANTITIES, checked_unit
+
+FIRST = "first-readings"
+MAX_GAP_S = 120.0
+SENSORS = {"thermocouple": 0.5, "pt100": 0.3, "ntc": 0.5, "resistance": 2.0, "infrared": 2.0}  # usual 1-sigma, K
+
+
+@dataclass(frozen=True)
+class Column:
+    """One column of the CSV; `feeds` is the network input it drives, "" for a temperature.
+
+    sigma_K, lag_s : of the sensor;  position_mm : (x, y, z) on the machine where known;  where : its table in the file
+    """
+
+    name: str
+    quantity: str
+    unit: str
+    place: str
+    feeds: str
+    sigma_K: float
+    lag_s: float
+    position_mm: tuple[float, ...]
+    where: str
+
+    @property
+    def is_temperature(self) -> bool:
+        return self.quantity == "temperature"
+
+
+@dataclass(frozen=True)
+class Mean:
+    """A channel that averages columns, e.g. a winding from two thermocouples."""
+
+    name: str
+    of: tuple[str, ...]
+    place: str
+    sigma_K: float
+    lag_s: float
+    where: str
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """time : column of the times, or "" when rows are `period_s` apart;  initial : degC, per place, or "first-readings"
+
+    inputs, boundaries : what stayed constant and was not recorded
+    """
+
+    where: str
+    time: str
+    time_unit: str
+    period_s: float
+    description: str
+    initial: float | Mapping[str, float] | str
+    max_gap_s: float
+    columns: tuple[Column, ...]
+    means: tuple[Mean, ...] = ()
+    inputs: Mapping[str, float] = field(default_factory=dict)
+    boundaries: Mapping[str, float] = field(default_factory=dict)
+
+
+def read_toml(path: Path, right: str) -> dict[str, Any]:
+    """A TOML file as a dictionary, or one message that says what is wrong with it."""
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise InputError("no such file", str(path), right) from None
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as fault:
+        raise InputError(f"not readable as TOML: {fault}", str(path), right) from None
+
+
+def load_sheet(path: Path) -> Sheet:
+    return read_sheet(read_toml(path, "a sheet with [test] and [columns.NAME]"), str(path))
+
+
+def read_sheet(data: Mapping[str, Any], where: str) -> Sheet:
+    """A sheet; InputError for unknown keys, forgotten units and contradictions."""
+    top = Table(data, where)
+    test, columns, means = top.table("test"), top.tables("columns"), top.tables("means")
+    inputs, boundaries = _constants(top.table("inputs")), _constants(top.table("boundaries"))
+    top.close()
+    period = test.number("period_s", low=1e-6) if "period_s" in test else 0.0
+    sheet = Sheet(
+        where, "" if period else test.word("time"), checked_unit("time", test.raw("time_unit", "s"), test.where), period,
+        test.word("description", ""), _initial(test), test.number("max_gap_s", MAX_GAP_S),
+        tuple(c for name, table in columns.items() if (c := _column(name, table)) is not None),
+        tuple(_mean(name, table) for name, table in means.items()), inputs, boundaries,
+    )  # fmt: skip
+    test.close()
+    if not sheet.columns:
+        raise InputError("no columns", where, "[columns.NAME] with quantity, unit and place")
+    _fed_once(sheet)
+    return sheet
+
+
+def _constants(table: Table) -> dict[str, float]:
+    return {name: table.number(name, low=-1e12) for name in table.data}
+
+
+def _initial(test: Table) -> float | Mapping[str, float] | str:
+    given = test.raw("initial", FIRST)
+    if isinstance(given, Mapping):
+        return test.shares("initial")
+    return test.word("initial", FIRST, [FIRST]) if isinstance(given, str) else test.number("initial", low=-273.15)
+
+
+def _column(name: str, table: Table) -> Column | None:
+    if table.raw("use", True) is False:
+        return None
+    of = table.word("quantity", None, QUANTITIES)
+    unit, hot = checked_unit(of, table.raw("unit"), table.where), of == "temperature"
+    kind = table.word("sensor", "thermocouple", SENSORS)
+    place, feeds = table.word("place", None if hot else ""), "" if hot else table.word("input", QUANTITIES[of].feeds)
+    sigma, lag = table.number("sigma_K", SENSORS[kind], low=1e-3), table.number("lag_s", 0.0)
+    position = table.numbers("position_mm", [])
+    if len(position) not in (0, 3):
+        raise table.error(f"position_mm has {len(position)} numbers", "position_mm = [x, y, z]")
+    table.close()
+    return Column(name, of, unit, place, feeds, sigma, lag, position, table.where)
+
+
+def _mean(name: str, table: Table) -> Mean:
+    of, place = table.words("of"), table.word("place")
+    sigma, lag = table.number("sigma_K", 0.5, low=1e-3), table.number("lag_s", 0.0)
+    table.close()
+    if not of:
+        raise table.error("of = [] averages nothing", "of = [two or more columns]")
+    return Mean(name, of, place, sigma, lag, table.where)
+
+
+def _fed_once(sheet: Sheet) -> None:
+    fed = [c.feeds for c in sheet.columns if c.feeds] + list(sheet.inputs)
+    for name in fed:
+        if fed.count(name) > 1:
+            raise InputError(
+                f"input '{name}' is fed twice", sheet.where, "one column per input: use = false for the others"
+            )

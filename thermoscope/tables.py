@@ -1,0 +1,169 @@
+"""CSV files into clean arrays: every fault is one message with file, column and line; every doubt is a note."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geom.errors import InputError
+from lumped.reader import known
+from thermoscope.sheet import Column, Sheet
+from thermoscope.units import converted
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Array = NDArray[np.float64]
+HEADER = 2  # line of the first row of numbers
+GAP = 3.5  # times the usual step
+FROZEN_SHARE, FROZEN_MOVE_K = 0.2, 2.0
+
+
+@dataclass(frozen=True)
+class Samples:
+    """time (n,) s from 0;  values : column -> (n,), NaN where nothing was read;  gaps : (from, to) s"""
+
+    file: Path
+    time: Array
+    values: Mapping[str, Array]
+    gaps: tuple[tuple[float, float], ...] = ()
+    notes: tuple[str, ...] = field(default=())
+
+
+def csv_file(path: Path) -> Path:
+    """The CSV itself, or its gzipped twin."""
+    for candidate in (path, path.with_name(path.name + ".gz")):
+        if candidate.exists():
+            return candidate
+    beside = sorted(p.name for p in path.parent.glob("*.csv*")) if path.parent.exists() else []
+    raise InputError("no such file", str(path), f"found there: {', '.join(beside) or 'no CSV at all'}")
+
+
+def load_table(path: Path, sheet: Sheet) -> Samples:
+    """The columns the sheet uses, checked and converted."""
+    file = csv_file(path)
+    table = _frame(file)
+    for name in [*([sheet.time] if sheet.time else []), *(c.name for c in sheet.columns)]:
+        if name not in table.columns:
+            here = [str(c) for c in table.columns]
+            raise InputError(
+                f"column '{name}' is not in the file", f"{file} (asked for by {sheet.where})", known(name, here)
+            )
+    time = _times(table, sheet, file)
+    gaps = _gaps(time)
+    values, notes = {}, [_gap_note(file, a, b) for a, b in gaps]
+    for column in sheet.columns:
+        values[column.name] = converted(_numbers(table, column.name, file), column.quantity, column.unit)
+        notes += _look(column, values[column.name], file)
+    return Samples(file, time, values, gaps, (*notes, *_frozen(sheet.columns, time, values, file)))
+
+
+def _frame(file: Path) -> pd.DataFrame:
+    import pandas as pd
+
+    try:
+        table = pd.read_csv(file, skipinitialspace=True, low_memory=False)
+    except pd.errors.EmptyDataError:
+        raise InputError("the file is empty", str(file), "a header line and rows of numbers") from None
+    except (pd.errors.ParserError, UnicodeDecodeError, OSError, EOFError) as fault:
+        raise InputError(
+            f"not readable as CSV: {fault}", str(file), "commas between columns, one header line"
+        ) from None
+    table.columns = [str(c).strip() for c in table.columns]
+    if len(table) < 3:
+        raise InputError(f"the file holds {len(table)} rows", str(file), "at least 3 rows of numbers under the header")
+    if len(table.columns) == 1 and ";" in table.columns[0]:
+        raise InputError("columns are separated by ';'", str(file), "commas between columns, points in numbers")
+    return table
+
+
+def _numbers(table: pd.DataFrame, name: str, file: Path) -> Array:
+    import pandas as pd
+
+    column = table[name]
+    numbers = np.array(pd.to_numeric(column, errors="coerce"), float)
+    bad = np.flatnonzero(np.isnan(numbers) & column.notna().to_numpy())
+    if bad.size:
+        raise InputError(f"'{column.iloc[bad[0]]}' is no number", _cell(file, name, int(bad[0])),
+                         "a number with a decimal point, or nothing where nothing was read")  # fmt: skip
+    endless = np.flatnonzero(np.isinf(numbers))
+    if endless.size:
+        raise InputError("the value is infinite", _cell(file, name, int(endless[0])), "a finite number")
+    return numbers
+
+
+def _cell(file: Path, column: str, row: int) -> str:
+    return f"{file} column '{column}' line {row + HEADER}"
+
+
+def _times(table: pd.DataFrame, sheet: Sheet, file: Path) -> Array:
+    if not sheet.time:
+        return np.arange(len(table)) * sheet.period_s
+    t: Array = converted(_numbers(table, sheet.time, file), "time", sheet.time_unit)
+    missing = np.flatnonzero(np.isnan(t))
+    if missing.size:
+        raise InputError("a time is missing", _cell(file, sheet.time, int(missing[0])), "a time in every row")
+    wrong = np.flatnonzero(np.diff(t) <= 0)
+    if wrong.size:
+        row, written = int(wrong[0]) + 1, table[sheet.time]
+        what = "is given twice" if t[row] == t[row - 1] else f"comes after {written.iloc[row - 1]}"
+        count = f" ({wrong.size} such rows)" if wrong.size > 1 else ""
+        raise InputError(f"time {written.iloc[row]} {what}{count}", _cell(file, sheet.time, row),
+                         "times that rise from row to row: sort the file by time and delete repeated rows")  # fmt: skip
+    return np.asarray(t - t[0], float)
+
+
+def _gaps(time: Array) -> tuple[tuple[float, float], ...]:
+    step = np.diff(time)
+    long = np.flatnonzero(step > GAP * np.median(step))
+    return tuple((float(time[i]), float(time[i + 1])) for i in long)
+
+
+def _gap_note(file: Path, a: float, b: float) -> str:
+    return f"{file.name}: no rows from {a:g} s to {b:g} s; inputs are drawn straight across, nothing is compared there"
+
+
+def _look(column: Column, values: Array, file: Path) -> list[str]:
+    """Missing readings and impossible temperatures of one column."""
+    missing = np.flatnonzero(np.isnan(values))
+    if missing.size == values.size:
+        raise InputError(
+            "the column holds no number", f"{file} column '{column.name}'", "readings, or use = false in the sheet"
+        )
+    if column.is_temperature and np.nanmin(values) < -273.15:
+        row = int(np.nanargmin(values))
+        raise InputError(
+            f"{values[row]:g} degC is below absolute zero", _cell(file, column.name, row), "check the unit in the sheet"
+        )
+    if missing.size:
+        return [
+            f"{file.name} column '{column.name}': {missing.size} missing readings, first in line {missing[0] + HEADER}"
+        ]
+    return []
+
+
+def _frozen(columns: tuple[Column, ...], time: Array, values: Mapping[str, Array], file: Path) -> list[str]:
+    """Temperatures that stand still for long while the others move."""
+    hot = [c.name for c in columns if c.is_temperature]
+    notes = []
+    for name in hot:
+        a, b = _longest_run(values[name])
+        others = [
+            np.nanmax(v[a:b]) - np.nanmin(v[a:b]) for o in hot if o != name and np.isfinite(v := values[o])[a:b].any()
+        ]
+        if others and time[b - 1] - time[a] > FROZEN_SHARE * time[-1] and np.median(others) > FROZEN_MOVE_K:
+            notes.append(f"{file.name} column '{name}': stands at {values[name][a]:g} degC from {time[a]:g} s to "
+                         f"{time[b - 1]:g} s while the others move; is the sensor frozen?")  # fmt: skip
+    return notes
+
+
+def _longest_run(v: Array) -> tuple[int, int]:
+    """Start and end of the longest run of equal values."""
+    edges = np.concatenate([[0], np.flatnonzero(np.diff(v) != 0) + 1, [v.size]])
+    longest = int(np.argmax(np.diff(edges)))
+    return int(edges[longest]), int(edges[longest + 1])
