@@ -6,9 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from geom.mesh import NamedMesh
 from numpy.typing import NDArray
 from scipy import sparse
+
+from geom.mesh import NamedMesh, Patch
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -72,10 +73,22 @@ class Body:
         return np.bincount(self.part, self.volume * T, count) / np.bincount(self.part, self.volume, count)
 
 
-def build(mesh: NamedMesh, solids: Mapping[str, Solid], contacts: Mapping[str, float]) -> Body:
-    """Split the nodes, assemble. contacts : name of contact -> conductance (W/m2/K)."""
-    split = _Split(mesh)
+def build(
+    mesh: NamedMesh,
+    solids: Mapping[str, Solid],
+    contacts: Mapping[str, float],
+    copies: Mapping[str, int] | None = None,
+    joints: Mapping[str, tuple[Patch, Patch]] | None = None,
+) -> Body:
+    """Split the nodes, assemble.
+
+    contacts : name of contact or joint -> conductance (W/m2/K)
+    copies : how often the meshed piece of a part counts, 1 unless given
+    joints : pairs of patches that exchange heat through their mean temperatures (one turns), over the first one's area
+    """
+    split = _Split(mesh, copies or {})
     gradients, volume = _gradients(mesh.points[mesh.tets])
+    volume = volume * split.copies[mesh.region]
     nodal = np.repeat(volume / 4, 4)
     rho_c = np.array([solids[p].rho_c for p in mesh.parts])
     k = np.array([(solids[p].k[0], solids[p].k[0], solids[p].k[1]) for p in mesh.parts])
@@ -89,7 +102,7 @@ def build(mesh: NamedMesh, solids: Mapping[str, Solid], contacts: Mapping[str, f
         split.tets,
         mesh.region,
         _stiffness(split, gradients, volume, k[mesh.region]),
-        _coupling(split, mesh, contacts),
+        _coupling(split, mesh, contacts) + _joined(split, mesh, contacts, joints or {}),
         np.array([solids[p].slope for p in mesh.parts]),
         {name: Face(p.part, p.fluid, *_face(split, mesh, p.part, p.facets)) for name, p in mesh.patches.items()},
     )
@@ -98,8 +111,9 @@ def build(mesh: NamedMesh, solids: Mapping[str, Solid], contacts: Mapping[str, f
 class _Split:
     """Numbers the pairs (part, mesh point): a point on an interface becomes one node of each part."""
 
-    def __init__(self, mesh: NamedMesh) -> None:
+    def __init__(self, mesh: NamedMesh, copies: Mapping[str, int]) -> None:
         self.parts, self.stride = mesh.parts, len(mesh.points)
+        self.copies = np.array([copies.get(part, 1) for part in mesh.parts])
         keys = mesh.region[:, None].astype(np.int64) * self.stride + mesh.tets
         self.keys, inverse = np.unique(keys, return_inverse=True)
         self.tets = inverse.reshape(keys.shape)
@@ -108,6 +122,12 @@ class _Split:
 
     def nodes(self, part: str, points: Index) -> Index:
         return np.searchsorted(self.keys, self.parts.index(part) * self.stride + points)
+
+    def thirds(self, part: str, points: Array, facets: Index) -> Array:
+        """(3 n,) a third of each triangle's area (m2), once per corner, all copies of the part together."""
+        a, b, c = (points[facets[:, i]] for i in range(3))
+        area = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+        return np.repeat(area * self.copies[self.parts.index(part)] / 3, 3)
 
 
 def _gradients(corners: Array) -> tuple[Array, Array]:
@@ -125,17 +145,11 @@ def _stiffness(split: _Split, gradients: Array, volume: Array, k: Array) -> spar
     return sparse.coo_matrix((local.ravel(), (rows, cols)), shape=(split.size, split.size)).tocsr()
 
 
-def _thirds(points: Array, facets: Index) -> Array:
-    """(3 n,) a third of each triangle's area, once per corner."""
-    a, b, c = (points[facets[:, i]] for i in range(3))
-    return np.repeat(np.linalg.norm(np.cross(b - a, c - a), axis=1) / 6, 3)
-
-
 def _coupling(split: _Split, mesh: NamedMesh, contacts: Mapping[str, float]) -> sparse.csr_matrix:
     rows, cols, vals = [], [], []
     for name, contact in mesh.contacts.items():
         a, b = (split.nodes(part, contact.facets.ravel()) for part in (contact.a, contact.b))
-        g = contacts[name] * _thirds(mesh.points, contact.facets)
+        g = contacts[name] * split.thirds(contact.a, mesh.points, contact.facets)
         rows += [a, b, a, b]
         cols += [a, b, b, a]
         vals += [g, g, -g, -g]
@@ -145,6 +159,21 @@ def _coupling(split: _Split, mesh: NamedMesh, contacts: Mapping[str, float]) -> 
     return sparse.coo_matrix((np.concatenate(vals), (np.concatenate(rows), np.concatenate(cols))), shape=shape).tocsr()
 
 
+def _joined(
+    split: _Split, mesh: NamedMesh, contacts: Mapping[str, float], joints: Mapping[str, tuple[Patch, Patch]]
+) -> sparse.csr_matrix:
+    """G (mean of one face - mean of the other), written as the rank-one matrix G w w'."""
+    total = sparse.csr_matrix((split.size, split.size))
+    for name, patches in joints.items():
+        (one, areas), (other, others) = (_face(split, mesh, p.part, p.facets) for p in patches)
+        w = np.concatenate([areas / areas.sum(), -others / others.sum()])
+        nodes = np.concatenate([one, other])
+        block = contacts[name] * areas.sum() * np.outer(w, w)
+        places = np.repeat(nodes, len(nodes)), np.tile(nodes, len(nodes))
+        total = total + sparse.coo_matrix((block.ravel(), places), shape=total.shape)
+    return total.tocsr()
+
+
 def _face(split: _Split, mesh: NamedMesh, part: str, facets: Index) -> tuple[Index, Array]:
     nodes, inverse = np.unique(split.nodes(part, facets.ravel()), return_inverse=True)
-    return nodes, np.bincount(inverse, _thirds(mesh.points, facets))
+    return nodes, np.bincount(inverse, split.thirds(part, mesh.points, facets))

@@ -19,8 +19,8 @@ class Draws:
         return np.random.default_rng([self.seed, zlib.crc32(name.encode())])
 
     def around(self, name: str, nominal: float, log_sd: float) -> float:
-        """A value lognormal around `nominal`."""
-        value = nominal * float(np.exp(log_sd * self.stream(name).standard_normal()))
+        """A value lognormal around `nominal`, cut off at two standard deviations."""
+        value = nominal * float(np.exp(log_sd * np.clip(self.stream(name).standard_normal(), -2.0, 2.0)))
         return self.taken.setdefault(name, value)
 
     def normal(self, name: str, sd: float, limit: float = np.inf) -> float:

@@ -45,7 +45,8 @@ class Losses:
         """Palmgren: a load part as n, a grease part as n^(5/3) nu^(2/3), nu^(2/3) falling 2 % per K."""
         x = rpm / 1000
         left, right = (
-            p * (0.4 * x + 0.6 * x ** (5 / 3) * np.exp(-0.02 * (T - 40))) for p, T in zip(self.bearing, (T_left, T_right))
+            p * (0.4 * x + 0.6 * x ** (5 / 3) * np.exp(-0.02 * (T - 40)))
+            for p, T in zip(self.bearing, (T_left, T_right))
         )
         return float(left), float(right)
 
@@ -71,7 +72,9 @@ def copper(T: float) -> float:
 
 
 def draw(draws: Draws) -> Losses:
-    ends = np.array([draws.around(f"armature.{n}", v, 0.05) for n, v in (("slot", 0.5), ("left", 0.25), ("right", 0.25))])
+    ends = np.array(
+        [draws.around(f"armature.{n}", v, 0.05) for n, v in (("slot", 0.5), ("left", 0.25), ("right", 0.25))]
+    )
     return Losses(
         draws.around("resistance.armature_ohm", 23.5e-3, 0.03),
         draws.around("resistance.field_ohm", 15.6e-3, 0.03),

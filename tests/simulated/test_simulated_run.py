@@ -1,0 +1,103 @@
+"""Ten minutes of road on a coarse mesh: heat balance, the hidden effect's sign, and the files' format."""
+
+import csv
+import tomllib
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+
+from simulated import air, drive, files, road_test, sensors
+from simulated.draws import Draws
+from simulated.run import run
+
+
+@pytest.fixture(scope="module")
+def draws():
+    return Draws(road_test.SEED)
+
+
+@pytest.fixture(scope="module")
+def plant(draws):
+    return road_test.motor(draws, road_test.QUICK)
+
+
+@pytest.fixture(scope="module")
+def ten_minutes(draws):
+    whole = drive.drives(draws)["road-1"]
+    return replace(whole, **{f.name: getattr(whole, f.name)[:600] for f in fields(whole) if f.name != "start"})
+
+
+@pytest.fixture(scope="module")
+def result(plant, draws, ten_minutes):
+    return run(plant, ten_minutes, sensors.install(plant.body, draws), 60)
+
+
+@pytest.fixture(scope="module")
+def sheltered(plant, draws, ten_minutes):
+    """The same minutes with the hidden effect off."""
+    still = replace(plant, films=replace(plant.films, shelter=0.0))
+    return run(still, ten_minutes, sensors.install(plant.body, draws), 60)
+
+
+def channel(result, name):
+    return result.T[:, [*sensors.THERMOCOUPLES].index(name)]
+
+
+def test_heat_made_is_stored_or_carried_off(result):
+    assert abs(result.imbalance) < 1e-6
+    assert min(result.made, result.stored, result.exhaust, result.outside) > 0
+
+
+def test_hidden_effect_cools_the_right_flange(result, sheltered):
+    assert channel(sheltered, "T_flange_right_degC")[-1] > channel(result, "T_flange_right_degC")[-1] + 0.3
+
+
+def test_hidden_effect_hardly_reaches_the_left_flange(result, sheltered):
+    change = channel(sheltered, "T_flange_left_degC")[-1] - channel(result, "T_flange_left_degC")[-1]
+    assert 0.0 <= change < 0.05
+
+
+def test_nothing_happens_to_a_motor_at_rest_in_its_own_ambient(plant):
+    n = 120
+    zero = np.zeros(n)
+    rest = drive.Drive(zero, zero, zero, zero + 138.0, zero + 20.0, 20.0)
+    cold = run(plant, rest, (), 60)
+    assert cold.made == 0.0
+    assert max(cold.hottest.values()) == pytest.approx(20.0, abs=1e-6)
+
+
+def test_air_without_walls_carries_the_stirring_out(plant):
+    matrix, inlet = plant.air.advection()
+    stirring = plant.air.spread("airgap")
+    leaving = np.linalg.solve(44.0 * matrix, 44.0 * inlet * 20.0 + stirring * 88.0)[-1]
+    assert leaving == pytest.approx(20.0 + 88.0 / 44.0, rel=1e-12)
+
+
+def test_every_wetted_face_has_an_air_cell(plant):
+    for face in plant.body.faces.values():
+        assert face.fluid in ("ambient", "air.left", "air.right", *air.ALONG)
+
+
+def test_files_agree_with_each_other(result, plant, draws, tmp_path):
+    installed = sensors.install(plant.body, draws)
+    files.write_csv(tmp_path / "x.csv", result, installed, "road-1", draws)
+    files.write_toml(tmp_path / "x.toml", "ten minutes")
+    with (tmp_path / "x.csv").open() as file:
+        header, *rows = csv.reader(file)
+    described = tomllib.loads((tmp_path / "x.toml").read_text())
+    assert header == [described["test"]["time"], *described["columns"]]
+    assert [float(row[0]) for row in rows] == [60.0 * i for i in range(11)]
+
+
+def test_truth_names_the_hidden_effect(plant, draws, tmp_path):
+    files.write_truth(tmp_path / "t.toml", draws, sensors.install(plant.body, draws), {"hidden": {"shelter": 0.5}})
+    truth = tomllib.loads((tmp_path / "t.toml").read_text())
+    assert truth["hidden"]["shelter"] == 0.5
+    assert set(truth["true_position_mm"]) == set(sensors.THERMOCOUPLES)
+
+
+def test_meters_repeat(result, draws):
+    once, again = (files.measured_inputs(result, "road-1", Draws(draws.seed)) for _ in range(2))
+    for name in once:
+        np.testing.assert_array_equal(once[name], again[name])
