@@ -81,28 +81,30 @@ class ArcGrid:
     """Where concentric arcs are cut into chords, the same for every profile of a machine.
 
     On each radius the break points are the arc ends of all profiles; each piece between two neighbouring
-    breaks is cut evenly into chords of at most 1 / `segments` turn. The two circles of a thin ring borrow
-    each other's breaks: cut at different angles, the ring would gain or lose several per cent of its area.
+    breaks is cut evenly into chords of at most 1 / `segments` turn. In a thin ring the circle
+    with fewer breaks borrows the other's cuts: cut differently, the ring would gain or lose per cents of its area.
     """
 
     def __init__(self, profiles: Iterable[Profile], segments: int = 72) -> None:
         self.step = 2 * math.pi / segments
         ends: dict[int, set[float]] = defaultdict(set)
-        borrowed: dict[int, set[float]] = defaultdict(set)
+        partners: dict[int, set[int]] = defaultdict(set)
         for profile in profiles:
             own = _arc_ends(profile)
             for radius, angles in own.items():
                 ends[radius] |= angles
-                for other in own:
-                    if other != radius and abs(other / radius - 1) < _THIN:
-                        borrowed[radius] |= own[other]
-        self._cuts = {r: self._divide(self._merged(ends[r], borrowed[r])) for r in ends}
+                if max(map(len, own.values())) > 2:
+                    partners[radius] |= {other for other in own if other != radius and abs(other / radius - 1) < _THIN}
+        self._cuts: dict[int, list[float]] = {}
+        for radius in sorted(ends, key=lambda r: (-len(ends[r]), r)):
+            borrowed = [cut for other in partners[radius] for cut in self._cuts.get(other, ())]
+            self._cuts[radius] = self._divide(self._merged(ends[radius], borrowed))
 
-    def _merged(self, own: set[float], others: set[float]) -> list[float]:
-        """All own breaks, and those of others that are not near one already there."""
+    def _merged(self, own: Iterable[float], others: Iterable[float]) -> list[float]:
+        """All own breaks, and those of others that do not nearly coincide with one already there."""
         breaks = sorted(own)
         for angle in sorted(others):
-            if min(abs((angle - b + math.pi) % (2 * math.pi) - math.pi) for b in breaks) > 0.3 * self.step:
+            if min(abs((angle - b + math.pi) % (2 * math.pi) - math.pi) for b in breaks) > 0.05 * self.step:
                 breaks.append(angle)
         return sorted(breaks)
 

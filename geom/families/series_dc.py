@@ -154,9 +154,9 @@ def check(g: Any, z: _Axial) -> None:
          f"less than the shoe, {1.9 * tip[1] * mm:.4g} mm, whose tips lie below its back"),
         (coil_corner < math.pi / g.stator.poles - 0.005, "field.coil_width_mm", g.field.coil_width * mm,
          "narrow enough for neighbouring coils to stay apart"),
-        (math.hypot(r.coil1, r.coil_side) < r.yoke0, "stator.yoke_inner_diameter_mm",
+        (math.hypot(r.coil1, r.coil_side) < 0.995 * r.yoke0, "stator.yoke_inner_diameter_mm",
          g.stator.yoke_inner_diameter * mm,
-         f"more than {2 * math.hypot(r.coil1, r.coil_side) * mm:.4g} mm, to clear the field coils"),
+         f"more than {2.01 * math.hypot(r.coil1, r.coil_side) * mm:.4g} mm, to clear the field coils"),
         (z.inner0 < min(z.ring0, z.field0, z.yoke0), "flange.rotor_offset_mm", g.flange.rotor_offset * mm,
          f"more than {(z.core0 - min(z.ring0, z.field0, z.yoke0)) * mm:.4g} mm: end winding, field coil and yoke"),
         (max(z.bars1, z.field1, z.yoke1) < z.inner1, "shaft.length_mm", g.shaft.length * mm,
@@ -291,20 +291,17 @@ def _enclosure(g: Any, z: _Axial) -> tuple[Part, ...]:
 
 
 def _finned(g: Any, r: _Radii) -> tuple[tuple[float, float, float], ...]:
-    half = math.asin(g.housing.fin_thickness / 2 / r.shell)
-    angles = [a for a in shapes.evenly(g.housing.fins, math.pi / 2) if not _over_foot(g, r, a, half)]
+    angles = [a for a in shapes.evenly(g.housing.fins, math.pi / 2) if not _over_foot(g, r, a)]
     if not angles:
         return shapes.circle_loop(r.shell)
     return shapes.finned_loop(r.shell, g.housing.fin_thickness, r.fins, angles)
 
 
-def _over_foot(g: Any, r: _Radii, angle: float, half: float) -> bool:
-    """A fin here would stand on a foot (feet lie at negative y, on both sides)."""
-    margin = 2 * half
-    outer = -math.acos((g.feet.inner + g.feet.width) / r.shell)
-    inner = -math.acos(g.feet.inner / r.shell)
-    folded = math.atan2(math.sin(angle), abs(math.cos(angle)))
-    return inner - margin < folded < outer + margin
+def _over_foot(g: Any, r: _Radii, angle: float) -> bool:
+    """A fin here would run into a foot, which is bounded by two vertical planes under the housing."""
+    margin = 0.6 * g.housing.fin_thickness
+    near, far = r.shell * abs(math.cos(angle)) - margin, r.fins * abs(math.cos(angle)) + margin
+    return math.sin(angle) < 0 and near < g.feet.inner + g.feet.width and far > g.feet.inner
 
 
 def _feet(g: Any, z: _Axial, r: _Radii) -> tuple[Prism, ...]:

@@ -105,7 +105,7 @@ def geometry(draw, family):
 
 
 @pytest.mark.parametrize("family", families().values(), ids=lambda family: family.name)
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(data=st.data())
 def test_random_machine_is_refused_in_one_line_or_fits_together(family, data):
     table = data.draw(geometry(family))
