@@ -14,7 +14,7 @@ from thermoscope.history import History, checked_values, load_history
 from thermoscope.readings import read_test
 from thermoscope.sheet import Sheet, load_sheet, read_toml
 from thermoscope.tables import Samples, load_table
-from validation.case import AddedEffect, Case, Model, Role, Test
+from validation.case import AddedEffect, Case, Model, Role
 from validation.fitting import matching
 
 if TYPE_CHECKING:

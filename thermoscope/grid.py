@@ -41,6 +41,9 @@ def bridged(grid: Array, values: Array, max_gap_s: float, where: str) -> tuple[A
     edges = np.concatenate([[0.0], grid[seen], [grid[-1]]])
     worst = int(np.argmax(np.diff(edges)))
     if edges[worst + 1] - edges[worst] > max(max_gap_s, 2 * (grid[1] - grid[0])):
-        raise InputError(f"nothing known from {edges[worst]:g} s to {edges[worst + 1]:g} s", where,
-                         f"gaps of at most {max_gap_s:g} s: split the test there, or raise max_gap_s in its sheet")  # fmt: skip
+        raise InputError(
+            f"nothing known from {edges[worst]:g} s to {edges[worst + 1]:g} s",
+            where,
+            f"gaps of {max_gap_s:g} s at most: split the test there, or raise max_gap_s in its sheet",
+        )
     return np.interp(grid, grid[seen], values[seen]), [f"{where}: {grid.size - seen.size} instants interpolated"]

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
-from lumped.network import Network, Row
+from lumped.network import Link, Network, Row, Source
 from lumped.reader import known
 from thermoscope.grid import averaged, bridged, grid_of, rms
 from thermoscope.sheet import Column, Mean, Sheet
@@ -52,7 +52,8 @@ def _complete(network: Network, inputs: Mapping[str, Array], boundaries: Mapping
         if boundary not in boundaries:
             right = f'a temperature column with place = "{boundary}", or [boundaries] {boundary} = ...'
             raise InputError(f"nothing gives the boundary '{boundary}'", sheet.where, right)
-    for item in (*network.links, *network.sources):
+    items: list[Link | Source] = [*network.links, *network.sources]
+    for item in items:
         for name in item.law.reads:
             if name not in inputs and name != "time_s":
                 right = f'a column with input = "{name}", or [inputs] {name} = ...'

@@ -92,8 +92,9 @@ def read_sheet(data: Mapping[str, Any], where: str) -> Sheet:
     inputs, boundaries = _constants(top.table("inputs")), _constants(top.table("boundaries"))
     top.close()
     period = test.number("period_s", low=1e-6) if "period_s" in test else 0.0
+    time_unit = checked_unit("time", test.raw("time_unit", "s"), test.where)
     sheet = Sheet(
-        where, "" if period else test.word("time"), checked_unit("time", test.raw("time_unit", "s"), test.where), period,
+        where, "" if period else test.word("time"), time_unit, period,
         test.word("description", ""), _initial(test), test.number("max_gap_s", MAX_GAP_S),
         tuple(c for name, table in columns.items() if (c := _column(name, table)) is not None),
         tuple(_mean(name, table) for name, table in means.items()), inputs, boundaries,

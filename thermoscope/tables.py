@@ -103,7 +103,7 @@ def _cell(file: Path, column: str, row: int) -> str:
 
 def _times(table: pd.DataFrame, sheet: Sheet, file: Path) -> Array:
     if not sheet.time:
-        return np.arange(len(table)) * sheet.period_s
+        return np.asarray(np.arange(len(table)) * sheet.period_s, float)
     t: Array = converted(_numbers(table, sheet.time, file), "time", sheet.time_unit)
     missing = np.flatnonzero(np.isnan(t))
     if missing.size:
