@@ -1,6 +1,7 @@
 """Matrices of the whole machine, part by part: the nodes are split wherever two parts touch.
 
-So every part keeps its own conduction (pure Neumann) and capacity matrix, and everything adjustable, contact and film, enters linearly:
+So every part keeps its own conduction (pure Neumann) and capacity matrix, and everything adjustable,
+contact and film, enters linearly:
 
     K = K0 + sum_c g_c K_c + sum_p h_p K_p
 """
@@ -150,7 +151,7 @@ class FieldModel:
         return row
 
     def load(self, part: str, density: Callable[[Floats], Floats] | Floats | None = None) -> Floats:
-        """(n,) load of exactly 1 W in a part, spread like `density` (per tetrahedron, or of its centre), default uniform."""
+        """(n,) load of exactly 1 W in a part, spread like `density` (per tetrahedron, or of its centre)."""
         block = self.block(part)
         q = np.ones(len(block.tets)) if density is None else density
         q = np.asarray(q(block.xyz[block.tets].mean(1)) if callable(q) else q, float)
@@ -188,7 +189,8 @@ def assemble(mesh: NamedMesh, conductivity: Mapping[str, HasTensor], capacity: M
         start = blocks[part].dofs.stop
     films = {name: Film(_trace(mesh, blocks[p.part], p.facets), p.fluid) for name, p in mesh.patches.items()}
     contacts = {
-        name: Touch(_trace(mesh, blocks[c.a], c.facets), _trace(mesh, blocks[c.b], c.facets)) for name, c in mesh.contacts.items()
+        name: Touch(_trace(mesh, blocks[c.a], c.facets), _trace(mesh, blocks[c.b], c.facets))
+        for name, c in mesh.contacts.items()
     }
     return FieldModel(blocks, contacts, films)
 
@@ -203,7 +205,7 @@ def _block(mesh: NamedMesh, number: int, start: int, conductivity: HasTensor, rh
     map_ = MappingAffine(MeshTet(np.ascontiguousarray(xyz.T), np.ascontiguousarray(tets.T)))
     volumes = np.abs(map_.detA) / 6
     n = len(points)
-    w = np.bincount(tets.ravel(), np.repeat(volumes / 4, 4), n)
+    w: Floats = np.bincount(tets.ravel(), np.repeat(volumes / 4, 4), n).astype(float)
     K = _accumulate(_stiffness(map_.invA, volumes, conductivity.tensor(xyz[tets].mean(1))), tets, n)
     M = _accumulate(rho_cp / 20 * volumes[:, None, None] * (1 + np.eye(4)), tets, n)
     return Block(mesh.parts[number], points, xyz, tets, volumes, slice(start, start + n), K, M, w, rho_cp)
@@ -227,11 +229,13 @@ def _trace(mesh: NamedMesh, block: Block, facets: Ints) -> Trace:
     local = local.reshape(-1, 3)
     position = np.searchsorted(block.points, points)
     if not np.array_equal(block.points[np.minimum(position, len(block.points) - 1)], points):
-        raise InputError("a facet has points outside its part", f"part '{block.name}'", "facets of the part's own tetrahedra")
+        raise InputError(
+            "a facet has points outside its part", f"part '{block.name}'", "facets of the part's own tetrahedra"
+        )
     edge = mesh.points[facets[:, 1:]] - mesh.points[facets[:, :1]]
     areas = np.linalg.norm(np.cross(edge[:, 0], edge[:, 1]), axis=1) / 2
     mass = _accumulate(areas[:, None, None] / 12 * (1 + np.eye(3)), local, len(points))
-    b = np.bincount(local.ravel(), np.repeat(areas / 3, 3), len(points))
+    b: Floats = np.bincount(local.ravel(), np.repeat(areas / 3, 3), len(points)).astype(float)
     return Trace(block.name, block.dofs.start + position, mass, b)
 
 

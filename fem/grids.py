@@ -18,7 +18,7 @@ FACES = np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]])
 
 
 def box(x: Floats, y: Floats, z: Floats, part: Naming, fluid: Naming) -> NamedMesh:
-    """Tensor grid of boxes. `part` names cells and `fluid` names outer facets by their centres (n, 3) (m); part "" is a hole."""
+    """Grid of boxes. `part` names cells, `fluid` outer facets, by their centres (n, 3) (m); part "" is a hole."""
     points = np.stack(np.meshgrid(x, y, z, indexing="ij"), -1).reshape(-1, 3)
     number = np.arange(len(points)).reshape(len(x), len(y), len(z))
     return named(points, _tets(number), part, fluid)

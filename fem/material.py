@@ -41,7 +41,7 @@ class LoopWound:
     """Coils around radial poles: wires run in loops about each pole's axis, layers stack along the radius.
 
     along, across : conductivity along the wire and across it (W/m/K)
-    axes : angles of the pole axes (rad);  half_length : half of the pole's length in z (m);  half_width : of its width (m)
+    axes : angles of the pole axes (rad);  half_length : half of the pole's length in z (m);  half_width : of its width
     """
 
     along: float

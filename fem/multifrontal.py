@@ -97,9 +97,15 @@ def factorise(A: sp.csr_array, symbolic: Symbolic) -> Factor:
 def _eliminate(front: Floats, k: int) -> tuple[Floats, Floats, Floats]:
     L, info = lapack.dpotrf(front[:k, :k], lower=1, clean=1)
     if info:
-        raise InputError("the matrix is not positive definite", "solve", "a film or contact for every part, all above 0")
+        raise InputError(
+            "the matrix is not positive definite", "solve", "a film or contact for every part, all above 0"
+        )
     B = blas.dtrsm(1.0, L, front[k:, :k], side=1, lower=1, trans_a=1)
-    S = blas.dsyrk(-1.0, B, beta=1.0, c=np.asfortranarray(front[k:, k:]), lower=1, overwrite_c=1) if len(B) else B[:, :0]
+    S = (
+        blas.dsyrk(-1.0, B, beta=1.0, c=np.asfortranarray(front[k:, k:]), lower=1, overwrite_c=1)
+        if len(B)
+        else B[:, :0]
+    )
     return L, B, S
 
 

@@ -19,7 +19,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Solver:
-    """Factorisations of one machine: the symbolic analysis is done once, each set of coefficients costs a numeric one."""
+    """Factorisations of one machine: analysed once, each set of coefficients costs a numeric one."""
 
     field: FieldModel
 
@@ -35,7 +35,7 @@ class Solver:
 
 @dataclass(frozen=True)
 class Fluids:
-    """Lumped fluid nodes: names; D (n, n) W/K among them beside the films (streams, leaks); s (n,) W given from outside.
+    """Lumped fluid nodes: names; D (n, n) W/K among them beside the films (streams, leaks); s (n,) W from outside.
 
     fixed : fluids at a given temperature (degC), e.g. {"ambient": 20.0}
     """
@@ -81,11 +81,12 @@ def steady(
     field = solver.field
     _refuse_unknown_fluid(field, fluids)
     K = field.stiffness(films, contacts, conductivity)
+    _refuse_floating(field, K)
     factor = solver.factor(K)
     B, D = film_columns(field, films, fluids.names)
     fixed = load + _from_fixed(field, films, fluids.fixed)
     X = factor(np.column_stack([fixed, B]))
-    u = np.linalg.solve(D + fluids.D - B.T @ X[:, 1:], fluids.s + B.T @ X[:, 0]) if len(fluids.names) else np.zeros(0)
+    u: Floats = np.linalg.solve(D + fluids.D - B.T @ X[:, 1:], fluids.s + B.T @ X[:, 0])
     T = X[:, 0] + X[:, 1:] @ u
     T += factor(fixed + B @ u - K @ T)
     lost = sum(
@@ -121,7 +122,19 @@ def _refuse_unknown_fluid(field: FieldModel, fluids: Fluids) -> None:
     known = {*fluids.names, *fluids.fixed}
     for face, film in field.films.items():
         if film.fluid not in known:
-            raise InputError(f"no temperature for fluid '{film.fluid}'", f"face '{face}'", f"given: {', '.join(sorted(known))}")
+            raise InputError(
+                f"no temperature for fluid '{film.fluid}'", f"face '{face}'", f"given: {', '.join(sorted(known))}"
+            )
+
+
+def _refuse_floating(field: FieldModel, K: sp.csr_array) -> None:
+    """A piece that no film or contact holds has no steady temperature."""
+    linked = sp.csr_array(K != 0)
+    count, label = sp.csgraph.connected_components(linked, directed=False)
+    held = np.bincount(label, K @ np.ones(field.n), count) > 1e-12 * np.bincount(label, K.diagonal(), count)
+    if not held.all():
+        loose = [part for part, block in field.blocks.items() if not held[label[block.dofs]].all()]
+        raise InputError(f"nothing takes heat from {', '.join(loose)}", "steady", "a film or a contact above 0")
 
 
 def transient(
