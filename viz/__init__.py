@@ -9,6 +9,7 @@ _HOME = {
     "Comparison": "data", "Sensor": "data", "sensors": "data",
     "SplitMesh": "nodes", "split": "nodes", "require_gl": "gl", "off_screen_window": "gl",
     "Wedge": "cut", "HALF": "cut", "QUARTER": "cut", "cutaway": "field", "pair": "field",
+    "regions": "parts", "exploded": "parts", "missing_heat": "heat",
     "measured_and_model": "curves", "residuals": "curves", "before_after": "errors", "staircase": "errors",
     "scores": "candidates", "half_normal": "candidates", "confusion": "candidates",
     "write_recording": "recording", "verify": "recording", "Report": "report", "write_report": "report",

@@ -100,9 +100,11 @@ class Surface:
         return Surface(self.nodes, weights[first], triangles[solid], self.part[solid])
 
 
-def exposed(nodes: SplitMesh) -> Surface:
-    """The surface that touches a fluid; faces between two parts are left out."""
+def exposed(nodes: SplitMesh, contacts: bool = False) -> Surface:
+    """The surface that touches a fluid; faces between two parts only if `contacts` are wanted."""
     triangles, part = nodes.boundary()
+    if contacts:
+        return Surface(nodes, identity(nodes.size, format="csr"), triangles, part).compact()
     key = np.sort(nodes.original[triangles], axis=1)
     order = np.lexsort(key.T)
     same = (key[order][1:] == key[order][:-1]).all(axis=1)

@@ -18,7 +18,7 @@ from viz.colours import LIGHT, VERDICT, Theme, heat
 from viz.cut import QUARTER, Surface, Wedge, cut_away
 from viz.data import Sensor
 from viz.nodes import SplitMesh, on_nodes
-from viz.scene import View
+from viz.scene import TITLE, Room, View
 
 if TYPE_CHECKING:
     import pyvista
@@ -49,7 +49,7 @@ def cutaway(
     _paint(p, surface, on_nodes(nodes, T), limits, theme)
     scene.colour_bar(p, UNIT, theme)
     scene.headline(p, title, theme)
-    scene.look(p, surface.points, view, room=(0.16, 0.24) if sensors else (0.0, 0.1))
+    scene.look(p, surface.points, view, _room(bool(sensors), title))
     callouts(p, [_label(s) for s in sensors], surface.points, view, theme)
     scene.save(p, png)
     return p
@@ -75,7 +75,7 @@ def pair(
         p.subplot(0, i)
         _paint(p, surface, field, limits, theme)
         scene.headline(p, titles[i], theme)
-        scene.look(p, surface.points, view, room=(0.0, 0.16))
+        scene.look(p, surface.points, view, Room(0.0, 0.16))
     scene.colour_bar(p, UNIT, theme, position_x=0.84, width=0.09)
     scene.save(p, png)
     return p
@@ -89,6 +89,11 @@ def _paint(p: pyvista.Plotter, surface: Surface, T: Array, limits: tuple[float, 
         data, scalars="T", cmap=heat(), clim=limits or (float(T.min()), float(T.max())), show_scalar_bar=False,
         ambient=0.8, diffuse=0.28, specular=0.0, interpolate_before_map=True,
     )  # fmt: skip
+
+
+def _room(labels: bool, title: str) -> Room:
+    top = TITLE if title else 0.0
+    return Room(0.16, 0.24, top) if labels else Room(0.0, 0.1, top)
 
 
 def _label(sensor: Sensor) -> Label:

@@ -38,6 +38,19 @@ class View:
         return towards, right, np.cross(towards, right)
 
 
+@dataclass(frozen=True)
+class Room:
+    """Shares of the picture kept free of the machine."""
+
+    left: float = 0.0
+    right: float = 0.0
+    top: float = 0.0
+
+
+NO_ROOM = Room()
+TITLE = 0.07  # share of the height that a headline takes
+
+
 def plotter(theme: Theme = LIGHT, size: tuple[int, int] = SIZE, shape: tuple[int, int] = (1, 1)) -> pyvista.Plotter:
     """An off-screen plotter with smooth edges."""
     require_gl()
@@ -72,19 +85,19 @@ def outline(p: pyvista.Plotter, data: pyvista.PolyData, theme: Theme = LIGHT, op
         p.add_mesh(edges, color=theme.ink, line_width=1.0, opacity=opacity, show_scalar_bar=False, lighting=False)
 
 
-def look(p: pyvista.Plotter, points: Array, view: View, room: tuple[float, float] = (0.0, 0.0)) -> None:
-    """Put the whole machine into the picture; `room`: share of the width kept free at the left and at the right."""
+def look(p: pyvista.Plotter, points: Array, view: View, room: Room = NO_ROOM) -> None:
+    """Put the whole machine into the picture, with room kept free around it."""
     towards, right, up = view.axes()
     across, above = points @ right, points @ up
     depth = points @ towards
     aspect = p.renderer.GetSize()[0] / max(p.renderer.GetSize()[1], 1)
     tan = np.tan(np.deg2rad(view.angle) / 2)
-    half_w = np.ptp(across) / 2 * view.margin / (1 - sum(room))
-    half_h = np.ptp(above) / 2 * view.margin
+    half_w = np.ptp(across) / 2 * view.margin / (1 - room.left - room.right)
+    half_h = np.ptp(above) / 2 * view.margin / (1 - room.top)
     distance = max(half_h, half_w / aspect) / tan + np.ptp(depth) / 2
-    shift = half_w * (room[1] - room[0])
-    middle = (across.max() + across.min()) / 2 + shift, (above.max() + above.min()) / 2
-    focus = middle[0] * right + middle[1] * up + (depth.max() + depth.min()) / 2 * towards
+    middle = (across.max() + across.min()) / 2 + half_w * (room.right - room.left)
+    height = (above.max() + above.min()) / 2 + half_h * room.top
+    focus = middle * right + height * up + (depth.max() + depth.min()) / 2 * towards
     p.camera.position = focus + distance * towards
     p.camera.focal_point, p.camera.up, p.camera.view_angle = focus, view.up, view.angle
     p.renderer.ResetCameraClippingRange()

@@ -1,0 +1,56 @@
+"""Parts: named where they are seen, and pulled apart without overlap."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from PIL import Image
+from small_motor import LEVELS, RADII, motor
+
+from geom.errors import InputError
+from viz.cut import cut_away
+from viz.nodes import split
+from viz.parts import assemblies, exploded, regions, shifts
+from viz.scene import Room, View
+from viz.sight import anchors
+
+NODES = split(motor(24))
+
+
+@pytest.fixture(scope="module")
+def seen():
+    found = anchors(cut_away(NODES), View(), Room(0.2, 0.2))
+    return {NODES.parts[i]: xyz for i, xyz in found.items()}
+
+
+def test_every_part_that_the_cut_opens_is_found(seen):
+    assert set(NODES.parts) == set(seen)
+
+
+def test_names_point_at_their_parts(seen):
+    """Positions read back from the picture lie on the part's ring, within two pixels (7 mm) of it."""
+    for part, (low, high) in {"shaft": (0, 1), "yoke": (5, 6), "housing": (6, 7)}.items():
+        r = np.hypot(*seen[part][:2])
+        assert RADII[low] - 0.007 < r < RADII[high] + 0.007
+    assert LEVELS[8] - 0.007 < seen["flange.right"][2] < LEVELS[9] + 0.007
+
+
+def test_assemblies_pulled_apart_do_not_overlap():
+    groups = assemblies(NODES.parts)
+    moved = NODES.points[:, 2] + shifts(NODES, groups)[NODES.owner, 2]
+    spans = [(moved[np.concatenate([NODES.of(p) for p in g])]) for g in groups]
+    assert len(groups) == 5
+    assert all(a.max() < b.min() for a, b in pairwise(spans))
+
+
+def test_pictures_differ_and_show_something(tmp_path):
+    regions(NODES, title="parts", png=tmp_path / "r.png").close()
+    exploded(NODES, np.linspace(20.0, 90.0, NODES.size), png=tmp_path / "e.png").close()
+    both = [np.asarray(Image.open(tmp_path / f"{n}.png").convert("RGB")).astype(int) for n in "re"]
+    assert all(0.05 < (image < 250).any(axis=2).mean() < 0.9 for image in both)
+    assert np.abs(both[0] - both[1]).mean() > 5
+
+
+def test_unknown_part_lists_the_known_ones():
+    with pytest.raises(InputError, match=r"unknown part 'rotor'; known: shaft, rotor\.core"):
+        exploded(NODES, groups=[["rotor"]])
