@@ -10,10 +10,10 @@ import shapely
 from numpy.typing import NDArray
 
 from geom.errors import InputError
+from geom.noding import GRID, noded
 from geom.part import Part
 from geom.profile import ArcGrid, Profile
 
-GRID = 1e-7  # m; coordinates are snapped to this, far below any tolerance of a motor
 _OVERLAP = 1e-8  # m2; a common area below this is rounding
 AMBIENT = -1
 
@@ -68,8 +68,8 @@ def axial_levels(parts: Sequence[Part]) -> NDArray[np.float64]:
 
 def _tile(polygons: NDArray[np.object_]) -> NDArray[np.object_]:
     box = shapely.box(*shapely.total_bounds(polygons)).buffer(0.02, join_style="mitre")
-    lines = shapely.union_all([*shapely.boundary(polygons), box.exterior], grid_size=GRID)
-    faces = np.array(shapely.get_parts(shapely.polygonize([lines])), dtype=object)
+    lines = noded([*shapely.boundary(polygons), box.exterior])
+    faces = np.array(shapely.get_parts(shapely.polygonize(lines)), dtype=object)
     return shapely.orient_polygons(faces)
 
 

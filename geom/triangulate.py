@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 from geom.blocks import Column
 from geom.delaunay import interior_points, nudged, triangulate_face
-from geom.partition import GRID, half_edges
+from geom.noding import GRID
+from geom.partition import half_edges
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
