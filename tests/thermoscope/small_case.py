@@ -110,7 +110,7 @@ def measured(seed: int, wind: bool, strength: float) -> np.ndarray:
     T = solve_ivp(slope, (0, t[-1]), [20.0] * 3, t_eval=t, max_step=10, rtol=1e-7).y + 0.05 * rng.standard_normal(
         (3, t.size)
     )
-    return np.column_stack([t, current, 3.6 * speed, np.full_like(t, 20.0), T[0], T[1] + 273.15, T[2]])
+    return np.column_stack([t, current, 3.6 * speed, 20.0 + 0.05 * rng.standard_normal(t.size), T[0], T[1] + 273.15, T[2]])
 
 
 def write_csv(path: Path, rows: np.ndarray) -> None:

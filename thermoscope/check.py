@@ -1,0 +1,113 @@
+"""What this computer lacks, each with the command that fixes it."""
+
+from __future__ import annotations
+
+import ctypes.util
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+
+from thermoscope.terminal import give, progress, table
+
+BROWSERS = ("chromium", "chromium-browser", "google-chrome", "microsoft-edge")
+VULKAN = "apt-get install -y libvulkan1 mesa-vulkan-drivers"
+CHROMIUM = "apt-get install -y chromium"
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One thing the tool can use.
+
+    needed_for : what does not work without it;  needed : False where everything else works without it
+    fix : the command that installs it, "" when it is there
+    """
+
+    name: str
+    found: bool
+    needed_for: str
+    needed: bool
+    fix: str = ""
+
+
+def findings() -> list[Finding]:
+    """Everything that is looked for, in the order of importance."""
+    return [
+        _finding(
+            "Python 3.11 or newer", lambda: sys.version_info >= (3, 11), "everything", True, "uv python install 3.11"
+        ),
+        _finding("off-screen OpenGL", _gl, "pictures (render, report, demo)", True, _gl_fix()),
+        _finding("rerun viewer", _rerun, "opening .rrd recordings", False, "uv pip install rerun-sdk"),
+        _finding("Vulkan driver", _vulkan, "screenshots from the rerun viewer without a display", False, VULKAN),
+        _finding("Chromium", _browser, "screenshots of the HTML report", False, CHROMIUM),
+    ]
+
+
+def _finding(name: str, there: Callable[[], bool], needed_for: str, needed: bool, fix: str) -> Finding:
+    found = there()
+    return Finding(name, found, needed_for, needed, "" if found else as_root(fix))
+
+
+def as_root(command: str) -> str:
+    """The same command for someone who is not root."""
+    return f"sudo {command}" if command.startswith("apt-get") and os.geteuid() != 0 else command
+
+
+def _gl() -> bool:
+    from viz.gl import off_screen_window
+
+    return off_screen_window() is not None
+
+
+def _gl_fix() -> str:
+    from viz.gl import COMMAND
+
+    return COMMAND
+
+
+def _rerun() -> bool:
+    return (shutil.which("rerun") or shutil.which("rerun", path=os.path.dirname(sys.executable))) is not None
+
+
+def _vulkan() -> bool:
+    """A loader and at least one driver: asked by creating an instance in a process of its own, since drivers may crash."""
+    if ctypes.util.find_library("vulkan") is None:
+        return False
+    return (
+        subprocess.run([sys.executable, "-c", _INSTANCE], capture_output=True, timeout=60, check=False).returncode == 0
+    )
+
+
+def _browser() -> bool:
+    return any(shutil.which(name) for name in BROWSERS)
+
+
+_INSTANCE = """
+import ctypes
+vk = ctypes.CDLL("libvulkan.so.1")
+class Info(ctypes.Structure):
+    _fields_ = [("kind", ctypes.c_int), ("next", ctypes.c_void_p), ("flags", ctypes.c_uint), ("app", ctypes.c_void_p),
+                ("layers", ctypes.c_uint), ("layer_names", ctypes.c_void_p), ("extensions", ctypes.c_uint), ("names", ctypes.c_void_p)]
+instance, count = ctypes.c_void_p(), ctypes.c_uint()
+assert vk.vkCreateInstance(ctypes.byref(Info(kind=1)), None, ctypes.byref(instance)) == 0
+assert vk.vkEnumeratePhysicalDevices(instance, ctypes.byref(count), None) == 0 and count.value
+"""
+
+
+def check(target: str | None) -> int:
+    """Exit code 1 when something is missing that pictures need."""
+    with progress() as tell:
+        tell("looking for graphics")
+        found = findings()
+    document = {"ready": all(f.found for f in found if f.needed), "checks": [asdict(f) for f in found]}
+    give(document, target, lambda: show(found))
+    return 0 if document["ready"] else 1
+
+
+def show(found: list[Finding]) -> None:
+    """A row per check."""
+    word = {(True, True): "yes", (True, False): "yes", (False, True): "MISSING", (False, False): "no (optional)"}
+    rows = [[f.name, word[f.found, f.needed], f.needed_for, f.fix] for f in found]
+    table("This computer", ["what", "there", "needed for", "install it with"], rows, marked=["MISSING"])

@@ -1,0 +1,122 @@
+"""The command line. Nothing heavy is loaded until a command runs."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from geom.errors import ThermoscopeError
+
+app = typer.Typer(
+    help="See where your motor's thermal model is wrong, and why.",
+    epilog="Exit codes: 0 done; 1 the model disagrees, or nothing was found; 2 the input is wrong. "
+    "--debug after any command shows where an error came from.",
+    no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False, rich_markup_mode=None,
+)  # fmt: skip
+
+Case = Annotated[str, typer.Argument(metavar="CASE", help="A case folder, or the name of a case that comes along.")]
+Effect = Annotated[str, typer.Argument(metavar="EFFECT@PLACE", help="For example convection@flange.right.")]
+Json = Annotated[str | None, typer.Option("--json", metavar="FILE|-", help="Write the JSON document; - is stdout.")]
+Out = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder for the results.")]
+
+
+@app.command()
+def demo(out: Annotated[Path, typer.Option("--out", metavar="DIR")] = Path("out/demo"), json: Json = None) -> None:
+    """The whole loop on the shipped case with a hidden effect: the error before and after."""
+    from thermoscope.demo import demo as run
+
+    raise typer.Exit(run(out, json))
+
+
+@app.command()
+def build(
+    machine: Annotated[str, typer.Argument(metavar="MACHINE", help="A machine file, or a name that comes along.")],
+    out: Out = None, json: Json = None,
+) -> None:  # fmt: skip
+    """Solids (STEP, STL, GLB), mesh and network of a machine, and the network against the field."""
+    from thermoscope.commands.build import build as run
+
+    raise typer.Exit(run(machine, out, json))
+
+
+@app.command()
+def compare(case: Case, json: Json = None) -> None:
+    """The model against every test: error per sensor against its uncertainty. Exit code 1 if it disagrees."""
+    from thermoscope.commands.compare import compare as run
+
+    raise typer.Exit(run(case, json))
+
+
+@app.command()
+def diagnose(
+    case: Case,
+    draws: Annotated[int, typer.Option(min=10, help="Data sets of the simulated null: 40 quick, 200 in earnest.")] = 60,
+    json: Json = None,
+) -> None:
+    """Which effect is missing, how sure, what it is confused with, which test would decide. Exit code 1 if none."""
+    from thermoscope.commands.diagnose import diagnose as run
+
+    raise typer.Exit(run(case, draws, json))
+
+
+@app.command()
+def add(case: Case, effect: Effect, json: Json = None) -> None:
+    """Add an effect, recalibrate, and show the error before and after on every test, held-out ones too."""
+    from thermoscope.commands.revise import add as run
+
+    raise typer.Exit(run(case, effect, json))
+
+
+@app.command()
+def remove(case: Case, effect: Effect, json: Json = None) -> None:
+    """Take an effect out again and recalibrate."""
+    from thermoscope.commands.revise import remove as run
+
+    raise typer.Exit(run(case, effect, json))
+
+
+@app.command()
+def calibrate(case: Case, json: Json = None) -> None:
+    """Fit the declared parameters to the calibration tests, with intervals and what the data cannot identify."""
+    from thermoscope.commands.revise import calibrate as run
+
+    raise typer.Exit(run(case, json))
+
+
+@app.command()
+def report(case: Case, out: Out = None, json: Json = None) -> None:
+    """One self-contained HTML page: verdict, pictures, numbers with their uncertainty."""
+    from thermoscope.commands.show import report as run
+
+    raise typer.Exit(run(case, out, json))
+
+
+@app.command()
+def render(case: Case, out: Out = None, json: Json = None) -> None:
+    """Pictures (PNG) and a recording (.rrd) for the rerun viewer."""
+    from thermoscope.commands.show import render as run
+
+    raise typer.Exit(run(case, out, json))
+
+
+@app.command()
+def check(json: Json = None) -> None:
+    """What this computer lacks (graphics), each with the command that fixes it."""
+    from thermoscope.check import check as run
+
+    raise typer.Exit(run(json))
+
+
+def main() -> None:
+    """Run the command line and exit; what is wrong with the input is one message on stderr and exit code 2."""
+    arguments = [a for a in sys.argv[1:] if a != "--debug"]
+    try:
+        app(arguments, prog_name="thermoscope")
+    except (ThermoscopeError, OSError) as fault:
+        if "--debug" in sys.argv:
+            raise
+        print(f"error: {fault}", file=sys.stderr)
+        raise SystemExit(2) from None

@@ -1,0 +1,76 @@
+"""thermoscope build MACHINE"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from thermoscope.folder import load_machine_file
+from thermoscope.terminal import give, progress, say, table
+
+if TYPE_CHECKING:
+    from geom.cad import CadCheck
+    from thermoscope.crosscheck import CrossCheck
+    from thermoscope.pipeline import Built
+
+
+def build(machine: str, out: Path | None, target: str | None) -> int:
+    """Solids, mesh and network of a machine to a folder, and the network against the field at the rated point."""
+    from geom import check_cad, export_cad, write_vtu
+    from lumped.motor import operating_point
+    from thermoscope.crosscheck import crosscheck
+    from thermoscope.pipeline import build as built_from
+
+    described = load_machine_file(Path(machine))
+    folder = out or Path("out") / described.name
+    with progress() as tell:
+        built = built_from(described, progress=tell)
+        tell("field against network at the rated point")
+        rated = {name: float(value[0]) for name, value in operating_point(described).items()}
+        checked = crosscheck(built.field, built.network, rated)
+        tell("solids")
+        solids = check_cad(described)
+        tell(f"writing {folder}")
+        export_cad(described, folder)
+        write_vtu(built.mesh, folder / f"{described.name}.vtu")
+    document = described_as(built, solids, checked)
+    give(document, target, lambda: show(document, folder))
+    return 0
+
+
+def described_as(built: Built, solids: list[CadCheck], checked: CrossCheck) -> dict[str, Any]:
+    """The document of the command; surfaces, mesh and formula volumes in m3."""
+    meshed = built.mesh.region_volumes()
+    parts = [
+        {
+            "name": s.part, "material": built.machine.part(s.part).material, "volume_m3": s.volume,
+            "mesh_volume_m3": meshed[s.part], "solid_volume_m3": s.solid_volume, "watertight": s.watertight,
+        }
+        for s in solids
+    ]  # fmt: skip
+    return {
+        "machine": built.machine.name,
+        "parts": parts,
+        "mesh": {"nodes": len(built.mesh.points), "tets": len(built.mesh.tets)},
+        "network": {"nodes": len(built.network.states), "links": len(built.network.links)},
+        "crosscheck": [vars(part) for part in checked.parts],
+        "energy_balance": checked.energy_balance,
+    }
+
+
+def show(document: Mapping[str, Any], folder: Path) -> None:
+    """Parts, the field against the network, and where the files are."""
+    litres = [
+        [p["name"], p["material"], 1e3 * p["volume_m3"], 1e3 * p["mesh_volume_m3"], "yes" if p["watertight"] else "NO"]
+        for p in document["parts"]
+    ]
+    table("Parts", ["part", "material", "volume (l)", "in the mesh (l)", "watertight"], litres, marked=["NO"])
+    headers = ["part", "field mean", "network mean", "field max", "network max", "off (% of rise)"]
+    title = "Rated point, steady, 20 degC around: temperatures (degC)"
+    table(title, headers, [list(part.values()) for part in document["crosscheck"]])
+    mesh, network = document["mesh"], document["network"]
+    say(
+        f"mesh: {mesh['nodes']} points, {mesh['tets']} tetrahedra; network: {network['nodes']} states, {network['links']} links"
+    )
+    say(f"energy balance of the field: {document['energy_balance']:.1e}; files in {folder}")
