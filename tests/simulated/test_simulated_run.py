@@ -30,14 +30,14 @@ def ten_minutes(draws):
 
 @pytest.fixture(scope="module")
 def result(plant, draws, ten_minutes):
-    return run(plant, ten_minutes, sensors.install(plant.body, draws), 60)
+    return run(plant, ten_minutes, sensors.install(plant.body, draws), 120)
 
 
 @pytest.fixture(scope="module")
 def sheltered(plant, draws, ten_minutes):
     """The same minutes with the hidden effect off."""
     still = replace(plant, films=replace(plant.films, shelter=0.0))
-    return run(still, ten_minutes, sensors.install(plant.body, draws), 60)
+    return run(still, ten_minutes, sensors.install(plant.body, draws), 120)
 
 
 def channel(result, name):
@@ -59,10 +59,10 @@ def test_hidden_effect_hardly_reaches_the_left_flange(result, sheltered):
 
 
 def test_nothing_happens_to_a_motor_at_rest_in_its_own_ambient(plant):
-    n = 120
+    n = 240
     zero = np.zeros(n)
     rest = drive.Drive(zero, zero, zero, zero + 138.0, zero + 20.0, 20.0)
-    cold = run(plant, rest, (), 60)
+    cold = run(plant, rest, (), 120)
     assert cold.made == 0.0
     assert max(cold.hottest.values()) == pytest.approx(20.0, abs=1e-6)
 
@@ -87,7 +87,7 @@ def test_files_agree_with_each_other(result, plant, draws, tmp_path):
         header, *rows = csv.reader(file)
     described = tomllib.loads((tmp_path / "x.toml").read_text())
     assert header == [described["test"]["time"], *described["columns"]]
-    assert [float(row[0]) for row in rows] == [60.0 * i for i in range(11)]
+    assert [float(row[0]) for row in rows] == [120.0 * i for i in range(6)]
 
 
 def test_truth_names_the_hidden_effect(plant, draws, tmp_path):
