@@ -7,9 +7,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from fem.assembly import FieldModel, assemble
-from fem.material import Conductivity
+import numpy as np
+
+from fem.assembly import FieldModel, HasTensor, assemble
+from fem.material import Conductivity, LoopWound
 from geom import Machine, NamedMesh, build_mesh
+from geom.materials import Material
+from geom.shapes import evenly
 from lumped.motor import FLUIDS, motor_network, nominal_coefficients
 from lumped.network import Network
 from lumped.reduction import Recipe, condense
@@ -41,8 +45,22 @@ def cache_folder() -> Path:
 def field_of(machine: Machine, mesh: NamedMesh) -> FieldModel:
     """Conduction of the machine on its mesh, with the materials of its file."""
     found = {part.name: machine.material_of(part.name) for part in machine.parts}
-    conductivity = {name: Conductivity(m.k_plane, m.k_plane, m.k_axial) for name, m in found.items()}
+    conductivity: dict[str, HasTensor] = {
+        name: Conductivity(m.k_plane, m.k_plane, m.k_axial) for name, m in found.items()
+    }
+    if "winding.field" in found:
+        conductivity["winding.field"] = _around_poles(machine, found["winding.field"])
     return assemble(mesh, conductivity, {name: m.rho * m.cp for name, m in found.items()})
+
+
+def _around_poles(machine: Machine, copper: Material) -> LoopWound:
+    """Field coils: the wire runs along the axis beside a pole and across it at the ends."""
+    g = machine.geometry
+    axes = tuple(float(a) for a in evenly(g.stator.poles, np.pi / 2))
+    start, end = machine.part("poles").span
+    half = (end - start) / 2 + g.field.insulation
+    width = g.stator.body_width / 2 + g.field.insulation
+    return LoopWound(copper.k_axial, copper.k_plane, axes, half, width, (start + end) / 2)
 
 
 def build(
@@ -54,7 +72,9 @@ def build(
     mesh = build_mesh(machine, size_m=size_m, segments=segments, cache=cache)
     progress(f"conduction on {len(mesh.points)} points")
     field = field_of(machine, mesh)
-    films, contacts = nominal_coefficients(machine, {n: (p.part, p.fluid) for n, p in mesh.patches.items()}, mesh.contacts)
+    films, contacts = nominal_coefficients(
+        machine, {n: (p.part, p.fluid) for n, p in mesh.patches.items()}, mesh.contacts
+    )
     progress("network from the field")
     condensed = condense(
         field, films, contacts, dict.fromkeys(FLUIDS, AIR_IN_SPACE), recipe=recipe, name=machine.name, cache=cache
