@@ -28,7 +28,7 @@ _HOME = {
     "read_vtu": "meshio_io",
     "write_vtu": "meshio_io",
 }
-__all__ = [*_HOME]  # noqa: PLE0604
+__all__ = [*_HOME]
 
 
 def __getattr__(name: str) -> Any:

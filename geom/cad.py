@@ -87,14 +87,15 @@ def export_cad(machine: Machine, folder: Path | str, formats: tuple[str, ...] = 
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     whole = assembly(machine)
-    written = {}
+    written: dict[str, Path] = {}
     for name in [name for name in ("step", "glb") if name in formats]:
         written[name] = folder / f"{machine.name}.{name}"
         whole.export(str(written[name]), tolerance=0.1, angularTolerance=0.1)
     if "stl" in formats:
         for child in whole.children:
             path = written[f"stl:{child.name}"] = folder / f"{child.name}.stl"
-            child.obj.exportStl(str(path), tolerance=0.05, angularTolerance=0.1)
+            shape: Any = child.obj
+            shape.exportStl(str(path), tolerance=0.05, angularTolerance=0.1)
     return written
 
 

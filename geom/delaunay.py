@@ -55,8 +55,8 @@ def nudged(ring: Floats) -> Floats:
 def triangulate_face(points: Floats, border: Ints, face: shapely.Polygon) -> Ints:
     """Triangles (n, 3), anticlockwise, of the face whose border edges (m, 2) all appear.
 
-    points : (n, 2) corners first, interior points after, no three on the border in a line. Falls back to the border points alone if rounding
-    spoils the Delaunay triangulation.
+    points : (n, 2) corners first, interior points after, no three on the border in a line.
+    Falls back to the border points alone if rounding spoils the Delaunay triangulation.
     """
     triangles = _oriented(points, Delaunay(points * 1e3).simplices.astype(np.int64))
     for a, b in _missing(triangles, border):

@@ -21,5 +21,5 @@ class InputError(ThermoscopeError):
         super().__init__(f"{message}; {right}" if right else message)
 
 
-class MissingDependency(ThermoscopeError):
+class MissingDependency(ThermoscopeError):  # noqa: N818
     """A program or system library is missing; the message carries the command that installs it."""

@@ -142,7 +142,9 @@ def _refuse_outside_envelope(machine: Machine, where: str) -> None:
         raise InputError(f"{allowed!r} is not an envelope", place, "write [length, width, height]")
     for word, size, limit in zip(("length", "width", "height"), machine.extent, allowed):
         if size * 1e3 > limit + 1e-6:
-            raise InputError(f"the machine's {word} of {size * 1e3:.4g} mm exceeds {limit:.4g} mm", place, "make it fit")
+            raise InputError(
+                f"the machine's {word} of {size * 1e3:.4g} mm exceeds {limit:.4g} mm", place, "make it fit"
+            )
 
 
 def _family(header: Mapping[str, Any], where: str) -> Family:

@@ -70,9 +70,7 @@ def winding_conductivity(fill: float, k_conductor: float, k_resin: float) -> tup
     return across, fill * c + (1 - fill) * r
 
 
-def _mixture(
-    fill: float, k_resin: float, along: float = 1.0, k_conductor: float = 385.0
-) -> dict[str, float]:
+def _mixture(fill: float, k_resin: float, along: float = 1.0, k_conductor: float = 385.0) -> dict[str, float]:
     """Copper wires in resin; `along` is the share of their length that runs along the axis."""
     across, lengthwise = winding_conductivity(fill, k_conductor, k_resin)
     return {

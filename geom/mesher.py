@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 from geom.blocks import find_blocks, find_columns
-from geom.blocks import find_blocks, find_columns
 from geom.extrude import extrude
 from geom.machine import Machine
 from geom.mesh import NamedMesh

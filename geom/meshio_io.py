@@ -19,7 +19,8 @@ def write_npz(mesh: NamedMesh, path: Path | str) -> None:
     arrays = {f"patch:{name}": patch.facets for name, patch in mesh.patches.items()}
     arrays |= {f"contact:{name}": contact.facets for name, contact in mesh.contacts.items()}
     partial = path.with_suffix(".part.npz")
-    np.savez(partial, points=mesh.points, tets=mesh.tets, region=mesh.region, names=json.dumps(_names(mesh)), **arrays)
+    arrays |= {"tets": mesh.tets, "region": mesh.region}
+    np.savez(partial, points=mesh.points, names=np.array(json.dumps(_names(mesh))), **arrays)  # type: ignore[arg-type]
     partial.replace(path)
 
 
@@ -36,9 +37,9 @@ def write_vtu(mesh: NamedMesh, path: Path | str) -> None:
     """
     import meshio
 
-    faces = [*mesh.patches.items(), *mesh.contacts.items()]
-    triangles = np.concatenate([face.facets for _, face in faces])
-    owner = np.repeat(np.arange(len(faces)), [len(face.facets) for _, face in faces])
+    faces = [p.facets for p in mesh.patches.values()] + [c.facets for c in mesh.contacts.values()]
+    triangles = np.concatenate(faces)
+    owner = np.repeat(np.arange(len(faces)), [len(facets) for facets in faces])
     none = [np.full(len(mesh.tets), -1), np.full(len(triangles), -1)]
     data = {"region": [mesh.region, none[1]], "face": [none[0], owner]}
     meshio.Mesh(mesh.points, [("tetra", mesh.tets), ("triangle", triangles)], cell_data=data).write(path)
@@ -71,6 +72,6 @@ def _names(mesh: NamedMesh) -> dict[str, Any]:
 
 
 def _named_mesh(points: Any, tets: Any, region: Any, names: dict[str, Any], facets: dict[str, Any]) -> NamedMesh:
-    patches = {name: Patch(*pair, facets[name]) for name, pair in names["patches"].items()}
-    contacts = {name: Contact(*pair, facets[name]) for name, pair in names["contacts"].items()}
+    patches = {name: Patch(a, b, facets[name]) for name, (a, b) in names["patches"].items()}
+    contacts = {name: Contact(a, b, facets[name]) for name, (a, b) in names["contacts"].items()}
     return NamedMesh(points, tets.astype(np.int64), region.astype(np.int64), tuple(names["parts"]), patches, contacts)

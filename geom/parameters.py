@@ -97,7 +97,9 @@ def _refuse_unknown(declared: Mapping[str, Parameter], table: Mapping[str, Any],
 def _refuse_key(declared: Mapping[str, Parameter], group: str, name: str, where: str) -> None:
     siblings = {p.name: p for p in declared.values() if p.group == group}
     place = f"{where} [geometry.{group}]"
-    with_unit = [p.name for p in siblings.values() if p.unit and name.rsplit("_", 1)[0] == p.attribute or name == p.attribute]
+    with_unit = [
+        p.name for p in siblings.values() if (p.unit and name.rsplit("_", 1)[0] == p.attribute) or name == p.attribute
+    ]
     if with_unit:
         raise InputError(f"{name!r} lacks its unit", place, f"write {with_unit[0]}")
     raise InputError(f"unknown key {name!r}", place, _known(name, siblings))

@@ -95,9 +95,7 @@ def _label(
     return labels
 
 
-def _refuse_overlap(
-    parts: Sequence[Part], index: int, block: NDArray[np.int64], faces: NDArray[np.object_]
-) -> None:
+def _refuse_overlap(parts: Sequence[Part], index: int, block: NDArray[np.int64], faces: NDArray[np.object_]) -> None:
     taken = block != AMBIENT
     if not taken.any() or shapely.area(faces)[taken.any(axis=1)].sum() < _OVERLAP:
         return
@@ -105,18 +103,18 @@ def _refuse_overlap(
     raise InputError(f"{parts[index].name} and {other} overlap", "geometry", "parts may touch, not overlap")
 
 
-def half_edges(faces: NDArray[np.object_]) -> tuple[NDArray[np.float64], ...]:
-    """Points (n, 2), and start, end (point numbers) and face of every directed border edge, face on its left."""
+def half_edges(faces: NDArray[np.object_]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Points (n, 2), and (3, m) start, end (point numbers) and face of every directed border edge, face on its left."""
     rings, owner = shapely.get_rings(faces, return_index=True)
     xy, ring = shapely.get_coordinates(rings, return_index=True)
     keys, number = np.unique(np.round(xy / GRID).astype(np.int64), axis=0, return_inverse=True)
     follows = ring[1:] == ring[:-1]
-    return keys * GRID, number[:-1][follows], number[1:][follows], owner[ring[:-1][follows]]
+    return keys * GRID, np.array([number[:-1][follows], number[1:][follows], owner[ring[:-1][follows]]])
 
 
 def _neighbours(faces: NDArray[np.object_]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Pairs of faces with a common edge; -1 is the plane beyond the box."""
-    _, start, end, face = half_edges(faces)
+    _, (start, end, face) = half_edges(faces)
     forward = start < end
     edges, which = np.unique(np.sort(np.column_stack([start, end]), axis=1), axis=0, return_inverse=True)
     left, right = np.full(len(edges), -1), np.full(len(edges), -1)

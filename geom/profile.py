@@ -6,7 +6,7 @@ import math
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from shapely import Polygon
@@ -70,7 +70,7 @@ class Profile:
 
         return Polygon(grid.facet(self.outer), [grid.facet(hole) for hole in self.holes])
 
-    def to_face(self) -> object:
+    def to_face(self) -> Any:
         """Exact cadquery face in the plane z = 0."""
         import cadquery as cq
 
@@ -188,7 +188,7 @@ def _radius_key(radius: float) -> int:
     return round(radius / _RADIUS_GRID)
 
 
-def _wire(loop: Loop) -> object:
+def _wire(loop: Loop) -> Any:
     import cadquery as cq
 
     pieces = []

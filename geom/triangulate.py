@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 import shapely
@@ -40,7 +41,7 @@ def triangulate(columns: Sequence[Column], size: float, across: int = 2) -> Tria
     """
     faces = np.array([column.face for column in columns], dtype=object)
     sizes = _sizes(faces, size, across)
-    corners, start, end, owner = half_edges(faces)
+    corners, (start, end, owner) = half_edges(faces)
     edges, which = np.unique(np.sort(np.column_stack([start, end]), axis=1), axis=0, return_inverse=True)
     limit = np.full(len(edges), np.inf)
     np.minimum.at(limit, which, sizes[owner])
@@ -63,7 +64,7 @@ def _divided(points: Floats, edges: Ints, size: Floats) -> tuple[Floats, list[In
     start, end = points[edges[:, 0]], points[edges[:, 1]]
     pieces = np.maximum(1, np.ceil(np.linalg.norm(end - start, axis=1) / size - 0.2)).astype(int)
     first = len(points) + np.concatenate([[0], np.cumsum(pieces - 1)])
-    inner = [np.arange(a, b) for a, b in zip(first, first[1:])]
+    inner = [np.arange(a, b) for a, b in pairwise(first)]
     share = np.concatenate([np.arange(1, n) / n for n in pieces])
     owner = np.repeat(np.arange(len(edges)), pieces - 1)
     return np.vstack([points, start[owner] + share[:, None] * (end - start)[owner]]), inner
@@ -78,7 +79,7 @@ def _borders(faces: NDArray[np.object_], points: Floats, edges: Ints, inner: lis
         for ring in shapely.get_rings(face):
             keys = np.round(shapely.get_coordinates(ring) / GRID).astype(np.int64).tolist()
             corners = [number[x, y] for x, y in keys]
-            steps = [[a, *(along[a, b] if a < b else along[b, a][::-1])] for a, b in zip(corners, corners[1:])]
+            steps = [[a, *(along[a, b] if a < b else along[b, a][::-1])] for a, b in pairwise(corners)]
             rings.append(np.concatenate(steps).astype(np.int64))
         yield rings
 

@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 import pytest
+from measures import area, facets_of_tets, keys, tet_volumes
 
 from geom import build_mesh
-from measures import area, facets_of_tets, keys, tet_volumes
 
 
 def test_every_tetrahedron_is_positive(motor_mesh):
@@ -128,7 +128,8 @@ def test_point_in_lies_in_the_part(motor, motor_mesh):
     for index, name in enumerate(motor_mesh.parts):
         corners = motor_mesh.points[motor_mesh.tets[motor_mesh.region == index]]
         local = np.linalg.solve(
-            np.moveaxis(corners[:, 1:] - corners[:, :1], 1, 2), (np.array(motor.point_in(name)) - corners[:, 0])[..., None]
+            np.moveaxis(corners[:, 1:] - corners[:, :1], 1, 2),
+            (np.array(motor.point_in(name)) - corners[:, 0])[..., None],
         )[..., 0]
         assert ((local > -1e-9).all(axis=1) & (local.sum(axis=1) < 1 + 1e-9)).any(), name
 

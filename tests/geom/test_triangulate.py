@@ -29,7 +29,9 @@ def meshed(*profiles, size, across=1):
 @settings(max_examples=25, deadline=None)
 def test_comb_with_thin_gaps_is_covered_exactly(size, width):
     """A comb has borders that an unconstrained Delaunay triangulation would cut across."""
-    teeth = shapely.union_all([shapely.box(i * 0.2, 0, i * 0.2 + width, 1) for i in range(4)] + [shapely.box(0, -0.1, 1, 0)])
+    teeth = shapely.union_all(
+        [shapely.box(i * 0.2, 0, i * 0.2 + width, 1) for i in range(4)] + [shapely.box(0, -0.1, 1, 0)]
+    )
     ring = shapely.get_coordinates(shapely.orient_polygons(teeth).exterior)[:-1]
     points, n = nudged(ring), len(ring)
     border = np.column_stack([np.arange(n), (np.arange(n) + 1) % n])

@@ -1,0 +1,53 @@
+"""Series-wound DC traction motor: wound rotor with commutator, salient poles with field coils.
+
+The axis is z, the commutator sits on the right (high z), the feet point to -y. The housing is finned, or has
+one or two liquid jackets between the feet.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from geom import shapes
+from geom.families.family import Family
+from geom.families.series_dc.checks import check
+from geom.families.series_dc.housing import coolant, enclosure
+from geom.families.series_dc.layout import Axial, Radii
+from geom.families.series_dc.parameters import PARAMETERS
+from geom.families.series_dc.rotor import rotor
+from geom.families.series_dc.stator import stator
+from geom.part import Part, fluid
+
+
+def build(g: Any) -> tuple[Part, ...]:
+    """Solids and fluids of the machine. Raises InputError for parts that do not fit."""
+    z = Axial(g)
+    check(g, z)
+    return (*rotor(g, z), *stator(g, z), *enclosure(g, z), *_fluids(g, z))
+
+
+def _fluids(g: Any, z: Axial) -> tuple[Part, ...]:
+    r = Radii(g)
+    hollow, core = shapes.disc(r.yoke1), shapes.disc(g.rotor.outer_diameter / 2)
+    ducts = (fluid("air.ducts", (core, z.core0, z.core1)),) if g.rotor.ducts else ()
+    return (
+        fluid("air.left", (hollow, z.inner0, z.core0)),
+        *ducts,
+        fluid("airgap", (shapes.ring(r.rotor, r.bore), z.core0, z.core1)),
+        fluid("air.interpolar", (shapes.ring(r.bore, r.yoke0), z.core0, z.core1)),
+        fluid("air.right", (hollow, z.core1, z.inner1)),
+        *coolant(g, z),
+    )
+
+
+FAMILY = Family(
+    "series-dc",
+    "Series-wound DC traction motor with salient poles; housing with fins or liquid jackets",
+    PARAMETERS,
+    build,
+    {
+        ("housing", "ambient"): "housing.fins",
+        ("housing", "jacket.left"): "jacket.left.wall",
+        ("housing", "jacket.right"): "jacket.right.wall",
+    },
+)

@@ -1,0 +1,54 @@
+"""Shaft, armature and commutator."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from geom import shapes
+from geom.families.series_dc.layout import Axial, Radii
+from geom.part import Part, extrude
+from geom.profile import Profile
+
+
+def rotor(g: Any, z: Axial) -> tuple[Part, ...]:
+    r = Radii(g)
+    angles = shapes.evenly(g.rotor.slots)
+    wire = Profile(shapes.bar_loop(r.wire_bottom, r.wire_top, g.rotor.slot_width - 2 * g.rotor.liner))
+    liner = Profile(shapes.bar_loop(r.slot_bottom, r.rotor, g.rotor.slot_width), (wire.outer,))
+    wires, liners = shapes.turned(wire, angles), shapes.turned(liner, angles)
+    ends = shapes.ring(r.wire_bottom, r.wire_top)
+    return (
+        _shaft(g, z),
+        Part("rotor.core", "electrical-steel", ((_lamination(g, r, angles), z.core0, z.core1),), "laminated"),
+        Part("slot.liner", "slot-liner", extrude(liners, z.core0, z.core1)),
+        Part("winding.armature", "winding", extrude(wires, z.core0, z.core1), "wound"),
+        Part("winding.armature.left", "end-winding", (*extrude(wires, z.coil0, z.core0), (ends, z.ring0, z.coil0))),
+        Part("winding.armature.right", "end-winding", (*extrude(wires, z.core1, z.coil1), (ends, z.coil1, z.ring1))),
+        _commutator(g, z, r),
+    )
+
+
+def _lamination(g: Any, r: Radii, angles: list[float]) -> Profile:
+    ducts = shapes.turned(shapes.disc(g.rotor.duct_diameter / 2, duct_circle(g, r)), shapes.evenly(g.rotor.ducts))
+    loop = shapes.slotted_loop(r.rotor, g.rotor.slot_width, r.slot_bottom, angles)
+    return Profile(loop, (shapes.circle_loop(g.shaft.core_diameter / 2), *(duct.outer for duct in ducts)))
+
+
+def _shaft(g: Any, z: Axial) -> Part:
+    steps = (
+        (g.shaft.bearing_diameter, 0.0, z.inner0),
+        (g.shaft.core_diameter, z.inner0, z.ring1),
+        (g.shaft.hub_diameter, z.ring1, z.bars1),
+        (g.shaft.bearing_diameter, z.bars1, z.end),
+    )
+    return Part("shaft", "steel", tuple((shapes.disc(d / 2), z0, z1) for d, z0, z1 in steps))
+
+
+def _commutator(g: Any, z: Axial, r: Radii) -> Part:
+    hub = g.shaft.hub_diameter / 2
+    risers = (shapes.ring(hub, r.wire_top), z.ring1, z.riser1)
+    return Part("commutator", "commutator", (risers, (shapes.ring(hub, g.commutator.diameter / 2), z.riser1, z.bars1)))
+
+
+def duct_circle(g: Any, r: Radii) -> float:
+    return (g.shaft.core_diameter / 2 + r.slot_bottom) / 2

@@ -1,0 +1,48 @@
+"""Yoke, poles and field coils."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from geom import shapes
+from geom.families.series_dc.layout import Axial, Radii
+from geom.part import Part, Prism, extrude
+from geom.profile import Profile
+
+
+def stator(g: Any, z: Axial) -> tuple[Part, ...]:
+    r = Radii(g)
+    angles = shapes.evenly(g.stator.poles, math.pi / 2)
+    sides = [shapes.rectangle(r.coil0, r.coil1, *y) for y in ((-r.coil_side, -r.insulated), (r.insulated, r.coil_side))]
+    across = shapes.rectangle(r.coil0, r.coil1, -r.coil_side, r.coil_side)
+    plates = [shapes.rectangle(r.coil0, r.coil1, *y) for y in ((-r.insulated, -r.body), (r.body, r.insulated))]
+    cap = shapes.rectangle(r.coil0, r.coil1, -r.insulated, r.insulated)
+    inner0, inner1 = z.core0 - g.field.insulation, z.core1 + g.field.insulation
+    coil = (*extrude(sides, inner0, inner1), (across, z.field0, inner0), (across, inner1, z.field1))
+    lining = (*extrude(plates, z.core0, z.core1), (cap, inner0, z.core0), (cap, z.core1, inner1))
+    return (
+        Part("yoke", "steel", ((shapes.ring(r.yoke0, r.yoke1), z.yoke0, z.yoke1),)),
+        Part("poles", "electrical-steel", extrude(shapes.turned(_pole(g, r), angles), z.core0, z.core1), "laminated"),
+        Part("winding.field", "field-winding", _around(coil, angles), "wound"),
+        Part("field.insulation", "insulation", _around(lining, angles)),
+    )
+
+
+def _around(prisms: tuple[Prism, ...], angles: list[float]) -> tuple[Prism, ...]:
+    return tuple((profile.rotated(angle), z0, z1) for angle in angles for profile, z0, z1 in prisms)
+
+
+def _pole(g: Any, r: Radii) -> Profile:
+    tip = math.pi / g.stator.poles * g.stator.pole_arc
+    root = shapes.on_circle(r.yoke0, r.body)
+    return Profile((
+        shapes.polar(r.bore, -tip),
+        shapes.polar(r.bore + g.stator.tip, -tip),
+        (r.shoe_back, -r.body, 0.0),
+        (root, -r.body, shapes.bulge_of(2 * math.asin(r.body / r.yoke0))),
+        (root, r.body, 0.0),
+        (r.shoe_back, r.body, 0.0),
+        shapes.polar(r.bore + g.stator.tip, tip),
+        shapes.polar(r.bore, tip, -shapes.bulge_of(2 * tip)),
+    ))  # fmt: skip
