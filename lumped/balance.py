@@ -51,7 +51,9 @@ def balance(network: Network, record: Record, values: Mapping[str, float] | None
     everywhere = mean[core.terms.row]
     run = march(network, record, core, _through(network, core, mean), keep_states=True, count=True)
     left = march(network, record, core, everywhere, keep_states=False, count=True)
-    assert run.heat is not None and left.heat is not None and run.z is not None
+    assert run.heat is not None
+    assert left.heat is not None
+    assert run.z is not None
     links, n = len(network.links), len(network.states)
     return Balance(
         run.time,

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+
+from lumped.jit import inner, inner_reordered
 
 
-@njit(cache=True, nogil=True)
+@inner
 def lu(A, pivot):
     """LU in place, rows swapped only where the diagonal is below a tenth of its column; False if singular."""
     n = A.shape[0]
@@ -32,7 +33,7 @@ def lu(A, pivot):
     return True
 
 
-@njit(cache=True, nogil=True, fastmath={"reassoc", "contract"})
+@inner_reordered
 def solve(A, pivot, b):
     """One right-hand side, in place."""
     n = A.shape[0]
@@ -50,14 +51,21 @@ def solve(A, pivot, b):
         b[i] = (b[i] - acc) / A[i, i]
 
 
-@njit(cache=True, nogil=True)
+@inner
 def axpy(a, x, y):
     if a != 0.0:
         for j in range(x.size):
             y[j] += a * x[j]
 
 
-@njit(cache=True, nogil=True)
+@inner
+def copy(x, y):
+    """y = x."""
+    for j in range(x.size):
+        y[j] = x[j]
+
+
+@inner
 def solve_many(A, pivot, B):
     """Right-hand sides in the columns of B (n, p), in place."""
     n, p = B.shape
@@ -75,7 +83,7 @@ def solve_many(A, pivot, B):
             B[i, j] /= A[i, i]
 
 
-@njit(cache=True, nogil=True)
+@inner
 def subtract_product(A, X, out):
     """out -= A X."""
     for i in range(A.shape[0]):

@@ -15,10 +15,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
-from lumped.dense import axpy, lu, solve, solve_many, subtract_product
-from lumped.terms import Floats, Ints, bend, directional, evaluate, force, jacobian, patterns
+from lumped.dense import axpy, copy, lu, solve, solve_many, subtract_product
+from lumped.jit import entry, inner
+from lumped.terms import Floats, Ints, bend, clear, directional, evaluate, force, jacobian, patterns
 
 GAMMA = 1.0 - 1.0 / np.sqrt(2.0)
 MOST_ITERATIONS, CONVERGED_K = 50, 1e-9
@@ -69,17 +69,18 @@ class Work(NamedTuple):
     seen: Floats
 
 
-@njit(cache=True, nogil=True)
+@inner
 def _stage(n, nb, nv, ne):
     nz = n + nb + 1
     tau = np.zeros((ne, 6))
-    tau[:, 0] = 1.0
+    for e in range(ne):
+        tau[e, 0] = 1.0
     z = np.zeros(nz)
     z[nz - 1] = 1.0
     return Stage(z, np.zeros(nv), tau, np.zeros(nz), np.zeros(nv), np.zeros(n))
 
 
-@njit(cache=True, nogil=True)
+@inner
 def _work(n, ne, p):
     square = np.zeros((4 if p > 0 else 2, n, n))
     wide = np.zeros((3, n, p))
@@ -100,7 +101,7 @@ def _work(n, ne, p):
     )
 
 
-@njit(cache=True, nogil=True)
+@inner
 def _changed(T, f, seen):
     """Whether the matrix differs from the one last factorised."""
     out = False
@@ -112,7 +113,7 @@ def _changed(T, f, seen):
     return out
 
 
-@njit(cache=True, nogil=True)
+@inner
 def _time_slope(T, K0, f, a, q):
     """F_t at the start of the step: boundaries move along a.w, factors along q.df."""
     n = q.Ft.size
@@ -129,15 +130,17 @@ def _time_slope(T, K0, f, a, q):
                 q.Ft[T.row[s]] -= c * a.vw[s] + turn * a.v[s]
 
 
-@njit(cache=True, nogil=True)
+@inner
 def _factorise(C, gh, q):
-    q.W[:, :] = gh * q.G
-    for i in range(C.size):
+    n = C.size
+    for i in range(n):
+        for j in range(n):
+            q.W[i, j] = gh * q.G[i, j]
         q.W[i, i] += C[i]
     return lu(q.W, q.pivot)
 
 
-@njit(cache=True, nogil=True)
+@inner
 def _rates(T, K0, C, f, f2, u2, h, refactor, a, b, q):
     """Both stages of one step: a at its start, b at its end; False if the matrix is singular."""
     n, gh = C.size, GAMMA * h
@@ -150,36 +153,42 @@ def _rates(T, K0, C, f, f2, u2, h, refactor, a, b, q):
             return False
     patterns(T, a.w, a.vw)
     _time_slope(T, K0, f, a, q)
-    a.k[:] = q.F + gh * q.Ft
+    for i in range(n):
+        a.k[i] = q.F[i] + gh * q.Ft[i]
     solve(q.W, q.pivot, a.k)
-    b.z[:n] = a.z[:n] + h * a.k
-    b.z[n : n + u2.size] = u2
+    for i in range(n):
+        b.z[i] = a.z[i] + h * a.k[i]
+    for i in range(u2.size):
+        b.z[n + i] = u2[i]
     evaluate(T, b.z, b.tau)
     patterns(T, b.z, b.v)
     force(T, K0, b.z, f2, b.tau, b.v, q.F)
-    b.k[:] = q.F - 2.0 * C * a.k - gh * q.Ft
+    for i in range(n):
+        b.k[i] = q.F[i] - 2.0 * C[i] * a.k[i] - gh * q.Ft[i]
     solve(q.W, q.pivot, b.k)
     return True
 
 
-@njit(cache=True, nogil=True)
+@inner
 def _directions(T, a, b, n):
     """The directions along which each stage linearises: its rate, and time forwards (a) or backwards (b)."""
-    a.w[:n] = a.k
-    b.w[:n] = b.k
-    b.w[n:] = -a.w[n:]
+    for i in range(n):
+        a.w[i] = a.k[i]
+        b.w[i] = b.k[i]
+    for i in range(n, a.w.size):
+        b.w[i] = -a.w[i]
     patterns(T, a.w, a.vw)
     patterns(T, b.w, b.vw)
 
 
-@njit(cache=True, nogil=True)
+@inner
 def _taken(T, e, s, f, f0, df, a, b, gh):
     """What stage b takes out of row s by term e, without m; it linearises at the start a of the step."""
     turn = directional(T, e, f0, df, a.tau, b.w)
     return f * b.tau[e, 0] * b.v[s] + gh * (f0 * a.tau[e, 0] * b.vw[s] + turn * a.v[s])
 
 
-@njit(cache=True, nogil=True)
+@inner
 def _count(T, through, f, f2, h, a, b, q, before, after):
     """Heat through every term over the step (J), by the scheme's own quadrature."""
     gh = GAMMA * h
@@ -192,7 +201,7 @@ def _count(T, through, f, f2, h, a, b, q, before, after):
         after[e] = before[e] + 0.5 * h * T.m[e] * acc
 
 
-@njit(cache=True, nogil=True)
+@inner
 def _moved(T, S, f, f0, df, sign, a, b, gh, out):
     """out -= d m times what stage b takes out, for every multiplier a tangent moves."""
     for i in range(S.term.size):
@@ -201,12 +210,12 @@ def _moved(T, S, f, f0, df, sign, a, b, gh, out):
             out[T.row[s], j] -= slope * _taken(T, e, s, f[e], f0[e], sign * df[e], a, b, gh)
 
 
-@njit(cache=True, nogil=True)
+@inner
 def _tangents(T, S, K0, C, f, f2, h, curved, a, b, q):
     """Move the tangents q.D over the step."""
     n, gh = C.size, GAMMA * h
-    q.D1[:, :] = 0.0
-    q.D2[:, :] = 0.0
+    clear(q.D1)
+    clear(q.D2)
     subtract_product(q.G, q.D, q.D1)
     if curved:
         bend(T, f, q.df, 1.0, a.tau, a.v, a.w, a.vw, gh, q.H)
@@ -221,7 +230,8 @@ def _tangents(T, S, K0, C, f, f2, h, curved, a, b, q):
     if curved:
         jacobian(T, K0, f2, b.tau, b.v, q.G2)
     else:
-        q.G2[:, :] = q.G
+        for i in range(n):
+            copy(q.G[i], q.G2[i])
     for i in range(n):
         axpy(h, q.D1[i], q.D[i])
     subtract_product(q.G2, q.D, q.D2)
@@ -234,7 +244,27 @@ def _tangents(T, S, K0, C, f, f2, h, curved, a, b, q):
         axpy(0.5 * h, q.D2[i], q.D[i])
 
 
-@njit(cache=True, nogil=True)
+@inner
+def _finite(x):
+    total = 0.0
+    for i in range(x.size):
+        total += 0.0 * x[i]
+    return total == 0.0
+
+
+@inner
+def _begin(T, u, t, h, a, q):
+    """Slopes of factors (q.df) and boundaries (a.w) over the step that ends at index t."""
+    n, nb = q.F.size, u.shape[1]
+    for e in range(T.m.size):
+        q.df[e] = (T.factor[t, e] - T.factor[t - 1, e]) / h
+    for i in range(n):
+        a.w[i] = 0.0
+    for b in range(nb):
+        a.w[n + b] = (u[t, b] - u[t - 1, b]) / h
+
+
+@inner
 def _balance_rows(T, K0, C, f, a, q):
     """W = G in the rows without capacity, identity elsewhere; F at a.z. False if singular."""
     evaluate(T, a.z, a.tau)
@@ -244,12 +274,13 @@ def _balance_rows(T, K0, C, f, a, q):
     for i in range(C.size):
         if C[i] > 0.0:
             q.F[i] = 0.0
-            q.W[i] = 0.0
+            for j in range(C.size):
+                q.W[i, j] = 0.0
             q.W[i, i] = 1.0
     return lu(q.W, q.pivot)
 
 
-@njit(cache=True, nogil=True)
+@inner
 def settle(T, S, K0, C, f, a, q):
     """Bring the states without capacity to their balance at fixed others (Newton), tangents with them."""
     n = C.size
@@ -257,26 +288,32 @@ def settle(T, S, K0, C, f, a, q):
         if not _balance_rows(T, K0, C, f, a, q):
             return False
         solve(q.W, q.pivot, q.F)
-        a.z[:n] += q.F
-        if np.max(np.abs(q.F)) < CONVERGED_K:
+        largest = 0.0
+        for i in range(n):
+            a.z[i] += q.F[i]
+            largest = max(largest, abs(q.F[i]))
+        if largest < CONVERGED_K:
             break
     else:
         return False
     if S.dC.shape[1] > 0:
         _balance_rows(T, K0, C, f, a, q)
-        q.D1[:, :] = 0.0
-        a.w[:] = 0.0
-        a.vw[:] = 0.0
+        clear(q.D1)
+        for i in range(a.w.size):
+            a.w[i] = 0.0
+        for i in range(a.vw.size):
+            a.vw[i] = 0.0
         _moved(T, S, f, f, q.df, 0.0, a, a, 0.0, q.D1)
         for i in range(n):
             if C[i] > 0.0:
-                q.D1[i] = q.D[i]
+                copy(q.D[i], q.D1[i])
         solve_many(q.W, q.pivot, q.D1)
-        q.D[:, :] = q.D1
-    return np.all(np.isfinite(a.z))
+        for i in range(n):
+            copy(q.D1[i], q.D[i])
+    return _finite(a.z)
 
 
-@njit(cache=True, nogil=True)
+@inner
 def _outputs(R, z, D, y, dy):
     n, p = D.shape
     for r in range(y.size):
@@ -286,7 +323,32 @@ def _outputs(R, z, D, y, dy):
                 axpy(R.weight[i], D[R.at[i]], dy[r])
 
 
-@njit(cache=True, nogil=True)
+@inner
+def _has_both(x, y):
+    found = 0
+    for i in range(x.size):
+        found += x[i] * y[i]
+    return found > 0
+
+
+@inner
+def _has_zero(x):
+    smallest = np.inf
+    for i in range(x.size):
+        smallest = min(smallest, abs(x[i]))
+    return smallest == 0.0
+
+
+@inner
+def _start(a, x0, u):
+    """x0 and the first boundary temperatures into the stage's z."""
+    for i in range(x0.size):
+        a.z[i] = x0[i]
+    for b in range(u.shape[1]):
+        a.z[x0.size + b] = u[0, b]
+
+
+@entry
 def integrate(time, u, x0, C, K0, T, S, R, through, z_out, y, dy, heat):
     """March over the record; -1, or the index of the time at which the matrix was singular or x not finite.
 
@@ -298,18 +360,15 @@ def integrate(time, u, x0, C, K0, T, S, R, through, z_out, y, dy, heat):
     a, b = _stage(n, nb, T.row.size, ne), _stage(n, nb, T.row.size, ne)
     q = _work(n, ne, S.dC.shape[1])
     p, count = S.dC.shape[1], heat.shape[0] > 0
-    curved = np.any(T.dynamic * T.stiff == 1)
-    a.z[:n], a.z[n : n + nb] = x0, u[0]
-    massless = np.any(C == 0.0)
+    curved, massless = _has_both(T.dynamic, T.stiff), _has_zero(C)
+    _start(a, x0, u)
     h_last = -1.0
     for t in range(time.size):
         h = time[t] - time[max(t - 1, 0)]
         if h > 0.0:
             f, f2 = T.factor[t - 1], T.factor[t]
             h = h_last if abs(h - h_last) <= 1e-12 * h else h
-            q.df[:] = (f2 - f) / h
-            a.w[:n] = 0.0
-            a.w[n : n + nb] = (u[t] - u[t - 1]) / h
+            _begin(T, u, t, h, a, q)
             fresh = _changed(T, f, q.seen) or h != h_last
             if not _rates(T, K0, C, f, f2, u[t], h, fresh, a, b, q):
                 return t
@@ -320,23 +379,27 @@ def integrate(time, u, x0, C, K0, T, S, R, through, z_out, y, dy, heat):
                 _tangents(T, S, K0, C, f, f2, h, curved, a, b, q)
             if count:
                 _count(T, through, f, f2, h, a, b, q, heat[t - 1], heat[t])
-            a.z[:n] += h * (1.5 * a.k + 0.5 * b.k)
-            if not np.all(np.isfinite(a.z[:n])):
+            for i in range(n):
+                a.z[i] += h * (1.5 * a.k[i] + 0.5 * b.k[i])
+            if not _finite(a.z):
                 return t
         elif count and t > 0:
-            heat[t] = heat[t - 1]
-        a.z[n : n + nb] = u[t]
+            for e in range(ne):
+                heat[t, e] = heat[t - 1, e]
+        for i in range(nb):
+            a.z[n + i] = u[t, i]
         if h == 0.0 and massless:
             h_last = -1.0
             if not settle(T, S, K0, C, T.factor[t], a, q):
                 return t
         if z_out.shape[0] > 0:
-            z_out[t] = a.z[: n + nb]
+            for i in range(n + nb):
+                z_out[t, i] = a.z[i]
         _outputs(R, a.z, q.D, y[t], dy[t])
     return -1
 
 
-@njit(cache=True, nogil=True)
+@entry
 def rest(u, x0, K0, T, S, R, z, y, dy, G):
     """The state at which nothing changes any more (all capacities set aside); False if there is none.
 
@@ -344,12 +407,13 @@ def rest(u, x0, K0, T, S, R, z, y, dy, G):
     """
     n, nb, ne = x0.size, u.shape[1], T.m.size
     a, q = _stage(n, nb, T.row.size, ne), _work(n, ne, S.dC.shape[1])
-    a.z[:n], a.z[n : n + nb] = x0, u[0]
+    _start(a, x0, u)
     if not settle(T, S, K0, np.zeros(n), T.factor[0], a, q):
         return False
     evaluate(T, a.z, a.tau)
     patterns(T, a.z, a.v)
     jacobian(T, K0, T.factor[0], a.tau, a.v, G)
-    z[:] = a.z[: n + nb]
+    for i in range(n + nb):
+        z[i] = a.z[i]
     _outputs(R, a.z, q.D, y[0], dy[0])
     return True

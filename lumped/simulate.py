@@ -53,7 +53,7 @@ def checked_time(time: Array) -> Array:
     return out
 
 
-def boundary_table(network: Network, boundaries: Mapping[str, Array], nt: int) -> Array:
+def boundary_table(network: Network, boundaries: Mapping[str, Array | float], nt: int) -> Array:
     """(nt, n_boundaries) degC in the network's order."""
     out = np.empty((nt, len(network.boundaries)))
     for k, name in enumerate(network.boundaries):

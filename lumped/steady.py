@@ -32,8 +32,8 @@ class Steady:
 
 def steady(
     network: Network,
-    inputs: Mapping[str, float],
-    boundaries: Mapping[str, float],
+    inputs: Mapping[str, Array | float],
+    boundaries: Mapping[str, Array | float],
     values: Mapping[str, float] | None = None,
     rows: Sequence[Row] = (),
     tangents: Sequence[Parameter] = (),
@@ -53,7 +53,6 @@ def steady(
     z, y, dy, G = np.zeros(network.size), np.zeros((1, nr)), np.zeros((1, nr, p)), np.zeros((n, n))
     found = rest(u, x0, core.K0, core.terms, core.tangents, core.rows, z, y, dy, G)
     if not found or np.linalg.slogdet(G)[0] <= 0:
-        raise ThermoscopeError(
-            f"network '{network.name}' does not come to rest: a node nothing holds, or thermal runaway"
-        )
+        why = "a node nothing holds, or thermal runaway"
+        raise ThermoscopeError(f"network '{network.name}' does not come to rest: {why}")
     return Steady((*network.states, *network.boundaries), z, y[0], dy[0] if p else None)

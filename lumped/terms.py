@@ -9,8 +9,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from lumped.jit import inner
 
 SIGMA = 5.670374419e-8
 ZERO_C = 273.15
@@ -57,50 +58,68 @@ class Terms(NamedTuple):
     bends: Ints
 
 
-@njit(cache=True, nogil=True)
-def _table(x, y, at):
-    """Value and slope of a piecewise linear table, flat outside."""
-    last = x.size - 1
-    if at >= x[last]:
-        return y[last], 0.0
-    if at <= x[0]:
-        return y[0], 0.0
-    k = np.searchsorted(x, at, side="right") - 1
-    slope = (y[k + 1] - y[k]) / (x[k + 1] - x[k])
-    return y[k] + slope * (at - x[k]), slope
+@inner
+def _segment(x, start, end, at):
+    """Index k of the piece of a table that holds `at`: x[k] <= at < x[k + 1]."""
+    while end - start > 1:
+        middle = (start + end) // 2
+        if x[middle] <= at:
+            start = middle
+        else:
+            end = middle
+    return start
 
 
-@njit(cache=True, nogil=True)
-def law(code, a, b, x, y, hot, cold):
-    """Temperature law: value, its derivatives by hot and cold, and the second ones hh, hc, cc."""
-    d = hot - cold
+@inner
+def _tabulated(T, e, d, out):
+    """Piecewise linear in |d|, flat outside."""
+    first, last, at = T.table_start[e], T.table_start[e + 1] - 1, abs(d)
+    out[1] = 0.0
+    if at >= T.table_x[last]:
+        out[0] = T.table_y[last]
+    elif at <= T.table_x[first]:
+        out[0] = T.table_y[first]
+    else:
+        k = _segment(T.table_x, first, last, at)
+        slope = (T.table_y[k + 1] - T.table_y[k]) / (T.table_x[k + 1] - T.table_x[k])
+        out[0] = T.table_y[k] + slope * (at - T.table_x[k])
+        out[1] = slope if d >= 0.0 else -slope
+    out[2] = -out[1]
+
+
+@inner
+def law(code, a, b, hot, cold, out):
+    """Temperature law: value, its derivatives by hot and cold, and the second ones hh, hc, cc, into out (6,)."""
     if code == POWER:
+        d = hot - cold
         s = d * d + SMOOTH * SMOOTH
-        value = s ** (0.5 * a)
-        slope = a * value / s * d
-        bend = a * value / s * (1.0 + (a - 2.0) * d * d / s)
-        return value, slope, -slope, bend, -bend, bend
-    if code == RADIATION:
+        out[0] = s ** (0.5 * a)
+        out[1] = a * out[0] / s * d
+        out[2] = -out[1]
+        out[3] = a * out[0] / s * (1.0 + (a - 2.0) * d * d / s)
+        out[4] = -out[3]
+        out[5] = out[3]
+    elif code == RADIATION:
         h, c = hot + ZERO_C, cold + ZERO_C
-        hc = 2.0 * SIGMA * (h + c)
-        return (
-            SIGMA * (h * h + c * c) * (h + c),
-            SIGMA * (3.0 * h * h + 2.0 * h * c + c * c),
-            SIGMA * (3.0 * c * c + 2.0 * h * c + h * h),
-            SIGMA * (6.0 * h + 2.0 * c),
-            hc,
-            SIGMA * (6.0 * c + 2.0 * h),
-        )
-    if code == LINEAR:
-        return 1.0 + a * (hot - b), a, 0.0, 0.0, 0.0, 0.0
-    if code == TABLE:
-        value, slope = _table(x, y, abs(d))
-        slope = slope if d >= 0.0 else -slope
-        return value, slope, -slope, 0.0, 0.0, 0.0
-    return 1.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        out[0] = SIGMA * (h * h + c * c) * (h + c)
+        out[1] = SIGMA * (3.0 * h * h + 2.0 * h * c + c * c)
+        out[2] = SIGMA * (3.0 * c * c + 2.0 * h * c + h * h)
+        out[3] = SIGMA * (6.0 * h + 2.0 * c)
+        out[4] = 2.0 * SIGMA * (h + c)
+        out[5] = SIGMA * (6.0 * c + 2.0 * h)
+    elif code == LINEAR:
+        out[0] = 1.0 + a * (hot - b)
+        out[1] = a
 
 
-@njit(cache=True, nogil=True)
+@inner
+def clear(A):
+    for i in range(A.shape[0]):
+        for j in range(A.shape[1]):
+            A[i, j] = 0.0
+
+
+@inner
 def _dot(start, at, weight, e, z):
     out = 0.0
     for i in range(start[e], start[e + 1]):
@@ -108,28 +127,31 @@ def _dot(start, at, weight, e, z):
     return out
 
 
-@njit(cache=True, nogil=True)
+@inner
 def evaluate(T, z, tau):
     """Temperature laws of all terms at z: tau (ne, 6) = value, d/dhot, d/dcold, hh, hc, cc."""
     for e in range(T.m.size):
         if T.bends[e]:
             hot = _dot(T.hot_start, T.hot_at, T.hot_w, e, z)
             cold = _dot(T.cold_start, T.cold_at, T.cold_w, e, z)
-            lo, hi = T.table_start[e], T.table_start[e + 1]
-            tau[e] = law(T.code[e], T.par[e, 0], T.par[e, 1], T.table_x[lo:hi], T.table_y[lo:hi], hot, cold)
+            if T.code[e] == TABLE:
+                _tabulated(T, e, hot - cold, tau[e])
+            else:
+                law(T.code[e], T.par[e, 0], T.par[e, 1], hot, cold, tau[e])
 
 
-@njit(cache=True, nogil=True)
+@inner
 def patterns(T, z, out):
     """P z of every term, on its own rows."""
-    out[:] = 0.0
+    for s in range(out.size):
+        out[s] = 0.0
     for e in range(T.m.size):
         base = T.row_start[e]
         for i in range(T.start[e], T.start[e + 1]):
             out[base + T.slot[i]] += T.val[i] * z[T.col[i]]
 
 
-@njit(cache=True, nogil=True)
+@inner
 def force(T, K0, z, f, tau, v, out):
     """out = F = -K0 z - sum of the dynamic terms; f (ne,) input factors, tau and v = P z at z."""
     for i in range(out.size):
@@ -144,7 +166,7 @@ def force(T, K0, z, f, tau, v, out):
                 out[T.row[s]] -= c * v[s]
 
 
-@njit(cache=True, nogil=True)
+@inner
 def _add_pattern(T, e, c, A):
     base, n = T.row_start[e], A.shape[0]
     for i in range(T.start[e], T.start[e + 1]):
@@ -152,7 +174,7 @@ def _add_pattern(T, e, c, A):
             A[T.row[base + T.slot[i]], T.col[i]] += c * T.val[i]
 
 
-@njit(cache=True, nogil=True)
+@inner
 def _add_outer(T, e, v, by_hot, by_cold, A):
     """A += v (by_hot hot + by_cold cold)' on the states."""
     n = A.shape[0]
@@ -166,11 +188,12 @@ def _add_outer(T, e, v, by_hot, by_cold, A):
                 A[r, T.cold_at[i]] += v[s] * by_cold * T.cold_w[i]
 
 
-@njit(cache=True, nogil=True)
+@inner
 def jacobian(T, K0, f, tau, v, G):
     """G = -dF/dx (n, n)."""
-    n = G.shape[0]
-    G[:, :] = K0[:, :n]
+    for i in range(G.shape[0]):
+        for j in range(G.shape[0]):
+            G[i, j] = K0[i, j]
     for e in range(T.m.size):
         if T.dynamic[e] and T.stiff[e] and T.m[e] != 0.0:
             mf = T.m[e] * f[e]
@@ -179,7 +202,7 @@ def jacobian(T, K0, f, tau, v, G):
                 _add_outer(T, e, v, mf * tau[e, 1], mf * tau[e, 2], G)
 
 
-@njit(cache=True, nogil=True)
+@inner
 def directional(T, e, f, df, tau, z_dot):
     """d/ds of the coefficient c (without m) of term e along z_dot, and along time with df = df/dt."""
     hot = _dot(T.hot_start, T.hot_at, T.hot_w, e, z_dot)
@@ -187,10 +210,10 @@ def directional(T, e, f, df, tau, z_dot):
     return f * (tau[e, 1] * hot + tau[e, 2] * cold) + df * tau[e, 0]
 
 
-@njit(cache=True, nogil=True)
+@inner
 def bend(T, f, df, sign, tau, v, z_dot, v_dot, scale, H):
     """H = scale * how G changes along z_dot and along time (forwards or backwards by sign); df (ne,) slopes."""
-    H[:, :] = 0.0
+    clear(H)
     for e in range(T.m.size):
         if T.dynamic[e] and T.stiff[e] and T.m[e] != 0.0:
             m, slope = scale * T.m[e], sign * df[e]
