@@ -10,6 +10,7 @@ _HOME = {
     "SplitMesh": "nodes", "split": "nodes", "require_gl": "gl", "off_screen_window": "gl",
     "Wedge": "cut", "HALF": "cut", "QUARTER": "cut", "cutaway": "field", "pair": "field",
     "regions": "parts", "exploded": "parts", "missing_heat": "heat",
+    "heat_flows": "flows", "sankey_of_losses": "sankey", "network_in_machine": "network", "animate": "animation",
     "measured_and_model": "curves", "residuals": "curves", "before_after": "errors", "staircase": "errors",
     "scores": "candidates", "half_normal": "candidates", "confusion": "candidates",
     "write_recording": "recording", "verify": "recording", "Report": "report", "write_report": "report",

@@ -55,11 +55,11 @@ def _callout(p: pyvista.Plotter, label: Label, end: Array, side: int, theme: The
     halo = p.add_mesh(here, color="white", point_size=26, **flat)
     dot = p.add_mesh(here.copy(), color=label.colour, point_size=19, **flat)
     for actor, order in ((line, 1), (halo, 2), (dot, 3)):
-        _on_top(actor, order)
-    p.add_actor(_text(label.text, end, label.colour, side, size), reset_camera=False, pickable=False)
+        on_top(actor, order)
+    p.add_actor(text(label.text, end, label.colour, side, size), reset_camera=False, pickable=False)
 
 
-def _text(text: str, at: Array, colour: str, side: int, size: int) -> Any:
+def text(text: str, at: Array, colour: str, side: int, size: int) -> Any:
     """White text on a coloured ground, pinned to a point in space."""
     import pyvista
     from vtkmodules.vtkRenderingCore import vtkTextActor
@@ -78,11 +78,11 @@ def _text(text: str, at: Array, colour: str, side: int, size: int) -> Any:
     style.SetFrameColor(*ground)
     style.SetFrameWidth(4)
     style.SetVerticalJustificationToCentered()
-    style.SetJustificationToLeft() if side > 0 else style.SetJustificationToRight()
+    (style.SetJustificationToRight, style.SetJustificationToCentered, style.SetJustificationToLeft)[side + 1]()
     return actor
 
 
-def _on_top(actor: Any, order: int) -> None:
+def on_top(actor: Any, order: int) -> None:
     """Draw the actor over everything else: a thermocouple inside the machine must be seen."""
     mapper = actor.GetMapper()
     mapper.SetResolveCoincidentTopologyToPolygonOffset()

@@ -46,7 +46,7 @@ def cutaway(
     """
     p, view = scene.plotter(theme), view or View()
     surface = cut_away(nodes, wedge)
-    _paint(p, surface, on_nodes(nodes, T), limits, theme)
+    paint(p, surface, on_nodes(nodes, T), limits, theme)
     scene.colour_bar(p, UNIT, theme)
     scene.headline(p, title, theme)
     scene.look(p, surface.points, view, _room(bool(sensors), title))
@@ -73,7 +73,7 @@ def pair(
     surface = cut_away(nodes, wedge)
     for i, field in enumerate(fields):
         p.subplot(0, i)
-        _paint(p, surface, field, limits, theme)
+        paint(p, surface, field, limits, theme)
         scene.headline(p, titles[i], theme)
         scene.look(p, surface.points, view, Room(0.0, 0.16))
     scene.colour_bar(p, UNIT, theme, position_x=0.84, width=0.09)
@@ -81,7 +81,10 @@ def pair(
     return p
 
 
-def _paint(p: pyvista.Plotter, surface: Surface, T: Array, limits: tuple[float, float] | None, theme: Theme) -> None:
+def paint(
+    p: pyvista.Plotter, surface: Surface, T: Array, limits: tuple[float, float] | None, theme: Theme
+) -> pyvista.PolyData:
+    """Add the surface coloured by nodal temperatures; its point data "T" may be changed afterwards."""
     data = scene.polydata(surface)
     data.point_data["T"] = surface.values(T)
     scene.outline(p, data, theme)
@@ -89,6 +92,7 @@ def _paint(p: pyvista.Plotter, surface: Surface, T: Array, limits: tuple[float, 
         data, scalars="T", cmap=heat(), clim=limits or (float(T.min()), float(T.max())), show_scalar_bar=False,
         ambient=0.8, diffuse=0.28, specular=0.0, interpolate_before_map=True,
     )  # fmt: skip
+    return data
 
 
 def _room(labels: bool, title: str) -> Room:

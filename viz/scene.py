@@ -119,7 +119,7 @@ def colour_bar(p: pyvista.Plotter, title: str, theme: Theme = LIGHT, **options: 
 def headline(p: pyvista.Plotter, text: str, theme: Theme = LIGHT) -> None:
     """One line above the picture."""
     if text:
-        actor = p.add_text(text, position=(0.02, 0.94), viewport=True, font_size=14, color=theme.ink)
+        actor = p.add_text(text, position=(0.02, 0.94), viewport=True, font_size=14, color=theme.ink, name="headline")
         set_font(actor.GetTextProperty())
 
 

@@ -1,0 +1,89 @@
+"""Heat flows of a hand-made network, and their pictures."""
+
+import numpy as np
+import pytest
+from PIL import Image
+from small_motor import LEVELS, RADII, motor
+
+from geom.errors import InputError
+from lumped import Balance, bare_network, node_link, node_source
+from lumped.laws import Fixed
+from viz import paper
+from viz.animation import animate
+from viz.flows import Heat, heat_flows
+from viz.network import apart, network_in_machine, places
+from viz.nodes import split
+from viz.sankey import sankey_of_losses
+
+MESH = motor(24)
+NODES = split(MESH)
+
+
+@pytest.fixture(scope="module")
+def heat():
+    """100 W into the yoke, through a contact to the housing and out to the air; 25 W of it still warm the yoke."""
+    net = bare_network("two", {"yoke": 10.0, "housing": 10.0}, ("ambient",))
+    links = [
+        node_link(net, "contact:housing|yoke", "contact", "housing", "yoke", Fixed(2.0)),
+        node_link(net, "film:housing.outer", "film", "housing", "ambient", Fixed(5.0)),
+    ]
+    net = net.extended(links, [node_source(net, "loss:iron", "iron", {"yoke": 1.0}, Fixed(100.0))])
+    seconds = np.array([0.0, 10.0])
+    through = {"contact:housing|yoke": -75.0 * seconds, "film:housing.outer": 75.0 * seconds}
+    return heat_flows(net, Balance(seconds, through, {"loss:iron": 100.0 * seconds}, 75.0 * seconds, 25.0 * seconds))
+
+
+def test_what_is_lost_leaves_or_is_stored(heat):
+    assert heat.losses == pytest.approx({"iron": 100.0})
+    assert heat.out == pytest.approx({"housing": 75.0})
+    assert heat.stored == pytest.approx(25.0)
+
+
+def test_flow_keeps_the_sign_of_its_link(heat):
+    flow = next(f for f in heat.flows if f.kind == "contact")
+    assert (flow.start, flow.end) == ("housing", "yoke")
+    assert flow.watts == pytest.approx(-75.0)
+
+
+def test_ribbons_carry_their_watts():
+    drawn = Heat({"copper": 300.0, "iron": 100.0}, (), {"fan:a": 150.0, "fan:b": 50.0, "housing": 120.0, "shaft": 1.0})
+    text = paper.svg(sankey_of_losses(drawn), "s").replace("\u00a0", " ")
+    shown = ["copper  300 W", "iron  100 W", "400 W", "fan  200 W", "housing  120 W", "warms the machine  79 W"]
+    assert [word for word in shown if word not in text] == []
+    assert "shaft" not in text
+
+
+def test_no_losses_no_ribbons():
+    with pytest.raises(InputError, match="no losses"):
+        sankey_of_losses(Heat({}, (), {}))
+
+
+def test_nodes_stand_where_their_parts_are():
+    """A ring of inner and outer radius a, b has mean radius 2/3 (b3 - a3) / (b2 - a2); polygons are a little inside."""
+    at = places(MESH, NODES)
+    a, b = RADII[5], RADII[6]
+    assert at["yoke"][1] == pytest.approx(2 / 3 * (b**3 - a**3) / (b**2 - a**2), rel=0.02)
+    assert at["yoke"][2] == pytest.approx((LEVELS[2] + LEVELS[8]) / 2)
+
+
+def test_nodes_on_one_spot_are_pushed_apart():
+    moved = apart({"a": np.zeros(3), "b": np.zeros(3), "c": np.array([0, 0, 1.0])}, 0.1)
+    assert np.linalg.norm(moved["a"] - moved["b"]) >= 0.1
+    assert moved["c"].tolist() == [0, 0, 1.0]
+
+
+def test_network_picture_shows_its_lines(heat, tmp_path):
+    network_in_machine(MESH, {"yoke": 90.0, "housing": 40.0}, heat, png=tmp_path / "n.png").close()
+    network_in_machine(MESH, {"yoke": 90.0, "housing": 40.0}, Heat({}, (), {}), png=tmp_path / "0.png").close()
+    with_lines, without = (np.asarray(Image.open(tmp_path / f"{n}.png").convert("RGB")).astype(int) for n in "n0")
+    assert (np.abs(with_lines - without).max(axis=2) > 60).sum() > 300
+
+
+def test_animation_has_a_frame_per_time_and_warms_up(tmp_path):
+    fields = np.linspace(20.0, 90.0, 4)[:, None] * np.ones(NODES.size)
+    gif = Image.open(animate(NODES, [0.0, 600.0, 1200.0, 1800.0], fields, tmp_path / "a.gif"))
+    assert gif.n_frames == 4
+    first = np.asarray(gif.convert("RGB")).astype(int)
+    gif.seek(3)
+    last = np.asarray(gif.convert("RGB")).astype(int)
+    assert last[200:500, 200:700, 1].mean() > first[200:500, 200:700, 1].mean() + 20
