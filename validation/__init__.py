@@ -1,0 +1,29 @@
+"""Does the model agree with the measurements, and if not, what is missing?"""
+
+from validation.case import AddedEffect, Case, Channel, Model, Test
+from validation.compare import Comparison, compare
+from validation.diagnose import diagnose
+from validation.effects import Effect, Scene, catalogue, effect, kinds
+from validation.findings import Diagnosis
+from validation.revise import Revision, add, calibrate, remove
+
+__all__ = [
+    "AddedEffect",
+    "Case",
+    "Channel",
+    "Comparison",
+    "Diagnosis",
+    "Effect",
+    "Model",
+    "Revision",
+    "Scene",
+    "Test",
+    "add",
+    "calibrate",
+    "catalogue",
+    "compare",
+    "diagnose",
+    "effect",
+    "kinds",
+    "remove",
+]

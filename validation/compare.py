@@ -121,7 +121,7 @@ def channel_error(channel: Channel, predicted: np.ndarray) -> ChannelError:
     e, seen = predicted[read] - channel.y[read], channel.y[read]
     rmse, rise = float(np.sqrt(np.mean(e**2))), float(np.max(np.abs(seen - seen[0])))
     percent = 100.0 * rmse / rise if rise > 0 else float("inf")
-    return ChannelError(  # fmt: skip
+    return ChannelError(
         channel.name,
         channel.place,
         int(read.sum()),

@@ -27,6 +27,7 @@ STEPS = 3
 BEYOND = 1.6
 LOCATED = 10.0
 PULL = 3.0
+COMPENSATED = 0.05
 
 
 @dataclass(frozen=True)
@@ -73,7 +74,11 @@ def search(case: Case, evidence: Evidence, null: Null, limit: float, progress: P
         if np.max(evidence.score.z / kappa, initial=0.0) < limit or len(steps) == STEPS:
             return [*steps, Step(evidence, kappa, None)]
         found = race(evidence, kappa, limit, progress)
+        if steps and weak(evidence, found):
+            return [*steps, Step(evidence, kappa, None)]
         steps.append(Step(evidence, kappa, found))
+        if weak(evidence, found):
+            return [*steps, Step(evidence, kappa, None)]
         best = evidence.effects[found.index[0]]
         case = with_effect(case, best.kind, best.place, found.best)
         network, unknowns = working(case)
@@ -91,7 +96,7 @@ def with_effect(case: Case, kind: str, place: str, fit: Fit) -> Case:
 
 def conclude(case: Case, steps: list[Step], null: Null, limit: float, where: list[Latent], plan: bool) -> Diagnosis:
     """From the search to a verdict and its tables."""
-    first, last = steps[0], steps[-1]
+    first = steps[0]
     groups = [tuple(s.evidence.names[k] for k in s.race.group) for s in steps if s.race]
     pulls = pulled(first.evidence.fit, null)
     broken = broken_channels(first.evidence.tests)
@@ -122,7 +127,7 @@ def judge(steps: list[Step], null: Null, groups: list[tuple[str, ...]], pulled_:
     assert found is not None
     if all(evidence.effects[k].fault for k in found.group):
         return "data"
-    if evidence.twins[found.index[0]] and len(found.group) == 1:
+    if weak(evidence, found):
         return "absorbed"
     if len(found.group) > 1:
         return "group"
@@ -134,6 +139,18 @@ def beyond(fit: Fit, null: Null) -> bool:
     channels = list(dict.fromkeys(s.channel for s in fit.parts))
     left = [rmse([s for s in fit.parts if s.channel == c]) for c in channels]
     return bool(np.any(np.array(left) > BEYOND * np.maximum(null.floor, np.median(null.floor))))
+
+
+def explained(evidence: Evidence, found: Race) -> float:
+    """Share of the residual's sum of squares that the best candidate removes."""
+    return 1.0 - (rmse(found.best.parts) / rmse(evidence.fit.parts)) ** 2
+
+
+def weak(evidence: Evidence, found: Race) -> bool:
+    """Does the calibration explain the readings as well, against its priors only?"""
+    best = found.index[0]
+    twin = evidence.twins[best] is not None and not evidence.effects[best].fault
+    return twin or explained(evidence, found) < COMPENSATED
 
 
 def on_bound(evidence: Evidence, found: Race) -> bool:

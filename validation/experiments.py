@@ -87,13 +87,17 @@ def _half(scale: str) -> Callable[[Array, Inputs, Inputs], tuple[Inputs, Inputs]
     return change
 
 
+STANDING = _set(speed_rpm=0.0, vehicle_speed_mps=0.0)
+SPINNING = _set(current_A=0.0, torque_Nm=0.0, speed_rpm=1000.0, vehicle_speed_mps=0.0)
+COOLING = _set(vehicle_speed_mps=_on_off(12.0), speed_rpm=0.0)
+BLOWN = _set(vehicle_speed_mps=_on_off(8.0), speed_rpm=0.0)
+EVEN = _steady("current_A")
 MENU = (
-    Experiment("DC heating at standstill", _then(_steady("current_A"), _set(speed_rpm=0.0, vehicle_speed_mps=0.0)), ("current_A",)),
-    Experiment("spin without current", _set(current_A=0.0, torque_Nm=0.0, speed_rpm=1000.0, vehicle_speed_mps=0.0), ("speed_rpm",)),
-    Experiment("same current at two speeds", _then(_steady("current_A"), _set(speed_rpm=_on_off(1500.0, 2))), ("speed_rpm",)),
-    Experiment("cool-down with wind on and off", _set(vehicle_speed_mps=_on_off(12.0), speed_rpm=0.0), ("vehicle_speed_mps",)),
-    Experiment("blower on the machine at standstill", _then(_steady("current_A"), _set(vehicle_speed_mps=_on_off(8.0), speed_rpm=0.0)),
-               ("vehicle_speed_mps", "current_A")),
+    Experiment("DC heating at standstill", _then(EVEN, STANDING), ("current_A",)),
+    Experiment("spin without current", SPINNING, ("speed_rpm",)),
+    Experiment("same current at two speeds", _then(EVEN, _set(speed_rpm=_on_off(1500.0, 2))), ("speed_rpm", "current_A")),
+    Experiment("cool-down with wind on and off", COOLING, ("vehicle_speed_mps",)),
+    Experiment("blower on the machine at standstill", _then(EVEN, BLOWN), ("vehicle_speed_mps", "current_A")),
     Experiment("fan flow halved midway", _half("fan_flow_m3h"), ("fan_flow_m3h",)),
     Experiment("ambient raised by 20 K", _boundary_step("ambient", 20.0), (), 6.0),
     Experiment("coolant inlet raised by 20 K", _boundary_step("coolant", 20.0), (), 3.0),

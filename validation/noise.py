@@ -58,10 +58,10 @@ GRID = shapes()
 
 
 @lru_cache(maxsize=16)
-def _factors(time: bytes) -> tuple[NDArray[np.float32], Array]:
+def _factors(time: bytes) -> tuple[Array, Array]:
     """Inverse Cholesky factors (n_shape, n, n) and log-determinants (n_shape,) of all shapes on one time grid."""
     t = np.frombuffer(time)
-    inverse, logdet = np.empty((len(GRID), t.size, t.size), np.float32), np.empty(len(GRID))
+    inverse, logdet = np.empty((len(GRID), t.size, t.size)), np.empty(len(GRID))
     for k, shape in enumerate(GRID):
         L = np.linalg.cholesky(shape.matrix(t))
         inverse[k] = solve_triangular(L, np.eye(t.size), lower=True)
@@ -69,7 +69,7 @@ def _factors(time: bytes) -> tuple[NDArray[np.float32], Array]:
     return inverse, logdet
 
 
-def factors(time: Array) -> tuple[NDArray[np.float32], Array]:
+def factors(time: Array) -> tuple[Array, Array]:
     return _factors(np.round(time - time[0], 3).tobytes())
 
 
@@ -102,22 +102,26 @@ def first_noise(parts: Sequence[Segment]) -> Noise:
 
 def fit_noise(parts: Sequence[Segment], floor: float = FLOOR_K) -> Noise:
     """Maximum likelihood per channel, all tests of a channel together."""
-    shape, scale = {}, {}
-    for channel in dict.fromkeys(s.channel for s in parts):
-        own = [s for s in parts if s.channel == channel]
-        shape[channel], scale[channel] = _fit_channel([(s.time, s.r) for s in own], floor)
-    return Noise(shape, scale)
-
-
-def _fit_channel(series: Sequence[tuple[Array, Array]], floor: float) -> tuple[int, float]:
-    """Best shape and scale; the scale's prior counts as PRIOR_COUNT samples at the floor."""
-    n = sum(r.size for _, r in series)
-    square, logdet = np.zeros(len(GRID)), np.zeros(len(GRID))
-    for time, r in series:
-        inverse, ld = factors(time)
-        square += np.sum(np.square(inverse @ r.astype(np.float32), dtype=float), axis=1)
-        logdet += ld
-    variance = (square + PRIOR_COUNT * floor**2) / (n + PRIOR_COUNT)
+    channels = list(dict.fromkeys(s.channel for s in parts))
+    square, logdet, count = (np.zeros((len(channels), k)) for k in (len(GRID), len(GRID), 1))
+    for own in _same_grid(parts):
+        inverse, ld = factors(own[0].time)
+        white = np.tensordot(inverse, np.column_stack([s.r for s in own]), axes=(2, 0))
+        for s, energy in zip(own, np.einsum("kns,kns->sk", white, white), strict=True):
+            at = channels.index(s.channel)
+            square[at] += energy
+            logdet[at] += ld
+            count[at] += s.r.size
+    variance = (square + PRIOR_COUNT * floor**2) / (count + PRIOR_COUNT)
     prior = np.array([g.log_prior() for g in GRID])
-    best = int(np.argmax(-0.5 * (n * np.log(variance) + logdet) + prior))
-    return best, float(np.sqrt(max(variance[best], floor**2)))
+    best = np.argmax(-0.5 * (count * np.log(variance) + logdet) + prior, axis=1)
+    scale = np.sqrt(np.maximum(variance[np.arange(len(channels)), best], floor**2))
+    return Noise(dict(zip(channels, best.tolist(), strict=True)), dict(zip(channels, scale.tolist(), strict=True)))
+
+
+def _same_grid(parts: Sequence[Segment]) -> list[list[Segment]]:
+    """Segments by time grid; those of one grid are whitened in one product."""
+    out: dict[bytes, list[Segment]] = {}
+    for s in parts:
+        out.setdefault(s.time.tobytes(), []).append(s)
+    return list(out.values())

@@ -139,33 +139,36 @@ def _draw_shared(i: int) -> Drawn:
 
 
 def draw(setting: Setting, i: int) -> Drawn:
-    """One data set: simulate, calibrate with the Jacobian held, score."""
+    """One data set: simulate, calibrate with the Jacobian held, score.
+
+    The truth stays at the calibrated state and the prior is drawn around it: the same tension between prior and data as
+    with a drawn truth, and the Jacobian stays valid.
+    """
     fit, p = setting.fit, len(setting.fit.unknowns.parameters)
     rng = np.random.default_rng([setting.seed, i])
     tests = data(setting, rng)
     weight, (low, high) = fit.unknowns.sd**-2.0, fit.unknowns.bounds
     low, high = low - fit.theta, high - fit.theta
+    centre = np.clip(fit.unknowns.sd * rng.standard_normal(p), low, high)
     delta, parts = np.zeros(p), _residuals(setting, tests, np.zeros(p))
     noise = first_noise(parts)
     for round_ in range(3):
         A, b, _ = normal([replace(s, J=s.J[:, :p]) for s in parts], noise)
-        new = bounded_step(A + np.diag(weight), b - weight * delta, delta, low, high)
+        new = bounded_step(A + np.diag(weight), b - weight * (delta - centre), delta, low, high)
         if round_ < 2:
             parts = _residuals(setting, tests, new)
         else:
             parts = [replace(s, r=s.r - s.J[:, :p] @ (new - delta)) for s in parts]
         delta, noise = new, fit_noise(parts)
-    S = score(total(gram(parts, noise, p)), delta, fit.unknowns.sd, setting.sign)
+    S = score(total(gram(parts, noise, p)), delta - centre, fit.unknowns.sd, setting.sign)
     rms = [np.sqrt(np.mean(np.concatenate([s.r for s in parts if s.channel == c]) ** 2)) for c in noise.shape]
-    return S.z, delta / fit.unknowns.sd, np.array(rms)
+    return S.z, (delta - centre) / fit.unknowns.sd, np.array(rms)
 
 
 def data(setting: Setting, rng: np.random.Generator) -> list[Test]:
     """The tests with readings of a disturbed machine near the calibrated state."""
     fit, spread = setting.fit, setting.spread
-    low, high = fit.unknowns.bounds
-    root = np.linalg.cholesky(np.linalg.inv(fit.H))
-    values = fit.unknowns.values(np.clip(fit.theta + root @ rng.standard_normal(fit.theta.size), low, high))
+    values = fit.values
     real = disturbed(setting.network, rng, spread)
     out = []
     for test in setting.tests:

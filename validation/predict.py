@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.signal import lfilter
 
 from lumped.network import Network, Parameter
 from lumped.simulate import Record, simulate
@@ -105,8 +106,15 @@ def _shift_tangent(network: Network, test: Test, now: dict, p: Parameter, T: Arr
 def _operator_tangent(network: Network, test: Test, T: Array, now: dict, p: Parameter) -> Array:
     target = p.targets[0][0]
     step = STEP.get(head(p), 1e-3)
-    up = observe(network, test, T, {**now, target: now.get(target, 0.0) + step})
-    return (up - observe(network, test, T, now)) / step
+    moved = {**now, target: now.get(target, 0.0) + step}
+    out, names = np.zeros_like(T), [c.name for c in test.channels]
+    if any(key.startswith("swap:") for key in moved) or head(p) == "delay":
+        return (observe(network, test, T, moved) - observe(network, test, T, now)) / step
+    if (name := target.split(":", 1)[1]) in names:
+        j = [names.index(name)]
+        one = replace(test, channels=(test.channels[j[0]],))
+        out[:, j] = (observe(network, one, T[:, j], moved) - observe(network, one, T[:, j], now)) / step
+    return out
 
 
 def observe(network: Network, test: Test, T: Array, now: Mapping[str, float], linear: bool = False) -> Array:
@@ -154,11 +162,23 @@ def lagged(time: Array, T: Array, tau: float) -> Array:
     dt = np.diff(time)
     decay = np.exp(-dt / tau)
     share = np.where(dt > 0, tau / np.maximum(dt, 1e-12) * (1.0 - decay), 0.0)
-    rise, behind, out = np.diff(T, axis=0), np.zeros_like(T[0]), np.array(T)
-    for n in range(dt.size):
-        behind = decay[n] * behind - share[n] * rise[n]
-        out[n + 1] += behind
+    push = -share.reshape(-1, *(1,) * (T.ndim - 1)) * np.diff(T, axis=0)
+    out = np.array(T)
+    out[1:] += _even(push, decay[0]) if np.ptp(dt) < 1e-9 * dt[0] else _uneven(push, decay)
     return out
+
+
+def _even(push: Array, decay: float) -> Array:
+    """b[n] = decay b[n-1] + push[n]."""
+    return np.asarray(lfilter([1.0], [1.0, -decay], push, axis=0))
+
+
+def _uneven(push: Array, decay: Array) -> Array:
+    """The same with a decay of its own for each step."""
+    behind = np.array(push)
+    for n in range(1, len(push)):
+        behind[n] += decay[n] * behind[n - 1]
+    return behind
 
 
 def shifted(time: Array, T: Array, delay: float) -> Array:

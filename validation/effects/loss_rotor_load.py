@@ -1,0 +1,35 @@
+"""Eddy currents in rotor or magnets that grow with the stator's current."""
+
+from dataclasses import dataclass
+
+from lumped.laws import InputPower
+from lumped.network import Network
+from validation.effects.base import Effect, Scene, with_parameter
+from validation.effects.build import heat, power_scale
+from validation.effects.sites import named
+
+
+@dataclass(frozen=True)
+class RotorLoadLoss(Effect):
+    """P = a (n / 1000 rpm)^2 (I / 100 A)^2, a the loss (W) at 1000 rpm and 100 A."""
+
+    kind = "loss.rotor.load"
+    title = "load-dependent loss in rotor or magnets"
+    unit = "W"
+    source = "winding harmonics of the armature field, B ~ I; eddy currents in thin conductors, P ~ (f B)^2"
+    isolating_test = "same speed at two currents; rotor temperature from back-EMF"
+    typical = (1.0, 50.0)
+    prior_sd = 0.1
+    high = 20.0
+    confused_with = ("loss.rotor", "iron", "copper.ac")
+    needs = ("speed_rpm", "current_A")
+
+    @classmethod
+    def where(cls, scene: Scene) -> list[str]:
+        return named(scene.network, "rotor")
+
+    def extend(self, network: Network) -> Network:
+        law = InputPower(1.0, (("speed_rpm", 1000.0, 2.0), ("current_A", 100.0, 2.0)))
+        source = heat(network, self.name, "iron", self.place, law)
+        network = network.extended(sources=[source])
+        return with_parameter(network, self.parameter(source.name, scale=power_scale(network)))
