@@ -10,7 +10,7 @@ import ht
 from lumped.correlations.info import Info, checked
 from lumped.properties import Fluid, air
 
-LAMINAR, TURBULENT = 2300.0, 4000.0
+LAMINAR, TURBULENT, COIL_TURBULENT = 2300.0, 4000.0, 22001.0
 
 
 def hausen_laminar(Re: float, Pr: float, diameter: float, length: float, developed: float = 3.66) -> float:
@@ -36,7 +36,7 @@ def duct_film(
     """Mean film of a duct, h (W/m2/K): laminar with entry below Re 2300, Gnielinski above 4000, linear between.
 
     speed (m/s), diameter: hydraulic, 4 A/P (m), length (m); fluid defaults to air at 40 degC;
-    developed: laminar Nu far from the entry (3.66 circle, shah_london for rectangles, 7.54 parallel plates).
+    developed: laminar Nu far from the entry (3.66 circle, staton_rectangle, 7.54 parallel plates).
     Range: Re < 5e6, 0.5 < Pr < 2000. Source: Gnielinski 2013, Int. J. Heat Mass Transfer 63, 134 (transition).
     """
     fluid = fluid or air(40.0)
@@ -50,7 +50,10 @@ def duct_film(
 
 
 def shah_london(side_ratio: float) -> float:
-    """Developed laminar Nu of a rectangle at constant wall temperature; side_ratio 0 to 1 (Shah, London 1978, ht)."""
+    """Developed laminar Nu of a rectangle at constant heat flux (4.36 for a circle); side_ratio 0 to 1.
+
+    Source: Shah and London 1978 (ht).
+    """
     return ht.Nu_laminar_rectangular_Shan_London(side_ratio)
 
 
@@ -58,16 +61,24 @@ def schmidt_helical(speed: float, diameter: float, coil_diameter: float, fluid: 
     """Film of a helical channel (spiral jacket), h (W/m2/K).
 
     Laminar below Re_crit(coil): Nu = 3.66 + 0.08 (1 + 0.8 (d/D)^0.9) Re^m Pr^(1/3), m = 0.5 + 0.2903 (d/D)^0.194;
-    turbulent above 22000 by ht; linear in Re between. diameter: hydraulic (m), coil_diameter: of the helix (m).
+    turbulent above 22000 by ht (whose own branch changes there); linear in Re between. diameter: hydraulic (m), coil_diameter: of the helix (m).
     Source: E. F. Schmidt 1967, Chem. Ing. Tech. 39, 781; VDI Heat Atlas G3.
     """
     Re, Pr, ratio = abs(speed) * diameter / fluid.nu, fluid.Pr, diameter / coil_diameter
     critical = fluids.helical_transition_Re_Schmidt(diameter, coil_diameter)
-    share = min(max((Re - critical) / (22000.0 - critical), 0.0), 1.0)
-    low, high = min(Re, critical), max(Re, 22000.0)
+    share = min(max((Re - critical) / (COIL_TURBULENT - critical), 0.0), 1.0)
+    low, high = min(Re, critical), max(Re, COIL_TURBULENT)
     laminar = 3.66 + 0.08 * (1 + 0.8 * ratio**0.9) * low ** (0.5 + 0.2903 * ratio**0.194) * Pr ** (1 / 3)
     Nu = (1.0 - share) * laminar
     if share > 0.0:
         Nu += share * ht.helical_turbulent_Nu_Schmidt(high, Pr, diameter, coil_diameter)
     info = checked("schmidt_helical", "Schmidt 1967", {"Nu": Nu, "Re": Re, "Pr": Pr}, {"Re": (0, 2e5)})
     return Nu * fluid.k / diameter, info
+
+
+def staton_rectangle(side_ratio: float) -> float:
+    """Developed laminar Nu of a rectangle at constant wall temperature; side_ratio a from 0 to 1.
+
+    7.49 - 17.02 a + 22.43 a^2 - 9.94 a^3. Source: Staton and Cavagnino 2008, IEEE Trans. Ind. Electron. 55, 3509.
+    """
+    return 7.49 - 17.02 * side_ratio + 22.43 * side_ratio**2 - 9.94 * side_ratio**3

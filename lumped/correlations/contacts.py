@@ -1,0 +1,70 @@
+"""Contacts, gaps, bearings and radiation between solids."""
+
+from __future__ import annotations
+
+import math
+
+from lumped.correlations.info import Info, checked
+
+K_AIR = 0.026
+SIGMA = 5.670374419e-8
+
+# Effective air gaps (m) after the Motor-CAD default tables.
+GAPS = {
+    "stator lamination - housing, good": 0.01e-3,
+    "lamination - metal, average": 0.03e-3,
+    "metal - metal, average": 0.005e-3,
+    "stainless - aluminium": 0.0073e-3,
+    "stainless - stainless": 0.0112e-3,
+    "bearing": 0.3e-3,
+    "brush holder - brush": 0.1e-3,
+    "commutator - shaft": 0.005e-3,
+}
+
+
+def gap_film(gap: float, k: float = K_AIR) -> float:
+    """k / gap (W/m2/K): a contact as an effective gap of still air; gap (m), k (W/m/K)."""
+    return k / gap
+
+
+def cooper_mikic_yovanovich(
+    k: float, slope: float, roughness: float, pressure: float, hardness: float, k_gas: float = K_AIR
+) -> tuple[float, Info]:
+    """Pressed contact of rough metals with gas between them, h (W/m2/K).
+
+    1.25 k slope / roughness (p / H)^0.95 plus the gas in a gap of Y = 1.53 roughness (p / H)^-0.097.
+    k: harmonic mean 2 k1 k2 / (k1 + k2); slope: of the asperities (1); roughness: rms of both (m);
+    pressure, hardness (Pa).
+    Range: 1e-6 < p/H < 0.02. Source: Cooper, Mikic, Yovanovich 1969, Int. J. Heat Mass Transfer 12, 279.
+    """
+    load = pressure / hardness
+    solid = 1.25 * k * slope / roughness * load**0.95
+    gas = k_gas / (1.53 * roughness * load**-0.097)
+    info = checked("cooper_mikic_yovanovich", "CMY 1969", {"p/H": load, "h solid": solid}, {"p/H": (1e-6, 0.02)})
+    return solid + gas, info
+
+
+def bearing_resistance(mean_diameter: float, width: float, gap: float = 0.3e-3, k: float = K_AIR) -> float:
+    """Between the races (K/W): still air of an effective gap over the mean cylinder; gap 0.2 to 0.4 mm (Staton)."""
+    return gap / (k * math.pi * mean_diameter * width)
+
+
+def radiation_film(emissivity: float, hot: float, cold: float, view: float = 1.0) -> tuple[float, Info]:
+    """sigma e F (Th^2 + Tc^2)(Th + Tc) (W/m2/K); hot, cold (degC). Stefan-Boltzmann."""
+    a, b = hot + 273.15, cold + 273.15
+    h = SIGMA * emissivity * view * (a * a + b * b) * (a + b)
+    return h, checked("radiation_film", "Stefan-Boltzmann", {"e": emissivity, "F": view}, {"e": (0, 1), "F": (0, 1)})
+
+
+def groove_emissivity(emissivity: float, depth: float, spacing: float) -> float:
+    """Apparent emissivity of the opening of a rectangular groove between fins: e / (e + (1 - e) opening/walls).
+
+    One isothermal grey enclosure: radiation leaving the opening of area `spacing` from walls 2 depth + spacing.
+    Source: Incropera et al. 2007, two-surface enclosure (13.18) with the opening black.
+    """
+    return emissivity / (emissivity + (1.0 - emissivity) * spacing / (2.0 * depth + spacing))
+
+
+def concentric_cylinders(inner_area: float, outer_area: float, inner: float, outer: float) -> float:
+    """Effective emissivity of a gap, on the inner area: 1 / (1/e1 + A1/A2 (1/e2 - 1)) (Incropera 13.20)."""
+    return 1.0 / (1.0 / inner + inner_area / outer_area * (1.0 / outer - 1.0))

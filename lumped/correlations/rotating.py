@@ -1,0 +1,62 @@
+"""Rotating discs and shafts: film and windage."""
+
+from __future__ import annotations
+
+import math
+
+from lumped.correlations.info import Info, checked
+from lumped.properties import Fluid, air
+
+DISC_CRITICAL = 2.4e5
+SHAFT_LIMITS = (64.0, 500.0, 1e4)
+
+
+def rotating_disc(omega: float, radius: float, fluid: Fluid | None = None) -> tuple[float, Info]:
+    """Mean film of a free rotating disc: rotor end faces, h (W/m2/K).
+
+    Nu_r = 0.36 Re^(1/2) laminar up to Re = omega r^2 / nu = 2.4e5; beyond, the rim is turbulent, locally
+    0.0151 Re^0.8 (Howey, Childs, Holmes 2012, IEEE Trans. Ind. Electron. 59), averaged over the area with the
+    laminar core kept, so that the mean has no jump.
+    omega (rad/s), radius (m). Range: Re < 1e7.
+    """
+    fluid = fluid or air(50.0)
+    Re = abs(omega) * radius**2 / fluid.nu
+    core = min(Re, DISC_CRITICAL)
+    laminar = 0.36 * core**0.5 * (core / Re) ** 0.5 if Re > 0 else 0.0
+    turbulent = 0.0151 * (2 / 2.6) * (Re**0.8 - DISC_CRITICAL**1.3 / Re**0.5) if Re > DISC_CRITICAL else 0.0
+    Nu = laminar + turbulent
+    return Nu * fluid.k / radius, checked("rotating_disc", "Howey et al. 2012", {"Nu": Nu, "Re": Re}, {"Re": (0, 1e7)})
+
+
+def rotating_shaft(omega: float, diameter: float, fluid: Fluid | None = None) -> tuple[float, Info]:
+    """Film of a rotating shaft in still air, h (W/m2/K): Nu = 0.133 Re^(2/3) Pr^(1/3), Re = omega D^2 / (2 nu).
+
+    Range: 1e3 < Re < 4.3e5, 0.7 < Pr < 670. Source: Etemad 1955 in Kays and Bjorklund 1958, Trans. ASME 80, 70.
+    """
+    fluid = fluid or air(50.0)
+    Re = abs(omega) * diameter**2 / (2 * fluid.nu)
+    Nu = 0.133 * Re ** (2 / 3) * fluid.Pr ** (1 / 3)
+    return Nu * fluid.k / diameter, checked("rotating_shaft", "Etemad 1955", {"Nu": Nu, "Re": Re}, {"Re": (1e3, 4.3e5)})
+
+
+def saari_windage(
+    omega: float, rotor_radius: float, gap: float, length: float, roughness: float = 1.0, fluid: Fluid | None = None
+) -> tuple[float, Info]:
+    """Friction of the air in the gap (W): P = roughness C pi rho omega^3 r^4 length.
+
+    C of Re = omega r gap / nu: 10 d/Re (Re < 64), 2 d/Re^0.6 (to 500), 1.03 d/Re^0.5 (to 1e4), 0.065 d/Re^0.2, with
+    d = (gap/r)^0.3. Source: Saari 1998, thesis, Helsinki University of Technology (after Bilgen and Boulos 1973).
+    """
+    fluid = fluid or air(80.0)
+    Re, d = abs(omega) * rotor_radius * gap / fluid.nu, (gap / rotor_radius) ** 0.3
+    if Re == 0.0:
+        return 0.0, checked("saari_windage", "Saari 1998", {"Re": 0.0, "C": 0.0}, {"Re": (0, 1e6)})
+    scale, exponent = _torque_law(Re)
+    C = scale * d / Re**exponent
+    power = roughness * C * math.pi * fluid.rho * abs(omega) ** 3 * rotor_radius**4 * length
+    return power, checked("saari_windage", "Saari 1998", {"Re": Re, "C": C}, {"Re": (0, 1e6)})
+
+
+def _torque_law(Re: float) -> tuple[float, float]:
+    laws = ((10.0, 1.0), (2.0, 0.6), (1.03, 0.5), (0.065, 0.2))
+    return laws[sum(Re >= limit for limit in SHAFT_LIMITS)]
