@@ -20,6 +20,7 @@ app = typer.Typer(
 Case = Annotated[str, typer.Argument(metavar="CASE", help="A case folder, or the name of a case that comes along.")]
 Effect = Annotated[str, typer.Argument(metavar="EFFECT@PLACE", help="For example convection@flange.right.")]
 Json = Annotated[str | None, typer.Option("--json", metavar="FILE|-", help="Write the JSON document; - is stdout.")]
+Anyway = Annotated[bool, typer.Option("--anyway", help="Write it even if it is not accepted.")]
 Out = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder for the results.")]
 
 
@@ -63,11 +64,11 @@ def diagnose(
 
 
 @app.command()
-def add(case: Case, effect: Effect, json: Json = None) -> None:
+def add(case: Case, effect: Effect, anyway: Anyway = False, json: Json = None) -> None:
     """Add an effect, recalibrate, and show the error before and after on every test, held-out ones too."""
     from thermoscope.commands.revise import add as run
 
-    raise typer.Exit(run(case, effect, json))
+    raise typer.Exit(run(case, effect, anyway, json))
 
 
 @app.command()
@@ -79,11 +80,11 @@ def remove(case: Case, effect: Effect, json: Json = None) -> None:
 
 
 @app.command()
-def calibrate(case: Case, json: Json = None) -> None:
+def calibrate(case: Case, anyway: Anyway = False, json: Json = None) -> None:
     """Fit the declared parameters to the calibration tests, with intervals and what the data cannot identify."""
     from thermoscope.commands.revise import calibrate as run
 
-    raise typer.Exit(run(case, json))
+    raise typer.Exit(run(case, anyway, json))
 
 
 @app.command()

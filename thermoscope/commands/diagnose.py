@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from thermoscope.commands.opened import opened
+from thermoscope.commands.saved import save_diagnosis
 from thermoscope.terminal import cell, give, progress, say, table
 
 ROWS = 10
@@ -19,7 +20,8 @@ def diagnose(case: str, draws: int, target: str | None) -> int:
     with progress() as tell:
         folder = opened(case, tell)
         found = search(folder.case, draws=draws, cache=cache_folder() / "null", progress=tell)
-    document = found.document()
+    document = {"case": folder.case.name, "revision": folder.case.model.revision, **found.document()}
+    save_diagnosis(folder, document)
     give(document, target, lambda: show(document))
     return 0 if found.verdict in ("named", "group", "several") else 1
 
