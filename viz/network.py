@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 SIDE = View(direction=(-1.0, 0.0, 0.0), angle=4.0)
 CLOSEST = 0.075  # distance of two nodes, share of the machine's length
+SMALL = 0.01  # of the largest flow: thinner lines are left out
 LABELLED = 10  # flows whose watts are written
 
 
@@ -110,16 +111,20 @@ def _volumes(nodes: SplitMesh) -> Array:
 
 
 def _lines(p: pyvista.Plotter, at: Mapping[str, Array], flow: Heat) -> None:
-    inner = [f for f in flow.flows if f.start in at and f.end in at]
-    inner = [f if f.watts >= 0 else Flow(f.end, f.start, f.kind, -f.watts) for f in inner]
+    """A line per flow; the largest carry their watts where no larger one's stand already."""
+    inner = [Flow(f.start, f.end, f.kind, abs(f.watts)) for f in flow.flows if f.start in at and f.end in at]
     inner.sort(key=lambda f: -f.watts)
-    widest = max((f.watts for f in inner), default=1.0)
-    for i, f in enumerate(f for f in inner if f.watts > 0.01 * widest):
-        width = float(np.clip(16 * np.sqrt(f.watts / widest), 1.0, 16.0))
+    widest = inner[0].watts if inner else 1.0
+    taken: list[Array] = []
+    for f in inner:
+        if f.watts < SMALL * widest:
+            continue
         a, b = at[f.start], at[f.end]
-        _line(p, a, b, width, VERMILION)
-        if i < LABELLED:
-            p.add_actor(text(f"{f.watts:.0f} W", (a + b) / 2, "#8A3A00", 0, 11), reset_camera=False)
+        _line(p, a, b, float(np.clip(16 * np.sqrt(f.watts / widest), 1.0, 16.0)), VERMILION)
+        middle = (a + b) / 2
+        if len(taken) < LABELLED and all(np.linalg.norm((middle - other) * [0, 2, 1]) > 0.035 for other in taken):
+            p.add_actor(text(f"{f.watts:.0f} W", middle, "#8A3A00", 0, 11), reset_camera=False)
+            taken.append(middle)
 
 
 def _line(p: pyvista.Plotter, a: Array, b: Array, width: float, colour: str) -> None:
