@@ -31,7 +31,7 @@ def lamination(stacking: float, k_iron: float, k_insulation: float = 0.2) -> tup
 
 @dataclass(frozen=True)
 class TCircuit:
-    """Resistances (K/W) of a hollow cylinder: outer and inner face, ends (alike), star points to mean node (negative)."""
+    """Resistances (K/W) of a hollow cylinder: faces, ends (alike), star points to the mean node (negative)."""
 
     outer: float
     inner: float

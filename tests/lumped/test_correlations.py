@@ -135,8 +135,8 @@ def test_flat_plate_far_above_transition_is_the_known_formula():
 
 
 def test_laminar_and_rectangular_limits():
+    """Shah and London 1978, square and parallel plates: 3.608, 8.235 at constant flux; 2.976, 7.541 at constant T."""
     assert hausen_laminar(100.0, 0.7, 0.01, 1e9) == pytest.approx(3.66, rel=1e-6)
-    """Shah and London 1978: square and parallel plates, 3.608 and 8.235 at constant flux, 2.976 and 7.541 at constant T."""
     assert shah_london(1.0) == pytest.approx(3.608, rel=1e-3)
     assert shah_london(1e-9) == pytest.approx(8.235, rel=1e-3)
     assert staton_rectangle(1.0) == pytest.approx(2.976, rel=0.01)

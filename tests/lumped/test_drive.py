@@ -1,0 +1,72 @@
+"""The series machine against its ratings and equations; duty types against their definitions."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from lumped.drive import Controller, SeriesMachine, Vehicle, drive_cycle
+from lumped.duty import s1, s2, s3, s6
+
+MACHINE = SeriesMachine.from_ratings(100e3, 1000.0, 220.0, 511.0)
+VEHICLE = Vehicle(mass=9000.0, wheel_radius=0.48, gear=4.52)
+
+
+def test_ratings_give_the_published_constants():
+    """Seed 0: L_af = 3.657 mH, R_a + R_f = 47.6 mOhm, loss 12.42 kW, back-EMF 195.7 V."""
+    assert MACHINE.L_af == pytest.approx(3.657e-3, rel=2e-4)
+    assert pytest.approx(47.6e-3, rel=1e-3) == MACHINE.R
+    assert MACHINE.losses(511.0) == pytest.approx(12.42e3, rel=1e-3)
+    assert MACHINE.voltage(511.0, 1000.0) - MACHINE.R * 511.0 == pytest.approx(195.7, abs=0.05)
+
+
+def test_curves_pass_through_the_rated_point():
+    assert MACHINE.torque(511.0) == pytest.approx(955.0, rel=1e-3)
+    assert MACHINE.speed(511.0, 220.0) == pytest.approx(1000.0)
+    assert MACHINE.current(MACHINE.torque(300.0)) == pytest.approx(300.0)
+
+
+@pytest.fixture(scope="module")
+def climb():
+    time = np.arange(0.0, 301.0)
+    wanted = np.clip(time / 60.0, 0.0, 1.0) * 40 / 3.6
+    return drive_cycle(MACHINE, VEHICLE, Controller(), time, wanted, np.full(301, 0.04))
+
+
+def test_on_the_slope_the_machine_carries_the_load(climb):
+    """40 km/h up 4 %: about 1000 1/min, torque = load, V = R I + w L_af I."""
+    load = VEHICLE.load_torque(40 / 3.6, 0.04)
+    assert climb.vehicle_speed_mps[-1] == pytest.approx(40 / 3.6, rel=1e-3)
+    assert climb.speed_rpm[-1] == pytest.approx(1000.0, rel=0.02)
+    assert climb.torque_Nm[-1] == pytest.approx(load, rel=5e-3)
+    assert climb.voltage_V[-1] == pytest.approx(MACHINE.voltage(climb.current_A[-1], climb.speed_rpm[-1]), rel=5e-3)
+
+
+def test_limits_are_kept(climb):
+    assert climb.current_A.max() <= 511.0 * (1 + 1e-9)
+    assert climb.voltage_V.max() <= 220.0
+
+
+def test_shaft_work_is_kinetic_energy_and_load(climb):
+    """L_af I^2 w over the ramp, from the mean-square current that heats the machine; 1 % for the 1 s sampling."""
+    omega = climb.speed_rpm * np.pi / 30
+    load = VEHICLE.load_torque(climb.vehicle_speed_mps, 0.04)
+    needed = 0.5 * (MACHINE.J + VEHICLE.inertia()) * omega[-1] ** 2 + np.trapezoid(load * omega, climb.time)
+    given = np.sum(MACHINE.torque(climb.current_A)[1:] * 0.5 * (omega[1:] + omega[:-1]))
+    assert given == pytest.approx(needed, rel=0.01)
+
+
+def test_a_finer_inner_step_gives_the_same_currents(climb):
+    slope = np.full(301, 0.04)
+    wanted = np.clip(climb.time / 60.0, 0.0, 1.0) * 40 / 3.6
+    fine = drive_cycle(MACHINE, VEHICLE, Controller(), climb.time, wanted, slope, step=1e-3)
+    assert_allclose(fine.current_A, climb.current_A, rtol=0.01, atol=1.0)
+
+
+@pytest.mark.parametrize(
+    ("duty", "mean"),
+    [(s1(3600.0), 1.0), (s2(600.0, 1800.0), 0.25), (s3(600.0, 0.4, 5), 0.4), (s6(600.0, 0.4, 5, 0.1), 0.46)],
+)
+def test_duty_types_load_for_their_share_of_the_time(duty, mean):
+    time, load = duty
+    assert np.trapezoid(load, time) / time[-1] == pytest.approx(mean, rel=1e-12)
+    assert np.all(np.diff(time) >= 0)
