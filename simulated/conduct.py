@@ -22,11 +22,24 @@ class Solid:
     k : conductivity across and along the axis (W/m/K) at 20 degC
     rho_c : heat capacity (J/m3/K)
     slope : relative change of the conductivity (1/K)
+    turns : (z0, z1) m beyond which a coil's wire runs around its pole, along x or y, instead of along the axis
     """
 
     k: tuple[float, float]
     rho_c: float
     slope: float = 0.0
+    turns: tuple[float, float] | None = None
+
+    def at(self, centres: Array) -> Array:
+        """Conductivity (n, 3) along x, y and z at points (n, 3) m."""
+        across, along = self.k
+        k = np.tile([across, across, along], (len(centres), 1))
+        if self.turns:
+            x, y, z = np.abs(centres[:, 0]), np.abs(centres[:, 1]), centres[:, 2]
+            around = (z < self.turns[0]) | (z > self.turns[1])
+            k[around & (x >= y)] = across, along, across
+            k[around & (x < y)] = along, across, across
+        return k
 
 
 @dataclass(frozen=True)
@@ -91,7 +104,10 @@ def build(
     volume = volume * split.copies[mesh.region]
     nodal = np.repeat(volume / 4, 4)
     rho_c = np.array([solids[p].rho_c for p in mesh.parts])
-    k = np.array([(solids[p].k[0], solids[p].k[0], solids[p].k[1]) for p in mesh.parts])
+    k = np.empty((len(mesh.tets), 3))
+    for number, part in enumerate(mesh.parts):
+        own = mesh.region == number
+        k[own] = solids[part].at(mesh.points[mesh.tets[own]].mean(axis=1))
     flat = split.tets.ravel()
     return Body(
         mesh.parts,
@@ -101,7 +117,7 @@ def build(
         split.part,
         split.tets,
         mesh.region,
-        _stiffness(split, gradients, volume, k[mesh.region]),
+        _stiffness(split, gradients, volume, k),
         _coupling(split, mesh, contacts) + _joined(split, mesh, contacts, joints or {}),
         np.array([solids[p].slope for p in mesh.parts]),
         {name: Face(p.part, p.fluid, *_face(split, mesh, p.part, p.facets)) for name, p in mesh.patches.items()},

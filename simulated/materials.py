@@ -47,7 +47,8 @@ def _solid(machine: Machine, part: str, common: float, draws: Draws) -> Solid:
     factor = draws.around(f"conductivity.{part}", 1.0, 0.10)
     capacity = common * draws.around(f"capacity.{part}", 1.0, 0.03)
     k = (factor * found.k_plane, factor * found.k_axial)
-    return Solid(k, capacity * found.rho * found.cp, SLOPES.get(found.name, RESIN))
+    turns = machine.part("poles").span if part == "winding.field" else None
+    return Solid(k, capacity * found.rho * found.cp, SLOPES.get(found.name, RESIN), turns)
 
 
 def contacts(names: Iterable[str], draws: Draws) -> dict[str, float]:
