@@ -21,7 +21,7 @@ def blueprint(comparison: Comparison, first: str, points: NDArray[np.float64], w
     import rerun.blueprint as rrb
 
     end = float(comparison.test.time[-1])
-    names = sorted((c.name for c in comparison.test.channels), key=lambda name: name != first)
+    names = sorted((c.name for c in comparison.channels), key=lambda name: name != first)
     curves = rrb.Tabs(*(_over_time(f"curves/{name}", f"{name} (°C)", end) for name in names), active_tab=0)
     right = rrb.Vertical(curves, _over_time("residual", "measured − model (K)", end))
     left = rrb.Vertical(_machine(comparison, points), _text("legend", "legend"), row_shares=[5, 1])

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from geom.errors import InputError
 from viz import paper
 from viz.colours import BLUE, LIGHT, ORANGE, VERMILION
 from viz.data import Comparison
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 @paper.styled
 def measured_and_model(comparison: Comparison, *, columns: int = 3, png: str | Path | None = None) -> Figure:
     """One small panel per sensor: readings with their 2-sigma band, the model, and the earlier model if given."""
-    channels = comparison.test.channels
+    channels = _read(comparison)
     columns = min(columns, len(channels))
     rows = -(-len(channels) // columns)
     figure, axes = paper.subplots(3.4 * columns, 2.2 * rows + 0.4, rows, columns)
@@ -33,8 +34,8 @@ def measured_and_model(comparison: Comparison, *, columns: int = 3, png: str | P
         _panel(ax, comparison, channel)
     for ax in axes[len(channels) :]:
         ax.set_visible(False)
-    _name_lines(axes[0], comparison, channels[0])
-    figure.supxlabel("time (min)", fontsize=9.5, color=LIGHT.ink)
+    _name_lines(axes[0], comparison)
+    figure.supxlabel(f"time ({comparison.clock[1]})", fontsize=9.5, color=LIGHT.ink)
     figure.supylabel("temperature (°C)", fontsize=9.5, color=LIGHT.ink)
     return paper.saved(figure, png)
 
@@ -43,38 +44,41 @@ def measured_and_model(comparison: Comparison, *, columns: int = 3, png: str | P
 def residuals(comparison: Comparison, *, png: str | Path | None = None) -> Figure:
     """Measured - modelled per sensor over time; sensors that leave the 2-sigma band are coloured and named in bold."""
     figure, (ax,) = paper.subplots(8.4, 3.8)
-    band = 2 * max(c.sigma_K for c in comparison.test.channels)
+    (t, unit), thin = comparison.clock, comparison.thin
+    channels = _read(comparison)
+    band = 2 * max(c.sigma_K for c in channels)
     ax.axhspan(-band, band, color=LIGHT.faint, alpha=0.25, lw=0)
-    ends, names, colours = [], [], []
-    for channel in comparison.test.channels:
+    colours = []
+    for channel in channels:
         r = comparison.residual(channel)
-        colour = wrongness(r, 2 * channel.sigma_K)
-        ax.plot(comparison.minutes, r, color=colour, lw=1.6 if colour != LIGHT.faint else 1.0)
-        ends.append(float(r[np.isfinite(r)][-1]))
-        names.append(channel.name)
-        colours.append(colour)
-    beside(ax, ends, names, [LIGHT.ink if c == LIGHT.faint else c for c in colours])
+        colours.append(wrongness(r, 2 * channel.sigma_K))
+        ax.plot(t[thin], r[thin], color=colours[-1], lw=1.6 if colours[-1] != LIGHT.faint else 1.0)
+    ends = [float(r[np.isfinite(r)][-1]) for r in map(comparison.residual, channels)]
+    beside(ax, ends, [c.name for c in channels], [LIGHT.ink if c == LIGHT.faint else c for c in colours])
     ax.axhline(0, color=LIGHT.ink, lw=0.8)
     ax.margins(x=0)
-    ax.set(xlabel="time (min)", ylabel="measured − model (K)", title=f"{comparison.test.name}: what the model misses")
-    ax.text(
-        0.01,
-        band,
-        " what the sensors' uncertainty explains",
-        va="bottom",
-        fontsize=8,
-        transform=ax.get_yaxis_transform(),
+    ax.set(
+        xlabel=f"time ({unit})", ylabel="measured − model (K)", title=f"{comparison.test.name}: what the model misses"
     )
+    where = ax.get_yaxis_transform()
+    ax.text(0.01, band, " what the sensors' uncertainty explains", va="bottom", fontsize=8, transform=where)
     return paper.saved(figure, png)
 
 
+def _read(comparison: Comparison) -> tuple[Channel, ...]:
+    if not comparison.channels:
+        raise InputError("no channel was ever read", f"test '{comparison.test.name}'", "at least one with readings")
+    return comparison.channels
+
+
 def _panel(ax: Axes, comparison: Comparison, channel: Channel) -> None:
-    t, y = comparison.minutes, np.asarray(channel.y, float)
+    thin = comparison.thin
+    t, y = comparison.clock[0][thin], np.asarray(channel.y, float)[thin]
     ax.fill_between(t, y - 2 * channel.sigma_K, y + 2 * channel.sigma_K, color=LIGHT.faint, alpha=0.45, lw=0)
     ax.plot(t, y, color=LIGHT.ink, lw=1.0)
     if comparison.before is not None:
-        ax.plot(t, comparison.before[channel.name], color=ORANGE, lw=1.4, ls=(0, (4, 2)))
-    ax.plot(t, comparison.model[channel.name], color=BLUE)
+        ax.plot(t, comparison.before[channel.name][thin], color=ORANGE, lw=1.4, ls=(0, (4, 2)))
+    ax.plot(t, comparison.model[channel.name][thin], color=BLUE)
     ax.set_title(channel.name)
     ax.margins(x=0)
     over = comparison.rmse(channel) > 2 * channel.sigma_K
@@ -84,7 +88,7 @@ def _panel(ax: Axes, comparison: Comparison, channel: Channel) -> None:
     )  # fmt: skip
 
 
-def _name_lines(ax: Axes, comparison: Comparison, channel: Channel) -> None:
+def _name_lines(ax: Axes, comparison: Comparison) -> None:
     """Names written once, top left of the first panel, in the colour of their lines."""
     lines = [("measured ± 2σ", LIGHT.ink), ("model", BLUE)] + [("earlier model", ORANGE)] * (
         comparison.before is not None
@@ -94,9 +98,10 @@ def _name_lines(ax: Axes, comparison: Comparison, channel: Channel) -> None:
 
 
 def wrongness(residual: np.ndarray, limit: float) -> str:
-    """Faint within the limit; else vermilion where the machine is hotter than the model, blue where it is colder."""
-    late = residual[int(0.5 * len(residual)) :]
-    mean = float(np.nanmean(late)) if np.isfinite(late).any() else 0.0
-    if abs(mean) <= limit:
+    """Faint where the rms of the warm half is within the limit; else by sign: vermilion where the machine is hotter
+    than the model, blue where it is colder."""
+    late = residual[len(residual) // 2 :]
+    late = late[np.isfinite(late)]
+    if not late.size or np.sqrt(np.mean(late**2)) <= limit:
         return LIGHT.faint
-    return VERMILION if mean > 0 else BLUE
+    return VERMILION if late.mean() > 0 else BLUE

@@ -12,6 +12,8 @@ from geom.errors import InputError
 from validation.case import Channel, Test
 
 Array = NDArray[np.float64]
+LONG_S = 5 * 3600.0
+POINTS = 700
 
 
 @dataclass(frozen=True)
@@ -54,8 +56,20 @@ class Comparison:
             raise InputError(f"no model curve for {', '.join(missing)}", f"test '{self.test.name}'", "one per channel")
 
     @property
-    def minutes(self) -> Array:
-        return np.asarray(self.test.time, float) / 60.0
+    def channels(self) -> tuple[Channel, ...]:
+        """Those that were read at least once."""
+        return tuple(c for c in self.test.channels if np.isfinite(c.y).any())
+
+    @property
+    def clock(self) -> tuple[Array, str]:
+        """Time since the start in minutes, or in hours for a long test, and the unit."""
+        seconds = np.asarray(self.test.time, float)
+        return (seconds / 60.0, "min") if seconds[-1] - seconds[0] < LONG_S else (seconds / 3600.0, "h")
+
+    @property
+    def thin(self) -> slice:
+        """Every so many points that a line keeps at most POINTS of them: a page needs no more."""
+        return slice(None, None, max(1, -(-len(self.test.time) // POINTS)))
 
     def residual(self, channel: Channel) -> Array:
         """Measured - modelled (K), NaN where nothing was read."""
@@ -67,9 +81,11 @@ class Comparison:
 
 def sensors(comparison: Comparison, positions: Mapping[str, Sequence[float]]) -> tuple[Sensor, ...]:
     """Sensors of a test at their positions (m) with the mean residual of its last fifth, where the machine is warm."""
-    late = slice(int(0.8 * len(comparison.test.time)), None)
-    return tuple(
-        Sensor(c.name, tuple(positions[c.name]), float(np.nanmean(comparison.residual(c)[late])), 2 * c.sigma_K)  # type: ignore[arg-type]
-        for c in comparison.test.channels
-        if c.name in positions
-    )
+    out = []
+    for c in comparison.channels:
+        if c.name in positions:
+            x, y, z = positions[c.name]
+            late = comparison.residual(c)[int(0.8 * len(comparison.test.time)) :]
+            late = late[np.isfinite(late)]
+            out.append(Sensor(c.name, (x, y, z), float(late.mean()) if late.size else None, 2 * c.sigma_K))
+    return tuple(out)

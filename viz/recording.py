@@ -61,7 +61,7 @@ def write_recording(
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     stream = rr.RecordingStream("thermoscope", recording_id=f"{comparison.test.name}", send_properties=False)
-    worst = max(comparison.test.channels, key=comparison.rmse).name
+    worst = max(comparison.channels, key=comparison.rmse).name
     surface = cut_away(nodes, wedge)
     stream.save(path, default_blueprint=blueprint(comparison, worst, surface.points, bool(history)))
     _machine(stream, surface, times, fields, revision_fields)
@@ -122,7 +122,7 @@ def _colours(
 def _sensors(stream: rr.RecordingStream, c: Comparison, times: Array, positions: Mapping[str, Sequence[float]]) -> None:
     import rerun as rr
 
-    placed = [channel for channel in c.test.channels if channel.name in positions]
+    placed = [channel for channel in c.channels if channel.name in positions]
     if not placed:
         return
     points = rr.Points3D(
@@ -141,7 +141,7 @@ def _sensors(stream: rr.RecordingStream, c: Comparison, times: Array, positions:
 
 
 def _curves(stream: rr.RecordingStream, c: Comparison) -> None:
-    for channel in c.test.channels:
+    for channel in c.channels:
         _series(stream, f"curves/{channel.name}/measured", c.test.time, channel.y, LIGHT.faint, "measured")
         _series(stream, f"curves/{channel.name}/model", c.test.time, c.model[channel.name], BLUE, "model")
         if c.before is not None:

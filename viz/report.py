@@ -142,10 +142,11 @@ def _hidden(r: Report) -> str:
         return ""
     blind = [(b["effect"], _number(b["smallest_detectable"]), b["unit"]) for b in r.diagnosis.get("cannot_see", [])]
     tests = [
-        (t["test"], ", ".join(t["separates"]), _number(t["predicted_gain"])) for t in r.diagnosis.get("next_tests", [])
+        (t["test"], ", ".join(t["separates"]), _number(t["predicted_gain"]), _number(t.get("hours")), t.get("why", ""))
+        for t in r.diagnosis.get("next_tests", [])
     ]
     seen = html.table(["effect", "smallest that would be seen", "unit"], blind)
-    following = html.table(["test", "separates", "predicted gain"], tests)
+    following = html.table(["test", "separates", "gain (20 decides)", "hours", "why"], tests)
     return html.section(
         "What these tests cannot see, and what would help",
         seen and html.more("Effects that could be there unseen", seen),

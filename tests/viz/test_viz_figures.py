@@ -1,6 +1,7 @@
 """Figures: written, not blank, and carrying the numbers they were given."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -46,6 +47,27 @@ def test_wrong_sensor_is_coloured_and_the_others_are_faint():
     colours = {ch.name: curves.wrongness(c.residual(ch), 2 * ch.sigma_K) for ch in c.test.channels}
     assert colours.pop("flange.right") == curves.BLUE
     assert set(colours.values()) == {curves.LIGHT.faint}
+
+
+def test_sensor_that_was_never_read_is_left_out():
+    c = comparison()
+    silent = replace(c.test.channels[0], y=np.full(len(c.test.time), np.nan))
+    c = replace(c, test=replace(c.test, channels=(silent, *c.test.channels[1:])))
+    text = paper.svg(curves.residuals(c), "r")
+    assert silent.name not in text
+    assert "flange.right" in text
+
+
+def test_long_test_is_drawn_in_hours_with_few_points():
+    c = comparison()
+    many = 50_000
+    time = np.linspace(0.0, 36_000.0, many)
+    channels = tuple(replace(ch, y=np.interp(time, 10 * c.test.time, ch.y)) for ch in c.test.channels)
+    test = replace(c.test, time=time, channels=channels)
+    model = {k: np.interp(time, 10 * c.test.time, y) for k, y in c.model.items()}
+    svg = paper.svg(curves.measured_and_model(Comparison(test, model)), "long")
+    assert "time (h)" in svg
+    assert len(svg) < 400_000
 
 
 def test_staircase_path_starts_before_the_first_revision():
