@@ -93,12 +93,13 @@ class ArcGrid:
             own = _arc_ends(profile)
             for radius, angles in own.items():
                 ends[radius] |= angles
-                if max(map(len, own.values())) > 2:
+                if any(len(loop) > 2 for loop in profile.loops):  # a plain ring is cut alike anyway
                     partners[radius] |= {other for other in own if other != radius and abs(other / radius - 1) < _THIN}
         self._cuts: dict[int, list[float]] = {}
         for radius in sorted(ends, key=lambda r: (-len(ends[r]), r)):
             borrowed = [cut for other in partners[radius] for cut in self._cuts.get(other, ())]
-            self._cuts[radius] = self._divide(self._merged(ends[radius], borrowed))
+            step = min([self.step, *(_fine_step(radius, other) for other in partners[radius])])
+            self._cuts[radius] = _divided(self._merged(ends[radius], borrowed), step)
 
     def _merged(self, own: Iterable[float], others: Iterable[float]) -> list[float]:
         """All own breaks, and those of others that do not nearly coincide with one already there."""
@@ -107,13 +108,6 @@ class ArcGrid:
             if min(abs((angle - b + math.pi) % (2 * math.pi) - math.pi) for b in breaks) > 0.05 * self.step:
                 breaks.append(angle)
         return sorted(breaks)
-
-    def _divide(self, breaks: list[float]) -> list[float]:
-        cuts: list[float] = []
-        for here, following in zip(breaks, [*breaks[1:], breaks[0] + 2 * math.pi]):
-            pieces = max(1, math.ceil((following - here) / self.step - 1e-6))
-            cuts += [here + (following - here) * i / pieces for i in range(pieces)]
-        return cuts
 
     def facet(self, loop: Loop) -> list[tuple[float, float]]:
         """Corner points of the faceted loop (m)."""
@@ -167,6 +161,20 @@ def _arc_ends(profile: Profile) -> dict[int, set[float]]:
             if arc is not None and arc.concentric:
                 ends[_radius_key(arc.radius)].update((_wrap(arc.start), _wrap(arc.start + arc.sweep)))
     return ends
+
+
+def _divided(breaks: list[float], step: float) -> list[float]:
+    """Angles that cut every piece between neighbouring breaks evenly into steps (rad) or less."""
+    cuts: list[float] = []
+    for here, following in zip(breaks, [*breaks[1:], breaks[0] + 2 * math.pi]):
+        pieces = max(1, math.ceil((following - here) / step - 1e-6))
+        cuts += [here + (following - here) * i / pieces for i in range(pieces)]
+    return cuts
+
+
+def _fine_step(radius: int, other: int) -> float:
+    """Step (rad) at which a chord's height over its arc is a tenth of the layer between two radii."""
+    return 2 * math.sqrt(2 * 0.1 * abs(other - radius) / radius)
 
 
 def _turned(loop: Loop, angle: float) -> Loop:

@@ -1,0 +1,62 @@
+"""Machines with a slotted stator around a round rotor: interior magnets, or a cage.
+
+The axis is z, the shaft extension is on the right (high z), the base lies at -y.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from geom import shapes
+from geom.families.family import Family
+from geom.families.radial_flux import parameters
+from geom.families.radial_flux.checks import check, check_cage, check_magnets
+from geom.families.radial_flux.housing import coolant, enclosure
+from geom.families.radial_flux.layout import Layout
+from geom.families.radial_flux.rotors import cage_rotor, magnet_rotor, shaft
+from geom.families.radial_flux.stator import stator
+from geom.part import Part, fluid
+
+_FACES = {("housing", "ambient"): "housing.fins", ("housing", "jacket"): "jacket.wall"}
+
+
+def build_pmsm(g: Any) -> tuple[Part, ...]:
+    """Solids and fluids of a machine with interior magnets. Raises InputError for parts that do not fit."""
+    at = Layout(g)
+    check(g, at)
+    check_magnets(g, at)
+    return (shaft(g, at), *magnet_rotor(g, at), *stator(g, at), *enclosure(g, at), *_fluids(g, at))
+
+
+def build_tefc(g: Any) -> tuple[Part, ...]:
+    """Solids and fluids of a totally enclosed cage machine. Raises InputError for parts that do not fit."""
+    at = Layout(g)
+    check(g, at)
+    check_cage(g, at)
+    return (shaft(g, at), *cage_rotor(g, at), *stator(g, at), *enclosure(g, at), *_fluids(g, at))
+
+
+def _fluids(g: Any, at: Layout) -> tuple[Part, ...]:
+    inside = shapes.disc(at.core)
+    return (
+        fluid("air.left", (inside, at.cap0, at.core0)),
+        fluid("airgap", (shapes.ring(at.rotor, at.slot0), at.core0, at.core1)),
+        fluid("air.right", (inside, at.core1, at.cap1)),
+        *coolant(g, at),
+    )
+
+
+PMSM = Family(
+    "pmsm",
+    "Permanent-magnet machine with interior magnets; open laminations, housing or spiral jacket",
+    (*parameters.COMMON, *parameters.MAGNETS),
+    build_pmsm,
+    _FACES,
+)
+TEFC = Family(
+    "tefc",
+    "Totally enclosed cage machine with axial or radial fins",
+    parameters.TEFC,
+    build_tefc,
+    _FACES,
+)

@@ -1,0 +1,115 @@
+"""Values that are allowed one by one but do not fit together."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from geom.families.radial_flux.housing import fin_spans
+from geom.families.radial_flux.layout import Layout, half_angle
+from geom.families.radial_flux.rotors import shapes_of_magnets
+from geom.parameters import impossible
+
+Rule = tuple[bool, str, float, str]  # holds, key, value as in the file, what would be right
+mm = 1e3
+
+
+def check(g: Any, at: Layout) -> None:
+    """Raise InputError for the first rule that does not hold."""
+    for holds, key, value, right in (*_stator_rules(g, at), *_frame_rules(g, at), *_housing_rules(g, at)):
+        if not holds:
+            raise impossible(f"{value:.4g} does not fit", key, f"must be {right}")
+
+
+def refuse(rules: tuple[Rule, ...]) -> None:
+    for holds, key, value, right in rules:
+        if not holds:
+            raise impossible(f"{value:.4g} does not fit", key, f"must be {right}")
+
+
+def _stator_rules(g: Any, at: Layout) -> tuple[Rule, ...]:
+    s = g.stator
+    widest = 2 * at.slot0 * math.sin(math.pi / s.slots)
+    lining = 2 * (s.liner + s.liner_gap)
+    return (
+        (s.air_gap < at.bore - g.shaft.diameter / 2, "stator.air_gap_mm", s.air_gap * mm, "less, to leave a rotor"),
+        (s.tip + lining < 0.8 * s.slot_depth, "stator.slot_depth_mm", s.slot_depth * mm,
+         f"more than {1.25 * (s.tip + lining) * mm:.4g} mm, for tip, liner and winding"),
+        (at.slot1 < 0.98 * at.core, "stator.slot_depth_mm", s.slot_depth * mm,
+         f"less than {(0.98 * at.core - at.bore) * mm:.4g} mm, where the laminations end"),
+        (at.wire_tooth < 0.85 * widest, "stator.tooth_mm", s.tooth * mm,
+         f"less than {(0.85 * widest - lining) * mm:.4g} mm, to leave room for liner and winding"),
+        (s.opening < 1.8 * at.slot0 * math.sin(max(half_angle(at.slot0, s.slots, s.tooth), 0.0)) if
+         s.tooth < widest else False, "stator.opening_mm", s.opening * mm, "narrower than the slot"),
+    )  # fmt: skip
+
+
+def _frame_rules(g: Any, at: Layout) -> tuple[Rule, ...]:
+    needed = g.stator.stack_length + 2 * (g.winding.straight + g.winding.end + g.frame.cap + 0.001)
+    rules = (
+        (g.shaft.diameter < g.bearing.outer_diameter, "bearing.outer_diameter_mm", g.bearing.outer_diameter * mm,
+         f"more than the shaft, {g.shaft.diameter * mm:.4g} mm"),
+        (g.bearing.outer_diameter / 2 < at.core, "bearing.outer_diameter_mm", g.bearing.outer_diameter * mm,
+         f"less than the stator, {2 * at.core * mm:.4g} mm"),
+        (needed < at.length, "frame.length_mm", at.length * mm, f"more than {needed * mm:.4g} mm, for all it holds"),
+    )  # fmt: skip
+    skirt: Rule = (g.frame.skirt < 0.9 * (at.core - at.wire1), "frame.skirt_mm", g.frame.skirt * mm,
+                   f"less than {0.9 * (at.core - at.wire1) * mm:.4g} mm, to clear the end winding")  # fmt: skip
+    return (*rules, skirt) if g.housing.kind == "none" else rules
+
+
+def _housing_rules(g: Any, at: Layout) -> tuple[Rule, ...]:
+    around, h = 2 * math.pi * at.wall, g.housing
+    along = at.cap1 - at.cap0
+    turn = (at.core1 - at.core0) / (h.turns + 1)
+    limits = {"axial-fins": 0.9 * around / h.fins, "radial-fins": 0.9 * along / h.fins}
+    rules: list[Rule] = []
+    if h.kind in limits:
+        rules += [(h.fin_thickness < limits[h.kind], "housing.fin_thickness_mm", h.fin_thickness * mm,
+                   f"less than {limits[h.kind] * mm:.4g} mm: {h.fins} fins overlap otherwise")]  # fmt: skip
+    if h.kind == "spiral":
+        rules += [(h.rib < 0.9 * turn, "housing.rib_mm", h.rib * mm, f"less than {0.9 * turn * mm:.4g} mm")]
+    if g.base.kind != "none":
+        limit = 1.8 * at.body
+        rules += [(g.foot.width < limit, "foot.width_mm", g.foot.width * mm, f"less than {limit * mm:.4g} mm"),
+                  (g.foot.width <= g.base.width, "base.width_mm", g.base.width * mm, "at least the foot"),
+                  (g.foot.length <= g.base.length, "base.length_mm", g.base.length * mm, "at least the foot"),
+                  (g.foot.length < g.stator.stack_length, "foot.length_mm", g.foot.length * mm,
+                   f"less than the stack, {g.stator.stack_length * mm:.4g} mm")]  # fmt: skip
+        if h.kind == "radial-fins":
+            rules += [(bool(fin_spans(g, at)), "foot.length_mm", g.foot.length * mm, "shorter, to leave room for fins")]
+    return tuple(rules)
+
+
+def check_magnets(g: Any, at: Layout) -> None:
+    """Magnets stay inside the rotor, off the shaft and apart from each other."""
+    import shapely
+
+    r = g.rotor
+    span = r.magnet_width * (1 if r.magnet_shape == "flat" else 2)
+    refuse(((span < 2 * at.rotor * math.sin(math.pi / r.poles), "rotor.magnet_width_mm", r.magnet_width * mm,
+             "less than the pole pitch"),))  # fmt: skip
+    magnets = shapely.polygons([[(x, y) for x, y, _ in magnet.outer] for magnet in shapes_of_magnets(g, at)])
+    corners = shapely.get_coordinates(magnets)
+    inside = bool((corners**2).sum(axis=1).max() < (at.rotor * 0.998) ** 2)
+    clear = shapely.distance(magnets, shapely.Point(0, 0)).min() > 1.02 * g.shaft.diameter / 2
+    near, far = shapely.STRtree(magnets).query(magnets, predicate="dwithin", distance=5e-4)
+    refuse((
+        (inside, "rotor.bridge_mm", r.bridge * mm, "more, to keep the magnets under the surface"),
+        (bool(clear), "rotor.magnet_thickness_mm", r.magnet_thickness * mm, "less, to clear the shaft"),
+        (bool((near == far).all()), "rotor.magnet_width_mm", r.magnet_width * mm, "less, to keep the magnets apart"),
+    ))  # fmt: skip
+
+
+def check_cage(g: Any, at: Layout) -> None:
+    """Bars leave teeth between them and stay off the shaft."""
+    r = g.rotor
+    bottom = at.rotor - r.bar_depth
+    pitch = 2 * math.pi * bottom / r.bars
+    end = at.core0 - at.cap0
+    refuse((
+        (bottom > 0.55 * g.shaft.diameter, "rotor.bar_depth_mm", r.bar_depth * mm,
+         f"less than {(at.rotor - 0.55 * g.shaft.diameter) * mm:.4g} mm, where the shaft begins"),
+        (r.bar_width < 0.9 * pitch, "rotor.bar_width_mm", r.bar_width * mm, f"less than {0.9 * pitch * mm:.4g} mm"),
+        (r.ring < 0.95 * end, "rotor.ring_mm", r.ring * mm, f"less than {0.95 * end * mm:.4g} mm, the end space"),
+    ))  # fmt: skip

@@ -1,0 +1,117 @@
+"""End-caps, bearings, housing, foot and base."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from geom import shapes
+from geom.families.radial_flux.layout import Layout
+from geom.part import Part, Prism, fluid
+from geom.profile import Profile
+
+
+def enclosure(g: Any, at: Layout) -> tuple[Part, ...]:
+    seat = g.bearing.outer_diameter / 2
+    bearing = shapes.ring(g.shaft.diameter / 2, seat)
+    cap = shapes.ring(seat, at.cap_radius)
+    left, right = (0.0, at.cap0), (at.cap1, at.length)
+    skirts = _skirts(g, at)
+    return (
+        *_housing(g, at),
+        Part("endcap.left", "aluminium-cast", ((cap, *left), *skirts[:1])),
+        Part("endcap.right", "aluminium-cast", ((cap, *right), *skirts[1:])),
+        Part("bearing.left", "bearing", ((bearing, *left),)),
+        Part("bearing.right", "bearing", ((bearing, *right),)),
+        *_base(g, at),
+    )
+
+
+def _skirts(g: Any, at: Layout) -> tuple[Prism, ...]:
+    """Without a housing the end-caps reach to the laminations."""
+    if g.housing.kind != "none":
+        return ()
+    skirt = shapes.ring(at.core - g.frame.skirt, at.core)
+    return (skirt, at.cap0, at.core0), (skirt, at.core1, at.cap1)
+
+
+def _housing(g: Any, at: Layout) -> tuple[Part, ...]:
+    prisms = {"none": _none, "plain": _plain, "axial-fins": _axial_fins, "radial-fins": _radial_fins, "spiral": _spiral}
+    walls = prisms[g.housing.kind](g, at)
+    return (Part("housing", "aluminium-cast", walls),) if walls else ()
+
+
+def _none(g: Any, at: Layout) -> tuple[Prism, ...]:
+    return ()
+
+
+def _plain(g: Any, at: Layout) -> tuple[Prism, ...]:
+    return ((shapes.ring(at.core, at.wall), at.cap0, at.cap1),)
+
+
+def _axial_fins(g: Any, at: Layout) -> tuple[Prism, ...]:
+    angles = [angle for angle in shapes.evenly(g.housing.fins, math.pi / 2) if not _over_foot(g, at, angle)]
+    loop = shapes.finned_loop(at.wall, g.housing.fin_thickness, at.fins, angles)
+    return ((Profile(loop, (shapes.circle_loop(at.core),)), at.cap0, at.cap1),)
+
+
+def _over_foot(g: Any, at: Layout, angle: float) -> bool:
+    near = at.wall * abs(math.cos(angle)) - 0.6 * g.housing.fin_thickness
+    return g.base.kind != "none" and math.sin(angle) < 0 and near < g.foot.width / 2
+
+
+def _radial_fins(g: Any, at: Layout) -> tuple[Prism, ...]:
+    """Discs around the housing, none over the foot."""
+    bare, disc = shapes.ring(at.core, at.wall), shapes.ring(at.core, at.fins)
+    prisms, here = [], at.cap0
+    for z0, z1 in fin_spans(g, at):
+        prisms += [(bare, here, z0), (disc, z0, z1)]
+        here = z1
+    return (*prisms, (bare, here, at.cap1))
+
+
+def fin_spans(g: Any, at: Layout) -> list[tuple[float, float]]:
+    """Axial range of each radial fin (m)."""
+    pitch = (at.cap1 - at.cap0) / g.housing.fins
+    half = g.housing.fin_thickness / 2
+    centres = [at.cap0 + (i + 0.5) * pitch for i in range(g.housing.fins)]
+    footed = g.base.kind != "none"
+    clear = [z for z in centres if not footed or z + half < at.foot0 - half or z - half > at.foot1 + half]
+    return [(z - half, z + half) for z in clear]
+
+
+def _spiral(g: Any, at: Layout) -> tuple[Prism, ...]:
+    solid = shapes.ring(at.core, at.body)
+    inner, outer = shapes.ring(at.core, at.wall), shapes.ring(at.channel, at.body)
+    ends = [at.cap0, *(z for turn in turns(g, at) for z in turn), at.cap1]
+    ribs = [(solid, a, b) for a, b in zip(ends[::2], ends[1::2])]
+    return (*ribs, *((ring, a, b) for a, b in turns(g, at) for ring in (inner, outer)))
+
+
+def turns(g: Any, at: Layout) -> list[tuple[float, float]]:
+    """Axial range of each turn of the spiral jacket over the stack (m)."""
+    pitch = (at.core1 - at.core0 - g.housing.rib) / g.housing.turns
+    return [(at.core0 + i * pitch + g.housing.rib, at.core0 + (i + 1) * pitch) for i in range(g.housing.turns)]
+
+
+def coolant(g: Any, at: Layout) -> tuple[Part, ...]:
+    if g.housing.kind != "spiral":
+        return ()
+    ring = shapes.ring(at.wall, at.channel)
+    return (fluid("jacket", *((ring, a, b) for a, b in turns(g, at)), material="glycol-50"),)
+
+
+def _base(g: Any, at: Layout) -> tuple[Part, ...]:
+    if g.base.kind == "none":
+        return ()
+    half, sweep = g.foot.width / 2, 2 * math.asin(g.foot.width / 2 / at.body)
+    top = -shapes.on_circle(at.body, half)
+    pad = Profile(
+        ((-half, at.ground, 0.0), (half, at.ground, 0.0), (half, top, -shapes.bulge_of(sweep)), (-half, top, 0.0))
+    )
+    plate = shapes.rectangle(-g.base.width / 2, g.base.width / 2, at.ground - g.base.thickness, at.ground)
+    reach = g.base.length / 2
+    return (
+        Part("foot", "aluminium-cast", ((pad, at.foot0, at.foot1),)),
+        Part("base", "aluminium", ((plate, at.middle - reach, at.middle + reach),)),
+    )

@@ -1,0 +1,38 @@
+"""Where things are: positions along the axis and radii that several parts share."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+
+class Layout:
+    """Axial positions z... and radii r... (m)."""
+
+    def __init__(self, g: Any) -> None:
+        self.length = g.frame.length
+        self.cap0, self.cap1 = g.frame.cap, g.frame.length - g.frame.cap
+        self.core0 = (g.frame.length - g.stator.stack_length) / 2
+        self.core1 = self.core0 + g.stator.stack_length
+        self.coil0, self.coil1 = self.core0 - g.winding.straight, self.core1 + g.winding.straight
+        self.ring0, self.ring1 = self.coil0 - g.winding.end, self.coil1 + g.winding.end
+        self.middle = g.frame.length / 2
+        self.foot0, self.foot1 = self.middle - g.foot.length / 2, self.middle + g.foot.length / 2
+        self.bore = g.stator.bore_diameter / 2
+        self.rotor = self.bore - g.stator.air_gap
+        self.slot0, self.slot1 = self.bore + g.stator.tip, self.bore + g.stator.slot_depth
+        self.wire0 = self.slot0 + g.stator.liner_gap + g.stator.liner
+        self.wire1 = self.slot1 - g.stator.liner_gap - g.stator.liner
+        self.wire_tooth = g.stator.tooth + 2 * (g.stator.liner_gap + g.stator.liner)
+        self.core = g.stator.outer_diameter / 2
+        self.wall = self.core + (0.0 if g.housing.kind == "none" else g.housing.thickness)
+        self.channel = self.wall + g.housing.channel
+        self.body = self.channel + g.housing.wall if g.housing.kind == "spiral" else self.wall
+        self.fins = self.body + (g.housing.fin_height if g.housing.kind.endswith("fins") else 0.0)
+        self.ground = -(self.fins + g.foot.height)
+        self.cap_radius = self.body
+
+
+def half_angle(radius: float, slots: int, tooth: float) -> float:
+    """Half the angle (rad) that a slot between parallel-sided teeth takes at a radius (m)."""
+    return math.pi / slots - math.asin(tooth / 2 / radius)

@@ -1,0 +1,70 @@
+"""Parameters shared by machines with a slotted stator around a round rotor, and those of each rotor."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from geom.parameters import Parameter
+
+P = Parameter
+COMMON = (
+    P("frame.length_mm", 290.0, 50.0, 3000.0, "outer face to outer face of the end-caps"),
+    P("frame.cap_mm", 20.0, 2.0, 200.0, "thickness of the end-caps; the bearings are as wide"),
+    P("frame.skirt_mm", 8.0, 1.0, 100.0, "without a housing: wall of the end-caps that rests on the stator"),
+    P("shaft.diameter_mm", 50.0, 5.0, 500.0, "shaft"),
+    P("shaft.extension_mm", 60.0, 0.0, 500.0, "shaft beyond the right end-cap"),
+    P("bearing.outer_diameter_mm", 90.0, 10.0, 700.0, "bearing seat"),
+    P("stator.outer_diameter_mm", 270.0, 30.0, 3000.0, "laminations"),
+    P("stator.bore_diameter_mm", 174.0, 20.0, 2500.0, "bore"),
+    P("stator.stack_length_mm", 150.0, 10.0, 2000.0, "laminations, stator and rotor"),
+    P("stator.slots", 18, 3, 200, "number of slots"),
+    P("stator.tooth_mm", 15.0, 0.5, 200.0, "width of the parallel-sided teeth"),
+    P("stator.slot_depth_mm", 26.0, 2.0, 200.0, "bore to slot bottom"),
+    P("stator.tip_mm", 3.0, 0.2, 30.0, "radial thickness of the tooth tips, depth of the slot opening"),
+    P("stator.opening_mm", 3.0, 0.2, 30.0, "width of the slot opening"),
+    P("stator.liner_mm", 0.3, 0.05, 3.0, "thickness of the slot liner"),
+    P("stator.liner_gap_mm", 0.0, 0.0, 5.0, "layer between liner and laminations; 0 is none"),
+    P("stator.air_gap_mm", 1.0, 0.2, 20.0, "rotor to bore"),
+    P("winding.straight_mm", 5.0, 0.5, 100.0, "straight length of the coils outside the stack"),
+    P("winding.end_mm", 25.0, 2.0, 300.0, "axial length of the end-winding ring"),
+    P("housing.kind", "none", choices=("none", "plain", "axial-fins", "radial-fins", "spiral"),
+      doc="what surrounds the laminations"),
+    P("housing.thickness_mm", 8.0, 1.0, 100.0, "wall of the housing"),
+    P("housing.fins", 40, 1, 200, "number of fins"),
+    P("housing.fin_height_mm", 20.0, 1.0, 150.0, "radial height of a fin"),
+    P("housing.fin_thickness_mm", 4.0, 0.5, 40.0, "thickness of a fin"),
+    P("housing.turns", 6, 1, 40, "turns of a spiral jacket, drawn as that many rings"),
+    P("housing.channel_mm", 10.0, 1.0, 80.0, "radial height of the jacket's channel"),
+    P("housing.rib_mm", 5.0, 0.5, 80.0, "wall between turns, and at the ends"),
+    P("housing.wall_mm", 5.0, 0.5, 60.0, "outer wall of the jacket"),
+    P("base.kind", "none", choices=("none", "plate"), doc="what the machine stands on"),
+    P("base.width_mm", 300.0, 20.0, 5000.0, "base plate, across the axis"),
+    P("base.length_mm", 1000.0, 20.0, 5000.0, "base plate, along the axis, centred on the stack"),
+    P("base.thickness_mm", 10.0, 1.0, 300.0, "base plate"),
+    P("foot.width_mm", 120.0, 5.0, 2000.0, "pad between machine and base plate, across the axis"),
+    P("foot.length_mm", 100.0, 5.0, 2000.0, "pad, along the axis, centred on the stack"),
+    P("foot.height_mm", 40.0, 1.0, 500.0, "lowest point of the machine's body to the base plate"),
+)  # fmt: skip
+MAGNETS = (
+    P("rotor.poles", 16, 2, 80, "number of magnet poles"),
+    P("rotor.magnet_shape", "flat", choices=("flat", "v"), doc="one magnet per pole, or two in a V"),
+    P("rotor.magnet_width_mm", 22.0, 1.0, 300.0, "width of a magnet in the plane"),
+    P("rotor.magnet_thickness_mm", 5.0, 0.5, 60.0, "thickness of a magnet in the plane"),
+    P("rotor.bridge_mm", 2.0, 0.2, 60.0, "least iron between magnet and rotor surface"),
+    P("rotor.v_deg", 16.0, 0.0, 60.0, "tilt of each magnet of a V against the flat position"),
+)
+CAGE = (
+    P("rotor.bars", 28, 5, 120, "number of cage bars"),
+    P("rotor.bar_width_mm", 5.0, 0.5, 60.0, "parallel-sided bar, open to the air gap"),
+    P("rotor.bar_depth_mm", 18.0, 1.0, 120.0, "rotor surface to bar bottom"),
+    P("rotor.ring_mm", 14.0, 1.0, 100.0, "axial thickness of the cage's end rings"),
+)
+TEFC_DEFAULTS: dict[str, float | int | str] = {
+    "frame.length_mm": 300.0, "frame.cap_mm": 14.0, "shaft.diameter_mm": 38.0, "shaft.extension_mm": 80.0,
+    "bearing.outer_diameter_mm": 80.0, "stator.outer_diameter_mm": 210.0, "stator.bore_diameter_mm": 130.0,
+    "stator.stack_length_mm": 140.0, "stator.slots": 36, "stator.tooth_mm": 5.5, "stator.slot_depth_mm": 20.0,
+    "stator.tip_mm": 1.0, "stator.opening_mm": 2.5, "stator.air_gap_mm": 0.5, "winding.straight_mm": 8.0,
+    "winding.end_mm": 40.0, "housing.kind": "axial-fins", "housing.thickness_mm": 6.0, "base.kind": "plate",
+    "base.width_mm": 400.0, "base.length_mm": 400.0, "base.thickness_mm": 20.0, "foot.width_mm": 80.0,
+}  # fmt: skip
+TEFC = tuple(replace(p, default=TEFC_DEFAULTS.get(p.key, p.default)) for p in (*COMMON, *CAGE))
