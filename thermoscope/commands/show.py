@@ -1,0 +1,161 @@
+"""thermoscope report CASE, thermoscope render CASE"""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Mapping
+from datetime import datetime
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from geom.errors import MissingDependency
+from thermoscope.commands.opened import opened_to_write
+from thermoscope.commands.saved import save_diagnosis, saved_diagnosis
+from thermoscope.folder import Folder
+from thermoscope.runs import before_last, fields, held, parameters, steps
+from thermoscope.terminal import Progress, give, notes, progress, say, table
+from validation.case import Test
+
+FRAMES = 61
+ORDER = {"hold-out": 0, "validate": 1, "calibrate": 2}
+
+
+def report(case: str, out: Path | None, target: str | None) -> int:
+    """One page; the diagnosis is the last one if nothing has changed since."""
+    from validation.compare import compare
+    from viz.report import Report, write_report
+
+    with progress() as tell:
+        folder = opened_to_write(case, tell)
+        tell("running the model")
+        result, diagnosis = compare(folder.case), _diagnosis(folder, tell)
+        curves = [held(folder, test) for test in by_interest(folder)]
+        tell("drawing")
+        into = out or folder.settings.out
+        pictures = _pictures(folder, into)
+        page = Report(
+            folder.case.name, folder.settings.description, result.document(), diagnosis, steps(folder),
+            parameters(folder), curves, pictures, assumptions(folder), commands(folder, case), made(),
+        )  # fmt: skip
+        path = write_report(page, into / "report.html")
+    document = {"case": folder.case.name, "revision": folder.case.model.revision, "report": str(path)}
+    give(document, target, lambda: say(f"{path}"))
+    return 0
+
+
+def render(case: str, out: Path | None, target: str | None) -> int:
+    """Curves and errors always; the field and the recording where the geometry is known."""
+    with progress() as tell:
+        folder = opened_to_write(case, tell)
+        into = out or folder.settings.out
+        into.mkdir(parents=True, exist_ok=True)
+        tell("drawing curves")
+        files = [*_plots(folder, into), *_pictures(folder, into).values()]
+        if folder.built is not None:
+            tell("writing the recording")
+            files.append(_recording(folder, into))
+    if folder.built is None:
+        notes(["this case has no geometry (a hand-declared network): no field and no recording"])
+    document = {"case": folder.case.name, "files": [str(f) for f in files]}
+    give(document, target, lambda: table("Written", ["file"], [[str(f)] for f in files]))
+    return 0
+
+
+def by_interest(folder: Folder) -> list[Test]:
+    """Tests with the never-used ones first."""
+    return sorted(folder.case.tests, key=lambda test: ORDER[test.role])
+
+
+def _diagnosis(folder: Folder, tell: Progress) -> Mapping[str, Any]:
+    from thermoscope.pipeline import cache_folder
+    from validation.diagnose import diagnose
+
+    kept = saved_diagnosis(folder)
+    if kept is not None:
+        return kept
+    document = diagnose(folder.case, cache=cache_folder() / "null", progress=tell).document()
+    save_diagnosis(folder, document)
+    return document
+
+
+def _plots(folder: Folder, into: Path) -> list[Path]:
+    from viz import curves, errors
+
+    written = []
+    for test in by_interest(folder):
+        comparison = held(folder, test)
+        for name, draw in (("curves", curves.measured_and_model), ("residuals", curves.residuals)):
+            written.append(into / f"{name}-{test.name}.png")
+            draw(comparison, png=written[-1])
+    if folder.history.revisions:
+        written.append(into / "error.png")
+        errors.staircase(steps(folder), png=written[-1])
+    return written
+
+
+def _pictures(folder: Folder, into: Path) -> dict[str, Path]:
+    """Caption -> picture of the field at the end of the most telling test, alone or beside the model before."""
+    if folder.built is None:
+        return {}
+    from viz import cutaway, pair, require_gl, sensors, split
+
+    try:
+        require_gl()
+    except MissingDependency as fault:
+        notes([str(fault)])
+        return {}
+    into.mkdir(parents=True, exist_ok=True)
+    nodes, test = split(folder.built.mesh), by_interest(folder)[0]
+    now, file = fields(folder.case, test, nodes, 1)[1][-1], into / "field.png"
+    seen = sensors(held(folder, test), folder.positions)
+    cutaway(nodes, now, sensors=seen, title=f"{test.name}, model at the end", png=file)
+    out = {f"Temperature at the end of {test.name}; labels: measured minus modelled.": file}
+    earlier = before_last(folder)
+    if earlier is not None:
+        both = into / "field-before-after.png"
+        pair(nodes, fields(earlier, test, nodes, 1)[1][-1], now, titles=("before the last step", "now"), png=both)
+        out[f"End of {test.name} before and after the last step of the model."] = both
+    return out
+
+
+def _recording(folder: Folder, into: Path) -> Path:
+    from viz import split, write_recording
+
+    assert folder.built is not None
+    nodes, test = split(folder.built.mesh), by_interest(folder)[0]
+    frames = fields(folder.case, test, nodes, FRAMES)
+    path = into / f"{test.name}.rrd"
+    return write_recording(path, nodes, held(folder, test), frames, folder.positions, history=steps(folder))
+
+
+def assumptions(folder: Folder) -> list[str]:
+    """What the numbers of the page rest on."""
+    s, case = folder.settings, folder.case
+    kind = "a network declared by hand" if s.machine is None else "a network condensed from the machine's field"
+    roles = {role: [t.name for t in case.tests if t.role == role] for role in ORDER}
+    used = "; ".join(f"{role}: {', '.join(names)}" for role, names in roles.items() if names)
+    sigma = sorted({c.sigma_K for t in case.tests for c in t.channels})
+    return [
+        f"The model is {kind} with {len(case.model.network.parameters)} adjustable parameters.",
+        f"Tests by role: {used}.",
+        f"Recordings are averaged to {s.sample_s:g} s.",
+        f"Sensors are taken to be right within {sigma[0]:g} to {sigma[-1]:g} K (one standard deviation).",
+        *folder.notes,
+    ]
+
+
+def commands(folder: Folder, case: str) -> list[str]:
+    """What leads from the declared model to this page."""
+    known = [r for r in folder.history.revisions if r.action in ("calibrate", "add", "remove")]
+    done = [f"thermoscope {r.action} {case} {r.effect}".strip() for r in known]
+    return [*done, f"thermoscope report {case}"]
+
+
+def made() -> str:
+    """Date, versions, computer."""
+    now = datetime.now().astimezone().strftime("%Y-%m-%d %H:%M %Z")
+    parts = [f"thermoscope {version('thermoscope')}", f"Python {platform.python_version()}", f"NumPy {np.__version__}"]
+    return f"{now}; {', '.join(parts)}; {platform.system()} {platform.machine()}"

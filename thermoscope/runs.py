@@ -1,0 +1,95 @@
+"""The model as it stands, run for pictures: readings per sensor, temperature fields, and the steps that led there."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.simulate import simulate
+from thermoscope.folder import Folder
+from thermoscope.history import Revision
+from validation.case import AddedEffect, Case, Test
+from validation.compare import physical
+from validation.fitting import to_value, working
+from validation.predict import predict, record, thermal
+
+if TYPE_CHECKING:
+    from viz.data import Comparison
+    from viz.nodes import SplitMesh
+
+Array = NDArray[np.float64]
+BLIND = 0.9  # an interval this wide, compared with the one expected before, taught nothing
+
+
+def at_revision(folder: Folder, revision: Revision) -> Case:
+    """The case with the model of an earlier revision."""
+    effects = tuple(AddedEffect(*name.partition("@")[::2]) for name in revision.effects)
+    model = replace(folder.case.model, effects=effects, values=dict(revision.values), revision=revision.number)
+    return replace(folder.case, model=model)
+
+
+def before_last(folder: Folder) -> Case | None:
+    """The case before the last step; None when there was none."""
+    steps = folder.history.revisions
+    return at_revision(folder, steps[-2] if len(steps) > 1 else Revision(0, "calibrate")) if steps else None
+
+
+def readings(case: Case, test: Test) -> dict[str, Array]:
+    """Channel -> (n_time,) degC, what its sensor would read; sensors' fitted biases are left out."""
+    y = predict(working(case)[0], test, physical(case.model.values)).y
+    return {channel.name: y[:, j] for j, channel in enumerate(test.channels)}
+
+
+def held(folder: Folder, test: Test) -> Comparison:
+    """A test against the model, and against the model before its last step."""
+    from viz.data import Comparison
+
+    earlier = before_last(folder)
+    return Comparison(test, readings(folder.case, test), None if earlier is None else readings(earlier, test))
+
+
+def fields(case: Case, test: Test, nodes: SplitMesh, frames: int) -> tuple[Array, Array]:
+    """Times (n,) s and temperatures (n, n_nodes) degC on the parts' own nodes; the network needs a recovery."""
+    network = thermal(working(case)[0])
+    known = {p.name for p in network.parameters}
+    values = {k: v for k, v in case.model.values.items() if k in known}
+    run = simulate(network, record(test, {}), values, keep_states=True)
+    recovery: Any = network.recovery
+    chosen = np.unique(np.linspace(run.time.size - 1, 0, frames).astype(int))
+    states = np.asarray(run.z)[chosen, : len(network.states)]
+    T = [np.concatenate([recovery.of_part(part, x) for part in nodes.parts]) for x in states]
+    return run.time[chosen], np.array(T)
+
+
+def steps(folder: Folder) -> list[dict[str, Any]]:
+    """The revisions as pictures and the report want them: number, action, effect, tests."""
+    roles = {t.name: t.role for t in folder.case.tests}
+    return [
+        {
+            "number": r.number, "action": r.action, "effect": r.effect, "why": r.why,
+            "tests": [
+                {"name": name, "role": roles[name], "rmse_K": {"before": before, "after": after}}
+                for name, (before, after) in r.rmse_K.items() if name in roles
+            ],
+        }
+        for r in folder.history.revisions
+    ]  # fmt: skip
+
+
+def parameters(folder: Folder) -> list[dict[str, Any]]:
+    """The values of the last revision with their intervals, as `calibrate` lists them."""
+    last = folder.history.last
+    out = []
+    for p in working(folder.case)[1].parameters:
+        if p.name not in last.intervals:
+            continue
+        low, high = (max(p.low, min(p.high, to_value(p, s * 1.96 * p.prior_sd))) for s in (-1.0, 1.0))
+        a, b = last.intervals[p.name]
+        out.append({
+            "name": p.name, "value": last.values[p.name], "unit": p.unit, "ci95": [a, b],
+            "prior": {"from": low, "to": high}, "identified": b - a < BLIND * (high - low),
+        })  # fmt: skip
+    return out
