@@ -34,6 +34,7 @@ def read_test(
         whole, doubts = bridged(grid, values, sheet.max_gap_s, f"{samples.file} column '{column.name}'")
         notes += doubts
         (boundaries if column.is_temperature else inputs)[column.feeds or column.place] = whole
+    inputs |= {name: _root_sum_square(name, of, sheet, inputs) for name, of in sheet.squares.items()}
     _complete(network, inputs, boundaries, sheet)
     channels = (
         *_channels(sheet, samples, grid, network),
@@ -44,6 +45,16 @@ def read_test(
             "no measured temperature of the machine", sheet.where, "a temperature column with a place on it"
         )
     return Test(name, role, grid, inputs, boundaries, channels, _initial(sheet, channels, samples, network)), notes
+
+
+def _root_sum_square(name: str, of: tuple[str, ...], sheet: Sheet, inputs: Mapping[str, Array]) -> Array:
+    feeds = {c.name: c.feeds for c in sheet.columns if c.feeds}
+    for column in of:
+        if column not in feeds:
+            raise InputError(
+                f"unknown column '{column}'", f"{sheet.where} [root_sum_square] {name}", known(column, feeds)
+            )
+    return np.asarray(np.sqrt(np.sum([inputs[feeds[column]] ** 2 for column in of], axis=0)))
 
 
 def _complete(network: Network, inputs: Mapping[str, Array], boundaries: Mapping[str, Array], sheet: Sheet) -> None:

@@ -55,7 +55,9 @@ class Mean:
 class Sheet:
     """time : column of the times, or "" when rows are `period_s` apart;  initial : degC, per place, or "first-readings"
 
+    squares : input -> columns of which it is the root of the sum of squares, e.g. a current from its dq components
     inputs, boundaries : what stayed constant and was not recorded
+    [test] filter_s, the time constant of a filter in the recorder, is added to the lag of every temperature
     """
 
     where: str
@@ -67,6 +69,7 @@ class Sheet:
     max_gap_s: float
     columns: tuple[Column, ...]
     means: tuple[Mean, ...] = ()
+    squares: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     inputs: Mapping[str, float] = field(default_factory=dict)
     boundaries: Mapping[str, float] = field(default_factory=dict)
 
@@ -82,7 +85,13 @@ def read_toml(path: Path, right: str) -> dict[str, Any]:
 
 
 def load_sheet(path: Path) -> Sheet:
-    return read_sheet(read_toml(path, "a sheet with [test] and [columns.NAME]"), str(path))
+    """A sheet; with `columns_of` its columns and means are those of another sheet in the same folder."""
+    data = read_toml(path, "a sheet with [test] and [columns.NAME]")
+    other = Table(data.get("test", {}), f"{path} [test]").word("columns_of", "")
+    if other:
+        shared = read_toml(path.parent / other, f"the sheet that {path} takes its columns from")
+        data = {**{key: shared[key] for key in ("columns", "means", "root_sum_square") if key in shared}, **data}
+    return read_sheet(data, str(path))
 
 
 def read_sheet(data: Mapping[str, Any], where: str) -> Sheet:
@@ -90,14 +99,18 @@ def read_sheet(data: Mapping[str, Any], where: str) -> Sheet:
     top = Table(data, where)
     test, columns, means = top.table("test"), top.tables("columns"), top.tables("means")
     inputs, boundaries = _constants(top.table("inputs")), _constants(top.table("boundaries"))
+    squares = top.table("root_sum_square")
     top.close()
     period = test.number("period_s", low=1e-6) if "period_s" in test else 0.0
+    test.word("columns_of", "")
+    filtered = test.number("filter_s", 0.0)
     time_unit = checked_unit("time", test.raw("time_unit", "s"), test.where)
     sheet = Sheet(
         where, "" if period else test.word("time"), time_unit, period,
         test.word("description", ""), _initial(test), test.number("max_gap_s", MAX_GAP_S),
-        tuple(c for name, table in columns.items() if (c := _column(name, table)) is not None),
-        tuple(_mean(name, table) for name, table in means.items()), inputs, boundaries,
+        tuple(c for name, table in columns.items() if (c := _column(name, table, filtered)) is not None),
+        tuple(_mean(name, table, filtered) for name, table in means.items()),
+        {name: squares.words(name) for name in squares.data}, inputs, boundaries,
     )  # fmt: skip
     test.close()
     if not sheet.columns:
@@ -117,14 +130,14 @@ def _initial(test: Table) -> float | Mapping[str, float] | str:
     return test.word("initial", FIRST, [FIRST]) if isinstance(given, str) else test.number("initial", low=-273.15)
 
 
-def _column(name: str, table: Table) -> Column | None:
+def _column(name: str, table: Table, filtered: float) -> Column | None:
     if table.raw("use", True) is False:
         return None
     of = table.word("quantity", None, QUANTITIES)
     unit, hot = checked_unit(of, table.raw("unit"), table.where), of == "temperature"
     kind = table.word("sensor", "thermocouple", SENSORS)
     place, feeds = table.word("place", None if hot else ""), "" if hot else table.word("input", QUANTITIES[of].feeds)
-    sigma, lag = table.number("sigma_K", SENSORS[kind], low=1e-3), table.number("lag_s", 0.0)
+    sigma, lag = table.number("sigma_K", SENSORS[kind], low=1e-3), table.number("lag_s", 0.0) + filtered
     position = table.numbers("position_mm", [])
     if len(position) not in (0, 3):
         raise table.error(f"position_mm has {len(position)} numbers", "position_mm = [x, y, z]")
@@ -132,9 +145,9 @@ def _column(name: str, table: Table) -> Column | None:
     return Column(name, of, unit, place, feeds, sigma, lag, position, table.where)
 
 
-def _mean(name: str, table: Table) -> Mean:
+def _mean(name: str, table: Table, filtered: float) -> Mean:
     of, place = table.words("of"), table.word("place")
-    sigma, lag = table.number("sigma_K", 0.5, low=1e-3), table.number("lag_s", 0.0)
+    sigma, lag = table.number("sigma_K", 0.5, low=1e-3), table.number("lag_s", 0.0) + filtered
     table.close()
     if not of:
         raise table.error("of = [] averages nothing", "of = [two or more columns]")
@@ -142,7 +155,7 @@ def _mean(name: str, table: Table) -> Mean:
 
 
 def _fed_once(sheet: Sheet) -> None:
-    fed = [c.feeds for c in sheet.columns if c.feeds] + list(sheet.inputs)
+    fed = [c.feeds for c in sheet.columns if c.feeds] + [*sheet.inputs, *sheet.squares]
     for name in fed:
         if fed.count(name) > 1:
             raise InputError(

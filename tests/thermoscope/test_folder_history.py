@@ -1,0 +1,66 @@
+"""model.toml: what is written comes back, revisions are only added, and a broken file is refused."""
+
+import pytest
+
+from geom.errors import InputError
+from thermoscope.files import write_whole
+from thermoscope.history import History, Revision, load_history, save_history
+
+FIRST = Revision(0, "calibrate", values={"link.a": 1.25}, intervals={"link.a": (1.0, 1.5)}, rmse_K={"t": (3.0, 2.0)})
+SECOND = Revision(
+    0, "add", ("convection@flange",), "convection@flange", {"link.a": 1.1, "convection@flange": 12.5},
+    rmse_K={"t": (2.0, 0.5)}, why="error on tests not fitted 2 -> 0.5 K", evidence={"score": 8.1},
+)  # fmt: skip
+
+
+def test_round_trip(tmp_path):
+    history = History().and_then(FIRST).and_then(SECOND)
+    again = load_history(save_history(tmp_path / "model.toml", history))
+    assert again == history
+    assert [r.number for r in again.revisions] == [1, 2]
+
+
+def test_step_back_adds_a_revision():
+    history = History().and_then(FIRST).and_then(SECOND).back_to(1)
+    assert history.last.number == 3
+    assert history.last.values == FIRST.values
+    assert history.last.effects == ()
+    assert history.last.rmse_K == {"t": (0.5, 2.0)}
+
+
+def test_back_to_the_declared_model():
+    assert History().and_then(FIRST).back_to(0).last.values == {}
+
+
+def test_unknown_revision():
+    with pytest.raises(InputError, match="no revision 7"):
+        History().and_then(FIRST).back_to(7)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("[[revision]]\nnumber = 2\naction = 'add'\n", "numbered"),
+        ("[[revision]]\nnumber = 1\naction = 'guess'\n", "guess"),
+        ("[[revision]]\nnumber = 1\naction = 'add'\nvalue = 3\n", "did you mean 'values'"),
+        ("[[revision]\n", "not readable as TOML"),
+    ],
+)
+def test_broken_file(tmp_path, text, words):
+    path = tmp_path / "model.toml"
+    path.write_text(text)
+    with pytest.raises(InputError, match=words):
+        load_history(path)
+
+
+def test_failed_write_leaves_the_old_file(tmp_path, monkeypatch):
+    path = write_whole(tmp_path / "model.toml", "old")
+
+    def broken(*_):
+        raise OSError("disk full")
+
+    monkeypatch.setattr("os.replace", broken)
+    with pytest.raises(OSError, match="disk full"):
+        write_whole(path, "new")
+    assert path.read_text() == "old"
+    assert [p.name for p in tmp_path.iterdir()] == ["model.toml"]
