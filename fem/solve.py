@@ -86,7 +86,7 @@ def steady(
     B, D = film_columns(field, films, fluids.names)
     fixed = load + _from_fixed(field, films, fluids.fixed)
     X = factor(np.column_stack([fixed, B]))
-    u: Floats = np.linalg.solve(D + fluids.D - B.T @ X[:, 1:], fluids.s + B.T @ X[:, 0])
+    u = np.asarray(np.linalg.solve(D + fluids.D - B.T @ X[:, 1:], fluids.s + B.T @ X[:, 0]), float)
     T = X[:, 0] + X[:, 1:] @ u
     T += factor(fixed + B @ u - K @ T)
     lost = sum(

@@ -19,13 +19,21 @@ SNAP_M = 3e-3  # a thermocouple this far outside its part is taken to sit on the
 
 @dataclass(frozen=True)
 class PartShape:
-    """One part: mesh points (n,) it owns, coordinates (n, 3) m, tets (nt, 4) of own numbers, V (n, k) fields of its states (k,)."""
+    """One part: points (n,) of the mesh, xyz (n, 3) m, tets (nt, 4) of own numbers, V (n, k) fields of its states."""
 
     points: Ints
     xyz: Array
     tets: Ints
     V: Array
     states: Ints
+
+    @cached_property
+    def weights(self) -> Array:
+        """(n,) row of the part's mean temperature."""
+        corners = self.xyz[self.tets]
+        volume = np.abs(np.linalg.det(corners[:, 1:] - corners[:, :1]))
+        w = np.bincount(self.tets.ravel(), np.repeat(volume, 4), len(self.xyz))
+        return np.asarray(w / w.sum())
 
     @cached_property
     def tree(self) -> cKDTree:
@@ -93,6 +101,7 @@ def _anywhere(shape: PartShape, xyz: Array, part: str, distance: float, nearest:
             return tet, np.array([1 - inner.sum(), *inner])
     spot, mm = np.round(1e3 * xyz, 1), np.round(1e3 * nearest, 1)
     raise InputError(
-        f"the point {spot.tolist()} mm is not in part '{part}'", "sensor", f"nearest point of the part: {mm.tolist()} mm, "
-        f"{1e3 * distance:.1f} mm away",
-    )  # fmt: skip
+        f"the point {spot.tolist()} mm is not in part '{part}'",
+        "sensor",
+        f"nearest point of the part: {mm.tolist()} mm, {1e3 * distance:.1f} mm away",
+    )

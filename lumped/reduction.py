@@ -1,106 +1,47 @@
-"""From field to network: each part becomes a mean node, with its true heat capacity, plus shapes with their own time constants.
+"""From field to network: each part becomes a mean node with its true heat capacity, plus shapes of its own.
 
-Whole-machine solutions (snapshots) are restricted to each part, their mean is taken off, and what is left is compressed in
-the part's own energy. Contacts and films stay links of their own, linear in their coefficients; every one of them may change
-afterwards at no cost. This is the only file of the room that knows `fem`.
+Whole-machine solutions (snapshots) are restricted to each part, their mean is taken off, and what is left is
+compressed in the part's own energy. Contacts and films stay links of their own, linear in their coefficients; every
+one of them may change afterwards at no cost. This is the only file of the room that knows `fem`.
 
-    C_i dT_i/dt   = P_i + heat in through links         T_i mean temperature of part i
-    tau_k da_k/dt = -a_k + heat in weighted by shape k  a_k amplitude of a shape, in sqrt(W K)
+    C_i dT_i/dt = P_i + heat in through links               T_i mean temperature of part i
+    c_k da_k/dt = -k_k a_k + heat in weighted by shape k    a_k amplitude of a shape, in sqrt(W K)
 """
 
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import scipy.sparse as sp
 
-from fem.assembly import Block, FieldModel, Touch, Trace
-from fem.solve import Solver
+from fem.assembly import FieldModel, Touch, Trace
+from fem.snapshots import DEFAULT, Basis, Recipe, bases, energies, snapshots
 from lumped.laws import Fixed
 from lumped.network import Array, Link, Network, Place, Row
 from lumped.recovery import PartShape, Shapes
 
-SHIFTS = (1 / 3, 1 / 20, 1 / 120, 1 / 700)  # 1/s
+__all__ = ["Recipe", "Zone", "condense"]
 
 
 @dataclass(frozen=True)
-class Recipe:
-    """How fine the condensation is.
+class Zone:
+    """Where in a part a loss sits: density per tetrahedron, or of tetrahedron centres (m); None is uniform."""
 
-    tolerance : energy of a snapshot that may be lost, relative; smaller gives more states
-    shifts : Laplace shifts (1/s) that resolve the early minutes
-    random_points : points with every film and contact times 5 ** U(-1, 1), so that shapes know changed coefficients
-    """
-
-    tolerance: float = 0.01
-    shifts: tuple[float, ...] = SHIFTS
-    random_points: int = 4
-    spread: float = 5.0
-    seed: int = 1
+    part: str
+    density: Callable[[Array], Array] | Array | None = None
 
 
 @dataclass(frozen=True)
-class Basis:
-    """Shapes of one part: Phi (n, k), Phi' K Phi = 1, Phi' M Phi = diag(tau), mean zero;  tau (k,) s."""
+class Nominal:
+    """The point the condensation is centred on: films h and contacts g (W/m2/K), unit losses."""
 
-    Phi: Array
-    tau: Array
-
-
-def snapshots(
-    field: FieldModel, films: Mapping[str, float], contacts: Mapping[str, float], recipe: Recipe, solver: Solver | None = None
-) -> Array:
-    """(n, n_snapshot) whole-machine solutions, each of unit energy in the nominal machine."""
-    solver = solver or Solver(field)
-    zones = np.column_stack([field.load(part) for part in field.blocks])
-    nominal = field.stiffness(films, contacts)
-    out = [solver.factor(nominal)(np.column_stack([zones, *_fluxes(field), *_dipoles(field)]))]
-    out += [solver.factor(nominal, shift)(zones) for shift in recipe.shifts]
-    rng = np.random.default_rng(recipe.seed)
-    for _ in range(recipe.random_points):
-        h, g = drawn(films, recipe.spread, rng), drawn(contacts, recipe.spread, rng)
-        out.append(solver.factor(field.stiffness(h, g))(zones))
-    S = np.column_stack(out)
-    return np.asarray(S / np.sqrt(np.einsum("ij,ij->j", S, nominal @ S)))
-
-
-def drawn(coefficients: Mapping[str, float], spread: float, rng: np.random.Generator) -> dict[str, float]:
-    """Every coefficient times spread ** U(-1, 1)."""
-    return {name: value * spread ** rng.uniform(-1, 1) for name, value in coefficients.items()}
-
-
-def _fluxes(field: FieldModel) -> list[Array]:
-    return [_at(field.n, (f.trace, 1.0)) for f in field.films.values()]
-
-
-def _dipoles(field: FieldModel) -> list[Array]:
-    return [_at(field.n, (t.a, 1.0), (t.b, -1.0)) for t in field.contacts.values()]
-
-
-def _at(n: int, *sides: tuple[Trace, float]) -> Array:
-    out = np.zeros(n)
-    for trace, sign in sides:
-        out[trace.dofs] += sign * trace.b / trace.area
-    return out
-
-
-def bases(field: FieldModel, S: Array, tolerance: float) -> dict[str, Basis]:
-    """Shapes of every part from the snapshots."""
-    return {name: _basis(block, S[block.dofs], tolerance) for name, block in field.blocks.items()}
-
-
-def _basis(block: Block, S: Array, tolerance: float) -> Basis:
-    S = S - (block.w @ S) / block.volume
-    energy, U = np.linalg.eigh(S.T @ (block.K @ S))
-    keep = energy > max(tolerance**2, 1e-13 * energy[-1])
-    Phi = S @ (U[:, keep] / np.sqrt(energy[keep]))
-    Phi -= (block.w @ Phi) / block.volume
-    tau, R = np.linalg.eigh(Phi.T @ (block.M @ Phi))
-    return Basis(Phi @ R[:, ::-1], tau[::-1])
+    films: Mapping[str, float]
+    contacts: Mapping[str, float]
+    loads: Mapping[str, Array]
 
 
 def condense(
@@ -109,50 +50,64 @@ def condense(
     contacts: Mapping[str, float],
     fluids: Mapping[str, float],
     boundaries: tuple[str, ...] = ("ambient",),
-    recipe: Recipe = Recipe(),
+    recipe: Recipe = DEFAULT,
     name: str = "machine",
     cache: Path | None = None,
+    zones: Mapping[str, Zone] | None = None,
 ) -> Network:
-    """The network of a field: conduction and contacts as links, faces and parts as places. Films are added by whoever knows them.
+    """The network of a field: conduction and contacts as links, faces and parts as places; no films yet.
 
     films, contacts : coefficients (W/m2/K) the shapes are centred on, by face and by contact
     fluids : fluid node -> heat capacity (J/K), 0 allowed;  boundaries : fluids whose temperature is given
+    zones : losses that vary alone, by name, beside one uniform loss per part; each becomes a place
     """
-    found = _cached(field, films, contacts, recipe, cache)
-    return project(field, found, contacts, fluids, boundaries, name)
+    places = {**{part: Zone(part) for part in field.blocks}, **(zones or {})}
+    loads = {key: field.load(zone.part, zone.density) for key, zone in places.items()}
+    nominal = Nominal(films, contacts, loads)
+    found = _cached(field, nominal, recipe, cache)
+    return _network(field, found, nominal, places, fluids, boundaries, name)
 
 
-def _cached(
-    field: FieldModel, films: Mapping[str, float], contacts: Mapping[str, float], recipe: Recipe, cache: Path | None
-) -> dict[str, Basis]:
+def _build(field: FieldModel, nominal: Nominal, recipe: Recipe) -> dict[str, Basis]:
+    loads = np.column_stack([*nominal.loads.values()])
+    S = snapshots(field, nominal.films, nominal.contacts, loads, recipe)
+    return bases(field, S, energies(field, nominal.films, nominal.contacts), recipe)
+
+
+def _cached(field: FieldModel, nominal: Nominal, recipe: Recipe, cache: Path | None) -> dict[str, Basis]:
     if cache is None:
-        return bases(field, snapshots(field, films, contacts, recipe), recipe.tolerance)
-    file = cache / f"basis-{_fingerprint(field, films, contacts, recipe)}.npz"
+        return _build(field, nominal, recipe)
+    file = cache / f"basis-{_fingerprint(field, nominal, recipe)}.npz"
     if file.exists():
         with np.load(file) as saved:
-            return {part: Basis(saved[f"{part}/Phi"], saved[f"{part}/tau"]) for part in field.blocks}
-    found = bases(field, snapshots(field, films, contacts, recipe), recipe.tolerance)
+            return {part: Basis(*(saved[f"{part}/{k}"] for k in COLUMNS)) for part in field.blocks}
+    found = _build(field, nominal, recipe)
     cache.mkdir(parents=True, exist_ok=True)
     partial = file.with_suffix(".partial.npz")
-    np.savez(partial, **{f"{p}/{k}": v for p, b in found.items() for k, v in (("Phi", b.Phi), ("tau", b.tau))})  # type: ignore[arg-type]
+    np.savez(partial, **{f"{p}/{k}": getattr(b, k) for p, b in found.items() for k in COLUMNS})
     partial.replace(file)
     return found
 
 
-def _fingerprint(
-    field: FieldModel, films: Mapping[str, float], contacts: Mapping[str, float], recipe: Recipe
-) -> str:
-    h = hashlib.sha256(repr((sorted(films.items()), sorted(contacts.items()), recipe, list(field.blocks))).encode())
+COLUMNS = ("Phi", "capacity", "conduction")
+
+
+def _fingerprint(field: FieldModel, nominal: Nominal, recipe: Recipe) -> str:
+    point = [sorted(m.items()) for m in (nominal.films, nominal.contacts)]
+    h = hashlib.sha256(repr((point, recipe, list(field.blocks), list(nominal.loads))).encode())
     h.update(np.ascontiguousarray(field.xyz).tobytes())
     for block in field.blocks.values():
         h.update(block.K.data.tobytes() + block.M.data.tobytes())
+    for load in nominal.loads.values():
+        h.update(load.tobytes())
     return h.hexdigest()[:20]
 
 
-def project(
+def _network(
     field: FieldModel,
     found: Mapping[str, Basis],
-    contacts: Mapping[str, float],
+    nominal: Nominal,
+    zones: Mapping[str, Zone],
     fluids: Mapping[str, float],
     boundaries: tuple[str, ...],
     name: str,
@@ -164,31 +119,41 @@ def project(
     shapes: dict[str, PartShape] = {}
     for part, block in field.blocks.items():
         basis = found[part]
-        own = np.arange(len(states), len(states) + 1 + len(basis.tau))
-        states += [part, *(f"{part}#{k + 1}" for k in range(len(basis.tau)))]
-        C += [block.capacity, *basis.tau]
+        own = np.arange(len(states), len(states) + 1 + len(basis.capacity))
+        states += [part, *(f"{part}#{k + 1}" for k in range(len(basis.capacity)))]
+        C += [block.capacity, *basis.capacity]
         groups += [part] * len(own)
         V = np.column_stack([np.ones(len(block.points)), basis.Phi])
         shapes[part] = PartShape(block.points, block.xyz, block.tets, V, own)
     states, C, groups = [*states, *fluids], [*C, *fluids.values()], [*groups, *fluids]
-    conduction = [_conduction(part, shape) for part, shape in shapes.items() if len(shape.states) > 1]
-    links = [_contact(field, shapes, key, touch, contacts[key]) for key, touch in field.contacts.items()]
+    links = [_conduction(part, shape, found[part]) for part, shape in shapes.items() if len(shape.states) > 1]
+    links += [_contact(field, shapes, key, touch, nominal.contacts[key]) for key, touch in field.contacts.items()]
     places = {key: _surface(field, shapes, key) for key in field.films}
-    places |= {part: _mean(part, "part", shape.states[:1]) for part, shape in shapes.items()}
-    places |= {f: _mean(f, "fluid", np.array([states.index(f)])) for f in fluids}
+    places |= {key: _loss(field, shapes, key, zone, nominal.loads[key]) for key, zone in zones.items()}
+    places |= {f: _fluid(f, states.index(f)) for f in fluids}
     return Network(
-        name, tuple(states), np.array(C), boundaries, (*conduction, *links), (), places, tuple(groups), (), Shapes(shapes)
-    )  # fmt: skip
+        name, tuple(states), np.array(C), boundaries, tuple(links), (), places, tuple(groups), (), Shapes(shapes)
+    )
 
 
-def _conduction(part: str, shape: PartShape) -> Link:
-    inner, one = shape.states[1:], np.ones(1)
-    mean = Row(shape.states[:1], one)
-    return Link(f"conduction:{part}", "conduction", (part, part), inner, inner, np.ones(len(inner)), Fixed(1.0), mean, mean)
+def _conduction(part: str, shape: PartShape, basis: Basis) -> Link:
+    inner, mean = shape.states[1:], Row(shape.states[:1], np.ones(1))
+    return Link(
+        f"conduction:{part}", "conduction", (part, part), inner, inner, basis.conduction, Fixed(1.0), mean, mean
+    )
 
 
-def _mean(name: str, kind: str, states: Array) -> Place:
-    return Place(name, kind, name, states, np.ones((1, 1)), np.ones(1))  # type: ignore[arg-type]
+def _fluid(name: str, state: int) -> Place:
+    return Place(name, "fluid", name, np.array([state]), np.ones((1, 1)), np.ones(1))
+
+
+def _loss(field: FieldModel, shapes: Mapping[str, PartShape], key: str, zone: Zone, load: Array) -> Place:
+    """A unit loss spreads over the part's states just as the zone's mean temperature reads them."""
+    if key == zone.part and zone.density is None:
+        return Place(key, "part", key, shapes[key].states[:1], np.ones((1, 1)), np.ones(1))
+    shape = shapes[zone.part]
+    b = load[field.blocks[zone.part].dofs] @ shape.V
+    return Place(key, "part", zone.part, shape.states, np.outer(b, b), b)
 
 
 def _restricted(field: FieldModel, shape: PartShape, trace: Trace) -> Array:
@@ -200,7 +165,16 @@ def _surface(field: FieldModel, shapes: Mapping[str, PartShape], key: str) -> Pl
     trace = field.films[key].trace
     shape = shapes[trace.part]
     X = _restricted(field, shape, trace)
-    return Place(key, "surface", trace.part, shape.states, X.T @ (trace.mass @ X), X.T @ trace.b, trace.area, field.films[key].fluid)
+    return Place(
+        key,
+        "surface",
+        trace.part,
+        shape.states,
+        X.T @ (trace.mass @ X),
+        X.T @ trace.b,
+        trace.area,
+        field.films[key].fluid,
+    )
 
 
 def _contact(field: FieldModel, shapes: Mapping[str, PartShape], key: str, touch: Touch, g: float) -> Link:
