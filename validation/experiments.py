@@ -91,11 +91,12 @@ STANDING = _set(speed_rpm=0.0, vehicle_speed_mps=0.0)
 SPINNING = _set(current_A=0.0, torque_Nm=0.0, speed_rpm=1000.0, vehicle_speed_mps=0.0)
 COOLING = _set(vehicle_speed_mps=_on_off(12.0), speed_rpm=0.0)
 BLOWN = _set(vehicle_speed_mps=_on_off(8.0), speed_rpm=0.0)
+TWO_SPEEDS = _set(speed_rpm=_on_off(1500.0, 2))
 EVEN = _steady("current_A")
 MENU = (
     Experiment("DC heating at standstill", _then(EVEN, STANDING), ("current_A",)),
     Experiment("spin without current", SPINNING, ("speed_rpm",)),
-    Experiment("same current at two speeds", _then(EVEN, _set(speed_rpm=_on_off(1500.0, 2))), ("speed_rpm", "current_A")),
+    Experiment("same current at two speeds", _then(EVEN, TWO_SPEEDS), ("speed_rpm", "current_A")),
     Experiment("cool-down with wind on and off", COOLING, ("vehicle_speed_mps",)),
     Experiment("blower on the machine at standstill", _then(EVEN, BLOWN), ("vehicle_speed_mps", "current_A")),
     Experiment("fan flow halved midway", _half("fan_flow_m3h"), ("fan_flow_m3h",)),

@@ -65,9 +65,8 @@ def latent_heat(fit: Fit, tests: Sequence[Test], knot_s: float = KNOT_S) -> list
         grams[test.name] = gram(parts, fit.noise, p)[test.name]
     H = sum(g.JJ for g in grams.values()) + np.diag(weight)
     Jr = sum(g.Jr for g in grams.values()) - weight * fit.theta
-    out = [
-        _at(place, i, knots, grams, np.linalg.inv(H), Jr, power_scale(fit.network)) for i, place in enumerate(places)
-    ]
+    cov, scale = np.asarray(np.linalg.inv(H), float), power_scale(fit.network)
+    out = [_at(place, i, knots, grams, cov, Jr, scale) for i, place in enumerate(places)]
     return sorted(out, key=lambda x: -x.evidence_nats)
 
 

@@ -93,7 +93,7 @@ def parameters(links, sources):
 class Truth:
     """The real machine: drawn parameters, other formulas, a hidden effect.
 
-    hidden(T, u, t) -> {node: W}, T and u dictionaries;  tests see u: current_A, speed_rpm, vehicle_speed_mps, fan_flow_m3h
+    hidden(T, u, t) -> {node: W}, with T a dictionary of temperatures and u of inputs and air
     """
 
     seed: int = 0

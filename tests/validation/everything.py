@@ -1,0 +1,69 @@
+"""A network on which every effect of the catalogue finds a place: a declared motor with faces, streams and coolant."""
+
+from dataclasses import replace
+
+import numpy as np
+from playground import SENSORS, network, row, stand
+
+from lumped.laws import Fixed
+from lumped.network import Link, Place, Row
+from validation.case import Channel, Test
+from validation.effects import Scene
+
+
+def machine():
+    """The playground's motor with a coolant, a bench, an end space with its stream, and a flange that has faces."""
+    base = network(feedback=False)
+    n = len(base.states)
+    boundaries = ("ambient", "coolant", "bench")
+    base = replace(base, states=(*base.states, "air.right"), C=np.append(base.C, 60.0), boundaries=boundaries)
+    base = replace(base, links=tuple(moved(x, n) for x in base.links), capacity_group=base.states)
+    flange = np.array([base.column("flange.right")])
+    faces = {
+        "flange.right.outer": Place("flange.right.outer", "surface", "flange.right", flange, 0.2 * np.eye(1),
+                                    np.array([0.2]), 0.2, "ambient"),
+        "flange.right.inner": Place("flange.right.inner", "surface", "flange.right", flange, 0.1 * np.eye(1),
+                                    np.array([0.1]), 0.1, "air.right"),
+        "air.right": Place("air.right", "fluid", "air.right", np.array([n]), np.eye(1), np.ones(1)),
+    }  # fmt: skip
+    base = replace(base, places={**base.places, **faces})
+    coolant = base.surface_link("film:housing:jacket", "film", "housing", "coolant", Fixed(20.0))
+    inner = base.surface_link("film:flange.right.inner", "film", "flange.right.inner", "air.right", Fixed(15.0))
+    air = Row(np.array([n]), np.ones(1)), row(base.column("ambient"))
+    cols = np.array([n, base.column("ambient")])
+    stream = Link(
+        "stream:fan",
+        "stream",
+        ("ambient", "air.right"),
+        np.array([n, n]),
+        cols,
+        np.array([1.0, -1.0]),
+        Fixed(30.0),
+        *air,
+    )
+    return base.extended(links=[coolant, inner, stream])
+
+
+def moved(link, n):
+    """The link with its boundary column behind one state more."""
+
+    def shift(index):
+        return np.where(index >= n, index + 1, index)
+
+    hot, cold = (Row(shift(r.index), r.weights) for r in (link.hot, link.cold))
+    return replace(link, cols=shift(link.cols), hot=hot, cold=cold)
+
+
+def scene(net):
+    inputs = frozenset({"current_A", "speed_rpm", "vehicle_speed_mps", "fan_flow_m3h", "time_s"})
+    return Scene(net, inputs, SENSORS, ("warm",))
+
+
+def warm_test(net):
+    """Twenty minutes of heating with everything moving; channels at the sensors."""
+    time = np.arange(0.0, 1200.0, 10.0)
+    inputs = stand(200.0, 1000.0)(time, np.random.default_rng(0))
+    inputs["vehicle_speed_mps"] = 5.0 + 5.0 * np.sin(time / 100.0)
+    boundaries = {b: np.full_like(time, t) for b, t in zip(net.boundaries, (20.0, 15.0, 18.0))}
+    channels = tuple(Channel(s, s, row(net.column(s)), np.zeros_like(time), 0.5, 10.0) for s in SENSORS)
+    return Test("warm", "calibrate", time, inputs, boundaries, channels, 25.0)

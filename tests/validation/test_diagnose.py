@@ -1,0 +1,106 @@
+"""The verdicts on machines whose truth is known, made by formulas that the model does not share."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from playground import Truth, network, wind
+
+from validation import diagnose
+from validation.faults import broken_channels
+
+DRAWS = 30
+FAN_PARTS = ("rotor", "winding.field", "poles", "flange.left", "commutator")
+
+
+def brush(T, u, t):
+    return {"commutator": 1.5 * abs(u["current_A"])}
+
+
+TRUTHS = {
+    "nothing": lambda: Truth(11),
+    "nothing else": lambda: Truth(13),
+    "wind": lambda: Truth(10, wind("flange.right", 12.0)),
+    "brush": lambda: Truth(10, brush),
+    "bias": lambda: Truth(10, bias={"yoke": 4.0}),
+    "lag": lambda: Truth(10, lag={"winding.field": 60.0}),
+    "weak fan": lambda: Truth(10, change={p: ("fan", p, 0.5) for p in FAN_PARTS}),
+}
+
+
+@cache
+def answer(name, plan=False):
+    return diagnose(TRUTHS[name]().case(), draws=DRAWS, workers=1, plan=plan)
+
+
+@pytest.mark.parametrize("name", ["nothing", "nothing else"])
+def test_nothing_missing_is_adequate(name):
+    assert answer(name).verdict == "adequate"
+
+
+def test_hidden_wind_is_named():
+    found = answer("wind", plan=True)
+    assert found.verdict == "named"
+    assert found.named == ("convection@flange.right",)
+    assert found.candidates[0].explained > 0.5
+
+
+def test_amplitude_of_the_wind_is_covered():
+    """12 W/K at 10 m/s with Re^0.63, told as Re^0.8: the two laws agree within 20 % over the speeds driven."""
+    low, high = answer("wind", plan=True).candidates[0].ci95
+    assert low < 1.2 * 12.0
+    assert high > 12.0 / 1.2
+
+
+def test_missing_heat_is_located():
+    assert answer("wind", plan=True).where[0].place == "flange.right"
+
+
+def test_confounded_effects_are_a_group():
+    """Heat at the commutator: from the brush drop, or any other that follows the current as well on these tests."""
+    found = answer("brush", plan=True)
+    assert found.verdict in ("group", "named")
+    assert "brush.drop@commutator" in found.groups[0]
+
+
+def test_group_gets_a_ranked_plan():
+    found = answer("brush", plan=True)
+    gains = [t.predicted_gain / t.hours for t in found.next_tests]
+    assert found.verdict == "named" or (gains and gains == sorted(gains, reverse=True))
+
+
+@pytest.mark.parametrize(("name", "effect"), [("bias", "sensor.bias@yoke"), ("lag", "sensor.lag@winding.field")])
+def test_faults_of_sensors_are_data(name, effect):
+    found = answer(name)
+    assert found.verdict == "data"
+    assert effect in found.groups[0]
+
+
+def test_what_calibration_hides_is_absorbed():
+    """Half the fan's air looks exactly like a fan flow calibrated to half."""
+    found = answer("weak fan")
+    assert found.verdict == "absorbed"
+    assert "fan.flow" in found.words
+
+
+def test_document_has_the_agreed_fields():
+    out = answer("wind", plan=True).document()
+    assert {"verdict", "candidates", "cannot_see", "where", "next_tests"} <= set(out)
+    row = out["candidates"][0]
+    assert {"effect", "score", "threshold", "amplitude", "explained", "rmse_K", "holdout_rmse_K", "confused_with",
+            "decision"} <= set(row)  # fmt: skip
+    assert {"value", "unit", "ci95"} == set(row["amplitude"])
+
+
+def test_effects_that_tests_cannot_show_are_listed():
+    """No channel sits on the shaft, and nothing but its neighbours' calibration feels its mass."""
+    assert "mass@shaft" in {h.effect for h in answer("wind", plan=True).cannot_see}
+
+
+def test_frozen_channel_is_seen_without_a_model():
+    (test, *_) = Truth(0).case(network()).tests
+    y = np.where(test.time > 1800.0, 30.0, test.channels[0].y)
+    broken = replace(test, channels=(replace(test.channels[0], y=y), *test.channels[1:]))
+    assert not broken_channels([test])
+    assert "flange.left" in broken_channels([broken])[0]

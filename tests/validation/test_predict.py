@@ -1,0 +1,61 @@
+"""Channel operators against closed forms."""
+
+import numpy as np
+import pytest
+from everything import machine, warm_test
+
+from lumped.network import Parameter
+from validation.predict import lagged, predict
+
+TIME = np.arange(0.0, 600.0, 10.0)
+
+
+@pytest.mark.parametrize("time", [TIME, np.sort(np.concatenate([TIME, [3.0, 55.0]]))], ids=["even", "uneven"])
+def test_lag_of_a_ramp(time):
+    """y = t - tau (1 - exp(-t / tau)), exact for any step."""
+    np.testing.assert_allclose(lagged(time, time, 40.0), time - 40.0 * (1.0 - np.exp(-time / 40.0)), atol=1e-9)
+
+
+def operator(target, value=0.0):
+    return Parameter(target, ((target, 1.0),), value, mapping="offset", neutral=0.0)
+
+
+@pytest.mark.parametrize("head", ["bias", "gain", "stem", "drift", "lag", "boundary", "initial", "delay"])
+def test_tangents_pass_through_the_operator(head):
+    """The derivative of a reading by its operator, at a point where other operators act too."""
+    from dataclasses import replace
+
+    net, test = machine(), warm_test(machine())
+    name = {"boundary": "ambient", "initial": "warm", "delay": "warm"}.get(head, "yoke")
+    p, other = operator(f"{head}:{name}"), operator("gain:yoke ", 0.0)
+    net = replace(net, parameters=(*net.parameters, p, other, operator("bias:housing", 1.0)))
+    size = 2.0 if head in ("lag", "delay") else 0.1
+    J = predict(net, test, {p.name: size}, [p]).J[:, :, 0]
+    up, down = (predict(net, test, {p.name: size + h}).y for h in (0.02, -0.02))
+    assert np.abs(J).max() > 1e-4
+    np.testing.assert_allclose(J, (up - down) / 0.04, atol=0.02 * np.abs(J).max())
+
+
+def test_bias_gain_and_stem():
+    from dataclasses import replace
+
+    net, test = machine(), warm_test(machine())
+    plain = predict(net, test, {}).y[:, 3]
+    net = replace(
+        net, parameters=(*net.parameters, operator("bias:yoke"), operator("gain:yoke"), operator("stem:yoke"))
+    )
+
+    def with_(name, value):
+        return predict(net, test, {name: value}).y[:, 3]
+
+    np.testing.assert_allclose(with_("bias:yoke", 2.0), plain + 2.0)
+    np.testing.assert_allclose(with_("gain:yoke", 0.1), 20.0 + 1.1 * (plain - 20.0))
+    stem = lagged(test.time, 0.9 * predict_without_lag(net, test) + 0.1 * 20.0, 10.0)
+    np.testing.assert_allclose(with_("stem:yoke", 0.1), stem)
+
+
+def predict_without_lag(net, test):
+    from dataclasses import replace
+
+    channels = tuple(replace(c, lag_s=0.0) for c in test.channels)
+    return predict(net, replace(test, channels=channels), {}).y[:, 3]

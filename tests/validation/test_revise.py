@@ -1,0 +1,97 @@
+"""The story of the road test on the playground: calibrate on the stand, fail on the road, add the effect, see it fall."""
+
+from dataclasses import replace
+from functools import cache
+
+import pytest
+from playground import Truth, wind
+
+from geom.errors import InputError
+from validation import add, calibrate, compare, remove
+from validation.fitting import working
+from validation.sheet import rmse, segments
+
+EFFECT = "convection@flange.right"
+
+
+@cache
+def stand():
+    case = Truth(3, wind("flange.right", 40.0)).case()
+    return case, calibrate(case)
+
+
+@cache
+def added():
+    case, first = stand()
+    return add(replace(case, model=first.model), EFFECT)
+
+
+def channel(comparison, test, name):
+    (t,) = [t for t in comparison.tests if t.name == test]
+    return next(c for c in t.channels if c.channel == name)
+
+
+def test_calibration_fits_the_stand():
+    _, first = stand()
+    assert first.converged
+    assert all(t.after < 1.0 for t in first.tests if t.role == "calibrate")
+
+
+def test_road_fails_at_the_right_flange():
+    _, first = stand()
+    road = [t for t in first.after.tests if t.name == "road-1"][0]
+    assert max(road.channels, key=lambda c: c.rmse_K).channel in ("flange.right", "bearing.right")
+
+
+def test_held_out_error_falls():
+    last = {t.name: t for t in added().tests}["road-2"]
+    assert last.role == "hold-out"
+    assert last.after < 0.5 * last.before
+    assert added().accepted
+
+
+def test_removing_brings_the_error_back():
+    case, _ = stand()
+    gone = remove(replace(case, model=added().model), EFFECT)
+    assert not gone.accepted
+    assert gone.model.effects == ()
+    assert gone.model.revision == 3
+
+
+def test_what_the_data_cannot_tell_is_said():
+    rows = {p.name: p for p in added().parameters}
+    assert rows[EFFECT].identified
+    assert not all(p.identified for p in rows.values())
+    assert any(p.partner for p in rows.values())
+
+
+def test_calibration_reaches_the_noise():
+    """0.05 K of reading noise, 0.1 K steps (0.03 K) and averaging: below 0.06 K on the calibrated tests."""
+    case, first = stand()
+    network, _ = working(case)
+    tests = [t for t in case.tests if t.role == "calibrate"]
+    assert rmse(segments(network, tests, first.model.values)) < 0.06
+
+
+@pytest.mark.parametrize(
+    ("act", "name"), [(remove, EFFECT), (add, "convection@mars"), (add, "phlogiston@yoke")]
+)  # fmt: skip
+def test_errors_name_what_would_be_right(act, name):
+    with pytest.raises(InputError):
+        act(stand()[0], name)
+
+
+def test_adding_twice_is_an_error():
+    case, _ = stand()
+    with pytest.raises(InputError, match="already"):
+        add(replace(case, model=added().model), EFFECT)
+
+
+def test_comparison_document():
+    case, first = stand()
+    out = compare(replace(case, model=first.model)).document()
+    assert {"case", "model", "tests", "rmse_K", "floor_K"} == set(out)
+    row = out["tests"][0]["channels"][0]
+    assert {"channel", "place", "n", "rmse_K", "bias_K", "max_abs_K", "sigma_K", "percent_of_rise", "verdict"} == set(
+        row
+    )
