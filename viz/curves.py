@@ -13,7 +13,7 @@ import numpy as np
 from geom.errors import InputError
 from viz import paper
 from viz.colours import BLUE, LIGHT, ORANGE, VERMILION
-from viz.data import Comparison
+from viz.data import Comparison, short
 from viz.labels import beside
 
 if TYPE_CHECKING:
@@ -54,14 +54,13 @@ def residuals(comparison: Comparison, *, png: str | Path | None = None) -> Figur
         colours.append(wrongness(r, 2 * channel.sigma_K))
         ax.plot(t[thin], r[thin], color=colours[-1], lw=1.6 if colours[-1] != LIGHT.faint else 1.0)
     ends = [float(r[np.isfinite(r)][-1]) for r in map(comparison.residual, channels)]
-    beside(ax, ends, [c.name for c in channels], [LIGHT.ink if c == LIGHT.faint else c for c in colours])
+    beside(ax, ends, [short(c.name) for c in channels], [LIGHT.ink if c == LIGHT.faint else c for c in colours])
     ax.axhline(0, color=LIGHT.ink, lw=0.8)
     ax.margins(x=0)
     ax.set(
         xlabel=f"time ({unit})", ylabel="measured − model (K)", title=f"{comparison.test.name}: what the model misses"
     )
-    where = ax.get_yaxis_transform()
-    ax.text(0.01, band, " what the sensors' uncertainty explains", va="bottom", fontsize=8, transform=where)
+    ax.set_title("grey: within the sensors' uncertainty", loc="right", fontweight="normal", fontsize=8.5)
     return paper.saved(figure, png)
 
 
@@ -79,13 +78,13 @@ def _panel(ax: Axes, comparison: Comparison, channel: Channel) -> None:
     if comparison.before is not None:
         ax.plot(t, comparison.before[channel.name][thin], color=ORANGE, lw=1.4, ls=(0, (4, 2)))
     ax.plot(t, comparison.model[channel.name][thin], color=BLUE)
-    ax.set_title(channel.name)
+    ax.set_title(short(channel.name))
     ax.margins(x=0)
     over = comparison.rmse(channel) > 2 * channel.sigma_K
-    ax.text(
-        0.97, 0.06, f"rms {comparison.rmse(channel):.1f} K", transform=ax.transAxes, ha="right", fontsize=9,
-        color=VERMILION if over else LIGHT.ink, weight="bold" if over else "normal",
-    )  # fmt: skip
+    colour = VERMILION if over else LIGHT.ink
+    ax.set_title(
+        f"rms {comparison.rmse(channel):.1f} K", loc="right", color=colour, fontweight="bold" if over else "normal"
+    )
 
 
 def _name_lines(ax: Axes, comparison: Comparison) -> None:

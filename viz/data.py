@@ -79,6 +79,11 @@ class Comparison:
         return float(np.sqrt(np.nanmean(self.residual(channel) ** 2)))
 
 
+def short(channel: str) -> str:
+    """A column's name without what the axis says already: 'T_flange_right_degC' -> 'flange right'."""
+    return channel.removeprefix("T_").removesuffix("_degC").removesuffix("_C").replace("_", " ")
+
+
 def sensors(comparison: Comparison, positions: Mapping[str, Sequence[float]]) -> tuple[Sensor, ...]:
     """Sensors of a test at their positions (m) with the mean residual of its last fifth, where the machine is warm."""
     out = []

@@ -16,7 +16,7 @@ from viz import scene
 from viz.callouts import Label, callouts
 from viz.colours import LIGHT, VERDICT, Theme, heat
 from viz.cut import QUARTER, Surface, Wedge, cut_away
-from viz.data import Sensor
+from viz.data import Sensor, short
 from viz.nodes import SplitMesh, on_nodes
 from viz.scene import TITLE, Room, View
 
@@ -101,5 +101,5 @@ def _room(labels: bool, title: str) -> Room:
 
 
 def _label(sensor: Sensor) -> Label:
-    value = "" if sensor.residual_K is None else f"  {sensor.residual_K:+.1f} K"
-    return Label(sensor.xyz, f"{sensor.name}{value}", VERDICT[sensor.verdict])
+    value = "" if sensor.residual_K is None else f"  {round(sensor.residual_K, 1) + 0.0:+.1f} K"
+    return Label(sensor.xyz, f"{short(sensor.name)}{value}", VERDICT[sensor.verdict])

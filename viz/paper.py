@@ -33,7 +33,7 @@ def subplots(width: float, height: float, rows: int = 1, columns: int = 1) -> tu
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(width, height), facecolor=LIGHT.paper)
-    axes = figure.subplots(rows, columns, squeeze=False, sharex=columns > 1, sharey=columns > 1)
+    axes = figure.subplots(rows, columns, squeeze=False, sharex=columns > 1)
     return figure, list(axes.ravel())
 
 
