@@ -1,7 +1,7 @@
 """A plain cylinder condensed from a fine mesh against Mellor's closed form.
 
 Source: Mellor, Roberts, Turner 1991, "Lumped parameter thermal model for electrical machines of TEFC design",
-Source: Mellor, Roberts, Turner 1991, "Lumped parameter thermal model for electrical machines of TEFC design",
+IEE Proc. B 138, 205: a face's temperature over the part's mean, for a unit flux through a face taken up uniformly.
 """
 
 import numpy as np
