@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import colorsys
-import hashlib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from geom.errors import InputError
 from geom.machine import Machine
+from geom.palette import colour
 from geom.part import Part
 
 if TYPE_CHECKING:
@@ -64,16 +63,6 @@ def assembly(machine: Machine) -> cq.Assembly:
     for part in machine.parts:
         whole.add(cq.Compound.makeCompound(solids(part)), name=part.name, color=cq.Color(*colour(part.material)))
     return whole
-
-
-def colour(material: str) -> tuple[float, float, float]:
-    """A steady colour (r, g, b in 0 ... 1) for a material: copper is copper, others by their name."""
-    known = {"winding": (0.85, 0.45, 0.2), "insul": (0.95, 0.9, 0.55), "liner": (0.95, 0.9, 0.55)}
-    for word, rgb in known.items():
-        if word in material:
-            return rgb
-    hue = int(hashlib.sha256(material.encode()).hexdigest()[:4], 16) / 65535
-    return colorsys.hsv_to_rgb(hue, 0.15, 0.75)
 
 
 def export_cad(machine: Machine, folder: Path | str, formats: tuple[str, ...] = FORMATS) -> dict[str, Path]:
