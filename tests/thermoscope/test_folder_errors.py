@@ -4,9 +4,9 @@ import shutil
 
 import numpy as np
 import pytest
+from small_case import small_case
 
 from geom.errors import InputError
-from small_case import small_case
 from thermoscope.folder import find_case, load_case
 
 
