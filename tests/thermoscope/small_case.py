@@ -90,7 +90,10 @@ HEADER = "time_s,current,wind,air,T_winding,T_yoke,T_flange"
 
 
 def measured(seed: int, wind: bool, strength: float) -> np.ndarray:
-    """(n, 7) rows of a test of 50 min: the columns of HEADER. `strength` W/K at 10 m/s is the convection nobody declared."""
+    """(n, 7) rows of a test of 50 min, the columns of HEADER.
+
+    strength : W/K at 10 m/s, the convection at the flange that the network lacks
+    """
     rng = np.random.default_rng(seed)
     t = np.arange(0.0, 3000.0, 10.0)
     current = 100.0 * rng.uniform(0.5, 1.2, 11)[(t / 300).astype(int)]
@@ -98,8 +101,8 @@ def measured(seed: int, wind: bool, strength: float) -> np.ndarray:
 
     def slope(now, T):
         w, y, f = T
-        I, v = np.interp(now, t, current), np.interp(now, t, speed)
-        P = 0.02 * I**2 * (1 + 0.00393 * (w - 20))
+        amps, v = np.interp(now, t, current), np.interp(now, t, speed)
+        P = 0.02 * amps**2 * (1 + 0.00393 * (w - 20))
         lost = 1.5 + strength * (v / 10) ** 0.8
         return [
             (P - 8 * (w - y)) / 2000,
@@ -110,7 +113,9 @@ def measured(seed: int, wind: bool, strength: float) -> np.ndarray:
     T = solve_ivp(slope, (0, t[-1]), [20.0] * 3, t_eval=t, max_step=10, rtol=1e-7).y + 0.05 * rng.standard_normal(
         (3, t.size)
     )
-    return np.column_stack([t, current, 3.6 * speed, 20.0 + 0.05 * rng.standard_normal(t.size), T[0], T[1] + 273.15, T[2]])
+    return np.column_stack(
+        [t, current, 3.6 * speed, 20.0 + 0.05 * rng.standard_normal(t.size), T[0], T[1] + 273.15, T[2]]
+    )
 
 
 def write_csv(path: Path, rows: np.ndarray) -> None:
