@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from thermoscope.folder import load_machine_file
-from thermoscope.terminal import give, progress, say, table
+from thermoscope.terminal import cell, give, progress, say, table
 
 if TYPE_CHECKING:
     from geom.cad import CadCheck
@@ -17,11 +17,12 @@ if TYPE_CHECKING:
     from thermoscope.crosscheck import CrossCheck
     from thermoscope.pipeline import Built
 
+HOT = 200.0  # degC, what insulation bears
+
 
 def build(machine: str, out: Path | None, target: str | None) -> int:
-    """Solids, mesh and network of a machine to a folder, and the network against the field at the rated point."""
+    """Solids, mesh and network of a machine to a folder, and the network against the field at one steady point."""
     from geom import check_cad, export_cad, write_vtu
-    from lumped.motor import operating_point
     from thermoscope.crosscheck import crosscheck
     from thermoscope.pipeline import build as built_from
 
@@ -29,17 +30,31 @@ def build(machine: str, out: Path | None, target: str | None) -> int:
     folder = out or Path("out") / described.name
     with progress() as tell:
         built = built_from(described, progress=tell)
-        tell("field against network at the rated point")
-        rated = {name: float(value[0]) for name, value in operating_point(described).items()}
-        checked = crosscheck(built.field, built.network, rated)
+        tell("field against network")
+        point = bearable(built)
+        checked = crosscheck(built.field, built.network, point)
         tell("solids")
         solids = check_cad(described)
         tell(f"writing {folder}")
         export_cad(described, folder)
         write_vtu(built.mesh, folder / f"{described.name}.vtu")
-    document = described_as(built, solids, checked)
+    document = {**described_as(built, solids, checked), "operating_point": point}
     give(document, target, lambda: show(document, folder))
     return 0
+
+
+def bearable(built: Built) -> dict[str, float]:
+    """The rated point with its current lowered until the machine settles: a short-time rating has no steady state."""
+    from lumped.motor import operating_point
+    from thermoscope.crosscheck import steady_state
+
+    point = {name: float(value[0]) for name, value in operating_point(built.machine).items()}
+    named = [i for i, state in enumerate(built.network.states) if "#" not in state]
+    while True:
+        T = steady_state(built.network, point, 20.0)[named]
+        if T.min() > 0.0 and T.max() < HOT:
+            return point
+        point = {**point, "current_A": 0.8 * point["current_A"]}
 
 
 def described_as(built: Built, solids: list[CadCheck], checked: CrossCheck) -> dict[str, Any]:
@@ -77,7 +92,8 @@ def show(document: Mapping[str, Any], folder: Path) -> None:
     ]
     table("Parts", ["part", "material", "volume (l)", "in the mesh (l)", "watertight"], litres, marked=["NO"])
     headers = ["part", "field mean", "network mean", "field max", "network max", "off (% of rise)"]
-    title = "Rated point, steady, 20 degC around: temperatures (degC)"
+    point = ", ".join(f"{name} {cell(value)}" for name, value in document["operating_point"].items())
+    title = f"Steady at {point}, 20 degC around: temperatures (degC)"
     table(title, headers, [list(part.values()) for part in document["crosscheck"]])
     mesh, network = document["mesh"], document["network"]
     say(f"mesh: {mesh['nodes']} points, {mesh['tets']} tetrahedra")
