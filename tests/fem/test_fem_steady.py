@@ -11,7 +11,7 @@ from fem.assembly import assemble
 from fem.grids import box, cylinder, ring, sector
 from fem.material import Conductivity, isotropic, laminated
 from fem.multifrontal import analyse, factorise
-from fem.solve import Fluids, Solver, only_fixed, steady
+from fem.solve import Fluids, Iterative, Solver, only_fixed, steady
 from geom.errors import InputError
 
 
@@ -177,6 +177,15 @@ def test_energy_balance_with_air_that_is_carried_through():
     shed = sum(40.0 * f.trace.b @ (found.T[f.trace.dofs] - 20.0) for f in field.films.values() if f.fluid == "ambient")
     assert shed + mcp * (found.u[1] - 10.0) == pytest.approx(350.0, rel=1e-9)
     assert found.energy_balance < 1e-9
+
+
+def test_iterative_and_direct_agree():
+    field = rings()
+    films, load = dict.fromkeys(field.films, 30.0), 100.0 * field.load("core")
+    given = only_fixed(ambient=20.0, bore=30.0, air=10.0)
+    direct, iterative = (steady(s(field), films, {"core|yoke": 300.0}, load, given) for s in (Solver, Iterative))
+    assert np.abs(iterative.T - direct.T).max() < 1e-7
+    assert iterative.energy_balance < 1e-9
 
 
 def test_matrix_is_symmetric_positive_definite():
