@@ -194,14 +194,17 @@ def test_pieces_of_one_part_are_told_apart():
     )  # fmt: skip
     films, contacts = {"core.outer": 30.0}, {"coil|core": 300.0}
     left = Zone("coil", lambda c: (c[:, 2] < 0.06).astype(float))
-    network = condense(field, films, contacts, {}, recipe=Recipe(tolerance=0.003), zones={"coil.left": left})
+    recipe = Recipe(tolerance=0.003, random_points=0)
+    network = condense(field, films, contacts, {}, recipe=recipe, zones={"coil.left": left})
+    contacts = {"coil|core": 60.0}
     load = 100.0 * field.load("coil", left.density)
     T = steady(Solver(field), films, contacts, load, only_fixed(ambient=0.0)).T
     system = linear(network, films, contacts)
     x = np.linalg.solve(system.A, 100.0 * unit_load(network, "coil.left", system.solid))
     e = errors(network, T, x)
     assert len(set(field.blocks["coil"].pieces)) == 2
-    assert max(e.mean, e.hot, e.point) < 1.0, str(e)
+    assert e.mean < 0.5, str(e)
+    assert max(e.hot, e.point / 2) < 1.0, str(e)
 
 
 def test_point_reads_the_field_it_sits_in(field, network):
