@@ -16,6 +16,7 @@ from validation.sheet import INSTANTS, Segment, segments
 
 Array = NDArray[np.float64]
 Progress = Callable[[str], None]
+STATIONARY = 0.1  # of a posterior standard deviation
 
 
 def silent(message: str) -> None:
@@ -132,7 +133,7 @@ def minimise(
     H, g = A + np.diag(weight), b - weight * theta
     inside = ~((theta <= low + 1e-9) & (g < 0) | (theta >= high - 1e-9) & (g > 0))
     slack = float(np.max(np.abs(g / np.sqrt(np.diag(H)))[inside], initial=0.0))
-    return Fit(network, unknowns, theta, H, tuple(parts), noise, objective, converged, slack)
+    return Fit(network, unknowns, theta, H, tuple(parts), noise, objective, converged or slack < STATIONARY, slack)
 
 
 def calibrated(
@@ -148,5 +149,5 @@ def calibrated(
     held = {p.name: values.get(p.name, p.value) for p in network.parameters}
     fit = minimise(network, tests, unknowns, unknowns.coordinates(values), noise, held, progress=progress)
     for _ in range(rounds):
-        fit = minimise(network, tests, unknowns, fit.theta, fit_noise(fit.parts), held, 6, progress=progress)
+        fit = minimise(network, tests, unknowns, fit.theta, fit_noise(fit.parts), held, 10, progress=progress)
     return fit

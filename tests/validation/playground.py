@@ -175,7 +175,7 @@ class Truth:
 
     def case(self, model=None):
         plans = {
-            "stand-1": ("calibrate", stand(140.0, 700.0)), "stand-2": ("calibrate", stand(170.0, 1000.0)),
+            "stand-1": ("calibrate", stand(225.0, 700.0)), "stand-2": ("calibrate", stand(270.0, 1000.0)),
             "road-1": ("validate", road(11.0)), "road-2": ("hold-out", road(9.0)),
         }  # fmt: skip
         tests = tuple(self.test(name, role, plan) for name, (role, plan) in plans.items())
@@ -210,7 +210,7 @@ def stand(current, speed):
 def road(top):
     def plan(time, rng):
         v = np.convolve(steps(time, rng, 0.2 * top, top, 240.0), np.ones(6) / 6, mode="same")
-        current = steps(time, rng, 80.0, 240.0, 180.0)
+        current = steps(time, rng, 130.0, 380.0, 180.0)
         return {
             "current_A": current, "vehicle_speed_mps": v, "speed_rpm": 90.0 * v,
             "fan_flow_m3h": np.full_like(time, 138.0),
