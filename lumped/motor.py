@@ -47,11 +47,10 @@ def motor_network(machine: Any, condensed: Network) -> Network:
     films, sizes = _settings(machine, "films", Films), _sizes(machine)
     fan, losses = _settings(machine, "fans", Fan), _settings(machine, "losses", Losses)
     ratings = machine.sections["ratings"]
-    volumes = {part.name: part.volume for part in machine.parts}
     faces = [place for place in condensed.places.values() if place.kind == "surface" and place.fluid]
     links = [link for face in faces for link in _film_links(condensed, face, films, sizes)]
     streams = _streams(condensed, fan)
-    sources = dc_sources(condensed, losses, volumes, ratings)
+    sources = dc_sources(condensed, losses, ratings)
     parameters = _parameters(condensed, faces, links, streams, sources)
     return condensed.extended([*links, *streams], sources, parameters)
 

@@ -13,10 +13,9 @@ from lumped.network import Network, Row, Source
 ARMATURE = ("winding.armature", "winding.armature.left", "winding.armature.right")
 
 
-def dc_sources(network: Network, losses: Losses, volumes: Mapping[str, float], rated: Mapping[str, float]) -> list[Source]:
+def dc_sources(network: Network, losses: Losses, rated: Mapping[str, float]) -> list[Source]:
     """Every loss of the machine as a source; the weights of each sum to 1.
 
-    volumes : part -> m3 (a loss spreads over several parts by volume)
     rated : "current_A", "speed_rpm"
     """
     copper = Linear(losses.temperature_coefficient_per_K, losses.reference_C)
@@ -30,19 +29,18 @@ def dc_sources(network: Network, losses: Losses, volumes: Mapping[str, float], r
         weights = np.array(list(parts.values())) / sum(parts.values())
         return Source(f"loss:{name}", kind, next(iter(parts)), index, weights, law, Row(index, weights))
 
-    def by_volume(*parts: str) -> dict[str, float]:
-        return {part: volumes[part] for part in parts}
-
     armature = InputPower(losses.armature_resistance_mOhm * 1e-3, (current,), copper)
     winding = InputPower(losses.field_resistance_mOhm * 1e-3, (current,), copper)
-    share = losses.iron_in_poles
+    share, ends, gap = losses.iron_in_poles, losses.armature_in_end_windings, losses.windage_in_gap
+    conductors = dict(zip(ARMATURE, (1 - ends, ends / 2, ends / 2), strict=True))
+    air = {"airgap": gap, "air.left": (1 - gap) / 2, "air.right": (1 - gap) / 2}
     return [
-        source("copper.armature", "copper", by_volume(*ARMATURE), armature),
-        source("copper.field", "copper", by_volume("winding.field"), winding),
+        source("copper.armature", "copper", conductors, armature),
+        source("copper.field", "copper", {"winding.field": 1.0}, winding),
         source("iron", "iron", {"rotor.core": 1 - share, "poles": share}, InputPower(losses.iron_W, iron_terms)),
         source("brush.drop", "brush", {"commutator": 1.0}, InputPower(losses.brush_drop_V, (("current_A", 1.0, 1.0),))),
         source("brush.friction", "friction", {"commutator": 1.0}, InputPower(losses.brush_friction_W, (spin,))),
         source("bearing.left", "friction", {"bearing.left": 1.0}, InputPower(losses.bearing_friction_W, (spin,))),
         source("bearing.right", "friction", {"bearing.right": 1.0}, InputPower(losses.bearing_friction_W, (spin,))),
-        source("windage", "windage", {"airgap": 1.0}, InputPower(losses.windage_W, (("speed_rpm", turns, 3.0),))),
+        source("windage", "windage", air, InputPower(losses.windage_W, (("speed_rpm", turns, 3.0),))),
     ]

@@ -19,6 +19,8 @@ class Losses:
     """Losses at the rated point; the field's R_a + R_f follows from the ratings (eq. 1-6 of a series machine).
 
     Resistances (mOhm) at `reference_C`; friction and windage (W) at the rated speed; iron (W) at rated current and speed.
+    armature_in_end_windings: share of the armature's conductor length outside the core, both ends together;
+    windage_in_gap: share of the windage that heats the gap's air, the rest heats both end spaces alike.
     """
 
     armature_resistance_mOhm: float = 28.6
@@ -33,6 +35,8 @@ class Losses:
     iron_current_exponent: float = 0.75
     iron_speed_exponent: float = 1.4
     iron_in_poles: float = 0.25
+    armature_in_end_windings: float = 0.5
+    windage_in_gap: float = 0.2
 
 
 @dataclass(frozen=True)
