@@ -1,7 +1,7 @@
 """The network of a motor built from geometry: condensed conduction plus films, air streams, losses and priors.
 
-    films, contacts = nominal_coefficients(machine, faces, contact_names)     # what the condensation is centred on
-    network = motor_network(machine, condensed)
+films, contacts = nominal_coefficients(machine, faces, contact_names)     # what the condensation is centred on
+network = motor_network(machine, condensed)
 """
 
 from __future__ import annotations
@@ -111,7 +111,9 @@ def _parameters(
     out = []
     for group, members in _film_groups(faces, films).items():
         targets = tuple((link.name, 1.0) for link in members)
-        out.append(Parameter(f"h.{group}", targets, prior_sd=0.3, low=0.1, high=10.0, source="spread of film correlations"))
+        out.append(
+            Parameter(f"h.{group}", targets, prior_sd=0.3, low=0.1, high=10.0, source="spread of film correlations")
+        )
     for link in network.links:
         if link.kind == "contact":
             out.append(Parameter(link.name.replace(":", ".", 1), ((link.name, 1.0),), prior_sd=0.3, low=0.02, high=50.0,
@@ -121,7 +123,9 @@ def _parameters(
         out.append(Parameter(source.name.replace(":", ".", 1), ((source.name, 1.0),), prior_sd=spread[source.kind],
                              low=0.1, high=10.0, source="spread of published loss formulas"))  # fmt: skip
     capacity = tuple((f"capacity:{group}", 1.0) for group in dict.fromkeys(network.capacity_group) if group)
-    out.append(Parameter("capacity.machine", capacity, prior_sd=0.05, low=0.5, high=2.0, source="alloys and fill factors"))
+    out.append(
+        Parameter("capacity.machine", capacity, prior_sd=0.05, low=0.5, high=2.0, source="alloys and fill factors")
+    )
     flow = tuple((link.name, 1.0) for link in streams)
     channel = tuple((link.name, 0.8) for link in films if link.places[1] == "air.interpolar")
     out.append(Parameter("fan.flow", (*flow, *channel), prior_sd=0.04, low=0.2, high=5.0, source="flow meter, +-3 %"))

@@ -108,7 +108,7 @@ def _channel(sizes: Sizes) -> Law:
 
 
 def nominal(laws: Mapping[str, Law], inputs: Inputs, difference: float = 30.0) -> float:
-    """The coefficient (W/m2/K) all mechanisms add up to at an operating point and a temperature difference (K) above 20 degC."""
+    """What all mechanisms add up to (W/m2/K) at an operating point, `difference` (K) above 20 degC."""
     total = 0.0
     for law in laws.values():
         value = float(np.mean(law.factor(inputs)))

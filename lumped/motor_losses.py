@@ -24,6 +24,10 @@ def dc_sources(network: Network, losses: Losses, rated: Mapping[str, float]) -> 
     iron_terms = (("current_A", amps, losses.iron_current_exponent), ("speed_rpm", turns, losses.iron_speed_exponent))
     spin = ("speed_rpm", turns, 1.0)
 
+    bearing = InputPower(
+        losses.bearing_friction_W, (spin,), Linear(-losses.bearing_friction_per_K, losses.bearing_reference_C)
+    )
+
     def source(name: str, kind: str, parts: Mapping[str, float], law: Law) -> Source:
         index = np.array([network.column(part) for part in parts])
         weights = np.array(list(parts.values())) / sum(parts.values())
@@ -40,7 +44,7 @@ def dc_sources(network: Network, losses: Losses, rated: Mapping[str, float]) -> 
         source("iron", "iron", {"rotor.core": 1 - share, "poles": share}, InputPower(losses.iron_W, iron_terms)),
         source("brush.drop", "brush", {"commutator": 1.0}, InputPower(losses.brush_drop_V, (("current_A", 1.0, 1.0),))),
         source("brush.friction", "friction", {"commutator": 1.0}, InputPower(losses.brush_friction_W, (spin,))),
-        source("bearing.left", "friction", {"bearing.left": 1.0}, InputPower(losses.bearing_friction_W, (spin,))),
-        source("bearing.right", "friction", {"bearing.right": 1.0}, InputPower(losses.bearing_friction_W, (spin,))),
+        source("bearing.left", "friction", {"bearing.left": 1.0}, bearing),
+        source("bearing.right", "friction", {"bearing.right": 1.0}, bearing),
         source("windage", "windage", air, InputPower(losses.windage_W, (("speed_rpm", turns, 3.0),))),
     ]

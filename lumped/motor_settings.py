@@ -18,8 +18,10 @@ S = TypeVar("S")
 class Losses:
     """Losses at the rated point; the field's R_a + R_f follows from the ratings (eq. 1-6 of a series machine).
 
-    Resistances (mOhm) at `reference_C`; friction and windage (W) at the rated speed; iron (W) at rated current and speed.
+    Resistances (mOhm) at `reference_C`; friction and windage (W) at the rated speed, iron (W) also at rated current.
     armature_in_end_windings: share of the armature's conductor length outside the core, both ends together;
+    bearing_friction_per_K: how much less a warmer bearing rubs, from its loss at bearing_reference_C (friction follows
+    the grease's viscosity to the power 2/3, Palmgren 1959);
     windage_in_gap: share of the windage that heats the gap's air, the rest heats both end spaces alike.
     """
 
@@ -37,11 +39,13 @@ class Losses:
     iron_in_poles: float = 0.25
     armature_in_end_windings: float = 0.5
     windage_in_gap: float = 0.2
+    bearing_friction_per_K: float = 0.01
+    bearing_reference_C: float = 40.0
 
 
 @dataclass(frozen=True)
 class Films:
-    """Surfaces and films: emissivity (1), the end-space set k1 (1 + k2 v^k3), and which share of the rotor's tip speed v is.
+    """Surfaces and films: emissivity (1), the end-space set k1 (1 + k2 v^k3), v a share of the rotor's tip speed.
 
     Sets and shares: Schubert's, as collected by Staton, Boglietti and Cavagnino 2005; the channel between the poles
     is taken as half as well stirred as an end shield.

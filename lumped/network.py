@@ -182,7 +182,9 @@ class Network:
 
     def place(self, name: str) -> Place:
         if name not in self.places:
-            raise InputError(f"unknown place '{name}'", f"network '{self.name}'", f"known: {', '.join(sorted(self.places))}")
+            raise InputError(
+                f"unknown place '{name}'", f"network '{self.name}'", f"known: {', '.join(sorted(self.places))}"
+            )
         return self.places[name]
 
     def extended(
@@ -210,5 +212,13 @@ class Network:
             vals += [-p.b, np.array([weight])]
         cold = Row(np.array([col]), np.array([1.0]))
         return Link(
-            name, kind, (place, other), np.concatenate(rows), np.concatenate(cols), np.concatenate(vals), law, p.mean, cold
+            name,
+            kind,
+            (place, other),
+            np.concatenate(rows),
+            np.concatenate(cols),
+            np.concatenate(vals),
+            law,
+            p.mean,
+            cold,
         )

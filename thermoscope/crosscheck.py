@@ -56,7 +56,9 @@ class Coefficients:
     inflow: Array
 
 
-def steady_state(network: Network, inputs: Mapping[str, float], ambient: float, values: Mapping[str, float] | None = None) -> Array:
+def steady_state(
+    network: Network, inputs: Mapping[str, float], ambient: float, values: Mapping[str, float] | None = None
+) -> Array:
     """(n + n_boundary,) temperatures the network settles at (degC)."""
     time = np.concatenate([[0.0], np.cumsum(np.geomspace(10.0, 1e6, 80))])
     signals = {name: np.full(time.size, float(value)) for name, value in inputs.items()}
@@ -116,7 +118,11 @@ def fluid_nodes(network: Network) -> tuple[str, ...]:
 
 
 def crosscheck(
-    field: FieldModel, network: Network, inputs: Mapping[str, float], ambient: float = 20.0, solver: Solver | None = None
+    field: FieldModel,
+    network: Network,
+    inputs: Mapping[str, float],
+    ambient: float = 20.0,
+    solver: Solver | None = None,
 ) -> CrossCheck:
     """Steady state of both at one operating point, with the coefficients the network settles at."""
     z = steady_state(network, inputs, ambient)
@@ -136,6 +142,9 @@ def compared(field: FieldModel, network: Network, full: Steady, x: Array, ambien
     for part, block in field.blocks.items():
         mean, hot = float(field.mean(part) @ full.T), float(full.T[block.dofs].max())
         seen, peak = float(x[network.states.index(part)]), float(T[block.dofs].max())
-        off = max(abs(seen - mean) / max(abs(mean - ambient), FLOOR * largest), abs(peak - hot) / max(hot - ambient, FLOOR * largest))
+        off = max(
+            abs(seen - mean) / max(abs(mean - ambient), FLOOR * largest),
+            abs(peak - hot) / max(hot - ambient, FLOOR * largest),
+        )
         out.append(PartCheck(part, mean, seen, hot, peak, 100.0 * off))
     return tuple(out)

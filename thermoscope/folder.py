@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,7 +14,7 @@ from thermoscope.history import History, checked_values, load_history
 from thermoscope.readings import read_test
 from thermoscope.sheet import Sheet, load_sheet, read_toml
 from thermoscope.tables import Samples, load_table
-from validation.case import AddedEffect, Case, Model, Role
+from validation.case import AddedEffect, Case, Model, Role, Test
 from validation.fitting import matching
 
 if TYPE_CHECKING:
@@ -37,7 +37,10 @@ class Entry:
 
 @dataclass(frozen=True)
 class Settings:
-    """case.toml.  machine or network is set, the other None;  free : globs of what calibration may move, () for all"""
+    """case.toml.  machine or network is set, the other None;  free : globs of what calibration may move, () for all
+
+    model_K : slow misfit (K) the model is not expected to get right, see validation.case.Channel
+    """
 
     path: Path
     name: str
@@ -45,6 +48,7 @@ class Settings:
     machine: Path | None
     network: Path | None
     sample_s: float
+    model_K: float
     tests: tuple[Entry, ...]
     free: tuple[str, ...] = ()
 
@@ -83,13 +87,14 @@ def read_settings(path: Path) -> Settings:
             "neither or both of machine and network given", 'machine = "NAME.toml" or network = "network.toml"'
         )
     sample, free = head.number("sample_s", 10.0, low=1e-3), calibration.words("free", [])
+    model_K = head.number("model_error_K", 0.0, low=0.0)
     head.close()
     calibration.close()
     if not tests:
         raise InputError("no tests", str(file), '[tests.NAME] with role = "calibrate"')
     entries = tuple(_entry(path, n, t) for n, t in tests.items())
     return Settings(
-        path, name, description, machine and path / machine, network and path / network, sample, entries, free
+        path, name, description, machine and path / machine, network and path / network, sample, model_K, entries, free
     )
 
 
@@ -116,8 +121,14 @@ def load_case(path: str | Path, progress: Progress = lambda message: None, bare:
         read_test(e.name, e.role, samples[e.name], sheets[e.name], network, settings.sample_s) for e in settings.tests
     ]
     notes = tuple(dict.fromkeys(note for _, doubts in read for note in doubts))
-    case = Case(settings.name, _model(network, history), tuple(t for t, _ in read), _free(network, settings))
+    tests = tuple(_allowing(test, settings.model_K) for test, _ in read)
+    case = Case(settings.name, _model(network, history), tests, _free(network, settings))
     return Folder(settings, _checked(case, history), history, notes, _positions(sheets.values()), built)
+
+
+def _allowing(test: Test, model_K: float) -> Test:
+    """The test with the model's own expected error on every channel."""
+    return replace(test, channels=tuple(replace(c, model_K=model_K) for c in test.channels))
 
 
 def _positions(sheets: Iterable[Sheet]) -> dict[str, tuple[float, ...]]:

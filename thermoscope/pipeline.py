@@ -1,4 +1,4 @@
-"""From a machine to a model that can run a test: mesh, field, condensed network, films and losses; cached by content."""
+"""From a machine to a model that can run a test: mesh, field, network, films and losses; cached by content."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ from lumped.network import Network
 from lumped.reduction import Recipe, condense
 
 Progress = Callable[[str], None]
+SMALL = Recipe(tolerance=0.03, max_states=130)
 AIR_IN_SPACE = 60.0  # J/K, a few tens of litres of air with a part of its walls' skin
 
 
@@ -64,7 +65,7 @@ def _around_poles(machine: Machine, copper: Material) -> LoopWound:
 
 
 def build(
-    machine: Machine, size_m: float = 0.06, segments: int = 48, recipe: Recipe = Recipe(), progress: Progress = silent
+    machine: Machine, size_m: float = 0.06, segments: int = 48, recipe: Recipe = SMALL, progress: Progress = silent
 ) -> Built:
     """Everything from the machine file to the network, at one mesh size."""
     cache = cache_folder()

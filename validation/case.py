@@ -24,6 +24,7 @@ class Channel:
     y : (n_time,) readings (degC), NaN where nothing was read
     sigma_K : 1-sigma of the reading (calibration and placement)
     lag_s : time constant of the sensor (s)
+    model_K : slow misfit (K) that a model of this kind is not expected to get right; below it misfit is no evidence
     """
 
     name: str
@@ -32,6 +33,7 @@ class Channel:
     y: Array
     sigma_K: float = 0.5
     lag_s: float = 0.0
+    model_K: float = 0.0
 
 
 @dataclass(frozen=True)

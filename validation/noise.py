@@ -96,27 +96,38 @@ class Noise:
 def first_noise(parts: Sequence[Segment]) -> Noise:
     """Before any calibration: slow error of the sensor's own size, white of a third of it."""
     start = GRID.index(Shape(0.0, 120.0, 10.0, 1200.0))
-    sigma = {s.channel: s.sigma_K for s in parts}
-    return Noise({c: start for c in sigma}, {c: max(v / 3.0, FLOOR_K) for c, v in sigma.items()})
+    slow = np.sqrt(GRID[start].b)
+    sigma = {s.channel: max(s.sigma_K / 3.0, s.model_K / slow, FLOOR_K) for s in parts}
+    return Noise({c: start for c in sigma}, sigma)
 
 
 def fit_noise(parts: Sequence[Segment], floor: float = FLOOR_K) -> Noise:
-    """Maximum likelihood per channel, all tests of a channel together."""
+    """Maximum likelihood per channel, all its tests together; the slow part is at least the channel's model_K."""
     channels = list(dict.fromkeys(s.channel for s in parts))
     square, logdet, count = (np.zeros((len(channels), k)) for k in (len(GRID), len(GRID), 1))
     for own in _same_grid(parts):
         inverse, ld = factors(own[0].time)
         white = np.tensordot(inverse, np.column_stack([s.r for s in own]), axes=(2, 0))
-        for s, energy in zip(own, np.einsum("kns,kns->sk", white, white), strict=True):
+        for s, norm in zip(own, np.einsum("kns,kns->sk", white, white), strict=True):
             at = channels.index(s.channel)
-            square[at] += energy
+            square[at] += norm
             logdet[at] += ld
             count[at] += s.r.size
-    variance = (square + PRIOR_COUNT * floor**2) / (count + PRIOR_COUNT)
+    free = (square + PRIOR_COUNT * floor**2) / (count + PRIOR_COUNT)
+    variance = np.maximum(free, _least(channels, parts))
     prior = np.array([g.log_prior() for g in GRID])
-    best = np.argmax(-0.5 * (count * np.log(variance) + logdet) + prior, axis=1)
+    fit = count * (np.log(variance) + free / variance) + logdet
+    best = np.argmin(np.where(np.isfinite(variance), fit, np.inf) - 2.0 * prior, axis=1)
     scale = np.sqrt(np.maximum(variance[np.arange(len(channels)), best], floor**2))
     return Noise(dict(zip(channels, best.tolist(), strict=True)), dict(zip(channels, scale.tolist(), strict=True)))
+
+
+def _least(channels: Sequence[str], parts: Sequence[Segment]) -> Array:
+    """(n_channel, n_shape) smallest scale variance at which the slow part of a shape reaches the channel's model_K."""
+    model = np.array([max(s.model_K for s in parts if s.channel == c) for c in channels])
+    slow = np.array([g.b for g in GRID])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(model[:, None] > 0, model[:, None] ** 2 / slow, 0.0)
 
 
 def _same_grid(parts: Sequence[Segment]) -> list[list[Segment]]:

@@ -32,6 +32,7 @@ class Segment:
     r: Array
     J: Array
     sigma_K: float
+    model_K: float = 0.0
 
 
 def groups(nt: int, instants: int = INSTANTS) -> NDArray[np.int64]:
@@ -78,7 +79,7 @@ def _of_test(
             continue
         both = np.column_stack([np.nan_to_num(c.y) - seen.y[:, j], seen.J[:, j], test.time])
         mean, _ = block_mean(both, read, start)
-        out.append(Segment(test.name, c.name, mean[:, -1], mean[:, 0], mean[:, 1:-1], c.sigma_K))
+        out.append(Segment(test.name, c.name, mean[:, -1], mean[:, 0], mean[:, 1:-1], c.sigma_K, c.model_K))
     return out
 
 

@@ -12,7 +12,9 @@ def run(root, *command):
     return subprocess.run([sys.executable, "-m", *command], cwd=root, capture_output=True, text=True)
 
 
-@pytest.mark.parametrize("command", [["ruff", "check", "."], ["ruff", "format", "--check", "."]], ids=["lint", "format"])
+@pytest.mark.parametrize(
+    "command", [["ruff", "check", "."], ["ruff", "format", "--check", "."]], ids=["lint", "format"]
+)
 def test_ruff(root, command):
     done = run(root, *command)
     assert done.returncode == 0, done.stdout + done.stderr

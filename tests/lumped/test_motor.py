@@ -41,7 +41,9 @@ def test_steady_heat_in_equals_heat_out(motor):
     for place in network.places.values():
         if place.fluid == "ambient":
             out += c.films[place.name] * (place.mean.weights @ z[place.mean.index] - z[n]) * place.area
-    windage = next(s for s in network.sources if s.kind == "windage").law.factor({k: np.array([v]) for k, v in POINT.items()})
+    windage = next(s for s in network.sources if s.kind == "windage").law.factor(
+        {k: np.array([v]) for k, v in POINT.items()}
+    )
     assert out == pytest.approx(sum(c.watts.values()) + float(windage[0]), rel=1e-6)
 
 
@@ -87,18 +89,18 @@ def test_a_point_reads_what_the_field_shows(motor):
 
 
 def test_a_point_outside_its_part_is_refused(motor):
-    with pytest.raises(InputError, match="is not in part 'yoke'.*nearest point"):
+    with pytest.raises(InputError, match=r"is not in part 'yoke'.*nearest point"):
         motor.network.recovery.row("yoke", np.array([1.0, 1.0, 1.0]))
 
 
 def test_unknown_loss_is_refused_with_a_suggestion():
-    with pytest.raises(InputError, match="unknown key 'windage'.*did you mean 'windage_W'"):
+    with pytest.raises(InputError, match=r"unknown key 'windage'.*did you mean 'windage_W'"):
         read(Losses, {"windage": 3.0}, "motor [losses]")
 
 
 @pytest.mark.parametrize("entry", [{"gap_mm": 0.0}, {"gap": 0.1}, 5.0])
 def test_a_contact_needs_a_positive_gap_or_coefficient(entry):
-    with pytest.raises(InputError, match="is no contact.*gap_mm"):
+    with pytest.raises(InputError, match=r"is no contact.*gap_mm"):
         contact_coefficients({"a|b": entry}, ["a|b"], "motor [contacts]")
 
 
