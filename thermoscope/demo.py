@@ -44,7 +44,7 @@ def demo(out: Path, target: str | None) -> int:
     headline("1  The machine: solids, mesh, field, network")
     build(str(machine_of(case)), out / "machine", None)
     headline("2  Calibrated on the brake stand")
-    calibrate(str(case), False, None)
+    calibrate(str(case), True, None)
     stages.append(Stage("calibrated on the stand", held_against(case)))
     headline("3  Held against the road")
     compare(str(case), None)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from validation.calibrate import Fit, calibrated, silent
 from validation.case import AddedEffect, Case
-from validation.evidence import Evidence, calibrated_case, candidates, null_of, scored
+from validation.evidence import Evidence, calibrated_case, candidates, null_of, possible, scored
 from validation.experiments import next_tests
 from validation.faults import broken_channels
 from validation.findings import Candidate, Decision, Diagnosis, Hidden, NextTest, Verdict
@@ -56,7 +56,7 @@ def diagnose(
     """
     fit = calibrated_case(case, progress)
     progress("scoring the catalogue")
-    evidence = scored(case, candidates(case, kinds), fit)
+    evidence = possible(case, scored(case, candidates(case, kinds), fit))
     null = null_of(evidence, draws, seed, workers, cache, progress)
     limit = null.threshold()
     steps = search(case, evidence, null, limit, progress)

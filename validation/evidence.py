@@ -85,6 +85,12 @@ def scored(case: Case, effects: Sequence[Effect], fit: Fit) -> Evidence:
     return Evidence(tests, fit, network, tuple(effects), parameters, parts, grams, found)
 
 
+def possible(case: Case, evidence: Evidence) -> Evidence:
+    """Without the all-or-nothing effects of which the data want less than half."""
+    kept = [e for e, a in zip(evidence.effects, evidence.score.amplitude, strict=True) if not e.whole or a > 0.5]
+    return evidence if len(kept) == len(evidence.effects) else scored(case, kept, evidence.fit)
+
+
 def calibrated_case(
     case: Case, progress: Callable[[str], None] = silent, start: Mapping[str, float] | None = None
 ) -> Fit:

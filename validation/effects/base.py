@@ -34,6 +34,7 @@ class Effect(ABC):
     confused_with : kinds that leave a similar trace;  isolating_test : the test that sets it apart
     needs : inputs that must be recorded for it to act
     fault : True when it is a fault of the measurement, not heat
+    whole : True when it happens entirely or not at all, with parameter 1 (two plugs exchanged)
     """
 
     place: str
@@ -53,6 +54,7 @@ class Effect(ABC):
     confused_with: ClassVar[tuple[str, ...]] = ()
     needs: ClassVar[tuple[str, ...]] = ()
     fault: ClassVar[bool] = False
+    whole: ClassVar[bool] = False
 
     @property
     def name(self) -> str:

@@ -22,6 +22,7 @@ class Swap(Effect):
     mapping = "relative"
     confused_with = ("sensor.gain", "contact")
     fault = True
+    whole = True
 
     @classmethod
     def where(cls, scene: Scene) -> Iterator[str]:
