@@ -24,9 +24,7 @@ def dc_sources(network: Network, losses: Losses, rated: Mapping[str, float]) -> 
     iron_terms = (("current_A", amps, losses.iron_current_exponent), ("speed_rpm", turns, losses.iron_speed_exponent))
     spin = ("speed_rpm", turns, 1.0)
 
-    bearing = InputPower(
-        losses.bearing_friction_W, (spin,), Linear(-losses.bearing_friction_per_K, losses.bearing_reference_C)
-    )
+    bearing = InputPower(losses.bearing_friction_W, (spin,))
 
     def source(name: str, kind: str, parts: Mapping[str, float], law: Law) -> Source:
         index = np.array([network.column(part) for part in parts])

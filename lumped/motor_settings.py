@@ -20,8 +20,6 @@ class Losses:
 
     Resistances (mOhm) at `reference_C`; friction and windage (W) at the rated speed, iron (W) also at rated current.
     armature_in_end_windings: share of the armature's conductor length outside the core, both ends together;
-    bearing_friction_per_K: how much less a warmer bearing rubs, from its loss at bearing_reference_C (friction follows
-    the grease's viscosity to the power 2/3, Palmgren 1959);
     windage_in_gap: share of the windage that heats the gap's air, the rest heats both end spaces alike.
     """
 
@@ -39,8 +37,6 @@ class Losses:
     iron_in_poles: float = 0.25
     armature_in_end_windings: float = 0.5
     windage_in_gap: float = 0.2
-    bearing_friction_per_K: float = 0.01
-    bearing_reference_C: float = 40.0
 
 
 @dataclass(frozen=True)

@@ -167,7 +167,7 @@ def draw(setting: Setting, i: int) -> Drawn:
 
 def data(setting: Setting, rng: np.random.Generator) -> list[Test]:
     """The tests with readings of a disturbed machine near the calibrated state."""
-    fit, spread = setting.fit, setting.spread
+    fit, spread = setting.fit, setting.spread.varied(rng)
     values = fit.values
     real = disturbed(setting.network, rng, spread)
     out = []
