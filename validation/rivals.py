@@ -42,10 +42,7 @@ class Race:
 
 
 def race(evidence: Evidence, kappa: Array, threshold: float, progress: Callable[[str], None] = silent) -> Race:
-    """Refit the most likely candidates, take the best one's residual as noise, and compare all under it.
-
-    Only a candidate beyond the threshold can lead; one below it can still belong to the leader's group.
-    """
+    """Refit the most likely candidates, take the best one's residual as noise, and compare all under it."""
     level = evidence.score.z / kappa
     order = [int(k) for k in np.argsort(-level)]
     first = [k for k in order if level[k] > threshold][:3]
@@ -57,11 +54,11 @@ def race(evidence: Evidence, kappa: Array, threshold: float, progress: Callable[
         runners = shortlist(evidence, noise, kappa, leader)
         progress(f"comparing {evidence.names[leader]} with {len(runners) - 1} rivals")
         fits = {k: refit(evidence, [k], noise, fits.get(k)) for k in runners}
-        best = min((k for k in runners if level[k] > threshold), key=lambda k: fits[k].objective)
+        best = min(runners, key=lambda k: fits[k].objective)
         if best == leader:
             break
         leader = best
-    runners.sort(key=lambda k: (k != leader, fits[k].objective))
+    runners.sort(key=lambda k: fits[k].objective)
     gap = [behind(fits[k], fits[leader], max(kappa[k], kappa[leader])) for k in runners]
     return Race(tuple(runners), tuple(fits[k] for k in runners), tuple(gap), noise)
 
