@@ -20,7 +20,6 @@ from validation.predict import shifted
 Array = NDArray[np.float64]
 KNOTS = np.array([0.0, 1.0, 2.0, 5.0, 10.0, 20.0, 40.0, 80.0, 160.0, 320.0])
 SETTLE_K = 40.0
-OWN = 0.3
 CORE = " (core)"
 
 
@@ -28,8 +27,8 @@ CORE = " (core)"
 class Spread:
     """1-sigma of what a model of this kind gets wrong. Exponents (1), relative errors (1), K and s."""
 
-    film_exponent: float = 0.1
-    input_exponent: float = 0.12
+    film_exponent: float = 0.08
+    input_exponent: float = 0.08
     loss_exponent: float = 0.1
     group: float = 0.1
     core: float = 0.7
@@ -38,14 +37,6 @@ class Spread:
     wander_K: float = 0.2
     clock_s: float = 1.0
     slow_noise: float = 0.15
-
-    def varied(self, rng: np.random.Generator) -> Spread:
-        """One machine's share of it: forms are wrong as usual, scatter is anything between none and the usual.
-
-        A machine with clean readings shows wrong forms far above its noise; one null for all must contain both.
-        """
-        scatter = ("group", "placement", "flow", "wander_K", "clock_s", "slow_noise")
-        return replace(self, **{name: getattr(self, name) * rng.uniform() ** 3 for name in scatter})
 
 
 USUAL = Spread()
@@ -85,34 +76,19 @@ def bent_temperature(law: TemperatureLaw, power: float) -> TemperatureLaw:
 def disturbed(network: Network, rng: np.random.Generator, spread: Spread = USUAL) -> Network:
     """The network with bent films and losses, and cores inside declared nodes."""
     shared = {t for p in network.parameters if len(p.targets) > 1 for t, _ in p.targets}
-    common = Common(rng, spread)
-    links = tuple(_bent_link(network, link, common, link.name in shared) for link in network.links)
+    links = tuple(_bent_link(network, link, rng, spread, link.name in shared) for link in network.links)
     sources = tuple(_bent_source(s, rng, spread) for s in network.sources)
     network = replace(network, links=links, sources=sources)
     return network if any("#" in s for s in network.states) else with_cores(network, rng, spread)
 
 
-class Common:
-    """Errors of exponents: most of one belongs to the correlation, so all links that follow the same input share it."""
-
-    def __init__(self, rng: np.random.Generator, spread: Spread) -> None:
-        self.rng, self.spread, self.drawn = rng, spread, dict[str, float]()
-
-    def __call__(self, kind: str, sd: float) -> float:
-        if kind not in self.drawn:
-            self.drawn[kind] = float(sd * self.rng.standard_normal())
-        return self.drawn[kind] + OWN * sd * float(self.rng.standard_normal())
-
-
-def _bent_link(network: Network, link: Link, common: Common, shared: bool) -> Link:
+def _bent_link(network: Network, link: Link, rng: np.random.Generator, spread: Spread, shared: bool) -> Link:
     film = link.kind == "film" or bool(set(link.places) & set(network.boundaries))
     if not film or link.kind == "stream":
         return link
-    spread, law = common.spread, link.law
-    scale = float(np.exp(spread.group * common.rng.standard_normal())) if shared else 1.0
-    power = common(f"input {'+'.join(law.reads)}", spread.input_exponent) if law.reads else 0.0
-    temperature = bent_temperature(law.temperature, common(repr(law.temperature), spread.film_exponent))
-    return replace(link, law=Bent(law, power, scale, temperature))
+    scale = float(np.exp(spread.group * rng.standard_normal())) if shared else 1.0
+    temperature = bent_temperature(link.law.temperature, spread.film_exponent * rng.standard_normal())
+    return replace(link, law=Bent(link.law, spread.input_exponent * rng.standard_normal(), scale, temperature))
 
 
 def _bent_source(source: Source, rng: np.random.Generator, spread: Spread) -> Source:

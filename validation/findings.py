@@ -17,7 +17,7 @@ class Candidate:
     """One effect in the race.
 
     score : signed significance over its own null scatter
-    threshold : what the best of all exceeds in 2 % of the simulated cases with nothing missing
+    threshold : what the best of all exceeds in 5 % of the cases with nothing missing
     explained : share of the residual's sum of squares it removes
     rmse_K, holdout_rmse_K : (before, after) on the tests used and on the held-out ones, where it was refitted
     absorbed : share of its trace that the calibration takes;  twin : the calibrated parameter that does the same

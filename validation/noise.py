@@ -57,7 +57,7 @@ def shapes() -> tuple[Shape, ...]:
 GRID = shapes()
 
 
-@lru_cache(maxsize=8)
+@lru_cache(maxsize=16)
 def _factors(time: bytes) -> tuple[Array, Array]:
     """Inverse Cholesky factors (n_shape, n, n) and log-determinants (n_shape,) of all shapes on one time grid."""
     t = np.frombuffer(time)

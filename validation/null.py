@@ -28,7 +28,6 @@ from validation.sheet import Segment, segments
 
 Array = NDArray[np.float64]
 Drawn = tuple[Array, Array, Array]
-ALPHA = 0.02  # half of the 5 % aimed at: a real machine is stranger than the simulated ones
 EULER = 0.5772156649
 
 
@@ -47,7 +46,7 @@ class Null:
         typical = np.median(square)
         return np.sqrt(np.maximum((m * square + 10.0 * typical) / (m + 10.0), 1.0))
 
-    def threshold(self, alpha: float = ALPHA) -> float:
+    def threshold(self, alpha: float = 0.05) -> float:
         """Level that the best scaled score passes with probability alpha when nothing is missing: Gumbel by moments."""
         best = np.max(self.z / self.kappa, axis=1)
         scale = np.std(best, ddof=1) * np.sqrt(6.0) / np.pi
@@ -168,7 +167,7 @@ def draw(setting: Setting, i: int) -> Drawn:
 
 def data(setting: Setting, rng: np.random.Generator) -> list[Test]:
     """The tests with readings of a disturbed machine near the calibrated state."""
-    fit, spread = setting.fit, setting.spread.varied(rng)
+    fit, spread = setting.fit, setting.spread
     values = fit.values
     real = disturbed(setting.network, rng, spread)
     out = []
