@@ -1,7 +1,7 @@
 """One self-contained page to hand on: verdict first, pictures, numbers with uncertainty, how to repeat it.
 
 Plots are inline SVG and pictures inline PNG, so the page is about 1 MB, opens without a network or scripts, prints, and
-follows the reader's light or dark theme. (plotly's script alone would be 4.8 MB; viz.interactive has it for notebooks.)
+follows the reader's light or dark theme. (plotly's script alone would be 4.8 MB.)
 """
 
 from __future__ import annotations
