@@ -10,7 +10,7 @@ from playground import Truth, network, wind
 from validation import diagnose
 from validation.faults import broken_channels
 
-DRAWS = 30
+DRAWS = 40
 FAN_PARTS = ("rotor", "winding.field", "poles", "flange.left", "commutator")
 
 
