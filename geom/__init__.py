@@ -19,6 +19,8 @@ _HOME = {
     "FINE": "mesher",
     "export_cad": "cad",
     "check_cad": "cad",
+    "part_table": "areas",
+    "PartRow": "areas",
     "drawing_of": "drawing",
     "write_pages": "family_page",
     "NamedMesh": "mesh",

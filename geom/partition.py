@@ -26,6 +26,7 @@ class Partition:
     faces : (n_face,) shapely polygons that tile a box around the machine
     labels : (n_face, n_slab) index into parts; AMBIENT where nothing is declared
     left, right : (n_edge,) faces on either side of each border edge, -1 beyond the box
+    length : (n_edge,) of each border edge (m)
     parts : solids and fluids in the order of the labels
     """
 
@@ -34,6 +35,7 @@ class Partition:
     labels: NDArray[np.int64]
     left: NDArray[np.int64]
     right: NDArray[np.int64]
+    length: NDArray[np.float64]
     parts: tuple[Part, ...]
 
     @property
@@ -112,15 +114,15 @@ def half_edges(faces: NDArray[np.object_]) -> tuple[NDArray[np.float64], NDArray
     return keys * GRID, np.array([number[:-1][follows], number[1:][follows], owner[ring[:-1][follows]]])
 
 
-def _neighbours(faces: NDArray[np.object_]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Pairs of faces with a common edge; -1 is the plane beyond the box."""
-    _, (start, end, face) = half_edges(faces)
+def _neighbours(faces: NDArray[np.object_]) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
+    """Pairs of faces with a common edge, -1 is the plane beyond the box; and the length of that edge (m)."""
+    points, (start, end, face) = half_edges(faces)
     forward = start < end
     edges, which = np.unique(np.sort(np.column_stack([start, end]), axis=1), axis=0, return_inverse=True)
     left, right = np.full(len(edges), -1), np.full(len(edges), -1)
     left[which[forward]] = face[forward]
     right[which[~forward]] = face[~forward]
-    return left, right
+    return left, right, np.linalg.norm(points[edges[:, 1]] - points[edges[:, 0]], axis=1)
 
 
 def refuse_hidden_voids(cut: Partition) -> None:
