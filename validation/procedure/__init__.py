@@ -1,0 +1,14 @@
+"""The thermal test procedure: temperatures from electrical readings, their uncertainty, screening and reduction.
+
+spread        worst case, GUM and Monte Carlo side by side
+meters        limits of error by range
+readings      winding from resistance, magnets from back-EMF
+switch_off    back to the instant of switching off
+warming       eq. 8, eq. 9, tau_95
+assemblies    the 3 to 4 % rule
+repeats       pooled runs, repeatability
+protocol      what to measure when; what a test record lacks or has wrong
+factorial     two-level designs, effects, Lenth's limits
+sensitivity   Morris and Sobol over the same factors
+two_paths     any network as R_ext and R_w
+"""
