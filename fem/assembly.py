@@ -11,96 +11,20 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
-from skfem import MappingAffine, MeshTet
 
+from fem.block import Block, HasTensor, block_of, nodal
+from fem.surface import Film, Touch, Trace, trace_of
 from geom.errors import InputError
 from geom.mesh import NamedMesh
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-
-class HasTensor(Protocol):
-    def tensor(self, x: Floats) -> Floats:
-        """(n, 3, 3) conductivity (W/m/K) at points x (n, 3)."""
-        ...
-
-
-@dataclass(frozen=True)
-class Block:
-    """One part: points (n,) its numbers in the mesh; tets (nt, 4) and volumes (nt,) (m3) in its own numbering.
-
-    dofs : its slice of the whole;  K : (n, n) conduction (W/K);  M : (n, n) capacity (J/K);  w : (n,) Int N (m3)
-    """
-
-    name: str
-    points: Ints
-    xyz: Floats
-    tets: Ints
-    volumes: Floats
-    dofs: slice
-    K: sp.csr_array
-    M: sp.csr_array
-    w: Floats
-    rho_cp: float
-
-    @property
-    def volume(self) -> float:
-        """m3"""
-        return float(self.w.sum())
-
-    @property
-    def capacity(self) -> float:
-        """J/K"""
-        return self.rho_cp * self.volume
-
-    @cached_property
-    def pieces(self) -> Ints:
-        """(nt,) number of the connected piece each tetrahedron belongs to (the four coils of one winding)."""
-        n = len(self.points)
-        edges = sp.coo_array((np.ones(self.tets.size), (np.repeat(self.tets[:, 0], 4), self.tets.ravel())), (n, n))
-        return sp.csgraph.connected_components(edges, directed=False)[1][self.tets[:, 0]].astype(np.int64)
-
-
-@dataclass(frozen=True)
-class Trace:
-    """One side of a surface: dofs (m,) of the whole, mass (m, m) Int N N' (m2), b (m,) Int N (m2)."""
-
-    part: str
-    dofs: Ints
-    mass: sp.csr_array
-    b: Floats
-
-    @property
-    def area(self) -> float:
-        """m2"""
-        return float(self.b.sum())
-
-
-@dataclass(frozen=True)
-class Film:
-    """A face washed by a fluid."""
-
-    trace: Trace
-    fluid: str
-
-
-@dataclass(frozen=True)
-class Touch:
-    """A contact: the two traces have matching nodes."""
-
-    a: Trace
-    b: Trace
-
-    @property
-    def area(self) -> float:
-        """m2"""
-        return self.a.area
+__all__ = ["Block", "FieldModel", "Film", "HasTensor", "Touch", "Trace", "assemble"]
 
 
 @dataclass(frozen=True)
@@ -127,21 +51,19 @@ class FieldModel:
     @cached_property
     def M(self) -> sp.csr_array:
         """(n, n) capacity matrix (J/K)."""
-        return sp.csr_array(sp.block_diag([b.M for b in self.blocks.values()], format="csr"))
+        return _side_by_side([b.M for b in self.blocks.values()], [1.0] * len(self.blocks))
 
     def stiffness(
         self, films: Mapping[str, float], contacts: Mapping[str, float], conductivity: Mapping[str, float] | None = None
     ) -> sp.csr_array:
         """(n, n) matrix (W/K) for films h and contacts g (W/m2/K) and factors on the parts' conductivities."""
         factor = conductivity or {}
-        K = sp.coo_array(sp.block_diag([factor.get(p, 1.0) * b.K for p, b in self.blocks.items()], format="coo"))
-        parts = [(K.row, K.col, K.data)]
-        parts += [_spread(f.trace.mass, f.trace.dofs, f.trace.dofs, films[p]) for p, f in self.films.items()]
+        parts = [_spread(f.trace.mass, f.trace.dofs, f.trace.dofs, films[p]) for p, f in self.films.items()]
         for name, t in self.contacts.items():
             for i, j, sign in ((t.a, t.a, 1), (t.b, t.b, 1), (t.a, t.b, -1), (t.b, t.a, -1)):
                 parts.append(_spread(t.a.mass, i.dofs, j.dofs, sign * contacts[name]))
-        row, col, val = (np.concatenate(c) for c in zip(*parts, strict=True))
-        return sp.csr_array(sp.coo_array((val, (row, col)), (self.n, self.n)))
+        K = _side_by_side([b.K for b in self.blocks.values()], [factor.get(p, 1.0) for p in self.blocks])
+        return sp.csr_array(K + _summed(parts, self.n)) if parts else K
 
     def mean(self, part: str) -> Floats:
         """(n,) row that gives the mean temperature of a part."""
@@ -159,8 +81,18 @@ class FieldModel:
         if not watts.sum() > 0:
             raise InputError("a loss zone without volume", f"part '{part}'", "a density above 0 somewhere in the part")
         out = np.zeros(self.n)
-        out[block.dofs] = np.bincount(block.tets.ravel(), np.repeat(watts / 4, 4), len(block.points))
+        out[block.dofs] = nodal(block.tets, watts, len(block.points))
         return out / out.sum()
+
+    def losses(self, watts: Mapping[str, float]) -> Floats:
+        """(n,) load (W) of a loss per part, uniform in each; it sums to exactly what was declared."""
+        return sum((q * self.load(part) for part, q in watts.items()), np.zeros(self.n))
+
+    def flux(self, face: str) -> Floats:
+        """(n,) load of 1 W through a face, the same flux everywhere on it."""
+        if face not in self.films:
+            raise InputError(f"unknown face '{face}'", "flux", f"known: {', '.join(self.films)}")
+        return self.face_mean(self.films[face].trace)
 
     def face_mean(self, trace: Trace) -> Floats:
         """(n,) row that gives the mean temperature of one side of a surface."""
@@ -185,60 +117,33 @@ def assemble(mesh: NamedMesh, conductivity: Mapping[str, HasTensor], capacity: M
     blocks: dict[str, Block] = {}
     start = 0
     for i, part in enumerate(mesh.parts):
-        blocks[part] = _block(mesh, i, start, conductivity[part], capacity[part])
+        blocks[part] = block_of(mesh, i, start, conductivity[part], capacity[part])
         start = blocks[part].dofs.stop
-    films = {name: Film(_trace(mesh, blocks[p.part], p.facets), p.fluid) for name, p in mesh.patches.items()}
+    films = {name: Film(trace_of(mesh, blocks[p.part], p.facets), p.fluid) for name, p in mesh.patches.items()}
     contacts = {
-        name: Touch(_trace(mesh, blocks[c.a], c.facets), _trace(mesh, blocks[c.b], c.facets))
+        name: Touch(trace_of(mesh, blocks[c.a], c.facets), trace_of(mesh, blocks[c.b], c.facets))
         for name, c in mesh.contacts.items()
     }
     return FieldModel(blocks, contacts, films)
 
 
-def _block(mesh: NamedMesh, number: int, start: int, conductivity: HasTensor, rho_cp: float) -> Block:
-    chosen = mesh.tets[mesh.region == number]
-    if len(chosen) == 0:
-        raise InputError("no tetrahedron", f"part '{mesh.parts[number]}'", "a part with a volume")
-    points, tets = np.unique(chosen, return_inverse=True)
-    tets = tets.reshape(-1, 4)
-    xyz = mesh.points[points]
-    map_ = MappingAffine(MeshTet(np.ascontiguousarray(xyz.T), np.ascontiguousarray(tets.T)))
-    volumes = np.abs(map_.detA) / 6
-    n = len(points)
-    w: Floats = np.bincount(tets.ravel(), np.repeat(volumes / 4, 4), n).astype(float)
-    K = _accumulate(_stiffness(map_.invA, volumes, conductivity.tensor(xyz[tets].mean(1))), tets, n)
-    M = _accumulate(rho_cp / 20 * volumes[:, None, None] * (1 + np.eye(4)), tets, n)
-    return Block(mesh.parts[number], points, xyz, tets, volumes, slice(start, start + n), K, M, w, rho_cp)
-
-
-def _stiffness(inverse: Floats, volumes: Floats, k: Floats) -> Floats:
-    """(nt, 4, 4) Int grad N_i . k grad N_j; gradients are constant, so k at the centre is a second-order rule."""
-    inner = np.moveaxis(inverse, 2, 0)
-    grad = np.concatenate([-inner.sum(1, keepdims=True), inner], 1)
-    return grad @ (k * volumes[:, None, None]) @ grad.transpose(0, 2, 1)
-
-
-def _accumulate(local: Floats, cells: Ints, n: int) -> sp.csr_array:
-    k = cells.shape[1]
-    rows, cols = np.repeat(cells, k, axis=1).ravel(), np.tile(cells, k).ravel()
-    return sp.csr_array(sp.coo_array((local.ravel(), (rows, cols)), (n, n)))
-
-
-def _trace(mesh: NamedMesh, block: Block, facets: Ints) -> Trace:
-    points, local = np.unique(facets, return_inverse=True)
-    local = local.reshape(-1, 3)
-    position = np.searchsorted(block.points, points)
-    if not np.array_equal(block.points[np.minimum(position, len(block.points) - 1)], points):
-        raise InputError(
-            "a facet has points outside its part", f"part '{block.name}'", "facets of the part's own tetrahedra"
-        )
-    edge = mesh.points[facets[:, 1:]] - mesh.points[facets[:, :1]]
-    areas = np.linalg.norm(np.cross(edge[:, 0], edge[:, 1]), axis=1) / 2
-    mass = _accumulate(areas[:, None, None] / 12 * (1 + np.eye(3)), local, len(points))
-    b: Floats = np.bincount(local.ravel(), np.repeat(areas / 3, 3), len(points)).astype(float)
-    return Trace(block.name, block.dofs.start + position, mass, b)
+def _side_by_side(blocks: list[sp.csr_array], factors: list[float]) -> sp.csr_array:
+    """Block-diagonal matrix of the parts."""
+    start = np.cumsum([0, *(b.shape[0] for b in blocks)])
+    filled = np.cumsum([0, *(b.nnz for b in blocks)])
+    data = np.concatenate([f * b.data for f, b in zip(factors, blocks, strict=True)])
+    indices = np.concatenate([b.indices + s for b, s in zip(blocks, start[:-1].astype(np.int32), strict=True)])
+    indptr = np.concatenate(
+        [[0], *(b.indptr[1:] + f for b, f in zip(blocks, filled[:-1].astype(np.int32), strict=True))]
+    )
+    return sp.csr_array((data, indices, indptr.astype(np.int32)), (start[-1], start[-1]))
 
 
 def _spread(mass: sp.csr_array, rows: Ints, cols: Ints, factor: float) -> tuple[Ints, Ints, Floats]:
     m = mass.tocoo()
     return rows[m.row], cols[m.col], factor * m.data
+
+
+def _summed(parts: list[tuple[Ints, Ints, Floats]], n: int) -> sp.csr_array:
+    row, col, val = (np.concatenate(c) for c in zip(*parts, strict=True))
+    return sp.csr_array(sp.coo_array((val, (row, col)), (n, n)))

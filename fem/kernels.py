@@ -1,0 +1,144 @@
+"""Compiled loops over simplices: pattern, volumes, conduction and mass, straight into compressed rows.
+
+Cells are (m, k) point numbers, k = 3 for triangles and 4 for tetrahedra.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numba import njit
+
+_OPTIONS: dict[str, Any] = {"cache": True, "error_model": "numpy"}
+
+
+@njit(**_OPTIONS)
+def pattern(cells, n):  # type: ignore[no-untyped-def]
+    """(n + 1,) row starts and sorted columns of the graph in which points of one cell are neighbours."""
+    m, k = cells.shape
+    start = np.zeros(n + 1, np.int32)
+    for e in range(m):
+        for a in range(k):
+            start[cells[e, a] + 1] += 1
+    for i in range(n):
+        start[i + 1] += start[i]
+    owner, fill = np.empty(m * k, np.int32), start[:-1].copy()
+    for e in range(m):
+        for a in range(k):
+            owner[fill[cells[e, a]]] = e
+            fill[cells[e, a]] += 1
+    seen, indptr = np.full(n, -1, np.int32), np.zeros(n + 1, np.int32)
+    for i in range(n):
+        count = 0
+        for p in range(start[i], start[i + 1]):
+            for a in range(k):
+                j = cells[owner[p], a]
+                if seen[j] != i:
+                    seen[j] = i
+                    count += 1
+        indptr[i + 1] = indptr[i] + count
+    indices = np.empty(indptr[n], np.int32)
+    seen[:] = -1
+    for i in range(n):
+        q = indptr[i]
+        for p in range(start[i], start[i + 1]):
+            for a in range(k):
+                j = cells[owner[p], a]
+                if seen[j] != i:
+                    seen[j] = i
+                    r = q
+                    while r > indptr[i] and indices[r - 1] > j:
+                        indices[r] = indices[r - 1]
+                        r -= 1
+                    indices[r] = j
+                    q += 1
+    return indptr, indices
+
+
+@njit(**_OPTIONS)
+def _add(indptr, indices, data, i, j, value):  # type: ignore[no-untyped-def]
+    p = indptr[i]
+    while indices[p] != j:
+        p += 1
+    data[p] += value
+
+
+@njit(**_OPTIONS)
+def volumes(xyz, tets):  # type: ignore[no-untyped-def]
+    """(m,) m3"""
+    out, grad = np.empty(len(tets)), np.empty((4, 3))
+    for e in range(len(tets)):
+        out[e] = _gradients(xyz, tets[e], grad)
+    return out
+
+
+@njit(**_OPTIONS)
+def conduction(xyz, tets, k, indptr, indices, data):  # type: ignore[no-untyped-def]
+    """Adds Int grad N_i . k grad N_j, k (m, 3, 3) constant in a tetrahedron."""
+    grad, flux = np.empty((4, 3)), np.empty((4, 3))
+    for e in range(len(tets)):
+        volume = _gradients(xyz, tets[e], grad)
+        _fluxes(k[e], grad, volume, flux)
+        for a in range(4):
+            for b in range(4):
+                value = flux[a, 0] * grad[b, 0] + flux[a, 1] * grad[b, 1] + flux[a, 2] * grad[b, 2]
+                _add(indptr, indices, data, tets[e, a], tets[e, b], value)
+
+
+@njit(**_OPTIONS)
+def conduction_slope(xyz, tets, k, slope, T, indptr, indices, data):  # type: ignore[no-untyped-def]
+    """Adds d/dT_j of (f(T_mean) K_e T)_i beside f K_e: slope (m,) is df/dT, T (n,)."""
+    grad, flux = np.empty((4, 3)), np.empty((4, 3))
+    for e in range(len(tets)):
+        volume = _gradients(xyz, tets[e], grad)
+        _fluxes(k[e], grad, volume, flux)
+        for a in range(4):
+            heat = 0.0
+            for b in range(4):
+                for c in range(3):
+                    heat += flux[a, c] * grad[b, c] * T[tets[e, b]]
+            for b in range(4):
+                _add(indptr, indices, data, tets[e, a], tets[e, b], heat * slope[e] / 4)
+
+
+@njit(**_OPTIONS)
+def mass(cells, sizes, indptr, indices, data):  # type: ignore[no-untyped-def]
+    """Adds Int N_i N_j for sizes (m,), volumes or areas, times whatever is to be integrated."""
+    k = cells.shape[1]
+    for e in range(len(cells)):
+        share = sizes[e] / (k * (k + 1))
+        for a in range(k):
+            for b in range(k):
+                _add(indptr, indices, data, cells[e, a], cells[e, b], 2 * share if a == b else share)
+
+
+@njit(**_OPTIONS)
+def _gradients(xyz, tet, grad):  # type: ignore[no-untyped-def]
+    """Gradients of the four hat functions into grad (4, 3); the volume."""
+    a, b, c = _edge(xyz, tet, 1), _edge(xyz, tet, 2), _edge(xyz, tet, 3)
+    n = _cross(b, c)
+    det = a[0] * n[0] + a[1] * n[1] + a[2] * n[2]
+    p, q = _cross(c, a), _cross(a, b)
+    for i in range(3):
+        grad[1, i], grad[2, i], grad[3, i] = n[i] / det, p[i] / det, q[i] / det
+        grad[0, i] = -grad[1, i] - grad[2, i] - grad[3, i]
+    return abs(det) / 6
+
+
+@njit(**_OPTIONS)
+def _edge(xyz, tet, i):  # type: ignore[no-untyped-def]
+    o, p = tet[0], tet[i]
+    return xyz[p, 0] - xyz[o, 0], xyz[p, 1] - xyz[o, 1], xyz[p, 2] - xyz[o, 2]
+
+
+@njit(**_OPTIONS)
+def _fluxes(k, grad, volume, flux):  # type: ignore[no-untyped-def]
+    for a in range(4):
+        for c in range(3):
+            flux[a, c] = volume * (k[c, 0] * grad[a, 0] + k[c, 1] * grad[a, 1] + k[c, 2] * grad[a, 2])
+
+
+@njit(**_OPTIONS)
+def _cross(a, b):  # type: ignore[no-untyped-def]
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
