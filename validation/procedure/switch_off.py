@@ -100,18 +100,16 @@ def semilog(cooling: Cooling, rated_kW: float, within_s: float = 300.0) -> Extra
 
 def semilog_at(cooling: Cooling, at_s: float = 0.0, within_s: float = 300.0) -> Extrapolated:
     """The straight line through ln(T - ambient), read at an instant."""
-    import statsmodels.api as sm
-
     early = cooling.time <= within_s
     t, rise = cooling.time[early], cooling.T[early] - cooling.ambient
     if t.size < 3 or np.min(rise) <= 0:
         raise InputError("readings not above ambient", "semi-logarithmic fit", "3 or more readings above ambient")
-    X = sm.add_constant(t)
-    line = sm.WLS(np.log(rise), X, weights=rise**2).fit()
-    scale = max(float(line.scale), cooling.reading_sd**2)
-    x = np.array([1.0, at_s])
-    T = float(np.exp(x @ line.params))
-    sd = T * float(np.sqrt(scale * x @ line.normalized_cov_params @ x))
+    line, unscaled = np.polyfit(t, np.log(rise), 1, w=rise, cov="unscaled")
+    left = rise * (np.polyval(line, t) - np.log(rise))
+    scale = max(float(left @ left) / (t.size - 2), cooling.reading_sd**2)
+    x = np.array([at_s, 1.0])
+    T = float(np.exp(x @ line))
+    sd = T * float(np.sqrt(scale * x @ unscaled @ x))
     return Extrapolated("semi-logarithmic", at_s, cooling.ambient + T, sd, f"line through {t.size} readings")
 
 
