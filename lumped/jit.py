@@ -1,6 +1,7 @@
 """How the kernel is compiled: once, cached beside the source, without the Python lock.
 
-Inner functions have no Python entry of their own; unpacking forty arrays in each would cost most of the compile time.
+Inner functions have no Python entry of their own and allocate nothing: unpacking forty arrays in each, and counting
+references to them, would cost most of the compile time.
 """
 
 from typing import Any
@@ -8,7 +9,7 @@ from typing import Any
 from numba import njit
 
 _OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy"}
-_HIDDEN: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+_HIDDEN: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True, "_nrt": False}
 
 entry = njit(**_OPTIONS)
 inner = njit(**_OPTIONS, **_HIDDEN)

@@ -69,36 +69,23 @@ class Work(NamedTuple):
     seen: Floats
 
 
-@inner
-def _stage(n, nb, nv, ne):
+def stage(n: int, nb: int, nv: int, ne: int) -> Stage:
+    """A stage's arrays for n states, nb boundaries, nv rows of all terms and ne terms."""
     nz = n + nb + 1
-    tau = np.zeros((ne, 6))
-    for e in range(ne):
-        tau[e, 0] = 1.0
-    z = np.zeros(nz)
+    tau, z = np.zeros((ne, 6)), np.zeros(nz)
+    tau[:, 0] = 1.0
     z[nz - 1] = 1.0
     return Stage(z, np.zeros(nv), tau, np.zeros(nz), np.zeros(nv), np.zeros(n))
 
 
-@inner
-def _work(n, ne, p):
-    square = np.zeros((4 if p > 0 else 2, n, n))
-    wide = np.zeros((3, n, p))
-    last = square.shape[0] - 1
-    return Work(
-        np.zeros(ne),
-        np.zeros(n),
-        np.zeros(n),
-        square[0],
-        square[1],
-        square[max(2, last) if p > 0 else 1],
-        square[last],
-        wide[0],
-        wide[1],
-        wide[2],
-        np.zeros(n, np.int64),
-        np.full(ne, np.nan),
-    )
+def work(n: int, ne: int, p: int) -> Work:
+    """Scratch; what only tangents need (p > 0) is shared otherwise."""
+    square, wide = np.zeros((4 if p > 0 else 2, n, n)), np.zeros((3, n, p))
+    W, G, G2, H = square if p > 0 else square[[0, 1, 1, 1]]
+    D, D1, D2 = wide
+    F, Ft = np.zeros(n), np.zeros(n)
+    pivot, seen = np.zeros(n, np.int64), np.full(ne, np.nan)
+    return Work(np.zeros(ne), F, Ft, W, G, G2, H, D, D1, D2, pivot, seen)
 
 
 @inner
@@ -281,8 +268,8 @@ def _balance_rows(T, K0, C, f, a, q):
 
 
 @inner
-def settle(T, S, K0, C, f, a, q):
-    """Bring the states without capacity to their balance at fixed others (Newton), tangents with them."""
+def settle(T, K0, C, f, a, q):
+    """Bring the states without capacity to their balance at fixed others (Newton)."""
     n = C.size
     for _ in range(MOST_ITERATIONS):
         if not _balance_rows(T, K0, C, f, a, q):
@@ -296,30 +283,39 @@ def settle(T, S, K0, C, f, a, q):
             break
     else:
         return False
-    if S.dC.shape[1] > 0:
-        _balance_rows(T, K0, C, f, a, q)
-        clear(q.D1)
-        for i in range(a.w.size):
-            a.w[i] = 0.0
-        for i in range(a.vw.size):
-            a.vw[i] = 0.0
-        _moved(T, S, f, f, q.df, 0.0, a, a, 0.0, q.D1)
-        for i in range(n):
-            if C[i] > 0.0:
-                copy(q.D[i], q.D1[i])
-        solve_many(q.W, q.pivot, q.D1)
-        for i in range(n):
-            copy(q.D1[i], q.D[i])
     return _finite(a.z)
 
 
 @inner
-def _outputs(R, z, D, y, dy):
-    n, p = D.shape
+def settle_tangents(T, S, K0, C, f, a, q):
+    """The tangents of the states without capacity, at their balance."""
+    _balance_rows(T, K0, C, f, a, q)
+    clear(q.D1)
+    for i in range(a.w.size):
+        a.w[i] = 0.0
+    for i in range(a.vw.size):
+        a.vw[i] = 0.0
+    _moved(T, S, f, f, q.df, 0.0, a, a, 0.0, q.D1)
+    for i in range(C.size):
+        if C[i] > 0.0:
+            copy(q.D[i], q.D1[i])
+    solve_many(q.W, q.pivot, q.D1)
+    for i in range(C.size):
+        copy(q.D1[i], q.D[i])
+
+
+@inner
+def _outputs(R, z, y):
     for r in range(y.size):
         for i in range(R.start[r], R.start[r + 1]):
             y[r] += R.weight[i] * z[R.at[i]]
-            if p > 0 and R.at[i] < n:
+
+
+@inner
+def _tangent_outputs(R, D, dy):
+    for r in range(dy.shape[0]):
+        for i in range(R.start[r], R.start[r + 1]):
+            if R.at[i] < D.shape[0]:
                 axpy(R.weight[i], D[R.at[i]], dy[r])
 
 
@@ -349,17 +345,16 @@ def _start(a, x0, u):
 
 
 @entry
-def integrate(time, u, x0, C, K0, T, S, R, through, z_out, y, dy, heat):
+def integrate(time, u, x0, C, K0, T, S, R, through, a, b, q, z_out, y, dy, heat):
     """March over the record; -1, or the index of the time at which the matrix was singular or x not finite.
 
     u (nt, nb); x0, C (n,); K0 (n, n + nb + 1) constant terms; T, S, R as declared above
     through : (rows of all terms,) weights that sum a term's rows to the heat through it
-    z_out (nt or 0, n + nb), y (nt, nr), dy (nt, nr, p), heat (nt or 0, ne) cumulated J: filled here, zero before
+    a, b, q : from stage() and work()
+    z_out (nt or 0, n + nb), y (nt, nr), dy (nt, nr, p), heat (nt, ne) cumulated J: filled here, zero before
+    S is None without tangents and heat where none is counted: their code is then not even compiled
     """
     n, nb, ne = x0.size, u.shape[1], T.m.size
-    a, b = _stage(n, nb, T.row.size, ne), _stage(n, nb, T.row.size, ne)
-    q = _work(n, ne, S.dC.shape[1])
-    p, count = S.dC.shape[1], heat.shape[0] > 0
     curved, massless = _has_both(T.dynamic, T.stiff), _has_zero(C)
     _start(a, x0, u)
     h_last = -1.0
@@ -373,47 +368,54 @@ def integrate(time, u, x0, C, K0, T, S, R, through, z_out, y, dy, heat):
             if not _rates(T, K0, C, f, f2, u[t], h, fresh, a, b, q):
                 return t
             h_last = h
-            if p > 0 or count:
+            if S is not None or heat is not None:
                 _directions(T, a, b, n)
-            if p > 0:
+            if S is not None:
                 _tangents(T, S, K0, C, f, f2, h, curved, a, b, q)
-            if count:
+            if heat is not None:
                 _count(T, through, f, f2, h, a, b, q, heat[t - 1], heat[t])
             for i in range(n):
                 a.z[i] += h * (1.5 * a.k[i] + 0.5 * b.k[i])
             if not _finite(a.z):
                 return t
-        elif count and t > 0:
+        elif heat is not None and t > 0:
             for e in range(ne):
                 heat[t, e] = heat[t - 1, e]
         for i in range(nb):
             a.z[n + i] = u[t, i]
         if h == 0.0 and massless:
             h_last = -1.0
-            if not settle(T, S, K0, C, T.factor[t], a, q):
+            if not settle(T, K0, C, T.factor[t], a, q):
                 return t
+            if S is not None:
+                settle_tangents(T, S, K0, C, T.factor[t], a, q)
         if z_out.shape[0] > 0:
             for i in range(n + nb):
                 z_out[t, i] = a.z[i]
-        _outputs(R, a.z, q.D, y[t], dy[t])
+        _outputs(R, a.z, y[t])
+        if S is not None:
+            _tangent_outputs(R, q.D, dy[t])
     return -1
 
 
 @entry
-def rest(u, x0, K0, T, S, R, z, y, dy, G):
+def rest(u, x0, none, K0, T, S, R, a, q, z, y, dy, G):
     """The state at which nothing changes any more (all capacities set aside); False if there is none.
 
-    u (1, nb); x0 (n,) first guess; z (n + nb,), y (1, nr), dy (1, nr, p) and G = -dF/dx (n, n) are filled here.
+    u (1, nb); x0 (n,) first guess; none (n,) zeros; S is None without tangents; a, q : from stage() and work()
+    z (n + nb,), y (1, nr), dy (1, nr, p) and G = -dF/dx (n, n) are filled here.
     """
-    n, nb, ne = x0.size, u.shape[1], T.m.size
-    a, q = _stage(n, nb, T.row.size, ne), _work(n, ne, S.dC.shape[1])
+    n, nb = x0.size, u.shape[1]
     _start(a, x0, u)
-    if not settle(T, S, K0, np.zeros(n), T.factor[0], a, q):
+    if not settle(T, K0, none, T.factor[0], a, q):
         return False
+    if S is not None:
+        settle_tangents(T, S, K0, none, T.factor[0], a, q)
+        _tangent_outputs(R, q.D, dy[0])
     evaluate(T, a.z, a.tau)
     patterns(T, a.z, a.v)
     jacobian(T, K0, T.factor[0], a.tau, a.v, G)
     for i in range(n + nb):
         z[i] = a.z[i]
-    _outputs(R, a.z, q.D, y[0], dy[0])
+    _outputs(R, a.z, y[0])
     return True

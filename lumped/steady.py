@@ -43,7 +43,7 @@ def steady(
     Raises ThermoscopeError where there is no rest: a node that nothing holds, or losses that grow faster with
     temperature than the cooling does (thermal runaway).
     """
-    from lumped.kernel import rest
+    from lumped.kernel import rest, stage, work
 
     core = compiled(network, inputs, 1, values, rows, tangents)
     n, nr, p = len(network.states), len(rows), core.tangents.dC.shape[1]
@@ -51,7 +51,11 @@ def steady(
     hidden = np.array(["#" in s for s in network.states], bool)
     x0 = np.where(hidden, 0.0, u.mean() if u.size else 20.0)
     z, y, dy, G = np.zeros(network.size), np.zeros((1, nr)), np.zeros((1, nr, p)), np.zeros((n, n))
-    found = rest(u, x0, core.K0, core.terms, core.tangents, core.rows, z, y, dy, G)
+    ne = core.terms.m.size
+    found = rest(
+        u, x0, np.zeros(n), core.K0, core.terms, core.tangents if p else None, core.rows,
+        stage(n, u.shape[1], core.terms.row.size, ne), work(n, ne, p), z, y, dy, G,
+    )  # fmt: skip
     if not found or np.linalg.slogdet(G)[0] <= 0:
         why = "a node nothing holds, or thermal runaway"
         raise ThermoscopeError(f"network '{network.name}' does not come to rest: {why}")
