@@ -79,10 +79,9 @@ def stage(n: int, nb: int, nv: int, ne: int) -> Stage:
 
 
 def work(n: int, ne: int, p: int) -> Work:
-    """Scratch; what only tangents need (p > 0) is shared otherwise."""
-    square, wide = np.zeros((4 if p > 0 else 2, n, n)), np.zeros((3, n, p))
-    W, G, G2, H = square if p > 0 else square[[0, 1, 1, 1]]
-    D, D1, D2 = wide
+    """Scratch for n states, ne terms and p tangents."""
+    W, G, G2, H = np.zeros((4, n, n))
+    D, D1, D2 = np.zeros((3, n, p))
     F, Ft = np.zeros(n), np.zeros(n)
     pivot, seen = np.zeros(n, np.int64), np.full(ne, np.nan)
     return Work(np.zeros(ne), F, Ft, W, G, G2, H, D, D1, D2, pivot, seen)
