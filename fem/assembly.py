@@ -90,9 +90,16 @@ class FieldModel:
 
     def flux(self, face: str) -> Floats:
         """(n,) load of 1 W through a face, the same flux everywhere on it."""
+        return self.face_mean(self.film(face).trace)
+
+    def film(self, face: str) -> Film:
         if face not in self.films:
-            raise InputError(f"unknown face '{face}'", "flux", f"known: {', '.join(self.films)}")
-        return self.face_mean(self.films[face].trace)
+            raise InputError(f"unknown face '{face}'", "field", f"known: {', '.join(self.films)}")
+        return self.films[face]
+
+    def spread(self, local: sp.csr_array, dofs: Ints) -> sp.csr_array:
+        """(n, n) matrix that is `local` (m, m) at dofs (m,) and zero elsewhere."""
+        return _summed([_spread(local, dofs, dofs, 1.0)], self.n)
 
     def face_mean(self, trace: Trace) -> Floats:
         """(n,) row that gives the mean temperature of one side of a surface."""

@@ -1,4 +1,4 @@
-"""Steady and transient solutions of the whole machine, with fluids as lumped nodes, and what they balance to."""
+"""Steady solutions of the whole machine, with fluids as lumped nodes, and what they balance to."""
 
 from __future__ import annotations
 
@@ -117,24 +117,27 @@ def steady(
     The factor sees only the solid; the few fluid nodes are eliminated by their Schur complement.
     """
     field = solver.field
-    _refuse_unknown_fluid(field, fluids)
+    refuse_unknown_fluid(field, fluids)
     K = field.stiffness(films, contacts, conductivity)
     _refuse_floating(field, K)
     factor = solver.factor(K)
     B, D = film_columns(field, films, fluids.names)
-    fixed = load + _from_fixed(field, films, fluids.fixed)
+    fixed = load + from_fixed(field, films, fluids.fixed)
     X = factor(np.column_stack([fixed, B]))
     u = np.asarray(np.linalg.solve(D + fluids.D - B.T @ X[:, 1:], fluids.s + B.T @ X[:, 0]), float)
     T = X[:, 0] + X[:, 1:] @ u
     T += factor(fixed + B @ u - K @ T)
+    return Steady(T, u, float(load.sum()), shed(field, films, fluids, T, u))
+
+
+def shed(field: FieldModel, films: Mapping[str, float], fluids: Fluids, T: Floats, u: Floats) -> float:
+    """Heat (W) to fluids of fixed temperature, and what streams and leaks carry away."""
     lost = sum(
-        h * float(f.trace.b @ T[f.trace.dofs] - f.trace.area * fluids.fixed[f.fluid])
+        films[name] * float(f.trace.b @ T[f.trace.dofs] - f.trace.area * fluids.fixed[f.fluid])
         for name, f in field.films.items()
         if f.fluid in fluids.fixed
-        for h in [films[name]]
     )
-    carried = float(np.sum(fluids.D @ u - fluids.s))
-    return Steady(T, u, float(load.sum()), lost + carried)
+    return lost + float(np.sum(fluids.D @ u - fluids.s))
 
 
 def film_columns(field: FieldModel, films: Mapping[str, float], names: tuple[str, ...]) -> tuple[Floats, Floats]:
@@ -148,7 +151,8 @@ def film_columns(field: FieldModel, films: Mapping[str, float], names: tuple[str
     return B, D
 
 
-def _from_fixed(field: FieldModel, films: Mapping[str, float], fixed: Mapping[str, float]) -> Floats:
+def from_fixed(field: FieldModel, films: Mapping[str, float], fixed: Mapping[str, float]) -> Floats:
+    """(n,) load (W) of the films onto fluids of fixed temperature."""
     out = np.zeros(field.n)
     for face, film in field.films.items():
         if film.fluid in fixed:
@@ -156,7 +160,7 @@ def _from_fixed(field: FieldModel, films: Mapping[str, float], fixed: Mapping[st
     return out
 
 
-def _refuse_unknown_fluid(field: FieldModel, fluids: Fluids) -> None:
+def refuse_unknown_fluid(field: FieldModel, fluids: Fluids) -> None:
     known = {*fluids.names, *fluids.fixed}
     for face, film in field.films.items():
         if film.fluid not in known:
@@ -173,43 +177,3 @@ def _refuse_floating(field: FieldModel, K: sp.csr_array) -> None:
     if not held.all():
         loose = [part for part, block in field.blocks.items() if not held[label[block.dofs]].all()]
         raise InputError(f"nothing takes heat from {', '.join(loose)}", "steady", "a film or a contact above 0")
-
-
-def transient(
-    solver: Solve,
-    films: Mapping[str, float],
-    contacts: Mapping[str, float],
-    load: Floats,
-    fluids: Fluids,
-    start: Floats,
-    step: float,
-    steps: int,
-) -> Floats:
-    """(steps + 1, n) temperatures (degC) after a step of load, by the L-stable TR-BDF2 with `step` (s) and one factor.
-
-    Fluids hold no heat. Source: Bank et al. 1985; with gamma = 2 - sqrt(2) both stages share one matrix.
-    """
-    field, gamma = solver.field, 2 - np.sqrt(2)
-    K, M = field.stiffness(films, contacts), field.M
-    B, D = film_columns(field, films, fluids.names)
-    G = D + fluids.D
-    fixed = load + _from_fixed(field, films, fluids.fixed) + B @ np.linalg.solve(G, fluids.s)
-    shift = 2 / (gamma * step)
-    factor = solver.factor(K, shift)
-    Y = factor(B)
-    small = np.linalg.inv(G - B.T @ Y) if B.shape[1] else np.zeros((0, 0))
-
-    def solve(r: Floats) -> Floats:
-        x = factor(r)
-        return x + Y @ (small @ (B.T @ x))
-
-    def flow(T: Floats) -> Floats:
-        return fixed - K @ T + B @ np.linalg.solve(G, B.T @ T)
-
-    out = [np.array(start, float)]
-    for _ in range(steps):
-        T = out[-1]
-        middle = solve(M @ T * shift + flow(T) + fixed)
-        a, b = 1 / (gamma * (2 - gamma)), (1 - gamma) ** 2 / (gamma * (2 - gamma))
-        out.append(solve(shift * (M @ (a * middle - b * T)) + fixed))
-    return np.array(out)

@@ -7,7 +7,8 @@ from scipy.optimize import brentq
 from fem.assembly import assemble
 from fem.grids import box
 from fem.material import isotropic
-from fem.solve import Solver, only_fixed, transient
+from fem.solve import Solver, only_fixed
+from fem.transient import transient
 
 L, k, rho_cp, h = 0.05, 2.0, 2e6, 80.0  # Bi = 2
 

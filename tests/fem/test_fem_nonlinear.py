@@ -1,0 +1,174 @@
+"""Radiation, conductivity and copper loss that depend on temperature: closed forms, Newton's order, energy."""
+
+import numpy as np
+import pytest
+from named_grids import bar, named
+from scipy.optimize import brentq
+
+from fem.assembly import assemble
+from fem.grids import box
+from fem.material import isotropic
+from fem.newton import settle
+from fem.solve import Iterative, Solver, only_fixed
+from fem.terms import SIGMA, ZERO_C, CopperLoss, Radiation, VaryingConductivity
+from fem.transient import transient
+from geom.errors import InputError
+
+GIVEN = 1e9  # a film so good that its fluid's temperature is the wall's, W/m2/K
+
+
+def order(steps):
+    """Of convergence, from the last three steps that are not rounding."""
+    e = [s for s in steps if s > 1e-8][-3:]
+    return np.log(e[2] / e[1]) / np.log(e[1] / e[0])
+
+
+def nafems_t2(n, solver=Solver):
+    field = assemble(bar(0.1, n), {"bar": isotropic(55.6)}, {"bar": 1.0})
+    films = {"bar.left": GIVEN, "bar.right": 0.0}
+    given = only_fixed(left=1000.0 - ZERO_C, right=0.0)
+    terms = [Radiation("bar.right", 0.98, 300.0 - ZERO_C)]
+    found = settle(solver(field), films, {}, np.zeros(field.n), given, terms, 500.0)
+    return found, float(field.face_mean(field.films["bar.right"].trace) @ found.T) + ZERO_C
+
+
+@pytest.mark.parametrize("n", [1, 4, 16])
+def test_nafems_t2_bar_that_radiates(n):
+    """NAFEMS T2: 927 K. The profile is linear, so every mesh gives the root of the scalar balance."""
+    exact = brentq(lambda T: 55.6 * (1000 - T) / 0.1 - 0.98 * SIGMA * (T**4 - 300**4), 300, 1000)
+    found, end = nafems_t2(n)
+    assert end == pytest.approx(exact, abs=1e-4)
+    assert end == pytest.approx(927.0, abs=0.1)
+    assert order(found.steps) == pytest.approx(2.0, abs=0.15)
+
+
+def test_any_solver_settles():
+    assert nafems_t2(8, Iterative)[1] == pytest.approx(nafems_t2(8)[1], abs=1e-6)
+
+
+def test_radiation_balance_of_a_hot_body():
+    """Copper-like cube in the dark: it radiates exactly its loss, at T = (P / (eps sigma A) + Ts^4)^(1/4)."""
+    x = np.linspace(0.0, 0.1, 4)
+    mesh = box(x, x, x, lambda c: named(c, default="cube"), lambda c: named(c, default="ambient"))
+    field = assemble(mesh, {"cube": isotropic(4e4)}, {"cube": 1.0})
+    load = 50.0 * field.load("cube")
+    found = settle(
+        Solver(field), {"cube.outer": 0.0}, {}, load, only_fixed(ambient=0.0), [Radiation("cube.outer", 0.9, 25.0)]
+    )
+    exact = (50.0 / (0.9 * SIGMA * 0.06) + (25.0 + ZERO_C) ** 4) ** 0.25 - ZERO_C
+    assert np.abs(found.T - exact).max() < 0.02
+    assert found.energy_balance < 1e-9
+
+
+def kirchhoff(n):
+    """Slab with k = k0 (1 + b T): theta = T + b T^2 / 2 is linear between the ends. Largest error and result."""
+    k0, b, hot, cold = 12.0, 0.004, 300.0, 50.0
+    field = assemble(bar(0.05, n), {"bar": isotropic(k0)}, {"bar": 1.0})
+    term = VaryingConductivity("bar", lambda T: 1 + b * T, lambda T: np.full(len(T), b))
+    given = only_fixed(left=hot, right=cold)
+    films = {"bar.left": GIVEN, "bar.right": GIVEN}
+    found = settle(Solver(field), films, {}, np.zeros(field.n), given, [term])
+    theta = np.interp(field.xyz[:, 0], [0, 0.05], [t + b * t**2 / 2 for t in (hot, cold)])
+    return np.abs(found.T - (np.sqrt(1 + 2 * b * theta) - 1) / b).max(), found
+
+
+def test_conductivity_that_grows_with_temperature():
+    coarse, (error, found) = kirchhoff(8)[0], kirchhoff(16)
+    assert error < 2e-4 * 250
+    assert np.log2(coarse / error) > 1.9
+    assert order(found.steps) == pytest.approx(2.0, abs=0.2)
+    through = 12.0 * (250 + 0.004 * (300**2 - 50**2) / 2) / 0.05 * (0.05 / 16) ** 2
+    assert abs(found.removed) < 1e-7 * through
+
+
+def copper_bar(q, n=32):
+    """Loss q (W/m3) (1 + alpha (T - 20)), one end at 40 degC, the other insulated: T - 20 + 1 / alpha is a cosine."""
+    L, k, alpha = 0.05, 0.6, 0.00393
+    field = assemble(bar(L, n), {"bar": isotropic(k)}, {"bar": 1.0})
+    found = settle(
+        Solver(field), {"bar.left": GIVEN, "bar.right": 0.0}, {}, np.zeros(field.n),
+        only_fixed(left=40.0, right=0.0), [CopperLoss("bar", q * field.blocks["bar"].volume, alpha)],
+    )  # fmt: skip
+    m = np.sqrt(q * alpha / k)
+    theta = (20.0 + 1 / alpha) * np.cos(m * (L - field.xyz[:, 0])) / np.cos(m * L)
+    return np.abs(found.T - (theta + 20.0 - 1 / alpha)).max(), found
+
+
+def test_copper_loss_feeds_back():
+    coarse, fine = copper_bar(6e4, 8)[0], copper_bar(6e4, 16)[0]
+    error, found = copper_bar(6e4)
+    assert error < 3e-3 * (found.T.max() - 40)
+    assert np.log2(coarse / fine) == pytest.approx(2.0, abs=0.2)
+    assert found.injected > 6e4 * 0.05 * (0.05 / 32) ** 2 * (1 + 0.00393 * 20)
+    assert found.energy_balance < 1e-9
+
+
+def test_thermal_runaway_is_refused():
+    """Beyond m L = pi / 2 (151 kW/m3 here) no steady state exists."""
+    with pytest.raises(InputError, match="not positive definite"):
+        copper_bar(1.6e5)
+
+
+def test_everything_at_once_balances():
+    x = np.linspace(0.0, 0.1, 7)
+    mesh = box(x, x, x, lambda c: named(c, (c[:, 0] < 0.05, "coil"), default="iron"),
+               lambda c: named(c, default="ambient"))  # fmt: skip
+    field = assemble(mesh, {"coil": isotropic(1.0), "iron": isotropic(30.0)}, {"coil": 1.0, "iron": 1.0})
+    terms = [
+        CopperLoss("coil", 40.0),
+        VaryingConductivity("iron", lambda T: 1 - 5e-4 * (T - 20), lambda T: np.full(len(T), -5e-4)),
+        Radiation("coil.outer", 0.9, 20.0),
+        Radiation("iron.outer", 0.5, 20.0),
+    ]
+    found = settle(
+        Solver(field), {"coil.outer": 5.0, "iron.outer": 8.0}, {"coil|iron": 500.0}, 10.0 * field.load("iron"),
+        only_fixed(ambient=20.0), terms,
+    )  # fmt: skip
+    assert found.injected > 50.0
+    assert found.energy_balance < 1e-9
+    assert len(found.steps) <= 7
+
+
+def test_unphysical_terms_are_refused():
+    with pytest.raises(InputError, match="emissivity"):
+        Radiation("x", 1.3, 20.0)
+    field = assemble(bar(0.1, 2), {"bar": isotropic(1.0)}, {"bar": 1.0})
+    with pytest.raises(InputError, match="unknown face 'x'"):
+        Radiation("x", 0.3, 20.0).heat(field, np.zeros(field.n))
+    falling = VaryingConductivity("bar", lambda T: 1 - T, lambda T: np.full(len(T), -1.0))
+    with pytest.raises(InputError, match="conductivity falls"):
+        falling.heat(field, np.full(field.n, 2.0))
+
+
+def test_slopes_are_derivatives():
+    """Of every kind of term, against central differences."""
+    field = assemble(bar(0.1, 3, across=2), {"bar": isotropic(2.0)}, {"bar": 1.0})
+    T, d = np.random.default_rng(0).uniform(20, 90, (2, field.n))
+    for term in (
+        Radiation("bar.left", 0.7, 30.0),
+        CopperLoss("bar", 3.0),
+        VaryingConductivity("bar", lambda T: 1 + 1e-5 * T**2, lambda T: 2e-5 * T),
+    ):
+        e = 1e-4
+        difference = (term.heat(field, T + e * d) - term.heat(field, T - e * d)) / (2 * e)
+        assert difference == pytest.approx(term.slope(field, T) @ d, abs=1e-7 * np.abs(difference).max())
+
+
+def cooled_by_radiation(step, steps):
+    """Lumped body in a void at 0 K: T = T0 (1 + 3 eps sigma A T0^3 t / C)^(-1/3). Largest error and fall (K)."""
+    field = assemble(bar(0.01, 2, 0.01), {"bar": isotropic(1e5)}, {"bar": 3e6})
+    area, C = 1e-4, field.blocks["bar"].capacity
+    T0 = 800.0
+    T = transient(
+        Solver(field), {"bar.left": 0.0, "bar.right": 0.0}, {}, np.zeros(field.n), only_fixed(left=0.0, right=0.0),
+        np.full(field.n, T0 - ZERO_C), step, steps, terms=[Radiation("bar.left", 0.8, -ZERO_C)],
+    )  # fmt: skip
+    exact = T0 * (1 + 3 * 0.8 * SIGMA * area * T0**3 * step * np.arange(steps + 1) / C) ** (-1 / 3) - ZERO_C
+    return np.abs(T.mean(1) - exact).max(), exact[0] - exact[-1]
+
+
+def test_a_body_cools_by_radiation_alone():
+    (coarse, _), (fine, fall) = cooled_by_radiation(80.0, 25), cooled_by_radiation(40.0, 50)
+    assert fall > 300
+    assert fine < 2e-4 * fall
+    assert np.log2(coarse / fine) == pytest.approx(2.0, abs=0.3)
