@@ -9,7 +9,7 @@ from pathlib import Path
 from geom.errors import InputError
 
 
-def write_whole(path: Path, text: str) -> Path:
+def write_whole(path: Path, text: str | bytes) -> Path:
     """Write beside the target, then rename: a reader sees the old file or the new one, never half of it."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -17,8 +17,8 @@ def write_whole(path: Path, text: str) -> Path:
     except OSError as fault:
         raise InputError(f"cannot be written: {fault.strerror}", str(path), "a folder you may write to") from None
     try:
-        with os.fdopen(handle, "w", encoding="utf-8") as file:
-            file.write(text)
+        with os.fdopen(handle, "wb") as file:
+            file.write(text if isinstance(text, bytes) else text.encode("utf-8"))
         os.chmod(name, 0o644)
         os.replace(name, path)
     except BaseException:

@@ -87,10 +87,18 @@ def _channels(sheet: Sheet, samples: Samples, grid: Array, network: Network) -> 
     inside = {name for mean in sheet.means for name in mean.of}
     return [
         Channel(c.name, c.place, row_of(network, c.place, c.position_mm, c.where),
-                averaged(samples.time, samples.values[c.name], grid), c.sigma_K, c.lag_s)
+                _seen(c, samples, grid), samples.sigma_K.get(c.name, c.sigma_K), c.lag_s)
         for c in sheet.columns
         if c.is_temperature and c.place not in network.boundaries and c.name not in inside
     ]  # fmt: skip
+
+
+def _seen(column: Column, samples: Samples, grid: Array) -> Array:
+    """Readings on the grid; a value carried back to the instant of switching off stands at its end."""
+    y = averaged(samples.time, samples.values[column.name], grid)
+    if column.electrical is not None and column.electrical.after is not None:
+        y[-1] = samples.values[column.name][-1]
+    return y
 
 
 def _mean(mean: Mean, sheet: Sheet, samples: Samples, grid: Array, network: Network) -> Channel:

@@ -1,4 +1,4 @@
-"""The sheet beside a CSV: what each column is. tests/NAME.toml, read key by key."""
+"""The sheet beside a recording: what each column is. tests/NAME.toml, read key by key."""
 
 from __future__ import annotations
 
@@ -10,6 +10,8 @@ from typing import Any
 
 from geom.errors import InputError
 from lumped.reader import Table
+from thermoscope.electrical import QUANTITIES as ELECTRICAL
+from thermoscope.electrical import Electrical, read_electrical
 from thermoscope.units import QUANTITIES, checked_unit
 
 FIRST = "first-readings"
@@ -19,9 +21,10 @@ SENSORS = {"thermocouple": 0.5, "pt100": 0.3, "ntc": 0.5, "resistance": 2.0, "in
 
 @dataclass(frozen=True)
 class Column:
-    """One column of the CSV; `feeds` is the network input it drives, "" for a temperature.
+    """One column of the recording; `feeds` is the network input it drives, "" for a temperature.
 
     sigma_K, lag_s : of the sensor;  position_mm : (x, y, z) on the machine where known;  where : its table in the file
+    written : its name in the recording;  electrical : how a resistance or a voltage becomes a temperature
     """
 
     name: str
@@ -33,10 +36,17 @@ class Column:
     lag_s: float
     position_mm: tuple[float, ...]
     where: str
+    written: str = ""
+    electrical: Electrical | None = None
 
     @property
     def is_temperature(self) -> bool:
-        return self.quantity == "temperature"
+        return self.quantity == "temperature" or self.electrical is not None
+
+    @property
+    def header(self) -> str:
+        """The column's name in the recording."""
+        return self.written or self.name
 
 
 @dataclass(frozen=True)
@@ -48,6 +58,23 @@ class Mean:
     place: str
     sigma_K: float
     lag_s: float
+    where: str
+
+
+@dataclass(frozen=True)
+class Recorder:
+    """A second recording of the same test: its file, its time column, and how its clock stands to the first one's.
+
+    shift_s : to add to its times;  align : (column here, column there) that show the same and so give the shift
+    """
+
+    file: Path
+    time: str
+    time_unit: str
+    worksheet: str
+    shift_s: float
+    align: tuple[str, ...]
+    limit_s: float
     where: str
 
 
@@ -72,6 +99,8 @@ class Sheet:
     squares: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     inputs: Mapping[str, float] = field(default_factory=dict)
     boundaries: Mapping[str, float] = field(default_factory=dict)
+    worksheet: str = ""
+    recorders: Mapping[str, Recorder] = field(default_factory=dict)
 
 
 def read_toml(path: Path, right: str) -> dict[str, Any]:
@@ -91,15 +120,15 @@ def load_sheet(path: Path) -> Sheet:
     if other:
         shared = read_toml(path.parent / other, f"the sheet that {path} takes its columns from")
         data = {**{key: shared[key] for key in ("columns", "means", "root_sum_square") if key in shared}, **data}
-    return read_sheet(data, str(path))
+    return read_sheet(data, str(path), path.parent)
 
 
-def read_sheet(data: Mapping[str, Any], where: str) -> Sheet:
+def read_sheet(data: Mapping[str, Any], where: str, folder: Path = Path()) -> Sheet:
     """A sheet; InputError for unknown keys, forgotten units and contradictions."""
     top = Table(data, where)
     test, columns, means = top.table("test"), top.tables("columns"), top.tables("means")
     inputs, boundaries = _constants(top.table("inputs")), _constants(top.table("boundaries"))
-    squares = top.table("root_sum_square")
+    squares, recorders = top.table("root_sum_square"), top.tables("recorders")
     top.close()
     period = test.number("period_s", low=1e-6) if "period_s" in test else 0.0
     test.word("columns_of", "")
@@ -108,9 +137,10 @@ def read_sheet(data: Mapping[str, Any], where: str) -> Sheet:
     sheet = Sheet(
         where, "" if period else test.word("time"), time_unit, period,
         test.word("description", ""), _initial(test), test.number("max_gap_s", MAX_GAP_S),
-        tuple(c for name, table in columns.items() if (c := _column(name, table, filtered)) is not None),
+        tuple(c for name, table in columns.items() if (c := _column(name, table, filtered, folder)) is not None),
         tuple(_mean(name, table, filtered) for name, table in means.items()),
-        {name: squares.words(name) for name in squares.data}, inputs, boundaries,
+        {name: squares.words(name) for name in squares.data}, inputs, boundaries, test.word("worksheet", ""),
+        {name: _recorder(table, folder) for name, table in recorders.items()},
     )  # fmt: skip
     test.close()
     if not sheet.columns:
@@ -130,19 +160,37 @@ def _initial(test: Table) -> float | Mapping[str, float] | str:
     return test.word("initial", FIRST, [FIRST]) if isinstance(given, str) else test.number("initial", low=-273.15)
 
 
-def _column(name: str, table: Table, filtered: float) -> Column | None:
+def _column(name: str, table: Table, filtered: float, folder: Path) -> Column | None:
     if table.raw("use", True) is False:
         return None
     of = table.word("quantity", None, QUANTITIES)
-    unit, hot = checked_unit(of, table.raw("unit"), table.where), of == "temperature"
-    kind = table.word("sensor", "thermocouple", SENSORS)
+    unit, hot = checked_unit(of, table.raw("unit"), table.where), of == "temperature" or of in ELECTRICAL
+    electrical = read_electrical(of, name, table, folder) if of in ELECTRICAL else None
+    kind = table.word("sensor", "resistance" if electrical else "thermocouple", SENSORS)
     place, feeds = table.word("place", None if hot else ""), "" if hot else table.word("input", QUANTITIES[of].feeds)
-    sigma, lag = table.number("sigma_K", SENSORS[kind], low=1e-3), table.number("lag_s", 0.0) + filtered
+    usual = 0.0 if electrical else SENSORS[kind]
+    sigma = table.number("sigma_K", low=1e-3) if "sigma_K" in table else usual
+    lag, written = table.number("lag_s", 0.0) + filtered, table.word("column", name)
     position = table.numbers("position_mm", [])
     if len(position) not in (0, 3):
         raise table.error(f"position_mm has {len(position)} numbers", "position_mm = [x, y, z]")
     table.close()
-    return Column(name, of, unit, place, feeds, sigma, lag, position, table.where)
+    return Column(name, of, unit, place, feeds, sigma, lag, position, table.where, written, electrical)
+
+
+def _recorder(table: Table, folder: Path) -> Recorder:
+    align = table.words("align", [])
+    if len(align) not in (0, 2):
+        raise table.error(
+            f"align = {list(align)}", "align = [a column of the test, one of this recorder that shows the same]"
+        )
+    recorder = Recorder(
+        folder / table.word("file"), table.word("time", "time_s"),
+        checked_unit("time", table.raw("time_unit", "s"), table.where), table.word("worksheet", ""),
+        table.number("shift_s", 0.0, low=-1e9), align, table.number("limit_s", 120.0, low=1e-3), table.where,
+    )  # fmt: skip
+    table.close()
+    return recorder
 
 
 def _mean(name: str, table: Table, filtered: float) -> Mean:

@@ -1,9 +1,9 @@
-"""CSV files into clean arrays: every fault is one message with file, column and line; every doubt is a note."""
+"""Recordings into clean arrays: every fault is one message with file, column and line; every doubt is a note."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,7 +12,9 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError
 from lumped.reader import known
-from thermoscope.sheet import Column, Sheet
+from thermoscope.alignment import clock_shift
+from thermoscope.formats import merged, read_frame, recording
+from thermoscope.sheet import Column, Recorder, Sheet
 from thermoscope.units import converted
 
 if TYPE_CHECKING:
@@ -26,60 +28,71 @@ FROZEN_SHARE, FROZEN_MOVE_K = 0.2, 2.0
 
 @dataclass(frozen=True)
 class Samples:
-    """time (n,) s from 0;  values : column -> (n,), NaN where nothing was read;  gaps : (from, to) s"""
+    """time (n,) s from 0;  values : column -> (n,), NaN where nothing was read;  gaps : (from, to) s
+
+    sigma_K : channel -> 1-sigma that follows from its readings, for sensors whose sheet gives none
+    """
 
     file: Path
     time: Array
     values: Mapping[str, Array]
     gaps: tuple[tuple[float, float], ...] = ()
     notes: tuple[str, ...] = field(default=())
-
-
-def csv_file(path: Path) -> Path:
-    """The CSV itself, or its gzipped twin."""
-    for candidate in (path, path.with_name(path.name + ".gz")):
-        if candidate.exists():
-            return candidate
-    beside = sorted(p.name for p in path.parent.glob("*.csv*")) if path.parent.exists() else []
-    raise InputError("no such file", str(path), f"found there: {', '.join(beside) or 'no CSV at all'}")
+    sigma_K: Mapping[str, float] = field(default_factory=dict)
 
 
 def load_table(path: Path, sheet: Sheet) -> Samples:
     """The columns the sheet uses, checked and converted."""
-    file = csv_file(path)
-    table = _frame(file)
-    for name in [*([sheet.time] if sheet.time else []), *(c.name for c in sheet.columns)]:
+    file = recording(path)
+    table = _frame(file, sheet)
+    for name in [*([sheet.time] if sheet.time else []), *(c.header for c in sheet.columns)]:
         if name not in table.columns:
             here = [str(c) for c in table.columns]
             raise InputError(
                 f"column '{name}' is not in the file", f"{file} (asked for by {sheet.where})", known(name, here)
             )
-    time = _times(table, sheet, file)
+    time = _times(table, replace(sheet, time_unit="s") if sheet.recorders else sheet, file)
     gaps = _gaps(time)
-    values, notes = {}, [_gap_note(file, a, b) for a, b in gaps]
+    values, sigma, notes = {}, {}, [_gap_note(file, a, b) for a, b in gaps]
     for column in sheet.columns:
-        values[column.name] = converted(_numbers(table, column.name, file), column.quantity, column.unit)
+        read = converted(_numbers(table, column.header, file), column.quantity, column.unit)
+        values[column.name] = read if column.electrical is None else column.electrical.temperature(read)
+        if column.electrical is not None and not column.sigma_K:
+            sigma[column.name] = column.electrical.sigma(read)
         notes += _look(column, values[column.name], file)
-    return Samples(file, time, values, gaps, (*notes, *_frozen(sheet.columns, time, values, file)))
+    return Samples(file, time, values, gaps, (*notes, *_frozen(sheet.columns, time, values, file)), sigma)
 
 
-def _frame(file: Path) -> pd.DataFrame:
-    import pandas as pd
+def _frame(file: Path, sheet: Sheet) -> pd.DataFrame:
+    """The recording, and those of other recorders moved to its clock."""
+    main = read_frame(file, sheet.worksheet)
+    if not sheet.recorders:
+        return main
+    time = sheet.time or "time_s"
+    main = main.assign(**{time: _times(main, sheet, file)})
+    return merged(main, time, {name: _beside(main, time, r) for name, r in sheet.recorders.items()})
 
-    try:
-        table = pd.read_csv(file, skipinitialspace=True, low_memory=False)
-    except pd.errors.EmptyDataError:
-        raise InputError("the file is empty", str(file), "a header line and rows of numbers") from None
-    except (pd.errors.ParserError, UnicodeDecodeError, OSError, EOFError) as fault:
-        raise InputError(
-            f"not readable as CSV: {fault}", str(file), "commas between columns, one header line"
-        ) from None
-    table.columns = [str(c).strip() for c in table.columns]
-    if len(table) < 3:
-        raise InputError(f"the file holds {len(table)} rows", str(file), "at least 3 rows of numbers under the header")
-    if len(table.columns) == 1 and ";" in table.columns[0]:
-        raise InputError("columns are separated by ';'", str(file), "commas between columns, points in numbers")
-    return table
+
+def _beside(main: pd.DataFrame, time: str, recorder: Recorder) -> tuple[pd.DataFrame, str, float]:
+    """Table, time column and shift (s) of a second recorder."""
+    file = recording(recorder.file)
+    table, shift = read_frame(file, recorder.worksheet), recorder.shift_s
+    _has(table, [recorder.time, *recorder.align[1:]], recorder.where)
+    _has(main, recorder.align[:1], recorder.where)
+    seconds = converted(_numbers(table, recorder.time, file), "time", recorder.time_unit)
+    if recorder.align:
+        here, there = recorder.align
+        shift = clock_shift(main[time].to_numpy(float), main[here].to_numpy(float), seconds,
+                            table[there].to_numpy(float), recorder.limit_s, recorder.where)  # fmt: skip
+        table = table.drop(columns=[there] if there == here else [])
+    return table.assign(**{recorder.time: seconds}), recorder.time, shift
+
+
+def _has(table: pd.DataFrame, names: Sequence[str], where: str) -> None:
+    for name in names:
+        if name not in table.columns:
+            right = known(name, [str(c) for c in table.columns])
+            raise InputError(f"column '{name}' is not in the file", where, right)
 
 
 def _numbers(table: pd.DataFrame, name: str, file: Path) -> Array:
@@ -140,7 +153,7 @@ def _look(column: Column, values: Array, file: Path) -> list[str]:
         raise InputError(
             f"{values[row]:g} degC is below absolute zero", _cell(file, column.name, row), "check the unit in the sheet"
         )
-    if missing.size:
+    if missing.size and column.electrical is None:
         return [
             f"{file.name} column '{column.name}': {missing.size} missing readings, first in line {missing[0] + HEADER}"
         ]
