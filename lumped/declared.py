@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -12,16 +12,12 @@ import numpy as np
 
 from geom.errors import InputError
 from lumped.build import bare_network, node_link, node_source, stream, surface_place
+from lumped.circuit import Circuit
+from lumped.declared_circuit import read_circuits
 from lumped.declared_laws import flow_law, loss_laws, mechanisms
-from lumped.network import Link, Network, Parameter, Place, Source
+from lumped.declared_parameters import read_parameters
+from lumped.network import Link, Network, Place, Source
 from lumped.reader import Table, known
-
-MAPPINGS = {
-    "log": (1.0, 1e-3, 1e3),
-    "amplitude": (0.0, -1e6, 1e6),
-    "relative": (0.0, -1.0, 1e3),
-    "offset": (0.0, -1e3, 1e3),
-}
 
 
 def load_network(path: str | Path) -> Network:
@@ -39,6 +35,12 @@ def load_network(path: str | Path) -> Network:
     return read_network(data, file.name)
 
 
+def load_circuits(path: str | Path) -> dict[str, Circuit]:
+    """The coolant circuits of a network.toml, for pressure drop and pump power."""
+    top = Table(tomllib.loads(Path(path).read_text(encoding="utf-8")), Path(path).name)
+    return read_circuits(top, top.tables("nodes"), top.table("network").words("boundaries"))
+
+
 def read_network(data: Mapping[str, Any], where: str = "network.toml") -> Network:
     """The network of a TOML document already read."""
     top = Table(data, where)
@@ -47,14 +49,17 @@ def read_network(data: Mapping[str, Any], where: str = "network.toml") -> Networ
         raise top.error("no nodes", "[nodes.NAME] with C_J_K = ...")
     name, boundaries = head.word("name"), head.words("boundaries")
     head.close()
-    network = bare_network(name, {n: _capacity(t) for n, t in nodes.items()}, boundaries)
+    circuits = read_circuits(top, nodes, boundaries)
+    cells = {n: C for c in circuits.values() for n, C in c.capacities().items()}
+    network = bare_network(name, {n: _capacity(t) for n, t in nodes.items()} | cells, boundaries)
     clash = set(nodes) & set(boundaries)
     if clash:
         raise head.error(f"'{min(clash)}' is a node and a boundary", "one or the other")
-    network = replace(network, places=_places(network, top, nodes))
-    links = [*_links(network, top), *_streams(network, top)]
+    network = replace(network, places=_places(network, top, nodes, cells))
+    loops = [link for circuit in circuits.values() for link in circuit.links(network)]
+    links = [*_links(network, top), *_streams(network, top), *loops]
     network = replace(network, links=tuple(links), sources=tuple(_sources(network, top)))
-    network = replace(network, parameters=(*_inline(network, top, nodes), *_parameters(top)))
+    network = replace(network, parameters=read_parameters(network, top, nodes))
     for table in nodes.values():
         table.close()
     top.close()
@@ -69,8 +74,8 @@ def _capacity(table: Table) -> float:
     return table.number("C_J_K", 0.0)
 
 
-def _places(network: Network, top: Table, nodes: Mapping[str, Table]) -> dict[str, Place]:
-    places = dict(network.places)
+def _places(network: Network, top: Table, nodes: Mapping[str, Table], cells: Iterable[str]) -> dict[str, Place]:
+    places = dict(network.places) | {c: replace(network.places[c], kind="fluid") for c in cells}
     for i, (name, table) in enumerate(nodes.items()):
         kind = table.word("kind", "node", ("node", "part", "fluid"))
         places[name] = replace(places[name], kind=kind)  # type: ignore[arg-type]
@@ -147,53 +152,6 @@ def _sources(network: Network, top: Table) -> list[Source]:
         probe = _end(network, table, table.word("temperature_of", max(shares, key=lambda node: shares[node])))
         out.append(node_source(network, f"loss:{name}", table.word("kind"), shares, laws[name], probe))
         table.raw("prior_sd")
-        table.close()
-    return out
-
-
-def _inline(network: Network, top: Table, nodes: Mapping[str, Table]) -> list[Parameter]:
-    """One parameter for every table that carries prior_sd: the multiplier of what it declares."""
-    out = []
-    items: list[Link | Source] = [*network.links, *network.sources]
-    for section, prefix, target in (
-        ("links", "link", "link:"),
-        ("streams", "stream", "stream:"),
-        ("losses", "loss", "loss:"),
-    ):
-        for name, table in top.tables(section).items():
-            if "prior_sd" in table:
-                own = f"{target}{name}"
-                acts = tuple((i.name, 1.0) for i in items if i.name == own or i.name.startswith(f"{own}:"))
-                out.append(Parameter(f"{prefix}.{name}", acts, prior_sd=table.number("prior_sd", low=1e-6)))
-    for name, table in nodes.items():
-        if "prior_sd" in table:
-            sd = table.number("prior_sd", low=1e-6)
-            out.append(Parameter(f"capacity.{name}", ((f"capacity:{name}", 1.0),), prior_sd=sd))
-    return out
-
-
-def _parameters(top: Table) -> list[Parameter]:
-    out = []
-    for name, table in top.tables("parameters").items():
-        mapping = table.word("mapping", "log", MAPPINGS)
-        neutral, low, high = MAPPINGS[mapping]
-        acts = table.raw("acts_on")
-        targets = {t: 1.0 for t in acts} if isinstance(acts, list) else table.shares("acts_on")
-        out.append(
-            Parameter(
-                name,
-                tuple(targets.items()),
-                table.number("value", neutral, low=-1e12),
-                table.word("unit", "1"),
-                table.number("low", low, low=-1e12),
-                table.number("high", high, low=-1e12),
-                table.number("prior_sd", 0.3, low=1e-9),
-                mapping,  # type: ignore[arg-type]
-                neutral,
-                int(table.number("sign", 0, -1, 1)),
-                table.word("source", ""),
-            )
-        )
         table.close()
     return out
 

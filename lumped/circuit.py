@@ -1,0 +1,181 @@
+"""Coolant circuits: upwind cells along channels in series and in parallel, open or closed by reservoir and exchanger.
+
+Every cell is a node whose temperature is what leaves it: it receives m cp (T_before - T_own) and the heat of its walls.
+What a circuit carries from its inlet to its outlet is m cp (T_out - T_in) at every instant, exactly.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from lumped.build import node_row
+from lumped.coolant import Coolant
+from lumped.correlations.ducts import duct_film, schmidt_helical, staton_rectangle
+from lumped.exchanger import CellFilm, Effectiveness, Exchanger, Flow, Rate
+from lumped.hydraulics import Duct, parallel_shares, pressure_drop, pumping_power
+from lumped.network import Link, Network
+
+RANGE = (0.0, *(2.0**k for k in np.arange(-5, 2.01, 0.125)))  # films are tabulated at these times the declared flow
+PER_M3S = {"l_min": 1 / 60000.0, "m3_h": 1 / 3600.0}
+TANK_M3 = 5e-5  # of the pipe in which branches meet
+
+
+@dataclass(frozen=True)
+class Pass:
+    """A channel and the walls it touches: node -> share of its wetted area. A one-sided jacket names one wall."""
+
+    duct: Duct
+    walls: Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class Cooler:
+    """What closes the loop: reservoir (m3), UA (W/K), the air's boundary and its flow, the arrangement."""
+
+    volume: float
+    UA: float
+    air: str
+    air_flow: Flow
+    effectiveness: Effectiveness
+
+
+@dataclass(frozen=True)
+class Circuit:
+    """branches : name -> passes in series; branches run in parallel.  flow (m3/s) at which the films are centred
+
+    of, unit : input that carries the flow and its unit, or None for a flow that never changes
+    inlet : a boundary for an open circuit; the node "NAME.reservoir" for a closed one
+    """
+
+    name: str
+    liquid: Coolant
+    at_degC: float
+    flow: float
+    branches: Mapping[str, tuple[Pass, ...]]
+    inlet: str
+    of: str | None = None
+    unit: str = "l_min"
+    cells: int = 8
+    cooler: Cooler | None = None
+    pump_efficiency: float = 0.5
+
+    @property
+    def heat(self) -> float:
+        """rho cp (J/m3/K)."""
+        fluid = self.liquid(self.at_degC)
+        return fluid.rho * fluid.cp
+
+    def stream(self, share: float = 1.0) -> Flow:
+        """Heat capacity rate of a share of the flow."""
+        return Flow(share * self.heat * (PER_M3S[self.unit] if self.of else self.flow), self.of)
+
+    @property
+    def shares(self) -> dict[str, float]:
+        """Of the flow through each branch, from equal pressure drop at the declared flow."""
+        ducts = [[p.duct for p in passes] for passes in self.branches.values()]
+        return dict(zip(self.branches, parallel_shares(ducts, self.flow, self.liquid(self.at_degC)), strict=True))
+
+    @property
+    def outlet(self) -> str:
+        """The node in which the branches meet."""
+        return f"{self.name}.outlet"
+
+    def cell(self, branch: str, number: int) -> str:
+        return f"{self.name}.{branch}.{number + 1}"
+
+    def capacities(self) -> dict[str, float]:
+        """Node -> heat capacity (J/K)."""
+        out = {
+            self.cell(branch, p * self.cells + c): self.heat * passes[p].duct.volume / self.cells
+            for branch, passes in self.branches.items() for p in range(len(passes)) for c in range(self.cells)
+        }  # fmt: skip
+        out[self.outlet] = self.heat * TANK_M3
+        if self.cooler is not None:
+            out[f"{self.name}.cooled"] = self.heat * TANK_M3
+            out[self.inlet] = self.heat * self.cooler.volume
+        return out
+
+    def links(self, network: Network) -> list[Link]:
+        """Streams, films and exchanger."""
+        out = [self._stream(network)]
+        for branch, share in self.shares.items():
+            for number, part in enumerate(self.branches[branch]):
+                out += self._films(network, branch, number, part, share)
+        return [*out, *self._exchanger(network)]
+
+    def _edges(self) -> Iterator[tuple[str, str, float]]:
+        """(from, to, share of the flow)"""
+        for branch, share in self.shares.items():
+            count = self.cells * len(self.branches[branch])
+            path = [self.inlet, *(self.cell(branch, k) for k in range(count)), self.outlet]
+            yield from ((a, b, share) for a, b in pairwise(path))
+        if self.cooler is not None:
+            yield from ((self.outlet, f"{self.name}.cooled", 1.0), (f"{self.name}.cooled", self.inlet, 1.0))
+
+    def _stream(self, network: Network) -> Link:
+        edges = list(self._edges())
+        a, b = [network.column(x) for x, _, _ in edges], [network.column(x) for _, x, _ in edges]
+        share = np.array([edge[2] for edge in edges])
+        rows, cols, vals = np.array(b + b), np.array(b + a), np.concatenate([share, -share])
+        out, into = network.column(self.outlet), network.column(self.inlet)
+        return Link(
+            f"stream:{self.name}", "stream", (self.inlet, self.outlet), rows, cols, vals,
+            Rate(self.stream()), node_row(out), node_row(into),
+        )  # fmt: skip
+
+    def _films(self, network: Network, branch: str, number: int, part: Pass, share: float) -> list[Link]:
+        flows = tuple(self.flow * r for r in RANGE)
+        h = tuple(self.film(part.duct, q * share) for q in flows)
+        unit = PER_M3S[self.unit] if self.of else self.flow
+        whole = part.duct.wall / self.cells * sum(part.walls.values())
+        out = []
+        for wall, of in part.walls.items():
+            area = part.duct.wall / self.cells * of
+            law = CellFilm(tuple(q / unit for q in flows), h, self.stream(share), area, whole)
+            nodes = [self.cell(branch, number * self.cells + c) for c in range(self.cells)]
+            out.append(_comb(network, f"film:{self.name}.{branch}.{number + 1}:{wall}", wall, nodes, law))
+        return out
+
+    def film(self, duct: Duct, flow: float) -> float:
+        """h (W/m2/K) in a duct at a flow (m3/s): Gnielinski in straight ones, Schmidt in coils."""
+        speed, fluid = flow / duct.section, self.liquid(self.at_degC)
+        if duct.coil:
+            return schmidt_helical(speed, duct.diameter, duct.coil, fluid)[0]
+        ratio = min(duct.width, duct.height) / max(duct.width, duct.height)
+        return duct_film(speed, duct.diameter, duct.length, fluid, staton_rectangle(ratio))[0]
+
+    def _exchanger(self, network: Network) -> list[Link]:
+        if self.cooler is None:
+            return []
+        law = Exchanger(self.cooler.UA, self.stream(), self.cooler.air_flow, self.cooler.effectiveness)
+        own, hot, air = (network.column(n) for n in (f"{self.name}.cooled", self.outlet, self.cooler.air))
+        rows, cols, vals = np.array([own, own]), np.array([hot, air]), np.array([1.0, -1.0])
+        places = (f"{self.name}.cooled", self.cooler.air)
+        return [Link(f"exchanger:{self.name}", "film", places, rows, cols, vals, law, node_row(hot), node_row(air))]
+
+    def pressure_drop(self, flow: float | None = None) -> float:
+        """Across the branches (Pa) at a flow (m3/s)."""
+        q, fluid = self.flow if flow is None else flow, self.liquid(self.at_degC)
+        branch, share = max(self.shares.items(), key=lambda item: item[1])
+        return math.fsum(pressure_drop(p.duct, q * share, fluid) for p in self.branches[branch])
+
+    def pump_power(self, flow: float | None = None) -> float:
+        """Taken by the pump (W)."""
+        q = self.flow if flow is None else flow
+        return pumping_power(self.pressure_drop(q), q, self.pump_efficiency)
+
+
+def _comb(network: Network, name: str, wall: str, cells: list[str], law: CellFilm) -> Link:
+    """One link from a wall to every cell of a pass."""
+    w = network.column(wall)
+    c = np.array([network.column(cell) for cell in cells])
+    k = np.full(c.size, w)
+    rows, cols = np.concatenate([k, k, c, c]), np.concatenate([k, c, c, k])
+    one = np.ones(c.size)
+    vals = np.concatenate([one, -one, one, -one])
+    return Link(name, "film", (wall, cells[0]), rows, cols, vals, law, node_row(w), node_row(int(c[0])))

@@ -1,0 +1,90 @@
+"""[circuits.NAME] of network.toml."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from lumped.circuit import PER_M3S, Circuit, Cooler, Pass
+from lumped.coolant import NAMES, Coolant, coolant
+from lumped.exchanger import ARRANGEMENTS, Flow
+from lumped.hydraulics import Duct
+from lumped.properties import air
+from lumped.reader import Table, known
+
+AIR_AT_C = 30.0
+
+
+def read_circuits(top: Table, nodes: Iterable[str], boundaries: Iterable[str]) -> dict[str, Circuit]:
+    """All circuits of a file, checked against its nodes and boundaries."""
+    names, around = list(nodes), list(boundaries)
+    return {name: _circuit(name, table, names, around) for name, table in top.tables("circuits").items()}
+
+
+def _circuit(name: str, table: Table, nodes: list[str], boundaries: list[str]) -> Circuit:
+    flow, of, unit = _flow(table, "flow")
+    closed = "reservoir" in table
+    inlet = f"{name}.reservoir" if closed else table.word("inlet", None, boundaries)
+    cooler = _cooler(table, boundaries) if closed else None
+    passes: dict[str, tuple[Pass, ...]] = {}
+    for item in table.listed("passes"):
+        branch = item.word("branch", "1")
+        passes[branch] = (*passes.get(branch, ()), _pass(item, nodes))
+        item.close()
+    if not passes:
+        raise table.error("no passes", "passes = [{ wall = ..., width_mm = ..., height_mm = ..., length_m = ... }]")
+    out = Circuit(
+        name, _coolant(table), table.number("at_degC", 40.0, low=-40.0), flow, passes, inlet, of, unit,
+        int(table.number("cells", 8, 1, 64)), cooler, table.number("pump_efficiency", 0.5, 0.01, 1.0),
+    )  # fmt: skip
+    for key in ("prior_sd", "film_prior_sd"):
+        table.raw(key)
+    table.close()
+    return out
+
+
+def _flow(table: Table, stem: str) -> tuple[float, str | None, str]:
+    """Flow (m3/s), the input that carries it if any, and that input's unit."""
+    for unit, scale in PER_M3S.items():
+        if f"{stem}_{unit}" in table:
+            of = table.word(f"{stem}_{unit}_input", "") or None
+            return table.number(f"{stem}_{unit}", low=1e-9) * scale, of, unit
+    raise table.error(f"no {stem}", f"{stem}_l_min or {stem}_m3_h = usual flow; {stem}_l_min_input where it varies")
+
+
+def _coolant(table: Table) -> Coolant:
+    given = table.raw("coolant")
+    if isinstance(given, str):
+        return coolant(table.word("coolant", None, NAMES))
+    inner = Table(given if given is not None else {}, f"{table.where} coolant")
+    name = inner.word("name", None, NAMES)
+    shares = {key: inner.number(key, high=100.0) for key in ("mass_percent", "volume_percent") if key in inner}
+    inner.close()
+    return coolant(name, **shares)
+
+
+def _pass(table: Table, nodes: list[str]) -> Pass:
+    walls = table.shares("wall")
+    for wall in walls:
+        if wall not in nodes:
+            raise table.error(f"unknown wall '{wall}'", known(wall, nodes))
+    if not 0.0 < sum(walls.values()) <= 1.0 + 1e-9 or min(walls.values()) <= 0.0:
+        raise table.error(f"shares of 'wall' sum to {sum(walls.values()):g}", "positive shares, 1 at most together")
+    duct = Duct(
+        1e-3 * table.number("width_mm", low=1e-3), 1e-3 * table.number("height_mm", low=1e-3),
+        table.number("length_m", low=1e-4), int(table.number("bends", 0)),
+        1e-3 * table.number("coil_diameter_mm", 0.0), int(table.number("parallel", 1, 1)),
+    )  # fmt: skip
+    return Pass(duct, walls)
+
+
+def _cooler(table: Table, boundaries: list[str]) -> Cooler:
+    inner = Table(table.raw("reservoir"), f"{table.where} reservoir")
+    flow, of, unit = _flow(inner, "air_flow")
+    carries = air(AIR_AT_C).rho * air(AIR_AT_C).cp
+    out = Cooler(
+        1e-3 * inner.number("volume_l", low=1e-6), inner.number("UA_W_K"), inner.word("air", None, boundaries),
+        Flow(carries * (PER_M3S[unit] if of else flow), of),
+        ARRANGEMENTS[inner.word("arrangement", "crossflow", ARRANGEMENTS)],
+    )  # fmt: skip
+    inner.close()
+    return out

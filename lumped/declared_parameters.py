@@ -1,0 +1,77 @@
+"""What calibration may move in network.toml: prior_sd inside tables, and [parameters.NAME]."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from lumped.network import Link, Network, Parameter, Source
+from lumped.reader import Table
+
+MAPPINGS = {
+    "log": (1.0, 1e-3, 1e3),
+    "amplitude": (0.0, -1e6, 1e6),
+    "relative": (0.0, -1.0, 1e3),
+    "offset": (0.0, -1e3, 1e3),
+}
+
+
+def read_parameters(network: Network, top: Table, nodes: Mapping[str, Table]) -> tuple[Parameter, ...]:
+    """All parameters of a file."""
+    return (*_inline(network, top, nodes), *_of_circuits(network, top), *_parameters(top))
+
+
+def _inline(network: Network, top: Table, nodes: Mapping[str, Table]) -> list[Parameter]:
+    """One parameter for every table that carries prior_sd: the multiplier of what it declares."""
+    out = []
+    items: list[Link | Source] = [*network.links, *network.sources]
+    for section, prefix, target in (
+        ("links", "link", "link:"),
+        ("streams", "stream", "stream:"),
+        ("losses", "loss", "loss:"),
+    ):
+        for name, table in top.tables(section).items():
+            if "prior_sd" in table:
+                own = f"{target}{name}"
+                acts = tuple((i.name, 1.0) for i in items if i.name == own or i.name.startswith(f"{own}:"))
+                out.append(Parameter(f"{prefix}.{name}", acts, prior_sd=table.number("prior_sd", low=1e-6)))
+    for name, table in nodes.items():
+        if "prior_sd" in table:
+            sd = table.number("prior_sd", low=1e-6)
+            out.append(Parameter(f"capacity.{name}", ((f"capacity:{name}", 1.0),), prior_sd=sd))
+    return out
+
+
+def _of_circuits(network: Network, top: Table) -> list[Parameter]:
+    """prior_sd scales a circuit's flow of heat, film_prior_sd all its films."""
+    out = []
+    for name, table in top.tables("circuits").items():
+        films = tuple((x.name, 1.0) for x in network.links if x.name.startswith(f"film:{name}."))
+        acts = {"prior_sd": (f"circuit.{name}", ((f"stream:{name}", 1.0),)), "film_prior_sd": (f"film.{name}", films)}
+        out += [Parameter(*acts[key], prior_sd=table.number(key, low=1e-6)) for key in acts if key in table]
+    return out
+
+
+def _parameters(top: Table) -> list[Parameter]:
+    out = []
+    for name, table in top.tables("parameters").items():
+        mapping = table.word("mapping", "log", MAPPINGS)
+        neutral, low, high = MAPPINGS[mapping]
+        acts = table.raw("acts_on")
+        targets = {t: 1.0 for t in acts} if isinstance(acts, list) else table.shares("acts_on")
+        out.append(
+            Parameter(
+                name,
+                tuple(targets.items()),
+                table.number("value", neutral, low=-1e12),
+                table.word("unit", "1"),
+                table.number("low", low, low=-1e12),
+                table.number("high", high, low=-1e12),
+                table.number("prior_sd", 0.3, low=1e-9),
+                mapping,  # type: ignore[arg-type]
+                neutral,
+                int(table.number("sign", 0, -1, 1)),
+                table.word("source", ""),
+            )
+        )
+        table.close()
+    return out

@@ -1,0 +1,241 @@
+"""Coolant circuits: exact balance, series and parallel, one- and two-sided, the closed loop, pressure and power."""
+
+import copy
+
+import ht
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from geom.errors import InputError
+from lumped.balance import balance
+from lumped.coolant import coolant, glycol
+from lumped.declared import read_network
+from lumped.declared_circuit import read_circuits
+from lumped.exchanger import counterflow, crossflow, parallel_flow
+from lumped.hydraulics import (
+    Duct,
+    fan_law,
+    fan_point,
+    friction,
+    helical_friction,
+    parallel_shares,
+    pressure_drop,
+    pumping_power,
+)
+from lumped.properties import water
+from lumped.reader import Table
+from lumped.simulate import Record, simulate
+from lumped.steady import steady
+
+CHANNEL = {"wall": "housing", "width_mm": 20, "height_mm": 6, "length_m": 1.2, "bends": 2}
+LOSS, LOSS_W = {"kind": "constant", "at": "housing", "P_W": 12420.0}, 12420.0
+
+
+def network(circuit, closed=False):
+    boundaries = ["ambient"] if closed else ["ambient", "inlet"]
+    data = {
+        "network": {"name": "jacket", "boundaries": boundaries},
+        "nodes": {"housing": {"C_J_K": 20000.0}, "flange": {"C_J_K": 8000.0}},
+        "links": {"h-f": {"between": ["housing", "flange"], "G_W_K": 5.0}},
+        "losses": {"heat": copy.deepcopy(LOSS)},
+        "circuits": {"water": circuit},
+    }
+    return read_network(data)
+
+
+def circuit(**more):
+    return {
+        "coolant": {"name": "ethylene glycol", "mass_percent": 50}, "at_degC": 60.0, "flow_l_min": 8,
+        "inlet": "inlet", "passes": [CHANNEL], **more,
+    }  # fmt: skip
+
+
+def closed(**more):
+    loop = circuit(reservoir={"volume_l": 6.0, "UA_W_K": 333.0, "air": "ambient", "air_flow_m3_h": 2500}, **more)
+    del loop["inlet"]
+    return loop
+
+
+HOT = glycol("ethylene", 50)(60.0)
+MCP = 8 / 60000 * HOT.rho * HOT.cp
+
+
+def test_one_pass_warms_the_coolant_by_25_6_K():
+    """12.4 kW into 8 L/min of 50/50 glycol."""
+    rest = steady(network(circuit()), {}, {"ambient": 20.0, "inlet": 20.0})
+    assert rest["water.outlet"] - 20.0 == pytest.approx(LOSS_W / MCP, rel=1e-10)
+    assert rest["water.outlet"] - 20.0 == pytest.approx(25.6, abs=0.1)
+
+
+def test_the_loop_warms_from_20_to_80_while_the_rise_through_the_jacket_stays_25_6_K():
+    net = network(closed(), closed=True)
+    time = np.arange(0.0, 7201.0, 5.0)
+    z = simulate(net, Record(time, {}, {"ambient": 20.0}), keep_states=True).z
+    out, reservoir = (z[:, net.column(f"water.{n}")] for n in ("outlet", "reservoir"))
+    assert out[0] == 20.0
+    assert out[-1] == pytest.approx(80.0, abs=1.0)
+    assert out[-1] - reservoir[-1] == pytest.approx(25.6, abs=0.1)
+    assert np.all(np.diff(out[10:]) > -1e-9)
+
+
+@pytest.mark.parametrize("kind", ["open", "closed", "parallel", "varying"])
+def test_heat_in_is_heat_out_and_stored(kind):
+    given = {}
+    time = np.arange(0.0, 900.0, 2.0)
+    if kind == "open":
+        net = network(circuit())
+    elif kind == "closed":
+        net = network(closed(), closed=True)
+    elif kind == "parallel":
+        two = [{**CHANNEL, "branch": "a"}, {**CHANNEL, "branch": "b", "length_m": 3.0, "wall": "flange"}]
+        net = network(circuit(passes=two))
+    else:
+        net = network(circuit(flow_l_min_input="flow_l_min"))
+        given = {"flow_l_min": np.clip(8 + 8 * np.sin(time / 60), 0.0, None)}
+    around = {"ambient": 20.0, "inlet": 20 + 10 * np.sin(time / 200)}
+    heat = balance(net, Record(time, given, {b: around[b] for b in net.boundaries}, 25.0))
+    assert np.abs(heat.residual).max() < 1e-9
+    if kind == "closed":
+        assert np.abs(heat.through["stream:water"]).max() < 1e-9 * heat.injected["loss:heat"].max()
+
+
+def test_what_a_stream_carries_is_m_cp_times_its_rise():
+    net = network(circuit())
+    rest = steady(net, {}, {"ambient": 20.0, "inlet": 35.0})
+    run = balance(net, Record(np.linspace(0.0, 1e5, 201), {}, {"ambient": 20.0, "inlet": 35.0}, 60.0))
+    assert run.power("stream:water")[-1] == pytest.approx(MCP * (rest["water.outlet"] - 35.0), rel=1e-6)
+
+
+def test_cells_along_an_even_wall_are_the_exact_exponential():
+    """A wall held at one temperature: (T_out - T_in) / (T_wall - T_in) = 1 - exp(-h A / m cp), whatever the cells."""
+    for cells in (1, 4, 16):
+        net = network(circuit(cells=cells))
+        made = read_circuits(
+            Table({"circuits": {"water": circuit(cells=cells)}}, "t"), ["housing", "flange"], ["ambient", "inlet"]
+        )
+        duct = made["water"].branches["1"][0].duct
+        N = made["water"].film(duct, 8 / 60000) * duct.wall / MCP
+        rest = steady(net, {}, {"ambient": 20.0, "inlet": 20.0})
+        if N / cells < 1:
+            share = (rest["water.outlet"] - 20.0) / (rest["housing"] - 20.0)
+            assert share == pytest.approx(-np.expm1(-N), rel=1e-9)
+
+
+def test_series_passes_heat_the_second_wall_with_what_the_first_gave():
+    rest = steady(
+        network(circuit(passes=[CHANNEL, {**CHANNEL, "wall": "flange"}])), {}, {"ambient": 20.0, "inlet": 20.0}
+    )
+    assert rest["housing"] > rest["flange"] > 25.0
+    assert rest["water.outlet"] - 20.0 == pytest.approx(LOSS_W / MCP, rel=1e-9)
+
+
+def test_two_sides_cool_better_than_one():
+    """The same channel wetting the flange as well draws heat there; the housing gives its half."""
+    one = steady(network(circuit()), {}, {"ambient": 20.0, "inlet": 20.0})
+    both = network(circuit(passes=[{**CHANNEL, "wall": {"housing": 0.5, "flange": 0.5}}]))
+    two = steady(both, {}, {"ambient": 20.0, "inlet": 20.0})
+    assert two["housing"] > one["housing"]
+    assert two["flange"] < one["flange"]
+    assert two["water.outlet"] == pytest.approx(one["water.outlet"], rel=1e-9)
+
+
+def test_equal_branches_share_alike_and_long_ones_get_less():
+    fluid, short, long = water(40.0), Duct(0.02, 0.006, 1.0), Duct(0.02, 0.006, 4.0)
+    assert_allclose(parallel_shares([[short], [short]], 2e-4, fluid), [0.5, 0.5], rtol=1e-9)
+    a, b = parallel_shares([[short], [long]], 2e-4, fluid)
+    assert a > b
+    assert pressure_drop(short, a * 2e-4, fluid) == pytest.approx(pressure_drop(long, b * 2e-4, fluid), rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("ours", "name"), [(counterflow, "counterflow"), (parallel_flow, "parallel"), (crossflow, "crossflow approximate")]
+)
+def test_effectiveness_against_the_library(ours, name):
+    for N in (0.1, 1.0, 4.0):
+        for ratio in (0.2, 0.7, 0.999):
+            expected = ht.effectiveness_from_NTU(NTU=N, Cr=ratio, subtype=name)
+            assert ours(np.array([N]), np.array([ratio]))[0] == pytest.approx(expected, rel=1e-6)
+
+
+def test_effectiveness_at_even_rates_has_no_jump():
+    N = np.array([2.0])
+    assert counterflow(N, np.array([1.0]))[0] == pytest.approx(counterflow(N, np.array([1 - 2e-6]))[0], rel=1e-5)
+
+
+def test_pressure_in_developed_laminar_flow_is_poiseuille():
+    """Long channel, Re 64: dp = 64/Re L/D rho v^2/2 plus 1.57 velocity heads."""
+    fluid, duct = water(20.0), Duct(0.01, 0.01, 10.0)
+    speed = 64 * fluid.nu / duct.diameter
+    expected = (duct.length / duct.diameter + 0.57 + 1.0) * 0.5 * fluid.rho * speed**2
+    assert pressure_drop(duct, speed * duct.section, fluid) == pytest.approx(expected, rel=1e-9)
+
+
+def test_friction_at_1e5_is_the_moody_value_and_has_no_jump():
+    """Smooth pipe, Re 1e5: 0.0180 (Moody 1944)."""
+    assert friction(1e5) == pytest.approx(0.0180, rel=5e-3)
+    for law in (lambda Re: friction(Re), lambda Re: helical_friction(Re, 0.009, 0.3)):
+        Re = np.linspace(500, 20000, 8001)
+        drop = np.array([law(r) * r * r for r in Re])
+        assert np.all(np.diff(drop) > 0)
+        assert (np.diff(drop) / drop[1:]).max() < 0.02
+
+
+def test_no_flow_no_pressure():
+    assert pressure_drop(Duct(0.02, 0.006, 1.0, 4), 0.0, water(20.0)) == 0.0
+
+
+def test_fan_law_and_operating_point():
+    assert fan_law(2.0, 3.0, 5.0, 7.0) == (6.0, 20.0, 56.0)
+    flow, pressure = fan_point(200.0, 0.1, 3e4)
+    assert pressure == pytest.approx(200.0 * (1 - (flow / 0.1) ** 2))
+    assert fan_point(200.0, 0.1, 0.0)[0] == pytest.approx(0.1)
+    assert pumping_power(2e4, 1e-3, 0.5) == 40.0
+
+
+def test_pump_power_grows_with_flow():
+    table = Table({"circuits": {"water": circuit()}}, "t")
+    made = read_circuits(table, ["housing", "flange"], ["ambient", "inlet"])["water"]
+    assert made.pump_power() == pytest.approx(made.pressure_drop() * 8 / 60000 / 0.5)
+    assert 5.5 < made.pump_power(2 * made.flow) / made.pump_power() < 9.0
+
+
+def test_stopped_flow_leaves_a_solvable_network():
+    net = network(circuit(flow_l_min_input="flow_l_min"))
+    time = np.arange(0.0, 600.0, 5.0)
+    z = simulate(
+        net, Record(time, {"flow_l_min": 8.0 * (time < 300)}, {"ambient": 20.0, "inlet": 20.0}), keep_states=True
+    ).z
+    assert np.all(np.isfinite(z))
+    assert z[-1, net.column("housing")] > z[60, net.column("housing")] + 50.0
+
+
+def test_engine_oil_agrees_with_its_own_printed_prandtl_numbers():
+    """Incropera table A.5: Pr 6400 at 300 K, 546 at 350 K, 152 at 400 K."""
+    for kelvin, Pr in ((300, 6400), (350, 546), (400, 152)):
+        assert coolant("oil")(kelvin - 273.15).Pr == pytest.approx(Pr, rel=0.02)
+
+
+def test_a_share_by_volume_is_another_mixture_than_by_mass():
+    mass, volume = glycol("ethylene", 50)(20.0), glycol("ethylene", volume_percent=50)(20.0)
+    assert volume.rho > mass.rho
+    with pytest.raises(InputError, match="mass_percent or volume_percent"):
+        glycol("ethylene")
+    with pytest.raises(InputError, match="only for"):
+        coolant("water", mass_percent=10.0)
+
+
+SLIPS = {
+    "share not stated": ({"coolant": "ethylene glycol"}, "mass_percent or volume_percent"),
+    "unknown wall": ({"passes": [{**CHANNEL, "wall": "hosing"}]}, "hosing.*did you mean 'housing'"),
+    "no passes": ({"passes": []}, "no passes"),
+    "unknown key": ({"colour": 1}, "'colour'"),
+    "unknown inlet": ({"inlet": "tap"}, "'tap'"),
+    "too many walls": ({"passes": [{**CHANNEL, "wall": {"housing": 0.8, "flange": 0.8}}]}, "sum to 1.6"),
+}
+
+
+@pytest.mark.parametrize(("slip", "message"), SLIPS.values(), ids=SLIPS)
+def test_slips_are_named(slip, message):
+    with pytest.raises(InputError, match=message):
+        network(circuit(**slip))
