@@ -1,4 +1,10 @@
-"""geom: what is the machine? Named prismatic parts, solids, a named mesh."""
+"""geom: what is the machine? Named prismatic parts, solids, a named mesh.
+
+machine = load_machine("pmsm-m1")        # a name of the library, a .toml file, or a .step file (see geom.step)
+for row in part_table(machine): ...      # volumes, masses, film and contact areas, without solids or mesh
+check_cad(machine); export_cad(machine, "out")
+mesh = build_mesh(machine, **COARSE)
+"""
 
 from __future__ import annotations
 
@@ -9,6 +15,7 @@ _HOME = {
     "load_machine": "machine",
     "library": "machine",
     "Machine": "machine",
+    "import_step": "step",
     "Part": "part",
     "Material": "materials",
     "material": "materials",

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from geom.machine import Machine
 from geom.part import Part
 from geom.partition import AMBIENT, Partition, partition
+from geom.voids import filled
 
 Ints = NDArray[np.int64]
 Floats = NDArray[np.float64]
@@ -47,9 +48,9 @@ def part_table(machine: Machine, segments: int = 180) -> tuple[PartRow, ...]:
     """One row per solid part, in the order of `machine.parts`.
 
     segments : chords per turn of an arc in the areas; 180 loses 0.02 % of a disc. Volumes are exact.
-    Raises InputError where solids overlap.
+    Raises InputError where solids overlap or a closed void is not declared as a fluid.
     """
-    areas = common_areas(partition((*machine.parts, *machine.fluids), segments))
+    areas = common_areas(filled(partition((*machine.parts, *machine.fluids), segments)))
     return tuple(_row(machine, part, areas) for part in machine.parts)
 
 

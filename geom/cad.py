@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from geom.errors import InputError
+from geom.kept import kept_file, written_whole
 from geom.machine import Machine
 from geom.palette import colour
 from geom.part import Part
+from geom.step import step_sidecar
 
 if TYPE_CHECKING:
     import cadquery as cq
@@ -30,8 +33,25 @@ class CadCheck:
     watertight: bool
 
 
-def solids(part: Part) -> list[cq.Solid]:
-    """Exact solids (mm), touching prisms of the part fused into one."""
+def solids(part: Part, cache: Path | str | None = None) -> list[cq.Solid]:
+    """Exact solids (mm), touching prisms of the part fused into one.
+
+    cache : folder of solids by content of their prisms, so that only what changed is built; None for no cache
+    """
+    import cadquery as cq
+
+    kept = kept_file(part, cache, "solid", "brep")
+    if kept is None:
+        return _built(part)
+    if kept.exists():
+        return [cq.Solid(solid.wrapped) for solid in cq.Shape.importBin(str(kept)).Solids()]
+    found = _built(part)
+    with written_whole(kept) as partial:
+        cq.Compound.makeCompound(found).exportBin(str(partial))
+    return found
+
+
+def _built(part: Part) -> list[cq.Solid]:
     import cadquery as cq
 
     prisms = [_prism(profile, z0, z1) for profile, z0, z1 in part.prisms]
@@ -55,31 +75,37 @@ def _stacked(part: Part) -> set[int]:
     return {i for i, (a, b) in enumerate(zip(starts, ends)) if a not in ends and b not in starts}
 
 
-def assembly(machine: Machine) -> cq.Assembly:
+def assembly(machine: Machine, cache: Path | str | None = None) -> cq.Assembly:
     """All parts as a coloured assembly (mm), named as everywhere else."""
     import cadquery as cq
 
     whole = cq.Assembly(name=machine.name)
     for part in machine.parts:
-        whole.add(cq.Compound.makeCompound(solids(part)), name=part.name, color=cq.Color(*colour(part.material)))
+        shape = cq.Compound.makeCompound(solids(part, cache))
+        whole.add(shape, name=part.name, color=cq.Color(*colour(part.material)))
     return whole
 
 
-def export_cad(machine: Machine, folder: Path | str, formats: tuple[str, ...] = FORMATS) -> dict[str, Path]:
+def export_cad(
+    machine: Machine, folder: Path | str, formats: tuple[str, ...] = FORMATS, cache: Path | str | None = None
+) -> dict[str, Path]:
     """Write the machine as STEP and GLB assemblies and one STL per part (mm); returns what was written.
 
-    Keys are "step", "glb" and "stl:<part>". Raises InputError for an unknown format.
+    Keys are "step", "glb" and "stl:<part>". Beside the STEP file its materials are written, as `import_step` reads
+    them. Raises InputError for an unknown format.
     """
     for name in formats:
         if name not in FORMATS:
             raise InputError(f"unknown format {name!r}", "export", f"known: {', '.join(FORMATS)}")
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
-    whole = assembly(machine)
+    whole = assembly(machine, cache)
     written: dict[str, Path] = {}
     for name in [name for name in ("step", "glb") if name in formats]:
         written[name] = folder / f"{machine.name}.{name}"
         whole.export(str(written[name]), tolerance=0.1, angularTolerance=0.1)
+    if "step" in formats:
+        step_sidecar(written["step"]).write_text(_materials(machine), encoding="utf-8")
     if "stl" in formats:
         for child in whole.children:
             path = written[f"stl:{child.name}"] = folder / f"{child.name}.stl"
@@ -88,15 +114,25 @@ def export_cad(machine: Machine, folder: Path | str, formats: tuple[str, ...] = 
     return written
 
 
-def check_cad(machine: Machine, tolerance_mm: float = 0.02) -> list[CadCheck]:
+def _materials(machine: Machine) -> str:
+    """What a STEP file cannot say, as TOML."""
+    lines = [f"{json.dumps(part.name)} = {json.dumps(part.material)}" for part in machine.parts]
+    head = ["[machine]", f"name = {json.dumps(machine.name)}", f"description = {json.dumps(machine.description)}"]
+    return "\n".join([*head, "", "[materials]", *lines, ""])
+
+
+def check_cad(machine: Machine, tolerance_mm: float = 0.02, cache: Path | str | None = None) -> list[CadCheck]:
     """Volume and watertightness of every part; the surface is triangulated to the tolerance."""
-    return [_checked(part, tolerance_mm) for part in machine.parts]
+    return [_checked(part, tolerance_mm, cache) for part in machine.parts]
 
 
-def _checked(part: Part, tolerance_mm: float) -> CadCheck:
-    found = solids(part)
+def _checked(part: Part, tolerance_mm: float, cache: Path | str | None) -> CadCheck:
+    kept = kept_file(part, cache, f"check-{tolerance_mm:g}", "json")
+    if kept is not None and kept.exists():
+        return CadCheck(**{**json.loads(kept.read_text()), "part": part.name})
+    found = solids(part, cache)
     surfaces = [surface(solid, tolerance_mm) for solid in found]
-    return CadCheck(
+    check = CadCheck(
         part=part.name,
         volume=part.volume,
         solid_volume=sum(solid.Volume() for solid in found) * 1e-9,
@@ -104,6 +140,10 @@ def _checked(part: Part, tolerance_mm: float) -> CadCheck:
         pieces=len(found),
         watertight=all(bool(mesh.is_watertight) for mesh in surfaces),
     )
+    if kept is not None:
+        with written_whole(kept) as partial:
+            partial.write_text(json.dumps(vars(check)))
+    return check
 
 
 def surface(solid: cq.Solid, tolerance_mm: float) -> trimesh.Trimesh:

@@ -17,7 +17,8 @@ from geom.profile import ArcGrid
 
 LIBRARY = Path(__file__).parent / "machines"
 SECTIONS = (
-    "machine", "ratings", "geometry", "materials", "contacts", "films", "losses", "fans", "cooling", "sensors"
+    "machine", "ratings", "geometry", "materials", "contacts", "films", "losses", "fans", "cooling", "sensors",
+    "calibration",
 )  # fmt: skip
 _HEADER = ("name", "family", "description", "assumed")
 
@@ -88,14 +89,18 @@ def library() -> dict[str, Path]:
 
 
 def load_machine(source: str | Path) -> Machine:
-    """The machine described by a file, or one of the library by name.
+    """The machine described by a file, one of the library by name, or the one in a STEP file (see geom.step).
 
     Raises InputError for a missing file, broken TOML, unknown sections or keys, missing units, values out
     of range, and geometry that does not fit.
     """
     path = library().get(str(source), Path(source))
+    if path.suffix.lower() in (".step", ".stp"):
+        from geom.step import import_step
+
+        return import_step(path)
     if path.suffix != ".toml" or not path.is_file():
-        raise InputError(f"no machine {str(source)!r}", "", f"a .toml file, or one of: {', '.join(library())}")
+        raise InputError(f"no machine {str(source)!r}", "", f"a .toml or .step file, or one of: {', '.join(library())}")
     try:
         sections = tomllib.loads(path.read_text(encoding="utf-8"))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:

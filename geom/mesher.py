@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import hashlib
+from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from geom.blocks import find_blocks, find_columns
+from geom.blocks import Block, Column, find_blocks, find_columns
 from geom.extrude import extrude
 from geom.machine import Machine
 from geom.mesh import NamedMesh
 from geom.meshio_io import read_npz, write_npz
-from geom.partition import partition, refuse_hidden_voids
+from geom.part import Part
+from geom.partition import Partition, partition
 from geom.triangulate import triangulate
+from geom.voids import filled
 
 COARSE: dict[str, Any] = {"size_m": 0.06, "segments": 44, "across": 1}
 FINE: dict[str, Any] = {"size_m": 0.012, "segments": 72, "across": 4}
@@ -40,19 +44,35 @@ def build_mesh(
     kept = _kept(machine, (size_m, segments, across, axial), cache)
     if kept is not None and kept.exists():
         return read_npz(kept)
-    parts = (*machine.parts, *machine.fluids)
-    cut = partition(parts, segments)
-    refuse_hidden_voids(cut)
-    blocks = find_blocks(cut)
-    columns = find_columns(cut, blocks)
-    mesh = extrude(cut, blocks, columns, triangulate(columns, size_m, across), axial, machine.face_name)
+    plan = _planned((*machine.parts, *machine.fluids), segments)
+    flat = triangulate(plan.columns, size_m, across)
+    mesh = extrude(plan.cut, plan.blocks, plan.columns, flat, axial, machine.face_name)
     if kept is not None:
         write_npz(mesh, kept)
     return mesh
 
 
+@dataclass(frozen=True)
+class _Plan:
+    """What a mesh of any size starts from."""
+
+    cut: Partition
+    blocks: list[Block]
+    columns: list[Column]
+
+
+@lru_cache(maxsize=4)
+def _planned(parts: tuple[Part, ...], segments: int) -> _Plan:
+    """The plane partition and its columns; kept, so that refining does not partition again."""
+    cut = filled(partition(parts, segments))
+    blocks = find_blocks(cut)
+    return _Plan(cut, blocks, find_columns(cut, blocks))
+
+
 def _kept(machine: Machine, settings: tuple[float, ...], cache: Path | str | None) -> Path | None:
+    """Named by what a mesh depends on: shapes and names, not materials."""
     if cache is None:
         return None
-    content = repr((machine.parts, machine.fluids, settings)).encode()
+    shapes = [(part.name, part.prisms, part.solid) for part in (*machine.parts, *machine.fluids)]
+    content = repr((shapes, sorted(machine.face_names.items()), settings)).encode()
     return Path(cache) / f"mesh-{hashlib.sha256(content).hexdigest()[:20]}.npz"

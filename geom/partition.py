@@ -123,34 +123,3 @@ def _neighbours(faces: NDArray[np.object_]) -> tuple[NDArray[np.int64], NDArray[
     left[which[forward]] = face[forward]
     right[which[~forward]] = face[~forward]
     return left, right, np.linalg.norm(points[edges[:, 1]] - points[edges[:, 0]], axis=1)
-
-
-def refuse_hidden_voids(cut: Partition) -> None:
-    """Raise InputError for a void that neither a fluid fills nor the outside reaches."""
-    from scipy.sparse import coo_matrix
-    from scipy.sparse.csgraph import connected_components
-
-    void = cut.labels == AMBIENT
-    n_face, n_slab = void.shape
-    cell = np.arange(n_face * n_slab).reshape(n_face, n_slab)
-    outside = n_face * n_slab
-    inner = (cut.left >= 0) & (cut.right >= 0)
-    a, b = cut.left[inner], cut.right[inner]
-    beside = void[a] & void[b]
-    above = void[:, :-1] & void[:, 1:]
-    rim = np.concatenate([cut.left[cut.right < 0], cut.right[cut.left < 0]])
-    open_cells = np.concatenate([cell[rim].ravel(), cell[:, 0][void[:, 0]], cell[:, -1][void[:, -1]]])
-    first = np.concatenate([cell[a][beside], cell[:, :-1][above], open_cells])
-    second = np.concatenate([cell[b][beside], cell[:, 1:][above], np.full(len(open_cells), outside)])
-    graph = coo_matrix((np.ones(len(first)), (first, second)), shape=(outside + 1, outside + 1))
-    component = connected_components(graph, directed=False)[1]
-    hidden = void & (component[:-1].reshape(n_face, n_slab) != component[-1])
-    if hidden.any():
-        raise InputError(_where(cut, hidden), "geometry", "declare the fluid that fills it, or close it")
-
-
-def _where(cut: Partition, hidden: NDArray[np.bool_]) -> str:
-    face, slab = np.argwhere(hidden)[0]
-    point = shapely.point_on_surface(cut.faces[face])
-    z = cut.levels[slab : slab + 2].mean()
-    return f"closed void around x, y, z = {point.x * 1e3:.1f}, {point.y * 1e3:.1f}, {z * 1e3:.1f} mm"

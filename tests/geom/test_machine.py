@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 from geom import InputError, library, load_machine
 from geom.families import families
 from geom.machine import machine_from
-from geom.partition import partition, refuse_hidden_voids
+from geom.partition import partition
+from geom.voids import filled
 
 
 def series(**geometry):
@@ -114,7 +115,7 @@ def test_random_machine_is_refused_in_one_line_or_fits_together(family, data):
     except InputError as error:
         refusal = str(error)
     else:
-        refuse_hidden_voids(partition((*machine.parts, *machine.fluids), 36))
+        filled(partition((*machine.parts, *machine.fluids), 36))
         return
     assert "random.toml [geometry." in refusal
     assert "must be" in refusal

@@ -5,7 +5,8 @@ import pytest
 from geom import InputError, shapes
 from geom.blocks import find_blocks, find_columns
 from geom.part import Part, fluid
-from geom.partition import partition, refuse_hidden_voids
+from geom.partition import partition
+from geom.voids import filled
 
 
 def body(name, profile, z0, z1):
@@ -28,15 +29,15 @@ def closed_can():
 
 def test_closed_void_must_be_declared():
     with pytest.raises(InputError, match="closed void"):
-        refuse_hidden_voids(partition(closed_can()))
+        filled(partition(closed_can()))
 
 
 def test_declared_void_is_accepted():
-    refuse_hidden_voids(partition([*closed_can(), fluid("air", (shapes.disc(0.09), 0.1, 0.4))]))
+    filled(partition([*closed_can(), fluid("air", (shapes.disc(0.09), 0.1, 0.4))]))
 
 
 def test_open_tube_needs_no_fluid():
-    refuse_hidden_voids(partition([body("wall", shapes.ring(0.09, 0.1), 0.0, 0.4)]))
+    filled(partition([body("wall", shapes.ring(0.09, 0.1), 0.0, 0.4)]))
 
 
 def test_first_declared_fluid_wins_and_solids_win_over_both():
