@@ -81,7 +81,7 @@ class Plant:
         fixed = body.capacity / dt * base + heat + out * now.ambient
         T, air = guess, before.air
         for _ in range(20):
-            T = _solve(matrix, fixed + mixing @ air, T)
+            T = self._solved(matrix, fixed + mixing @ air, T)
             fresh = cells @ (feed + mixing.T @ T)
             done = np.abs(fresh - air).max() < TOLERANCE_K
             air = fresh
@@ -145,6 +145,9 @@ class Plant:
         """Armature and field in series (ohm)."""
         means = [self.mean(part, T) for part in ARMATURE]
         return self.losses.resistance(float(np.dot(self.losses.ends, means)), self.mean("winding.field", T))
+
+    def _solved(self, matrix: sparse.csr_matrix, rhs: Array, guess: Array) -> Array:
+        return _solve(matrix, rhs, guess)
 
     def _matrix(self, T: Array, diagonal: Array) -> sparse.csr_matrix:
         """Conduction plus a diagonal; conductivities follow the temperature in strides of 3 K."""
