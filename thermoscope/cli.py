@@ -104,6 +104,18 @@ def render(case: Case, out: Out = None, json: Json = None) -> None:
 
 
 @app.command()
+def serve(
+    case: Case,
+    host: Annotated[str, typer.Option(help="Anything but this computer itself asks for a token.")] = "127.0.0.1",
+    port: Annotated[int, typer.Option(min=0, max=65535, help="0 takes a free one.")] = 8710,
+) -> None:
+    """The workbench in the browser: the machine, its sensors, what is missing, add it and see the error fall."""
+    from thermoscope.commands.serve import serve as run
+
+    raise typer.Exit(run(case, host, port))
+
+
+@app.command()
 def check(json: Json = None) -> None:
     """What this computer lacks (graphics), each with the command that fixes it."""
     from thermoscope.check import check as run

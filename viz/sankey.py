@@ -23,13 +23,13 @@ LOW, HIGH = 0.3, 1.3  # of the total: the drawing reaches below and above the tr
 def sankey_of_losses(heat: Heat, *, png: str | Path | None = None) -> Figure:
     """Losses on the left, exits and what is stored on the right (W)."""
     left = {k: v for k, v in sorted(heat.losses.items(), key=lambda kv: -kv[1]) if v > 0}
-    right = _exits(heat)
+    right = exits(heat)
     total = sum(left.values())
     if total <= 0:
         raise InputError("no losses to draw", "sankey", "a machine that is running")
     figure, (ax,) = paper.subplots(8.4, 4.4)
     _side(ax, left, 0.0, 0.46, dict.fromkeys(left, VERMILION), total)
-    _side(ax, right, 1.0, 0.54, {k: _colour(k) for k in right}, total)
+    _side(ax, right, 1.0, 0.54, {k: colour_of(k) for k in right}, total)
     ax.fill_between([0.46, 0.54], 0, total, color=LIGHT.ink, lw=0)
     ax.text(0.5, total * 1.04, f"{total:.0f} W", ha="center", weight="bold", fontsize=10)
     ax.set(xlim=(-0.32, 1.32), ylim=(-LOW * total, HIGH * total))
@@ -37,7 +37,7 @@ def sankey_of_losses(heat: Heat, *, png: str | Path | None = None) -> Figure:
     return paper.saved(figure, png)
 
 
-def _exits(heat: Heat) -> dict[str, float]:
+def exits(heat: Heat) -> dict[str, float]:
     """Exits by size: parallel streams as one, small ones as 'elsewhere', then what warms the machine."""
     out: dict[str, float] = {}
     for name, watts in heat.out.items():
@@ -50,7 +50,7 @@ def _exits(heat: Heat) -> dict[str, float]:
     return large | {k: v for k, v in tail.items() if v >= least}
 
 
-def _colour(name: str) -> str:
+def colour_of(name: str) -> str:
     return {"warms the machine": ORANGE, "elsewhere": LIGHT.faint}.get(name, BLUE if "fan" in name else SKY)
 
 

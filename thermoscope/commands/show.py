@@ -25,25 +25,28 @@ ORDER = {"hold-out": 0, "validate": 1, "calibrate": 2}
 
 def report(case: str, out: Path | None, target: str | None) -> int:
     """One page; the diagnosis is the last one if nothing has changed since."""
-    from validation.compare import compare
-    from viz.report import Report, write_report
-
     with progress() as tell:
         folder = opened_to_write(case, tell)
-        tell("running the model")
-        result, diagnosis = compare(folder.case), _diagnosis(folder, tell)
-        curves = [held(folder, test) for test in by_interest(folder)]
-        tell("drawing")
-        into = out or folder.settings.out
-        pictures = _pictures(folder, into)
-        page = Report(
-            folder.case.name, folder.settings.description, result.document(), diagnosis, steps(folder),
-            parameters(folder), curves, pictures, assumptions(folder), commands(folder, case), made(),
-        )  # fmt: skip
-        path = write_report(page, into / "report.html")
+        path = write_page(folder, case, out or folder.settings.out, tell)
     document = {"case": folder.case.name, "revision": folder.case.model.revision, "report": str(path)}
     give(document, target, lambda: say(f"{path}"))
     return 0
+
+
+def write_page(folder: Folder, case: str, into: Path, tell: Progress) -> Path:
+    """Write into/report.html with its pictures; `case` is what the commands on it call the case."""
+    from validation.compare import compare
+    from viz.report import Report, write_report
+
+    tell("running the model")
+    result, diagnosis = compare(folder.case), _diagnosis(folder, tell)
+    curves = [held(folder, test) for test in by_interest(folder)]
+    tell("drawing")
+    page = Report(
+        folder.case.name, folder.settings.description, result.document(), diagnosis, steps(folder),
+        parameters(folder), curves, _pictures(folder, into), assumptions(folder), commands(folder, case), made(),
+    )  # fmt: skip
+    return write_report(page, into / "report.html")
 
 
 def render(case: str, out: Path | None, target: str | None) -> int:

@@ -1,0 +1,79 @@
+"""Who may come in, and what they may fetch: this case's pages, and nothing else of this computer."""
+
+from __future__ import annotations
+
+import hmac
+from collections.abc import Mapping
+from dataclasses import dataclass
+from ipaddress import ip_address
+from pathlib import Path
+from urllib.parse import urlsplit
+
+from aiohttp import web
+from aiohttp.typedefs import Handler, Middleware
+
+COOKIE = "thermoscope"
+HEADERS = {
+    "X-Content-Type-Options": "nosniff", "Referrer-Policy": "no-referrer", "X-Frame-Options": "DENY",
+    "Cache-Control": "no-store", "Cross-Origin-Opener-Policy": "same-origin",
+}  # fmt: skip
+
+
+def loopback(host: str) -> bool:
+    """Does this name mean this computer only?"""
+    try:
+        return ip_address(host.strip("[]")).is_loopback
+    except ValueError:
+        return host == "localhost"
+
+
+@dataclass(frozen=True)
+class Gate:
+    """host : what the server listens on;  token : what a browser must show, "" for anyone on this computer"""
+
+    host: str
+    token: str
+
+    @property
+    def middleware(self) -> Middleware:
+        @web.middleware
+        async def checked(request: web.Request, handler: Handler) -> web.StreamResponse:
+            self.check(request)
+            if "token" in request.query:
+                raise self._let_in(request)
+            response = await handler(request)
+            if not response.prepared:
+                response.headers.update(HEADERS)
+            return response
+
+        return checked
+
+    def check(self, request: web.Request) -> None:
+        """HTTP 403 for a foreign page or name, 401 without the token."""
+        name = urlsplit(f"//{request.host}").hostname or ""
+        if loopback(self.host) and not loopback(name):
+            raise web.HTTPForbidden(text=f"this server is for this computer only, not for '{name}'")
+        origin = request.headers.get("Origin")
+        if origin is not None and urlsplit(origin).netloc != request.host:
+            raise web.HTTPForbidden(text="requests from other pages are refused")
+        shown = request.query.get("token") or request.cookies.get(COOKIE, "")
+        if self.token and not hmac.compare_digest(shown.encode(), self.token.encode()):
+            raise web.HTTPUnauthorized(text="open the address that thermoscope serve printed: it carries the token")
+
+    def _let_in(self, request: web.Request) -> web.HTTPFound:
+        """The same address without the token, which a cookie carries from now on."""
+        found = web.HTTPFound(request.path)
+        if self.token:
+            found.set_cookie(COOKIE, self.token, httponly=True, samesite="Strict", secure=request.secure)
+        return found
+
+
+def served(folders: Mapping[str, Path], name: str) -> Path | None:
+    """The file of that name in one of the folders ("" is the root); None for anything outside or missing."""
+    for prefix, folder in sorted(folders.items(), key=lambda item: -len(item[0])):
+        if prefix and not name.startswith(f"{prefix}/"):
+            continue
+        root = folder.resolve()
+        path = (root / name[len(prefix) + 1 if prefix else 0 :]).resolve()
+        return path if path.is_file() and path.is_relative_to(root) else None
+    return None

@@ -1,0 +1,91 @@
+"""A calculation in a process of its own: it cannot freeze a page, and it can be stopped."""
+
+from __future__ import annotations
+
+import asyncio
+import multiprocessing
+import os
+import signal
+from collections.abc import Callable
+from multiprocessing.connection import Connection
+from typing import Any
+
+from geom.errors import ThermoscopeError
+
+Tell = Callable[[str], None]
+PRELOAD = ["thermoscope.workbench.steps", "thermoscope.commands.revise", "validation.diagnose", "validation.revise"]
+
+
+class StoppedError(Exception):
+    """The calculation was stopped, or its process died."""
+
+
+class FailedError(Exception):
+    """The calculation ended with an error; the message says which."""
+
+
+def starter() -> Any:
+    """How processes are made: from a small server that has loaded the packages, where the system can do that."""
+    if "forkserver" not in multiprocessing.get_all_start_methods():
+        return multiprocessing.get_context("spawn")
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(PRELOAD)
+    return context
+
+
+def prepare() -> None:
+    """Start that small server now, so that the first calculation need not wait for it."""
+    from multiprocessing import forkserver
+
+    if starter().get_start_method() == "forkserver":
+        forkserver.ensure_running()
+
+
+class Job:
+    """One run of work(*arguments, tell)."""
+
+    def __init__(self, work: Callable[..., Any], *arguments: Any) -> None:
+        self._work, self._arguments = work, arguments
+        self._process: Any = None
+
+    async def run(self, tell: Tell) -> Any:
+        """The result; `tell` is called in this thread with every message. FailedError or StoppedError otherwise."""
+        context = starter()
+        mine, its = context.Pipe(duplex=False)
+        self._process = context.Process(target=_run, args=(its, self._work, self._arguments))
+        await asyncio.to_thread(self._process.start)
+        its.close()
+        try:
+            while True:
+                kind, value = await asyncio.to_thread(mine.recv)
+                if kind == "done":
+                    return value
+                if kind == "failed":
+                    raise FailedError(value)
+                tell(value)
+        except EOFError:
+            raise StoppedError("the calculation was stopped") from None
+        finally:
+            mine.close()
+            await asyncio.to_thread(self._process.join, 5)
+
+    def stop(self) -> None:
+        """End the process and all it started."""
+        if self._process is not None and self._process.is_alive():
+            try:
+                os.killpg(self._process.pid, signal.SIGTERM)
+            except (ProcessLookupError, PermissionError):
+                self._process.terminate()
+
+
+def _run(pipe: Connection, work: Callable[..., Any], arguments: tuple) -> None:
+    """In the other process: leader of its own group, so that stopping it stops its own helpers too."""
+    os.setpgrp()
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        message = "done", work(*arguments, lambda text: pipe.send(("tell", text)))
+    except (ThermoscopeError, OSError) as fault:
+        message = "failed", str(fault)
+    except Exception as fault:  # whatever it is, the page says so and lives on
+        message = "failed", f"{type(fault).__name__}: {fault}"
+    pipe.send(message)

@@ -1,0 +1,41 @@
+"""The model's history as one tab sees it: written step by step, never over somebody else's step."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from geom.errors import InputError
+from thermoscope.history import History, Revision, load_history, save_history
+
+
+def same(a: Revision, b: Revision) -> bool:
+    """The same model, however it came about."""
+    return a.effects == b.effects and dict(a.values) == dict(b.values)
+
+
+def effective(history: History) -> list[Revision]:
+    """The steps that led to the model, without those taken back; the declared model first."""
+    out = [Revision(0, "calibrate")]
+    for revision in history.revisions:
+        back = next((i for i, r in enumerate(out) if same(r, revision)), None)
+        if revision.action == "step back" and back is not None:
+            out = out[: back + 1]
+        else:
+            out.append(revision)
+    return out
+
+
+def undone(history: History) -> History | None:
+    """One revision more, equal to the model before the last step that still counts; None at the declared model."""
+    steps = effective(history)
+    return history.back_to(steps[-2].number) if len(steps) > 1 else None
+
+
+def written(file: Path, known: History, new: History) -> History:
+    """Write `new` over `known`; InputError when the file holds something else by now."""
+    if load_history(file) != known:
+        raise InputError(
+            "the model was changed by another tab or command", str(file), "'take over' first, then repeat the step"
+        )
+    save_history(file, new)
+    return load_history(file)

@@ -1,0 +1,236 @@
+"""The page of a tab, in Vuetify: the machine and a sensor's curves, errors, what is missing. All of it by keyboard."""
+
+from __future__ import annotations
+
+from importlib.resources import files
+from typing import Any
+
+from trame.ui.vuetify3 import VAppLayout
+from trame.widgets import client, html, plotly
+from trame.widgets import trame as extra
+from trame.widgets import vtk as vtk_widgets
+from trame.widgets import vuetify3 as v3
+
+from thermoscope.workbench.session import DRAWS, Session, started
+
+KEYS = (
+    ("j", "next"), ("k", "previous"), ("d", "diagnose"), ("u", "undo"), ("r", "report"), ("left", "left"),
+    ("right", "right"), ("up", "up"), ("down", "down"), ("+", "nearer"), ("-", "farther"), ("0", "first_view"),
+)  # fmt: skip
+HINT = "Keys: j, k sensors · arrows, +, −, 0 view · d diagnose · u undo · r report · Tab and Enter everywhere"
+TURNS = {
+    "left": (15.0, 0.0, 1.0), "right": (-15.0, 0.0, 1.0), "up": (0.0, 10.0, 1.0), "down": (0.0, -10.0, 1.0),
+    "nearer": (0.0, 0.0, 1.2), "farther": (0.0, 0.0, 1 / 1.2),
+}  # fmt: skip
+
+
+def draw(session: Session) -> None:
+    """Build the page; afterwards only the state changes."""
+    css = files("thermoscope.workbench").joinpath("page.css").read_text(encoding="utf-8")
+    session.state.trame__title = f"thermoscope: {session.state.case_name}"
+    with VAppLayout(session.shown.server, theme=("dark ? 'dark' : 'light'",)):
+        client.Style(css)
+        _keys(session)
+        _bar(session)
+        with v3.VMain(), html.Div(classes="bench"):
+            with html.Section(classes="left"):
+                _machine(session)
+                _curve()
+            with html.Section(classes="right"):
+                _messages(session)
+                _errors()
+                _sensors(session)
+                _missing(session)
+                _steps()
+
+
+def _keys(session: Session) -> None:
+    """Shortcuts; plain Tab and Enter work without them."""
+    turns = {name: (lambda by=by: session.shown.turn(*by)) for name, by in TURNS.items()}
+    acts: dict[str, Any] = {
+        "next": lambda: session.shown.next_sensor(1), "previous": lambda: session.shown.next_sensor(-1),
+        "diagnose": lambda: started(session.diagnose()), "undo": lambda: started(session.undo()),
+        "report": lambda: started(session.report()), "first_view": session.shown.first_view, **turns,
+    }  # fmt: skip
+    trap = extra.MouseTrap(**acts)
+    for key, name in KEYS:
+        trap.bind(key, name)
+
+
+def _bar(session: Session) -> None:
+    with v3.VAppBar(density="compact", flat=True, border="b"):
+        v3.VAppBarTitle("{{ case_name }}", tag="h1", classes="title")
+        html.Span("revision {{ revision }}", classes="chip", id="revision")
+        with html.Span(v_for="e in effects", key="e", classes="chip strong"):
+            html.Span("+ {{ e }}")
+            v3.VBtn(
+                icon="mdi-close", size="x-small", variant="text", disabled=("busy",), click=(
+                    lambda effect: started(session.step("remove", str(effect))), "[e]"),
+                aria_label=("'take out ' + e",),
+            )  # fmt: skip
+        v3.VSpacer()
+        _button("Undo", "undo", "mdi-undo", lambda: started(session.undo()), "busy || !can_undo")
+        _button("Calibrate", "calibrate", "mdi-tune", lambda: started(session.step("calibrate")), "busy")
+        _button("Report", "report", "mdi-file-document-outline", lambda: started(session.report()), "busy")
+        html.A("open report", v_if=("report",), href=("report",), target="_blank", id="report-link", rel="noopener")
+        v3.VBtn(
+            icon=("dark ? 'mdi-weather-sunny' : 'mdi-weather-night'",), click=session.paper,
+            aria_label=("dark ? 'light page' : 'dark page'",),
+        )  # fmt: skip
+
+
+def _button(text: str, name: str, icon: str, act: Any, disabled: str) -> None:
+    v3.VBtn(text, id=name, prepend_icon=icon, click=act, disabled=(disabled,), variant="text")
+
+
+def _machine(session: Session) -> None:
+    with html.Div(classes="card machine"):
+        with html.Div(classes="row"):
+            v3.VSelect(
+                v_model=("test",), items=("test_names",), label="test", density="compact", hide_details=True,
+                variant="outlined", style="max-width: 14rem", id="test",
+            )  # fmt: skip
+            if session.shown.stage is not None:
+                v3.VSlider(
+                    v_model=("frame",), min=0, max=("frames",), step=1, hide_details=True, density="compact",
+                    aria_label="instant of the test", id="frame",
+                )  # fmt: skip
+                html.Span("{{ minute }}", classes="minute")
+                for icon, name in _VIEW:
+                    act = session.shown.first_view if name == "first_view" else _turning(session, name)
+                    v3.VBtn(icon=icon, size="x-small", variant="text", click=act, aria_label=_LABEL[name])
+        if session.shown.stage is None:
+            html.P("{{ why_flat }}", classes="flat")
+            return
+        with html.Div(classes="view", id="machine"):
+            view = vtk_widgets.VtkRemoteView(
+                session.shown.stage.window, ref="machine", interactive_ratio=0.6, interactive_quality=60,
+                still_quality=92,
+            )  # fmt: skip
+            session.shown.push_image = view.update
+
+
+_VIEW = (
+    ("mdi-arrow-left", "left"), ("mdi-arrow-right", "right"), ("mdi-arrow-up", "up"), ("mdi-arrow-down", "down"),
+    ("mdi-plus", "nearer"), ("mdi-minus", "farther"), ("mdi-restore", "first_view"),
+)  # fmt: skip
+_LABEL = {
+    "left": "turn left", "right": "turn right", "up": "look from above", "down": "look from below",
+    "nearer": "nearer", "farther": "farther", "first_view": "first view",
+}  # fmt: skip
+
+
+def _turning(session: Session, name: str) -> Any:
+    return lambda: session.shown.turn(*TURNS[name])
+
+
+def _curve() -> None:
+    with html.Div(classes="card curve", id="curve"):
+        plotly.Figure(
+            state_variable_name="curve", display_mode_bar=("false",), responsive=("true",), display_logo=("false",),
+            style="width: 100%; height: 100%",
+        )  # fmt: skip
+
+
+def _messages(session: Session) -> None:
+    with html.Div(role="status", aria_live="polite"):
+        with html.Div(v_if=("busy",), classes="card job", id="job"):
+            html.B("{{ job.title }}")
+            html.Span("{{ job.message }}", classes="faint", id="job-message")
+            v3.VProgressLinear(
+                model_value=("job.percent || 0",), indeterminate=("job.percent === null",), color="primary", height=8,
+                aria_label="progress", id="progress",
+            )  # fmt: skip
+            v3.VBtn("Stop", click=session.stop, size="small", variant="outlined", id="stop")
+        with html.Div(v_if=("error",), classes="card bad", role="alert", id="error"):
+            html.Span("{{ error }}")
+            v3.VBtn("Take over", click=lambda: started(session.take_over()), size="small", variant="outlined",
+                    v_if=("error.includes('take over')",), id="take-over")  # fmt: skip
+        with html.Div(v_if=("outcome",), classes=("'card ' + (outcome.good ? 'good' : 'warn')",), id="outcome"):
+            html.Span("{{ outcome.text }}")
+            v3.VBtn("Keep it anyway", click=lambda: started(session.keep_anyway()), size="small", variant="outlined",
+                    v_if=("!outcome.good",), id="anyway")  # fmt: skip
+
+
+def _errors() -> None:
+    with html.Div(classes="card", id="errors"):
+        html.H2("Error of every test")
+        html.P("all: {{ rms }} K; the sensors' own uncertainty explains {{ floor }} K", classes="faint")
+        with html.Div(
+            v_for="t in tests", key="t.name", classes=("'bar' + (t.role === 'hold-out' ? ' held' : '')",),
+            id=("'error-' + t.name",), role="img",
+            aria_label=("t.name + ', ' + t.role + ': ' + t.rmse + ' kelvin'",),
+        ):  # fmt: skip
+            html.Span("{{ t.name }} ({{ t.role }})", classes="name")
+            with html.Span(classes="track"):
+                html.Span(classes="was", style=("{ width: t.was + '%' }",))
+                html.Span(classes="now", style=("{ width: t.width + '%' }",))
+            html.Span("{{ t.before && t.before !== t.rmse ? t.before + ' → ' : '' }}{{ t.rmse }} K", classes="value")
+
+
+def _sensors(session: Session) -> None:
+    with html.Div(classes="card", id="sensors"):
+        html.H2("Sensors in {{ test }}")
+        with html.Button(
+            v_for="s in sensors", key="s.name", type="button",
+            classes=("'bar sensor ' + s.tone + (s.name === sensor ? ' chosen' : '')",), id=("'sensor-' + s.name",),
+            aria_pressed=("s.name === sensor",), click=(lambda name: session.shown.select(str(name)), "[s.name]"),
+        ):  # fmt: skip
+            html.Span("{{ s.label }}", classes="name", title=("s.place",))
+            with html.Span(classes="track"):
+                html.Span(classes="now", style=("{ width: s.width + '%' }",))
+            html.Span("{{ s.rmse }} K {{ s.verdict === 'over' ? s.tone : '' }}", classes="value")
+
+
+def _missing(session: Session) -> None:
+    with html.Div(classes="card", id="missing"):
+        html.H2("What is missing?")
+        with html.Div(classes="row"):
+            v3.VBtn("Diagnose", id="diagnose", color="primary", variant="flat", prepend_icon="mdi-magnify",
+                    click=lambda: started(session.diagnose()), disabled=("busy",))  # fmt: skip
+            v3.VSelect(
+                v_model=("draws",), items=(str(list(DRAWS)),), label="draws of chance", density="compact",
+                hide_details=True, variant="outlined", style="max-width: 10rem",
+            )  # fmt: skip
+        with html.Div(v_if=("verdict",)):
+            html.P("{{ verdict.sentence }}", classes=("'verdict ' + verdict.tone",), id="verdict")
+            html.P("{{ verdict.words }}", classes="faint")
+            _candidates(session)
+            with html.Div(v_if=("has_confusion",), classes="confusion", id="confusion"):
+                plotly.Figure(
+                    state_variable_name="confusion", display_mode_bar=("false",), responsive=("true",),
+                    style="width: 100%; height: 100%",
+                )  # fmt: skip
+            html.P("{{ verdict.unseen }}", classes="faint")
+            html.P("{{ a }}", v_for="a in verdict.ahead", key="a", classes="faint")
+
+
+def _candidates(session: Session) -> None:
+    with html.Div(classes="scroll"), html.Table():
+        with html.Thead(), html.Tr():
+            for name in ("effect", "evidence", "size", "error", "held out", "looks like", ""):
+                html.Th(name)
+        with html.Tbody(), html.Tr(v_for="c in candidates", key="c.effect", classes=("c.decision",)):
+            html.Td("{{ c.effect }}", title=("c.title + '. ' + c.test",))
+            with html.Td(), html.Span(classes="evidence", title=("'score ' + c.score",)):
+                html.Span(classes="now", style=("{ width: c.width + '%' }",))
+                html.Span(classes="mark", style=("{ left: c.threshold + '%' }",))
+            html.Td("{{ c.amplitude }}")
+            html.Td("{{ c.error }}")
+            html.Td("{{ c.held }}")
+            html.Td("{{ c.alike }}")
+            with html.Td():
+                v3.VBtn(
+                    "Add", size="small", variant=("c.decision === 'no' ? 'text' : 'flat'",),
+                    color=("c.decision === 'no' ? '' : 'primary'",), disabled=("busy || c.inside",),
+                    click=(lambda effect: started(session.step("add", str(effect))), "[c.effect]"),
+                    aria_label=("'add ' + c.effect",), id=("'add-' + c.effect",),
+                )  # fmt: skip
+
+
+def _steps() -> None:
+    with html.Details(classes="card", id="steps"):
+        html.Summary("Steps of the model")
+        with html.Ol(reversed=True):
+            html.Li("{{ s.number }}: {{ s.text }} {{ s.why }}", v_for="s in steps", key="s.number", value=("s.number",))
+        html.P(HINT, classes="faint")

@@ -1,0 +1,77 @@
+"""The server of the workbench: one port, one process, a session per tab."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import secrets
+import signal
+from collections.abc import AsyncIterator, Callable
+
+from aiohttp import web
+
+from geom.errors import InputError
+from thermoscope.folder import Folder
+from thermoscope.terminal import Progress
+from thermoscope.workbench.bench import bench
+from thermoscope.workbench.gate import Gate, loopback
+from thermoscope.workbench.jobs import prepare
+from thermoscope.workbench.tabs import Tabs
+
+SWEEP_S = 30.0
+SHORTEST = 16
+
+
+def token_for(host: str, given: str | None) -> str:
+    """What a browser must show: nothing on this computer only, else the given token or a new one."""
+    if given is not None and len(given) < SHORTEST:
+        raise InputError(f"the token has {len(given)} characters", "THERMOSCOPE_TOKEN", f"at least {SHORTEST}")
+    return given or ("" if loopback(host) else secrets.token_urlsafe(24))
+
+
+def application(folder: Folder, gate: Gate, tell: Progress) -> web.Application:
+    """The pages of a case, behind a gate."""
+    os.environ["TRAME_ARGS"] = "--server"  # trame would read our command line as its own
+    tabs = Tabs(bench(folder, tell))
+    prepare()
+    app = web.Application(middlewares=[gate.middleware])
+    app.router.add_get("/", tabs.new)
+    app.router.add_get("/tab/{tab}/{name:.+}", tabs.fetch)
+    app.router.add_post("/tab/{tab}/paraview/", tabs.address)
+
+    async def sweeping(_: web.Application) -> AsyncIterator[None]:
+        async def sweep() -> None:
+            while True:
+                await asyncio.sleep(SWEEP_S)
+                await tabs.sweep()
+
+        task = asyncio.create_task(sweep())
+        yield
+        task.cancel()
+        await tabs.close()
+
+    app.cleanup_ctx.append(sweeping)
+    return app
+
+
+def serve(app: web.Application, gate: Gate, port: int, ready: Callable[[str], None]) -> None:
+    """Serve until interrupted; `ready` gets the address to open once it can be opened."""
+    asyncio.run(_serve(app, gate, port, ready))
+
+
+async def _serve(app: web.Application, gate: Gate, port: int, ready: Callable[[str], None]) -> None:
+    end, runner = asyncio.Event(), web.AppRunner(app, shutdown_timeout=2.0)
+    for number in (signal.SIGINT, signal.SIGTERM):
+        asyncio.get_running_loop().add_signal_handler(number, end.set)
+    await runner.setup()
+    try:
+        await web.TCPSite(runner, gate.host, port).start()
+        ready(_address(gate, runner.addresses[0][1]))
+        await end.wait()
+    finally:
+        await runner.cleanup()
+
+
+def _address(gate: Gate, port: int) -> str:
+    name = f"[{gate.host}]" if ":" in gate.host else gate.host
+    return f"http://{name}:{port}/" + (f"?token={gate.token}" if gate.token else "")

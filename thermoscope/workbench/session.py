@@ -1,0 +1,194 @@
+"""One tab: what it shows, its model's history, and the one calculation it may have running."""
+
+from __future__ import annotations
+
+import asyncio
+import re
+import time
+from collections.abc import Callable, Coroutine
+from pathlib import Path
+from typing import Any
+
+from geom.errors import ThermoscopeError
+from thermoscope.commands.saved import save_diagnosis, saved_diagnosis
+from thermoscope.folder import Folder
+from thermoscope.history import History, Revision, load_history
+from thermoscope.workbench import ledger, steps
+from thermoscope.workbench.bench import Bench, at
+from thermoscope.workbench.jobs import FailedError, Job, StoppedError
+from thermoscope.workbench.look import Look
+from thermoscope.workbench.shown import Shown
+
+DRAWS = (20, 40, 60, 200)
+REMEMBERED = 8
+TITLES = {"add": "Adding", "remove": "Taking out", "calibrate": "Calibrating"}
+
+
+class Session:
+    """What the buttons of a tab do."""
+
+    def __init__(self, bench: Bench, server: Any) -> None:
+        self.bench, self.shown = bench, Shown(bench, server)
+        self.state = self.shown.state
+        self.history: History = bench.folder.history
+        self.diagnosis: dict[str, Any] | None = None
+        self._refused: Revision | None = None
+        self._job: Job | None = None
+        self._known: list[tuple[Revision, Look]] = [(self.history.last, bench.first)]
+
+    @property
+    def folder(self) -> Folder:
+        """The case with this tab's model."""
+        return at(self.bench.folder, self.history)
+
+    @property
+    def file(self) -> Path:
+        return self.bench.folder.settings.model_file
+
+    def open(self) -> None:
+        """Show the model, and the last diagnosis if it is of this model."""
+        self.shown.model(self.history, self.bench.first)
+        self.diagnosis = saved_diagnosis(self.folder)
+        self.shown.found(self.diagnosis)
+
+    async def diagnose(self) -> None:
+        """Look for what is missing."""
+        draws = self.state.draws if self.state.draws in DRAWS else DRAWS[1]
+        found = await self._calculate("Looking for what is missing", steps.searched, self.folder, draws)
+        if found is not None:
+            if load_history(self.file) == self.history:
+                save_diagnosis(self.folder, found)
+            with self.state:
+                self.diagnosis = dict(found)
+                self.shown.found(self.diagnosis)
+
+    async def step(self, action: str, effect: str = "") -> None:
+        """Add or remove an effect, or calibrate; what is not accepted waits for `keep_anyway`."""
+        allowed = {"add": {c["effect"] for c in self.state.candidates}, "remove": set(self.history.last.effects)}
+        if effect not in allowed.get(action, {""}):
+            return
+        title = f"{TITLES[action]} {effect}".strip()
+        result = await self._calculate(title, steps.stepped, self.folder, self.bench.surface, action, effect)
+        if result is None:
+            return
+        revision, document, look = result
+        good = bool(document["accepted"]) or action == "remove"
+        verdict = "accepted" if good else "not accepted"
+        self._refused = None if good else revision
+        with self.state:
+            self.state.outcome = {"good": good, "text": f"{action} {effect}: {verdict}; {document['why']}"}
+            if good:
+                self._write(self.history.and_then(revision), look)
+
+    async def keep_anyway(self) -> None:
+        """Write the step that was not accepted."""
+        if self._refused is not None and self._write(self.history.and_then(self._refused)):
+            await self._show(self.history)
+
+    async def undo(self) -> None:
+        """One step back. That is a revision too, so nothing is lost."""
+        back = ledger.undone(self.history)
+        if back is not None and not self.state.busy and self._write(back):
+            await self._show(self.history)
+            with self.state:
+                self.state.outcome = {"good": True, "text": f"undone; {self.history.last.why}"}
+
+    async def take_over(self) -> None:
+        """Show the model that the file holds by now."""
+        try:
+            await self._show(load_history(self.file))
+        except ThermoscopeError as fault:
+            self._complain(str(fault))
+
+    async def report(self) -> None:
+        """Write out/report.html and offer it."""
+        if await self._calculate("Writing the report", steps.reported, self.folder) is not None:
+            with self.state:
+                self.state.report = f"report.html?{time.time_ns()}"
+
+    def paper(self) -> None:
+        """From light to dark and back."""
+        self.shown.paper(not self.state.dark, self.diagnosis)
+
+    def stop(self) -> None:
+        """End the calculation."""
+        if self._job is not None:
+            self._job.stop()
+
+    def close(self) -> None:
+        self.stop()
+        if self.shown.stage is not None:
+            self.shown.stage.close()
+
+    def _write(self, new: History, look: Look | None = None) -> bool:
+        """To model.toml, unless somebody else has written there; then show it."""
+        try:
+            self.history = ledger.written(self.file, self.history, new)
+        except (ThermoscopeError, OSError) as fault:
+            self._complain(str(fault))
+            return False
+        self._refused = None
+        if look is not None:
+            self._keep(look)
+        return True
+
+    async def _show(self, history: History) -> None:
+        """The model that `history` ends with, from memory where it was shown before."""
+        look = next((look for r, look in self._known if ledger.same(r, history.last)), None)
+        if look is None:
+            folder = at(self.bench.folder, history)
+            look = await self._calculate("Running the model", steps.seen, folder, self.bench.surface)
+        if look is not None:
+            with self.state:
+                self.state.error, self.history = "", history
+                self._keep(look)
+
+    def _keep(self, look: Look) -> None:
+        last = self.history.last
+        self._known = [*((r, x) for r, x in self._known if not ledger.same(r, last)), (last, look)][-REMEMBERED:]
+        self.shown.model(self.history, look)
+        self.diagnosis = saved_diagnosis(self.folder)
+        self.shown.found(self.diagnosis)
+
+    async def _calculate(self, title: str, work: Callable[..., Any], *arguments: Any) -> Any:
+        """The result of a process of its own; None when it failed, was stopped, or another one is running."""
+        if self.state.busy:
+            return None
+        self._job = Job(work, *arguments)
+        with self.state:
+            self.state.busy, self.state.error, self.state.outcome = True, "", None
+            self._tell(title, "starting")
+        try:
+            return await self._job.run(lambda message: self._tell(title, message))
+        except (FailedError, StoppedError) as fault:
+            self._complain(str(fault))
+            return None
+        finally:
+            self._job = None
+            with self.state:
+                self.state.busy = False
+
+    def _tell(self, title: str, message: str) -> None:
+        with self.state:
+            self.state.job = {"title": title, "message": message, "percent": share(message)}
+
+    def _complain(self, message: str) -> None:
+        with self.state:
+            self.state.error = message
+
+
+def share(message: str) -> float | None:
+    """'simulated null 12/40' -> 30.0; None where the message counts nothing."""
+    found = re.search(r"(\d+)/(\d+)", message)
+    return round(100.0 * int(found[1]) / int(found[2]), 1) if found and int(found[2]) else None
+
+
+_running: set[asyncio.Task] = set()
+
+
+def started(coroutine: Coroutine[Any, Any, None]) -> asyncio.Task:
+    """A task that outlives the click that began it."""
+    task = asyncio.get_running_loop().create_task(coroutine)
+    _running.add(task)
+    task.add_done_callback(_running.discard)
+    return task

@@ -1,0 +1,118 @@
+"""The machine of one tab: cut open, coloured by temperature, its thermocouples by what the model misses."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from viz import scene
+from viz.callouts import on_top
+from viz.colours import DARK, LIGHT, VERDICT, Theme
+from viz.cut import Surface
+from viz.data import Sensor
+from viz.field import UNIT, paint
+from viz.scene import Room, View
+
+if TYPE_CHECKING:
+    import pyvista
+
+SIZE = (860, 560)
+NEAR = 22.0  # pixels from a sensor within which a click means it
+STILL = 5.0  # pixels the mouse may move in a click
+
+
+class Stage:
+    """A plotter that is changed, never rebuilt; `on_pick` is called with the name of a sensor that was clicked."""
+
+    def __init__(self, surface: Surface, limits: tuple[float, float], on_pick: Callable[[str], None]) -> None:
+        self._surface, self._on_pick = surface, on_pick
+        self._sensors: tuple[Sensor, ...] = ()
+        self._pressed = np.zeros(2)
+        self.plotter: pyvista.Plotter = scene.plotter(LIGHT, SIZE, smooth=False)
+        self._data = paint(self.plotter, surface, np.zeros(surface.nodes.size), limits, LIGHT)
+        scene.colour_bar(self.plotter, UNIT, LIGHT)
+        self.reset()
+        interactor: Any = self.window.GetInteractor()
+        interactor.AddObserver("LeftButtonPressEvent", self._press)
+        interactor.AddObserver("LeftButtonReleaseEvent", self._release)
+
+    @property
+    def window(self) -> Any:
+        return self.plotter.render_window
+
+    def temperatures(self, T: NDArray[np.float32]) -> None:
+        """(n_points,) degC on the surface."""
+        self._data.point_data["T"] = T
+
+    def markers(self, sensors: Sequence[Sensor], chosen: str) -> None:
+        """Dots at the sensors, coloured by verdict; the chosen one is larger and named."""
+        self._sensors = tuple(sensors)
+        for sensor in self._sensors:
+            size = 24 if sensor.name == chosen else 15
+            self._dot(f"halo {sensor.name}", sensor, "white", size + 6, 2)
+            self._dot(f"dot {sensor.name}", sensor, VERDICT[sensor.verdict], size, 3)
+
+    def _dot(self, name: str, sensor: Sensor, colour: str, size: int, order: int) -> None:
+        points = np.array([sensor.xyz])
+        actor = self.plotter.add_points(
+            points, color=colour, point_size=size, render_points_as_spheres=True, lighting=False, name=name,
+            reset_camera=False, render=False,
+        )  # fmt: skip
+        on_top(actor, order)
+
+    def reset(self) -> None:
+        """The first view."""
+        scene.look(self.plotter, self._surface.points, View(), Room(right=0.12))
+
+    def turn(self, azimuth: float, elevation: float, zoom: float) -> None:
+        """Move the camera around the machine (degrees) and towards it (factor)."""
+        camera: Any = self.plotter.camera
+        camera.Azimuth(azimuth)
+        camera.Elevation(elevation)
+        camera.OrthogonalizeViewUp()
+        camera.Zoom(zoom)
+        self.plotter.renderer.ResetCameraClippingRange()
+
+    def paper(self, dark: bool) -> None:
+        """Light or dark ground."""
+        theme: Theme = DARK if dark else LIGHT
+        self.plotter.set_background(theme.paper)  # type: ignore[arg-type]
+        for bar in self.plotter.scalar_bars.values():
+            for text in (bar.GetTitleTextProperty(), bar.GetLabelTextProperty()):
+                text.SetColor(*_rgb(theme.ink))
+
+    def on_screen(self) -> Mapping[str, tuple[float, float]]:
+        """Sensor -> pixels from the lower left corner of the view."""
+        out = {}
+        for sensor in self._sensors:
+            renderer: Any = self.plotter.renderer
+            renderer.SetWorldPoint(*sensor.xyz, 1.0)
+            renderer.WorldToDisplay()
+            x, y, _ = renderer.GetDisplayPoint()
+            out[sensor.name] = (x, y)
+        return out
+
+    def at(self, x: float, y: float) -> str | None:
+        """The sensor whose dot lies there (pixels)."""
+        far = {name: float(np.hypot(u - x, v - y)) for name, (u, v) in self.on_screen().items()}
+        best = min(far, key=lambda name: far[name], default=None)
+        return best if best is not None and far[best] <= NEAR else None
+
+    def _press(self, interactor: Any, _event: str) -> None:
+        self._pressed = np.array(interactor.GetEventPosition(), float)
+
+    def _release(self, interactor: Any, _event: str) -> None:
+        now = np.array(interactor.GetEventPosition(), float)
+        found = self.at(*now) if np.linalg.norm(now - self._pressed) <= STILL else None
+        if found is not None:
+            self._on_pick(found)
+
+    def close(self) -> None:
+        self.plotter.close()
+
+
+def _rgb(colour: str) -> tuple[float, ...]:
+    return tuple(int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5))

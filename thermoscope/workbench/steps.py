@@ -1,0 +1,54 @@
+"""The long calculations, as a process of their own runs them: arguments in, results out, progress by `tell`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from thermoscope.folder import Folder
+from thermoscope.history import Revision
+from thermoscope.terminal import Progress
+from thermoscope.workbench.bench import at
+from thermoscope.workbench.look import Look, look
+
+if TYPE_CHECKING:
+    from viz.cut import Surface
+
+
+def seen(folder: Folder, surface: Surface | None, tell: Progress) -> Look:
+    """The model as it stands."""
+    tell("running the model on every test")
+    return look(folder, surface)
+
+
+def searched(folder: Folder, draws: int, tell: Progress) -> Mapping[str, Any]:
+    """A `diagnose` document."""
+    from thermoscope.pipeline import cache_folder
+    from validation.diagnose import diagnose
+
+    found = diagnose(folder.case, draws=draws, cache=cache_folder() / "null", progress=tell)
+    return {"case": folder.case.name, "revision": folder.case.model.revision, **found.document()}
+
+
+def stepped(
+    folder: Folder, surface: Surface | None, action: str, effect: str, tell: Progress
+) -> tuple[Revision, Mapping[str, Any], Look]:
+    """Add or remove an effect, or calibrate: the step as model.toml keeps it, its document, the model after it."""
+    from thermoscope.commands.revise import evidence, recorded
+    from validation import revise
+
+    if action == "calibrate":
+        result = revise.calibrate(folder.case, progress=tell)
+    else:
+        result = {"add": revise.add, "remove": revise.remove}[action](folder.case, effect, progress=tell)
+    revision = recorded(result, evidence(folder, result))
+    after = at(folder, folder.history.and_then(revision))
+    return revision, result.document(), seen(after, surface, tell)
+
+
+def reported(folder: Folder, tell: Progress) -> Path:
+    """Write out/report.html."""
+    from thermoscope.commands.show import write_page
+
+    return write_page(folder, str(folder.settings.path), folder.settings.out, tell)

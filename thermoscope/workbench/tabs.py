@@ -1,0 +1,124 @@
+"""One session per tab: made when a browser comes without one, ended when none has been connected for a while."""
+
+from __future__ import annotations
+
+import asyncio
+import secrets
+import time
+from pathlib import Path
+from typing import Any
+
+from aiohttp import WSMsgType, web
+
+from thermoscope.workbench.bench import Bench
+from thermoscope.workbench.gate import served
+from thermoscope.workbench.session import Session
+
+MOST = 8
+IDLE_S = 900.0
+
+
+class Tab:
+    """A session behind a trame server of its own, reached through this process's one port."""
+
+    def __init__(self, bench: Bench, name: str) -> None:
+        from trame.app import get_server
+
+        from thermoscope.workbench.page import draw
+        from thermoscope.workbench.stage import Stage
+
+        self.name, self.connected, self.left = name, 0, time.monotonic()
+        server: Any = get_server(name, client_type="vue3")
+        self.session = Session(bench, server)
+        if bench.surface is not None:
+            self.session.shown.stage = Stage(bench.surface, bench.first.limits, self._picked)
+        draw(self.session)
+        self._server, self._task = server, server.start(
+            backend="generic", exec_mode="task", show_connection_info=False, open_browser=False, timeout=0,
+            disable_logging=True,
+        )  # fmt: skip
+        self.session.open()
+        self.folders = {"": Path(server._www), **{k: Path(v) for k, v in server.serve.items()}}
+
+    def _picked(self, sensor: str) -> None:
+        with self.session.state:
+            self.session.shown.select(sensor)
+
+    async def talk(self, socket: web.WebSocketResponse) -> None:
+        """Carry messages between a browser and the session until it leaves."""
+        link = await self._server._server["ws"].connect()
+
+        async def to_browser(binary: bool, message: Any) -> None:
+            if not socket.closed:
+                await (socket.send_bytes(message) if binary else socket.send_str(message))
+
+        link.on_message(to_browser)
+        self.connected += 1
+        try:
+            async for message in socket:
+                if message.type in (WSMsgType.BINARY, WSMsgType.TEXT):
+                    await link.send(message.type == WSMsgType.BINARY, message)
+        finally:
+            self.connected -= 1
+            self.left = time.monotonic()
+            await self._server._server["ws"].disconnect(link)
+
+    async def close(self) -> None:
+        from trame_vtk.modules.vtk import HELPERS_PER_SERVER
+
+        self.session.close()
+        await self._server.stop()
+        await asyncio.gather(self._task, return_exceptions=True)
+        HELPERS_PER_SERVER.pop(self.name, None)
+
+
+class Tabs:
+    """All tabs of one server."""
+
+    def __init__(self, bench: Bench) -> None:
+        self.bench = bench
+        self.open: dict[str, Tab] = {}
+
+    async def new(self, request: web.Request) -> web.StreamResponse:
+        """A session of its own for a browser tab that comes without one."""
+        if len(self.open) >= MOST:
+            await self.sweep(0.0)
+        if len(self.open) >= MOST:
+            raise web.HTTPServiceUnavailable(text=f"{MOST} tabs are open; close one and try again in a minute")
+        name = secrets.token_hex(12)  # the browser side of trame writes addresses in small letters
+        self.open[name] = Tab(self.bench, name)
+        raise web.HTTPFound(f"/tab/{name}/index.html")
+
+    async def fetch(self, request: web.Request) -> web.StreamResponse:
+        """The page's own files, the socket, and the report; an unknown tab starts a new one."""
+        tab, name = self.open.get(request.match_info["tab"]), request.match_info["name"]
+        if tab is None:
+            raise web.HTTPFound("/") if name == "index.html" else web.HTTPNotFound()
+        if name == "ws":
+            socket = web.WebSocketResponse(max_msg_size=16 * 2**20, heartbeat=30, compress=False)
+            await socket.prepare(request)
+            await tab.talk(socket)
+            return socket
+        if name == "report.html":
+            path: Path | None = self.bench.folder.settings.out / "report.html"
+        else:
+            path = served(tab.folders, name)
+        if path is None or not path.is_file():
+            raise web.HTTPNotFound()
+        return web.FileResponse(path)
+
+    async def address(self, request: web.Request) -> web.Response:
+        """Where the page finds its session, which trame's browser side asks for first."""
+        scheme, tab = "wss" if request.secure else "ws", request.match_info["tab"]
+        return web.json_response({"sessionURL": f"{scheme}://{request.host}/tab/{tab}/ws", "secret": "wslink-secret"})
+
+    async def sweep(self, idle_s: float = IDLE_S) -> None:
+        """End the sessions that nobody has looked at for `idle_s` and that calculate nothing."""
+        now = time.monotonic()
+        for name, tab in list(self.open.items()):
+            if not tab.connected and not tab.session.state.busy and now - tab.left > idle_s:
+                await self.open.pop(name).close()
+
+    async def close(self) -> None:
+        for name in list(self.open):
+            await self.open.pop(name).close()

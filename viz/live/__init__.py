@@ -1,0 +1,23 @@
+"""The same figures to move about in: plotly, for the workbench, notebooks and pages that may be 5 MB.
+
+Each function returns a plotly figure; viz.live.style.saved writes it as HTML, or as PNG or SVG where a Chromium is
+installed. The drawings on paper (viz.curves, viz.errors, viz.candidates, viz.sankey) need no browser.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any
+
+_HOME = {
+    "sensor": "curves", "residuals": "curves", "against_input": "curves", "parity": "curves",
+    "staircase": "errors", "half_normal": "candidates", "confusion": "candidates", "pareto": "candidates",
+    "sensitivity": "sensitivity", "sankey": "heat", "saved": "style",
+}  # fmt: skip
+__all__ = sorted(_HOME)
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module 'viz.live' has no attribute '{name}'; known: {', '.join(__all__)}")
+    return getattr(import_module(f"viz.live.{_HOME[name]}"), name)

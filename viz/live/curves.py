@@ -1,0 +1,104 @@
+"""Measured against modelled: one sensor, all residuals, residuals against an input, and the parity plot."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from geom.errors import InputError
+from viz.colours import BLUE, LIGHT, ORANGE, Theme
+from viz.curves import wrongness
+from viz.data import Comparison, short
+from viz.live.style import faded, figure, plain
+
+if TYPE_CHECKING:
+    import plotly.graph_objects as go
+
+    from validation.case import Channel
+
+
+def channel_of(comparison: Comparison, name: str) -> Channel:
+    """The channel of that name; an InputError lists the others."""
+    found = next((c for c in comparison.channels if c.name == name), None)
+    if found is None:
+        right = ", ".join(c.name for c in comparison.channels)
+        raise InputError(f"no channel '{name}'", f"test '{comparison.test.name}'", f"known: {right}")
+    return found
+
+
+def sensor(comparison: Comparison, channel: str, *, theme: Theme = LIGHT) -> go.Figure:
+    """Readings with their 2-sigma band, the model, the earlier model; below them measured - modelled (K)."""
+    c = channel_of(comparison, channel)
+    (t, unit), thin = comparison.clock, comparison.thin
+    x, y, band = plain(t[thin]), np.asarray(c.y, float)[thin], 2 * c.sigma_K
+    out = figure(
+        theme, (0.66, 0.34), title={"text": f"{short(c.name)} ({c.place})", "x": 0.02, "y": 0.98, "font": {"size": 14}}
+    )
+    shade = {"fill": "tonexty", "fillcolor": faded(theme.faint, 0.4), "line": {"width": 0}, "hoverinfo": "skip"}
+    for values, filled in ((y - band, {"line": {"width": 0}, "hoverinfo": "skip"}), (y + band, shade)):
+        out.add_scatter(x=x, y=plain(values), mode="lines", showlegend=False, row=1, col=1, **filled)
+    _line(out, x, y, "measured ± 2σ", theme.ink, 1)
+    if comparison.before is not None:
+        _line(out, x, comparison.before[c.name][thin], "earlier model", ORANGE, 1, "dash")
+    _line(out, x, comparison.model[c.name][thin], "model", BLUE, 1)
+    out.add_hrect(-band, band, fillcolor=faded(theme.faint, 0.3), line_width=0, row=2, col=1)
+    if comparison.before is not None:
+        earlier = np.asarray(c.y, float) - comparison.before[c.name]
+        _line(out, x, earlier[thin], "earlier residual", ORANGE, 2, "dash")
+    _line(out, x, comparison.residual(c)[thin], "residual", BLUE, 2)
+    out.update_yaxes(title="°C", row=1, col=1)
+    out.update_yaxes(title="measured − model (K)", row=2, col=1)
+    out.update_xaxes(title=f"time ({unit})", row=2, col=1)
+    return out
+
+
+def residuals(comparison: Comparison, *, theme: Theme = LIGHT) -> go.Figure:
+    """Measured - modelled of every sensor over time (K); those beyond their 2-sigma band are coloured."""
+    (t, unit), thin = comparison.clock, comparison.thin
+    out = figure(theme, title={"text": f"{comparison.test.name}: what the model misses", "x": 0.02})
+    for c in comparison.channels:
+        r = comparison.residual(c)
+        colour = wrongness(r, 2 * c.sigma_K)
+        _line(out, plain(t[thin]), r[thin], short(c.name), theme.faint if colour == LIGHT.faint else colour, 1)
+    out.update_xaxes(title=f"time ({unit})")
+    out.update_yaxes(title="measured − model (K)", zeroline=True, zerolinecolor=theme.ink)
+    return out
+
+
+def against_input(comparison: Comparison, channel: str, name: str, *, theme: Theme = LIGHT) -> go.Figure:
+    """The residual of one sensor (K) against an input or boundary of the test: a trend names what is missing."""
+    c, known = channel_of(comparison, channel), {**comparison.test.inputs, **comparison.test.boundaries}
+    if name not in known:
+        raise InputError(f"no input '{name}'", f"test '{comparison.test.name}'", f"known: {', '.join(known)}")
+    (t, unit), thin = comparison.clock, comparison.thin
+    x = np.broadcast_to(np.asarray(known[name], float), t.shape)[thin]
+    out = figure(theme, title={"text": f"{short(c.name)}: residual against {name}", "x": 0.02})
+    dots = {"color": plain(t[thin]), "colorscale": "Viridis", "size": 5, "colorbar": {"title": f"time ({unit})"}}
+    out.add_scatter(x=plain(x), y=plain(comparison.residual(c)[thin]), mode="markers", marker=dots, showlegend=False)
+    out.update_xaxes(title=name)
+    out.update_yaxes(title="measured − model (K)", zeroline=True, zerolinecolor=theme.ink)
+    return out
+
+
+def parity(comparison: Comparison, *, theme: Theme = LIGHT) -> go.Figure:
+    """Modelled against measured (degC), a colour per sensor; a right model lies on the line."""
+    out, thin = figure(theme, title={"text": f"{comparison.test.name}: modelled against measured", "x": 0.02}), 4
+    low, high = np.inf, -np.inf
+    for c in comparison.channels:
+        y, model = np.asarray(c.y, float), np.asarray(comparison.model[c.name], float)
+        pair = np.concatenate([y[np.isfinite(y)], model])
+        low, high = min(low, float(pair.min())), max(high, float(pair.max()))
+        out.add_scatter(x=plain(y[::thin]), y=plain(model[::thin]), mode="markers", name=short(c.name), marker_size=4)
+    out.add_scatter(x=[low, high], y=[low, high], mode="lines", showlegend=False, line={"color": theme.ink, "width": 1})
+    out.update_xaxes(title="measured (°C)")
+    out.update_yaxes(title="modelled (°C)", scaleanchor="x")
+    return out
+
+
+def _line(out: go.Figure, x: list, y: np.ndarray, name: str, colour: str, row: int, dash: str = "solid") -> None:
+    style = {"color": colour, "width": 2.0 if row == 1 else 1.6, "dash": dash}
+    out.add_scatter(
+        x=x, y=plain(y), mode="lines", name=name, line=style, showlegend=row == 1, row=row, col=1,
+        hovertemplate="%{y:.2f}",
+    )  # fmt: skip
