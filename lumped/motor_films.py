@@ -2,109 +2,79 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 
-from lumped.correlations.air_gap import taylor_film
-from lumped.correlations.ducts import duct_film
-from lumped.correlations.end_space import end_space
-from lumped.correlations.natural import churchill_chu_cylinder, churchill_chu_plate
-from lumped.laws import Array, Fixed, Inputs, Law, Radiation, Table
-from lumped.motor_settings import Films
+from lumped.laws import Inputs, Law, Radiation, Table
+from lumped.motor_air import Duct, channel_film, duct_of, gap_film, stirred
+from lumped.motor_coolant import Cooling, cooling_of, jacket_film
+from lumped.motor_outer import outer_films
+from lumped.motor_settings import Fan, Films, read_fan, read_films
+from lumped.motor_shapes import Gap, gap_of, turning
 
-ROTATING = ("winding.armature", "rotor", "shaft", "commutator", "slot")
-STILL_AIR_K = tuple(np.concatenate([[0.0, 0.5], np.geomspace(1.0, 200.0, 30)]))
-
-
-@dataclass(frozen=True)
-class Sizes:
-    """The lengths the correlations ask for (m, m2).
-
-    housing_diameter; fin_area_ratio: finned area over its envelope (1 without fins); tip_radius: of the rotor;
-    air_gap; channel_area, channel_perimeter, channel_length: the space between the poles along the axis
-    """
-
-    housing_diameter: float
-    fin_area_ratio: float
-    tip_radius: float
-    air_gap: float
-    channel_area: float
-    channel_perimeter: float
-    channel_length: float
+TOP_RPM = 3000.0  # films of speed are tabulated at least this far
 
 
 @dataclass(frozen=True)
-class OfSpeed(Law):
-    """A film coefficient (W/m2/K) tabulated over |speed_rpm|."""
+class Surroundings:
+    """What the films of one machine depend on. contacts : names "a|b", which tell what turns."""
 
-    speed_rpm: tuple[float, ...]
-    h: tuple[float, ...]
-    reads = ("speed_rpm",)
+    machine: Any
+    contacts: tuple[str, ...]
 
-    def factor(self, inputs: Inputs) -> Array:
-        return np.interp(np.abs(np.asarray(inputs["speed_rpm"], float)), self.speed_rpm, self.h)
+    @cached_property
+    def films(self) -> Films:
+        return read_films(self.machine)
+
+    @cached_property
+    def fan(self) -> Fan | None:
+        return read_fan(self.machine)
+
+    @cached_property
+    def gap(self) -> Gap | None:
+        return gap_of(self.machine)
+
+    @cached_property
+    def duct(self) -> Duct | None:
+        return duct_of(self.machine)
+
+    @cached_property
+    def cooling(self) -> Cooling | None:
+        return cooling_of(self.machine)
+
+    @cached_property
+    def turning(self) -> frozenset[str]:
+        return turning(self.contacts)
+
+    @cached_property
+    def top_rpm(self) -> float:
+        return max(TOP_RPM, 2.0 * float(self.machine.sections.get("ratings", {}).get("speed_rpm", 0.0)))
 
 
-@dataclass(frozen=True)
-class OfFlow(Law):
-    """A film coefficient (W/m2/K) tabulated over the fan's air flow (m3/h)."""
-
-    flow_m3h: tuple[float, ...]
-    h: tuple[float, ...]
-    reads = ("fan_flow_m3h",)
-
-    def factor(self, inputs: Inputs) -> Array:
-        return np.interp(np.asarray(inputs["fan_flow_m3h"], float), self.flow_m3h, self.h)
+def surroundings(machine: Any, contacts: Iterable[str]) -> Surroundings:
+    return Surroundings(machine, tuple(contacts))
 
 
-def face_films(part: str, fluid: str, films: Films, sizes: Sizes) -> dict[str, Law]:
-    """Mechanism -> law for one face; mechanisms act in parallel. Faces of unknown fluids get none."""
+def face_films(part: str, fluid: str, around: Surroundings) -> dict[str, Law]:
+    """Mechanism -> law for one face; mechanisms act in parallel."""
+    films, gap = around.films, around.gap
     if fluid == "ambient":
-        return _outer(part, films, sizes)
-    if fluid in ("air.left", "air.right"):
-        moving = part.startswith(ROTATING)
-        return {"": _stirred(films.moving_wall_share if moving else films.still_wall_share, films, sizes)}
+        return outer_films(around.machine, part, films)
+    if around.cooling is not None and fluid in around.cooling.feeds:
+        return {"": jacket_film(around.machine, fluid, around.cooling)}
+    if gap is None:
+        return {}
     if fluid == "airgap":
-        return {"": _gap(sizes)}
-    if fluid == "air.interpolar":
-        return {"axial": _channel(sizes), "stirred": _stirred(films.channel_wall_share, films, sizes)}
-    return {}
-
-
-def _outer(part: str, films: Films, sizes: Sizes) -> dict[str, Law]:
-    """Still air and radiation; between fins the air is half as good and only the envelope radiates."""
-    finned = part == "housing" and sizes.fin_area_ratio > 1.0
-    correlation = churchill_chu_cylinder if part == "housing" else churchill_chu_plate
-    h = [0.0, *(correlation(sizes.housing_diameter, 20.0 + d, 20.0)[0] for d in STILL_AIR_K[1:])]
-    crowding = 0.8 if finned else 1.0
-    seen = 1.0 / sizes.fin_area_ratio if finned else 1.0
-    return {
-        "natural": Fixed(crowding, Table(STILL_AIR_K, tuple(h))),
-        "radiation": Fixed(films.emissivity * seen, Radiation()),
-    }
-
-
-def _stirred(share: float, films: Films, sizes: Sizes) -> Law:
-    """Walls of air that the rotor stirs; `share` of its tip speed passes the wall."""
-    speed = np.linspace(0.0, 3000.0, 121)
-    tip = speed * 2 * np.pi / 60 * sizes.tip_radius * share
-    h = end_space(tip, films.end_space_k1_W_m2K, films.end_space_k2, films.end_space_k3)[0]
-    return OfSpeed(tuple(speed), tuple(np.asarray(h)))
-
-
-def _gap(sizes: Sizes) -> Law:
-    speed = np.linspace(0.0, 3000.0, 121)
-    h = [taylor_film(n * 2 * np.pi / 60, sizes.tip_radius, sizes.air_gap)[0] for n in speed]
-    return OfSpeed(tuple(speed), tuple(h))
-
-
-def _channel(sizes: Sizes) -> Law:
-    flow = np.linspace(0.0, 600.0, 61)
-    diameter = 4 * sizes.channel_area / sizes.channel_perimeter
-    h = [duct_film(q / 3600 / sizes.channel_area, diameter, sizes.channel_length)[0] for q in flow]
-    return OfFlow(tuple(flow), tuple(h))
+        return {"": gap_film(gap, around.top_rpm)}
+    if around.duct is not None and fluid == "air.interpolar":
+        axial = {} if around.fan is None else {"axial": channel_film(around.duct)}
+        return {**axial, "stirred": stirred(films.channel_wall_share, films, gap, around.top_rpm)}
+    share = films.moving_wall_share if part in around.turning else films.still_wall_share
+    return {"": stirred(share, films, gap, around.top_rpm)}
 
 
 def nominal(laws: Mapping[str, Law], inputs: Inputs, difference: float = 30.0) -> float:

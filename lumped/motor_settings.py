@@ -8,6 +8,7 @@ from dataclasses import dataclass, fields
 from typing import Any, TypeVar
 
 from geom.errors import InputError
+from lumped.reader import known
 
 K_AIR = 0.026  # W/m/K, still air in a contact gap near 30 degC
 
@@ -41,13 +42,14 @@ class Losses:
 
 @dataclass(frozen=True)
 class Films:
-    """Surfaces and films: emissivity (1), the end-space set k1 (1 + k2 v^k3), v a share of the rotor's tip speed.
+    """Surfaces and films: emissivity (1) of all outer faces, None: each by its material; the end-space set
+    k1 (1 + k2 v^k3), v a share of the rotor's tip speed.
 
     Sets and shares: Schubert's, as collected by Staton, Boglietti and Cavagnino 2005; the channel between the poles
     is taken as half as well stirred as an end shield.
     """
 
-    emissivity: float = 0.9
+    emissivity: float | None = None
     end_space_k1_W_m2K: float = 15.0
     end_space_k2: float = 0.4
     end_space_k3: float = 0.9
@@ -65,14 +67,23 @@ class Fan:
     air_C: float = 40.0
 
 
+def read_fan(machine: Any) -> Fan | None:
+    """The through-flow of [fans], if the machine is open to it."""
+    table = {key: value for key, value in machine.sections.get("fans", {}).items() if key != "cowl"}
+    return read(Fan, table, f"{machine.name} [fans]") if table else None
+
+
+def read_films(machine: Any) -> Films:
+    table = {key: value for key, value in machine.sections.get("films", {}).items() if key != "outer"}
+    return read(Films, table, f"{machine.name} [films]")
+
+
 def read(kind: type[S], table: Mapping[str, Any], where: str) -> S:
     """A settings object from a table of the machine file; unknown keys and values that are no numbers are refused."""
-    known = [f.name for f in fields(kind)]  # type: ignore[arg-type]
+    names = [f.name for f in fields(kind)]  # type: ignore[arg-type]
     for key, value in table.items():
-        if key not in known:
-            near = difflib.get_close_matches(key, known, n=1)
-            hint = f"did you mean '{near[0]}'? " if near else ""
-            raise InputError(f"unknown key '{key}'", where, f"{hint}known: {', '.join(known)}")
+        if key not in names:
+            raise InputError(f"unknown key '{key}'", where, known(key, names))
         if isinstance(value, bool) or not isinstance(value, int | float) or value < 0:
             raise InputError(f"{key} = {value!r} is not possible", where, "a number that is not negative")
     return kind(**{key: float(value) for key, value in table.items()})

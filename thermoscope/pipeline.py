@@ -14,13 +14,12 @@ from fem.material import Conductivity, LoopWound
 from geom import Machine, NamedMesh, build_mesh
 from geom.materials import Material
 from geom.shapes import evenly
-from lumped.motor import FLUIDS, motor_network, nominal_coefficients
+from lumped.motor import boundaries, fluids, motor_network, nominal_coefficients
 from lumped.network import Network
 from lumped.reduction import Recipe, condense
 
 Progress = Callable[[str], None]
 SMALL = Recipe(tolerance=0.03, max_states=130)
-AIR_IN_SPACE = 60.0  # J/K, a few tens of litres of air with a part of its walls' skin
 
 
 def silent(message: str) -> None:
@@ -77,9 +76,7 @@ def build(
         machine, {n: (p.part, p.fluid) for n, p in mesh.patches.items()}, mesh.contacts
     )
     progress("network from the field")
-    condensed = condense(
-        field, films, contacts, dict.fromkeys(FLUIDS, AIR_IN_SPACE), recipe=recipe, name=machine.name, cache=cache
-    )
+    condensed = condense(field, films, contacts, fluids(machine), boundaries(machine), recipe, machine.name, cache)
     return Built(machine, mesh, field, motor_network(machine, condensed))
 
 
