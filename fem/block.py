@@ -142,4 +142,4 @@ def _tensors(xyz: Floats, tets: Ints, conductivity: HasTensor):  # type: ignore[
     """(slice, tensors at the centres) of some tetrahedra at a time, so that memory stays small."""
     for first in range(0, len(tets), CHUNK):
         some = slice(first, first + CHUNK)
-        yield some, conductivity.tensor(xyz[tets[some]].mean(1))
+        yield some, np.ascontiguousarray(conductivity.tensor(xyz[tets[some]].mean(1)))

@@ -26,8 +26,10 @@ class Conductivity:
 
     def tensor(self, x: Floats) -> Floats:
         """(n, 3, 3) tensor in x, y, z (W/m/K) at points x (n, 3)."""
-        theta = np.arctan2(x[:, 1], x[:, 0])
-        c, s = np.cos(theta), np.sin(theta)
+        if self.k_r == self.k_theta:
+            return np.broadcast_to(np.diag([self.k_r, self.k_r, self.k_z]), (len(x), 3, 3))
+        r = np.maximum(np.hypot(x[:, 0], x[:, 1]), 1e-300)
+        c, s = x[:, 0] / r, x[:, 1] / r
         k = np.zeros((len(x), 3, 3))
         k[:, 0, 0] = self.k_r * c * c + self.k_theta * s * s
         k[:, 1, 1] = self.k_r * s * s + self.k_theta * c * c
