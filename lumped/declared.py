@@ -14,8 +14,10 @@ from geom.errors import InputError
 from lumped.build import bare_network, node_link, node_source, stream, surface_place
 from lumped.circuit import Circuit
 from lumped.declared_circuit import read_circuits
-from lumped.declared_laws import flow_law, loss_laws, mechanisms
+from lumped.declared_laws import flow_law, loss_kinds, loss_laws, mechanisms, taken_off
 from lumped.declared_parameters import read_parameters
+from lumped.laws import Law
+from lumped.losses import Negative
 from lumped.network import Link, Network, Place, Source
 from lumped.reader import Table, known
 
@@ -143,17 +145,30 @@ def _streams(network: Network, top: Table) -> list[Link]:
 
 def _sources(network: Network, top: Table) -> list[Source]:
     tables = top.tables("losses")
-    laws = loss_laws(tables)
-    out = []
-    for name, table in tables.items():
-        shares = {_end(network, table, node): share for node, share in table.shares("at").items()}
-        if abs(sum(shares.values()) - 1.0) > 1e-9:
-            raise table.error(f"shares of 'at' sum to {sum(shares.values()):g}", "shares that sum to 1")
-        probe = _end(network, table, table.word("temperature_of", max(shares, key=lambda node: shares[node])))
-        out.append(node_source(network, f"loss:{name}", table.word("kind"), shares, laws[name], probe))
+    kinds, laws = loss_kinds(tables), loss_laws(tables)
+    out = {name: _source(network, name, table, laws[name]) for name, table in tables.items()}
+    taken = [
+        _taken_off(out[name], out[other])
+        for name, kind in kinds.items() if kind == "measured" for other in taken_off(tables[name], kinds)
+    ]  # fmt: skip
+    for table in tables.values():
         table.raw("prior_sd")
         table.close()
-    return out
+    return [*out.values(), *taken]
+
+
+def _source(network: Network, name: str, table: Table, law: Law) -> Source:
+    shares = {_end(network, table, node): share for node, share in table.shares("at").items()}
+    if abs(sum(shares.values()) - 1.0) > 1e-9:
+        raise table.error(f"shares of 'at' sum to {sum(shares.values()):g}", "shares that sum to 1")
+    probe = _end(network, table, table.word("temperature_of", max(shares, key=lambda node: shares[node])))
+    return node_source(network, f"loss:{name}", table.word("kind"), shares, law, probe)
+
+
+def _taken_off(measured: Source, other: Source) -> Source:
+    """What the model injects elsewhere leaves the measured total, at its own temperature, watt for watt."""
+    name = f"{measured.name}:less:{other.name.removeprefix('loss:')}"
+    return replace(measured, name=name, law=Negative(other.law), probe=other.probe)
 
 
 def _checked(network: Network, where: str) -> Network:

@@ -8,7 +8,7 @@ from itertools import pairwise
 
 from lumped.laws import CONSTANT, Fixed, InputPower, Law, Linear, Power, Radiation, TemperatureLaw
 from lumped.laws import Table as TableLaw
-from lumped.losses import ALPHA_CU, BrushLoss, CopperLoss, IronLoss, MeasuredLoss, PowerLoss
+from lumped.losses import ALPHA_CU, BrushLoss, CopperLoss, IronLoss, MapLoss, MeasuredLoss, PowerLoss, RippleLoss
 from lumped.reader import Table
 
 SURFACES = ("horizontal cylinder", "vertical plate", "plate facing up", "plate facing down")
@@ -132,7 +132,7 @@ def flow_law(table: Table) -> Law:
     )
 
 
-def _copper(table: Table, laws: Mapping[str, Law]) -> Law:
+def _copper(table: Table) -> Law:
     given = [key for key in ("R20_ohm", "R_ohm") if key in table]
     if len(given) != 1:
         raise table.error("resistance is not given once", "R20_ohm, or R_ohm with reference_degC")
@@ -157,16 +157,17 @@ def _temperature(table: Table) -> TemperatureLaw:
     return Linear(table.number("alpha_1_K", low=-1.0), table.number("reference_degC", low=-273.15))
 
 
-def _iron(table: Table, laws: Mapping[str, Law]) -> Law:
+def _iron(table: Table) -> Law:
     excitation = table.word("excitation", "") or None
     return IronLoss(
         table.number("hysteresis_W", 0.0), table.number("eddy_W", 0.0), table.word("speed", "speed_rpm"),
         table.number("speed_at", low=1e-12), excitation, table.number("excitation_at", 1.0, low=1e-12),
-        table.number("flux_exponent", 2.0), _temperature(table),
+        table.number("flux_exponent", 2.0), _temperature(table), table.number("excess_W", 0.0),
+        table.number("frequency_exponent", 1.0),
     )  # fmt: skip
 
 
-def _terms(table: Table, laws: Mapping[str, Law]) -> Law:
+def _terms(table: Table) -> Law:
     if "P_W" in table:
         return PowerLoss(((table.number("P_W"), _powers(table)),), _temperature(table))
     terms = tuple((item.number("P_W"), _powers(item)) for item in table.listed("terms"))
@@ -177,20 +178,46 @@ def _terms(table: Table, laws: Mapping[str, Law]) -> Law:
     return PowerLoss(terms, _temperature(table))
 
 
-def _brush(table: Table, laws: Mapping[str, Law]) -> Law:
+def _brush(table: Table) -> Law:
     friction = table.number("friction_W", 0.0)
     speed = table.word("speed", "speed_rpm") if friction else None
     at = table.number("speed_at", low=1e-12) if friction else 1.0
     return BrushLoss(table.number("drop_V"), table.word("current", "current_A"), friction, speed, at)
 
 
-def _measured(table: Table, laws: Mapping[str, Law]) -> Law:
+def _measured(table: Table) -> Law:
+    table.words("less", [])
+    return MeasuredLoss(_products(table, "electrical", 1.0) + _products(table, "mechanical", -1.0))
+
+
+def taken_off(table: Table, kinds: Mapping[str, str]) -> tuple[str, ...]:
+    """The losses that a measured one leaves to the model."""
     less = table.words("less", [])
-    unknown = [name for name in less if name not in laws]
-    if unknown:
-        raise table.error(f"less = '{unknown[0]}' is no loss", f"a loss that is not measured: {', '.join(laws)}")
-    powers = _products(table, "electrical", 1.0) + _products(table, "mechanical", -1.0)
-    return MeasuredLoss(powers, tuple(laws[name] for name in less))
+    others = [name for name, kind in kinds.items() if kind != "measured"]
+    for name in less:
+        if name not in others:
+            raise table.error(f"less = '{name}' is no loss", f"a loss that is not measured: {', '.join(others)}")
+    return less
+
+
+def _ripple(table: Table) -> Law:
+    return RippleLoss(
+        table.number("supply_V", low=1e-9), table.word("voltage", "voltage_V"), table.number("L_H", low=1e-12),
+        table.number("switching_Hz", low=1e-9), table.number("R20_ohm"), table.number("factor", 1.0),
+        table.number("alpha_1_K", ALPHA_CU),
+    )  # fmt: skip
+
+
+def _map(table: Table) -> Law:
+    speed, torque = table.numbers("at_speed"), table.numbers("at_torque")
+    watts = tuple(tuple(float(p) for p in row) for row in table.raw("P_W", []))
+    rising = all(b > a for at in (speed, torque) for a, b in pairwise(at))
+    if not rising or min(len(speed), len(torque)) < 2 or {len(row) for row in watts} != {len(torque)}:
+        raise table.error("the map is not a grid", "at_speed and at_torque rising, P_W = [[per torque], per speed]")
+    if len(watts) != len(speed):
+        raise table.error(f"P_W has {len(watts)} rows", f"one per speed: {len(speed)}")
+    return MapLoss(speed, torque, watts, table.word("speed", "speed_rpm"), table.word("torque", "torque_Nm"),
+                   _temperature(table))  # fmt: skip
 
 
 def _products(table: Table, key: str, sign: float) -> tuple[tuple[float, tuple[str, ...]], ...]:
@@ -203,15 +230,17 @@ def _products(table: Table, key: str, sign: float) -> tuple[tuple[float, tuple[s
     return tuple(out)
 
 
-LOSSES = {"copper": _copper, "iron": _iron, "brush": _brush, "measured": _measured}
+LOSSES = {
+    "copper": _copper, "iron": _iron, "brush": _brush, "ripple": _ripple, "map": _map, "measured": _measured,
+}  # fmt: skip
 PLAIN = ("friction", "windage", "stray", "magnet", "switching", "bearing", "constant")
 
 
+def loss_kinds(tables: Mapping[str, Table]) -> dict[str, str]:
+    """Name -> kind."""
+    return {name: table.word("kind", None, (*LOSSES, *PLAIN)) for name, table in tables.items()}
+
+
 def loss_laws(tables: Mapping[str, Table]) -> dict[str, Law]:
-    """Name -> law; measured losses last, because they may subtract the others."""
-    kinds = {name: table.word("kind", None, (*LOSSES, *PLAIN)) for name, table in tables.items()}
-    laws: dict[str, Law] = {}
-    for name in sorted(tables, key=lambda name: kinds[name] == "measured"):
-        others = {k: v for k, v in laws.items() if not isinstance(v, MeasuredLoss)}
-        laws[name] = LOSSES.get(kinds[name], _terms)(tables[name], others)
-    return laws
+    """Name -> law."""
+    return {name: LOSSES.get(kind, _terms)(tables[name]) for name, kind in loss_kinds(tables).items()}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 from lumped.network import Link, Network, Parameter, Source
 from lumped.reader import Table
@@ -17,7 +18,14 @@ MAPPINGS = {
 
 def read_parameters(network: Network, top: Table, nodes: Mapping[str, Table]) -> tuple[Parameter, ...]:
     """All parameters of a file."""
-    return (*_inline(network, top, nodes), *_of_circuits(network, top), *_parameters(top))
+    declared = (*_inline(network, top, nodes), *_of_circuits(network, top), *_parameters(top))
+    return tuple(replace(p, targets=(*p.targets, *_companions(network, p))) for p in declared)
+
+
+def _companions(network: Network, parameter: Parameter) -> list[tuple[str, float]]:
+    """What a measured total leaves out grows with what the model injects instead."""
+    pairs = [(s.name, s.name.partition(":less:")[2]) for s in network.sources if ":less:" in s.name]
+    return [(own, e) for own, of in pairs for target, e in parameter.targets if target == f"loss:{of}"]
 
 
 def _inline(network: Network, top: Table, nodes: Mapping[str, Table]) -> list[Parameter]:
@@ -32,7 +40,8 @@ def _inline(network: Network, top: Table, nodes: Mapping[str, Table]) -> list[Pa
         for name, table in top.tables(section).items():
             if "prior_sd" in table:
                 own = f"{target}{name}"
-                acts = tuple((i.name, 1.0) for i in items if i.name == own or i.name.startswith(f"{own}:"))
+                mine = [i.name for i in items if i.name == own or i.name.startswith(f"{own}:")]
+                acts = tuple((n, 1.0) for n in mine if ":less:" not in n)
                 out.append(Parameter(f"{prefix}.{name}", acts, prior_sd=table.number("prior_sd", low=1e-6)))
     for name, table in nodes.items():
         if "prior_sd" in table:

@@ -129,30 +129,34 @@ def drive_cycle(
     wanted_mps: Array,
     slope: Array,
     step: float = 5e-3,
+    resistance: Array | None = None,
 ) -> Cycle:
     """Drive a speed profile: time (nt,) s, wanted_mps and slope (nt,) linear between the times; starts at rest.
 
+    resistance: (nt,) ohm where it changes with temperature, else the machine's R
     step: of the inner integration (s); current by its exact exponential over the step, speed by the midpoint.
     """
     out = np.zeros((len(time), 5))
     wheel = vehicle.wheel_radius / vehicle.gear
     load0, load2 = vehicle.load_torque(0.0, np.asarray(slope, float)), float(vehicle.load_torque(1.0, 0.0))
     drag = load2 - float(vehicle.load_torque(0.0, 0.0))
-    plant = np.array([machine.L_af, machine.R, machine.L, machine.J + vehicle.inertia(), machine.B, wheel, drag])
+    plant = np.array([machine.L_af, machine.L, machine.J + vehicle.inertia(), machine.B, wheel, drag])
     control = np.array([getattr(controller, f) for f in controller.__dataclass_fields__])
-    _march(np.asarray(time, float), np.asarray(wanted_mps, float), np.asarray(load0, float), plant, control, step, out)
+    R = np.full(len(time), machine.R) if resistance is None else resistance
+    given = (np.ascontiguousarray(x, float) for x in (time, wanted_mps, load0, R))
+    _march(*given, plant, control, step, out)
     return Cycle(time, out[:, 0], out[:, 1] / RPM, out[:, 2], out[:, 3], out[:, 4])
 
 
 @entry
-def _march(time, wanted, load, plant, control, step, out):
-    L_af, R, L, J, B, wheel, drag = plant
+def _march(time, wanted, load, resistance, plant, control, step, out):
+    L_af, L, J, B, wheel, drag = plant
     Kp, Ki, i_max, v_max, lag = control
     i, w, integral = 0.0, 0.0, 0.0
     for t in range(1, time.size):
         span = time[t] - time[t - 1]
         count = max(1, int(np.ceil(span / step)))
-        h, square, V = span / count, 0.0, 0.0
+        h, square, V, R = span / count, 0.0, 0.0, 0.5 * (resistance[t - 1] + resistance[t])
         for s in range(count):
             share = (s + 0.5) / count
             target = (wanted[t - 1] + share * (wanted[t] - wanted[t - 1])) / wheel

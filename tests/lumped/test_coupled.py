@@ -1,0 +1,118 @@
+"""The permanent-magnet machine against closed forms, and drives coupled to their temperatures."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from small_networks import two_masses
+
+from geom.errors import ThermoscopeError
+from lumped.build import bare_network, node_link, node_source
+from lumped.coupled import coupled, pm_drive, series_drive
+from lumped.drive import Controller, SeriesMachine, Vehicle
+from lumped.laws import Fixed, InputPower, Linear
+from lumped.losses import CopperLoss
+from lumped.permanent_magnet import PMMachine
+from lumped.simulate import Record
+from lumped.steady import steady
+
+MOTOR = PMMachine(4, 4.67e-3, 0.1e-3, 0.25e-3, 0.07, current_limit=400.0, voltage_limit=200.0)
+
+
+def test_least_current_is_least_along_the_torque_curve():
+    """Any other i_d that gives the torque needs more current."""
+    i_d, i_q = MOTOR.currents(100.0, 1000.0)
+    assert MOTOR.torque(i_d, i_q) == pytest.approx(100.0, rel=1e-9)
+    for other in (i_d - 5.0, i_d + 5.0):
+        q = 100.0 / MOTOR.torque(other, 1.0)
+        assert np.hypot(other, q) > np.hypot(i_d, i_q)
+
+
+def test_without_saliency_the_current_is_torque_over_flux():
+    round_rotor = PMMachine(4, 4.67e-3, 0.2e-3, 0.2e-3, 0.07, 400.0, 200.0)
+    i_d, i_q = round_rotor.currents(np.array([-80.0, 0.0, 80.0]), 1000.0)
+    assert_allclose(i_d, 0.0, atol=1e-9)
+    assert_allclose(i_q, np.array([-80.0, 0.0, 80.0]) / (6 * 0.07), atol=1e-6)
+
+
+def test_beyond_base_speed_the_field_is_weakened_at_the_same_torque():
+    i_d, i_q = MOTOR.currents(40.0, 9000.0)
+    assert MOTOR.torque(i_d, i_q) == pytest.approx(40.0, rel=1e-6)
+    assert MOTOR.voltage(i_d, i_q, 9000.0) == pytest.approx(200.0, rel=1e-6)
+    assert i_d < MOTOR.currents(40.0, 1000.0)[0]
+
+
+def test_limits_are_kept_everywhere_on_the_map():
+    torque, speed = np.meshgrid(np.linspace(0, 400, 41), np.linspace(0, 12000, 41))
+    i_d, i_q = MOTOR.currents(torque, speed)
+    assert np.hypot(i_d, i_q).max() <= 400.0 * (1 + 1e-9)
+    assert MOTOR.voltage(i_d, i_q, speed).max() <= 200.0 * (1 + 1e-6)
+    assert np.all(MOTOR.torque(i_d, i_q) <= torque + 1e-6)
+
+
+def test_warm_magnets_need_more_current():
+    assert MOTOR.flux(120.0) == pytest.approx(0.07 * (1 - 0.11))
+    cold, hot = (np.hypot(*MOTOR.currents(100.0, 1000.0, 20.0, T)) for T in (20.0, 120.0))
+    assert hot > 1.04 * cold
+
+
+def pm_network():
+    net = bare_network("pm", {"winding": 3700.0, "stator": 5600.0, "magnet": 5300.0}, ("ambient",))
+    links = [
+        node_link(net, "ws", "link", "winding", "stator", Fixed(70.0)),
+        node_link(net, "sr", "link", "stator", "magnet", Fixed(3.0)),
+        node_link(net, "sa", "link", "stator", "ambient", Fixed(20.0)),
+    ]
+    copper = CopperLoss(4.67e-3, ("id_A", "iq_A"), 1.5)
+    iron = InputPower(300.0, (("speed_rpm", 4000.0, 1.5),))
+    sources = [
+        node_source(net, "copper", "copper", {"winding": 1.0}, copper),
+        node_source(net, "iron", "iron", {"stator": 0.6, "magnet": 0.4}, iron),
+    ]
+    return net.extended(links, sources)
+
+
+def test_coupled_run_ends_where_a_steady_solution_stands():
+    """At rest winding and magnet temperatures and the currents they need fit together."""
+    net, time = pm_network(), np.linspace(0.0, 20000.0, 401)
+    drive = pm_drive(MOTOR, np.full(401, 100.0), np.full(401, 2000.0))
+    found = coupled(net, Record(time, {}, {"ambient": 30.0}), drive, {"winding": "winding", "magnet": "magnet"})
+    assert found.residuals[-1] < 1e-3 < found.residuals[0]
+    end = {k: float(v[-1]) for k, v in found.inputs.items()}
+    rest = steady(net, end, {"ambient": 30.0})
+    assert found.run.z[-1, :3] == pytest.approx(rest.z[:3], abs=0.01)
+    again = MOTOR.currents(100.0, 2000.0, rest["winding"], rest["magnet"])
+    assert (end["id_A"], end["iq_A"]) == pytest.approx(tuple(float(x) for x in again), rel=1e-4)
+
+
+def test_residuals_fall_from_round_to_round():
+    net, time = pm_network(), np.linspace(0.0, 5000.0, 101)
+    drive = pm_drive(MOTOR, np.full(101, 120.0), np.full(101, 2000.0))
+    found = coupled(net, Record(time, {}, {"ambient": 30.0}), drive, {"winding": "winding", "magnet": "magnet"})
+    assert np.all(np.diff(found.residuals) < 0)
+
+
+def test_runaway_is_an_error_that_shows_the_last_changes():
+    net = bare_network("hot", {"winding": 500.0}, ("ambient",))
+    net = net.extended(
+        [node_link(net, "out", "link", "winding", "ambient", Fixed(1.0))],
+        [node_source(net, "loss", "copper", {"winding": 1.0}, InputPower(1.0, (("P", 1.0, 1.0),)))],
+    )
+    time = np.linspace(0.0, 5000.0, 51)
+    record = Record(time, {}, {"ambient": 20.0})
+    with pytest.raises(ThermoscopeError, match="do not agree"):
+        coupled(net, record, lambda T: {"P": 2.0 * T["winding"]}, {"winding": "winding"}, most=8)
+
+
+def test_a_warm_series_machine_takes_the_current_the_load_asks_and_more_voltage():
+    machine = SeriesMachine.from_ratings(100e3, 1000.0, 220.0, 511.0)
+    vehicle = Vehicle(mass=9000.0, wheel_radius=0.48, gear=4.52)
+    time = np.arange(0.0, 1801.0, 2.0)
+    wanted = np.clip(time / 60.0, 0.0, 1.0) * 30 / 3.6
+    network = two_masses(InputPower(0.03, (("current_A", 1.0, 2.0),), Linear(0.00393, 20.0)))
+    drive = series_drive(machine, vehicle, Controller(), time, wanted, np.full(time.size, 0.02))
+    found = coupled(network, Record(time, {}, {"ambient": 20.0}), drive, {"winding": "winding"})
+    assert found.run.z[-1, 0] > 60.0
+    assert found.residuals[-1] < 1e-3
+    warm = machine.R * (1 + 0.00393 * (found.run.z[-1, 0] - 20.0))
+    i, n = found.inputs["current_A"][-1], found.inputs["speed_rpm"][-1]
+    assert found.inputs["voltage_V"][-1] == pytest.approx((warm + machine.L_af * n * np.pi / 30) * i, rel=5e-3)

@@ -1,0 +1,97 @@
+"""Losses: each law against its formula, and the sum injected against the sum declared."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from small_networks import boundaries, every_law, inputs
+
+from lumped.audit import audit
+from lumped.correlations import RangeWarning
+from lumped.declared import read_network
+from lumped.losses import BrushLoss, CopperLoss, IronLoss, MapLoss, PowerLoss, RippleLoss
+from lumped.simulate import Record
+
+AT = {"speed_rpm": np.array([0.0, 1000.0, 2000.0]), "current_A": np.array([0.0, 100.0, 200.0])}
+
+
+def test_iron_follows_frequency_and_flux_exponents():
+    teeth = IronLoss(60.0, 40.0, "speed_rpm", 1000.0, "current_A", 100.0, 1.8, excess=20.0)
+    assert_allclose(teeth.factor(AT), [0.0, 120.0, (60 * 2 + 40 * 4 + 20 * 2**1.5) * 2**1.8], rtol=1e-12)
+    steinmetz = IronLoss(100.0, 0.0, "speed_rpm", 1000.0, frequency_exponent=1.5)
+    assert_allclose(steinmetz.factor(AT), [0.0, 100.0, 100 * 2**1.5], rtol=1e-12)
+
+
+def test_copper_at_speed_has_its_ac_share():
+    law = CopperLoss(0.01, ("current_A",), ac=(1.0, 0.0, 0.4), speed="speed_rpm", speed_at=2000.0)
+    assert_allclose(law.factor(AT), [0.0, 0.01 * 1e4 * 1.1, 0.01 * 4e4 * 1.4], rtol=1e-12)
+
+
+def test_brushes_drop_and_rub():
+    assert_allclose(BrushLoss(2.0, "current_A", 250.0, "speed_rpm", 1000.0).factor(AT), [0.0, 450.0, 900.0])
+
+
+def test_stray_loss_is_a_share_of_the_power():
+    law = PowerLoss(((1000.0, (("current_A", 511.0, 2.0),)),))
+    assert law.factor({"current_A": 511.0}) == pytest.approx(1000.0)
+
+
+def test_ripple_is_the_mean_square_of_the_triangle():
+    """Sawtooth current between -dI/2 and dI/2 over one period, sampled finely; none at no voltage and at full."""
+    law = RippleLoss(300.0, "voltage_V", 2e-3, 4000.0, 0.05)
+    for volts in (40.0, 150.0, 260.0):
+        D, T = volts / 300.0, 1 / 4000.0
+        t = np.linspace(0.0, T, 20001)
+        slope = np.where(t < D * T, (300.0 - volts) / 2e-3, -volts / 2e-3)
+        i = np.concatenate([[0.0], np.cumsum(slope[:-1] * np.diff(t))])
+        rms = np.trapezoid((i - np.trapezoid(i, t) / T) ** 2, t) / T
+        assert law.factor({"voltage_V": volts}) == pytest.approx(0.05 * rms, rel=1e-3)
+    assert_allclose(law.factor({"voltage_V": np.array([0.0, 300.0])}), 0.0, atol=1e-12)
+
+
+GRID = MapLoss((0.0, 1000.0, 3000.0), (0.0, 50.0, 100.0), ((0, 1, 4), (10, 20, 40), (60, 90, 150)))
+
+
+def test_a_map_gives_its_points_and_is_bilinear_between():
+    assert_allclose(
+        GRID.factor({"speed_rpm": np.array([0.0, 1000.0, 3000.0]), "torque_Nm": np.array([100.0, -50.0, 100.0])}),
+        [4.0, 20.0, 150.0],
+    )
+    middle = GRID.factor({"speed_rpm": 2000.0, "torque_Nm": 75.0})
+    assert middle == pytest.approx((20 + 40 + 90 + 150) / 4)
+
+
+def test_a_map_left_behind_warns_with_value_and_range():
+    with pytest.warns(RangeWarning, match=r"speed_rpm = 4000 to 4000 outside 0 to 3000"):
+        assert GRID.factor({"speed_rpm": 4000.0, "torque_Nm": 0.0}) == pytest.approx(60.0)
+
+
+def test_injected_is_declared_and_the_rest_is_the_trapezium_s_own_error():
+    def mismatch(step):
+        time = np.arange(0.0, 801.0, step)
+        found = audit(every_law(), Record(time, inputs(time), boundaries(time), 60.0), {"relative": 0.4})
+        assert found.residual < 1e-9
+        return found.mismatch
+
+    assert mismatch(4.0) < 1e-5
+    assert mismatch(2.0) < 0.5 * mismatch(4.0)
+
+
+def test_what_a_network_declares_in_toml_is_what_it_injects():
+    data = {
+        "network": {"name": "n", "boundaries": ["ambient"]},
+        "nodes": {"w": {"C_J_K": 500.0}, "s": {"C_J_K": 900.0}},
+        "links": {"ws": {"between": ["w", "s"], "G_W_K": 10.0}, "sa": {"between": ["s", "ambient"], "G_W_K": 5.0}},
+        "losses": {
+            "map": {"kind": "map", "at": "s", "at_speed": [0, 2000], "at_torque": [0, 50],
+                    "P_W": [[0, 10], [40, 80]]},
+            "ripple": {"kind": "ripple", "at": "w", "supply_V": 300, "L_H": 2e-3, "switching_Hz": 4000,
+                       "R20_ohm": 0.05},
+            "teeth": {"kind": "iron", "at": "s", "hysteresis_W": 10, "excess_W": 5, "speed_at": 1000,
+                      "frequency_exponent": 1.2},
+        },
+    }  # fmt: skip
+    given = {"speed_rpm": 1000.0, "torque_Nm": 25.0, "voltage_V": 150.0}
+    found = audit(read_network(data), Record(np.linspace(0, 100, 101), given, {"ambient": 20.0}))
+    assert found.declared_J["loss:map"] == pytest.approx(32.5 * 100)
+    assert found.declared_J["loss:teeth"] == pytest.approx(15.0 * 100)
+    assert found.mismatch < 1e-6
