@@ -18,13 +18,18 @@ def grid_of(samples: Samples, step: float) -> Array:
 
 
 def averaged(time: Array, values: Array, grid: Array) -> Array:
-    """Mean of the readings within half a step of each instant, NaN where there is none."""
+    """Mean of the readings within half a step of each instant, NaN where there is none.
+
+    A reading halfway between two instants counts half for each, so that no mean is early or late.
+    """
     if grid.size < 2:
         return np.full(grid.size, np.nanmean(values))
-    cell = np.floor(time / (grid[1] - grid[0]) + 0.5).astype(np.int64)
-    seen = np.isfinite(values) & (cell < grid.size)
-    count = np.bincount(cell[seen], minlength=grid.size)
-    total = np.bincount(cell[seen], values[seen], minlength=grid.size)
+    at = np.round(time / (grid[1] - grid[0]), 9)
+    count, total = np.zeros(grid.size), np.zeros(grid.size)
+    for cell in (np.ceil(at - 0.5).astype(np.int64), np.floor(at + 0.5).astype(np.int64)):
+        seen = np.isfinite(values) & (cell >= 0) & (cell < grid.size)
+        count += np.bincount(cell[seen], minlength=grid.size)
+        total += np.bincount(cell[seen], values[seen], minlength=grid.size)
     return np.where(count > 0, total / np.maximum(count, 1), np.nan)
 
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.network import Network, Parameter
+from lumped.network import Network
 from validation.case import Test
 from validation.fitting import Unknowns
 from validation.noise import Noise, first_noise, fit_noise
@@ -17,6 +17,8 @@ from validation.sheet import INSTANTS, Segment, segments
 Array = NDArray[np.float64]
 Progress = Callable[[str], None]
 STATIONARY = 0.1  # of a posterior standard deviation
+WORTH = 0.005  # nats: one tenth of a posterior standard deviation
+FORETOLD = 0.7  # of the predicted gain: a Jacobian that delivers less is made anew
 
 
 def silent(message: str) -> None:
@@ -96,44 +98,112 @@ def minimise(
     iterations: int = 12,
     instants: int = INSTANTS,
     progress: Progress = silent,
+    start: Sequence[Segment] | None = None,
+    draft: bool = False,
 ) -> Fit:
-    """Fit `unknowns` to the tests from `theta` under a given noise (by default that of uncalibrated sensors)."""
-    low, high = unknowns.bounds
-    weight, damping = unknowns.sd**-2.0, 0.0
+    """Fit `unknowns` to the tests from `theta` under a given noise (by default that of uncalibrated sensors).
 
-    def look(x: Array, tangents: Sequence[Parameter]) -> list[Segment]:
-        return segments(network, tests, {**(fixed or {}), **unknowns.values(x)}, tangents, instants)
-
-    theta = np.clip(theta, low, high)
-    parts = look(theta, unknowns.parameters)
-    noise = noise or first_noise(parts)
-    A, b, square = normal(parts, noise)
-    objective, converged = 0.5 * (square + float(theta @ (weight * theta))), False
+    The Jacobian costs ten times a run, so it is held as long as steps do what it foretells, and made anew before the
+    end (unless `draft`); `start`: segments whose Jacobian at a state nearby is good enough, then it is never made anew.
+    """
+    climb = Climb(network, tests, unknowns, dict(fixed or {}), instants, theta, noise, start, draft)
     for iteration in range(iterations):
-        progress(f"calibration step {iteration + 1}, objective {objective:.4g}")
-        H, g = A + np.diag(weight), b - weight * theta
-        new = bounded_step(H + damping * np.diag(np.diag(H)), g, theta, low, high)
-        predicted = float(g @ (new - theta) - 0.5 * (new - theta) @ H @ (new - theta))
-        if predicted < 1e-3 * (1.0 + 1e-3 * objective):
-            converged = True
+        progress(f"calibration step {iteration + 1}, objective {climb.objective:.4g}")
+        if climb.step():
             break
-        trial = look(new, unknowns.parameters)
-        A1, b1, square = normal(trial, noise)
-        value = 0.5 * (square + float(new @ (weight * new)))
-        if not value < objective:
-            damping = max(10.0 * damping, 0.01)
-            if damping > 1e6:
-                break
-            continue
-        converged = objective - value < 1e-3 * (1.0 + 1e-3 * value)
-        theta, parts, A, b, objective = new, trial, A1, b1, value
-        damping = damping / 10.0 if damping > 1e-3 else 0.0
-        if converged:
-            break
-    H, g = A + np.diag(weight), b - weight * theta
-    inside = ~((theta <= low + 1e-9) & (g < 0) | (theta >= high - 1e-9) & (g > 0))
-    slack = float(np.max(np.abs(g / np.sqrt(np.diag(H)))[inside], initial=0.0))
-    return Fit(network, unknowns, theta, H, tuple(parts), noise, objective, converged or slack < STATIONARY, slack)
+    return climb.fit()
+
+
+class Climb:
+    """State of a fit between its steps."""
+
+    def __init__(
+        self, network: Network, tests: Sequence[Test], unknowns: Unknowns, fixed: dict[str, float], instants: int,
+        theta: Array, noise: Noise | None, start: Sequence[Segment] | None, draft: bool,
+    ) -> None:  # fmt: skip
+        self.network, self.tests, self.unknowns, self.fixed = network, tests, unknowns, fixed
+        self.instants, self.borrowed, self.draft = instants, start is not None, draft or start is not None
+        self.low, self.high = unknowns.bounds
+        self.weight, self.damping, self.fresh, self.done = unknowns.sd**-2.0, 0.0, not self.borrowed, False
+        self.theta = np.clip(theta, self.low, self.high)
+        self.parts = self.residuals(self.theta, start) if start else self.tangents(self.theta)
+        self.noise = noise or first_noise(self.parts)
+        self.weigh()
+
+    def tangents(self, x: Array) -> list[Segment]:
+        now = {**self.fixed, **self.unknowns.values(x)}
+        return segments(self.network, self.tests, now, self.unknowns.parameters, self.instants)
+
+    def residuals(self, x: Array, like: Sequence[Segment]) -> list[Segment]:
+        """Residuals at x with the Jacobian of other segments."""
+        plain = segments(self.network, self.tests, {**self.fixed, **self.unknowns.values(x)}, (), self.instants)
+        return [replace(new, J=old.J) for new, old in zip(plain, like, strict=True)]
+
+    @property
+    def enough(self) -> float:
+        """Gain in objective below which a step is not worth making."""
+        return WORTH * (1.0 + 1e-3 * self.objective)
+
+    def weigh(self) -> None:
+        self.A, self.b, square = normal(self.parts, self.noise)
+        self.objective = 0.5 * (square + float(self.theta @ (self.weight * self.theta)))
+
+    def renew(self) -> None:
+        """The Jacobian where the fit stands."""
+        self.parts, self.fresh = self.tangents(self.theta), True
+        self.weigh()
+
+    def step(self) -> bool:
+        """One step; True when there is nothing more to gain."""
+        H, g = self.A + np.diag(self.weight), self.b - self.weight * self.theta
+        new = bounded_step(H + self.damping * np.diag(np.diag(H)), g, self.theta, self.low, self.high)
+        predicted = float(g @ (new - self.theta) - 0.5 * (new - self.theta) @ H @ (new - self.theta))
+        if predicted < self.enough:
+            return self.stop()
+        trial = self.residuals(new, self.parts)
+        value = 0.5 * (square_of(trial, self.noise) + float(new @ (self.weight * new)))
+        if not value < self.objective:
+            return self.back()
+        gained = self.objective - value
+        self.theta, self.parts, self.fresh = new, trial, False
+        self.damping = self.damping / 10.0 if self.damping > 1e-3 else 0.0
+        if gained < FORETOLD * predicted and not self.borrowed:
+            self.renew()
+        else:
+            self.weigh()
+        return gained < self.enough and self.stop()
+
+    def stop(self) -> bool:
+        """Done with a true Jacobian; otherwise look once more."""
+        if not (self.fresh or self.draft):
+            self.renew()
+            return False
+        self.done = True
+        return True
+
+    def back(self) -> bool:
+        """A step that made things worse: a true Jacobian first, then a shorter step."""
+        if not (self.fresh or self.borrowed):
+            self.renew()
+        else:
+            self.damping = max(10.0 * self.damping, 0.01)
+        return self.damping > 1e6
+
+    def fit(self) -> Fit:
+        if not (self.fresh or self.draft):
+            self.renew()
+        H, g = self.A + np.diag(self.weight), self.b - self.weight * self.theta
+        inside = ~((self.theta <= self.low + 1e-9) & (g < 0) | (self.theta >= self.high - 1e-9) & (g > 0))
+        slack = float(np.max(np.abs(g / np.sqrt(np.diag(H)))[inside], initial=0.0))
+        return Fit(
+            self.network, self.unknowns, self.theta, H, tuple(self.parts), self.noise, self.objective,
+            self.done or slack < STATIONARY, slack,
+        )  # fmt: skip
+
+
+def square_of(parts: Sequence[Segment], noise: Noise) -> float:
+    """r'Sigma^-1 r, summed over segments."""
+    return sum(float(np.sum(noise.whiten(s, s.r[:, None]) ** 2)) for s in parts)
 
 
 def calibrated(

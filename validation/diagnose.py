@@ -28,6 +28,7 @@ BEYOND = 1.6
 LOCATED = 10.0
 PULL = 3.0
 COMPENSATED = 0.05
+HIDES = "it may hide a missing effect"
 
 
 @dataclass(frozen=True)
@@ -135,10 +136,13 @@ def judge(steps: list[Step], null: Null, groups: list[tuple[str, ...]], pulled_:
 
 
 def beyond(fit: Fit, null: Null) -> bool:
-    """Does the residual stay above what simulated machines of this kind leave?"""
+    """Is more left than simulated machines of this kind leave, and more than a model may be wrong by?"""
     channels = list(dict.fromkeys(s.channel for s in fit.parts))
-    left = [rmse([s for s in fit.parts if s.channel == c]) for c in channels]
-    return bool(np.any(np.array(left) > BEYOND * np.maximum(null.floor, np.median(null.floor))))
+    own = [[s for s in fit.parts if s.channel == c] for c in channels]
+    left = np.array([rmse(parts) for parts in own])
+    allowed = np.array([np.sqrt(np.mean([s.model_K**2 for s in parts])) for parts in own])
+    usual = np.maximum(np.maximum(null.floor, np.median(null.floor)), allowed)
+    return bool(np.any(left > BEYOND * usual))
 
 
 def explained(evidence: Evidence, found: Race) -> float:
@@ -266,8 +270,9 @@ def words(
     if verdict == "adequate":
         return "no evidence of a missing effect"
     if verdict == "absorbed":
-        what = pulls[0] if pulls else (table[0].twin, table[0].value, table[0].score)
-        return f"calibration of {what[0]} is {abs(what[2]):.1f} deviations from its prior: it may hide a missing effect"
+        if pulls:
+            return f"calibration of {pulls[0][0]} is {abs(pulls[0][2]):.1f} deviations from its prior: {HIDES}"
+        return f"{table[0].effect} would do what calibration of {table[0].twin or 'the rest'} has done: {HIDES}"
     if broken:
         return f"check the measurement first: {'; '.join(broken)}"
     if verdict == "outside":

@@ -13,7 +13,7 @@ from lumped.network import Network, Parameter
 from validation.calibrate import Fit, calibrated, minimise, silent
 from validation.case import Case, Test
 from validation.effects import Effect, catalogue, extended
-from validation.fitting import Unknowns, effects_of, scene_of, working
+from validation.fitting import Unknowns, scene_of, working
 from validation.noise import Noise, fit_noise
 from validation.null import Null, simulated_null
 from validation.score import Gram, Score, gram, score, total
@@ -120,13 +120,25 @@ def widened(parameter: Parameter) -> Parameter:
 
 
 def refit(evidence: Evidence, members: Sequence[int], noise: Noise | None = None, start: Fit | None = None) -> Fit:
-    """All free parameters and the amplitudes of some candidates, fitted anew."""
+    """All free parameters and the amplitudes of some candidates, fitted anew with the evidence's Jacobian."""
+    network, unknowns, held = _with_members(evidence, members)
+    p = evidence.fit.theta.size
+    theta = start.theta if start else np.concatenate([evidence.fit.theta, first_amplitudes(evidence, members)])
+    near = [replace(s, J=s.J[:, [*range(p), *(p + k for k in members)]]) for s in evidence.parts]
+    return minimise(network, evidence.tests, unknowns, theta, noise or evidence.fit.noise, held, 10, start=near)
+
+
+def polished(evidence: Evidence, members: Sequence[int], fit: Fit) -> Fit:
+    """A refit gone on with a Jacobian of its own."""
+    network, unknowns, held = _with_members(evidence, members)
+    return minimise(network, evidence.tests, unknowns, fit.theta, fit.noise, held, 8, draft=True)
+
+
+def _with_members(evidence: Evidence, members: Sequence[int]) -> tuple[Network, Unknowns, dict[str, float]]:
     fit, chosen = evidence.fit, [evidence.parameters[k] for k in members]
     network = extended(fit.network, [evidence.effects[k] for k in members])
     unknowns = Unknowns((*fit.unknowns.parameters, *(widened(p) for p in chosen)))
-    theta = start.theta if start else np.concatenate([fit.theta, first_amplitudes(evidence, members)])
-    held = {p.name: p.value for p in network.parameters} | fit.values
-    return minimise(network, evidence.tests, unknowns, theta, noise or fit.noise, held, iterations=8)
+    return network, unknowns, {p.name: p.value for p in network.parameters} | fit.values
 
 
 def first_amplitudes(evidence: Evidence, members: Sequence[int]) -> Array:
@@ -141,7 +153,3 @@ def first_amplitudes(evidence: Evidence, members: Sequence[int]) -> Array:
 def sharpened(fit: Fit) -> Noise:
     """The noise of the residual that this fit leaves."""
     return fit_noise(fit.parts)
-
-
-def inside(case: Case) -> tuple[Effect, ...]:
-    return effects_of(case)

@@ -12,12 +12,14 @@ from numpy.typing import NDArray
 from lumped.network import Network, Parameter
 from validation.case import Case, Channel, Model, Test
 from validation.effects import Effect, Scene, effect, extended
+from validation.forms import with_forms
 
 Array = NDArray[np.float64]
 START_SD = 0.5
 GAIN_SD = 0.02
 LAG_SD = 3.0
 BOUNDARY_SD = 0.5
+CLOCK_SD = 1.0
 
 
 @dataclass(frozen=True)
@@ -59,13 +61,14 @@ def to_value(p: Parameter, theta: float) -> float:
 
 
 def nuisances(tests: Sequence[Test]) -> list[Parameter]:
-    """What no measurement is free of: bias, slope and lag of sensors, bias of boundary sensors, start temperature."""
+    """What no measurement is free of: bias, slope and lag of sensors, bias of boundary sensors, start, clock."""
     channels = {c.name: c for test in tests for c in test.channels}
     boundaries = dict.fromkeys(b for test in tests for b in test.boundaries)
     sensors = [p for c in channels.values() for p in _sensor(c)]
     air = [_offset(f"bias of {b}", f"boundary:{b}", BOUNDARY_SD, "sensor of the boundary") for b in boundaries]
     start = [_offset(f"start of {t.name}", f"initial:{t.name}", START_SD, "uneven start") for t in tests]
-    return [*sensors, *air, *start]
+    clock = [_offset(f"clock of {t.name}", f"delay:{t.name}", CLOCK_SD, "logger's clock", "s") for t in tests]
+    return [*sensors, *air, *start, *clock]
 
 
 def _sensor(c: Channel) -> list[Parameter]:
@@ -75,9 +78,9 @@ def _sensor(c: Channel) -> list[Parameter]:
     return [bias, replace(gain, unit="1"), replace(lag, unit="s", low=-c.lag_s)]
 
 
-def _offset(name: str, target: str, sd: float, source: str) -> Parameter:
+def _offset(name: str, target: str, sd: float, source: str, unit: str = "K") -> Parameter:
     return Parameter(
-        name, ((target, 1.0),), value=0.0, unit="K", low=-20 * sd, high=20 * sd, prior_sd=sd, mapping="offset",
+        name, ((target, 1.0),), value=0.0, unit=unit, low=-20 * sd, high=20 * sd, prior_sd=sd, mapping="offset",
         neutral=0.0, source=source,
     )  # fmt: skip
 
@@ -101,9 +104,10 @@ def working(case: Case, more: Sequence[Effect] = ()) -> tuple[Network, Unknowns]
     """
     inside, extra = effects_of(case), nuisances(case.tests)
     network = extended(case.model.network, (*inside, *more))
+    network, forms = with_forms(network, case.tests)
     network = replace(network, parameters=(*network.parameters, *extra))
     chosen = {p.name for p in (case.nuisances or case.model.network.parameters)}
-    chosen |= {e.name for e in (*inside, *more)} | {p.name for p in extra}
+    chosen |= {e.name for e in (*inside, *more)} | {p.name for p in extra} | set(forms)
     return network, Unknowns(tuple(p for p in network.parameters if p.name in chosen))
 
 

@@ -161,7 +161,7 @@ def draw(setting: Setting, i: int) -> Drawn:
             parts = [replace(s, r=s.r - s.J[:, :p] @ (new - delta)) for s in parts]
         delta, noise = new, fit_noise(parts)
     S = score(total(gram(parts, noise, p)), delta - centre, fit.unknowns.sd, setting.sign)
-    rms = [np.sqrt(np.mean(np.concatenate([s.r for s in parts if s.channel == c]) ** 2)) for c in noise.shape]
+    rms = [np.sqrt(np.mean(np.concatenate([s.r for s in parts if s.channel == c]) ** 2)) for c in noise.levels]
     return S.z, (delta - centre) / fit.unknowns.sd, np.array(rms)
 
 
@@ -173,7 +173,7 @@ def data(setting: Setting, rng: np.random.Generator) -> list[Test]:
     out = []
     for test in setting.tests:
         seen = disturbed_test(test, setting.network, real, rng, spread)
-        white = [min(fit.noise.scale[c.name], c.sigma_K) for c in test.channels]
+        white = [min(fit.noise.at(s).white, s.sigma_K) for s in setting.parts if s.test == test.name]
         y = reading_errors(test, predict(real, seen, values).y, rng, spread, white)
         out.append(replace(test, channels=tuple(replace(c, y=y[:, j]) for j, c in enumerate(test.channels))))
     return out

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
 from scipy.signal import lfilter
 
 from lumped.network import Network, Parameter
@@ -182,7 +183,5 @@ def _uneven(push: Array, decay: Array) -> Array:
 
 
 def shifted(time: Array, T: Array, delay: float) -> Array:
-    """What was true `delay` seconds ago."""
-    flat = T.reshape(time.size, -1)
-    moved = np.stack([np.interp(time - delay, time, column) for column in flat.T], axis=1)
-    return moved.reshape(T.shape)
+    """What was true `delay` seconds ago; a cubic spline, so that a fit may move the delay through zero smoothly."""
+    return np.asarray(CubicSpline(time, T)(np.clip(time - delay, time[0], time[-1])))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,7 +13,7 @@ from validation.calibrate import Fit, calibrated, silent
 from validation.case import AddedEffect, Case, Model, Test
 from validation.compare import Comparison, compare
 from validation.effects import effect
-from validation.fitting import Unknowns, scene_of, to_value, working
+from validation.fitting import scene_of, to_value, working
 
 Progress = Callable[[str], None]
 UNSEEN = 0.9
@@ -176,7 +176,7 @@ def estimates(fit: Fit, kappa: float = 1.0) -> tuple[Estimate, ...]:
         partner = int(np.argmax(np.abs(corr[i])))
         half = 1.96 * min(kappa * sd[i], u.sd[i])
         low, high = (to_value(p, float(fit.theta[i] + s * half)) for s in (-1.0, 1.0))
-        prior = tuple(to_value(p, s * 1.96 * p.prior_sd) for s in (0.0, -1.0, 1.0))
+        prior = tuple(float(np.clip(to_value(p, s * 1.96 * p.prior_sd), p.low, p.high)) for s in (0.0, -1.0, 1.0))
         out.append(
             Estimate(
                 p.name, to_value(p, float(fit.theta[i])), p.unit, (max(low, p.low), min(high, p.high)),
@@ -185,9 +185,3 @@ def estimates(fit: Fit, kappa: float = 1.0) -> tuple[Estimate, ...]:
             )
         )  # fmt: skip
     return tuple(out)
-
-
-def values_of(case: Case) -> Mapping[str, float]:
-    """Every free parameter's value as the model stands."""
-    _, unknowns = working(case)
-    return Unknowns(unknowns.parameters).values(unknowns.coordinates(case.model.values))

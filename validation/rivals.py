@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.stats import chi2
 
 from validation.calibrate import Fit, silent
-from validation.evidence import Evidence, refit, sharpened
+from validation.evidence import Evidence, polished, refit, sharpened
 from validation.noise import Noise
 from validation.score import per_test
 
@@ -47,13 +47,13 @@ def race(evidence: Evidence, kappa: Array, threshold: float, progress: Callable[
     order = [int(k) for k in np.argsort(-level)]
     first = [k for k in order if level[k] > threshold][:3]
     progress(f"refitting {', '.join(evidence.names[k] for k in first)}")
-    fits = {k: refit(evidence, [k]) for k in first}
+    fits = {k: polished(evidence, [k], refit(evidence, [k])) for k in first}
     leader = min(first, key=lambda k: fits[k].objective)
     for _ in range(2):
         noise = sharpened(fits[leader])
         runners = shortlist(evidence, noise, kappa, leader)
         progress(f"comparing {evidence.names[leader]} with {len(runners) - 1} rivals")
-        fits = {k: refit(evidence, [k], noise, fits.get(k)) for k in runners}
+        fits = {k: compared(evidence, k, noise, fits) for k in runners}
         best = min(runners, key=lambda k: fits[k].objective)
         if best == leader:
             break
@@ -61,6 +61,11 @@ def race(evidence: Evidence, kappa: Array, threshold: float, progress: Callable[
     runners.sort(key=lambda k: fits[k].objective)
     gap = [behind(fits[k], fits[leader], max(kappa[k], kappa[leader])) for k in runners]
     return Race(tuple(runners), tuple(fits[k] for k in runners), tuple(gap), noise)
+
+
+def compared(evidence: Evidence, k: int, noise: Noise, known: Mapping[int, Fit]) -> Fit:
+    """A candidate's refit under the race's noise."""
+    return polished(evidence, [k], refit(evidence, [k], noise, known.get(k)))
 
 
 def behind(fit: Fit, best: Fit, kappa: float) -> float:

@@ -11,11 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.network import Network, Parameter
-from validation.case import Test
+from validation.case import Channel, Test
 from validation.predict import predict
 
 Array = NDArray[np.float64]
 INSTANTS = 180
+MODEL_SHARE = 0.01
 WORTH_A_THREAD = 3000  # states times instants below which starting threads costs more than it saves
 
 
@@ -33,6 +34,11 @@ class Segment:
     J: Array
     sigma_K: float
     model_K: float = 0.0
+
+    @property
+    def weight(self) -> float:
+        """How large a residual may be expected here (K), relative to the same channel in other tests."""
+        return float(np.hypot(self.sigma_K, self.model_K))
 
 
 def groups(nt: int, instants: int = INSTANTS) -> NDArray[np.int64]:
@@ -79,8 +85,15 @@ def _of_test(
             continue
         both = np.column_stack([np.nan_to_num(c.y) - seen.y[:, j], seen.J[:, j], test.time])
         mean, _ = block_mean(both, read, start)
-        out.append(Segment(test.name, c.name, mean[:, -1], mean[:, 0], mean[:, 1:-1], c.sigma_K, c.model_K))
+        out.append(Segment(test.name, c.name, mean[:, -1], mean[:, 0], mean[:, 1:-1], c.sigma_K, allowed(c)))
     return out
+
+
+def allowed(c: Channel) -> float:
+    """Slow misfit (K) that a model of this kind may have at a channel: the sensor's own, or what the case says, and a
+    share of the rise."""
+    seen = c.y[np.isfinite(c.y)]
+    return float(np.hypot(max(c.model_K, c.sigma_K), MODEL_SHARE * np.max(np.abs(seen - seen[0]))))
 
 
 def stacked(parts: Sequence[Segment]) -> Array:

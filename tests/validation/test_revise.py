@@ -65,12 +65,12 @@ def test_what_the_data_cannot_tell_is_said():
     assert any(p.partner for p in rows.values())
 
 
-def test_calibration_reaches_the_noise():
-    """0.05 K of reading noise, 0.1 K steps (0.03 K) and averaging: below 0.06 K on the calibrated tests."""
+def test_calibration_leaves_less_than_the_sensors_are_sure_of():
+    """Sensors with 0.4 K of bias (1 sigma, told as 0.5 K), noise of 0.05 K and 0.1 K steps: below half of 0.4 K."""
     case, first = stand()
     network, _ = working(case)
     tests = [t for t in case.tests if t.role == "calibrate"]
-    assert rmse(segments(network, tests, first.model.values)) < 0.06
+    assert rmse(segments(network, tests, first.model.values)) < 0.2
 
 
 @pytest.mark.parametrize(
