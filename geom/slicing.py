@@ -21,8 +21,8 @@ _JOIN = 1e-6  # m; ends of edges nearer than this are one
 _ON_AXIS = 1e-6  # m; an arc whose centre is nearer to the axis is meant to be concentric with the machine
 _TILT = 1e-5  # rad; a face tilted by less against the axis is a wall, by less against the plane, a cap
 _SHARES = (0.07, 0.31, 0.52, 0.77, 0.94)  # of a face's extent, where its normal is looked at
-_VOLUME = 1e-4  # relative difference between the solid and its prisms that is rounding
-_CHORDS = 24  # per edge that is neither straight nor a circle
+_VOLUME = 2e-3  # relative difference between a solid and its prisms that chords of free-form walls explain
+_CHORDS = 96  # per edge that is neither straight nor a circle
 
 
 def sliced(solid: cq.Solid, name: str) -> tuple[Prism, ...]:
@@ -33,7 +33,7 @@ def sliced(solid: cq.Solid, name: str) -> tuple[Prism, ...]:
     """
     levels = _levels(solid, name)
     prisms = [
-        (profile, z0 * 1e-3, z1 * 1e-3)
+        (profile, round(z0 * 1e-3, 9), round(z1 * 1e-3, 9))
         for z0, z1 in pairwise(levels)
         for profile in _section(solid, (z0 + z1) / 2, name)
     ]
@@ -161,7 +161,11 @@ def _nested(loops: list[Loop]) -> list[Profile]:
     import shapely
 
     rings = [shapely.Polygon(_outline(loop)) for loop in loops]
-    around = [[j for j in range(len(loops)) if j != i and rings[j].contains(rings[i])] for i in range(len(loops))]
+    inner = [ring.representative_point() for ring in rings]
+    around = [
+        [j for j, ring in enumerate(rings) if ring.area > rings[i].area and ring.contains(point)]
+        for i, point in enumerate(inner)
+    ]
     profiles = []
     for i in range(len(loops)):
         holes = [j for j in range(len(loops)) if i in around[j] and len(around[j]) == len(around[i]) + 1]
@@ -171,12 +175,12 @@ def _nested(loops: list[Loop]) -> list[Profile]:
 
 
 def _outline(loop: Loop) -> list[tuple[float, float]]:
-    """Corners and a few points along each arc."""
+    """Corners, and points along each arc."""
     points = []
     for (x, y, _), arc in edges(loop):
         points.append((x, y))
         if arc is not None:
-            points += [arc.at(arc.start + arc.sweep * share) for share in (0.25, 0.5, 0.75)]
+            points += [arc.at(arc.start + arc.sweep * share) for share in np.linspace(0, 1, 65)[1:-1]]
     return points
 
 
