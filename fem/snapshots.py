@@ -28,6 +28,7 @@ class Recipe:
     shifts : Laplace shifts (1/s) at which losses are solved, so that the early minutes are resolved
     flux_shifts : shifts at which a unit flux through every face is solved too
     random_points : points with every film and contact times spread ** U(-1, 1): shapes know changed coefficients
+    flux_points : solve the unit fluxes at the random points too
     max_states : largest number of mean nodes and shapes together; parts compete for shapes by energy
     """
 
@@ -35,6 +36,7 @@ class Recipe:
     shifts: tuple[float, ...] = SHIFTS
     flux_shifts: tuple[float, ...] = ()
     random_points: int = 4
+    flux_points: bool = False
     spread: float = 5.0
     seed: int = 1
     max_states: int | None = None
@@ -52,6 +54,14 @@ class Basis:
     conduction: Floats
 
 
+@dataclass(frozen=True)
+class Principal:
+    """Fields (n, k) of one part, orthonormal in its energy, strongest first, and the energy (k,) each stands for."""
+
+    strength: NDArray[np.floating]
+    fields: NDArray[np.floating]
+
+
 def snapshots(
     field: FieldModel,
     films: Mapping[str, float],
@@ -63,25 +73,27 @@ def snapshots(
     """(n, n_snapshot) whole-machine solutions for unit losses `loads` (n, n_zone), each of unit energy at nominal."""
     solver = solver or Solver(field)
     nominal = field.stiffness(films, contacts)
-    fluxes = np.column_stack(_fluxes(field))
+    fluxes = np.column_stack([field.flux(face) for face in field.films])
     out = [solver.factor(nominal)(np.column_stack([loads, fluxes, *_dipoles(field)]))]
     out += [solver.factor(nominal, shift)(loads) for shift in recipe.shifts]
     out += [solver.factor(nominal, shift)(fluxes) for shift in recipe.flux_shifts]
     rng = np.random.default_rng(recipe.seed)
     for _ in range(recipe.random_points):
         h, g = drawn(films, recipe.spread, rng), drawn(contacts, recipe.spread, rng)
-        out.append(solver.factor(field.stiffness(h, g))(loads))
-    S = np.column_stack(out)
+        out.append(
+            solver.factor(field.stiffness(h, g))(np.column_stack([loads, fluxes]) if recipe.flux_points else loads)
+        )
+    return scaled(np.column_stack(out), nominal)
+
+
+def scaled(S: Floats, nominal: sp.csr_array) -> Floats:
+    """Solutions (n, k) scaled to unit energy."""
     return np.asarray(S / np.sqrt(np.einsum("ij,ij->j", S, nominal @ S)))
 
 
 def drawn(coefficients: Mapping[str, float], spread: float, rng: np.random.Generator) -> dict[str, float]:
     """Every coefficient times spread ** U(-1, 1)."""
     return {name: value * spread ** rng.uniform(-1, 1) for name, value in coefficients.items()}
-
-
-def _fluxes(field: FieldModel) -> list[Floats]:
-    return [_at(field.n, (f.trace, 1.0)) for f in field.films.values()]
 
 
 def _dipoles(field: FieldModel) -> list[Floats]:
@@ -101,12 +113,31 @@ def energies(field: FieldModel, films: Mapping[str, float], contacts: Mapping[st
     return {name: sp.csr_array(K[block.dofs, block.dofs]) for name, block in field.blocks.items()}
 
 
-def bases(field: FieldModel, S: Floats, energy: Mapping[str, sp.csr_array], recipe: Recipe) -> dict[str, Basis]:
-    """Shapes of every part from snapshots S (n, n_snapshot) of unit energy."""
-    found = {name: _principal(block, S[block.dofs], energy[name]) for name, block in field.blocks.items()}
-    least = _least(np.concatenate([strength for strength, _ in found.values()]), len(found), recipe)
+def principals(field: FieldModel, S: Floats, energy: Mapping[str, sp.csr_array]) -> dict[str, Principal]:
+    """What each part's field can look like, by energy, from snapshots S (n, n_snapshot) of unit energy."""
+    return {name: _principal(block, S[block.dofs], energy[name]) for name, block in field.blocks.items()}
+
+
+def _principal(block: Block, S: Floats, A: sp.csr_array) -> Principal:
+    S = S - (block.w @ S) / block.volume
+    strength, U = np.linalg.eigh(S.T @ (A @ S))
+    # A Gram matrix keeps half the digits.
+    keep = np.flatnonzero(strength > 1e-13 * strength[-1])[::-1]
+    return Principal(strength[keep], S @ (U[:, keep] / np.sqrt(strength[keep])))
+
+
+def bases(
+    field: FieldModel,
+    found: Mapping[str, Principal],
+    energy: Mapping[str, sp.csr_array],
+    recipe: Recipe,
+    weights: Mapping[str, float] | None = None,
+) -> dict[str, Basis]:
+    """Shapes of every part, as many as the recipe allows; weights above 1 favour a part (on the root of energy)."""
+    favour = {name: (weights or {}).get(name, 1.0) ** 2 for name in found}
+    least = _least(np.concatenate([p.strength * favour[n] for n, p in found.items()]), len(found), recipe)
     return {
-        name: _shaped(block, found[name][1][:, found[name][0] > least], energy[name])
+        name: _shaped(block, found[name].fields[:, found[name].strength * favour[name] > least], energy[name])
         for name, block in field.blocks.items()
     }
 
@@ -119,17 +150,9 @@ def _least(strength: Floats, parts: int, recipe: Recipe) -> float:
     return max(least, float(np.sort(strength)[::-1][max(recipe.max_states - parts, 0)]))
 
 
-def _principal(block: Block, S: Floats, A: sp.csr_array) -> tuple[Floats, Floats]:
-    """Energies (k,) and orthonormal fields (n, k) of a part's deviation from its mean."""
-    S = S - (block.w @ S) / block.volume
-    strength, U = np.linalg.eigh(S.T @ (A @ S))
-    # A Gram matrix keeps half the digits.
-    keep = strength > 1e-13 * strength[-1]
-    return strength[keep], S @ (U[:, keep] / np.sqrt(strength[keep]))
-
-
-def _shaped(block: Block, Phi: Floats, A: sp.csr_array) -> Basis:
+def _shaped(block: Block, Phi: NDArray[np.floating], A: sp.csr_array) -> Basis:
     """The same span with both matrices diagonal, slowest shape first, every shape of unit energy in A."""
+    Phi = np.asarray(Phi, float)
     Phi = Phi - (block.w @ Phi) / block.volume
     L = np.linalg.cholesky(Phi.T @ (block.M @ Phi))
     inner = np.linalg.solve(L, np.linalg.solve(L, Phi.T @ (block.K @ Phi)).T)
@@ -137,3 +160,20 @@ def _shaped(block: Block, Phi: Floats, A: sp.csr_array) -> Basis:
     Phi = Phi @ np.linalg.solve(L.T, R)
     scale = 1 / np.sqrt(np.einsum("ij,ij->j", Phi, A @ Phi))
     return Basis(Phi * scale, scale**2, np.maximum(rate, 0.0) * scale**2)
+
+
+def enriched(
+    field: FieldModel,
+    found: Mapping[str, Principal],
+    S: Floats,
+    films: Mapping[str, float],
+    contacts: Mapping[str, float],
+    energy: Mapping[str, sp.csr_array],
+) -> dict[str, Principal]:
+    """Principal fields with more solutions S (n, k) among the snapshots."""
+    S = scaled(S, field.stiffness(films, contacts))
+    out = {}
+    for name, block in field.blocks.items():
+        own = np.asarray(found[name].fields, float) * np.sqrt(found[name].strength)
+        out[name] = _principal(block, np.column_stack([own, S[block.dofs]]), energy[name])
+    return out
