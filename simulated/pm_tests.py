@@ -1,6 +1,6 @@
 """Simulate cases/pmsm-bases and cases/pmsm-machines:  python -m simulated.pm_tests --out DIR [--quick]
 
-Writes DIR/NAME.csv, the record up to switching off, DIR/NAME-cooling.csv, the readings after it, and the truth.
+Writes NAME.csv and .toml, the record up to switching off; NAME-cooling.csv, the readings after it; and the truth.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import numpy as np
 import tomlkit
 from numpy.typing import NDArray
 
-from simulated import pm_meters, pm_plant
+from simulated import pm_files, pm_meters, pm_plant
 from simulated.draws import Draws
 from simulated.plant import State
 from simulated.pm_plant import PmLosses, PmPlant
@@ -132,6 +132,8 @@ def write(out: Path, name: str, loaded: Course, cooling: Course, draws: Draws) -
     (out / f"{name}.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
     kept = (cooling.time >= 30.0) & (cooling.time <= 330.0)
     hot = pm_meters.read("ohm", cooling.ohm[kept], f"{name}.hot", draws)
+    sheet = pm_files.sheet(name, plan.base, plan.current, cold, float(air[-1]))
+    pm_files.write_sheet(out / f"{name}.toml", sheet)
     after = [f"{t:.0f},{R:.4g}" for t, R in zip(cooling.time[kept], hot)]
     (out / f"{name}-cooling.csv").write_text("\n".join(["time_s,R_winding_ohm", *after]) + "\n", encoding="utf-8")
     return cold

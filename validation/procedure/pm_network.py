@@ -1,14 +1,14 @@
 """A permanent-magnet machine without housing as a network of a dozen nodes by hand formulas.
 
-Areas and masses come from the description of the parts, so M1, M2 and M3 are one model with their constructive differences. Small and made
-in a second, it serves screening and calibration; the network condensed from the field is the accurate one.
+Areas and masses come from the description of the parts, so M1, M2 and M3 are one model with their constructive
+differences. Small and soon made, it serves screening and calibration; the one condensed from the field is accurate.
 Films: Churchill and Chu, McAdams; end space: Schubert; slot: a heated bundle, liner and gap in series.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,6 +18,7 @@ from geom.materials import winding_conductivity
 from lumped.declared import read_network
 from lumped.network import Network
 
+Rows = Mapping[str, PartRow]
 K_AIR = 0.028  # W/m/K, air near 50 degC
 AIR_K = 0.026
 K1, K2, K3 = 15.0, 0.4, 0.9  # Schubert's end space
@@ -26,6 +27,16 @@ COPPER_SHARE = {"winding": 0.45, "winding.left": 0.35, "winding.right": 0.35}
 JOINTS = {"base": 500.0, "foot": 1000.0, "endcap": 1000.0, "shaft": 4000.0, "bearing": 150.0, "seat": 1500.0,
           "magnets": 520.0, "gap": 5000.0, "wire": 1000.0}  # fmt: skip
 BANDS = 5
+
+
+@dataclass(frozen=True)
+class Base:
+    """One of several bases of a network: that of `machine`, coupled while the input `switch` is 1."""
+
+    name: str
+    machine: Machine
+    emissivity: float
+    switch: str
 
 
 @dataclass(frozen=True)
@@ -49,16 +60,24 @@ class PmSettings:
     magnetic_W: float = 0.0
     gap_mm: float | None = None
     in_magnets: float = 0.15
+    friction_W: float = 10.0
 
 
-def pm_network(machine: Machine, settings: PmSettings) -> Network:
-    """The network of a machine of family "pmsm" that has no housing."""
-    return read_network(pm_document(machine, settings), machine.name)
+def pm_network(machine: Machine, settings: PmSettings, rows: Rows | None = None) -> Network:
+    """The network of a machine of family "pmsm" that has no housing; rows : its table of parts, if already made."""
+    return read_network(pm_document(machine, settings, rows), machine.name)
 
 
-def pm_document(machine: Machine, settings: PmSettings) -> dict[str, Any]:
-    """The same as the tables of a network.toml."""
-    return _Builder(machine, settings).document()
+def pm_document(
+    machine: Machine, settings: PmSettings, rows: Rows | None = None, bases: Sequence[Base] = ()
+) -> dict[str, Any]:
+    """The same as the tables of a network.toml; `bases` instead of the machine's own one."""
+    return _Builder(machine, settings, rows or table_of(machine)).document(bases)
+
+
+def table_of(machine: Machine) -> Rows:
+    """Areas and masses of the parts by name."""
+    return {row.name: row for row in part_table(machine, 72)}
 
 
 def bundle(fill: float, k_resin: float, impregnation: float) -> float:
@@ -74,21 +93,23 @@ def _mixed(share: float, k_resin: float) -> float:
 class _Builder:
     """Collects the tables of the document."""
 
-    def __init__(self, machine: Machine, settings: PmSettings) -> None:
+    def __init__(self, machine: Machine, settings: PmSettings, rows: Rows) -> None:
         self.machine, self.settings, self.g = machine, settings, machine.geometry
-        self.rows: dict[str, PartRow] = {row.name: row for row in part_table(machine, 72)}
+        self.rows = rows
         self.nodes: dict[str, Any] = {}
         self.links: dict[str, Any] = {}
         self.surfaces: dict[str, Any] = {}
         self.parameters: dict[str, Any] = {}
 
-    def document(self) -> dict[str, Any]:
+    def document(self, bases: Sequence[Base]) -> dict[str, Any]:
         self._nodes()
         self._winding()
         self._inside()
         self._rotor()
         self._outside()
-        if self.settings.base is not None and "base" in self.rows:
+        for base in bases:
+            self._base(f"base.{base.name}", base.emissivity, base.switch, base.machine)
+        if not bases and self.settings.base is not None and "base" in self.rows:
             self._base("base", self.settings.base, "")
         self._shared()
         return {
@@ -187,7 +208,7 @@ class _Builder:
     def _base(self, name: str, emissivity: float, switch: str, of: Machine | None = None) -> None:
         """Foot, and a plate as a chain of bands along its length; `switch` is the input that couples it, "" always."""
         machine = of or self.machine
-        b, foot, rows = machine.geometry.base, machine.geometry.foot, {r.name: r for r in part_table(machine, 72)}
+        b, foot, rows = machine.geometry.base, machine.geometry.foot, self.rows if of is None else table_of(of)
         k = machine.conductivity("base")[0] * b.thickness
         post = foot.height / (machine.conductivity("foot")[0] * rows["foot"].contacts["base"])
         spread = math.log(max(b.width / (foot.width + foot.length), 1.05)) / (2 * math.pi * k)
@@ -207,17 +228,14 @@ class _Builder:
                 step = (edges[i + 1] - edges[i - 1]) / 2
                 self.link(f"{name}.{i - 1}", node, G_W_K=2 * k * b.width / step)
 
-    def _foot_capacity(self, machine: Machine, rows: Mapping[str, PartRow]) -> float:
+    def _foot_capacity(self, machine: Machine, rows: Rows) -> float:
         return rows["foot"].mass * machine.material_of("foot").cp
 
     def _plate(self, node: str, b: Any, share: float, emissivity: float) -> None:
         """Both sides of one band of the plate."""
         one, size = b.length * b.width * share, b.length * b.width / (2 * (b.length + b.width))
         self._film(node, "plate facing up", size, one, emissivity)
-        if self.settings.convection is None:
-            under = {"natural": {"surface": "plate facing down", "size_m": size}}
-        else:
-            under = {"h_W_m2K": self.settings.convection}
+        under = self._still("plate facing down", size)
         self.links[f"{node}.under-ambient"] = {
             "between": [node, "ambient"], "area_m2": one, **under, "radiation": {"emissivity": emissivity},
         }  # fmt: skip
@@ -234,11 +252,11 @@ class _Builder:
                   "R20_ohm": s.resistance_ohm, "temperature_of": "winding", "prior_sd": 0.02}  # fmt: skip
         out: dict[str, Any] = {"copper": copper}
         if s.magnetic_W:
-            shared: dict[str, Any] = {"stator.core": 1 - s.in_magnets, "magnets": s.in_magnets}
+            shared = {"stator.core": 1 - s.in_magnets, "magnets": s.in_magnets}
             out["magnetic"] = {"at": shared, "kind": "iron", "eddy_W": 0.0, "hysteresis_W": s.magnetic_W,
                                "speed_at": 383, "prior_sd": 0.15}  # fmt: skip
         caps: dict[str, Any] = {"endcap.left": 0.5, "endcap.right": 0.5}
-        out["bearings"] = {"at": caps, "kind": "bearing", "P_W": 10.0, "of": speed}
+        out["bearings"] = {"at": caps, "kind": "bearing", "P_W": s.friction_W, "of": speed}
         return out
 
     def _shared(self) -> None:

@@ -1,0 +1,58 @@
+"""The sheet beside each record of the PM machines: its columns, with the cold readings and the meters' data.
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import tomlkit
+
+SWITCHES = {"none": (0, 0), "plate": (1, 0), "bench": (0, 1)}  # on_plate, on_bench
+PLACES = {"none": "on a wooden base", "plate": "on the aluminium plate", "bench": "on the test bench"}
+
+
+def sheet(name: str, base: str, current: float, cold: Mapping[str, float], ambient_end: float) -> dict[str, Any]:
+    """The tables of NAME.toml."""
+    what = f"{current:g} A, machine {PLACES[base]}"
+    words = f"Thermal test '{name}': {what}. Simulated measurement, see docs/data-pmsm.md."
+    columns: dict[str, Any] = {
+        "current_A": {"quantity": "current", "unit": "A"},
+        "speed_rpm": {"quantity": "speed", "unit": "rpm"},
+        "T_ambient_degC": {"quantity": "temperature", "unit": "degC", "place": "ambient", "sigma_K": 0.2},
+        f"R_{name}": _resistance(name, cold, ambient_end),
+        f"emf_{name}": _emf(cold),
+    }
+    test = {"time": "time_s", "description": words, "initial": cold["cold_degC"], "max_gap_s": 1200}
+    plate, bench = SWITCHES[base]
+    return {"test": test, "inputs": {"on_plate": plate, "on_bench": bench}, "columns": columns}
+
+
+def _resistance(name: str, cold: Mapping[str, float], ambient_end: float) -> dict[str, Any]:
+    after = {"file": f"{name}-cooling.csv", "column": "R_winding_ohm", "method": "exponentials",
+             "ambient_degC": ambient_end, "rated_kW": 7}  # fmt: skip
+    return {
+        "column": "R_winding_ohm", "quantity": "resistance", "unit": "ohm", "place": "winding.copper",
+        "cold": _inline({"reading": round(cold["cold_ohm"], 4), "at_degC": cold["cold_degC"]}), "reference_degC": 20,
+        "coefficient_percent_K": [0.392, 0.393],
+        "meter": _inline({"percent": 0.25, "offset": 0.002, "resolution": 0.002, "range": [0.4, 4.0]}),
+        "after": _inline(after),
+    }  # fmt: skip
+
+
+def _emf(cold: Mapping[str, float]) -> dict[str, Any]:
+    reading = {"reading": round(cold["cold_V"], 1), "at_degC": cold["cold_degC"], "rpm": 383}
+    return {
+        "column": "emf_V", "quantity": "back_emf", "unit": "V", "place": "magnets", "cold": _inline(reading),
+        "coefficient_percent_K": [-0.11, -0.10], "meter": _inline({"percent": 0.1, "offset": 1.0}), "speed_rpm": 383,
+    }  # fmt: skip
+
+
+def _inline(values: Mapping[str, Any]) -> Any:
+    table = tomlkit.inline_table()
+    table.update(values)
+    return table
+
+
+def write_sheet(path: Path, tables: Mapping[str, Any]) -> None:
+    path.write_text(tomlkit.dumps(dict(tables)), encoding="utf-8")

@@ -1,0 +1,124 @@
+"""Designs and effects: closed forms, a textbook experiment, and the published screening."""
+
+import numpy as np
+import pytest
+
+from geom import load_machine
+from geom.errors import InputError
+from validation.procedure.factorial import Factor, effects, fractional, full, lenth
+from validation.procedure.screening import RESPONSES, TABLE_I, screen
+from validation.procedure.sensitivity import Varied, morris, sobol
+
+ABC = tuple(Factor(c, c.lower(), -1, 1) for c in "ABC")
+
+
+def test_full_design_is_orthogonal():
+    signs = full(TABLE_I).signs
+    assert signs.shape == (128, 7)
+    assert np.array_equal(signs.T @ signs, 128 * np.eye(7))
+    assert len(np.unique(signs, axis=0)) == 128
+
+
+def test_effects_are_twice_the_coefficients():
+    """y = 10 + 3 A - 2 B + 0.5 A C: effects 6, -4, and 1 for AC, the others 0."""
+    design = full(ABC)
+    A, B, C = design.signs.T
+    found = effects(design, 10 + 3 * A - 2 * B + 0.5 * A * C).effects
+    assert found == pytest.approx({"A": 6, "B": -4, "C": 0, "AB": 0, "AC": 1, "BC": 0})
+
+
+def test_lenth_by_hand():
+    """Contrasts 1..6 and one of 40: s0 = 1.5 x 4; those below 2.5 s0 have median 3.5. Lenth's table for 7 contrasts."""
+    error, margin, simultaneous = lenth(np.array([1.0, -2, 3, 4, 5, -6, 40]))
+    assert error == pytest.approx(1.5 * 3.5)
+    assert margin == pytest.approx(3.764 * error, rel=1e-3)
+    assert simultaneous == pytest.approx(9.008 * error, rel=1e-3)
+
+
+def test_filtration_rate_of_the_textbooks():
+    """Montgomery's pilot plant, 2^4: A, C, D, AC and AD are beyond the margin of error 6.75; PSE is 2.625."""
+    rates = [45, 71, 48, 65, 68, 60, 80, 65, 43, 100, 45, 104, 75, 86, 70, 96]
+    found = effects(full([Factor(c, c, 0, 1) for c in "ABCD"]), rates, order=4)
+    assert found.effects["A"] == pytest.approx(21.625)
+    assert found.effects["AC"] == pytest.approx(-18.125)
+    assert {e for e, value in found.ranked if abs(value) > found.margin} == {"A", "C", "D", "AC", "AD"}
+    assert [found.PSE, found.margin, found.simultaneous] == pytest.approx([2.625, 6.748, 13.699], abs=2e-3)
+    assert set(found.active) == {"A", "D", "AC", "AD"}
+
+
+def test_fraction_and_its_aliases():
+    """2^(7-1) with G = ABCDEF is of resolution VII; 2^(5-2) with D = AB, E = AC mixes D with AB."""
+    half = fractional(TABLE_I, {"G": "ABCDEF"})
+    assert (len(half.signs), half.resolution) == (64, 7)
+    assert half.aliases("A") == ()
+    quarter = fractional([Factor(c, c, 0, 1) for c in "ABCDE"], {"D": "AB", "E": "AC"})
+    assert quarter.resolution == 3
+    assert quarter.aliases("D") == ("AB",)
+    assert "AB" not in effects(quarter, np.arange(8.0)).effects
+    with pytest.raises(InputError, match="products of ABCDEF"):
+        fractional(TABLE_I, {"G": "ABG"})
+
+
+def test_half_normal_plot():
+    design = full(ABC)
+    letters, quantile, size = effects(design, design.signs @ [3.0, 2.0, 1.0]).half_normal()
+    assert letters[-1] == "A"
+    assert np.all(np.diff(size) >= 0)
+    assert np.all(np.diff(quantile) > 0)
+
+
+@pytest.fixture(scope="module")
+def published():
+    return screen(load_machine("pmsm-m1"), full(TABLE_I))
+
+
+def test_published_screening(published):
+    """128 runs, 4 responses: convection, emissivity and base lead at the magnets; more magnetic loss warms them."""
+    assert published.rises.shape == (128, len(RESPONSES))
+    magnets = published.effects["magnets"]
+    assert {letters for letters, _ in magnets.ranked[:3]} == {"A", "B", "C"}
+    assert {"A", "B", "C", "G"} <= set(magnets.active)
+    assert magnets.effects["A"] < 0 < magnets.effects["C"]
+    assert magnets.effects["G"] > 0
+
+
+def test_impregnation_sets_the_step_from_winding_to_magnets(published):
+    step = published.effects["winding minus magnets"]
+    assert step.ranked[0][0] == "D"
+    assert abs(step.effects["D"]) > 3 * abs(step.ranked[1][1])
+
+
+def test_half_fraction_ranks_alike():
+    """64 of the 128 runs lead to the same three factors."""
+    found = screen(load_machine("pmsm-m1"), fractional(TABLE_I, {"G": "ABCDEF"})).effects["magnets"]
+    assert {letters for letters, _ in found.ranked[:3]} == {"A", "B", "C"}
+
+
+def test_sobol_of_ishigami():
+    """The function of Ishigami and Homma 1990: ST = 0.5576, 0.4424, 0.2437 (closed form, a = 7, b = 0.1)."""
+    factors = [Varied(n, -np.pi, np.pi) for n in "xyz"]
+    found = sobol(
+        factors, lambda v: np.sin(v["x"]) + 7 * np.sin(v["y"]) ** 2 + 0.1 * v["z"] ** 4 * np.sin(v["x"]), 1024
+    )
+    assert [found.measure[n] for n in "xyz"] == pytest.approx([0.5576, 0.4424, 0.2437], abs=0.05)
+
+
+def test_morris_of_a_line():
+    """Elementary effects of a linear function are its slopes times the range, without spread."""
+    factors = [Varied("a", 0.0, 2.0), Varied("b", 0.0, 1.0), Varied("c", 0.0, 1.0)]
+    found = morris(factors, lambda v: 3 * v["a"] - 5 * v["b"])
+    assert found.ranked[:2] == ["a", "b"]
+    assert found.measure["a"] == pytest.approx(6.0)
+    assert found.measure["b"] == pytest.approx(5.0)
+    assert found.spread["a"] == pytest.approx(0.0, abs=1e-9)
+    assert found.measure["c"] == 0.0
+
+
+def test_correlated_factors_are_judged_together():
+    """Two factors of which only the sum counts: as a group they hold what is theirs, 2/3 of the variance."""
+    factors = [Varied("a", 0, 1, "films"), Varied("b", 0, 1, "films"), Varied("c", 0, 1)]
+    found = sobol(factors, lambda v: v["a"] + v["b"] + v["c"], 256)
+    assert found.measure == pytest.approx({"films": 2 / 3, "c": 1 / 3}, abs=0.05)
+    assert morris(factors, lambda v: v["a"] + v["b"]).ranked[0] == "films"
+    with pytest.raises(InputError, match="low below high"):
+        sobol([Varied("a", 1.0, 0.0)], lambda v: 0.0)

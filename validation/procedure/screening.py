@@ -1,0 +1,103 @@
+"""The published screening: table I's seven factors on a permanent-magnet machine, four responses, transient runs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geom.machine import Machine
+from lumped.network import Network
+from lumped.simulate import Record, simulate
+from validation.procedure.factorial import Design, Effects, Factor, effects
+from validation.procedure.pm_network import PmSettings, Rows, pm_network, table_of
+
+Array = NDArray[np.float64]
+AMBIENT = 20.0
+TABLE_I = (
+    Factor("A", "convection", 5.0, 10.0),
+    Factor("B", "emissivity", 0.2, 0.8),
+    Factor("C", "base", True, False),
+    Factor("D", "winding impregnation", 0.2, 0.8),
+    Factor("E", "end-winding impregnation", True, False),
+    Factor("F", "speed", 200.0, 400.0),
+    Factor("G", "magnetic loss", 1.0, 1.5),
+)
+RESPONSES = {"magnets": "magnets", "winding": "winding", "end winding": "winding.left", "lamination": "stator.core"}
+POOR, GOOD = 0.2, 0.8  # impregnation of the end windings, "no" and "yes"
+
+
+@dataclass(frozen=True)
+class Load:
+    """The simulated test: current (A) for some hours; the magnetic loss (W) does not depend on the speed here."""
+
+    current: float = 8.0
+    hours: float = 6.0
+    step_s: float = 300.0
+    magnetic_W: float = 76.0
+    resistance_ohm: float = 2.73
+    phases: float = 1.0
+
+
+def run(machine: Machine, levels: Mapping[str, Any], load: Load, rows_of: Rows | None = None) -> dict[str, float]:
+    """Rises over ambient (K) at the end of the test; `levels` by the factors' names, others at table I's low."""
+    level = {f.name: f.low for f in TABLE_I} | dict(levels)
+    network = pm_network(machine, settings(level, load), rows_of)
+    rows = [network.places[place].mean for place in RESPONSES.values()]
+    time = np.arange(0.0, load.hours * 3600.0 + 1.0, load.step_s)
+    inputs = {"current_A": np.full(time.size, load.current), "speed_rpm": np.full(time.size, float(level["speed"]))}
+    record = Record(time, inputs, {"ambient": np.full(time.size, AMBIENT)}, AMBIENT)
+    y = simulate(network, record, rows=rows).y[-1] - AMBIENT
+    return dict(zip(RESPONSES, (float(v) for v in y), strict=True))
+
+
+def settings(level: Mapping[str, Any], load: Load) -> PmSettings:
+    """Factors' levels as settings of the network."""
+    end = level["end-winding impregnation"]
+    return PmSettings(
+        convection=level["convection"], emissivity=level["emissivity"],
+        base=(level["emissivity"] if level["base"] else None), impregnation=level["winding impregnation"],
+        end_impregnation=(GOOD if end is True else POOR if end is False else float(end)),
+        resistance_ohm=load.resistance_ohm, phases=load.phases,
+        magnetic_W=load.magnetic_W * level["magnetic loss"] * 383.0 / level["speed"], friction_W=0.0,
+        gap_mm=level.get("liner gap"),
+    )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Screening:
+    """design and rises (n_run, n_response) K, with the effects on every response and on the step winding to magnets."""
+
+    design: Design
+    rises: Array
+    effects: Mapping[str, Effects]
+
+    def document(self) -> dict[str, Any]:
+        return {
+            "runs": len(self.rises), "resolution": self.design.resolution, "responses": list(RESPONSES),
+            "effects": {name: e.document() for name, e in self.effects.items()},
+        }  # fmt: skip
+
+
+def screen(machine: Machine, design: Design, load: Load | None = None) -> Screening:
+    """All runs of a design, one transient each."""
+    table = table_of(machine)
+    found = [run(machine, level, load or Load(), table) for level in design.settings()]
+    rises = np.array([list(one.values()) for one in found])
+    named = {name: rises[:, j] for j, name in enumerate(RESPONSES)}
+    named["winding minus magnets"] = named["winding"] - named["magnets"]
+    return Screening(design, rises, {name: effects(design, y, name) for name, y in named.items()})
+
+
+def with_gap(factors: Sequence[Factor] = TABLE_I, low_mm: float = 0.7, high_mm: float = 1.4) -> tuple[Factor, ...]:
+    """Table I and the liner-lamination gap, which the paper calibrates but does not screen."""
+    return (*factors, Factor("H", "liner gap", low_mm, high_mm))
+
+
+def network_of(machine: Machine, levels: Mapping[str, Any], load: Load | None = None) -> Network:
+    """The network behind one run."""
+    level = {f.name: f.low for f in TABLE_I} | dict(levels)
+    return pm_network(machine, settings(level, load or Load()))
