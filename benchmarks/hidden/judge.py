@@ -1,0 +1,126 @@
+"""An answer held against its label: which promises it keeps. True, False, or None where one does not apply."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from math import sqrt
+from typing import Any
+
+CLAIMS = ("named", "group", "several", "outside")
+Answer = Mapping[str, Any]
+
+
+def wilson(k: int, n: int, z: float = 1.96) -> tuple[float, float]:
+    """95 % interval of a rate, Wilson 1927."""
+    if n == 0:
+        return 0.0, 1.0
+    p, d = k / n, 1.0 + z**2 / n
+    half = z * sqrt(p * (1.0 - p) / n + z**2 / (4.0 * n**2)) / d
+    middle = (p + z**2 / (2.0 * n)) / d
+    return max(0.0, middle - half), min(1.0, middle + half)
+
+
+def reported(answer: Answer) -> list[str]:
+    """Every effect the answer speaks of."""
+    return [e for g in answer["groups"] for e in g]
+
+
+def false_alarm(label: Answer, answer: Answer) -> bool | None:
+    """Nothing missing, and yet something is claimed; a fault of the measurement that is not there counts as well."""
+    return answer["verdict"] in (*CLAIMS, "data") if label["group"] == "nothing" else None
+
+
+def right_name(label: Answer, answer: Answer, size: float, alone: bool) -> bool | None:
+    """One effect of this size; alone: only where the reference machine has no rival for it."""
+    if label["group"] != "one" or label["size"] != size or (alone and label["rivals"]):
+        return None
+    return answer["verdict"] == "named" and answer["groups"][0] == label["truth"]
+
+
+def truth_inside(label: Answer, answer: Answer, size: float) -> bool | None:
+    """Where something is claimed or a fault reported: is the truth in what is reported?"""
+    if label["group"] != "one" or label["size"] != size or not answer["groups"]:
+        return None
+    return label["truth"][0] in answer["groups"][0]
+
+
+def seen(label: Answer, answer: Answer, size: float) -> bool | None:
+    """Anything but 'adequate'."""
+    if label["group"] != "one" or label["size"] != size:
+        return None
+    return answer["verdict"] != "adequate"
+
+
+def confidently_wrong(label: Answer, answer: Answer) -> bool | None:
+    """One name alone, and it is none of what is hidden."""
+    if label["group"] == "nothing":
+        return answer["verdict"] == "named"
+    return answer["verdict"] == "named" and answer["groups"][0][0] not in label["truth"]
+
+
+def pair_as_group(label: Answer, answer: Answer) -> bool | None:
+    if label["group"] != "pair":
+        return None
+    return bool(answer["groups"]) and {*label["truth"], *label["rivals"]} <= set(answer["groups"][0])
+
+
+def foreign_said(label: Answer, answer: Answer) -> bool | None:
+    """Outside the catalogue: said so, or nothing claimed."""
+    return answer["verdict"] in ("outside", "absorbed", "adequate") if label["group"] == "foreign" else None
+
+
+def foreign_found(label: Answer, answer: Answer, links: Mapping[str, set[str]]) -> bool | None:
+    """Outside the catalogue and seen: the place with most evidence is the true one or a neighbour."""
+    if label["group"] != "foreign" or answer["verdict"] == "adequate" or not answer["where"]:
+        return None
+    best = answer["where"][0][0]
+    return best == label["place"] or best in links.get(label["place"], set())
+
+
+def both_found(label: Answer, answer: Answer) -> bool | None:
+    """Two effects: each leads or is in one of exactly two groups."""
+    if label["group"] != "two":
+        return None
+    groups, truth = answer["groups"], label["truth"]
+    crossed = any(truth[i] in groups[0] and truth[1 - i] in groups[1] for i in (0, 1)) if len(groups) == 2 else False
+    return answer["verdict"] == "several" and crossed
+
+
+def absorbed_said(label: Answer, answer: Answer) -> bool | None:
+    """A calibrated parameter far off: absorbed, and that parameter among those pointed at."""
+    if label["group"] != "absorbed":
+        return None
+    return answer["verdict"] == "absorbed" and label["truth"][0] in [p[0] for p in answer["pulls"]]
+
+
+def fault_found(label: Answer, answer: Answer) -> bool | None:
+    """Verdict 'data', and the fault or its channel is what is pointed at."""
+    if label["group"] != "fault":
+        return None
+    kind, place = label["truth"][0].split("@")
+    plain = kind in ("frozen", "clipped", "unit")
+    hit = place in answer["words"] if plain else any(place in e for e in reported(answer)[:3])
+    return answer["verdict"] == "data" and hit
+
+
+def quiet(label: Answer, answer: Answer) -> bool | None:
+    """Priors wrong by two deviations: no effect and no fault claimed."""
+    return answer["verdict"] in ("adequate", "absorbed") if label["group"] == "tense" else None
+
+
+def covered(label: Answer, answer: Answer) -> bool | None:
+    """The true amplitude lies in the 90 % interval of the true effect, where it was refitted."""
+    if label["group"] != "one" or answer["verdict"] not in ("named", "group"):
+        return None
+    row = answer["candidates"].get(label["truth"][0])
+    if row is None or row["decision"] not in ("named", "group"):
+        return None
+    half = 0.5 * (row["ci95"][1] - row["ci95"][0]) * 1.645 / 1.96
+    return abs(row["value"] - label["amplitude"][0]) <= half
+
+
+def rate(hits: Sequence[bool | None]) -> tuple[float, int, tuple[float, float]]:
+    """Rate, number of cases it applies to, Wilson interval."""
+    applies = [h for h in hits if h is not None]
+    n, k = len(applies), sum(applies)
+    return (k / n if n else float("nan")), n, wilson(k, n)

@@ -1,0 +1,67 @@
+"""Cases through the diagnosis, one line each, in as many processes as wanted; what is done is not done again."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Sequence
+from pathlib import Path
+
+from joblib import Parallel, delayed
+
+from hidden.answer import answer
+from hidden.cases import Label, records_of
+from hidden.user import case_of
+
+LABELS, ANSWERS = "labels.jsonl", "answers.jsonl"
+
+
+def answered(out: Path) -> dict[str, dict]:
+    return {a["case"]: a for a in _lines(out / ANSWERS)}
+
+
+def pairs(out: Path) -> list[tuple[dict, dict]]:
+    """Labels and answers that belong together."""
+    done = answered(out)
+    labels = {label["case"]: label for label in _lines(out / LABELS)}
+    return [(labels[name], found) for name, found in done.items() if name in labels]
+
+
+def _lines(file: Path) -> list[dict]:
+    return [json.loads(line) for line in file.read_text().splitlines()] if file.exists() else []
+
+
+def run(labels: Sequence[Label], out: Path, draws: int, plan: bool, jobs: int) -> None:
+    """Diagnose what `out` does not have yet; one line printed per case."""
+    out.mkdir(parents=True, exist_ok=True)
+    known = {label["case"] for label in _lines(out / LABELS)}
+    with (out / LABELS).open("a") as file:
+        file.writelines(json.dumps(x.document()) + "\n" for x in labels if x.case not in known)
+    done = answered(out)
+    todo = [label for label in labels if label.case not in done]
+    work = (delayed(_diagnosed)(label, draws, plan) for label in todo)
+    for label, found in zip(todo, Parallel(jobs, return_as="generator")(work), strict=True):
+        with (out / ANSWERS).open("a") as file:
+            file.write(json.dumps(found) + "\n")
+        print(line(label, found), flush=True)
+
+
+def _diagnosed(label: Label, draws: int, plan: bool) -> dict:
+    """Only the case goes to the diagnosis."""
+    start = time.process_time()
+    case = case_of(label.case, label.machine, records_of(label))
+    made = time.process_time() - start
+    found, _ = answer(case, draws, plan)
+    return {**found, "made_s": made}
+
+
+def line(label: Label, found: dict) -> str:
+    """Truth, verdict, leading group, score over threshold, time."""
+    truth = " + ".join(label.truth) or "-"
+    size = f" {label.size:g}x" if label.size else ""
+    lead = ", ".join(found["groups"][0][:3]) if found["groups"] else "-"
+    more = f" (+{len(found['groups'][0]) - 3})" if found["groups"] and len(found["groups"][0]) > 3 else ""
+    best = max((c["score"] for c in found["candidates"].values()), default=0.0)
+    cost = f"{found['made_s']:.0f}+{found['cpu_s']:.0f} s"
+    told = f"{best:.1f}/{found['threshold']:.1f}  rmse {found['rmse_K']:.2f}/{found['floor_K']:.2f} K"
+    return f"{label.case:24s} {truth + size:44s} {found['verdict']:9s} {lead}{more}  {told}  {cost}"

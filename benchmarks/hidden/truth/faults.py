@@ -1,0 +1,61 @@
+"""Faults of the measurement, as they happen to readings (time, T, ambient) -> T."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hidden.truth.change import Change
+from hidden.truth.readings import lagged
+
+Array = NDArray[np.float64]
+
+
+def reading(sensor: str, happens: Callable[[Array, Array, Array], Array]) -> Change:
+    return Change(readings={sensor: happens})
+
+
+def bias(sensor: str, kelvin: float) -> Change:
+    return reading(sensor, lambda time, T, air: T + kelvin)
+
+
+def slow(sensor: str, seconds: float) -> Change:
+    """A sensor that came loose: another first-order lag."""
+    return reading(sensor, lambda time, T, air: lagged(time, T, seconds))
+
+
+def gain(sensor: str, share: float) -> Change:
+    return reading(sensor, lambda time, T, air: 20.0 + (1.0 + share) * (T - 20.0))
+
+
+def stem(sensor: str, share: float) -> Change:
+    """Heat along the leads: the reading is drawn towards the room."""
+    return reading(sensor, lambda time, T, air: T + share * (air - T))
+
+
+def late(sensor: str, seconds: float) -> Change:
+    return reading(sensor, lambda time, T, air: np.interp(time - seconds, time, T))
+
+
+def drift(sensor: str, kelvin_hour: float) -> Change:
+    return reading(sensor, lambda time, T, air: T + kelvin_hour * time / 3600.0)
+
+
+def frozen(sensor: str, share: float) -> Change:
+    return reading(sensor, lambda time, T, air: np.where(time > share * time[-1], np.round(T[int(share * T.size)]), T))
+
+
+def clipped(sensor: str, share: float) -> Change:
+    """A range too small: nothing above this share of the rise."""
+    return reading(sensor, lambda time, T, air: np.minimum(T, T[0] + share * (T.max() - T[0])))
+
+
+def swapped(a: str, b: str) -> Change:
+    return Change(swaps=((a, b),))
+
+
+def room(offset: float) -> Change:
+    """The room's thermometer hangs where it is warmer by `offset` K."""
+    return Change(offsets={"T_ambient": offset})

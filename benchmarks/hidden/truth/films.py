@@ -1,0 +1,81 @@
+"""Heat transfer coefficients (W/m2/K) of air and water films. T in degC, lengths in m, speeds in m/s or rpm."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+G0, SIGMA, ZERO = 9.81, 5.670374e-8, 273.15
+
+
+def air(T: Array) -> tuple[Array, Array, Array, float]:
+    """Conductivity (W/m/K), kinematic viscosity (m2/s), expansion (1/K) and Prandtl number of dry air, 0 to 200 degC.
+
+    Sutherland's law at 1 atm, 1 % of the tables of Incropera.
+    """
+    K = T + ZERO
+    mu = 1.458e-6 * K**1.5 / (K + 110.4)
+    return 2.646e-3 * K**1.5 / (K + 245.4 * 10.0 ** (-12.0 / K)), mu * K / 352.98, 1.0 / K, 0.71
+
+
+def cylinder_still(T: Array, Ta: Array, D: float) -> Array:
+    """Horizontal cylinder in still air: Churchill and Chu 1975."""
+    k, nu, beta, Pr = air(0.5 * (T + Ta))
+    Ra = G0 * beta * np.abs(T - Ta) * D**3 / nu**2 * Pr
+    Nu = (0.60 + 0.387 * Ra ** (1 / 6) / (1.0 + (0.559 / Pr) ** (9 / 16)) ** (8 / 27)) ** 2
+    return Nu * k / D
+
+
+def plate_still(T: Array, Ta: Array, H: float) -> Array:
+    """Vertical plate in still air: Churchill and Chu 1975."""
+    k, nu, beta, Pr = air(0.5 * (T + Ta))
+    Ra = G0 * beta * np.abs(T - Ta) * H**3 / nu**2 * Pr
+    Nu = (0.825 + 0.387 * Ra ** (1 / 6) / (1.0 + (0.492 / Pr) ** (9 / 16)) ** (8 / 27)) ** 2
+    return Nu * k / H
+
+
+def wind(T: Array, Ta: Array, v: Array, L: float) -> Array:
+    """Blunt body in a wind: Nu = 0.24 Re^0.63 Pr^0.33."""
+    k, nu, _, Pr = air(0.5 * (T + Ta))
+    return 0.24 * (np.abs(v) * L / nu) ** 0.63 * Pr**0.33 * k / L
+
+
+def mixed(forced: Array, still: Array) -> Array:
+    """Churchill 1977: cubes add."""
+    return np.asarray((forced**3 + still**3) ** (1 / 3))
+
+
+def radiation(T: Array, Ta: Array, emissivity: float) -> Array:
+    a, b = T + ZERO, Ta + ZERO
+    return emissivity * SIGMA * (a**2 + b**2) * (a + b)
+
+
+def gap(T: Array, rpm: float, r: float, g: float) -> Array:
+    """Rotor to stator, one film over the whole gap: Nu of Taylor-Couette flow, smoothly joined to conduction."""
+    k, nu, _, Pr = air(T)
+    Ta = np.abs(rpm) * np.pi / 30.0 * np.sqrt(r) * g**1.5 / nu
+    Nu = (2.0**8 + (0.212 * Ta**0.63 * Pr**0.27) ** 8) ** (1 / 8)
+    return np.asarray(Nu * k / (2.0 * g))
+
+
+def stirred(rpm: float, r: float, k1: float, k2: float) -> float:
+    """End space, Schubert 1968: k1 (1 + k2 v^0.9), v the rotor's tip speed."""
+    return k1 * (1.0 + k2 * (abs(rpm) * np.pi / 30.0 * r) ** 0.9)
+
+
+def water(T: Array) -> tuple[Array, Array, Array]:
+    """Dynamic viscosity (Pa s), conductivity (W/m/K), Prandtl number of 50/50 water and glycol, 10 to 90 degC."""
+    mu = 3.7e-3 * np.exp(-0.0288 * (T - 20.0) + 1.15e-4 * (T - 20.0) ** 2)
+    k = 0.389 + 6.2e-4 * (T - 20.0)
+    return mu, k, mu * (3312.0 + 4.8 * (T - 20.0)) / k
+
+
+def channel(T: Array, litres_min: float, area: float, D: float) -> Array:
+    """Coolant channel of cross section `area` (m2): laminar 4.36, Gnielinski 1976 when turbulent, joined smoothly."""
+    mu, k, Pr = water(T)
+    Re = np.maximum(1050.0 * litres_min / 60000.0 / area * D / mu, 1.0)
+    f = (0.79 * np.log(np.maximum(Re, 3000.0)) - 1.64) ** -2
+    turbulent = f / 8 * np.maximum(Re - 1000.0, 0.0) * Pr / (1.0 + 12.7 * np.sqrt(f / 8) * (Pr ** (2 / 3) - 1.0))
+    share = 1.0 / (1.0 + np.exp(-(Re - 3000.0) / 300.0))
+    return np.asarray((share * turbulent + (1.0 - share) * 4.36 * (1.0 + 0.0003 * Re)) * k / D)

@@ -1,0 +1,142 @@
+"""The true fan-cooled induction motor, 7.5 kW, 132 frame: 103 cells. Position 0 is the drive end, 1 the fan's."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hidden.truth.body import Body, Joint, Skeleton, skeleton
+from hidden.truth.change import Change
+from hidden.truth.draw import Draw
+from hidden.truth.films import cylinder_still, gap, mixed, plate_still, radiation, stirred
+from hidden.truth.losses import bertotti, copper, friction
+from hidden.truth.machine import Film, Loss, Machine
+
+Array = NDArray[np.float64]
+RATED = 1500.0
+COPPER, STEEL, ALUMINIUM, IRON = -2e-4, -8e-4, -1e-4, -9e-4
+ENDS = (("de", 0.0), ("nde", 1.0))
+
+
+def bodies(d: Draw) -> list[Body]:
+    def C(key: str, value: float) -> float:
+        return value * d.factor(f"capacity.{key}", 0.05)
+
+    side = [b for end, _ in ENDS for b in (
+        Body(f"winding.{end}", C(f"winding.{end}", 850.0), 5, 0.12, COPPER), Body(f"stub.{end}", 300.0, 4, 1.6, STEEL),
+        Body(f"flange.{end}", C(f"flange.{end}", 1500.0), 6, 0.3, IRON), Body(f"bearing.{end}", 220.0, 2, 0.2),
+        Body(f"air.{end}", 20.0),
+    )]  # fmt: skip
+    return [
+        Body("slot", C("winding.slot", 1700.0), 11, 0.18, COPPER), Body("teeth", C("core", 4100.0), 11, 9.0, STEEL),
+        Body("yoke", C("core", 5500.0), 11, 6.0, STEEL), Body("rotor", C("rotor", 9000.0), 11, 0.35, ALUMINIUM),
+        Body("housing", C("housing", 6000.0), 11, 0.35, ALUMINIUM), *side,
+        Body("bench", 6400.0, 6, 0.25), Body("bench.deep", 41600.0, 6, 1.6),
+    ]  # fmt: skip
+
+
+def joints(d: Draw) -> list[Joint]:
+    def G(key: str, value: float, sd: float) -> float:
+        return value * d.factor(key, sd)
+
+    side = [j for end, x in ENDS for j in (
+        Joint(f"slot-{end}", "slot", f"winding.{end}", G(f"slot-{end}", 30.0, 0.1), (x, 0.0)),
+        Joint(f"rotor-{end}", "rotor", f"stub.{end}", 20.0, (x, 0.0)),
+        Joint(f"shaft-{end}", f"stub.{end}", f"bearing.{end}", G(f"shaft-{end}", 9.0, 0.2), (1.0, 1.0)),
+        Joint(f"seat-{end}", f"bearing.{end}", f"flange.{end}", G(f"seat-{end}", 12.0, 0.25), (0.0, 1.0)),
+        Joint(f"spigot-{end}", f"flange.{end}", "housing", G(f"spigot-{end}", 14.0, 0.25), (0.0, x)),
+    )]  # fmt: skip
+    return [
+        Joint("liner", "slot", "teeth", G("liner", 45.0, 0.2), slope=5e-4),
+        Joint("lamination", "teeth", "yoke", G("lamination", 260.0, 0.1), slope=STEEL),
+        Joint("fit", "yoke", "housing", G("fit", 70.0, 0.25), slope=1e-3), *side,
+        Joint("feet", "housing", "bench", G("feet", 1.6, 0.25), (0.5, 0.0)),
+        Joint("bed", "bench", "bench.deep", 6.0, (1.0, 0.0)),
+    ]  # fmt: skip
+
+
+def outside(s: Skeleton, d: Draw) -> list[Film]:
+    """Fan air decays along the fins towards the drive end; still air and radiation beside it."""
+    fan, power = 26.0 * d.factor("fan", 0.15), d.between("fan.power", 0.68, 0.82)
+    still, emissivity = 0.8 * d.factor("still", 0.15), min(0.8 * d.factor("paint", 0.05), 0.95)
+    x = (np.arange(11) + 0.5) / 11
+    decay = np.exp(-0.5 * (1.0 - x))
+    decay = decay / decay.mean()
+
+    def fins(T: Array, Ta: Array, u) -> Array:
+        blown = fan * decay * (u["speed_rpm"] / RATED) ** power
+        clean = 1.0 - u.get("fade.housing", 0.0)
+        return clean * (mixed(blown, still * cylinder_still(T, Ta, 0.26)) + 0.8 * radiation(T, Ta, emissivity))
+
+    def shield(T: Array, Ta: Array, u) -> Array:
+        return still * plate_still(T, Ta, 0.25) + radiation(T, Ta, emissivity)
+
+    cowl = 35.0 * d.factor("cowl", 0.2)
+
+    def hooded(T: Array, Ta: Array, u) -> Array:
+        return mixed(cowl * (u["speed_rpm"] / RATED) ** power, 0.6 * plate_still(T, Ta, 0.25))
+
+    ring = 0.06 * np.arange(6, 0, -1) / 21.0 * d.factor("face", 0.1)
+    return [
+        Film("fins", s.cells("housing"), "T_ambient", np.full(11, 0.05), fins),
+        Film("shield", s.cells("flange.de"), "T_ambient", ring, shield),
+        Film("hood", s.cells("flange.nde"), "T_ambient", ring, hooded),
+        Film("bed.air", s.cells("bench"), "T_ambient", np.full(6, 0.01), lambda T, Ta, u: 8.0),
+    ]
+
+
+def inside(s: Skeleton, d: Draw) -> list[Film]:
+    """Both end spaces, each with its air, and the gap."""
+    out = []
+    for end, x in ENDS:
+        k2 = d.between(f"stir.{end}", 0.2, 0.4)
+        k1 = 15.0 * d.factor(f"endspace.{end}", 0.2)
+
+        def h(T: Array, Ta: Array, u, k1: float = k1, k2: float = k2) -> float:
+            return stirred(u["speed_rpm"], 0.06, k1, k2)
+
+        air = s.cells(f"air.{end}")
+        walls = (
+            (s.cells(f"winding.{end}"), 0.08), (s.cells(f"flange.{end}")[2:], 0.05),
+            (np.array([s.cell("rotor", x)]), 0.03), (np.array([s.cell("housing", x)]), 0.03),
+        )  # fmt: skip
+        out += [Film(f"end.{end}.{k}", w, air, np.full(w.size, A / w.size), h) for k, (w, A) in enumerate(walls)]
+    g = 0.5e-3 / d.factor("gap", 0.15)
+
+    def film(T: Array, Ta: Array, u) -> Array:
+        return gap(0.5 * (T + Ta), u["speed_rpm"], 0.06, g)
+
+    return [*out, Film("gap", s.cells("rotor"), s.cells("teeth"), np.full(11, 0.068 / 11), film)]
+
+
+def losses(s: Skeleton, d: Draw) -> list[Loss]:
+    R1, R2 = 0.5 * d.factor("copper", 0.04), 0.3 * d.factor("cage", 0.12)
+    kh, ke, kx = 80.0 * d.factor("iron", 0.15), 50.0 * d.factor("eddy", 0.2), 20.0 * d.factor("excess", 0.3)
+
+    def winding(T: Array, u) -> Array:
+        return copper(R1, u["current_A"], T)
+
+    def iron(T: Array, u) -> Array:
+        return bertotti(T, u["speed_rpm"] / RATED, kh, ke, kx)
+
+    out = [
+        Loss("slot", s.cells("slot"), np.full(11, 0.45 / 11), winding),
+        Loss("teeth", s.cells("teeth"), np.full(11, 0.55 / 11), iron),
+        Loss("yoke", s.cells("yoke"), np.full(11, 0.45 / 11), iron),
+        Loss("cage", s.cells("rotor"), np.full(11, 1 / 11), lambda T, u: copper(R2, u["rotor_A"], T)),
+    ]
+    for end, _ in ENDS:
+        P = 14.0 * d.factor(f"bearing.{end}", 0.25)
+
+        def grease(T: Array, u, P: float = P) -> Array:
+            return friction(T, u["speed_rpm"] / RATED, P)
+
+        out.append(Loss(f"end.{end}", s.cells(f"winding.{end}"), np.full(5, 0.275 / 5), winding))
+        out.append(Loss(f"grease.{end}", s.cells(f"bearing.{end}"), np.full(2, 0.5), grease))
+    return out
+
+
+def machine(d: Draw, change: Change) -> Machine:
+    """The machine of one draw with what is hidden in it."""
+    s = skeleton([*bodies(d), *change.bodies], [*joints(d), *change.joints])
+    return Machine(s, (*outside(s, d), *inside(s, d), *losses(s, d), *change.terms(s)))

@@ -1,0 +1,63 @@
+"""Does the diagnosis name what is hidden? Machines made by physics of their own, their truth in labels it never sees.
+
+    python benchmarks/hidden_effects.py --seeds dev --count 12 --classes nothing one fault --json FILE
+
+Every case is one line of OUT/answers.jsonl and one of OUT/labels.jsonl; a run that is started again with the same OUT
+goes on where it stopped, `--score` only scores. Sizes were measured on development seeds; "test" is for reporting.
+"""
+
+from __future__ import annotations
+
+import argparse
+import datetime
+import json
+import platform
+from pathlib import Path
+
+from hidden import sizes
+from hidden.cases import SHARES, plan
+from hidden.kinds import KINDS
+from hidden.run import answered, pairs, run
+from hidden.score import rows
+
+
+def arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--seeds", choices=("dev", "test"), default="dev")
+    parser.add_argument("--count", type=int, default=24)
+    parser.add_argument("--classes", nargs="+", choices=tuple(SHARES), default=list(SHARES))
+    parser.add_argument("--archetypes", nargs="+", choices=tuple(KINDS), default=list(KINDS))
+    parser.add_argument("--draws", type=int, default=24, help="data sets of the simulated null")
+    parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--plan", action="store_true", help="also rank next tests and scan for latent heat (slower)")
+    parser.add_argument("--out", type=Path, default=None, help="folder of answers and labels, to be resumed")
+    parser.add_argument("--score", action="store_true", help="only score what OUT has")
+    parser.add_argument("--sizes", action="store_true", help="measure the smallest detectable sizes anew and stop")
+    parser.add_argument("--json", type=Path)
+    return parser.parse_args()
+
+
+def main() -> None:
+    a = arguments()
+    if a.sizes:
+        return sizes.write(a.draws, a.archetypes)
+    out = a.out or Path(f"out/hidden-{a.seeds}")
+    labels = plan(a.seeds, a.count, a.classes, a.archetypes)
+    if not a.score:
+        run(labels, out, a.draws, a.plan, a.jobs)
+    table = rows(pairs(out))
+    for r in table:
+        told = f"  n {r['n']:3d}  95 % {r['ci95'][0]:.2f} to {r['ci95'][1]:.2f}  {r['target']}" if "n" in r else ""
+        print(f"{r['case']:32s} {r['measure']:30s} {r['ours']:8.3g} {r['unit']}{told}")
+    if a.json:
+        computer = f"{platform.machine()}, {platform.processor() or platform.system()}"
+        document = {
+            "benchmark": "hidden effects", "computer": computer,
+            "date": datetime.date.today().isoformat(), "seeds": a.seeds, "draws": a.draws, "cases": len(answered(out)),
+            "rows": table,
+        }  # fmt: skip
+        a.json.write_text(json.dumps(document, indent=1))
+
+
+if __name__ == "__main__":
+    main()
