@@ -1,4 +1,4 @@
-"""The sheet beside each record of the PM machines: its columns, with the cold readings and the meters' data.
+"""The sheet beside each record of the PM machines: its columns, with the cold readings and the data of the meters."""
 
 from __future__ import annotations
 

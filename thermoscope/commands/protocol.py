@@ -1,0 +1,143 @@
+"""thermoscope protocol [RECORD.toml]
+
+[machine]
+rated_kW = 7
+[cold]
+room_degC = 21.0
+machine_degC = 21.3
+resistance_ohm = 0.52
+emf_V = 290.0
+speed_rpm = 383
+range_ohm = 4.0            # upper end of the range that was set
+hours_since_run = 14
+[load]
+file = "run.csv"           # .csv, .xlsx, .tdms, .mf4, .parquet
+time = "time_s"
+column = "T_lamination"
+resolution_K = 0.5
+[hot]
+ambient_degC = 22.0
+file = "cooling.csv"       # or readings = [[30, 0.668], [45, 0.667]]
+time = "time_s"
+column = "R_ohm"
+emf_V = 266.1
+speed_rpm = 383
+[coefficients]
+beta_percent_K = [0.392, 0.393]
+alpha_percent_K = [-0.11, -0.10]
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from geom.errors import InputError
+from lumped.reader import Table
+from thermoscope.formats import read_frame, recording
+from thermoscope.sheet import read_toml
+from thermoscope.terminal import give, progress, say, table
+from validation.procedure.protocol import Cold, Hot, Protocol, Record
+from validation.procedure.protocol import protocol as judged
+from validation.procedure.readings import COPPER, NDFEB
+from validation.procedure.spread import Reading, Spread
+
+Pairs = tuple[tuple[float, float], ...]
+
+
+def protocol(file: Path | None, target: str | None) -> int:
+    """Exit code 0 when all is measured, 1 when something is still to do, 2 (with the reason) when a step is refused."""
+    with progress() as tell:
+        tell("checking the record")
+        found = judged(Record(1.0) if file is None else read_record(file))
+    give(found.document(), target, lambda: show(found))
+    if found.refused:
+        first = found.refused[0]
+        more = f" (and {len(found.refused) - 1} more)" if len(found.refused) > 1 else ""
+        raise InputError(first.words.split(";")[0], f"{file} [{first.name}]", first.words.partition("; ")[2] + more)
+    return 0 if file is None or found.complete else 1
+
+
+def read_record(file: Path) -> Record:
+    """The record of a test; InputError for unknown keys and values that cannot be."""
+    top = Table(read_toml(file, "a record of a thermal test; `thermoscope protocol` lists what it holds"), str(file))
+    machine, cold, load, hot = (top.table(name) for name in ("machine", "cold", "load", "hot"))
+    coefficients = top.table("coefficients")
+    top.close()
+    record = Record(
+        machine.number("rated_kW", low=1e-3), _cold(cold) if cold.data else None, _pairs(load, file, 60.0),
+        load.number("resolution_K", 0.5, low=1e-3), _hot(hot, file) if hot.data else None,
+        beta=_range(coefficients, "beta_percent_K", COPPER), alpha=_range(coefficients, "alpha_percent_K", NDFEB),
+    )  # fmt: skip
+    for one in (machine, load, coefficients):
+        one.close()
+    return record
+
+
+def _optional(table: Table, key: str) -> float | None:
+    return table.number(key) if key in table else None
+
+
+def _cold(table: Table) -> Cold:
+    cold = Cold(
+        table.number("room_degC", low=-273.15), table.number("machine_degC", low=-273.15),
+        table.number("resistance_ohm", low=1e-9), _optional(table, "emf_V"), _optional(table, "speed_rpm"),
+        _optional(table, "range_ohm"), _optional(table, "hours_since_run"),
+    )  # fmt: skip
+    table.close()
+    return cold
+
+
+def _hot(table: Table, file: Path) -> Hot:
+    hot = Hot(
+        table.number("ambient_degC", low=-273.15), _pairs(table, file, 1.0), _optional(table, "emf_V"),
+        _optional(table, "speed_rpm"), _optional(table, "range_ohm"),
+    )  # fmt: skip
+    table.close()
+    return hot
+
+
+def _pairs(source: Table, beside: Path, unit_s: float) -> Pairs:
+    """(time, value) of a table's `readings`, or of its file; the file's times (s) are divided by `unit_s`."""
+    if "readings" in source:
+        rows = source.raw("readings")
+        if not isinstance(rows, list) or not all(isinstance(r, list) and len(r) == 2 for r in rows):
+            raise source.error("readings is no list of pairs", "readings = [[time, value], ...]")
+        return tuple((float(t), float(v)) for t, v in rows)
+    if "file" not in source:
+        return ()
+    path, time, column = beside.parent / source.word("file"), source.word("time", "time_s"), source.word("column")
+    frame = read_frame(recording(path), source.word("worksheet", ""))
+    for name in (time, column):
+        if name not in frame.columns:
+            raise source.error(f"column '{name}' is not in {path.name}", f"known: {', '.join(map(str, frame.columns))}")
+    return tuple((float(t) / unit_s, float(v)) for t, v in frame[[time, column]].dropna().to_numpy(float))
+
+
+def _range(table: Table, key: str, usual: Reading) -> Reading:
+    if key not in table:
+        return usual
+    low, *more = table.numbers(key)
+    high = more[0] if more else low
+    return Reading(usual.name, (low + high) / 200.0, abs(high - low) / 200.0)
+
+
+def show(found: Protocol) -> None:
+    """What to do when; then the temperatures with their three uncertainties."""
+    rows: list[list[Any]] = [[s.name, s.when, s.what, s.state, s.words] for s in found.steps]
+    table("Thermal test", ["step", "when", "what", "state", "found"], rows, marked=["refused"])
+    if found.ways:
+        rows = [[w.method, w.at_s, w.value, w.sd, w.words] for w in found.ways]
+        table("Winding when switched off", ["way", "at (s)", "degC", "1 sigma (K)", "how"], rows)
+    spreads = [(n, s) for n, s in (("winding", found.winding), ("magnets", found.magnets)) if s is not None]
+    if spreads:
+        headers = ["rise", "K", "worst case", "GUM 95 %", "Monte Carlo 95 %", "largest share"]
+        table("Rises over the cold temperature", headers, [_row(n, s) for n, s in spreads])
+    if found.refused:
+        say(f"{len(found.refused)} steps refused: no temperature is given")
+
+
+def _row(name: str, s: Spread) -> list[Any]:
+    largest = max(s.budget, key=lambda n: s.budget[n])
+    pairs = (s.worst, s.first_order, s.interval)
+    return [name, s.value, *(f"{a:.1f} ... {b:.1f}" for a, b in pairs), f"{largest} ({s.budget[largest]:.1f} K)"]
