@@ -9,11 +9,13 @@ _HOME = {
     "Comparison": "data", "Sensor": "data", "sensors": "data",
     "SplitMesh": "nodes", "split": "nodes", "require_gl": "gl", "off_screen_window": "gl",
     "Wedge": "cut", "HALF": "cut", "QUARTER": "cut", "cutaway": "field", "pair": "field",
-    "regions": "parts", "exploded": "parts", "missing_heat": "heat",
+    "regions": "parts", "exploded": "parts", "missing_heat": "heat", "missing_in_machine": "missing",
+    "flux_arrows": "arrows", "heat_flux": "arrows",
     "heat_flows": "flows", "sankey_of_losses": "sankey", "network_in_machine": "network", "animate": "animation",
     "measured_and_model": "curves", "residuals": "curves", "before_after": "errors", "staircase": "errors",
     "scores": "candidates", "half_normal": "candidates", "confusion": "candidates",
     "write_recording": "recording", "verify": "recording", "Report": "report", "write_report": "report",
+    "write_pdf": "pdf",
 }  # fmt: skip
 __all__ = sorted(_HOME)
 

@@ -44,6 +44,14 @@ def heat() -> LinearSegmentedColormap:
     return LinearSegmentedColormap.from_list("thermoscope.heat", [tuple(c) for c in rgb], N=256)
 
 
+@lru_cache(maxsize=1)
+def missing() -> LinearSegmentedColormap:
+    """Blue through light grey to vermilion: too little, nothing, too much."""
+    from matplotlib.colors import LinearSegmentedColormap
+
+    return LinearSegmentedColormap.from_list("thermoscope.missing", [BLUE, "#E4E8EC", VERMILION], N=255)
+
+
 def _oklab_to_srgb(L: NDArray[np.float64], a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
     """OKLab to sRGB in 0..1, clipped to the gamut (Ottosson 2020)."""
     lms = (

@@ -31,6 +31,8 @@ from viz.nodes import SplitMesh, on_nodes
 if TYPE_CHECKING:
     import rerun as rr
 
+    from validation.case import Channel
+
 Array = NDArray[np.float64]
 TIME, REVISION = "test_time", "revision"
 
@@ -44,6 +46,7 @@ def write_recording(
     *,
     history: Sequence[Mapping[str, Any]] = (),
     revision_fields: Array | None = None,
+    revision_residuals: Sequence[Mapping[str, float]] = (),
     wedge: Wedge | None = QUARTER,
 ) -> Path:
     """Write an .rrd file and return its path.
@@ -52,6 +55,7 @@ def write_recording(
     positions : channel name -> (x, y, z) m; channels without one appear as curves only
     history : revisions as in viz.errors.staircase
     revision_fields : (n_revisions + 1, n_nodes) degC, the field at the end of the test, start first
+    revision_residuals : for each of these channel -> measured - modelled (K) then
     """
     import rerun as rr
 
@@ -65,7 +69,7 @@ def write_recording(
     surface = cut_away(nodes, wedge)
     stream.save(path, default_blueprint=blueprint(comparison, worst, surface.points, bool(history)))
     _machine(stream, surface, times, fields, revision_fields)
-    _sensors(stream, comparison, times, positions)
+    _sensors(stream, comparison, times, positions, revision_residuals)
     _curves(stream, comparison)
     _revisions(stream, history)
     stream.flush()
@@ -119,7 +123,10 @@ def _colours(
     stream.send_columns("machine/field", indexes=[index], columns=columns)
 
 
-def _sensors(stream: rr.RecordingStream, c: Comparison, times: Array, positions: Mapping[str, Sequence[float]]) -> None:
+def _sensors(
+    stream: rr.RecordingStream, c: Comparison, times: Array, positions: Mapping[str, Sequence[float]],
+    revisions: Sequence[Mapping[str, float]],
+) -> None:  # fmt: skip
     import rerun as rr
 
     placed = [channel for channel in c.channels if channel.name in positions]
@@ -131,13 +138,23 @@ def _sensors(stream: rr.RecordingStream, c: Comparison, times: Array, positions:
     )  # fmt: skip
     stream.log("machine/sensors", points, static=True)
     residual = np.stack([np.interp(times, c.test.time, c.residual(channel)) for channel in placed], axis=1)
+    _markers(stream, placed, rr.TimeColumn(TIME, duration=times), residual)
+    if revisions:
+        ends = np.array([[row.get(channel.name, np.nan) for channel in placed] for row in revisions])
+        _markers(stream, placed, rr.TimeColumn(REVISION, sequence=range(len(ends))), ends)
+
+
+def _markers(stream: rr.RecordingStream, placed: Sequence[Channel], index: Any, residual: Array) -> None:
+    """Colours of the sensors for every entry of `index`, from residuals (n, n_sensors) K."""
+    import rerun as rr
+
     colours = [
-        VERDICT[Sensor(channel.name, (0, 0, 0), r, 2 * channel.sigma_K).verdict]
+        _rgba(VERDICT[Sensor(channel.name, (0, 0, 0), r, 2 * channel.sigma_K).verdict])
         for row in residual
         for channel, r in zip(placed, row, strict=True)
     ]
-    columns = rr.Points3D.columns(colors=[_rgba(colour) for colour in colours]).partition([len(placed)] * len(times))
-    stream.send_columns("machine/sensors", indexes=[rr.TimeColumn(TIME, duration=times)], columns=columns)
+    columns = rr.Points3D.columns(colors=colours).partition([len(placed)] * len(residual))
+    stream.send_columns("machine/sensors", indexes=[index], columns=columns)
 
 
 def _curves(stream: rr.RecordingStream, c: Comparison) -> None:

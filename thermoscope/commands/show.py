@@ -15,21 +15,26 @@ from geom.errors import MissingDependency
 from thermoscope.commands.opened import opened_to_write
 from thermoscope.commands.saved import save_diagnosis, saved_diagnosis
 from thermoscope.folder import Folder
-from thermoscope.runs import before_last, fields, held, parameters, steps
+from thermoscope.history import Revision
+from thermoscope.runs import at_revision, before_last, fields, held, parameters, readings, steps
 from thermoscope.terminal import Progress, give, notes, progress, say, table
-from validation.case import Test
+from validation.case import Case, Test
 
 FRAMES = 61
 ORDER = {"hold-out": 0, "validate": 1, "calibrate": 2}
 
 
 def report(case: str, out: Path | None, target: str | None) -> int:
-    """One page; the diagnosis is the last one if nothing has changed since."""
+    """One page, as PDF too where this computer can; the diagnosis is the last one if nothing has changed since."""
+    from viz import write_pdf
+
     with progress() as tell:
         folder = opened_to_write(case, tell)
         path = write_page(folder, case, out or folder.settings.out, tell)
+        tell("printing")
+        pdf = write_pdf(path)
     document = {"case": folder.case.name, "revision": folder.case.model.revision, "report": str(path)}
-    give(document, target, lambda: say(f"{path}"))
+    give({**document, "pdf": pdf and str(pdf)}, target, lambda: say(f"{path}" if pdf is None else f"{path}\n{pdf}"))
     return 0
 
 
@@ -131,7 +136,22 @@ def _recording(folder: Folder, into: Path) -> Path:
     nodes, test = split(folder.built.mesh), by_interest(folder)[0]
     frames = fields(folder.case, test, nodes, FRAMES)
     path = into / f"{test.name}.rrd"
-    return write_recording(path, nodes, held(folder, test), frames, folder.positions, history=steps(folder))
+    ends = np.array([fields(case, test, nodes, 1)[1][-1] for case in every_revision(folder)])
+    return write_recording(
+        path, nodes, held(folder, test), frames, folder.positions, history=steps(folder), revision_fields=ends,
+        revision_residuals=[residual_at_end(case, test) for case in every_revision(folder)],
+    )  # fmt: skip
+
+
+def every_revision(folder: Folder) -> list[Case]:
+    """The case with each model of its history, as declared first."""
+    return [at_revision(folder, r) for r in (Revision(0, "calibrate"), *folder.history.revisions)]
+
+
+def residual_at_end(case: Case, test: Test) -> dict[str, float]:
+    """Sensor -> measured - modelled (K) over the last fifth of a test, where the machine is warm."""
+    model, late = readings(case, test), slice(int(0.8 * len(test.time)), None)
+    return {c.name: float(np.nanmean((c.y - model[c.name])[late])) for c in test.channels if np.isfinite(c.y).any()}
 
 
 def assumptions(folder: Folder) -> list[str]:

@@ -37,7 +37,7 @@ class Stage:
         self.reset()
         interactor: Any = self.window.GetInteractor()
         interactor.AddObserver("LeftButtonPressEvent", self._press)
-        interactor.AddObserver("LeftButtonReleaseEvent", self._release)
+        interactor.GetInteractorStyle().AddObserver("EndInteractionEvent", self._release)  # it keeps releases to itself
 
     @property
     def window(self) -> Any:
@@ -104,8 +104,8 @@ class Stage:
     def _press(self, interactor: Any, _event: str) -> None:
         self._pressed = np.array(interactor.GetEventPosition(), float)
 
-    def _release(self, interactor: Any, _event: str) -> None:
-        now = np.array(interactor.GetEventPosition(), float)
+    def _release(self, style: Any, _event: str) -> None:
+        now = np.array(style.GetInteractor().GetEventPosition(), float)
         found = self.at(*now) if np.linalg.norm(now - self._pressed) <= STILL else None
         if found is not None:
             self._on_pick(found)

@@ -1,0 +1,130 @@
+"""Live figures carry the numbers they were given, on light and dark paper."""
+
+import json
+import shutil
+
+import numpy as np
+import pytest
+from fictional import HISTORY, candidates, comparison
+
+import viz.live
+from geom.errors import InputError
+from viz.candidates import DECISION
+from viz.colours import DARK
+from viz.flows import Heat
+from viz.live import (
+    against_input,
+    confusion,
+    half_normal,
+    pareto,
+    parity,
+    residuals,
+    sankey,
+    saved,
+    sensor,
+    staircase,
+)  # fmt: skip
+
+HEAT = Heat({"copper": 300.0, "iron": 100.0}, (), {"fan": 250.0, "base": 90.0})
+DRAW = {
+    "sensor": lambda **o: sensor(comparison(before=True), "flange.right", **o),
+    "residuals": lambda **o: residuals(comparison(), **o),
+    "against_input": lambda **o: against_input(comparison(), "flange.right", "current_A", **o),
+    "parity": lambda **o: parity(comparison(), **o),
+    "staircase": lambda **o: staircase(HISTORY, **o),
+    "half_normal": lambda **o: half_normal(candidates(), **o),
+    "confusion": lambda **o: confusion(["a@x", "b@y"], np.array([[1.0, -0.83], [-0.83, 1.0]]), **o),
+    "pareto": lambda **o: pareto(candidates(), **o),
+    "sankey": lambda **o: sankey(HEAT, **o),
+}
+
+
+def data(figure):
+    return json.loads(json.dumps(figure.to_plotly_json()))["data"]
+
+
+def named(figure, name):
+    return next(trace for trace in data(figure) if trace.get("name") == name)
+
+
+@pytest.mark.parametrize("name", DRAW)
+def test_figure_is_plain_json_on_light_and_dark_paper(name):
+    assert data(DRAW[name]())
+    assert DRAW[name](theme=DARK).layout.paper_bgcolor == DARK.paper
+
+
+def test_every_public_figure_is_tested_here_or_beside():
+    assert set(viz.live.__all__) == {*DRAW, "saved", "sensitivity"}
+
+
+def test_sensor_shows_readings_model_and_their_difference():
+    c = comparison(before=True)
+    channel = next(x for x in c.channels if x.name == "flange.right")
+    drawn = DRAW["sensor"]()
+    np.testing.assert_allclose(named(drawn, "model")["y"], c.model["flange.right"][c.thin])
+    np.testing.assert_allclose(named(drawn, "residual")["y"], c.residual(channel)[c.thin])
+    np.testing.assert_allclose(named(drawn, "earlier model")["y"], c.before["flange.right"][c.thin])
+
+
+def test_only_the_wrong_sensor_is_coloured():
+    colours = {t["name"]: t["line"]["color"] for t in data(DRAW["residuals"]())}
+    assert len({c for name, c in colours.items() if name != "flange.right"}) == 1
+    assert colours["flange.right"] != colours["yoke"]
+
+
+def test_half_normal_ranks_by_size_and_colours_by_decision():
+    trace = data(DRAW["half_normal"]())[0]
+    assert trace["y"] == sorted(trace["y"])
+    assert trace["y"][-1] == 31.4
+    assert trace["marker"]["color"][-1] == DECISION["named"]
+
+
+def test_confusion_shows_sizes():
+    np.testing.assert_allclose(data(DRAW["confusion"]())[0]["z"], [[1.0, 0.83], [0.83, 1.0]])
+
+
+def test_pareto_starts_with_the_largest_fall():
+    assert max(data(DRAW["pareto"]())[0]["y"]) == pytest.approx(4.85 - 0.93)
+
+
+def test_staircase_falls_as_the_history_says():
+    assert named(DRAW["staircase"](), "road-2 (hold-out)")["y"] == [6.4, 4.85, 0.93]
+
+
+def test_sankey_balances():
+    link = data(DRAW["sankey"]())[0]["link"]
+    left = [v for v, s in zip(link["value"], link["source"], strict=True) if s != 2]
+    right = [v for v, s in zip(link["value"], link["source"], strict=True) if s == 2]
+    assert sum(left) == pytest.approx(sum(right)) == 400.0
+
+
+def test_parity_puts_a_right_model_on_the_line():
+    trace = named(parity(comparison(wrong_K=0.0)), "yoke")
+    assert np.abs(np.subtract(trace["x"], trace["y"])).max() < 1.5  # readings scatter by 0.3 K
+
+
+@pytest.mark.parametrize(("draw", "words"), [
+    (lambda: sensor(comparison(), "nowhere"), "known: flange.left"),
+    (lambda: against_input(comparison(), "yoke", "wind"), "known: current_A, ambient"),
+    (lambda: sankey(Heat({}, (), {})), "a machine that is running"),
+])  # fmt: skip
+def test_wrong_names_list_the_right_ones(draw, words):
+    with pytest.raises(InputError, match=words):
+        draw()
+
+
+def test_html_needs_nothing_else(tmp_path):
+    text = saved(DRAW["parity"](), tmp_path / "p.html").read_text()
+    assert "<script src=" not in text
+    assert "measured" in text
+
+
+def test_other_endings_are_refused(tmp_path):
+    with pytest.raises(InputError, match="ends in"):
+        saved(DRAW["parity"](), tmp_path / "p.txt")
+
+
+@pytest.mark.skipif(shutil.which("chromium") is None, reason="needs a browser: apt-get install -y chromium")
+def test_static_picture_through_a_browser(tmp_path):
+    pytest.importorskip("kaleido", reason="needs kaleido: uv pip install kaleido")
+    assert saved(DRAW["parity"](), tmp_path / "p.svg").read_text().startswith("<svg")

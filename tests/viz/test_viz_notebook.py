@@ -1,0 +1,48 @@
+"""Results show themselves: what a notebook would display carries the numbers and is safe to show."""
+
+from fictional import comparison, documents
+
+import viz.notebook
+from lumped.build import bare_network
+from validation.compare import ChannelError, Comparison, TestError
+from validation.findings import Candidate, Diagnosis
+from validation.revise import Change, Revision
+from viz import Report
+
+ERROR = ChannelError("T_<b>", "flange", 10, 5.07, -4.0, 7.0, 0.5, 9.0)
+COMPARED = Comparison("road", 2, ("x@y",), (TestError("road-2", "hold-out", (ERROR,)),))
+FOUND = Candidate("convection@flange", 31.4, 7.9, 12.3, "W/K", (10.0, 14.0), "named")
+
+
+def test_errors_are_a_table_and_names_are_escaped():
+    shown = COMPARED._repr_html_()
+    assert "5.07" in shown
+    assert "over" in shown
+    assert "T_&lt;b&gt;" in shown
+    assert "<b>," not in shown
+
+
+def test_a_diagnosis_says_its_verdict():
+    d = Diagnosis("named", "missing: convection", ("convection@flange",), (), (FOUND,), (), (), (), 5.0, 0.5, 7.9)
+    assert "Missing from the model: convection at flange." in d._repr_html_()
+    assert "12.3 W/K" in d._repr_html_()
+
+
+def test_a_step_shows_both_errors():
+    change = Change("road-2", "hold-out", 4.85, 0.93)
+    r = Revision("add", "x@y", None, True, "fell", (change,), (), COMPARED, COMPARED, True)
+    assert "4.85" in r._repr_html_()
+    assert "0.93" in r._repr_html_()
+
+
+def test_curves_network_and_report_show_themselves():
+    assert "<svg" in comparison()._repr_html_()
+    assert "1 states" in bare_network("one", {"a": 5.0}, ("ambient",))._repr_html_()
+    compare, diagnose = documents()
+    framed = Report("road-test", comparison=compare, diagnosis=diagnose)._repr_html_()
+    assert framed.startswith("<iframe srcdoc=")
+    assert "<script" not in framed
+
+
+def test_every_class_listed_has_its_own_picture():
+    assert all(kind._repr_html_ is show for kind, show in viz.notebook.SHOWS.items())

@@ -1,0 +1,71 @@
+"""Where heat is missing, on the machine: what the latent scan of a diagnosis would put into each part."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from geom.errors import InputError
+from viz import scene
+from viz.callouts import Label, callouts
+from viz.colours import BLUE, LIGHT, VERMILION, Theme, missing
+from viz.cut import QUARTER, Wedge, cut_away
+from viz.nodes import SplitMesh
+from viz.scene import TITLE, Room, View
+from viz.sight import anchors
+
+if TYPE_CHECKING:
+    import pyvista
+
+BEHIND = 10.0  # nats behind the likeliest place from which a place stays grey
+
+
+def mean_heat(where: Sequence[Mapping[str, Any]], test: str) -> dict[str, float]:
+    """Place -> mean missing heat (W) over a test, for the places within 10 nats of the likeliest."""
+    if not where or test not in where[0]["heat"]:
+        right = f"known: {', '.join(where[0]['heat'])}" if where else "a diagnosis made with `plan`"
+        raise InputError(f"no missing heat for test '{test}'", "diagnosis", right)
+    best = max(w["evidence_nats"] for w in where)
+    near = [w for w in where if w["evidence_nats"] > best - BEHIND]
+    return {w["place"]: float(np.mean(w["heat"][test]["heat_W"])) for w in near}
+
+
+def missing_in_machine(
+    nodes: SplitMesh,
+    where: Sequence[Mapping[str, Any]],
+    test: str,
+    *,
+    wedge: Wedge | None = QUARTER,
+    view: View | None = None,
+    theme: Theme = LIGHT,
+    png: str | Path | None = None,
+) -> pyvista.Plotter:
+    """Parts coloured by the heat (W) that would have to enter them, below zero leave them; unlikely places are grey.
+
+    where : as in a `diagnose` document;  test : whose mean is drawn
+    """
+    p, view, heat = scene.plotter(theme), view or View(), mean_heat(where, test)
+    surface = cut_away(nodes, wedge)
+    data, top = scene.polydata(surface), max(map(abs, heat.values()))
+    watts = np.array([heat.get(part, np.nan) for part in nodes.parts])
+    data.cell_data["W"] = watts[surface.part]
+    scene.outline(p, data, theme)
+    p.add_mesh(
+        data, scalars="W", cmap=missing(), clim=(-top, top), nan_color="#E4E8EC", show_scalar_bar=False, ambient=0.8,
+        diffuse=0.28,
+    )  # fmt: skip
+    scene.colour_bar(p, "W", theme)
+    scene.headline(p, f"Heat that the model misses, mean over {test}", theme)
+    room = Room(0.16, 0.24, TITLE)
+    scene.look(p, surface.points, view, room)
+    seen = anchors(surface, view, room)
+    labels = [
+        Label(tuple(xyz), f"{nodes.parts[i]}  {watts[i]:+.0f} W", VERMILION if watts[i] > 0 else BLUE)  # type: ignore[arg-type]
+        for i, xyz in seen.items() if np.isfinite(watts[i])
+    ]  # fmt: skip
+    callouts(p, labels, surface.points, view, theme)
+    scene.save(p, png)
+    return p

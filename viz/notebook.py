@@ -1,0 +1,84 @@
+"""Results that show themselves in Jupyter and marimo: `import viz.notebook` gives them a picture of their own.
+
+The rooms below know nothing of HTML, so their classes get their `_repr_html_` here, once, by that import.
+"""
+
+from __future__ import annotations
+
+from html import escape
+from typing import Any
+
+from geom.machine import Machine
+from lumped.network import Network
+from validation.compare import Comparison as Compared
+from validation.findings import Diagnosis
+from validation.revise import Revision
+from viz import candidates, curves, html, paper, words
+from viz.data import Comparison
+from viz.report import Report, render
+
+SHOWN = 10
+
+
+def compared(c: Compared) -> str:
+    """Error per sensor of every test; those beyond their uncertainty marked."""
+    rows = [(t.name, t.role, s.channel, s.place, s.rmse_K, s.sigma_K, s.verdict) for t in c.tests for s in t.channels]
+    head = f"{c.case}, revision {c.revision}: rms {c.rmse_K:.2f} K; the sensors explain {c.floor_K:.2f} K"
+    return titled(head) + html.table(["test", "role", "sensor", "place", "rms (K)", "1σ (K)", "verdict"], rows)
+
+
+def diagnosed(d: Diagnosis) -> str:
+    """The verdict, and the candidates by score."""
+    document = d.document()
+    _, sentence = words.verdict(document, None)
+    found = document["candidates"][:SHOWN]
+    rows = [(c["effect"], c["score"], candidates.amplitude(c), c["decision"]) for c in found]
+    return titled(sentence) + html.table(["effect", "score", "size", "decision"], rows)
+
+
+def revised(r: Revision) -> str:
+    """What a step did to the error of every test."""
+    rows = [(t.name, t.role, t.before, t.after) for t in r.tests]
+    verdict = "accepted" if r.accepted else "not accepted"
+    head = f"{r.action} {r.effect or ''}: {verdict}; {r.why}"
+    return titled(head) + html.table(["test", "role", "before (K)", "after (K)"], rows)
+
+
+def held(c: Comparison) -> str:
+    """Measured and modelled, sensor by sensor."""
+    return html.plot(curves.measured_and_model(c), f"held-{c.test.name}", f"{c.test.name} ({c.test.role})")
+
+
+def machine(m: Machine) -> str:
+    """Parts with their materials."""
+    rows = [(p.name, p.material) for p in m.parts]
+    return titled(f"{m.name}: {len(rows)} parts") + html.table(["part", "material"], rows)
+
+
+def network(n: Network) -> str:
+    """How large, and what may be calibrated."""
+    rows = [(p.name, p.value, p.unit, p.prior_sd) for p in n.parameters[:SHOWN]]
+    head = f"{n.name}: {len(n.states)} states, {len(n.links)} links, {len(n.sources)} sources"
+    return titled(head) + html.table(["parameter", "value", "unit", "prior sd"], rows)
+
+
+def report(r: Report) -> str:
+    """The whole page, in a frame of its own so that its style stays there."""
+    return f'<iframe srcdoc="{escape(render(r), quote=True)}" style="width: 100%; height: 40em; border: 0"></iframe>'
+
+
+def figure(drawn: Any) -> str:
+    """A drawing on paper as SVG."""
+    return paper.svg(drawn, "figure")
+
+
+def titled(text: str) -> str:
+    return f"<p><b>{escape(text)}</b></p>"
+
+
+SHOWS = {
+    Compared: compared, Diagnosis: diagnosed, Revision: revised, Comparison: held, Machine: machine, Network: network,
+    Report: report,
+}  # fmt: skip
+for _kind, _show in SHOWS.items():
+    _kind._repr_html_ = _show  # type: ignore[attr-defined]

@@ -1,0 +1,36 @@
+"""A page as PDF, with whatever converter this computer has."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from importlib.util import find_spec
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+BROWSERS = ("chromium", "chromium-browser", "google-chrome", "microsoft-edge")
+LONGEST_S = 180
+
+
+def write_pdf(page: Path) -> Path | None:
+    """Write PAGE.pdf beside an HTML page by WeasyPrint or a Chromium; None where there is neither."""
+    pdf = page.with_suffix(".pdf")
+    if find_spec("weasyprint") is not None:
+        from weasyprint import HTML
+
+        HTML(str(page)).write_pdf(str(pdf))
+        return pdf
+    browser = next(filter(None, map(shutil.which, BROWSERS)), None)
+    return None if browser is None else _printed(browser, page, pdf)
+
+
+def _printed(browser: str, page: Path, pdf: Path) -> Path | None:
+    """By a browser without a window, its profile in a folder that is thrown away; None if it fails."""
+    with TemporaryDirectory() as profile:
+        done = subprocess.run(
+            [browser, "--headless", "--disable-gpu", "--no-sandbox", f"--user-data-dir={profile}", "--no-first-run",
+             "--disable-extensions", "--no-pdf-header-footer", f"--print-to-pdf={pdf.resolve()}",
+             page.resolve().as_uri()],
+            capture_output=True, timeout=LONGEST_S, check=False,
+        )  # fmt: skip
+    return pdf if done.returncode == 0 and pdf.is_file() else None
