@@ -116,6 +116,66 @@ def serve(
 
 
 @app.command()
+def protocol(
+    record: Annotated[Path | None, typer.Argument(metavar="RECORD.toml", help="A test's record so far.")] = None,
+    json: Json = None,
+) -> None:
+    """The thermal test: what to measure when, what is wrong with a record, and the temperatures it gives."""
+    from thermoscope.commands.protocol import protocol as run
+
+    raise typer.Exit(run(record, json))
+
+
+@app.command()
+def screen(
+    machine: Annotated[str, typer.Argument(metavar="MACHINE", help="A machine file, or a name that comes along.")],
+    design: Annotated[str, typer.Option(help="full (128 runs), half (64), morris or sobol.")] = "full",
+    json: Json = None,
+) -> None:
+    """Which factors move the temperatures of a PM machine: effects with Lenth's limits, Morris or Sobol."""
+    from thermoscope.commands.screen import screen as run
+
+    raise typer.Exit(run(machine, design, json))
+
+
+@app.command("two-paths")
+def two_paths(
+    case: Case,
+    winding: Annotated[str, typer.Option(help="Place of the winding's mean.")] = "winding.copper",
+    machine: Annotated[str, typer.Option(help="Place of the machine's inside.")] = "magnets",
+    json: Json = None,
+) -> None:
+    """The network of a case as two resistances: machine to ambient, winding to machine."""
+    from thermoscope.commands.screen import two_paths as run
+
+    raise typer.Exit(run(case, winding, machine, json))
+
+
+@app.command()
+def carry(
+    source: Case, targets: Annotated[list[str], typer.Argument(metavar="CASE...", help="Cases of other machines.")],
+    json: Json = None,
+) -> None:  # fmt: skip
+    """The calibrated model of one case on other machines. Exit code 1 if one disagrees beyond its uncertainty."""
+    from thermoscope.commands.screen import carry as run
+
+    raise typer.Exit(run(source, targets, json))
+
+
+@app.command()
+def export(
+    case: Case,
+    out: Out = None,
+    csv: Annotated[bool, typer.Option("--csv", help="CSV files.")] = False,
+    json: Json = None,
+) -> None:
+    """Inputs, results, errors and parameters as a workbook (.xlsx), or as CSV files."""
+    from thermoscope.commands.export import export as run
+
+    raise typer.Exit(run(case, out, csv, json))
+
+
+@app.command()
 def check(json: Json = None) -> None:
     """What this computer lacks (graphics), each with the command that fixes it."""
     from thermoscope.check import check as run

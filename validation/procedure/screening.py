@@ -14,6 +14,7 @@ from lumped.network import Network
 from lumped.simulate import Record, simulate
 from validation.procedure.factorial import Design, Effects, Factor, effects
 from validation.procedure.pm_network import PmSettings, Rows, pm_network, table_of
+from validation.procedure.sensitivity import Response, Varied
 
 Array = NDArray[np.float64]
 AMBIENT = 20.0
@@ -59,7 +60,7 @@ def settings(level: Mapping[str, Any], load: Load) -> PmSettings:
     end = level["end-winding impregnation"]
     return PmSettings(
         convection=level["convection"], emissivity=level["emissivity"],
-        base=(level["emissivity"] if level["base"] else None), impregnation=level["winding impregnation"],
+        base=(level["emissivity"] if level["base"] > 0.5 else None), impregnation=level["winding impregnation"],
         end_impregnation=(GOOD if end is True else POOR if end is False else float(end)),
         resistance_ohm=load.resistance_ohm, phases=load.phases,
         magnetic_W=load.magnetic_W * level["magnetic loss"] * 383.0 / level["speed"], friction_W=0.0,
@@ -101,3 +102,29 @@ def network_of(machine: Machine, levels: Mapping[str, Any], load: Load | None = 
     """The network behind one run."""
     level = {f.name: f.low for f in TABLE_I} | dict(levels)
     return pm_network(machine, settings(level, load or Load()))
+
+
+def varied(machine: Machine, load: Load | None = None) -> tuple[list[Varied], dict[str, Response]]:
+    """Table I and the liner gap as continuous factors, and two responses: magnets, and the step winding to magnets.
+
+    The voids of slots and of end windings are filled in one and the same bath, so the two count as one group.
+    """
+    table, test = table_of(machine), load or Load()
+    known: dict[tuple[tuple[str, float], ...], dict[str, float]] = {}
+
+    def rises(levels: Mapping[str, float]) -> dict[str, float]:
+        key = tuple(sorted(levels.items()))
+        if key not in known:
+            known[key] = run(machine, levels, test, table)
+        return known[key]
+
+    factors = [
+        Varied("convection", 5.0, 10.0), Varied("emissivity", 0.2, 0.8), Varied("base", 0.0, 1.0),
+        Varied("winding impregnation", 0.2, 0.8, "impregnation"),
+        Varied("end-winding impregnation", 0.2, 0.8, "impregnation"), Varied("speed", 200.0, 400.0),
+        Varied("magnetic loss", 1.0, 1.5), Varied("liner gap", 0.7, 1.4),
+    ]  # fmt: skip
+    return factors, {
+        "magnets": lambda levels: rises(levels)["magnets"],
+        "winding minus magnets": lambda levels: rises(levels)["winding"] - rises(levels)["magnets"],
+    }

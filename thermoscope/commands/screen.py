@@ -1,0 +1,108 @@
+"""thermoscope screen MACHINE, thermoscope two-paths CASE"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from geom.errors import InputError
+from thermoscope.commands.opened import opened
+from thermoscope.folder import load_machine_file
+from thermoscope.terminal import give, progress, say, table
+
+if TYPE_CHECKING:
+    from geom import Machine
+
+DESIGNS = ("full", "half", "morris", "sobol")
+ROWS = 12
+
+
+def screen(machine: str, design: str, target: str | None) -> int:
+    """Which of table I's factors move magnets, winding, end winding and laminations."""
+    if design not in DESIGNS:
+        raise InputError(f"no design '{design}'", "--design", f"one of {', '.join(DESIGNS)}")
+    described = load_machine_file(Path(machine))
+    if described.family != "pmsm" or described.geometry.housing.kind != "none":
+        right = "a machine of family pmsm without a housing, e.g. pmsm-m1"
+        raise InputError(f"{described.name} has a housing or no magnets", "screening", right)
+    with progress() as tell:
+        tell(f"screening {described.name}")
+        document = _by_shares(described, design) if design in ("morris", "sobol") else _by_effects(described, design)
+    document = {"machine": described.name, "design": design, **document}
+    give(document, target, lambda: show(document))
+    return 0
+
+
+def _by_effects(machine: Machine, design: str) -> dict[str, Any]:
+    from validation.procedure.factorial import fractional, full
+    from validation.procedure.screening import TABLE_I, screen
+
+    plan = full(TABLE_I) if design == "full" else fractional(TABLE_I, {"G": "ABCDEF"})
+    return screen(machine, plan).document()
+
+
+def _by_shares(machine: Machine, design: str) -> dict[str, Any]:
+    from validation.procedure.screening import varied
+    from validation.procedure.sensitivity import morris, sobol
+
+    factors, responses = varied(machine)
+    method = morris if design == "morris" else sobol
+    return {"rankings": {name: method(factors, response).document() for name, response in responses.items()}}
+
+
+def show(document: Mapping[str, Any]) -> None:
+    """A table per response, largest first: the Pareto chart."""
+    for name, found in document.get("effects", {}).items():
+        title = f"{name}: effects beyond {found['simultaneous']:.2f} K are not chance (Lenth, simultaneous 95 %)"
+        rows = [[e["effect"], e["words"], e["value"], "yes" if e["active"] else ""] for e in found["effects"][:ROWS]]
+        table(title, ["effect", "factors", "high - low (K)", "active"], rows, marked=["yes"])
+    for name, found in document.get("rankings", {}).items():
+        rows = [[r["factor"], r["measure"], r["conf95"], r["spread"]] for r in found["ranking"]]
+        table(f"{name}: {found['method']}, {found['runs']} runs", ["factor", "measure", "+- 95 %", "spread"], rows)
+
+
+def two_paths(case: str, winding: str, machine: str, target: str | None) -> int:
+    """R_ext and R_w of the case's network at the mean load of every test."""
+    from validation.fitting import working
+    from validation.procedure.two_paths import two_paths as reduced
+
+    with progress() as tell:
+        folder = opened(case, tell)
+        network, values = working(folder.case)[0], dict(folder.case.model.values)
+        found = {}
+        for test in folder.case.tests:
+            load = {name: float(v.mean()) for name, v in test.inputs.items()}
+            air = float(sum(v.mean() for v in test.boundaries.values()) / len(test.boundaries))
+            found[test.name] = reduced(network, load, air, winding, machine, values=values).document()
+    document = {"case": folder.case.name, "tests": found}
+    headers = ["test", "R_ext (K/W)", "R_w (K/W)", "winding (K)", "machine (K)", "left at other loads (K)"]
+    keys = ("R_ext", "R_w", "winding_K", "machine_K", "largest_residual_K")
+    rows = [[name, *(one[k] for k in keys)] for name, one in found.items()]
+    give(document, target, lambda: table("Two resistances", headers, rows))
+    return 0
+
+
+def carry(source: str, targets: list[str], target: str | None) -> int:
+    """Exit code 1 when a sensor of a machine that was not used disagrees by more than its uncertainty."""
+    from validation.procedure.carry import carried
+
+    with progress() as tell:
+        calibrated = opened(source, tell)
+        found = [carried(calibrated.case, opened(name, tell).case) for name in targets]
+    document = {"source": calibrated.case.name, "revision": calibrated.case.model.revision,
+                "targets": [one.document() for one in found]}  # fmt: skip
+    give(document, target, lambda: show_carried(document))
+    return 0 if all(one.agrees for one in found) else 1
+
+
+def show_carried(document: Mapping[str, Any]) -> None:
+    headers = ["case", "test", "sensor", "measured (degC)", "simulated (degC)", "difference (K)", "uncertainty (K)", ""]
+    rows = [
+        [one["case"], r["test"], r["channel"], r["measured_C"], r["simulated_C"], r["difference_K"], r["U95_K"],
+         "within" if r["within"] else "over"]
+        for one in document["targets"] for r in one["rows"]
+    ]  # fmt: skip
+    table(f"Model of {document['source']}, revision {document['revision']}, on other machines", headers, rows, ["over"])
+    taken = document["targets"][0]["parameters"] if document["targets"] else []
+    say(f"taken over: {', '.join(taken) or 'nothing'}")
