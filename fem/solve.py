@@ -31,10 +31,12 @@ class Solve(Protocol):
 
 @dataclass(frozen=True)
 class Iterative:
-    """Conjugate gradients with smoothed aggregation: less work than a factor for one or two right-hand sides.
+    """Conjugate gradients with classical multigrid: less work than a factor for one or two right-hand sides.
 
-    139,000 unknowns of the motor, CPU seconds: set-up 0.5, each right-hand side 2.1; the factor 5.9 and 0.15.
-    Source: Vanek, Mandel, Brezina 1996.
+    CPU seconds, set-up and one right-hand side to 1e-10: 300,000 unknowns of a laminated ring 1.3 and 1.0; 188,000 of
+    a motor with thin layers 0.5 and 4.5 (its factor takes 5.7, 0.03 each). One sweep forward before and one backward
+    after each coarse solution keep the preconditioner symmetric at half the work of symmetric sweeps.
+    Source: Ruge and Stueben 1987.
     """
 
     field: FieldModel
@@ -45,12 +47,13 @@ class Iterative:
 
         A = sp.csr_matrix(K + shift * self.field.M if shift else K)
         A.indices, A.indptr = A.indices.astype(np.int32), A.indptr.astype(np.int32)
-        levels = pyamg.smoothed_aggregation_solver(A)
+        there, back = (("gauss_seidel", {"sweep": way}) for way in ("forward", "backward"))
+        levels = pyamg.ruge_stuben_solver(A, presmoother=there, postsmoother=back)
 
         def solve(b: Floats) -> Floats:
             columns = b.reshape(len(b), -1).T
             found = [levels.solve(c, tol=self.tolerance, accel="cg", maxiter=1000) if c.any() else c for c in columns]
-            return np.column_stack(found).reshape(b.shape)
+            return np.array(found).reshape(len(columns), len(b)).T.reshape(b.shape)
 
         return solve
 

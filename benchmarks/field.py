@@ -1,0 +1,144 @@
+"""The field against other codes: the same mesh and problem, single-thread CPU seconds, each code in a fresh process.
+
+    python benchmarks/field.py [--large] [--json FILE]
+
+A laminated hollow cylinder with films (`field_contenders.py`): 50,000 and 300,000 unknowns, with --large a million too.
+"total" is assembly, boundary terms and solve; ngsolve's Cholesky runs at 50,000 only, where it is already the slowest.
+Then the series-wound motor on 150,000 nodes (188,000 unknowns, nodes split at contacts): 15 loads, and an hour in 60 s
+steps. ngsolve is compared where it is installed (`uv pip install ngsolve`).
+"""
+
+from __future__ import annotations
+
+import argparse
+import datetime
+import importlib.util
+import json
+import platform
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from fem.assembly import FieldModel
+from fem.grids import ring
+from fem.solve import Fluids, Solver
+from fem.streams import Stream, cut, flowing
+from fem.transient import transient
+from geom import build_mesh, load_machine
+from lumped.motor import nominal_coefficients
+from thermoscope.pipeline import field_of
+
+SIZES = {"50k": 36, "300k": 66}
+LARGE = {"1M": 99}
+OURS = "thermoscope"
+MOTOR: dict[str, Any] = {"size_m": 0.015, "segments": 60, "across": 3}
+
+
+def save_stack(n: int, file: Path) -> int:
+    """A hollow cylinder of n cells along, 2 n around and n / 2 across; its points."""
+    r, z = np.linspace(0.08, 0.16, n // 2 + 1), np.linspace(0.0, 0.2, n + 1)
+
+    def fluid(c: np.ndarray) -> np.ndarray:
+        return np.select([c[:, 2] < 1e-9, c[:, 2] > 0.2 - 1e-9, c[:, 0] < 0.081], ["left", "right", "bore"], "ambient")
+
+    mesh = ring(r, 2 * n, z, lambda c: np.full(len(c), "stack"), fluid)
+    facets = {f"facets/{p.fluid}": p.facets for p in mesh.patches.values()}
+    np.savez(file, points=mesh.points, tets=mesh.tets, **facets)  # type: ignore[arg-type]
+    return len(mesh.points)
+
+
+def raced(name: str, file: Path) -> dict[str, Any]:
+    """What one contender printed."""
+    print(f"{name} ...", file=sys.stderr)
+    script = Path(__file__).with_name("field_contenders.py")
+    done = subprocess.run([sys.executable, script, name, file], capture_output=True, text=True, check=True)
+    found = json.loads(done.stdout.splitlines()[-1])
+    return {**found, "total": sum(found["laps"].values())}
+
+
+def stack_rows(case: str, n: int) -> list[dict[str, Any]]:
+    names = ["scikit-fem + pyamg"]
+    if importlib.util.find_spec("ngsolve"):
+        names += ["ngsolve h1amg", *(["ngsolve Cholesky"] if case == "50k" else [])]
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "stack.npz"
+        points = save_stack(n, file)
+        ours, *others = (raced(name, file) for name in (OURS, *names))
+    rows = [row(case, "unknowns", "1", points)]
+    rows += [row(case, lap, "s", seconds) for lap, seconds in ours["laps"].items()]
+    for name, found in zip(names, others, strict=True):
+        rows.append(row(case, "total", "s", ours["total"], found["total"], name))
+        rows.append(row(case, "peak memory", "GiB", ours["peak_GiB"], found["peak_GiB"], name))
+        rows.append(row(case, "hottest point", "degC", ours["hottest_C"], found["hottest_C"], name))
+    return rows
+
+
+def motor() -> tuple[FieldModel, dict[str, float], dict[str, float], Fluids]:
+    """The motor's field, films, contacts and air, at the rated point."""
+    machine = load_machine("series-dc-100kw")
+    mesh = build_mesh(machine, **MOTOR)
+    inner = sorted({p.fluid for p in mesh.patches.values()} - {"ambient"})
+    h, g = nominal_coefficients(machine, {n: (p.part, p.fluid) for n, p in mesh.patches.items()}, mesh.contacts)
+    for fluid in inner:
+        mesh = cut(mesh, fluid, lambda x: x[:, 2], 1)
+    field = field_of(machine, mesh)
+    films, fluids = flowing(field, h, [Stream(fluid, 15.0, 25.0) for fluid in inner], {"ambient": 20.0})
+    return field, films, g, fluids
+
+
+def motor_rows() -> list[dict[str, Any]]:
+    field, films, contacts, fluids = motor()
+    Solver(field).factor(field.stiffness(films, contacts))(np.zeros((field.n, 1)))  # loads what is compiled
+    loads = np.column_stack([field.load(part) for part in list(field.blocks)[:15]])
+    case = f"motor, {field.n} unknowns"
+    start = time.process_time()
+    solver = Solver(field)
+    X = solver.factor(field.stiffness(films, contacts))(loads)
+    rows = [row(case, "15 loads", "s", time.process_time() - start)]
+    left = field.stiffness(films, contacts) @ X - loads
+    rows.append(row(case, "largest heat left in a node, 1 W in", "W", float(np.abs(left).max())))
+    start = time.process_time()
+    T = transient(
+        Solver(field), films, contacts, 300.0 * loads.sum(1), fluids, np.full(field.n, 20.0), step=60.0, steps=60
+    )
+    rows.append(row(case, "an hour in 60 s steps", "s", time.process_time() - start))
+    return [*rows, row(case, "hottest after the hour", "degC", float(T[-1].max()))]
+
+
+def row(
+    case: str, measure: str, unit: str, ours: float, peer: float | None = None, name: str | None = None
+) -> dict[str, Any]:
+    """One line of the table; ratio is ours over the peer's."""
+    out = {"case": case, "measure": measure, "unit": unit, "ours": ours, "peer": peer, "peer_name": name}
+    return {**out, "ratio": ours / peer if peer else None, "n": None, "ci95": None}
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--json", metavar="FILE", help="write the rows there; - is stdout")
+    parser.add_argument("--large", action="store_true", help="a million unknowns as well; scikit-fem takes 8 GiB there")
+    given = parser.parse_args()
+    rows = [r for case, n in {**SIZES, **(LARGE if given.large else {})}.items() for r in stack_rows(case, n)]
+    document = {
+        "benchmark": "field",
+        "computer": f"{platform.machine()}, Python {platform.python_version()}",
+        "date": datetime.date.today().isoformat(),
+        "rows": [*rows, *motor_rows()],
+    }
+    if given.json == "-":
+        json.dump(document, sys.stdout, indent=1)
+        return
+    for r in document["rows"]:
+        peer = f"   {r['peer_name']} {r['peer']:.6g}   ratio {r['ratio']:.3g}" if r["peer"] else ""
+        print(f"{r['case']:24} {r['measure']:36} {r['ours']:12.6g} {r['unit']}{peer}")
+    if given.json:
+        Path(given.json).write_text(json.dumps(document, indent=1))
+
+
+if __name__ == "__main__":
+    main()
