@@ -22,6 +22,23 @@ GAPS = {
 }
 
 
+# Contact coefficients (W/m2/K), from loose to pressed. Holman; Mills.
+PRESSED = {
+    "aluminium - aluminium": (2200.0, 12000.0),
+    "steel - aluminium": (4000.0, 45000.0),
+    "stainless - stainless": (1700.0, 3700.0),
+    "stainless - aluminium": (3000.0, 4500.0),
+    "copper - copper": (10000.0, 25000.0),
+    "ceramic - metal": (1500.0, 8500.0),
+}
+
+
+def contact_film(pair: str) -> tuple[float, float]:
+    """(geometric mean W/m2/K, log-sd) of a pair in PRESSED: the prior of a contact; the limits are two sd apart."""
+    low, high = PRESSED[pair]
+    return math.sqrt(low * high), 0.5 * math.log(high / low) / 2.0
+
+
 def gap_film(gap: float, k: float = K_AIR) -> float:
     """k / gap (W/m2/K): a contact as an effective gap of still air; gap (m), k (W/m/K)."""
     return k / gap

@@ -83,3 +83,33 @@ def staton_rectangle(side_ratio: float) -> float:
     7.49 - 17.02 a + 22.43 a^2 - 9.94 a^3. Source: Staton and Cavagnino 2008, IEEE Trans. Ind. Electron. 55, 3509.
     """
     return 7.49 - 17.02 * side_ratio + 22.43 * side_ratio**2 - 9.94 * side_ratio**3
+
+
+def gnielinski_annulus(
+    speed: float, inner: float, outer: float, length: float, fluid: Fluid | None = None
+) -> tuple[float, Info]:
+    """Concentric annulus heated inside, outside insulated, h (W/m2/K): axial flow between shells or through a gap.
+
+    Turbulent above Re 4000: f (1.8 log10 Re* - 1.5)^-2, Re* = Re ((1 + a^2) ln a + 1 - a^2) / ((1 - a)^2 ln a), factor
+    0.75 a^-0.17, a = inner/outer; k1 = 1.07 + 900/Re - 0.63/(1 + 10 Pr); entry 1 + (D/L)^(2/3). Laminar below 2300:
+    developed Nu 3.66 + 1.2 a^-0.8 with Hausen's entry; linear between.
+    speed (m/s); inner, outer: diameters (m); length (m). Range: Re < 1e6, 0.6 < Pr < 1000.
+    Source: Gnielinski 2009, Heat Transfer Eng. 30, 431; VDI Heat Atlas G2 (laminar).
+    """
+    fluid = fluid or air(40.0)
+    D, a = outer - inner, inner / outer
+    Re, Pr = abs(speed) * D / fluid.nu, fluid.Pr
+    share = min(max((Re - LAMINAR) / (TURBULENT - LAMINAR), 0.0), 1.0)
+    Nu = (1.0 - share) * hausen_laminar(min(Re, LAMINAR), Pr, D, length, 3.66 + 1.2 * a**-0.8)
+    if share > 0.0:
+        Nu += share * _annulus_turbulent(max(Re, TURBULENT), Pr, a, D / length)
+    limits = {"Re": (0, 1e6), "Pr": (0.6, 1000)}
+    return Nu * fluid.k / D, checked("gnielinski_annulus", "Gnielinski 2009", {"Nu": Nu, "Re": Re, "Pr": Pr}, limits)
+
+
+def _annulus_turbulent(Re: float, Pr: float, a: float, slenderness: float) -> float:
+    star = Re * ((1 + a * a) * math.log(a) + 1 - a * a) / ((1 - a) ** 2 * math.log(a))
+    f = 0.75 * a**-0.17 * (1.8 * math.log10(star) - 1.5) ** -2
+    k1 = 1.07 + 900 / Re - 0.63 / (1 + 10 * Pr)
+    entry = 1 + slenderness ** (2 / 3)
+    return (f / 8) * Re * Pr / (k1 + 12.7 * math.sqrt(f / 8) * (Pr ** (2 / 3) - 1)) * entry

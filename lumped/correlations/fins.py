@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 from lumped.correlations.info import Info, checked
 from lumped.correlations.natural import G, Of
@@ -82,6 +83,31 @@ def heiles(
 def mean_of_decay(share_at_end: float) -> float:
     """Mean over an open channel of the air speed's share of the cowl's, falling in a straight line from 1."""
     return 0.5 * (1.0 + share_at_end)
+
+
+def straight_decay(share_at_end: float) -> Callable[[float], float]:
+    """Share of the cowl's air speed over the share of the channel passed (0 to 1): in a straight line."""
+    return lambda x: 1.0 + (share_at_end - 1.0) * x
+
+
+def exponential_decay(share_at_end: float) -> Callable[[float], float]:
+    """The same, falling by equal factors on equal lengths."""
+    return lambda x: share_at_end**x
+
+
+def heiles_decaying(
+    speed: float, diameter: float, length: float, decay: Callable[[float], float], turbulence: float = 1.7,
+    fluid: Fluid | None = None, pieces: int = 20,
+) -> tuple[float, Info]:  # fmt: skip
+    """Blown fin channel whose air leaks out along its way, mean h over the fin (W/m2/K).
+
+    Heiles' film of the whole channel at the speed of each of `pieces` equal lengths, averaged; decay: share of the
+    cowl's speed over the share of the length, e.g. straight_decay(0.2). Source: Heiles 1952 with the leakage that
+    Staton and Cavagnino 2008 describe; Motor-CAD starts from 1 at the cowl to 0.2 at the far end.
+    """
+    at = [(k + 0.5) / pieces for k in range(pieces)]
+    found = [heiles(speed * decay(x), diameter, length, turbulence, fluid) for x in at]
+    return math.fsum(h for h, _ in found) / pieces, found[0][1]
 
 
 def straight_fin_efficiency(h: float, k: float, thickness: float, depth: float) -> float:

@@ -62,3 +62,20 @@ def mcadams_plate(
     limits = (1e4, 1e11) if upward else (1e5, 1e10)
     info = checked("mcadams_plate", "McAdams 1954", {"Nu": Nu, "Ra": Ra}, {"Ra": limits})
     return Nu * fluid.k / area_over_perimeter, info
+
+
+def popiel_cylinder(height: float, diameter: float, surface: float, ambient: float, of: Of = air) -> tuple[float, Info]:
+    """Slender vertical cylinder in still fluid, h (W/m2/K): vertical machines, shafts.
+
+    The plate's Nu times 1 + B (sqrt(32) Gr^(-1/4) height/diameter)^C, B and C functions of Pr; where the cylinder is
+    so wide that diameter/height >= 35/Gr^(1/4), the plate's own.
+    height, diameter (m); surface, ambient (degC).
+    Range: 0.01 < Pr < 100, Ra < 1e12. Source: Popiel 2008, Heat Transfer Eng. 29, 521 (ht).
+    """
+    fluid = of(0.5 * (surface + ambient))
+    Gr = _grashof(height, surface, ambient, fluid)
+    thick = Gr == 0.0 or diameter / height >= 35.0 / Gr**0.25
+    plate = ht.Nu_vertical_plate_Churchill(fluid.Pr, Gr)
+    Nu = plate if thick else max(plate, ht.Nu_vertical_cylinder_Popiel_Churchill(fluid.Pr, Gr, height, diameter))
+    numbers, limits = {"Nu": Nu, "Ra": Gr * fluid.Pr, "Pr": fluid.Pr}, {"Ra": (0.0, 1e12), "Pr": (0.01, 100.0)}
+    return Nu * fluid.k / height, checked("popiel_cylinder", "Popiel 2008", numbers, limits)

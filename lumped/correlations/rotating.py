@@ -60,3 +60,19 @@ def saari_windage(
 def _torque_law(Re: float) -> tuple[float, float]:
     laws = ((10.0, 1.0), (2.0, 0.6), (1.03, 0.5), (0.065, 0.2))
     return laws[sum(Re >= limit for limit in SHAFT_LIMITS)]
+
+
+def disc_windage(
+    omega: float, outer_radius: float, inner_radius: float = 0.0, fluid: Fluid | None = None
+) -> tuple[float, Info]:
+    """Friction of ONE end face of a rotor (W): P = C rho omega^3 (r2^5 - r1^5) / 4.
+
+    C = 3.87 / Re^0.5 laminar, 0.146 / Re^0.2 turbulent, Re = omega r2^2 / nu; the larger rules, so they meet at
+    Re = 5.5e4. omega (rad/s), radii (m). Range: Re < 1e7.
+    Source: Saari 1998, thesis, Helsinki University of Technology; his C counts both faces, so half of it here.
+    """
+    fluid = fluid or air(60.0)
+    Re = abs(omega) * outer_radius**2 / fluid.nu
+    C = max(3.87 / Re**0.5, 0.146 / Re**0.2) if Re > 0 else 0.0
+    power = 0.25 * C * fluid.rho * abs(omega) ** 3 * (outer_radius**5 - inner_radius**5)
+    return power, checked("disc_windage", "Saari 1998", {"Re": Re, "C": C}, {"Re": (0, 1e7)})
