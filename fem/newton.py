@@ -74,6 +74,11 @@ def summed(field: FieldModel, terms: Sequence[Term], T: Floats) -> tuple[Floats,
     )
 
 
+def even(J: sp.csr_array) -> sp.csr_array:
+    """The symmetric part."""
+    return sp.csr_array((J + J.T) / 2)
+
+
 def _done(steps: list[float]) -> bool:
     if len(steps) > ROUNDS or (steps and not np.isfinite(steps[-1])):
         raise InputError("no steady temperature was found", "newton", "losses that the cooling can carry (no runaway)")
@@ -84,8 +89,7 @@ def _done(steps: list[float]) -> bool:
 def _linear(solver: Solve, J: sp.csr_array, B: Floats, G: Floats) -> Callable[[Floats], Floats]:
     """Solves [J, -B; -B', G] for any J whose symmetric part is positive definite."""
     n = J.shape[0]
-    even = sp.csr_array((J + J.T) / 2)
-    factor = solver.factor(even)
+    factor = solver.factor(even(J))
     Y = factor(B) if B.shape[1] else B
     schur = G - B.T @ Y
 

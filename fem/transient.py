@@ -12,7 +12,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from fem.newton import summed
+from fem.newton import even, summed
 from fem.solve import Fluids, Solve, film_columns, from_fixed, refuse_unknown_fluid
 from fem.terms import Term
 from geom.errors import InputError
@@ -43,7 +43,8 @@ class _System:
 
     def implicit(self, T: Floats) -> Callable[[Floats, Floats, float], Floats]:
         """Stage solver near T: given M-weighted history r and a guess, solves shift M T = r + flow(T, t)."""
-        factor = self.solver.factor(self.K + summed(self.solver.field, self.terms, T)[1], self.shift)
+        J = sp.csr_array(self.K + even(summed(self.solver.field, self.terms, T)[1])) if self.terms else self.K
+        factor = self.solver.factor(J, self.shift)
         B, M = self.B, self.solver.field.M
         Y = factor(B) if B.shape[1] else B
         small = np.linalg.inv(self.G - B.T @ Y)

@@ -109,24 +109,34 @@ def test_thermal_runaway_is_refused():
         copper_bar(1.6e5)
 
 
-def test_everything_at_once_balances():
-    x = np.linspace(0.0, 0.1, 7)
+def warm_cube():
+    """A coil beside iron, with every kind of term: solver, films, contacts, load, fluids, terms."""
+    x = np.linspace(0.0, 0.1, 5)
     mesh = box(x, x, x, lambda c: named(c, (c[:, 0] < 0.05, "coil"), default="iron"),
                lambda c: named(c, default="ambient"))  # fmt: skip
-    field = assemble(mesh, {"coil": isotropic(1.0), "iron": isotropic(30.0)}, {"coil": 1.0, "iron": 1.0})
+    field = assemble(mesh, {"coil": isotropic(1.0), "iron": isotropic(30.0)}, {"coil": 3e6, "iron": 3.6e6})
     terms = [
         CopperLoss("coil", 40.0),
         VaryingConductivity("iron", lambda T: 1 - 5e-4 * (T - 20), lambda T: np.full(len(T), -5e-4)),
         Radiation("coil.outer", 0.9, 20.0),
         Radiation("iron.outer", 0.5, 20.0),
     ]
-    found = settle(
-        Solver(field), {"coil.outer": 5.0, "iron.outer": 8.0}, {"coil|iron": 500.0}, 10.0 * field.load("iron"),
-        only_fixed(ambient=20.0), terms,
-    )  # fmt: skip
+    films, contacts = {"coil.outer": 5.0, "iron.outer": 8.0}, {"coil|iron": 500.0}
+    return Solver(field), films, contacts, 10.0 * field.load("iron"), only_fixed(ambient=20.0), terms
+
+
+def test_everything_at_once_balances():
+    found = settle(*warm_cube())
     assert found.injected > 50.0
     assert found.energy_balance < 1e-9
     assert len(found.steps) <= 7
+
+
+def test_warming_ends_where_newton_settles():
+    solver, films, contacts, load, fluids, terms = warm_cube()
+    start = np.full(solver.field.n, 20.0)
+    T = transient(solver, films, contacts, load, fluids, start, step=5000.0, steps=20, terms=terms)
+    assert np.abs(T[-1] - settle(*warm_cube()).T).max() < 1e-3
 
 
 def test_unphysical_terms_are_refused():
