@@ -1,0 +1,177 @@
+"""Pictures, recording and workbench: how long one waits.
+
+    python benchmarks/viz.py [--size-mm 20] [--json FILE]
+
+The motor's mesh has about 150,000 nodes at the default size. Wall seconds of one process, and its CPU seconds beside
+them, which say more on a shared computer. Targets: first picture below 5 s, next frames below 0.3 s, an hour's
+recording of 60 frames below 10 s and 20 MB, click to curve below 0.3 s. The peer of the pictures is pyvista's own
+clip of the same mesh, which cuts it anew for every frame.
+"""
+
+from __future__ import annotations
+
+import argparse
+import datetime
+import json
+import platform
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from geom import build_mesh, load_machine
+from lumped.network import Row
+from validation.case import Channel, Test
+from viz import require_gl, scene, split, write_recording
+from viz.cut import cut_away
+from viz.data import Comparison
+from viz.field import paint
+from viz.live.curves import sensor
+from viz.nodes import SplitMesh
+from viz.scene import View
+
+FRAMES, SENSORS = 60, 17
+
+
+def timed(run: Callable[[], Any]) -> tuple[float, float, Any]:
+    """Wall and CPU seconds, and the result."""
+    wall, cpu = time.perf_counter(), time.process_time()
+    out = run()
+    return time.perf_counter() - wall, time.process_time() - cpu, out
+
+
+def field(nodes: SplitMesh, share: float) -> np.ndarray:
+    """A motor that warms up: hot in the middle, degC."""
+    radius, z = np.hypot(*nodes.points[:, :2].T), nodes.points[:, 2]
+    shape = np.exp(-((radius / 0.15) ** 2) - ((z - z.mean()) / np.ptp(z)) ** 2)
+    return 20.0 + 100.0 * share * shape
+
+
+def hour(points: np.ndarray) -> tuple[Comparison, dict[str, tuple[float, ...]]]:
+    """An hour at 1 Hz with 17 sensors."""
+    t, rng = np.arange(3601.0), np.random.default_rng(0)
+    names = [f"T{i}" for i in range(SENSORS)]
+    model = {n: 20.0 + (40.0 + i) * (1.0 - np.exp(-t / 900.0)) for i, n in enumerate(names)}
+    row = Row(np.array([0]), np.array([1.0]))
+    channels = tuple(Channel(n, n, row, model[n] + rng.normal(0.0, 0.3, t.size)) for n in names)
+    test = Test("hour", "hold-out", t, {}, {"ambient": np.full(t.size, 20.0)}, channels)
+    at = {n: tuple(points[i * len(points) // SENSORS].tolist()) for i, n in enumerate(names)}
+    return Comparison(test, model), at
+
+
+def pictures(nodes: SplitMesh) -> list[dict[str, Any]]:
+    """First picture of a mesh that has never been drawn, then frames of other fields on it."""
+
+    def first() -> tuple[Any, Any, Any]:
+        p, surface = scene.plotter(), cut_away(nodes)
+        data = paint(p, surface, field(nodes, 1.0), (20.0, 120.0), scene.LIGHT)
+        scene.look(p, surface.points, View())
+        p.screenshot(return_img=True)
+        return p, surface, data
+
+    wall, cpu, (p, surface, data) = timed(first)
+
+    def frame(share: float) -> None:
+        data.point_data["T"] = surface.values(field(nodes, share))
+        p.screenshot(return_img=True)
+
+    walls, cpus, _ = zip(*(timed(lambda s=s: frame(s)) for s in np.linspace(0.2, 1.0, 7)), strict=True)
+    p.close()
+    (peer_first, _), (peer_next, _) = clipped(nodes)
+    case = f"cut-away, {len(np.unique(nodes.original))} nodes, {len(nodes.tets)} tets, 1280 x 800"
+    return [
+        row(case, "first picture", "s", wall, peer_first, "pyvista clip"), row(case, "first picture, CPU", "s", cpu),
+        row(case, "next frame", "s", float(np.median(walls)), peer_next, "pyvista clip"),
+        row(case, "next frame, CPU", "s", float(np.median(cpus))),
+    ]  # fmt: skip
+
+
+def clipped(nodes: SplitMesh) -> list[tuple[float, float]]:
+    """(wall, CPU) seconds of the peer: the same wedge by two clips of the volume, then the second field."""
+    import pyvista
+
+    grid = pyvista.UnstructuredGrid({pyvista.CellType.TETRA: nodes.tets}, nodes.points)
+
+    def draw(share: float) -> None:
+        p = pyvista.Plotter(off_screen=True, window_size=[1280, 800])
+        p.enable_anti_aliasing("ssaa")
+        grid.point_data["T"] = field(nodes, share)
+        left = grid.clip("x", invert=False)
+        p.add_mesh(left, scalars="T", clim=(20.0, 120.0))
+        p.add_mesh(grid.clip("x").clip("y"), scalars="T", clim=(20.0, 120.0))
+        p.screenshot(return_img=True)
+        p.close()
+
+    return [timed(lambda s=s: draw(s))[:2] for s in (1.0, 0.5)]
+
+
+def recording(nodes: SplitMesh) -> list[dict[str, Any]]:
+    comparison, at = hour(nodes.points)
+    times = np.linspace(0.0, 3600.0, FRAMES)
+    fields = np.array([field(nodes, s) for s in np.linspace(0.0, 1.0, FRAMES)])
+    with tempfile.TemporaryDirectory() as folder:
+        wall, cpu, path = timed(
+            lambda: write_recording(Path(folder) / "hour.rrd", nodes, comparison, (times, fields), at)
+        )
+        megabytes = path.stat().st_size / 1e6
+    case = f"recording, 1 h, {FRAMES} frames, {SENSORS} sensors"
+    return [row(case, "time", "s", wall), row(case, "time, CPU", "s", cpu), row(case, "size", "MB", megabytes)]
+
+
+def click(nodes: SplitMesh) -> list[dict[str, Any]]:
+    """What the workbench does when a sensor is clicked: find it, draw its curves, make them JSON, mark it."""
+    from thermoscope.workbench.stage import Stage
+    from viz.data import sensors
+
+    comparison, at = hour(nodes.points)
+    stage = Stage(cut_away(nodes), (20.0, 120.0), lambda name: None)
+    seen = sensors(comparison, at)
+    stage.markers(seen, "T0")
+    stage.plotter.screenshot(return_img=True)
+
+    def clicked(name: str) -> None:
+        stage.at(*stage.on_screen()[name])
+        json.dumps(sensor(comparison, name).to_plotly_json())
+        stage.markers(seen, name)
+        stage.plotter.screenshot(return_img=True)
+
+    clicked("T1")
+    walls, cpus, _ = zip(*(timed(lambda n=n: clicked(f"T{n}")) for n in range(2, 9)), strict=True)
+    stage.close()
+    case = "workbench, click to curve, server side"
+    return [row(case, "time", "s", float(np.median(walls))), row(case, "time, CPU", "s", float(np.median(cpus)))]
+
+
+def row(case: str, measure: str, unit: str, ours: float, peer: float | None = None, name: str = "") -> dict[str, Any]:
+    """One line of the table; ratio is ours over the peer's."""
+    out = {"case": case, "measure": measure, "unit": unit, "ours": ours}
+    return {**out, "peer": peer, "peer_name": name, "ratio": ours / peer if peer else None}
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--size-mm", type=float, default=20.0)
+    parser.add_argument("--segments", type=int, default=96)
+    parser.add_argument("--json", type=Path)
+    options = parser.parse_args()
+    require_gl()
+    mesh = build_mesh(load_machine("series-dc-100kw"), size_m=1e-3 * options.size_mm, segments=options.segments)
+    nodes = split(mesh)
+    document = {
+        "benchmark": "viz",
+        "computer": f"{platform.machine()}, {platform.processor() or platform.system()}",
+        "date": datetime.date.today().isoformat(),
+        "rows": [*pictures(nodes), *recording(nodes), *click(nodes)],
+    }
+    for r in document["rows"]:
+        peer = f"  {r['peer_name']} {r['peer']:.3g}  ratio {r['ratio']:.2g}" if r["peer"] else ""
+        print(f"{r['case']:60s} {r['measure']:20s} {r['ours']:.3g} {r['unit']}{peer}")
+    if options.json:
+        options.json.write_text(json.dumps(document, indent=1))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,158 @@
+"""The workbench in a real browser, end to end: open, click the failing sensor, diagnose, add, undo, reload.
+
+Screenshots are kept in out/screenshots.
+"""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from thermoscope.history import load_history
+
+BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+playwright = pytest.importorskip("playwright.sync_api", reason="needs playwright: uv pip install playwright")
+pytestmark = pytest.mark.skipif(BROWSER is None, reason="needs a browser: apt-get install -y chromium")
+SERVER = Path(__file__).with_name("motor_case.py")
+LONG = 400_000  # ms; a shared computer may be slow
+
+
+@pytest.fixture(scope="module")
+def served(tmp_path_factory):
+    """(address, case folder) of a running workbench, its machine a stand-in."""
+    home = tmp_path_factory.mktemp("serve")
+    environment = {**os.environ, "THERMOSCOPE_CACHE": str(home / "cache")}
+    process = subprocess.Popen(
+        [sys.executable, str(SERVER), str(home)], stdout=subprocess.PIPE, text=True, env=environment
+    )
+    yield process.stdout.readline().strip(), home / "three"
+    process.terminate()
+    process.wait(timeout=60)
+
+
+@pytest.fixture(scope="module")
+def browser():
+    with playwright.sync_playwright() as engine:
+        yield engine.chromium.launch(executable_path=BROWSER, args=["--no-sandbox", "--disable-gpu"])
+
+
+@pytest.fixture
+def page(browser, served):
+    """A fresh tab on the workbench; an error in the page's own code fails the test."""
+    tab, faults = opened(browser, served[0])
+    yield tab
+    tab.context.close()
+    assert faults == []
+
+
+def opened(browser, address):
+    tab, faults = browser.new_context(viewport={"width": 1280, "height": 800}).new_page(), []
+    tab.set_default_timeout(LONG)
+    tab.on("pageerror", lambda fault: faults.append(str(fault)))
+    tab.goto(address)
+    tab.wait_for_selector("#sensors .sensor")
+    tab.wait_for_selector("#machine img[src^=blob], #machine canvas", state="attached")
+    return tab, faults
+
+
+def kept(root, page, name):
+    folder = root / "out" / "screenshots"
+    folder.mkdir(parents=True, exist_ok=True)
+    page.wait_for_timeout(1500)  # the bars take 1.2 s to fall
+    page.screenshot(path=folder / f"{name}.png")
+
+
+def error(page, test):
+    """The error of a test as the page shows it (K): the last number of its row."""
+    return float(re.findall(r"\d+\.\d+", page.inner_text(f"#error-{test} .value"))[-1])
+
+
+def test_the_whole_loop(root, page, served):
+    """The error on the test that is never used must fall below its own tenth, come back with undo, and survive."""
+    start = error(page, "town")
+    kept(root, page, "1-opened")
+    page.click("#sensor-T_flange")
+    page.wait_for_function("document.querySelector('#curve').innerText.includes('flange')")
+    assert page.get_attribute("#sensor-T_flange", "aria-pressed") == "true"
+    kept(root, page, "2-sensor")
+
+    page.click("#draws", force=True)
+    page.click(".v-list-item >> text=20")
+    page.click("#diagnose")
+    page.wait_for_selector("#progress")
+    page.click("#sensor-T_yoke")
+    page.wait_for_selector("#sensor-T_yoke.chosen", timeout=20_000)  # the page answers while the calculation runs
+    assert page.is_visible("#job")
+    page.wait_for_selector("#verdict")
+    assert "convection at flange" in page.inner_text("#verdict")
+    kept(root, page, "3-diagnosed")
+
+    page.click("#report")
+    with page.context.expect_page() as opening:
+        page.click("#report-link")
+    assert "thermoscope report: three" in opening.value.inner_text("h1")
+    assert (served[1] / "out" / "report.html").is_file()
+    opening.value.close()
+
+    page.click("[id='add-convection@flange']")
+    page.wait_for_selector("#outcome.good, #outcome.warn")
+    assert "accepted" in page.inner_text("#outcome")
+    assert error(page, "town") < 0.1 * start
+    kept(root, page, "4-added")
+    assert load_history(served[1] / "model.toml").last.effects == ("convection@flange",)
+
+    page.click("#undo")
+    page.wait_for_function("document.querySelector('#revision').innerText === 'revision 2'")
+    assert error(page, "town") == pytest.approx(start)
+    kept(root, page, "5-undone")
+
+    page.reload()
+    page.wait_for_selector("#sensors .sensor")
+    assert page.inner_text("#revision") == "revision 2"
+    assert error(page, "town") == pytest.approx(start)
+    assert [r.action for r in load_history(served[1] / "model.toml").revisions] == ["add", "step back"]
+
+
+def test_a_click_on_the_machine_chooses_the_sensor(page):
+    """The dot is looked for where the picture shows the chosen sensor's white ring."""
+    page.click("#sensor-T_winding")
+    box = page.locator("#machine").bounding_box()
+    for u in range(10, 90, 4):
+        for v in range(20, 80, 6):
+            page.mouse.click(box["x"] + box["width"] * u / 100, box["y"] + box["height"] * v / 100)
+        page.wait_for_timeout(100)
+        if page.get_attribute("#sensor-T_winding", "aria-pressed") == "false":
+            return
+    raise AssertionError("no click on the machine chose another sensor")
+
+
+def test_keys_alone_do_everything(page):
+    """Tab reaches the sensors and Enter chooses; j goes to the next one."""
+    reached = []
+    for _ in range(60):
+        page.keyboard.press("Tab")
+        reached.append(page.evaluate("document.activeElement.id"))
+        if reached[-1] == "sensor-T_winding":
+            break
+    assert {"calibrate", "report"} <= set(reached)
+    page.keyboard.press("Enter")
+    page.wait_for_selector("#sensor-T_winding.chosen")
+    page.keyboard.press("j")
+    page.wait_for_selector("#sensor-T_yoke.chosen")
+
+
+def test_tabs_do_not_disturb_each_other(browser, served, page):
+    other, faults = opened(browser, served[0])
+    assert other.url != page.url
+    page.click("#sensor-T_winding")
+    page.wait_for_selector("#sensor-T_winding.chosen")
+    assert other.get_attribute("#sensor-T_winding", "aria-pressed") == "false"
+    other.click("[aria-label='dark page']")
+    other.wait_for_selector(".v-theme--dark")
+    assert page.locator(".v-theme--dark").count() == 0
+    other.context.close()
+    assert faults == []

@@ -1,0 +1,133 @@
+"""Who gets in and what can be fetched: asked over a real socket."""
+
+import asyncio
+import socket
+from contextlib import asynccontextmanager
+
+import pytest
+from aiohttp import ClientSession, CookieJar, web
+from motor_case import with_motor
+from small_case import small_case
+
+from geom.errors import InputError
+from thermoscope.workbench.gate import Gate, loopback, served
+from thermoscope.workbench.serve import application, token_for
+
+TOKEN = "a-token-of-enough-characters"
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return with_motor(small_case(tmp_path_factory.mktemp("gate")))
+
+
+def asked(folder, gate, questions):
+    """Run `questions(address, session)` against a server of the case."""
+
+    async def main():
+        async with running(folder, gate) as address, ClientSession(cookie_jar=CookieJar(unsafe=True)) as session:
+            return await questions(address, session)
+
+    return asyncio.run(main())
+
+
+@asynccontextmanager
+async def running(folder, gate):
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    runner = web.AppRunner(application(folder, gate, lambda message: None))
+    await runner.setup()
+    await web.TCPSite(runner, "127.0.0.1", port).start()
+    try:
+        yield f"http://127.0.0.1:{port}"
+    finally:
+        await runner.cleanup()
+
+
+@pytest.mark.parametrize(
+    ("host", "local"),
+    [("127.0.0.1", True), ("localhost", True), ("::1", True), ("[::1]", True), ("0.0.0.0", False),
+     ("motor.example", False)],
+)  # fmt: skip
+def test_loopback_is_this_computer_only(host, local):
+    assert loopback(host) is local
+
+
+def test_a_token_is_made_for_anything_but_loopback():
+    assert token_for("127.0.0.1", None) == ""
+    assert len(token_for("0.0.0.0", None)) >= 32
+    assert token_for("0.0.0.0", None) != token_for("0.0.0.0", None)
+    assert token_for("127.0.0.1", TOKEN) == TOKEN
+
+
+@pytest.mark.parametrize("given", ["", "short"])
+def test_a_short_token_is_refused(given):
+    with pytest.raises(InputError, match="at least 16"):
+        token_for("0.0.0.0", given)
+
+
+def test_files_outside_the_served_folders_do_not_exist(tmp_path):
+    inside, outside = tmp_path / "www", tmp_path / "secret.txt"
+    inside.mkdir()
+    (inside / "index.html").write_text("page")
+    outside.write_text("secret")
+    (inside / "link").symlink_to(outside)
+    folders = {"": inside, "lib": inside}
+    assert served(folders, "index.html") == inside / "index.html"
+    assert served(folders, "lib/index.html") == inside / "index.html"
+    for name in ("../secret.txt", "lib/../../secret.txt", str(outside), "link", "lib/../secret.txt", "", "lib/"):
+        assert served(folders, name) is None, name
+
+
+def test_without_the_token_nothing_is_shown(folder):
+    async def questions(address, session):
+        seen = []
+        for path in ("/", "/tab/x/index.html", "/tab/x/ws", "/tab/x/report.html", "/?token=wrong"):
+            async with session.get(address + path, allow_redirects=False) as answer:
+                seen.append(answer.status)
+        async with session.get(f"{address}/?token={TOKEN}", allow_redirects=False) as answer:
+            seen.append(answer.status)
+            kept = answer.headers["Set-Cookie"]
+        async with session.get(address + "/", allow_redirects=True) as answer:
+            page = await answer.text()
+        return seen, kept, page
+
+    seen, kept, page = asked(folder, Gate("0.0.0.0", TOKEN), questions)
+    assert seen == [401] * 5 + [302]
+    assert "HttpOnly" in kept
+    assert "SameSite=Strict" in kept
+    assert "<title>" in page
+
+
+def test_other_names_and_other_pages_are_refused(folder):
+    """A web page elsewhere must not reach a server on loopback, by its own name or from its own origin."""
+
+    async def questions(address, session):
+        seen = []
+        for headers in ({"Host": "evil.example"}, {"Origin": "http://evil.example"}, {"Origin": "null"}, {}):
+            async with session.get(address + "/", headers=headers, allow_redirects=False) as answer:
+                seen.append(answer.status)
+        return seen
+
+    assert asked(folder, Gate("127.0.0.1", ""), questions) == [403, 403, 403, 302]
+
+
+def test_paths_do_not_lead_out(folder):
+    async def questions(address, session):
+        async with session.get(address + "/", allow_redirects=False) as answer:
+            tab = answer.headers["Location"].removesuffix("index.html")
+        seen = {}
+        secret = folder.settings.path / "case.toml"
+        for name in ("index.html", "%2e%2e/%2e%2e/case.toml", "..%2f..%2fcase.toml", "%2fetc%2fpasswd", f"/{secret}",
+                     "report.html", "model.toml", "case.toml"):  # fmt: skip
+            async with session.get(f"{address}{tab}{name}", allow_redirects=False) as answer:
+                seen[name] = answer.status
+        async with session.get(address + "/tab/unknown/index.html", allow_redirects=False) as answer:
+            seen["unknown"] = answer.headers["Location"]
+        return seen
+
+    seen = asked(folder, Gate("127.0.0.1", ""), questions)
+    assert seen.pop("index.html") == 200
+    assert seen.pop("unknown") == "/"
+    assert set(seen.values()) == {404}

@@ -1,0 +1,47 @@
+"""One tab's history: undo step by step, and never write over somebody else."""
+
+import pytest
+
+from geom.errors import InputError
+from thermoscope.history import History, Revision, load_history
+from thermoscope.workbench.ledger import effective, undone, written
+
+ONE = Revision(0, "calibrate", values={"a": 1.0}, rmse_K={"t": (3.0, 2.0)})
+TWO = Revision(0, "add", ("x@y",), "x@y", {"a": 1.1, "x@y": 5.0}, rmse_K={"t": (2.0, 0.5)})
+
+
+def test_undo_goes_back_step_by_step_to_the_declared_model():
+    history = History().and_then(ONE).and_then(TWO)
+    once = undone(history)
+    assert (once.last.action, once.last.effects, once.last.values) == ("step back", (), {"a": 1.0})
+    twice = undone(once)
+    assert (twice.last.effects, dict(twice.last.values)) == ((), {})
+    assert undone(twice) is None
+    assert len(twice.revisions) == 4
+
+
+def test_undo_after_a_new_step_undoes_the_new_step():
+    history = undone(History().and_then(ONE).and_then(TWO)).and_then(TWO)
+    assert [r.action for r in effective(history)] == ["calibrate", "calibrate", "add"]
+    assert undone(history).last.values == {"a": 1.0}
+
+
+def test_undo_says_what_the_error_does():
+    once = undone(History().and_then(ONE).and_then(TWO))
+    assert once.last.rmse_K == {"t": (0.5, 2.0)}
+
+
+def test_a_step_is_written_and_read_back(tmp_path):
+    file = tmp_path / "model.toml"
+    kept = written(file, History(), History().and_then(ONE))
+    assert kept == load_history(file)
+    assert written(file, kept, kept.and_then(TWO)).last.effects == ("x@y",)
+
+
+def test_somebody_elses_step_is_not_written_over(tmp_path):
+    file = tmp_path / "model.toml"
+    mine = written(file, History(), History().and_then(ONE))
+    theirs = written(file, mine, mine.and_then(TWO))
+    with pytest.raises(InputError, match="another tab"):
+        written(file, mine, mine.and_then(TWO))
+    assert load_history(file) == theirs
