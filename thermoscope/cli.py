@@ -21,6 +21,8 @@ Case = Annotated[str, typer.Argument(metavar="CASE", help="A case folder, or the
 Effect = Annotated[str, typer.Argument(metavar="EFFECT@PLACE", help="For example convection@flange.right.")]
 Json = Annotated[str | None, typer.Option("--json", metavar="FILE|-", help="Write the JSON document; - is stdout.")]
 Anyway = Annotated[bool, typer.Option("--anyway", help="Write it even if it is not accepted.")]
+Machine = Annotated[str, typer.Argument(metavar="MACHINE", help="A machine or STEP file, or a name that comes along.")]
+Accuracy = Annotated[float, typer.Option(min=0.01, help="Percent of a part's rise; means within half of it.")]
 Out = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder for the results.")]
 
 
@@ -34,13 +36,32 @@ def demo(out: Annotated[Path, typer.Option("--out", metavar="DIR")] = Path("out/
 
 @app.command()
 def build(
-    machine: Annotated[str, typer.Argument(metavar="MACHINE", help="A machine file, or a name that comes along.")],
-    out: Out = None, json: Json = None,
+    machine: Machine, out: Out = None, accuracy: Accuracy = 2.0, json: Json = None,
 ) -> None:  # fmt: skip
-    """Solids (STEP, STL, GLB), mesh and network of a machine, and the network against the field."""
+    """Solids (STEP, STL, GLB), mesh and the smallest network that is accurate enough. Exit code 1 if none is."""
     from thermoscope.commands.build import build as run
 
-    raise typer.Exit(run(machine, out, json))
+    raise typer.Exit(run(machine, out, json, accuracy))
+
+
+@app.command()
+def crosscheck(machine: Machine, out: Out = None, accuracy: Accuracy = 2.0, json: Json = None) -> None:
+    """Where network and field disagree, which link is responsible, and the hand formula beside the field's value."""
+    from thermoscope.commands.crosscheck import crosscheck as run
+
+    raise typer.Exit(run(machine, out, accuracy, json))
+
+
+@app.command()
+def simulate(
+    case: Case,
+    cycle: Annotated[str | None, typer.Option(metavar="FILE|NAME", help="A drive cycle; else all tests.")] = None,
+    out: Out = None, json: Json = None,
+) -> None:  # fmt: skip
+    """Drive cycle in, temperatures out: a CSV per run, and how well its heat balance closed."""
+    from thermoscope.commands.simulate import simulate as run
+
+    raise typer.Exit(run(case, cycle, out, json))
 
 
 @app.command()
@@ -113,6 +134,14 @@ def serve(
     from thermoscope.commands.serve import serve as run
 
     raise typer.Exit(run(case, host, port))
+
+
+@app.command()
+def machines(out: Out = None, json: Json = None) -> None:
+    """The machines that come along; with --out also a page with a thumbnail of each."""
+    from thermoscope.commands.machines import machines as run
+
+    raise typer.Exit(run(out, json))
 
 
 @app.command()

@@ -1,0 +1,176 @@
+"""thermoscope simulate: tests, duties and drives in, temperatures out."""
+
+import json
+
+import numpy as np
+import pytest
+
+from geom.errors import InputError
+from lumped.drive import Vehicle
+from thermoscope.commands.simulate import simulate
+from thermoscope.cycle import load_cycle
+from thermoscope.folder import load_case
+
+DUTY = """
+[cycle]
+initial_degC = 25
+[duty]
+type = "S3"
+period_s = 600
+duty_percent = 40
+cycles = 20
+[load]
+current_A = 100
+[inputs]
+vehicle_speed_mps = 0
+[boundaries]
+ambient = 25
+"""
+
+DRIVE = """
+[cycle]
+time = "time_s"
+[columns.speed]
+quantity = "vehicle_speed"
+unit = "km/h"
+[columns.slope]
+quantity = "share"
+unit = "%"
+input = "slope_percent"
+[columns.air]
+quantity = "temperature"
+unit = "degC"
+place = "ambient"
+[vehicle]
+mass_kg = 9000
+wheel_radius_m = 0.48
+gear = 4.52
+[series-machine]
+power_W = 100e3
+speed_rpm = 1000
+voltage_V = 220
+current_A = 511
+"""
+TABLE = "time_s,speed,slope,air\n" + "".join(
+    f"{t},{min(t, 60) / 60 * 40},4,{20 + t / 600}\n" for t in range(0, 601, 30)
+)
+
+PM = """
+[duty]
+type = "S1"
+duration_s = 3000
+[cycle]
+[load]
+torque_Nm = 80
+speed_rpm = 2000
+[boundaries]
+ambient = 25
+[pm-machine]
+pole_pairs = 4
+R20_ohm = 4.67e-3
+Ld_H = 1e-4
+Lq_H = 2.5e-4
+psi_Vs = 0.07
+current_limit_A = 400
+voltage_limit_V = 200
+magnet = "flange"
+"""
+
+
+def ran(case, cycle, tmp_path):
+    file = tmp_path / "document.json"
+    assert simulate(str(case), cycle and str(cycle), tmp_path / "out", str(file)) == 0
+    return json.loads(file.read_text())
+
+
+def cycle_file(folder, text, table=""):
+    (folder / "cycles").mkdir(exist_ok=True)
+    (folder / "cycles" / "mine.toml").write_text(text)
+    if table:
+        (folder / "cycles" / "mine.csv").write_text(table)
+    return "mine"
+
+
+def closes(run):
+    assert run["energy_balance"] < 1e-9
+    assert run["loss_mismatch"] < 1e-3
+    for loss in run["losses"]:
+        assert loss["injected_J"] == pytest.approx(loss["declared_J"], rel=5e-3)
+
+
+def test_all_tests_of_a_case_give_a_csv_each(case, tmp_path):
+    document = ran(case, None, tmp_path)
+    assert [run["name"] for run in document["runs"]] == ["stand", "road", "town"]
+    for run in document["runs"]:
+        closes(run)
+        with open(run["file"]) as file:
+            head = file.readline().strip().split(",")
+        assert head[0] == "time_s"
+        assert {"current_A", "ambient", "T winding (degC)", "T sensor T_winding (degC)"} <= set(head)
+        body = np.loadtxt(run["file"], delimiter=",", skiprows=1)
+        assert body.shape[1] == len(head)
+        end = next(p["end_C"] for p in run["places"] if p["place"] == "winding")
+        assert body[-1, head.index("T winding (degC)")] == pytest.approx(end, rel=1e-5)
+
+
+def test_a_duty_ends_near_its_mean_load(case, tmp_path):
+    """S3 40 %: the mean copper loss is that of 40 % of the time, at least the cold one and not twice as much."""
+    run = ran(case, cycle_file(case, DUTY), tmp_path)["runs"][0]
+    closes(run)
+    cold = 0.4 * 0.02 * 100**2
+    assert cold < run["losses"][0]["mean_W"] < 2 * cold
+    assert run["coupling"]["rounds"] == 0
+
+
+def test_a_vehicle_on_a_slope_heats_its_machine(case, tmp_path):
+    """40 km/h up 0.2 %: the current that carries the load, and temperatures that agree with it."""
+    run = ran(case, cycle_file(case, DRIVE, TABLE), tmp_path)["runs"][0]
+    closes(run)
+    assert run["coupling"]["residuals_K"][-1] < 1e-3
+    with open(run["file"]) as file:
+        head = file.readline().strip().split(",")
+    last = dict(zip(head, np.loadtxt(run["file"], delimiter=",", skiprows=1)[-1], strict=True))
+    load = Vehicle(9000.0, 0.48, 4.52).load_torque(40 / 3.6, 0.002)
+    assert last["torque_Nm"] == pytest.approx(load, rel=0.01)
+    assert last["speed_rpm"] == pytest.approx(1000.0, rel=0.02)
+    assert last["ambient"] == pytest.approx(21.0)
+
+
+def test_a_permanent_magnet_machine_runs_from_torque_and_speed(case, tmp_path):
+    run = ran(case, cycle_file(case, PM), tmp_path)["runs"][0]
+    closes(run)
+    assert run["coupling"]["residuals_K"][-1] < 1e-3 < run["coupling"]["residuals_K"][0]
+
+
+SLIPS = {
+    "unknown key": (DUTY.replace("period_s", "periodd_s"), "'period_s' is missing|periodd_s"),
+    "no boundary": (DUTY.replace("ambient = 25", ""), "boundary 'ambient'"),
+    "no input": (DUTY.replace("current_A", "curent_A"), "input 'current_A'"),
+    "duty type": (DUTY.replace("S3", "S9"), "'S9'"),
+    "place": (PM.replace('magnet = "flange"', 'magnet = "flang"'), "'flang'.*did you mean 'flange'"),
+}
+
+
+@pytest.mark.parametrize(("text", "message"), SLIPS.values(), ids=SLIPS)
+def test_slips_are_named(case, text, message):
+    cycle_file(case, text)
+    network = load_case(case).case.model.network
+    with pytest.raises(InputError, match=message):
+        load_cycle(case / "cycles" / "mine.toml", network, {})
+
+
+def test_an_unknown_cycle_lists_those_there_are(case, tmp_path):
+    cycle_file(case, DUTY)
+    with pytest.raises(InputError, match="did you mean 'mine'"):
+        simulate(str(case), "mne", tmp_path, None)
+
+
+@pytest.mark.parametrize("name", ["hust-ipmsm"])
+def test_the_shipped_duty_runs(root, name, tmp_path):
+    run = ran(root / "cases" / name, "s3-40", tmp_path)["runs"][0]
+    closes(run)
+    assert run["duration_s"] == 7200.0
+
+
+def test_the_command_is_there(thermoscope):
+    assert "--cycle" in thermoscope("simulate", "--help").out

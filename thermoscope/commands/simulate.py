@@ -1,0 +1,151 @@
+"""thermoscope simulate CASE: inputs in, temperatures out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geom.errors import ThermoscopeError
+from lumped.audit import Audit, audit
+from lumped.coupled import coupled
+from lumped.network import Network, Row
+from lumped.simulate import Record
+from lumped.simulate import simulate as integrated
+from thermoscope.commands.opened import PACKAGE, opened
+from thermoscope.cycle import Cycle, find_cycle, load_cycle
+from thermoscope.files import write_whole
+from thermoscope.folder import Folder
+from thermoscope.terminal import Progress, give, progress, say, table
+
+Array = NDArray[np.float64]
+MISMATCH = 0.01  # of all losses: the trapezium's own error at coarse steps; more means that heat went astray
+
+
+def simulate(case: str, cycle: str | None, out: Path | None, target: str | None) -> int:
+    """All tests of the case, or one cycle."""
+    with progress() as tell:
+        folder = opened(case, tell)
+        network, values = _model(folder)
+        into = out or _out(folder)
+        runs = [_ran(network, values, one, folder, into, tell) for one in _cycles(folder, network, cycle)]
+        circuits = _circuits(folder)
+    document = {
+        "case": folder.case.name, "revision": folder.case.model.revision, "runs": runs, "circuits": circuits,
+    }  # fmt: skip
+    give(document, target, lambda: show(document))
+    return 0
+
+
+def _out(folder: Folder) -> Path:
+    inside = PACKAGE in folder.settings.path.resolve().parents
+    return Path("out") / folder.settings.path.name if inside else folder.settings.out
+
+
+def _model(folder: Folder) -> tuple[Network, dict[str, float]]:
+    """The network with the effects added, and the values of its own parameters."""
+    from validation.fitting import working
+    from validation.predict import thermal
+
+    network = thermal(working(folder.case)[0])
+    mine = {p.name for p in network.parameters}
+    return network, {k: v for k, v in folder.case.model.values.items() if k in mine}
+
+
+def _cycles(folder: Folder, network: Network, cycle: str | None) -> Iterable[Cycle]:
+    from validation.predict import record
+
+    if cycle is None:
+        return [Cycle(test.name, record(test, {})) for test in folder.case.tests]
+    ratings = folder.built.machine.sections.get("ratings", {}) if folder.built is not None else {}
+    return [load_cycle(find_cycle(folder.settings.path, cycle), network, ratings)]
+
+
+def _ran(
+    network: Network, values: Mapping[str, float], cycle: Cycle, folder: Folder, into: Path, tell: Progress
+) -> dict[str, Any]:
+    tell(f"running {cycle.name}")
+    rows = _looks(network, folder)
+    record = cycle.record
+    residuals: tuple[float, ...] = ()
+    if cycle.drive is None:
+        run = integrated(network, record, values, list(rows.values()))
+    else:
+        found = coupled(network, record, cycle.drive, cycle.watched, values, list(rows.values()))
+        run, record, residuals = found.run, replace(record, inputs=found.inputs), found.residuals
+    heat = audit(network, record, values)
+    if heat.mismatch > MISMATCH:
+        raise ThermoscopeError(f"{cycle.name}: injected and declared losses differ by {100 * heat.mismatch:.3g} %")
+    file = write_whole(into / f"simulate-{cycle.name}.csv", _csv(record, rows, run.y))
+    return _document(cycle, record, rows, run.y, heat, residuals, file)
+
+
+def _looks(network: Network, folder: Folder) -> dict[str, Row]:
+    """Named temperatures: the means of parts and nodes, then the sensors of the case."""
+    means = {n: p.mean for n, p in network.places.items() if p.kind != "surface" and "#" not in n}
+    sensors = {f"sensor {c.name}": c.row for test in folder.case.tests for c in test.channels}
+    return means | sensors
+
+
+def _csv(record: Record, rows: Mapping[str, Row], y: Array) -> str:
+    inputs = {n: np.broadcast_to(v, record.time.shape) for n, v in {**record.inputs, **record.boundaries}.items()}
+    head = ["time_s", *inputs, *(f"T {name} (degC)" for name in rows)]
+    body = np.column_stack([record.time, *inputs.values(), y])
+    return "\n".join([",".join(head), *(",".join(f"{x:.7g}" for x in line) for line in body)]) + "\n"
+
+
+def _document(
+    cycle: Cycle, record: Record, rows: Mapping[str, Row], y: Array, heat: Audit, residuals: tuple[float, ...],
+    file: Path,
+) -> dict[str, Any]:  # fmt: skip
+    span = float(record.time[-1] - record.time[0]) or 1.0
+    hottest = np.argmax(y, axis=0)
+    return {
+        "name": cycle.name, "file": str(file), "duration_s": span,
+        "places": [
+            {"place": name, "start_C": y[0, k], "max_C": y[hottest[k], k], "max_at_s": record.time[hottest[k]],
+             "end_C": y[-1, k]}
+            for k, name in enumerate(rows)
+        ],
+        "losses": [
+            {"loss": n, "declared_J": J, "injected_J": heat.injected_J[n], "mean_W": J / span}
+            for n, J in heat.declared_J.items()
+        ],
+        "energy_balance": heat.residual, "loss_mismatch": heat.mismatch,
+        "coupling": {"rounds": len(residuals), "residuals_K": list(residuals)},
+    }  # fmt: skip
+
+
+def _circuits(folder: Folder) -> list[dict[str, Any]]:
+    """Pressure drop and pump power of declared coolant circuits at their usual flow."""
+    if folder.settings.network is None:
+        return []
+    from lumped.declared import load_circuits
+
+    found = load_circuits(folder.settings.network)
+    return [
+        {"circuit": n, "flow_m3_s": c.flow, "pressure_drop_Pa": c.pressure_drop(), "pump_W": c.pump_power()}
+        for n, c in found.items()
+    ]
+
+
+def show(document: Mapping[str, Any]) -> None:
+    """Per run: temperatures, losses, and how well it closed."""
+    for run in document["runs"]:
+        keys = ["place", "start_C", "max_C", "max_at_s", "end_C"]
+        headers = ["place", "start (degC)", "largest (degC)", "at (s)", "end (degC)"]
+        table(f"{run['name']}: {run['duration_s']:g} s", headers, [[p[k] for k in keys] for p in run["places"]])
+        table("Losses", ["loss", "mean (W)"], [[x["loss"], x["mean_W"]] for x in run["losses"] if x["mean_W"]])
+        rounds = run["coupling"]["residuals_K"]
+        if rounds:
+            shown = ", ".join(f"{r:.2g}" for r in rounds)
+            say(f"drive and temperatures agree after {len(rounds)} rounds; largest change per round (K): {shown}")
+        say(f"heat in - out - stored: {run['energy_balance']:.1e} of the heat; losses injected against declared: "
+            f"{run['loss_mismatch']:.1e}; written to {run['file']}")  # fmt: skip
+    for c in document["circuits"]:
+        say(f"circuit {c['circuit']}: {c['flow_m3_s'] * 6e4:.3g} l/min, {c['pressure_drop_Pa'] / 1e3:.3g} kPa, "
+            f"pump {c['pump_W']:.3g} W")  # fmt: skip
