@@ -17,7 +17,7 @@ from pathlib import Path
 from hidden import sizes
 from hidden.cases import SHARES, plan
 from hidden.kinds import KINDS
-from hidden.run import answered, pairs, run
+from hidden.run import Wanted, answered, pairs, run
 from hidden.score import rows
 
 
@@ -30,6 +30,8 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--draws", type=int, default=24, help="data sets of the simulated null")
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--plan", action="store_true", help="also rank next tests and scan for latent heat (slower)")
+    parser.add_argument("--peers", action="store_true", help="also ask the simpler methods of hidden/peers.py")
+    parser.add_argument("--after", action="store_true", help="also add what is claimed and carry out the proposed test")
     parser.add_argument("--out", type=Path, default=None, help="folder of answers and labels, to be resumed")
     parser.add_argument("--score", action="store_true", help="only score what OUT has")
     parser.add_argument("--sizes", action="store_true", help="measure the smallest detectable sizes anew and stop")
@@ -44,10 +46,13 @@ def main() -> None:
     out = a.out or Path(f"out/hidden-{a.seeds}")
     labels = plan(a.seeds, a.count, a.classes, a.archetypes)
     if not a.score:
-        run(labels, out, a.draws, a.plan, a.jobs)
+        run(labels, out, Wanted(a.draws, a.plan, a.peers, a.after), a.jobs)
     table = rows(pairs(out))
     for r in table:
-        told = f"  n {r['n']:3d}  95 % {r['ci95'][0]:.2f} to {r['ci95'][1]:.2f}  {r['target']}" if "n" in r else ""
+        told = (
+            f"  n {r['n']:3d}  95 % {r['ci95'][0]:.2f} to {r['ci95'][1]:.2f}  {r.get('target', '')}" if "n" in r else ""
+        )
+        told += f"{r['peer_name']} {r['peer']:.3g}" if "peer" in r else ""
         print(f"{r['case']:32s} {r['measure']:30s} {r['ours']:8.3g} {r['unit']}{told}")
     if a.json:
         computer = f"{platform.machine()}, {platform.processor() or platform.system()}"

@@ -119,6 +119,30 @@ def covered(label: Answer, answer: Answer) -> bool | None:
     return abs(row["value"] - label["amplitude"][0]) <= half
 
 
+def leads(label: Answer, name: str, size: float) -> bool | None:
+    """Would `name`, claimed or not, be right? A node is right when the effect sits there."""
+    if label["group"] != "one" or label["size"] != size:
+        return None
+    (truth,) = label["truth"]
+    return name == truth or ("@" not in name and name in truth.split("@")[1].split("|"))
+
+
+def share_of_fall(answer: Answer) -> float | None:
+    """Fall of the held-out error with what was claimed, over the fall with the truth, where that is 5 % at least."""
+    worth = answer.get("worth")
+    if not worth or worth["best"] > 0.95 * worth["before"]:
+        return None
+    return (worth["before"] - worth["claimed"]) / (worth["before"] - worth["best"])
+
+
+def resolved(label: Answer, answer: Answer) -> bool | None:
+    """After the proposed test: the truth alone."""
+    after = answer.get("followed")
+    if not after or label["group"] not in ("one", "pair"):
+        return None
+    return after["verdict"] == "named" and after["groups"][0] == label["truth"]
+
+
 def rate(hits: Sequence[bool | None]) -> tuple[float, int, tuple[float, float]]:
     """Rate, number of cases it applies to, Wilson interval."""
     applies = [h for h in hits if h is not None]

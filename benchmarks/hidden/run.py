@@ -5,12 +5,15 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from joblib import Parallel, delayed
 
+from hidden.after import followed, worth
 from hidden.answer import answer
 from hidden.cases import Label, records_of
+from hidden.peers import peers
 from hidden.user import case_of
 
 LABELS, ANSWERS = "labels.jsonl", "answers.jsonl"
@@ -31,7 +34,18 @@ def _lines(file: Path) -> list[dict]:
     return [json.loads(line) for line in file.read_text().splitlines()] if file.exists() else []
 
 
-def run(labels: Sequence[Label], out: Path, draws: int, plan: bool, jobs: int) -> None:
+@dataclass(frozen=True)
+class Wanted:
+    """draws : of the simulated null;  plan : next tests and latent heat;  peers : the simpler methods as well;
+    after : add what is claimed, and carry out the proposed test"""
+
+    draws: int = 24
+    plan: bool = False
+    peers: bool = False
+    after: bool = False
+
+
+def run(labels: Sequence[Label], out: Path, wanted: Wanted, jobs: int) -> None:
     """Diagnose what `out` does not have yet; one line printed per case."""
     out.mkdir(parents=True, exist_ok=True)
     known = {label["case"] for label in _lines(out / LABELS)}
@@ -39,20 +53,24 @@ def run(labels: Sequence[Label], out: Path, draws: int, plan: bool, jobs: int) -
         file.writelines(json.dumps(x.document()) + "\n" for x in labels if x.case not in known)
     done = answered(out)
     todo = [label for label in labels if label.case not in done]
-    work = (delayed(_diagnosed)(label, draws, plan) for label in todo)
+    work = (delayed(_diagnosed)(label, wanted) for label in todo)
     for label, found in zip(todo, Parallel(jobs, return_as="generator")(work), strict=True):
         with (out / ANSWERS).open("a") as file:
             file.write(json.dumps(found) + "\n")
         print(line(label, found), flush=True)
 
 
-def _diagnosed(label: Label, draws: int, plan: bool) -> dict:
-    """Only the case goes to the diagnosis."""
+def _diagnosed(label: Label, wanted: Wanted) -> dict:
+    """Only the case goes to the diagnosis; the label serves to make it, and to carry out what was proposed."""
     start = time.process_time()
     case = case_of(label.case, label.machine, records_of(label))
     made = time.process_time() - start
-    found, _ = answer(case, draws, plan)
-    return {**found, "made_s": made}
+    found = {**answer(case, wanted.draws, wanted.plan or wanted.after), "made_s": made}
+    if wanted.peers:
+        found["peers"] = peers(case)
+    if wanted.after:
+        found |= {"worth": worth(case, label, found), "followed": followed(case, label, found, wanted.draws)}
+    return found
 
 
 def line(label: Label, found: dict) -> str:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
+from scipy.stats import binom
 
 from hidden import judge
 from hidden.user import network_of
@@ -50,8 +51,29 @@ def promises(pairs: Iterable[Pair]) -> list[tuple[str, str, str, list[bool | Non
         ("absorbed, parameter named", "", "absorbed by calibration", over(judge.absorbed_said)),
         ("fault found", "", "data faults", over(judge.fault_found)),
         ("no effect claimed", "", "wrong priors", over(judge.quiet)),
+        ("next test resolves the group", ">= 0.80", "one effect or a pair, reported as a group", over(judge.resolved)),
         ("90 % interval covers", "0.85 to 0.95", "one effect, refitted", over(judge.covered)),
     ]  # fmt: skip
+
+
+def contest(pairs: Iterable[Pair]) -> list[dict]:
+    """Our first guess and every peer's, claimed or not; how often each claims something where nothing is missing."""
+    pairs = [(label, answer) for label, answer in pairs if "peers" in answer]
+    names, out = list(pairs[0][1]["peers"]) if pairs else [], []
+    for name in names:
+        for size in (1.0, 2.0, 4.0):
+            ours = judge.rate([judge.leads(a, b["lead"], size) for a, b in pairs])
+            their = judge.rate([judge.leads(a, b["peers"][name][0], size) for a, b in pairs])
+            out.append(_against("one effect", f"first guess right, {size:g}x", name, ours, their))
+        ours = judge.rate([judge.false_alarm(a, b) for a, b in pairs])
+        their = judge.rate([b["peers"][name][1] if a["group"] == "nothing" else None for a, b in pairs])
+        out.append(_against("nothing missing", "false alarm", name, ours, their))
+    return [r for r in out if r["n"]]
+
+
+def _against(group: str, measure: str, name: str, ours: tuple, their: tuple) -> dict:
+    return {"case": group, "measure": measure, "unit": "1", "ours": ours[0], "peer": their[0], "peer_name": name,
+            "n": ours[1], "ci95": list(ours[2]), "peer_ci95": list(their[2])}  # fmt: skip
 
 
 def rows(pairs: Iterable[Pair]) -> list[dict]:
@@ -64,4 +86,14 @@ def rows(pairs: Iterable[Pair]) -> list[dict]:
                         "target": target})  # fmt: skip
     cost = [b["cpu_s"] for _, b in pairs]
     time = {"case": "diagnose", "measure": "time, median", "unit": "s", "ours": float(np.median(cost or [np.nan]))}
-    return [*out, time]
+    return [*out, *fall(pairs), *contest(pairs), time]
+
+
+def fall(pairs: Iterable[Pair]) -> list[dict]:
+    """Median share of the possible fall of the held-out error, its interval by the order statistics."""
+    share = sorted(s for _, b in pairs if (s := judge.share_of_fall(b)) is not None)
+    if not share:
+        return []
+    low, high = (share[int(k)] for k in binom.ppf((0.025, 0.975), len(share), 0.5).clip(0, len(share) - 1))
+    return [{"case": "one effect", "measure": "held-out error, share of possible fall", "unit": "1",
+             "ours": float(np.median(share)), "n": len(share), "ci95": [low, high], "target": ">= 0.85"}]  # fmt: skip

@@ -19,7 +19,7 @@ from hidden.user import case_of
 from validation.evidence import calibrated_case, candidates, null_of, scored
 
 FILE = Path(__file__).parent / "detectable.json"
-REFERENCE_SEEDS = (900001, 900002)
+REFERENCE_SEEDS = (900001,)
 LIKE = 0.5
 
 
@@ -28,7 +28,7 @@ def detectable() -> dict[str, dict[str, dict]]:
 
 
 def measure(kind: str, draws: int) -> dict[str, dict]:
-    """Per effect: mean of the smallest detectable amplitudes, and the candidates alike (|cosine| beyond 0.5)."""
+    """Per effect: smallest detectable amplitude (mean over the reference machines), candidates alike (cosine > 0.5)."""
     rows = [_one(kind, seed, draws) for seed in REFERENCE_SEEDS]
     out = {}
     for hidden in KINDS[kind].missing:

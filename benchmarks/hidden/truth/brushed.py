@@ -29,7 +29,7 @@ class Draught:
     share: float
 
     def into(self, q: Array, T: Array, u: Inputs) -> None:
-        mcp = self.share * u["fan_flow_m3_h"] / 3600.0 * 352.98 / (u["T_ambient"] + 273.15) * 1006.0
+        mcp = self.share * u["fan_flow_m3h"] / 3600.0 * 352.98 / (u["T_ambient"] + 273.15) * 1006.0
         before = np.concatenate([[u["T_ambient"]], T[self.cells[:-1]]])
         q[self.cells] += mcp * (before - T[self.cells])
 
@@ -79,7 +79,7 @@ def films(s: Skeleton, d: Draw) -> list[Film]:
 
     def blown(h0: float):
         def h(T: Array, Ta: Array, u: Inputs) -> Array:
-            return h0 * level * (u["fan_flow_m3_h"] / BLOWN) ** power * (1.0 + 5e-4 * (0.5 * (T + Ta) - 40.0))
+            return h0 * level * (u["fan_flow_m3h"] / BLOWN) ** power * (1.0 + 5e-4 * (0.5 * (T + Ta) - 40.0))
 
         return h
 

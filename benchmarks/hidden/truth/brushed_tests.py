@@ -17,7 +17,7 @@ Rng = np.random.Generator
 
 
 def drive(current: Array, speed: Array, wind: Array, flow: Array) -> dict[str, Array]:
-    return {"current_A": current, "speed_rpm": speed, "vehicle_speed_mps": wind, "fan_flow_m3_h": flow}
+    return {"current_A": current, "speed_rpm": speed, "vehicle_speed_mps": wind, "fan_flow_m3h": flow}
 
 
 def direct(rng: Rng, at: Array) -> dict[str, Array]:

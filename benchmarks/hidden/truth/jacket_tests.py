@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from hidden.truth import faults, foreign
 from hidden.truth.archetype import Archetype, Hidden, Plan, Spot, Twins
 from hidden.truth.change import Change
-from hidden.truth.effects import airflow, bridge, draught, glowing, heating, stirred_gap
+from hidden.truth.effects import airflow, draught, glowing, heating, stirred_gap
 from hidden.truth.jacket import machine
 from hidden.truth.profile import levels, steady, until
 
@@ -62,10 +62,6 @@ MISSING = (
     Hidden("loss.rotor.load@magnets", lambda a: heating("magnets", a, (2.0, 1.8), (2.0, 2.0)), 60.0),
     Hidden("copper.ac@winding.slot", lambda a: heating("slot", a, (2.0, 1.8), (2.0, 2.0), fade=0.002), 60.0),
     Hidden("gap.convection@magnets|stator", lambda a: stirred_gap(a, "magnets", "teeth"), 30.0),
-    Hidden("coolant@shield.nde", lambda a: bridge("hose", a, "shield.nde", "water", (0.3, 0.9)), 60.0),
-    Hidden(
-        "coupling@winding.de|shield.de", lambda a: bridge("potting", a, "winding.de", "shield.de", (0.7, 0.3)), 30.0
-    ),
     Hidden("loss.constant@shield.nde", lambda a: heating("shield.nde", a), 200.0),
 )
 FAULTS = {

@@ -1,0 +1,53 @@
+"""What comes after a diagnosis: what the addition is worth on held-out tests, and whether the proposed test decides."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+from hidden.answer import answer
+from hidden.cases import Label, hidden_in
+from hidden.kinds import KINDS
+from hidden.truth.archetype import measured
+from hidden.truth.menu import carried_out
+from hidden.user import network_of, test_of
+from validation import Case, Revision, add, calibrate
+
+Answer = dict[str, Any]
+
+
+def worth(case: Case, label: Label, found: Answer) -> dict[str, float] | None:
+    """Held-out error (K) calibrated as it is, with what was claimed first, and with the truth; one effect only.
+
+    Nothing claimed leaves the error as it is.
+    """
+    if label.group != "one":
+        return None
+    base = calibrate(case, roles=("calibrate", "validate"))
+    ready, before = replace(case, model=base.model), held_out(base)
+    best = held_out(add(ready, label.truth[0]))
+    claims = found["verdict"] in ("named", "group", "several") and found["groups"]
+    if not claims:
+        return {"before": before, "claimed": before, "best": best}
+    first = found["groups"][0][0]
+    claimed = best if first == label.truth[0] else held_out(add(ready, first))
+    return {"before": before, "claimed": claimed, "best": best}
+
+
+def held_out(done: Revision) -> float:
+    """Error (K) after a revision on the held-out test."""
+    return next(t.after for t in done.tests if t.role == "hold-out")
+
+
+def followed(case: Case, label: Label, found: Answer, draws: int) -> Answer | None:
+    """The best proposed test carried out on the true machine, and what the diagnosis says then."""
+    kind = KINDS[label.machine]
+    if found["verdict"] != "group" or not found["next"]:
+        return None
+    name = found["next"][0][0]
+    plan = carried_out(name, kind.plans[3])
+    if plan is None:
+        return None
+    (record,) = measured(kind, label.seed, hidden_in(kind, label), (plan,))
+    longer = replace(case, tests=(test_of(network_of(kind.name), record), *case.tests))
+    return {"test": name, **answer(longer, draws, plan=False)}
