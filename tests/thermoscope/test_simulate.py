@@ -51,9 +51,8 @@ speed_rpm = 1000
 voltage_V = 220
 current_A = 511
 """
-TABLE = "time_s,speed,slope,air\n" + "".join(
-    f"{t},{min(t, 60) / 60 * 40},4,{20 + t / 600}\n" for t in range(0, 601, 30)
-)
+ROAD = [f"{t},{min(t, 60) / 60 * 40},0.2,{20 + t / 600}" for t in range(0, 601, 30)]
+TABLE = "\n".join(["time_s,speed,slope,air", *ROAD])
 
 PM = """
 [duty]
