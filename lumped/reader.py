@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from geom.errors import InputError
+from lumped.schema import meaning
 
 
 def known(word: str, words: Iterable[str]) -> str:
@@ -48,14 +49,14 @@ class Table:
         value = self.raw(key, default)
         if value is None:
             given = ", ".join(self.data) or "nothing"
-            raise self.error(f"key '{key}' is missing (given: {given})", f"{key} = {right}")
+            raise self.error(f"key '{key}' is missing (given: {given})", f"{key} = {right}{meaning(key)}")
         return value
 
     def number(self, key: str, default: float | None = None, low: float = 0.0, high: float = float("inf")) -> float:
         """A finite number between low and high (default: not negative)."""
         value = self._needed(key, default, "a number")
         if isinstance(value, bool) or not isinstance(value, int | float) or not low <= value <= high:
-            raise self.error(f"{key} = {value!r} is not possible", f"a number from {low:g} to {high:g}")
+            raise self.error(f"{key} = {value!r} is not possible", f"a number from {low:g} to {high:g}{meaning(key)}")
         return float(value)
 
     def numbers(self, key: str, default: list[float] | None = None) -> tuple[float, ...]:
@@ -71,7 +72,7 @@ class Table:
         choices = None if allowed is None else list(allowed)
         if not isinstance(value, str) or (choices is not None and value not in choices):
             right = "a word" if choices is None else known(str(value), choices)
-            raise self.error(f"{key} = {value!r} is not possible", right)
+            raise self.error(f"{key} = {value!r} is not possible", f"{right}{meaning(key)}")
         return value
 
     def words(self, key: str, default: list[str] | None = None) -> tuple[str, ...]:
