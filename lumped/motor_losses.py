@@ -15,7 +15,9 @@ import numpy as np
 from geom.errors import InputError
 from lumped.declared_laws import loss_laws
 from lumped.laws import InputPower, Law, Linear
+from lumped.losses import PowerLoss
 from lumped.motor_settings import Losses, read
+from lumped.motor_shapes import wound
 from lumped.network import Network, Place, Row, Source
 from lumped.reader import Table, known
 
@@ -38,7 +40,19 @@ def loss_shares(machine: Any, network: Network) -> dict[str, dict[str, float]]:
     return out
 
 
+def loss_watts(machine: Any, network: Network, inputs: Mapping[str, float]) -> dict[str, float]:
+    """Watts per part, zone or fluid at constant inputs, resistances at their reference temperature."""
+    signals = {name: np.array([float(value)]) for name, value in inputs.items()}
+    out: dict[str, float] = {}
+    for _, _, parts, law, _ in _declared(machine):
+        watts = float(np.mean(law.factor(signals)))
+        for place, share in _spread(network, parts).items():
+            out[place] = out.get(place, 0.0) + share * watts
+    return out
+
+
 Declared = tuple[str, str, Shares, Law, str]
+ASSUMED_W = 100.0  # of a machine that declares no losses, so that it can be looked at
 
 
 def _declared(machine: Any) -> list[Declared]:
@@ -47,10 +61,19 @@ def _declared(machine: Any) -> list[Declared]:
     if plain and machine.family == "series-dc":
         losses = read(Losses, section, f"{machine.name} [losses]")
         return _series(losses, machine.sections["ratings"])
+    if not section:
+        return [("assumed", "constant", _everywhere(machine), PowerLoss(((ASSUMED_W, ()),)), "")]
     where = f"{machine.name} [losses"
     tables = {name: Table(data, f"{where}.{name}]") for name, data in section.items()}
     laws = loss_laws(tables)
     return [_read(name, table, laws[name]) for name, table in tables.items()]
+
+
+def _everywhere(machine: Any) -> Shares:
+    """Windings by volume, or, where nothing is wound, all parts."""
+    heated = [part for part in machine.parts if wound(machine, part.name)] or list(machine.parts)
+    total = sum(part.volume for part in heated)
+    return {part.name: part.volume / total for part in heated}
 
 
 def _read(name: str, table: Table, law: Law) -> Declared:

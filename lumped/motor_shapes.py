@@ -9,6 +9,7 @@ from typing import Any
 
 from geom.profile import ArcGrid
 
+DIRECTED = 3.0  # a conductivity this many times the other one has a direction
 ROUND = 0.02  # a body is turned when its bounds are centred and square to this share
 
 
@@ -43,6 +44,18 @@ def extent(part: Any) -> Extent:
     return Extent(float(x0), float(x1), float(y0), float(y1), *part.span)
 
 
+def wound(machine: Any, part: str) -> bool:
+    """Wires along the axis: heat runs along them much more easily."""
+    k_plane, k_axial = machine.conductivity(part)
+    return bool(k_axial > DIRECTED * k_plane)
+
+
+def laminated(machine: Any, part: str) -> bool:
+    """Sheets across the axis: heat runs in them much more easily."""
+    k_plane, k_axial = machine.conductivity(part)
+    return bool(k_plane > DIRECTED * k_axial)
+
+
 def turning(contacts: Iterable[str], shaft: str = "shaft") -> frozenset[str]:
     """Parts that turn: all that hang on the shaft through contacts "a|b" without a bearing between."""
     pairs = [tuple(name.split("|")) for name in contacts]
@@ -68,6 +81,8 @@ def gap_of(machine: Any) -> Gap | None:
     if not rings:
         return None
     (profile, _, _), *_ = rings[0].prisms
+    if not profile.holes:
+        return None
     outer, inner = radius(profile.outer), radius(profile.holes[0])
     declared = getattr(getattr(machine.geometry, "stator", None), "air_gap", None)
     return Gap(inner, outer - inner if declared is None else float(declared))

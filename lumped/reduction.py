@@ -7,7 +7,7 @@ one of them may change afterwards at no cost. This is the only file of the room 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -21,16 +21,9 @@ from fem.solve import Solver, film_columns
 from lumped.condensed import network_in
 from lumped.network import Array, Network
 from lumped.shelf import Centre, Shelf
+from lumped.zone import Zone
 
 __all__ = ["FullPoint", "Recipe", "Reduction", "Zone", "condense", "reduce"]
-
-
-@dataclass(frozen=True)
-class Zone:
-    """Where in a part a loss sits: density per tetrahedron, or of tetrahedron centres (m); None is uniform."""
-
-    part: str
-    density: Callable[[Array], Array] | Array | None = None
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,7 +16,8 @@ from geom.materials import Material
 from geom.shapes import evenly
 from lumped.motor import boundaries, fluids, motor_network, nominal_coefficients
 from lumped.network import Network
-from lumped.reduction import Recipe, condense
+from lumped.reduction import Recipe, Reduction, reduce
+from lumped.zone import Zone
 
 Progress = Callable[[str], None]
 SMALL = Recipe(tolerance=0.03, max_states=130)
@@ -63,21 +64,42 @@ def _around_poles(machine: Machine, copper: Material) -> LoopWound:
     return LoopWound(copper.k_axial, copper.k_plane, axes, half, width, (start + end) / 2)
 
 
+@dataclass(frozen=True)
+class Prepared:
+    """A machine on its mesh, and the coefficients its network is centred on (W/m2/K)."""
+
+    machine: Machine
+    mesh: NamedMesh
+    field: FieldModel
+    films: Mapping[str, float]
+    contacts: Mapping[str, float]
+
+
+def prepared(machine: Machine, size_m: float, segments: int, progress: Progress = silent) -> Prepared:
+    """Mesh and conduction."""
+    progress("mesh")
+    mesh = build_mesh(machine, size_m=size_m, segments=segments, cache=cache_folder())
+    progress(f"conduction on {len(mesh.points)} points")
+    faces = {name: (patch.part, patch.fluid) for name, patch in mesh.patches.items()}
+    return Prepared(machine, mesh, field_of(machine, mesh), *nominal_coefficients(machine, faces, mesh.contacts))
+
+
+def reduced(ready: Prepared, recipe: Recipe, zones: Mapping[str, Zone] | None = None) -> Reduction:
+    """What the parts can look like, from the cache where it has been solved before."""
+    m = ready.machine
+    return reduce(
+        ready.field, ready.films, ready.contacts, fluids(m), boundaries(m), recipe, m.name, cache_folder(), zones
+    )
+
+
 def build(
     machine: Machine, size_m: float = 0.06, segments: int = 48, recipe: Recipe = SMALL, progress: Progress = silent
 ) -> Built:
     """Everything from the machine file to the network, at one mesh size."""
-    cache = cache_folder()
-    progress("mesh")
-    mesh = build_mesh(machine, size_m=size_m, segments=segments, cache=cache)
-    progress(f"conduction on {len(mesh.points)} points")
-    field = field_of(machine, mesh)
-    films, contacts = nominal_coefficients(
-        machine, {n: (p.part, p.fluid) for n, p in mesh.patches.items()}, mesh.contacts
-    )
+    ready = prepared(machine, size_m, segments, progress)
     progress("network from the field")
-    condensed = condense(field, films, contacts, fluids(machine), boundaries(machine), recipe, machine.name, cache)
-    return Built(machine, mesh, field, motor_network(machine, condensed))
+    condensed = reduced(ready, recipe).network(max_states=recipe.max_states)
+    return Built(machine, ready.mesh, ready.field, motor_network(machine, condensed))
 
 
 def motor_model(machine: Machine, progress: Progress = silent) -> Network:

@@ -2,68 +2,70 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from thermoscope.commands import crosscheck
 from thermoscope.folder import load_machine_file
-from thermoscope.terminal import cell, give, progress, say, table
+from thermoscope.terminal import give, progress, say, table
 
 if TYPE_CHECKING:
     from geom.cad import CadCheck
     from geom.mesh import NamedMesh
-    from thermoscope.crosscheck import CrossCheck
     from thermoscope.pipeline import Built
+    from thermoscope.sized import Sized
 
-HOT = 200.0  # degC, what insulation bears
+ERRORS = ("mean", "hot", "point")
 
 
-def build(machine: str, out: Path | None, target: str | None) -> int:
-    """Solids, mesh and network of a machine to a folder, and the network against the field at one steady point."""
+def build(machine: str, out: Path | None, target: str | None, accuracy: float | None = None) -> int:
+    """Solids, mesh and network of a machine to a folder, and the network against the field.
+
+    accuracy : percent of a part's own rise; the smallest network that meets it is kept. None: the size a case runs.
+    """
     from geom import check_cad, export_cad, write_vtu
-    from thermoscope.crosscheck import crosscheck
-    from thermoscope.pipeline import build as built_from
 
     described = load_machine_file(Path(machine))
     folder = out or Path("out") / described.name
     with progress() as tell:
-        built = built_from(described, progress=tell)
-        tell("field against network")
-        point = bearable(built)
-        checked = crosscheck(built.field, built.network, point)
+        built, found = _built(described, accuracy, tell)
+        checked = crosscheck.checked(built, found, tell)
         tell("solids")
         solids = check_cad(described)
         tell(f"writing {folder}")
         export_cad(described, folder)
         write_vtu(built.mesh, folder / f"{described.name}.vtu")
-    document = {**described_as(built, solids, checked), "operating_point": point}
+        document = {**described_as(built, solids), **checked, **({} if found is None else {"sizes": found.document()})}
+        crosscheck.save(document, folder)
     give(document, target, lambda: show(document, folder))
-    return 0
+    return 0 if found is None or found.met else 1
 
 
-def bearable(built: Built) -> dict[str, float]:
-    """The rated point with its current lowered until the machine settles: a short-time rating has no steady state."""
-    from lumped.motor import operating_point
-    from thermoscope.crosscheck import steady_state
+def _built(described: Any, accuracy: float | None, tell: Any) -> tuple[Built, Sized | None]:
+    from thermoscope.pipeline import build as built_from
+    from thermoscope.sized import sized
 
-    point = {name: float(value[0]) for name, value in operating_point(built.machine).items()}
-    named = [i for i, state in enumerate(built.network.states) if "#" not in state]
-    while True:
-        T = steady_state(built.network, point, 20.0)[named]
-        if T.min() > 0.0 and T.max() < HOT:
-            return point
-        point = {**point, "current_A": 0.8 * point["current_A"]}
+    if accuracy is None:
+        return built_from(described, progress=tell), None
+    found = sized(described, accuracy, progress=tell)
+    return found.built, found
 
 
-def described_as(built: Built, solids: list[CadCheck], checked: CrossCheck) -> dict[str, Any]:
-    """The document of the command; surfaces, mesh and formula volumes in m3."""
+def described_as(built: Built, solids: list[CadCheck]) -> dict[str, Any]:
+    """The document of the command; surfaces, mesh and formula volumes in m3, areas in m2."""
+    from geom.areas import part_table
+
     meshed = mesh_volumes(built.mesh)
+    rows = {row.name: row for row in part_table(built.machine)}
     parts = [
         {
             "name": s.part, "material": built.machine.part(s.part).material, "volume_m3": s.volume,
             "mesh_volume_m3": meshed[s.part], "solid_volume_m3": s.solid_volume, "watertight": s.watertight,
+            "mass_kg": rows[s.part].mass, "faces_m2": dict(rows[s.part].faces),
+            "contacts_m2": dict(rows[s.part].contacts),
         }
         for s in solids
     ]  # fmt: skip
@@ -72,8 +74,6 @@ def described_as(built: Built, solids: list[CadCheck], checked: CrossCheck) -> d
         "parts": parts,
         "mesh": {"nodes": len(built.mesh.points), "tets": len(built.mesh.tets)},
         "network": {"nodes": len(built.network.states), "links": len(built.network.links)},
-        "crosscheck": [vars(part) for part in checked.parts],
-        "energy_balance": checked.energy_balance,
     }
 
 
@@ -85,17 +85,43 @@ def mesh_volumes(mesh: NamedMesh) -> dict[str, float]:
 
 
 def show(document: Mapping[str, Any], folder: Path) -> None:
-    """Parts, the field against the network, and where the files are."""
-    litres = [
-        [p["name"], p["material"], 1e3 * p["volume_m3"], 1e3 * p["mesh_volume_m3"], "yes" if p["watertight"] else "NO"]
-        for p in document["parts"]
-    ]
-    table("Parts", ["part", "material", "volume (l)", "in the mesh (l)", "watertight"], litres, marked=["NO"])
-    headers = ["part", "field mean", "network mean", "field max", "network max", "off (% of rise)"]
-    point = ", ".join(f"{name} {cell(value)}" for name, value in document["operating_point"].items())
-    title = f"Steady at {point}, 20 degC around: temperatures (degC)"
-    table(title, headers, [list(part.values()) for part in document["crosscheck"]])
+    """Parts, error against size, the field against the network, and where the files are."""
+    headers = ["part", "material", "volume (l)", "in the mesh (l)", "mass (kg)", "to fluids (m2)", "to parts (m2)",
+               "watertight"]  # fmt: skip
+    table("Parts", headers, [_row(part) for part in document["parts"]], marked=["NO"])
+    if "sizes" in document:
+        show_sizes(document["sizes"])
+    crosscheck.show(document, folder)
     mesh, network = document["mesh"], document["network"]
     say(f"mesh: {mesh['nodes']} points, {mesh['tets']} tetrahedra")
-    say(f"network: {network['nodes']} states, {network['links']} links")
-    say(f"energy balance of the field: {document['energy_balance']:.1e}; files in {folder}")
+    say(f"network: {network['nodes']} states, {network['links']} links; files in {folder}")
+
+
+def _row(part: Mapping[str, Any]) -> list[Any]:
+    litres = [1e3 * part["volume_m3"], 1e3 * part["mesh_volume_m3"]]
+    areas = [sum(part["faces_m2"].values()), sum(part["contacts_m2"].values())]
+    return [part["name"], part["material"], *litres, part["mass_kg"], *areas, "yes" if part["watertight"] else "NO"]
+
+
+def show_sizes(sizes: Mapping[str, Any]) -> None:
+    """Error against number of states, and what the guard saw at points nothing was fitted to."""
+    wish = sizes["wish_percent"]
+    rows = [["means only" if not s["asked"] else f"up to {s['asked']}", *_errors(s)] for s in sizes["sizes"]]
+    rows += [
+        ["learned", g["states"], "-", "-", "-", *(g["random"][k] for k in ERRORS), _word(g)] for g in sizes["guard"]
+    ]
+    title = f"Error in % of a part's rise (wish: means {wish['mean']:g}, hot spots and points {wish['hot']:g})"
+    headers = ["network", "states", "mean", "hot spot", "point", "mean, random", "hot, random", "point, random", "met"]
+    table(title, headers, rows)
+    if not sizes["met"]:
+        worst = sizes["guard"][-1]["random"]
+        say(f"the wish is missed: mean {worst['mean_part']}, hot spot {worst['hot_part']}, point {worst['point_part']}")
+
+
+def _errors(size: Mapping[str, Any]) -> Sequence[Any]:
+    values = [size[at][kind] for at in ("nominal", "random") for kind in ERRORS]
+    return [size["states"], *values, _word(size)]
+
+
+def _word(row: Mapping[str, Any]) -> str:
+    return "yes" if row["met"] else "no"

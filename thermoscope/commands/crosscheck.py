@@ -1,0 +1,117 @@
+"""thermoscope crosscheck MACHINE"""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from thermoscope.files import write_whole
+from thermoscope.folder import load_machine_file
+from thermoscope.terminal import cell, give, plain, progress, say, table
+
+if TYPE_CHECKING:
+    from thermoscope.pipeline import Built
+    from thermoscope.sized import Sized
+    from thermoscope.terminal import Progress
+
+HOT = 200.0  # degC, what insulation bears
+SHOWN = 12  # rows of a long table on the screen; the files hold all
+
+
+def crosscheck(machine: str, out: Path | None, accuracy: float, target: str | None) -> int:
+    """Where network and field disagree, which link is responsible, and every hand formula beside the field's value."""
+    from thermoscope.sized import sized
+
+    described = load_machine_file(Path(machine))
+    folder = out or Path("out") / described.name
+    with progress() as tell:
+        found = sized(described, accuracy, progress=tell)
+        document = {"machine": described.name, **checked(found.built, found, tell)}
+        save(document, folder)
+    give(document, target, lambda: show(document, folder))
+    return 0 if found.met else 1
+
+
+def checked(built: Built, found: Sized | None, tell: Progress) -> dict[str, Any]:
+    """Part by part and link by link at a point where the machine settles, and the hand formulas there."""
+    from lumped.motor_losses import loss_shares
+    from thermoscope.crosscheck import crosscheck as compare
+    from thermoscope.hand import hand_rows
+
+    tell("field against network")
+    point = bearable(built)
+    loads = None if found is None else found.reduction.loads
+    solver = None if found is None else found.reduction.solver
+    shares = loss_shares(built.machine, built.network)
+    check = compare(built.field, built.network, point, solver=solver, loads=loads, shares=shares)
+    tell("hand formulas")
+    hand = hand_rows(built.machine, built.field, built.network, check.at.films, check.at.contacts)
+    responsible = {part.place: check.responsible(part.place) for part in check.parts}
+    return {
+        "operating_point": point,
+        "crosscheck": [
+            {**vars(part), "responsible": None if link is None else link.link}
+            for part, link in zip(check.parts, responsible.values(), strict=True)
+        ],
+        "links": [vars(link) for link in check.links],
+        "hand": [row.document() for row in hand],
+        "energy_balance": check.energy_balance,
+    }
+
+
+def bearable(built: Built) -> dict[str, float]:
+    """The rated point with its current lowered until the machine settles: a short-time rating has no steady state."""
+    from lumped.motor import operating_point
+    from thermoscope.crosscheck import steady_state
+
+    point = {name: float(value[0]) for name, value in operating_point(built.machine).items()}
+    named = [i for i, state in enumerate(built.network.states) if "#" not in state]
+    while True:
+        T = steady_state(built.network, point, 20.0)[named]
+        if T.min() > 0.0 and T.max() < HOT:
+            return point
+        point = {**point, "current_A": 0.8 * point["current_A"]}
+
+
+def save(document: Mapping[str, Any], folder: Path) -> None:
+    """crosscheck.json, and its tables as CSV."""
+    write_whole(folder / "crosscheck.json", json.dumps(plain(document), indent=2, ensure_ascii=False) + "\n")
+    for name in ("crosscheck", "links", "hand"):
+        file = folder / ("crosscheck.csv" if name == "crosscheck" else f"crosscheck-{name}.csv")
+        write_whole(file, _csv(document[name]))
+
+
+def _csv(rows: Sequence[Mapping[str, Any]]) -> str:
+    text = io.StringIO()
+    if rows:
+        writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(plain(row) for row in rows)
+    return text.getvalue()
+
+
+def show(document: Mapping[str, Any], folder: Path) -> None:
+    """Parts, the links that differ most, and the hand formulas furthest off."""
+    point = ", ".join(f"{name} {cell(value)}" for name, value in document["operating_point"].items())
+    headers = [
+        "part",
+        "field mean",
+        "network mean",
+        "field max",
+        "network max",
+        "off (% of rise)",
+        "link that differs most",
+    ]
+    title = f"Steady at {point}, 20 degC around: temperatures (degC)"
+    table(title, headers, [list(part.values()) for part in document["crosscheck"]])
+    links = document["links"][:SHOWN]
+    table("Heat through links (W), largest difference first", ["link", "field", "network", "off (% of all heat)"],
+          [[link["link"], link["fem_W"], link["network_W"], link["percent_of_heat"]] for link in links])  # fmt: skip
+    hand = sorted(document["hand"], key=lambda row: -abs(row["ratio"] - 1.0))
+    table("Hand formulas (K/W), furthest off first", ["link", "formula", "textbook", "field", "ratio"],
+          [list(row.values()) for row in hand[:SHOWN]])  # fmt: skip
+    say(f"energy balance of the field: {document['energy_balance']:.1e}; all rows in {folder}/crosscheck*.csv")

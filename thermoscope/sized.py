@@ -1,0 +1,86 @@
+"""A network as small as the wish allows: error against number of states, checked at points it has not seen."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from geom import Machine
+from lumped.adapt import Adapted, Size, adapt
+from lumped.guard import Mixes, Wish, mixes
+from lumped.motor import motor_network, operating_point
+from lumped.motor_losses import loss_watts
+from lumped.motor_zones import motor_zones
+from lumped.network import Network
+from lumped.reduction import Recipe, Reduction
+from thermoscope.pipeline import Built, Progress, prepared, reduced, silent
+
+FINE = Recipe(tolerance=0.01)
+ROUNDS = 3
+
+
+@dataclass(frozen=True)
+class Sized:
+    """built : with the network that was kept;  reduction : with the points it learned from;  sizes : the table"""
+
+    built: Built
+    reduction: Reduction
+    wish: Wish
+    sizes: tuple[Size, ...]
+    adapted: Adapted | None
+
+    @property
+    def met(self) -> bool:
+        return self.adapted is None or self.adapted.met
+
+    def document(self) -> dict[str, Any]:
+        """Errors in percent of a part's own rise, at nominal coefficients and at random ones."""
+        rounds = () if self.adapted is None else self.adapted.rounds
+        return {
+            "wish_percent": {"mean": self.wish.mean, "hot": self.wish.hot, "point": self.wish.point},
+            "met": self.met,
+            "states": len(self.built.network.states),
+            "sizes": [size.document() for size in self.sizes],
+            "guard": [r.document() for r in rounds],
+        }
+
+
+def wish_of(accuracy: float) -> Wish:
+    """Hot spots and points within `accuracy` percent of a part's own rise, means within half of it."""
+    return Wish(accuracy / 2, accuracy, accuracy)
+
+
+def sized(
+    machine: Machine, accuracy: float, size_m: float = 0.06, segments: int = 48, recipe: Recipe = FINE,
+    progress: Progress = silent, rounds: int = ROUNDS,
+) -> Sized:  # fmt: skip
+    """Build at several sizes and keep the smallest that meets the wish; if none does, learn from where it fails."""
+    ready = prepared(machine, size_m, segments, progress)
+    progress("what the parts can look like")
+    reduction = reduced(ready, recipe, motor_zones(machine))
+    cases, wish = load_cases(machine, reduction), wish_of(accuracy)
+    progress("error against number of states")
+    points = [reduction.nominal_point(), *(reduction.random_point(k) for k in range(3))]
+    table = tuple(Size.of(reduction, asked, points, cases, wish) for asked in SIZES)
+    good = [size for size in table if size.met]
+    found = None if good else adapt(reduction, cases, wish, rounds, points=points, tell=progress)
+    condensed = good[0].network if good else found.network  # type: ignore[union-attr]
+    kept = reduction if found is None else found.reduction
+    return Sized(Built(machine, ready.mesh, ready.field, motor_network(machine, condensed)), kept, wish, table, found)
+
+
+SIZES = (0, 50, 100, 200, 400)  # 0: the means only
+
+
+def load_cases(machine: Machine, reduction: Reduction) -> Mixes:
+    """The losses of the rated point and variations of them, as the guard applies them."""
+    whole = motor_network(machine, reduction.network(max_states=len(reduction.field.blocks)))
+    rated = rated_watts(machine, whole)
+    return mixes(list(reduction.zones), list(reduction.washing), rated)
+
+
+def rated_watts(machine: Machine, network: Network) -> Mapping[str, float]:
+    """Watts per part or zone at the rated point, windings at their reference temperature."""
+    inputs = {name: float(value[0]) for name, value in operating_point(machine).items()}
+    return loss_watts(machine, network, inputs)
