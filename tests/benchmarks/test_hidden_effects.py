@@ -137,6 +137,21 @@ def test_judge_on_the_other_classes():
     assert not judge.foreign_found(hot, said("outside", where=[["housing", 30.0]]), {"rotor": {"core"}})
 
 
+def test_judge_on_what_an_addition_is_worth():
+    """1 K as it is, 0.4 K with the truth: a claim that leaves 0.7 K reached half of the fall."""
+    worth = {"before": 1.0, "best": 0.4, "claimed": 0.7}
+    assert judge.share_of_fall({"worth": worth}) == pytest.approx(0.5)
+    assert judge.share_of_fall({"worth": {**worth, "best": 0.96}}) is None
+    assert judge.share_of_fall({}) is None
+
+
+def test_judge_on_the_proposed_test():
+    pair = label("pair", "a@b", rivals=["c@d"])
+    assert judge.resolved(pair, {"followed": {"verdict": "named", "groups": [["a@b"]]}})
+    assert judge.resolved(pair, {"followed": {"verdict": "named", "groups": [["c@d"]]}}) is False
+    assert judge.resolved(pair, {"followed": None}) is None
+
+
 def test_table_leaves_out_what_no_case_tests():
     pairs = [(label("nothing"), {**SAID, "cpu_s": 1.0}), (label("nothing"), {**said("named", ["a@b"]), "cpu_s": 2.0})]
     table = {r["measure"]: r for r in rows(pairs)}

@@ -13,6 +13,7 @@ from hidden.truth.change import NOTHING
 from hidden.truth.draw import Draw
 from hidden.truth.films import air, cylinder_still, gap, plate_still
 from hidden.truth.machine import Film, Loss, Machine
+from hidden.truth.menu import MENU, carried_out
 from hidden.truth.profile import between, fine_times
 from hidden.truth.readings import lagged
 from hidden.user import network_of
@@ -135,3 +136,24 @@ def test_same_seed_same_readings():
     one, two = (measured(kind, 5, NOTHING, short)[0] for _ in range(2))
     for name, y in one.readings.items():
         np.testing.assert_array_equal(y, two.readings[name])
+
+
+@pytest.mark.parametrize("kind", KINDS.values(), ids=lambda k: k.name)
+@pytest.mark.parametrize("name", MENU)
+def test_asked_for_tests_are_what_they_say(kind, name):
+    """Standing means no speed and no rotor current; an even current keeps its heat; nothing else is made up."""
+    plan, at, rng = carried_out(name, kind.plans[3]), np.arange(0.0, 4500.0, 30.0), np.random.default_rng
+    driven, asked = kind.plans[3].inputs(rng(0), at), plan.inputs(rng(0), at)
+    assert asked.keys() == driven.keys()
+    if "standstill" in name:
+        assert not asked["speed_rpm"].any()
+        assert not asked.get("rotor_A", np.zeros(1)).any()
+        assert np.ptp(asked["current_A"]) == 0.0
+        assert np.sum(asked["current_A"] ** 2) == pytest.approx(np.sum(driven["current_A"] ** 2))
+    if "without current" in name:
+        assert not any(v.any() for k, v in asked.items() if k.endswith("_A"))
+        assert asked["speed_rpm"].all()
+
+
+def test_a_test_the_true_machine_cannot_do_is_refused():
+    assert carried_out("bench plate heated by 20 K", KINDS["tefc"].plans[3]) is None
