@@ -1,0 +1,110 @@
+"""Error against size, and the guard that learns from where the network fails."""
+
+import numpy as np
+import pytest
+
+import lumped.reduction
+from fem.assembly import assemble
+from fem.grids import ring
+from fem.material import isotropic, laminated, wound
+from lumped.adapt import Size, adapt, excess
+from lumped.guard import Wish, mixes, point_errors
+from lumped.reduction import Recipe, Zone, reduce
+
+CONTACTS = {"coil|core": 400.0, "coil|yoke": 800.0}
+LEFT = Zone("coil", lambda c: (c[:, 2] < 0.06).astype(float))
+
+
+@pytest.fixture(scope="module")
+def field():
+    r = np.concatenate([np.linspace(0.02, 0.04, 3), np.linspace(0.04, 0.05, 2)[1:], np.linspace(0.05, 0.07, 3)[1:]])
+    mesh = ring(
+        r, 12, np.linspace(0.0, 0.12, 7),
+        lambda c: np.select([c[:, 0] < 0.04, c[:, 0] < 0.05], ["core", "coil"], "yoke").astype(object),
+        lambda c: np.select([c[:, 0] > 0.067, c[:, 0] < 0.021], ["ambient", "bore"], "air").astype(object),
+    )  # fmt: skip
+    k = {"core": laminated(28.0, 3.0), "coil": wound(250.0, 1.2), "yoke": isotropic(40.0)}
+    return assemble(mesh, k, {"core": 3.6e6, "coil": 2.5e6, "yoke": 3.7e6})
+
+
+def films(field):
+    return {face: 60.0 if face.endswith("bore") else 25.0 for face in field.films}
+
+
+def reduction(field, cache=None, contacts=None, **recipe):
+    recipe = Recipe(**{"tolerance": 0.1, "shifts": (), "random_points": 0, **recipe})
+    h = films(field)
+    return reduce(field, h, contacts or CONTACTS, {"bore": 50.0, "air": 30.0}, ("ambient",), recipe, "ring", cache,
+                  {"coil.left": LEFT})  # fmt: skip
+
+
+def cases(found):
+    return mixes(list(found.zones), list(found.washing), {"coil": 200.0, "core": 100.0})
+
+
+def test_error_falls_with_the_number_of_states(field):
+    found = reduction(field)
+    points = [found.nominal_point(), found.random_point(0)]
+    sizes = [Size.of(found, n, points, cases(found), Wish()) for n in (0, 10, 25)]
+    assert len(sizes[0].network.states) == len(field.blocks) + 2
+    assert sizes[0].nominal.mean > sizes[1].nominal.mean > sizes[2].nominal.mean
+    assert sizes[2].nominal.mean < 0.1
+
+
+def test_guard_learns_until_unseen_points_are_met(field):
+    """A basis of nominal solutions alone fails at random coefficients; with what the guard saw it holds at new ones."""
+    found, wish = reduction(field, tolerance=0.3), Wish(0.2, 1.0, 1.0)
+    learned = adapt(found, cases(found), wish, rounds=4)
+    assert not learned.rounds[0].met
+    assert learned.met
+    unseen = found.random_point(99)
+    own = point_errors(learned.network, unseen.films, unseen.contacts, unseen.X, cases(found))
+    before = point_errors(found.network(), unseen.films, unseen.contacts, unseen.X, cases(found))
+    assert excess(own, wish) < 0.2 * excess(before, wish)
+
+
+def test_guard_says_what_it_missed(field):
+    """With no round left to learn, the last look says so."""
+    found = reduction(field, tolerance=0.3)
+    learned = adapt(found, cases(found), Wish(1e-6, 1e-6, 1e-6), rounds=1, fresh=1)
+    assert not learned.met
+    assert learned.rounds[-1].document()["random"]["mean_part"] in field.blocks
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"contacts": {"coil|core": 900.0, "coil|yoke": 800.0}},
+        {"contacts": {"coil|core": 400.0, "coil|yoke": 200.0}},
+        {},
+    ],
+    ids=["contact", "another contact", "nothing"],
+)
+def test_a_changed_coefficient_costs_no_solve(field, tmp_path, monkeypatch, change):
+    reduction(field, tmp_path)
+    monkeypatch.setattr(lumped.reduction, "snapshots", refused)
+    again = reduction(field, tmp_path, **change)
+    contacts = {k: link.law.value for link in again.network().links for k in CONTACTS if link.name == f"contact:{k}"}
+    assert contacts == change.get("contacts", CONTACTS)
+
+
+def refused(*_):
+    raise AssertionError("solved again")
+
+
+def test_a_far_away_coefficient_is_solved_anew(field, tmp_path, monkeypatch):
+    """Beyond the spread the shapes were made for, they are not trusted."""
+    reduction(field, tmp_path)
+    monkeypatch.setattr(lumped.reduction, "snapshots", refused)
+    with pytest.raises(AssertionError, match="solved again"):
+        reduction(field, tmp_path, {"coil|core": 4000.0, "coil|yoke": 800.0})
+
+
+def test_shapes_of_another_centre_still_reproduce_the_field(field, tmp_path):
+    """Found around one contact, used at another: same mesh, both contacts inside the spread."""
+    reduction(field, tmp_path, random_points=4)
+    moved = reduction(field, tmp_path, {"coil|core": 900.0, "coil|yoke": 800.0}, random_points=4)
+    point = moved.nominal_point()
+    found = point_errors(moved.network(tolerance=0.003), point.films, point.contacts, point.X, cases(moved))
+    assert found.mean < 0.2
+    assert max(found.hot, found.point) < 2.0
