@@ -9,6 +9,7 @@ import numpy as np
 from PIL import Image
 
 import viz
+from fem.material import Conductivity
 from geom import load_machine
 from lumped import Record, balance, simulate
 from thermoscope.pipeline import Built, build
@@ -34,6 +35,9 @@ def draw(built: Built) -> None:
     viz.cutaway(nodes, T, title="100 kW traction motor after an hour at 130 A", png=HERE / "field.png").close()
     exploded(nodes, png=HERE / "exploded.png").close()
     regions(nodes, title="The parts and their names", png=HERE / "parts.png").close()
+    found = {part.name: built.machine.material_of(part.name) for part in built.machine.parts}
+    k = {name: Conductivity(m.k_plane, m.k_plane, m.k_axial) for name, m in found.items()}
+    viz.flux_arrows(nodes, T, k, title="Heat flux after an hour;", png=HERE / "flux.png").close()
     heat = viz.heat_flows(network, balance(network, record()))
     viz.sankey_of_losses(heat, png=HERE / "losses.png")
     means = dict(zip([*network.states, *network.boundaries], z[-1].tolist(), strict=True))

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from datetime import datetime
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,6 +19,9 @@ from thermoscope.history import Revision
 from thermoscope.runs import at_revision, before_last, fields, held, parameters, readings, steps
 from thermoscope.terminal import Progress, give, notes, progress, say, table
 from validation.case import Case, Test
+
+if TYPE_CHECKING:
+    from viz.nodes import SplitMesh
 
 FRAMES = 61
 ORDER = {"hold-out": 0, "validate": 1, "calibrate": 2}
@@ -121,12 +124,25 @@ def _pictures(folder: Folder, into: Path) -> dict[str, Path]:
     seen = sensors(held(folder, test), folder.positions)
     cutaway(nodes, now, sensors=seen, title=f"{test.name}, model at the end", png=file)
     out = {f"Temperature at the end of {test.name}; labels: measured minus modelled.": file}
+    out |= _missing_heat(folder, nodes, into)
     earlier = before_last(folder)
     if earlier is not None:
         both = into / "field-before-after.png"
         pair(nodes, fields(earlier, test, nodes, 1)[1][-1], now, titles=("before the last step", "now"), png=both)
         out[f"End of {test.name} before and after the last step of the model."] = both
     return out
+
+
+def _missing_heat(folder: Folder, nodes: SplitMesh, into: Path) -> dict[str, Path]:
+    """Caption -> picture of where the last diagnosis, if it is of this model, puts the missing heat."""
+    from viz import missing_in_machine
+
+    where = (saved_diagnosis(folder) or {}).get("where", [])
+    if not where:
+        return {}
+    test, file = list(where[0]["heat"])[-1], into / "missing-heat.png"
+    missing_in_machine(nodes, where, test, png=file).close()
+    return {f"Heat that would have to enter (or leave, below zero) during {test}; unlikely places are grey.": file}
 
 
 def _recording(folder: Folder, into: Path) -> Path:

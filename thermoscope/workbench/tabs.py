@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import secrets
 import time
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -49,7 +50,7 @@ class Tab:
         link = await self._server._server["ws"].connect()
 
         async def to_browser(binary: bool, message: Any) -> None:
-            if not socket.closed:
+            with suppress(ConnectionError):  # the browser may leave at any moment
                 await (socket.send_bytes(message) if binary else socket.send_str(message))
 
         link.on_message(to_browser)

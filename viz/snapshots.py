@@ -1,0 +1,84 @@
+"""Pictures of a recording, taken by the rerun viewer itself without a window; any Vulkan driver will do."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING
+
+from geom.errors import MissingDependency
+
+if TYPE_CHECKING:
+    from rerun.experimental import ViewerClient
+
+COMMAND = "apt-get install -y libvulkan1 mesa-vulkan-drivers"
+TRIES = 4  # the viewer gives up on a picture after 15 s, which a busy computer may need to draw it
+START_S = 60.0
+
+
+def snapshots(recording: str | Path, pictures: Mapping[str | Path, tuple[str, float]]) -> list[Path]:
+    """Write PNG pictures of the whole viewer: path -> (timeline, seconds, or the number on `revision`)."""
+    written = []
+    with _viewer() as viewer:
+        viewer.open(str(Path(recording).resolve()))
+        for png, (timeline, at) in pictures.items():
+            path = Path(png).resolve()
+            path.parent.mkdir(parents=True, exist_ok=True)
+            if timeline == "revision":
+                viewer.set_time(timeline, sequence=int(at), play_state="paused")
+            else:
+                viewer.set_time(timeline, duration=float(at), play_state="paused")
+            _patiently(lambda path=path: viewer.save_screenshot(str(path)))  # type: ignore[misc]
+            written.append(path)
+    return written
+
+
+def _patiently(act: Callable[[], None]) -> None:
+    for last in (False,) * (TRIES - 1) + (True,):
+        try:
+            return act()
+        except TimeoutError:
+            if last:
+                raise
+
+
+@contextmanager
+def _viewer() -> Iterator[ViewerClient]:
+    """A viewer that listens to this computer only, on a free port, its usage statistics off; ended afterwards."""
+    program = shutil.which("rerun", path=str(Path(sys.executable).parent)) or shutil.which("rerun")
+    if program is None:
+        raise MissingDependency("the rerun program is missing; install it with: uv pip install rerun-sdk")
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    with TemporaryDirectory() as home:
+        alone = {"WGPU_BACKEND": "vulkan", **os.environ, "HOME": home, "XDG_CONFIG_HOME": home, "XDG_RUNTIME_DIR": home}
+        subprocess.run([program, "analytics", "disable"], env=alone, capture_output=True, check=False)
+        command = [program, "--headless", "--bind", "127.0.0.1", "--port", str(port), "--hide-welcome-screen"]
+        process = subprocess.Popen(command, env=alone, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        try:
+            yield _connected(process, port)
+        finally:
+            process.terminate()
+            process.wait(timeout=30)
+
+
+def _connected(process: subprocess.Popen, port: int) -> ViewerClient:
+    """Wait until the viewer listens."""
+    from rerun.experimental import ViewerClient
+
+    end = time.monotonic() + START_S
+    while time.monotonic() < end and process.poll() is None:
+        with socket.socket() as probe:
+            if probe.connect_ex(("127.0.0.1", port)) == 0:
+                return ViewerClient.connect(f"rerun+http://127.0.0.1:{port}/proxy")
+        time.sleep(0.2)
+    raise MissingDependency(f"the rerun viewer cannot draw here; a software Vulkan helps: {COMMAND}")
