@@ -56,6 +56,17 @@ def rounded(value: Any) -> Any:
     return float(f"{value:.6g}") if isinstance(value, float) else value
 
 
+def close(a: Any, b: Any) -> bool:
+    """Equal but for a thousandth in numbers."""
+    if isinstance(a, dict) and isinstance(b, dict):
+        return a.keys() == b.keys() and all(close(a[k], b[k]) for k in a)
+    if isinstance(a, list) and isinstance(b, list):
+        return len(a) == len(b) and all(close(x, y) for x, y in zip(a, b))
+    if isinstance(a, float | int) and isinstance(b, float | int):
+        return abs(a - b) <= 1e-3 * abs(a)
+    return bool(a == b)
+
+
 def main() -> None:
     for path, document in documents().items():
         path.write_text(text(document), encoding="utf-8")

@@ -88,6 +88,15 @@ class PmPlant(Plant):
     def winding_mean(self, T: Array) -> float:
         return sum(share * self.mean(part, T) for part, share in self.copper_shares().items())
 
+    def base_path(self, T: Array, now: Conditions) -> float:
+        """Heat that foot and base carry off per kelvin between the laminations' mean and ambient (W/K)."""
+        heat = 0.0
+        for face in self.body.faces.values():
+            if face.part in ("foot", "base"):
+                h = self.films.coefficient(face.part, "ambient", T[face.nodes], now.ambient, now)
+                heat += float(face.areas * h @ (T[face.nodes] - now.ambient))
+        return heat / (self.mean("stator.core", T) - now.ambient)
+
     def ohm(self, T: Array) -> float:
         """What a perfect ohmmeter shows."""
         losses = self.losses

@@ -59,7 +59,10 @@ PLANS = {
 
 @dataclass(frozen=True)
 class Course:
-    """time (n,) s; winding and magnet means (degC); ohm; ambient;  imbalance: heat not accounted for over heat made"""
+    """time (n,) s; winding and magnet means (degC); ohm; ambient
+
+    imbalance: heat not accounted for over heat made;  base_path: W/K at the end
+    """
 
     time: Array
     winding: Array
@@ -67,6 +70,7 @@ class Course:
     ohm: Array
     ambient: Array
     imbalance: float
+    base_path: float
 
 
 def run(plant: PmPlant, plan: Plan, hours: float, quick: bool) -> tuple[Course, Course]:
@@ -89,7 +93,8 @@ def _course(
         rows.append(_seen(plant, plan, state, float(t), on))
     stored = float(plant.body.capacity @ (state.T - begun))
     left = (balance[0] - balance[1] - stored) / (balance[0] if on else max(balance[1], 1.0))
-    return Course(*np.array(rows).T, float(left)), state, slope
+    end = Conditions(current, current**2, rpm, 0.0, 0.0, rows[-1][-1])
+    return Course(*np.array(rows).T, float(left), plant.base_path(state.T, end)), state, slope
 
 
 def _ambient(plan: Plan, t: float) -> float:
@@ -156,6 +161,7 @@ def make(out: Path, truth: Path, quick: bool, names: Sequence[str]) -> None:
                 "winding_degC": round(float(loaded.winding[-1]), 2),
                 "magnets_degC": round(float(loaded.magnets[-1]), 2),
                 "ambient_degC": round(float(loaded.ambient[-1]), 2),
+                "base_path_W_K": round(loaded.base_path, 4),
                 **cold,
             }
     document["drawn"] = {name: float(f"{value:.6g}") for name, value in sorted(draws.taken.items())}

@@ -64,17 +64,11 @@ def show(document: Mapping[str, Any]) -> None:
 
 def two_paths(case: str, winding: str, machine: str, target: str | None) -> int:
     """R_ext and R_w of the case's network at the mean load of every test."""
-    from validation.fitting import working
-    from validation.procedure.two_paths import two_paths as reduced
+    from validation.procedure.two_paths import of_test
 
     with progress() as tell:
         folder = opened(case, tell)
-        network, values = working(folder.case)[0], dict(folder.case.model.values)
-        found = {}
-        for test in folder.case.tests:
-            load = {name: float(v.mean()) for name, v in test.inputs.items()}
-            air = float(sum(v.mean() for v in test.boundaries.values()) / len(test.boundaries))
-            found[test.name] = reduced(network, load, air, winding, machine, values=values).document()
+        found = {t.name: of_test(folder.case, t, winding, machine).document() for t in folder.case.tests}
     document = {"case": folder.case.name, "tests": found}
     headers = ["test", "R_ext (K/W)", "R_w (K/W)", "winding (K)", "machine (K)", "left at other loads (K)"]
     keys = ("R_ext", "R_w", "winding_K", "machine_K", "largest_residual_K")
@@ -97,10 +91,20 @@ def carry(source: str, targets: list[str], target: str | None) -> int:
 
 
 def show_carried(document: Mapping[str, Any]) -> None:
-    headers = ["case", "test", "sensor", "measured (degC)", "simulated (degC)", "difference (K)", "uncertainty (K)", ""]
+    keys = ("test", "channel", "measured_C", "simulated_C", "difference_K", "U95_K", "worst_K")
+    headers = [
+        "case",
+        "test",
+        "sensor",
+        "measured (degC)",
+        "simulated (degC)",
+        "difference (K)",
+        "95 % (K)",
+        "worst case (K)",
+        "",
+    ]
     rows = [
-        [one["case"], r["test"], r["channel"], r["measured_C"], r["simulated_C"], r["difference_K"], r["U95_K"],
-         "within" if r["within"] else "over"]
+        [one["case"], *(r[key] for key in keys), "within" if r["within"] else "over"]
         for one in document["targets"] for r in one["rows"]
     ]  # fmt: skip
     table(f"Model of {document['source']}, revision {document['revision']}, on other machines", headers, rows, ["over"])

@@ -214,7 +214,7 @@ class _Builder:
         spread = math.log(max(b.width / (foot.width + foot.length), 1.05)) / (2 * math.pi * k)
         R = sum((1 / (JOINTS["foot"] * rows["foot"].contacts["stator.core"]), post,
                  1 / (JOINTS["base"] * rows["foot"].contacts["base"]), spread))  # fmt: skip
-        self.link("stator.core", f"{name}.0", R_K_W=R, prior_sd=0.3)
+        self.link("stator.core", f"{name}.0", R_K_W=R, prior_sd=0.4)
         if switch:
             self.links[f"stator.core-{name}.0"]["of"] = {"input": switch, "at": 1, "exponent": 1}
         half = b.length / 2
@@ -242,7 +242,8 @@ class _Builder:
 
     def _means(self) -> dict[str, Any]:
         volume = {p: fill * self.rows[p].volume for p, fill in COPPER_SHARE.items()}
-        shares = {p: v / sum(volume.values()) for p, v in volume.items()}
+        _, *ends = (round(v / sum(volume.values()), 6) for v in volume.values())
+        shares = dict(zip(volume, (round(1.0 - sum(ends), 6), *ends), strict=True))  # sums to 1 when written too
         return {"winding.copper": {"of": shares}}
 
     def _losses(self) -> dict[str, Any]:
@@ -272,7 +273,7 @@ class _Builder:
         for base in dict.fromkeys(n.rsplit(".", 1)[0] for n in self.nodes if n.startswith("base")):
             own = [n for n in films if n.startswith(f"{base}.")]
             acts = [f"link:{n}{m}" for n in own for m in (still, ":radiation")]
-            self._parameter(f"films of {base}", acts, 0.2, "still air and emissivity of the base")
+            self._parameter(f"{base} films", acts, 0.4, "published plates facing up and down differ by a factor of 2")
         self._parameter(
             "capacity", [f"capacity:{n}" for n in self.nodes if "C_J_K" in self.nodes[n]], 0.05, "fill factors"
         )

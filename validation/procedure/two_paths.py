@@ -17,6 +17,10 @@ from geom.errors import InputError
 from lumped.laws import Constant, Linear
 from lumped.network import Network, Source
 from lumped.steady import Steady, steady
+from validation.case import Case, Test
+from validation.compare import physical
+from validation.fitting import working
+from validation.predict import thermal
 
 
 @dataclass(frozen=True)
@@ -76,6 +80,16 @@ def two_paths(
         expected = found.rises(P_w, P_all)
         residual[share] = (expected[0] - (T_w - ambient), expected[1] - (T_m - ambient))
     return TwoPaths(found.R_ext, found.R_w, found.winding_K, found.machine_K, found.P_w, found.P_all, residual)
+
+
+def of_test(case: Case, test: Test, winding: str = "winding.copper", machine: str = "magnets") -> TwoPaths:
+    """The case's model at the mean load of one of its tests."""
+    network = thermal(working(case)[0])
+    known = {p.name for p in network.parameters}
+    values = {k: v for k, v in physical(case.model.values).items() if k in known}
+    load = {name: float(np.mean(v)) for name, v in test.inputs.items()}
+    air = float(np.mean([np.mean(v) for v in test.boundaries.values()]))
+    return two_paths(network, load, air, winding, machine, values=values)
 
 
 def _state(
