@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass
 from html import escape
 from typing import TYPE_CHECKING
@@ -54,6 +55,26 @@ def drawing_of(machine: Machine, at_z: float | None = None) -> str:
         *body,
         "</svg>\n",
     ])  # fmt: skip
+
+
+def thumbnail_of(machine: Machine) -> str:
+    """A small SVG of the section across the axis and the section along it, without dimensions."""
+    spans = [part.span for part in machine.parts]
+    z0, z1 = min(a for a, _ in spans) * 1e3, max(b for _, b in spans) * 1e3
+    low, high = _heights(machine)
+    across = machine.extent[1] * 1e3
+    gap = 0.08 * across
+    view = f"{-across / 2:.1f} {-high:.1f} {across + gap + z1 - z0:.1f} {high - low:.1f}"
+    body = [*_cross_section(machine, (z0 + z1) / 2e3), f'<g transform="translate({across / 2 + gap - z0:.1f} 0)">']
+    text = "\n".join([
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{view}" width="320" height="160">',
+        f"<title>{escape(machine.name)}</title>",
+        *body,
+        *_axial_section(machine),
+        "</g>",
+        "</svg>\n",
+    ])  # fmt: skip
+    return re.sub(r"(\.\d)\d+", r"\1", text)
 
 
 def _heights(machine: Machine) -> tuple[float, float]:

@@ -10,9 +10,9 @@ from typing import Any
 
 from geom.errors import InputError
 from geom.families import Family, families
-from geom.materials import Material, material
+from geom.materials import Material, filled, material
 from geom.parameters import read_geometry
-from geom.part import Part
+from geom.part import Part, Port
 from geom.profile import ArcGrid
 
 LIBRARY = Path(__file__).parent / "machines"
@@ -20,7 +20,7 @@ SECTIONS = (
     "machine", "ratings", "geometry", "materials", "contacts", "films", "losses", "fans", "cooling", "sensors",
     "calibration",
 )  # fmt: skip
-_HEADER = ("name", "family", "description", "assumed")
+_HEADER = ("name", "family", "description", "source", "assumed")
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,9 @@ class Machine:
 
     parts : solids; fluids : declared fluid spaces ("ambient" is everything else)
     sections : raw tables of the file, e.g. sections["ratings"]
-    geometry : the family's parameters in SI, as groups (machine.geometry.rotor.stack_length)
+    geometry : the family's parameters in SI, as groups (machine.geometry.rotor.stack_length); None if imported
+    ports : inlets and outlets of liquid jackets, by name
+    source : where its numbers were published; assumed : which of them are assumed
     """
 
     name: str
@@ -40,6 +42,9 @@ class Machine:
     sections: Mapping[str, Any]
     geometry: Any
     face_names: Mapping[tuple[str, str], str]
+    source: str = ""
+    assumed: str = ""
+    ports: tuple[Port, ...] = ()
 
     def part(self, name: str) -> Part:
         """The solid or fluid of this name; InputError if there is none."""
@@ -49,8 +54,9 @@ class Machine:
         return known[name]
 
     def material_of(self, name: str) -> Material:
-        """What the part is made of, [materials] overrides included."""
-        return material(self.part(name).material)
+        """What the part is made of, [materials] overrides and the winding's fill and impregnation included."""
+        part = self.part(name)
+        return material(part.material) if part.filling is None else filled(part.material, *part.filling)
 
     def conductivity(self, name: str) -> tuple[float, float]:
         """Conductivity of the part across and along the axis (W/m/K)."""
@@ -132,6 +138,9 @@ def machine_from(sections: Mapping[str, Any], where: str = "machine") -> Machine
         sections={name: table for name, table in sections.items() if name not in ("machine", "geometry")},
         geometry=values,
         face_names=family.face_names,
+        source=header.get("source", ""),
+        assumed=header.get("assumed", ""),
+        ports=family.ports(values),
     )
     _refuse_outside_envelope(machine, where)
     return machine

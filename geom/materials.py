@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 from geom.errors import InputError
 
+K_AIR = 0.028  # W/m/K at 60 degC
 TABLE = Path(__file__).parent / "materials.toml"
 
 
@@ -19,7 +21,7 @@ class Material:
 
     k_plane, k_axial : conductivity across and along the machine's axis (W/m/K)
     rho : density (kg/m3); cp : specific heat (J/kg/K); emissivity : of its usual surface, 0 to 1
-    spread : relative 1-sigma of the conductivity as found in practice
+    spreads, sources : of "k", "rho", "cp" and "emissivity": relative 1-sigma as found in practice, and where from
     """
 
     name: str
@@ -28,15 +30,24 @@ class Material:
     rho: float
     cp: float
     emissivity: float
-    spread: float
-    source: str
+    spreads: Mapping[str, float] = field(hash=False)
+    sources: Mapping[str, str] = field(hash=False)
+
+    @property
+    def spread(self) -> float:
+        """Relative 1-sigma of the conductivity."""
+        return self.spreads["k"]
+
+    @property
+    def source(self) -> str:
+        """Where the conductivity is from."""
+        return self.sources["k"]
 
 
 @cache
 def material_table() -> Mapping[str, Material]:
     """The whole table by name."""
-    table = tomllib.loads(TABLE.read_text(encoding="utf-8"))
-    return {name: _read(name, values) for name, values in table.items()}
+    return {name: _read(name, values) for name, values in _table().items()}
 
 
 def material(name: str) -> Material:
@@ -46,11 +57,26 @@ def material(name: str) -> Material:
     return material_table()[name]
 
 
-def _read(name: str, values: Mapping[str, float | str]) -> Material:
-    numbers = {key: value for key, value in values.items() if key not in ("mixture", "note")}
-    if "mixture" in values:
-        numbers |= _mixture(**values["mixture"])  # type: ignore[arg-type]
-    return Material(name=name, **numbers)  # type: ignore[arg-type]
+def filled(name: str, fill: float, impregnation: float) -> Material:
+    """A winding material at another fill and impregnation; a material that is no mixture stays as it is.
+
+    fill : share of conductor in the cross-section; impregnation : share of the rest that resin fills, air the remainder
+    """
+    values = _table()[name]
+    if "mixture" not in values:
+        return material(name)
+    return _read(name, {**values, "mixture": {**values["mixture"], "fill": fill, "impregnation": impregnation}})
+
+
+@cache
+def _table() -> Mapping[str, Any]:
+    return tomllib.loads(TABLE.read_text(encoding="utf-8"))
+
+
+def _read(name: str, values: Mapping[str, Any]) -> Material:
+    numbers = {key: values[key] for key in ("k_plane", "k_axial", "rho", "cp", "emissivity") if key in values}
+    numbers |= _mixture(**values["mixture"]) if "mixture" in values else {}
+    return Material(name=name, **numbers, spreads=values["spread"], sources=values["source"])
 
 
 def winding_conductivity(fill: float, k_conductor: float, k_resin: float) -> tuple[float, float]:
@@ -70,12 +96,21 @@ def winding_conductivity(fill: float, k_conductor: float, k_resin: float) -> tup
     return across, fill * c + (1 - fill) * r
 
 
-def _mixture(fill: float, k_resin: float, along: float = 1.0, k_conductor: float = 385.0) -> dict[str, float]:
-    """Copper wires in resin; `along` is the share of their length that runs along the axis."""
-    across, lengthwise = winding_conductivity(fill, k_conductor, k_resin)
+def _mixture(
+    fill: float, k_resin: float, along: float = 1.0, k_conductor: float = 385.0, impregnation: float = 1.0
+) -> dict[str, float]:
+    """Copper wires in resin, with air where the resin is missing; `along` is the share of wire along the axis."""
+    k_between = k_resin if impregnation >= 1.0 else _with_air(k_resin, impregnation)
+    across, lengthwise = winding_conductivity(fill, k_conductor, k_between)
+    copper, resin = fill * 8930.0, (1 - fill) * impregnation * 1350.0
     return {
         "k_plane": across,
         "k_axial": along * lengthwise + (1 - along) * across,
-        "rho": fill * 8930.0 + (1 - fill) * 1350.0,
-        "cp": (fill * 8930.0 * 390.0 + (1 - fill) * 1350.0 * 1500.0) / (fill * 8930.0 + (1 - fill) * 1350.0),
+        "rho": copper + resin,
+        "cp": (copper * 390.0 + resin * 1500.0) / (copper + resin),
     }
+
+
+def _with_air(k_resin: float, impregnation: float) -> float:
+    """Conductivity of resin with air, the resin dispersed in it (W/m/K): Hashin and Shtrikman's lower bound."""
+    return winding_conductivity(impregnation, k_resin, K_AIR)[0]

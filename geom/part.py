@@ -16,14 +16,14 @@ class Part:
 
     name, material : names as in the mesh and in materials.toml
     prisms : (profile, z0 (m), z1 (m)); prisms of one part touch but do not overlap
-    orthotropy : "isotropic", "laminated" (sheets normal to the axis) or "wound" (conductors along the axis)
+    filling : of a winding, share of conductor in its cross-section and share of the rest filled with resin
     Fluids may be drawn loosely: a solid wins where they overlap, and so does the fluid declared first.
     """
 
     name: str
     material: str
     prisms: tuple[Prism, ...]
-    orthotropy: str = "isotropic"
+    filling: tuple[float, float] | None = None
     solid: bool = True
 
     @property
@@ -35,6 +35,15 @@ class Part:
     def span(self) -> tuple[float, float]:
         """First and last axial position (m)."""
         return min(z0 for _, z0, _ in self.prisms), max(z1 for _, _, z1 in self.prisms)
+
+
+@dataclass(frozen=True)
+class Port:
+    """Where a liquid enters or leaves: name, e.g. "jacket.left.inlet", the fluid's name and a point (m)."""
+
+    name: str
+    fluid: str
+    position: tuple[float, float, float]
 
 
 def fluid(name: str, *prisms: Prism, material: str = "air") -> Part:

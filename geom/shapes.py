@@ -91,6 +91,13 @@ def evenly(count: int, start: float = 0.0) -> list[float]:
     return [start + 2 * math.pi * i / count for i in range(count)]
 
 
+def spread(count: int, middle: float, spacing: float) -> list[float]:
+    """`count` angles (rad) at the spacing (rad) around the middle; around the whole circle from there if it is 0."""
+    if not spacing:
+        return evenly(count, middle)
+    return [middle + (i - (count - 1) / 2) * spacing for i in range(count)]
+
+
 def _turn(vertex: Vertex, angle: float) -> Vertex:
     c, s = math.cos(angle), math.sin(angle)
     return c * vertex[0] - s * vertex[1], s * vertex[0] + c * vertex[1], vertex[2]

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from geom.parameters import Parameter
-from geom.part import Part
+from geom.part import Part, Port
 
 
 @dataclass(frozen=True)
@@ -15,7 +15,8 @@ class Family:
     """A parametric machine.
 
     build : values in SI (see parameters.read_geometry) -> solids and fluids, or InputError if they do not fit
-    face_names : (part, fluid) -> name, where it differs from the rule of `mesher.face_name`
+    face_names : (part, fluid) -> name, where it differs from the rule of `Machine.face_name`
+    ports : values in SI -> where liquids enter and leave
     """
 
     name: str
@@ -23,3 +24,4 @@ class Family:
     parameters: tuple[Parameter, ...]
     build: Callable[[Any], tuple[Part, ...]]
     face_names: Mapping[tuple[str, str], str] = field(default_factory=dict)
+    ports: Callable[[Any], tuple[Port, ...]] = lambda g: ()

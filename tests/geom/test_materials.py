@@ -5,6 +5,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from geom import InputError, material, material_table, winding_conductivity
+from geom.machine import machine_from
+from geom.materials import K_AIR
 
 
 @pytest.mark.parametrize("name", material_table())
@@ -15,8 +17,10 @@ def test_material_is_physical_and_says_where_it_comes_from(name):
     assert 100 < found.rho < 10_000
     assert 100 < found.cp < 4500
     assert 0 < found.emissivity < 1
-    assert 0 < found.spread <= 0.5
-    assert len(found.source) > 10
+    for value in ("k", "rho", "cp", "emissivity"):
+        assert 0 < found.spreads[value] <= 0.6
+        assert len(found.sources[value]) >= 7
+    assert (found.spread, found.source) == (found.spreads["k"], found.sources["k"])
 
 
 def test_unknown_material_lists_the_known():
@@ -40,3 +44,31 @@ def test_dilute_wires_follow_maxwell_and_rayleigh():
 def test_laminations_conduct_along_their_sheets():
     steel = material("electrical-steel")
     assert steel.k_plane > 10 * steel.k_axial
+
+
+def with_winding(**winding):
+    return machine_from({"machine": {"family": "pmsm"}, "geometry": {"winding": winding}})
+
+
+def test_default_fill_and_impregnation_are_those_of_the_table():
+    assert with_winding().material_of("winding") == material("winding")
+    assert with_winding().material_of("winding.left") == material("end-winding")
+
+
+def test_more_copper_conducts_and_weighs_more():
+    loose, tight = (with_winding(fill=fill).material_of("winding") for fill in (0.3, 0.6))
+    assert loose.k_plane < tight.k_plane
+    assert loose.k_axial == pytest.approx(0.3 * 385.0 + 0.7 * 0.2)
+    assert tight.rho == pytest.approx(0.6 * 8930.0 + 0.4 * 1350.0)
+
+
+@given(st.floats(0.0, 1.0))
+def test_air_between_wires_lowers_the_conductivity_down_to_that_of_air(impregnation):
+    found = with_winding(impregnation=impregnation).material_of("winding")
+    dry, full = (winding_conductivity(0.45, 385.0, k)[0] for k in (K_AIR, 0.2))
+    assert dry * (1 - 1e-9) <= found.k_plane <= full * (1 + 1e-9)
+
+
+def test_a_winding_of_solid_copper_has_no_fill():
+    table = {"machine": {"family": "pmsm"}, "materials": {"winding": "copper"}}
+    assert machine_from(table).material_of("winding") == material("copper")

@@ -11,7 +11,7 @@ from geom import shapes
 from geom.families.family import Family
 from geom.families.radial_flux import parameters
 from geom.families.radial_flux.checks import check, check_cage, check_magnets
-from geom.families.radial_flux.housing import coolant, enclosure
+from geom.families.radial_flux.housing import coolant, enclosure, ports
 from geom.families.radial_flux.layout import Layout
 from geom.families.radial_flux.rotors import cage_rotor, magnet_rotor, shaft
 from geom.families.radial_flux.stator import stator
@@ -52,6 +52,7 @@ PMSM = Family(
     (*parameters.COMMON, *parameters.MAGNETS),
     build_pmsm,
     _FACES,
+    ports,
 )
 TEFC = Family(
     "tefc",
@@ -59,4 +60,5 @@ TEFC = Family(
     parameters.TEFC,
     build_tefc,
     _FACES,
+    ports,
 )

@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from geom.families.radial_flux.housing import fin_spans
-from geom.families.radial_flux.layout import Layout, half_angle
+from geom.families.radial_flux.layout import Layout
 from geom.families.radial_flux.rotors import shapes_of_magnets
 from geom.parameters import impossible
 
@@ -37,10 +37,23 @@ def _stator_rules(g: Any, at: Layout) -> tuple[Rule, ...]:
          f"more than {1.25 * (s.tip + lining) * mm:.4g} mm, for tip, liner and winding"),
         (at.slot1 < 0.98 * at.core, "stator.slot_depth_mm", s.slot_depth * mm,
          f"less than {(0.98 * at.core - at.bore) * mm:.4g} mm, where the laminations end"),
-        (at.wire_tooth < 0.85 * widest, "stator.tooth_mm", s.tooth * mm,
-         f"less than {(0.85 * widest - lining) * mm:.4g} mm, to leave room for liner and winding"),
-        (s.opening < 1.8 * at.slot0 * math.sin(max(half_angle(at.slot0, s.slots, s.tooth), 0.0)) if
-         s.tooth < widest else False, "stator.opening_mm", s.opening * mm, "narrower than the slot"),
+        *(_parallel_slot(s, widest, lining) if at.slot_width is not None else (
+            (at.wire_tooth < 0.85 * widest, "stator.tooth_mm", s.tooth * mm,
+             f"less than {(0.85 * widest - lining) * mm:.4g} mm, to leave room for liner and winding"),)),
+        (s.opening < 1.8 * at.slot0 * math.sin(max(at.half_angle(at.slot0), 0.0)), "stator.opening_mm",
+         s.opening * mm, "narrower than the slot"),
+        (s.wedge <= s.tip, "stator.wedge_mm", s.wedge * mm, f"at most the tooth tip, {s.tip * mm:.4g} mm"),
+        (g.winding.kind == "distributed" or s.opening < 0.5 * widest, "stator.opening_mm", s.opening * mm,
+         f"less than {0.5 * widest * mm:.4g} mm, to leave end windings on the teeth"),
+    )  # fmt: skip
+
+
+def _parallel_slot(s: Any, widest: float, lining: float) -> tuple[Rule, ...]:
+    return (
+        (s.slot_width < 0.85 * widest, "stator.slot_width_mm", s.slot_width * mm,
+         f"less than {0.85 * widest * mm:.4g} mm, to leave teeth"),
+        (lining < 0.8 * s.slot_width, "stator.slot_width_mm", s.slot_width * mm,
+         f"more than {1.25 * lining * mm:.4g} mm, for liner and winding"),
     )  # fmt: skip
 
 
@@ -62,11 +75,15 @@ def _housing_rules(g: Any, at: Layout) -> tuple[Rule, ...]:
     around, h = 2 * math.pi * at.wall, g.housing
     along = at.cap1 - at.cap0
     turn = (at.core1 - at.core0) / (h.turns + 1)
-    limits = {"axial-fins": 0.9 * around / h.fins, "radial-fins": 0.9 * along / h.fins}
+    pitch = h.fin_spacing or (around if h.kind == "axial-fins" else along) / h.fins
+    limits = {kind: 0.9 * pitch for kind in ("axial-fins", "radial-fins")}
+    lengths = {"axial-fins": around, "radial-fins": along}
     rules: list[Rule] = []
     if h.kind in limits:
         rules += [(h.fin_thickness < limits[h.kind], "housing.fin_thickness_mm", h.fin_thickness * mm,
                    f"less than {limits[h.kind] * mm:.4g} mm: {h.fins} fins overlap otherwise")]  # fmt: skip
+        rules += [(h.fins * h.fin_spacing < lengths[h.kind], "housing.fin_spacing_mm", h.fin_spacing * mm,
+                   f"less than {lengths[h.kind] / h.fins * mm:.4g} mm for {h.fins} fins")]  # fmt: skip
     if h.kind == "spiral":
         rules += [(h.rib < 0.9 * turn, "housing.rib_mm", h.rib * mm, f"less than {0.9 * turn * mm:.4g} mm")]
     if g.base.kind != "none":

@@ -7,7 +7,7 @@ from typing import Any
 
 from geom import shapes
 from geom.families.radial_flux.layout import Layout
-from geom.part import Part, Prism, fluid
+from geom.part import Part, Port, Prism, fluid
 from geom.profile import Profile
 
 
@@ -50,7 +50,8 @@ def _plain(g: Any, at: Layout) -> tuple[Prism, ...]:
 
 
 def _axial_fins(g: Any, at: Layout) -> tuple[Prism, ...]:
-    angles = [angle for angle in shapes.evenly(g.housing.fins, math.pi / 2) if not _over_foot(g, at, angle)]
+    around = shapes.spread(g.housing.fins, math.pi / 2, g.housing.fin_spacing / at.wall)
+    angles = [angle for angle in around if not _over_foot(g, at, angle)]
     loop = shapes.finned_loop(at.wall, g.housing.fin_thickness, at.fins, angles)
     return ((Profile(loop, (shapes.circle_loop(at.core),)), at.cap0, at.cap1),)
 
@@ -72,9 +73,9 @@ def _radial_fins(g: Any, at: Layout) -> tuple[Prism, ...]:
 
 def fin_spans(g: Any, at: Layout) -> list[tuple[float, float]]:
     """Axial range of each radial fin (m)."""
-    pitch = (at.cap1 - at.cap0) / g.housing.fins
-    half = g.housing.fin_thickness / 2
-    centres = [at.cap0 + (i + 0.5) * pitch for i in range(g.housing.fins)]
+    pitch = g.housing.fin_spacing or (at.cap1 - at.cap0) / g.housing.fins
+    half, first = g.housing.fin_thickness / 2, at.middle - (g.housing.fins - 1) / 2 * pitch
+    centres = [first + i * pitch for i in range(g.housing.fins)]
     footed = g.base.kind != "none"
     clear = [z for z in centres if not footed or z + half < at.foot0 - half or z - half > at.foot1 + half]
     return [(z - half, z + half) for z in clear]
@@ -99,6 +100,16 @@ def coolant(g: Any, at: Layout) -> tuple[Part, ...]:
         return ()
     ring = shapes.ring(at.wall, at.channel)
     return (fluid("jacket", *((ring, a, b) for a, b in turns(g, at)), material="glycol-50"),)
+
+
+def ports(g: Any) -> tuple[Port, ...]:
+    """Inlet at the first turn, outlet at the last, both on top of the jacket's outer wall."""
+    at = Layout(g)
+    if g.housing.kind != "spiral":
+        return ()
+    ends = [(z0 + z1) / 2 for z0, z1 in turns(g, at)]
+    places = {"jacket.inlet": ends[0], "jacket.outlet": ends[-1]}
+    return tuple(Port(name, "jacket", (0.0, at.body, z)) for name, z in places.items())
 
 
 def _base(g: Any, at: Layout) -> tuple[Part, ...]:

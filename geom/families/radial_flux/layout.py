@@ -23,7 +23,10 @@ class Layout:
         self.slot0, self.slot1 = self.bore + g.stator.tip, self.bore + g.stator.slot_depth
         self.wire0 = self.slot0 + g.stator.liner_gap + g.stator.liner
         self.wire1 = self.slot1 - g.stator.liner_gap - g.stator.liner
-        self.wire_tooth = g.stator.tooth + 2 * (g.stator.liner_gap + g.stator.liner)
+        self.lining = g.stator.liner_gap + g.stator.liner
+        self.wire_tooth = g.stator.tooth + 2 * self.lining
+        self.slots, self.tooth = g.stator.slots, g.stator.tooth
+        self.slot_width = g.stator.slot_width if g.stator.slot_shape == "parallel" else None
         self.core = g.stator.outer_diameter / 2
         self.wall = self.core + (0.0 if g.housing.kind == "none" else g.housing.thickness)
         self.channel = self.wall + g.housing.channel
@@ -32,7 +35,8 @@ class Layout:
         self.ground = -(self.fins + g.foot.height)
         self.cap_radius = self.body
 
-
-def half_angle(radius: float, slots: int, tooth: float) -> float:
-    """Half the angle (rad) that a slot between parallel-sided teeth takes at a radius (m)."""
-    return math.pi / slots - math.asin(tooth / 2 / radius)
+    def half_angle(self, radius: float, lining: float = 0.0) -> float:
+        """Half the angle (rad) that a slot, narrower by the lining (m) on either side, takes at a radius (m)."""
+        if self.slot_width is not None:
+            return math.asin(max(self.slot_width / 2 - lining, 0.0) / radius)
+        return math.pi / self.slots - math.asin(min((self.tooth / 2 + lining) / radius, 1.0))

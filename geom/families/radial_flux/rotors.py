@@ -20,7 +20,7 @@ def magnet_rotor(g: Any, at: Layout) -> tuple[Part, ...]:
     holes = (shapes.circle_loop(g.shaft.diameter / 2), *(magnet.outer for magnet in magnets))
     core = Profile(shapes.circle_loop(at.rotor), holes)
     return (
-        Part("rotor.core", "electrical-steel", ((core, at.core0, at.core1),), "laminated"),
+        Part("rotor.core", "electrical-steel", ((core, at.core0, at.core1),)),
         Part("magnets", "magnet-ndfeb", extrude(magnets, at.core0, at.core1)),
     )
 
@@ -60,6 +60,6 @@ def cage_rotor(g: Any, at: Layout) -> tuple[Part, ...]:
     ring = shapes.ring(bottom, at.rotor)
     rings = ((ring, at.core0 - g.rotor.ring, at.core0), (ring, at.core1, at.core1 + g.rotor.ring))
     return (
-        Part("rotor.core", "electrical-steel", ((core, at.core0, at.core1),), "laminated"),
+        Part("rotor.core", "electrical-steel", ((core, at.core0, at.core1),)),
         Part("rotor.cage", "aluminium-cast", (*extrude(bars, at.core0, at.core1), *rings)),
     )

@@ -6,36 +6,53 @@ import math
 from typing import Any
 
 from geom import shapes
-from geom.families.radial_flux.layout import Layout, half_angle
+from geom.families.radial_flux.layout import Layout
 from geom.part import Part, extrude
 from geom.profile import Loop, Profile
 
 
 def stator(g: Any, at: Layout) -> tuple[Part, ...]:
-    n = g.stator.slots
-    angles = shapes.evenly(n)
-    gap = g.stator.liner_gap
-    whole = slot_loop(at.slot0, at.slot1, n, g.stator.tooth)
-    lined = slot_loop(at.slot0 + gap, at.slot1 - gap, n, g.stator.tooth + 2 * gap)
-    wire = Profile(slot_loop(at.wire0, at.wire1, n, at.wire_tooth))
+    w, angles, gap = g.winding, shapes.evenly(g.stator.slots), g.stator.liner_gap
+    whole = slot_loop(at, at.slot0, at.slot1, 0.0)
+    lined = slot_loop(at, at.slot0 + gap, at.slot1 - gap, gap)
+    wire = Profile(slot_loop(at, at.wire0, at.wire1, at.lining))
     wires = shapes.turned(wire, angles)
     liners = shapes.turned(Profile(lined, (wire.outer,)), angles)
     fillings = shapes.turned(Profile(whole, (lined,)), angles) if gap else []
-    ends = shapes.ring(at.wire0, at.wire1)
+    ends, loose = _ends(g, at, angles), (w.end_fill, w.end_impregnation)
+    left, right = extrude(ends, at.ring0, at.coil0), extrude(ends, at.coil1, at.ring1)
     core = Profile(shapes.circle_loop(at.core), (_bore(g, at, angles),))
     return (
-        Part("stator.core", "electrical-steel", ((core, at.core0, at.core1),), "laminated"),
+        Part("stator.core", "electrical-steel", ((core, at.core0, at.core1),)),
         *([Part("slot.gap", "gap-resin", extrude(fillings, at.core0, at.core1))] if gap else []),
         Part("slot.liner", "slot-liner", extrude(liners, at.core0, at.core1)),
-        Part("winding", "winding", extrude(wires, at.core0, at.core1), "wound"),
-        Part("winding.left", "end-winding", (*extrude(wires, at.coil0, at.core0), (ends, at.ring0, at.coil0))),
-        Part("winding.right", "end-winding", (*extrude(wires, at.core1, at.coil1), (ends, at.coil1, at.ring1))),
+        *_wedges(g, at, angles),
+        Part("winding", "winding", extrude(wires, at.core0, at.core1), (w.fill, w.impregnation)),
+        Part("winding.left", "end-winding", (*extrude(wires, at.coil0, at.core0), *left), loose),
+        Part("winding.right", "end-winding", (*extrude(wires, at.core1, at.coil1), *right), loose),
     )
 
 
-def slot_loop(inner: float, outer: float, slots: int, tooth: float) -> Loop:
-    """The space along +x between two parallel-sided teeth and two radii (m)."""
-    a, b = half_angle(inner, slots, tooth), half_angle(outer, slots, tooth)
+def _ends(g: Any, at: Layout, angles: list[float]) -> list[Profile]:
+    """Overhang in the plane: a ring, or for coils around single teeth an arch from slot to slot at each tooth."""
+    if g.winding.kind == "distributed":
+        return [shapes.ring(at.wire0, at.wire1)]
+    apart = math.asin(g.stator.opening / 2 / at.wire0)
+    pitch = 2 * math.pi / g.stator.slots
+    return [shapes.sector(at.wire0, at.wire1, angle + apart, angle + pitch - apart) for angle in angles]
+
+
+def _wedges(g: Any, at: Layout, angles: list[float]) -> tuple[Part, ...]:
+    """What closes the slots, in the openings between the tooth tips."""
+    if not g.stator.wedge:
+        return ()
+    bar = Profile(shapes.bar_loop(at.slot0 - g.stator.wedge, at.slot0, g.stator.opening))
+    return (Part("slot.wedge", "insulation", extrude(shapes.turned(bar, angles), at.core0, at.core1)),)
+
+
+def slot_loop(at: Layout, inner: float, outer: float, lining: float) -> Loop:
+    """The slot along +x between two radii (m), narrower by the lining (m) on either side."""
+    a, b = at.half_angle(inner, lining), at.half_angle(outer, lining)
     far = shapes.bulge_of(2 * b)
     return (shapes.polar(inner, -a), shapes.polar(outer, -b, far), shapes.polar(outer, b),
             shapes.polar(inner, a, -shapes.bulge_of(2 * a)))  # fmt: skip
@@ -43,9 +60,9 @@ def slot_loop(inner: float, outer: float, slots: int, tooth: float) -> Loop:
 
 def _bore(g: Any, at: Layout, angles: list[float]) -> Loop:
     """The bore with all slots and their openings."""
-    n, half = g.stator.slots, g.stator.opening / 2
+    half = g.stator.opening / 2
     mouth, throat = math.asin(half / at.bore), math.asin(half / at.slot0)
-    inner, outer = (half_angle(r, n, g.stator.tooth) for r in (at.slot0, at.slot1))
+    inner, outer = (at.half_angle(r) for r in (at.slot0, at.slot1))
     lip, bottom = shapes.bulge_of(inner - throat), shapes.bulge_of(2 * outer)
     loop = []
     for angle, pitch in zip(angles, shapes.gaps(angles)):

@@ -11,7 +11,8 @@ from typing import Any
 from geom import shapes
 from geom.families.family import Family
 from geom.families.series_dc.checks import check
-from geom.families.series_dc.housing import coolant, enclosure
+from geom.families.series_dc.fan import fan
+from geom.families.series_dc.housing import coolant, enclosure, ports
 from geom.families.series_dc.layout import Axial, Radii
 from geom.families.series_dc.parameters import PARAMETERS
 from geom.families.series_dc.rotor import rotor
@@ -23,7 +24,7 @@ def build(g: Any) -> tuple[Part, ...]:
     """Solids and fluids of the machine. Raises InputError for parts that do not fit."""
     z = Axial(g)
     check(g, z)
-    return (*rotor(g, z), *stator(g, z), *enclosure(g, z), *_fluids(g, z))
+    return (*rotor(g, z), *stator(g, z), *enclosure(g, z), *fan(g, z), *_fluids(g, z))
 
 
 def _fluids(g: Any, z: Axial) -> tuple[Part, ...]:
@@ -50,4 +51,5 @@ FAMILY = Family(
         ("housing", "jacket.left"): "jacket.left.wall",
         ("housing", "jacket.right"): "jacket.right.wall",
     },
+    ports,
 )

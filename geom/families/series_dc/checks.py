@@ -62,8 +62,12 @@ def check(g: Any, z: Axial) -> None:
         (max(z.bars1, z.field1, z.yoke1) < z.inner1, "shaft.length_mm", g.shaft.length * mm,
          f"more than {(max(z.bars1, z.field1, z.yoke1) + z.end - z.inner1) * mm:.4g} mm, for all that it carries"),
         (_fins_fit(g, r), "housing.fin_thickness_mm", g.housing.fin_thickness * mm,
-         f"less than {0.9 * 2 * math.pi * r.shell / max(g.housing.fins, 1) * mm:.4g} mm: "
+         f"less than {0.9 * _fin_pitch(g, r) * mm:.4g} mm: "
          f"{g.housing.fins} fins on this housing overlap otherwise"),
+        (g.housing.fins * g.housing.fin_spacing <= 2 * math.pi * r.shell, "housing.fin_spacing_mm",
+         g.housing.fin_spacing * mm, f"at most {2 * math.pi * r.shell / max(g.housing.fins, 1) * mm:.4g} mm"),
+        *_commutator_rules(g),
+        *_fan_rules(g, r),
         *_jacket_rules(g, r, z),
         (foot_outer < 0.95 * r.shell, "feet.width_mm", g.feet.width * mm,
          f"less than {(0.95 * r.shell - g.feet.inner) * mm:.4g} mm: the foot must end under the housing"),
@@ -90,7 +94,37 @@ def _ducts_fit(g: Any, r: Radii) -> bool:
 
 
 def _fins_fit(g: Any, r: Radii) -> bool:
-    return g.housing.fins == 0 or g.housing.fin_thickness < 0.9 * 2 * math.pi * r.shell / g.housing.fins
+    return g.housing.fins == 0 or g.housing.fin_thickness < 0.9 * _fin_pitch(g, r)
+
+
+def _fin_pitch(g: Any, r: Radii) -> float:
+    return g.housing.fin_spacing or 2 * math.pi * r.shell / max(g.housing.fins, 1)
+
+
+def _commutator_rules(g: Any) -> tuple[Rule, ...]:
+    c = g.commutator
+    if not c.bars:
+        return ()
+    around, high = math.pi * c.diameter / c.bars, (c.diameter - g.shaft.hub_diameter) / 2
+    limit = min(0.5 * around, 0.5 * high)
+    return ((c.bars > 2, "commutator.bars", c.bars, "0 or more than 2"),
+            (c.mica < limit, "commutator.mica_mm", c.mica * mm,
+             f"less than {limit * mm:.4g} mm, to leave copper"))  # fmt: skip
+
+
+def _fan_rules(g: Any, r: Radii) -> tuple[Rule, ...]:
+    f = g.fan
+    if not f.depth:
+        return ()
+    return (
+        (f.diameter > 1.02 * g.bearing.outer_diameter, "fan.diameter_mm", f.diameter * mm,
+         f"more than {1.02 * g.bearing.outer_diameter * mm:.4g} mm, to stand on the flange"),
+        (f.diameter / 2 + f.cowl < r.shell, "fan.diameter_mm", f.diameter * mm,
+         f"less than {2 * (r.shell - f.cowl) * mm:.4g} mm, the flange"),
+        (1.05 * g.shaft.bearing_diameter < f.hub_diameter < 0.9 * f.diameter, "fan.hub_diameter_mm",
+         f.hub_diameter * mm,
+         f"from {1.05 * g.shaft.bearing_diameter * mm:.4g} to {0.9 * f.diameter * mm:.4g} mm"),
+    )  # fmt: skip
 
 
 def _jacket_rules(g: Any, r: Radii, z: Axial) -> tuple[Rule, ...]:

@@ -7,7 +7,7 @@ from typing import Any
 
 from geom import shapes
 from geom.families.series_dc.layout import Axial, Radii
-from geom.part import Part, Prism, extrude, fluid
+from geom.part import Part, Port, Prism, extrude, fluid
 from geom.profile import Profile
 
 
@@ -43,10 +43,9 @@ def _jacket_walls(g: Any, z: Axial, r: Radii, name: str) -> list[Prism]:
     z0, z1 = z.jackets[name]
     solid = shapes.ring(r.yoke1, r.jacket)
     if g.jacket.layout == "zigzag":
-        channels = tuple(channel.outer for channel in _channels(g, r))
-        pierced = Profile(solid.outer, (*solid.holes, *channels))
-        rib = g.jacket.rib
-        return [(solid, z0, z0 + rib), (pierced, z0 + rib, z1 - rib), (solid, z1 - rib, z1)]
+        passages = _zigzag(g, r, z0, z1)
+        pierced = [(Profile(solid.outer, (*solid.holes, *(c.outer for c in cs))), a, b) for cs, a, b in passages]
+        return [(solid, z0, z0 + g.jacket.rib), *pierced, (solid, z1 - g.jacket.rib, z1)]
     inner, outer = shapes.ring(r.yoke1, r.shell), shapes.ring(r.channel, r.jacket)
     turns = _turns(g, z0, z1)
     ends = [z0, *(z for turn in turns for z in turn), z1]
@@ -54,10 +53,26 @@ def _jacket_walls(g: Any, z: Axial, r: Radii, name: str) -> list[Prism]:
     return ribs + [(ring, a, b) for a, b in turns for ring in (inner, outer)]
 
 
-def _channels(g: Any, r: Radii) -> list[Profile]:
+def _zigzag(g: Any, r: Radii, z0: float, z1: float) -> list[tuple[list[Profile], float, float]]:
+    """Channels along the axis, straight first; then those joined in pairs at the left end, and at the right end."""
+    first, last, n = z0 + g.jacket.rib, z1 - g.jacket.rib, g.jacket.channels
+    turn = turn_length(g, z0, z1)
+    straight, left = [(i, i) for i in range(n)], [(i, min(i + 1, n - 1)) for i in range(0, n, 2)]
+    right = [(0, 0), *((i, min(i + 1, n - 1)) for i in range(1, n, 2))]
+    zones = ((straight, first + turn, last - turn), (left, first, first + turn), (right, last - turn, last))
+    return [([_channel(g, r, *pair) for pair in pairs], a, b) for pairs, a, b in zones]
+
+
+def turn_length(g: Any, z0: float, z1: float) -> float:
+    """Axial length (m) over which two channels are joined: as deep as they are high, if there is room."""
+    return min(g.jacket.height, 0.3 * (z1 - z0 - 2 * g.jacket.rib))
+
+
+def _channel(g: Any, r: Radii, i: int, j: int) -> Profile:
+    """From channel i to channel j, what lies between included."""
     half = math.pi / g.jacket.channels - g.jacket.rib / 2 / r.shell
-    start = shapes.evenly(g.jacket.channels, math.pi / 2)
-    return [shapes.sector(r.shell, r.channel, angle - half, angle + half) for angle in start]
+    pitch, top = 2 * math.pi / g.jacket.channels, math.pi / 2
+    return shapes.sector(r.shell, r.channel, top + i * pitch - half, top + j * pitch + half)
 
 
 def _turns(g: Any, z0: float, z1: float) -> list[tuple[float, float]]:
@@ -72,14 +87,34 @@ def coolant(g: Any, z: Axial) -> tuple[Part, ...]:
     return tuple(fluid(name, *_channel_prisms(g, r, *span), material="glycol-50") for name, span in z.jackets.items())
 
 
+def ports(g: Any) -> tuple[Port, ...]:
+    """Inlet and outlet of every jacket, on its outer wall: first and last channel or turn."""
+    r = Radii(g)
+    return tuple(port for name, span in Axial(g).jackets.items() for port in _ports(g, r, name, *span))
+
+
+def _ports(g: Any, r: Radii, name: str, z0: float, z1: float) -> tuple[Port, Port]:
+    top, n = math.pi / 2, g.jacket.channels
+    if g.jacket.layout == "helical":
+        turns = _turns(g, z0, z1)
+        ends = [(top, sum(turns[0]) / 2), (top, sum(turns[-1]) / 2)]
+    else:
+        turn = turn_length(g, z0, z1) / 2
+        near, far = z0 + g.jacket.rib + turn, z1 - g.jacket.rib - turn
+        ends = [(top, far), (top + (n - 1) * 2 * math.pi / n, far if n % 2 == 0 else near)]
+    first, last = ((r.jacket * math.cos(a), r.jacket * math.sin(a), z) for a, z in ends)
+    return Port(f"{name}.inlet", name, first), Port(f"{name}.outlet", name, last)
+
+
 def _channel_prisms(g: Any, r: Radii, z0: float, z1: float) -> tuple[Prism, ...]:
     if g.jacket.layout == "zigzag":
-        return extrude(_channels(g, r), z0 + g.jacket.rib, z1 - g.jacket.rib)
+        return tuple(prism for channels, a, b in _zigzag(g, r, z0, z1) for prism in extrude(channels, a, b))
     return tuple((shapes.ring(r.shell, r.channel), a, b) for a, b in _turns(g, z0, z1))
 
 
 def _finned(g: Any, r: Radii) -> tuple[tuple[float, float, float], ...]:
-    angles = [a for a in shapes.evenly(g.housing.fins, math.pi / 2) if not _over_foot(g, r, a)]
+    around = shapes.spread(g.housing.fins, math.pi / 2, g.housing.fin_spacing / r.shell)
+    angles = [a for a in around if not _over_foot(g, r, a)]
     if not angles:
         return shapes.circle_loop(r.shell)
     return shapes.finned_loop(r.shell, g.housing.fin_thickness, r.fins, angles)

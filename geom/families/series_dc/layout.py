@@ -10,7 +10,8 @@ class Axial:
 
     def __init__(self, g: Any) -> None:
         self.end = g.shaft.length
-        self.flange0 = g.flange.shaft_end
+        self.fan0 = g.flange.shaft_end
+        self.flange0 = self.fan0 + g.fan.depth
         self.inner0 = self.flange0 + g.flange.thickness
         self.flange1 = self.end - g.flange.shaft_end
         self.inner1 = self.flange1 - g.flange.thickness

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from geom import shapes
+from geom.families.series_dc.commutator import commutator
 from geom.families.series_dc.layout import Axial, Radii
 from geom.part import Part, extrude
 from geom.profile import Profile
@@ -17,14 +18,22 @@ def rotor(g: Any, z: Axial) -> tuple[Part, ...]:
     liner = Profile(shapes.bar_loop(r.slot_bottom, r.rotor, g.rotor.slot_width), (wire.outer,))
     wires, liners = shapes.turned(wire, angles), shapes.turned(liner, angles)
     ends = shapes.ring(r.wire_bottom, r.wire_top)
+    loose = (g.rotor.end_fill, g.rotor.end_impregnation)
     return (
         _shaft(g, z),
-        Part("rotor.core", "electrical-steel", ((_lamination(g, r, angles), z.core0, z.core1),), "laminated"),
+        Part("rotor.core", "electrical-steel", ((_lamination(g, r, angles), z.core0, z.core1),)),
         Part("slot.liner", "slot-liner", extrude(liners, z.core0, z.core1)),
-        Part("winding.armature", "winding", extrude(wires, z.core0, z.core1), "wound"),
-        Part("winding.armature.left", "end-winding", (*extrude(wires, z.coil0, z.core0), (ends, z.ring0, z.coil0))),
-        Part("winding.armature.right", "end-winding", (*extrude(wires, z.core1, z.coil1), (ends, z.coil1, z.ring1))),
-        _commutator(g, z, r),
+        Part("winding.armature", "winding", extrude(wires, z.core0, z.core1), (g.rotor.fill, g.rotor.impregnation)),
+        Part(
+            "winding.armature.left", "end-winding", (*extrude(wires, z.coil0, z.core0), (ends, z.ring0, z.coil0)), loose
+        ),
+        Part(
+            "winding.armature.right",
+            "end-winding",
+            (*extrude(wires, z.core1, z.coil1), (ends, z.coil1, z.ring1)),
+            loose,
+        ),
+        *commutator(g, z, r),
     )
 
 
@@ -42,12 +51,6 @@ def _shaft(g: Any, z: Axial) -> Part:
         (g.shaft.bearing_diameter, z.bars1, z.end),
     )
     return Part("shaft", "steel", tuple((shapes.disc(d / 2), z0, z1) for d, z0, z1 in steps))
-
-
-def _commutator(g: Any, z: Axial, r: Radii) -> Part:
-    hub = g.shaft.hub_diameter / 2
-    risers = (shapes.ring(hub, r.wire_top), z.ring1, z.riser1)
-    return Part("commutator", "commutator", (risers, (shapes.ring(hub, g.commutator.diameter / 2), z.riser1, z.bars1)))
 
 
 def duct_circle(g: Any, r: Radii) -> float:

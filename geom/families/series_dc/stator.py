@@ -23,8 +23,8 @@ def stator(g: Any, z: Axial) -> tuple[Part, ...]:
     lining = (*extrude(plates, z.core0, z.core1), (cap, inner0, z.core0), (cap, z.core1, inner1))
     return (
         Part("yoke", "steel", ((shapes.ring(r.yoke0, r.yoke1), z.yoke0, z.yoke1),)),
-        Part("poles", "electrical-steel", extrude(shapes.turned(_pole(g, r), angles), z.core0, z.core1), "laminated"),
-        Part("winding.field", "field-winding", _around(coil, angles), "wound"),
+        Part("poles", "electrical-steel", extrude(shapes.turned(_pole(g, r), angles), z.core0, z.core1)),
+        Part("winding.field", "field-winding", _around(coil, angles), (g.field.fill, g.field.impregnation)),
         Part("field.insulation", "insulation", _around(lining, angles)),
     )
 
