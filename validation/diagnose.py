@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from validation.calibrate import Fit, calibrated, silent
+from validation.calibrate import Fit, calibrated, silent, square_of
 from validation.case import AddedEffect, Case
 from validation.evidence import Evidence, calibrated_case, candidates, null_of, possible, scored
 from validation.experiments import next_tests
@@ -27,7 +27,8 @@ STEPS = 3
 BEYOND = 1.6
 LOCATED = 10.0
 PULL = 3.0
-COMPENSATED = 0.05
+COMPENSATED = 0.3
+WORTH = 0.1
 HIDES = "it may hide a missing effect"
 
 
@@ -67,7 +68,10 @@ def diagnose(
 
 
 def search(case: Case, evidence: Evidence, null: Null, limit: float, progress: Progress) -> list[Step]:
-    """Add the best candidate while one passes the threshold, each time calibrating and estimating the noise anew."""
+    """Add the best candidate while one passes the threshold, each time calibrating and estimating the noise anew.
+
+    After the first, one that removes less than a tenth of what is left of the residual is not worth its place.
+    """
     level = dict(zip(evidence.names, null.kappa, strict=True))
     steps: list[Step] = []
     for _ in range(STEPS + 1):
@@ -75,7 +79,7 @@ def search(case: Case, evidence: Evidence, null: Null, limit: float, progress: P
         if np.max(evidence.score.z / kappa, initial=0.0) < limit or len(steps) == STEPS:
             return [*steps, Step(evidence, kappa, None)]
         found = race(evidence, kappa, limit, progress)
-        if steps and weak(evidence, found):
+        if steps and (weak(evidence, found) or explained(evidence, found) < WORTH):
             return [*steps, Step(evidence, kappa, None)]
         steps.append(Step(evidence, kappa, found))
         if weak(evidence, found):
@@ -150,11 +154,20 @@ def explained(evidence: Evidence, found: Race) -> float:
     return 1.0 - (rmse(found.best.parts) / rmse(evidence.fit.parts)) ** 2
 
 
+def told_by_data(evidence: Evidence, found: Race) -> float:
+    """Share of the best candidate's gain in deviance that the readings contribute; the rest is relief of priors."""
+    before, after = (square_of(fit.parts, found.noise) for fit in (evidence.fit, found.best))
+    strain, eased = (float(np.sum((fit.theta / fit.unknowns.sd) ** 2)) for fit in (evidence.fit, found.best))
+    gain = before - after + max(strain - eased, 0.0)
+    return (before - after) / gain if gain > 0 else 0.0
+
+
 def weak(evidence: Evidence, found: Race) -> bool:
     """Does the calibration explain the readings as well, against its priors only?"""
     best = found.index[0]
-    twin = evidence.twins[best] is not None and not evidence.effects[best].fault
-    return twin or explained(evidence, found) < COMPENSATED
+    if evidence.effects[best].fault:
+        return False
+    return evidence.twins[best] is not None or told_by_data(evidence, found) < COMPENSATED
 
 
 def on_bound(evidence: Evidence, found: Race) -> bool:

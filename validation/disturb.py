@@ -31,6 +31,8 @@ class Spread:
     input_exponent: float = 0.08
     loss_exponent: float = 0.1
     group: float = 0.1
+    conductivity: float = 0.15
+    capacity: float = 0.05
     core: float = 0.7
     placement: float = 0.03
     flow: float = 0.03
@@ -74,11 +76,13 @@ def bent_temperature(law: TemperatureLaw, power: float) -> TemperatureLaw:
 
 
 def disturbed(network: Network, rng: np.random.Generator, spread: Spread = USUAL) -> Network:
-    """The network with bent films and losses, and cores inside declared nodes."""
+    """The network with bent films and losses, other materials where no parameter frees them, and cores inside nodes."""
     shared = {t for p in network.parameters if len(p.targets) > 1 for t, _ in p.targets}
+    free = {t for p in network.parameters for t, _ in p.targets}
     links = tuple(_bent_link(network, link, rng, spread, link.name in shared) for link in network.links)
+    links = tuple(x if x.name in free else _other_material(x, rng, spread) for x in links)
     sources = tuple(_bent_source(s, rng, spread) for s in network.sources)
-    network = replace(network, links=links, sources=sources)
+    network = replace(network, links=links, sources=sources, C=other_capacities(network, rng, spread))
     return network if any("#" in s for s in network.states) else with_cores(network, rng, spread)
 
 
@@ -89,6 +93,22 @@ def _bent_link(network: Network, link: Link, rng: np.random.Generator, spread: S
     scale = float(np.exp(spread.group * rng.standard_normal())) if shared else 1.0
     temperature = bent_temperature(link.law.temperature, spread.film_exponent * rng.standard_normal())
     return replace(link, law=Bent(link.law, spread.input_exponent * rng.standard_normal(), scale, temperature))
+
+
+def _other_material(link: Link, rng: np.random.Generator, spread: Spread) -> Link:
+    """Conduction inside a part of another conductivity."""
+    if link.kind != "conduction":
+        return link
+    scale = float(np.exp(spread.conductivity * rng.standard_normal()))
+    return replace(link, law=Bent(link.law, 0.0, scale, link.law.temperature))
+
+
+def other_capacities(network: Network, rng: np.random.Generator, spread: Spread) -> Array:
+    """Heat capacities (J/K) of parts whose capacity is not a parameter of its own; a part and its shapes as one."""
+    groups = network.capacity_group or network.states
+    single = {p.targets[0][0] for p in network.parameters if len(p.targets) == 1}
+    factor = {g: float(np.exp(spread.capacity * rng.standard_normal())) for g in dict.fromkeys(groups)}
+    return network.C * np.array([1.0 if f"capacity:{g}" in single else factor[g] for g in groups])
 
 
 def _bent_source(source: Source, rng: np.random.Generator, spread: Spread) -> Source:

@@ -143,14 +143,15 @@ def fit_noise(parts: Sequence[Segment]) -> Noise:
     """Maximum likelihood per channel, all its tests together, each in proportion to its weight."""
     channels = list(dict.fromkeys(s.channel for s in parts))
     square, logdet, count = (np.zeros((len(channels), k)) for k in (len(GRID), len(GRID), 1))
-    for own in _same_grid(parts):
-        inverse, ld = factors(own[0].time)
-        white = np.tensordot(inverse, np.column_stack([s.r / s.weight for s in own]), axes=(2, 0))
+    for own in _tests(parts):
+        time = np.unique(np.concatenate([s.time for s in own]))
+        inverse, ld = factors(time)
+        white = np.tensordot(inverse, np.column_stack([_complete(s, time) for s in own]), axes=(2, 0))
         for s, norm in zip(own, np.einsum("kns,kns->sk", white, white), strict=True):
             at = channels.index(s.channel)
             square[at] += norm
             logdet[at] += ld
-            count[at] += s.r.size
+            count[at] += time.size
     floor = np.array([FLOOR_K / max(s.weight for s in parts if s.channel == c) for c in channels])[:, None]
     variance = (square + PRIOR_COUNT * floor**2) / (count + PRIOR_COUNT)
     prior = np.array([g.log_prior() for g in GRID])
@@ -163,9 +164,14 @@ def _level(g: Shape, variance: float) -> Level:
     return Level(float(white), float(fast), g.tau, float(slow), g.ell)
 
 
-def _same_grid(parts: Sequence[Segment]) -> list[list[Segment]]:
-    """Segments by time grid; those of one grid are whitened in one product."""
-    out: dict[bytes, list[Segment]] = {}
+def _tests(parts: Sequence[Segment]) -> list[list[Segment]]:
+    """Segments by test; those of one are whitened in one product, on all instants that any of them has."""
+    out: dict[str, list[Segment]] = {}
     for s in parts:
-        out.setdefault(s.time.tobytes(), []).append(s)
+        out.setdefault(s.test, []).append(s)
     return list(out.values())
+
+
+def _complete(s: Segment, time: Array) -> Array:
+    """The weighted residual with its gaps drawn straight across: only here, to choose a shape."""
+    return np.interp(time, s.time, s.r) / s.weight

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,7 +23,7 @@ REFITS = 6
 class Race:
     """The refitted candidates, best first.
 
-    index : candidates;  fits : their refits under `noise`;  gap : deviance behind the best over kappa^2;
+    index : candidates;  fits : their refits under `noise`;  gap : deviance behind the best over the best's kappa^2;
     group : the candidates that cannot be told from the best
     """
 
@@ -53,19 +53,24 @@ def race(evidence: Evidence, kappa: Array, threshold: float, progress: Callable[
         noise = sharpened(fits[leader])
         runners = shortlist(evidence, noise, kappa, leader)
         progress(f"comparing {evidence.names[leader]} with {len(runners) - 1} rivals")
-        fits = {k: compared(evidence, k, noise, fits) for k in runners}
+        fits = compared(evidence, runners, noise, fits, kappa)
         best = min(runners, key=lambda k: fits[k].objective)
         if best == leader:
             break
         leader = best
     runners.sort(key=lambda k: fits[k].objective)
-    gap = [behind(fits[k], fits[leader], max(kappa[k], kappa[leader])) for k in runners]
+    gap = [behind(fits[k], fits[leader], float(kappa[leader])) for k in runners]
     return Race(tuple(runners), tuple(fits[k] for k in runners), tuple(gap), noise)
 
 
-def compared(evidence: Evidence, k: int, noise: Noise, known: Mapping[int, Fit]) -> Fit:
-    """A candidate's refit under the race's noise."""
-    return polished(evidence, [k], refit(evidence, [k], noise, known.get(k)))
+def compared(
+    evidence: Evidence, runners: Sequence[int], noise: Noise, known: Mapping[int, Fit], kappa: Array
+) -> dict[int, Fit]:
+    """The runners' refits under the race's noise; those that come near the best go on with a Jacobian of their own."""
+    fits = {k: refit(evidence, [k], noise, known.get(k)) for k in runners}
+    best = min(fits.values(), key=lambda fit: fit.objective)
+    near = [k for k in runners if behind(fits[k], best, float(np.max(kappa[runners]))) < 2.0 * GAP]
+    return fits | {k: polished(evidence, [k], fits[k]) for k in near}
 
 
 def behind(fit: Fit, best: Fit, kappa: float) -> float:

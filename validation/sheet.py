@@ -16,7 +16,7 @@ from validation.predict import predict
 
 Array = NDArray[np.float64]
 INSTANTS = 180
-MODEL_SHARE = 0.01
+MODEL_SHARE = 0.02  # a model within 4 % of the rise counts as good: that is two standard deviations
 WORTH_A_THREAD = 3000  # states times instants below which starting threads costs more than it saves
 
 
