@@ -3,9 +3,9 @@
     python benchmarks/network.py [--json FILE]
 
 30 nodes, 3,600 s at 1 s with radiation, natural convection and copper feedback; inputs change every second, so no
-solver may step over a sample (max_step 1 s). On smooth inputs, where LSODA may take steps of 20 s, it is as fast.
-Errors are the largest difference to scipy Radau at rtol 1e-10 over all nodes and times. Times are single-thread CPU
-seconds, best of three for us.
+solver may step over a sample. On smooth inputs, where LSODA may take steps of 20 s, it is as fast.
+Errors are the largest difference to scipy Radau at rtol 1e-10 over all nodes and times. Times are CPU seconds, best of
+three for us, after compiling; ensembles and first calls are wall seconds.
 """
 
 from __future__ import annotations
@@ -13,21 +13,26 @@ from __future__ import annotations
 import argparse
 import datetime
 import json
+import os
 import platform
+import subprocess
 import sys
+import tempfile
 import time
-from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.integrate import solve_ivp
+from network_peers import peers, timed
 
 from lumped.build import bare_network, node_link, node_source
+from lumped.ensemble import dask_cluster, ensemble
 from lumped.laws import Fixed, InputPower, Linear, Power, Radiation
 from lumped.network import Network, Parameter
 from lumped.simulate import Record, simulate
-from lumped.terms import SIGMA, SMOOTH, ZERO_C
+
+MEMBERS = 1000
 
 
 def ring(n: int) -> Network:
@@ -67,61 +72,7 @@ def halved(rec: Record) -> Record:
     return Record(t, given, {"ambient": np.interp(t, rec.time, rec.boundaries["ambient"])}, rec.initial)
 
 
-def right_hand_side(net: Network, rec: Record) -> Callable[[float, np.ndarray], np.ndarray]:
-    """The same equations as a NumPy function; factors and boundaries linear between the times, as in the kernel."""
-    n = len(net.states)
-    K, kinds = np.zeros((n, n + 1)), {"r": [], "c": []}
-    for link in net.links:
-        if link.name[0] == "g":
-            np.add.at(K, (link.rows, link.cols), link.law.value * link.vals)
-        else:
-            kinds[link.name[0]].append(int(link.rows[0]))
-    tables = [np.broadcast_to(s.law.factor(rec.inputs), rec.time.shape) for s in net.sources]
-    hot, core = (int(s.index[0]) for s in net.sources)
-
-    def f(t: float, x: np.ndarray) -> np.ndarray:
-        ambient = np.interp(t, rec.time, rec.boundaries["ambient"])
-        q = -(K @ np.append(x, ambient))
-        T, A = x[kinds["r"]] + ZERO_C, ambient + ZERO_C
-        q[kinds["r"]] -= 0.1 * SIGMA * (T**4 - A**4)
-        d = x[kinds["c"]] - ambient
-        q[kinds["c"]] -= 0.5 * (d * d + SMOOTH**2) ** 0.125 * d
-        q[hot] += np.interp(t, rec.time, tables[0]) * (1 + 0.0039 * (x[hot] - 20.0))
-        q[core] += np.interp(t, rec.time, tables[1])
-        return q / net.C
-
-    return f
-
-
-def timed(run: Callable[[], object], repeats: int = 3) -> tuple[float, object]:
-    """Best CPU seconds and the result."""
-    best, out = np.inf, None
-    for _ in range(repeats):
-        start = time.process_time()
-        out = run()
-        best = min(best, time.process_time() - start)
-    return best, out
-
-
-def peers(net: Network, rec: Record) -> tuple[list[tuple[str, float, float]], np.ndarray]:
-    """(name, CPU s, largest error K) of scipy's solvers at their usual tolerance, and the reference (nt, n)."""
-    f, x0 = right_hand_side(net, rec), np.full(len(net.states), 20.0)
-    span = (rec.time[0], rec.time[-1])
-
-    def solve(method: str, rtol: float, atol: float) -> np.ndarray:
-        return solve_ivp(f, span, x0, method, t_eval=rec.time, rtol=rtol, atol=atol, max_step=1.0).y.T
-
-    print("reference ...", file=sys.stderr)
-    reference = solve("Radau", 1e-10, 1e-9)
-    out = []
-    for method in ("LSODA", "BDF"):
-        print(f"scipy {method} ...", file=sys.stderr)
-        seconds, y = timed(lambda method=method: solve(method, 1e-6, 1e-5), 1)
-        out.append((f"scipy {method}", seconds, float(np.abs(y - reference).max())))
-    return out, reference
-
-
-def rows() -> list[dict[str, Any]]:
+def against_peers() -> list[dict[str, Any]]:
     net, rec = ring(30), record(3600)
     simulate(net, record(3), keep_states=True)
     seconds, run = timed(lambda: simulate(net, rec, keep_states=True).z[:, :30])
@@ -136,11 +87,23 @@ def rows() -> list[dict[str, Any]]:
         for name, peer_seconds, peer_error in others:
             out.append(row(case, "time", "s", cost, peer_seconds, name))
             out.append(row(case, "largest error", "K", error, peer_error, name))
+    return [*out, *tangents(net, rec, seconds)]
+
+
+def tangents(net: Network, rec: Record, seconds: float) -> list[dict[str, Any]]:
     mean = [net.place("n0").mean]
-    with_tangents, _ = timed(lambda: simulate(net, rec, rows=mean, tangents=net.parameters[:40]))
-    out.append(row("30 nodes, 40 tangents", "time", "s", with_tangents, 40 * seconds, "40 runs"))
-    long, _ = timed(lambda: simulate(ring(10), record(97200), rows=[ring(10).place("n0").mean]), 2)
-    out.append(row("10 nodes, 27 h at 1 Hz", "time", "s", long))
+    simulate(net, record(3), rows=mean, tangents=net.parameters[:40])
+    cost, _ = timed(lambda: simulate(net, rec, rows=mean, tangents=net.parameters[:40]))
+    return [row("30 nodes, 40 sensitivities", "time", "s", cost, 10 * seconds, "10 runs")]
+
+
+def sizes() -> list[dict[str, Any]]:
+    """Cost over time (linear) and over the number of nodes."""
+    small, mean = ring(10), [ring(10).place("n0").mean]
+    out = []
+    for hours in (1, 3, 9, 27):
+        cost, _ = timed(lambda hours=hours: simulate(small, record(3600 * hours), rows=mean), 2)
+        out.append(row(f"10 nodes, {hours} h at 1 Hz", "time", "s", cost))
     for n in (10, 30, 100, 300):
         network = ring(n)
         cost, _ = timed(lambda network=network: simulate(network, record(3600, 10.0)), 2)
@@ -148,28 +111,84 @@ def rows() -> list[dict[str, Any]]:
     return out
 
 
+def ensembles() -> list[dict[str, Any]]:
+    """1,000 members of 30 nodes and 360 steps: one thread, a thread per core, and a local Dask cluster."""
+    net, rec, random = ring(30), record(3600, 10.0), np.random.default_rng(2)
+    members = [{p.name: float(np.exp(0.2 * random.standard_normal())) for p in net.parameters} for _ in range(MEMBERS)]
+    rows = [net.place("n0").mean]
+    with ThreadPoolExecutor(1) as alone:
+        one, expected = walled(lambda: ensemble(net, rec, members, rows, alone))
+    all_cores, y = walled(lambda: ensemble(net, rec, members, rows))
+    assert np.array_equal(y, expected)
+    cores, case = os.cpu_count(), f"{MEMBERS} members, 30 nodes, 360 steps"
+    out = [row(case, f"time, {cores} threads", "s", all_cores, one, "1 thread")]
+    try:
+        from distributed import LocalCluster
+    except ImportError:
+        return out
+    options = {"n_workers": cores, "threads_per_worker": 1, "dashboard_address": None}
+    with LocalCluster(**options) as cluster, dask_cluster(cluster.scheduler_address) as executor:
+        ensemble(net, rec, members[: 4 * (cores or 1)], rows, executor, 1)
+        spread, y = walled(lambda: ensemble(net, rec, members, rows, executor))
+    assert np.array_equal(y, expected)
+    return [*out, row(case, f"time, Dask, {cores} processes", "s", spread, one, "1 thread")]
+
+
+def walled(run: Any) -> tuple[float, Any]:
+    start = time.perf_counter()
+    out = run()
+    return time.perf_counter() - start, out
+
+
+FIRST = """
+import time, sys
+sys.path.insert(0, {here!r})
+from network import record, ring
+from lumped.simulate import simulate
+net, rec = ring(10), record(5)
+for tangents in ((), net.parameters[:2]):
+    start = time.process_time()
+    simulate(net, rec, rows=[net.place("n0").mean], tangents=tangents)
+    print(time.process_time() - start)
+"""
+
+
+def compiling() -> list[dict[str, Any]]:
+    """CPU seconds of the first run and of the first with sensitivities, with an empty cache and with a full one."""
+    out = []
+    with tempfile.TemporaryDirectory() as cache:
+        for state in ("nothing cached", "cached"):
+            command = [sys.executable, "-c", FIRST.format(here=str(Path(__file__).parent))]
+            done = subprocess.run(
+                command, env={**os.environ, "NUMBA_CACHE_DIR": cache}, capture_output=True, text=True, check=True
+            )
+            plain, tangent = (float(line) for line in done.stdout.split())
+            out.append(row(f"first run, {state}", "time", "s", plain))
+            out.append(row(f"first sensitivities, {state}", "time", "s", tangent))
+    return out
+
+
 def row(case: str, measure: str, unit: str, ours: float, peer: float | None = None, name: str = "") -> dict[str, Any]:
     """One line of the table; ratio is ours over the peer's."""
-    ratio = ours / peer if peer else None
-    out = {"case": case, "measure": measure, "unit": unit, "ours": ours}
-    return {**out, "peer": peer, "peer_name": name, "ratio": ratio}
+    found = {"peer": peer, "peer_name": name or None, "ratio": ours / peer if peer else None}
+    return {"case": case, "measure": measure, "unit": unit, "ours": ours, **found, "n": None, "ci95": None}
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--json", type=Path)
+    parser.add_argument("--json", metavar="FILE", help="write the rows there; - is stdout")
     target = parser.parse_args().json
-    document = {
-        "benchmark": "network",
-        "computer": f"{platform.machine()}, {platform.processor() or platform.system()}",
-        "date": datetime.date.today().isoformat(),
-        "rows": rows(),
-    }
-    for r in document["rows"]:
-        peer = f"  {r['peer_name']} {r['peer']:.4g}  ratio {r['ratio']:.3g}" if r["peer"] else ""
-        print(f"{r['case']:26s} {r['measure']:14s} {r['ours']:.4g} {r['unit']}{peer}")
+    rows = [*compiling(), *sizes(), *ensembles(), *against_peers()]
+    computer = f"{platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}"
+    document = {"benchmark": "network", "computer": computer, "date": datetime.date.today().isoformat(), "rows": rows}
+    if target == "-":
+        json.dump(document, sys.stdout, indent=1)
+        return
     if target:
-        target.write_text(json.dumps(document, indent=1))
+        Path(target).write_text(json.dumps(document, indent=1))
+    for r in rows:
+        peer = f"  {r['peer_name']} {r['peer']:.4g}  ratio {r['ratio']:.3g}" if r["peer"] else ""
+        print(f"{r['case']:36s} {r['measure']:22s} {r['ours']:.4g} {r['unit']}{peer}")
 
 
 if __name__ == "__main__":

@@ -42,6 +42,18 @@ def test_the_documented_example_reads_and_runs(example, tmp_path):
     assert winding > stator > 30.0
 
 
+def test_the_documented_circuit_warms_from_20_to_80_degC(root):
+    second = re.findall(r"```toml\n(.*?)```", (root / "docs/network-toml.md").read_text(), re.S)[1]
+    network = read_network(tomllib.loads(second))
+    z = simulate(network, Record(np.arange(0.0, 9000.0, 10.0), {}, {"ambient": 20.0}), keep_states=True).z
+    assert z[0, network.column("glycol.outlet")] == 20.0
+    assert z[-1, network.column("glycol.outlet")] == pytest.approx(80.0, abs=1.0)
+    assert z[-1, network.column("glycol.outlet")] - z[-1, network.column("glycol.reservoir")] == pytest.approx(
+        25.6, abs=0.1
+    )
+    assert [p.name for p in network.parameters] == ["film.glycol"]
+
+
 def test_the_example_declares_what_its_comments_say(data):
     network = read_network(data)
     assert {p.name for p in network.parameters} == {
