@@ -13,6 +13,7 @@ from geom import build_mesh, library, load_machine
 
 TINY = {"size_m": 0.1, "segments": 36, "across": 1, "axial_m": 0.2}
 CELLS = 3
+ONE_OF_EACH_FAMILY = ["ipmsm-48s8p-jacket", "pmsm-m1", "series-dc-100kw", "tefc-industrial"]
 
 
 def losses(machine):
@@ -54,6 +55,7 @@ def test_energy_in_is_energy_out(machine, solved):
     assert found.T.min() > 20.0
 
 
+@pytest.mark.parametrize("machine", ONE_OF_EACH_FAMILY, indirect=True)
 def test_energy_with_everything_that_depends_on_temperature(machine, solved):
     solver, films, contacts, fluids = solved
     field = solver.field
