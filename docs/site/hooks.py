@@ -1,4 +1,4 @@
-"""The page that comes from the code: the gallery from examples/."""
+"""What the site takes from the folders: a gallery of examples/, and every explaining page under "Explained"."""
 
 from __future__ import annotations
 
@@ -10,6 +10,16 @@ from mkdocs.structure.files import File
 
 ROOT = Path(__file__).resolve().parents[2]
 PICTURES = ROOT / "docs" / "images" / "gallery"
+
+
+def on_config(config: Any) -> Any:
+    """Pages beside those that mkdocs.yml lists are explanations: of data, of families, of results."""
+    explained = next(entry["Explained"] for entry in config.nav if isinstance(entry, dict) and "Explained" in entry)
+    top = [entry for entry in config.nav if isinstance(entry, str)]
+    docs = ROOT / "docs"
+    pages = [p.relative_to(docs).as_posix() for p in sorted([*docs.glob("*.md"), *docs.glob("families/*.md")])]
+    explained += [page for page in pages if page not in top and page not in explained]
+    return config
 
 
 def on_files(files: Any, config: Any) -> Any:

@@ -186,9 +186,8 @@ def share(message: str) -> float | None:
 _running: set[asyncio.Task] = set()
 
 
-def started(coroutine: Coroutine[Any, Any, None]) -> asyncio.Task:
-    """A task that outlives the click that began it."""
+def started(coroutine: Coroutine[Any, Any, None]) -> None:
+    """Begin a task that outlives the click. It is not given back: trame would wait for it, and the page with it."""
     task = asyncio.get_running_loop().create_task(coroutine)
     _running.add(task)
     task.add_done_callback(_running.discard)
-    return task
