@@ -1,0 +1,201 @@
+"""Networks of every family: streams, fans, losses and sensors as their machine files declare them."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fem.snapshots import Basis
+from geom import library, load_machine
+from geom.errors import InputError
+from lumped.condensed import network_in
+from lumped.motor import boundaries, fluids, motor_network, operating_point
+from lumped.motor_coolant import channel_of, cooling_of, mean_share
+from lumped.motor_films import surroundings
+from lumped.motor_losses import _declared, loss_watts
+from lumped.motor_outer import cowl_of, outer_of
+from lumped.motor_shapes import fins_of, turning
+from lumped.motor_zones import motor_zones
+from lumped.multipliers import multipliers
+from lumped.network import Network
+from lumped.steady import steady
+from thermoscope.pipeline import Prepared, prepared
+
+FAMILIES = ("pmsm-m1", "ipmsm-48s8p-jacket", "tefc-industrial")
+
+
+def means_only(ready: Prepared, machine=None) -> Network:
+    """No shapes: enough for everything but temperatures, and costs no solve."""
+    machine = machine or ready.machine
+    none = {p: Basis(np.zeros((len(b.points), 0)), np.zeros(0), np.zeros(0)) for p, b in ready.field.blocks.items()}
+    loads = {part: ready.field.load(part) for part in ready.field.blocks}
+    condensed = network_in(
+        ready.field, none, ready.contacts, loads, frozenset(loads), fluids(machine), boundaries(machine), machine.name
+    )
+    return motor_network(machine, condensed)
+
+
+@pytest.fixture(scope="module")
+def ready():
+    return {name: prepared(load_machine(name), 0.06, 48) for name in FAMILIES}
+
+
+@pytest.fixture(scope="module")
+def networks(ready):
+    return {name: means_only(one) for name, one in ready.items()}
+
+
+def rest(network, **inputs):
+    return steady(network, inputs, dict.fromkeys(network.boundaries, 20.0))
+
+
+@pytest.mark.parametrize("name", FAMILIES)
+def test_uniform_temperature_moves_no_heat(networks, name):
+    network = networks[name]
+    z = np.where(["#" in s for s in (*network.states, *network.boundaries)], 0.0, 37.0)
+    for link in network.links:
+        flow = np.zeros(network.size)
+        np.add.at(flow, link.rows, link.vals * z[link.cols])
+        assert np.abs(flow).max() < 1e-9 * max(1.0, np.abs(link.vals).max()), link.name
+
+
+@pytest.mark.parametrize("name", FAMILIES)
+def test_parameters_act_on_what_is_there(networks, name):
+    network = networks[name]
+    targets = {t for p in network.parameters for t, _ in p.targets if not t.startswith("capacity:")}
+    assert targets <= {item.name for item in (*network.links, *network.sources)}
+    assert multipliers(network, None)
+    films = {link.name for link in network.links if link.kind == "film"}
+    assert films <= targets, "a film nothing can calibrate"
+
+
+@pytest.mark.parametrize("name", list(library()))
+def test_losses_of_every_machine_are_all_placed(name):
+    for loss, _, shares, _, _ in _declared(load_machine(name)):
+        assert sum(shares.values()) == pytest.approx(1.0), loss
+
+
+def test_direct_current_heating_at_standstill(networks, ready):
+    """8 A through three phases in series: 3 R I^2 with the copper's own resistance, all of it leaves to ambient."""
+    network = networks["pmsm-m1"]
+    found = rest(network, current_A=8.0, speed_rpm=0.0)
+    copper = network.place("winding.copper").mean
+    T = float(copper.weights @ found.z[copper.index])
+    heat = 3 * 0.88 * 64.0 * (1 + 0.00393 * (T - 20.0))
+    left = 0.0
+    for link in network.links:
+        if "ambient" in link.places:
+            hot = float(link.hot.weights @ found.z[link.hot.index])
+            law = link.law.temperature
+            h = (
+                np.interp(hot - 20.0, law.difference, law.value)
+                if hasattr(law, "difference")
+                else 5.670374419e-8 * ((hot + 273.15) ** 2 + 293.15**2) * (hot + 273.15 + 293.15)
+            )
+            left += float(link.law.factor({})) * h * network.place(link.places[0]).area * (hot - 20.0)
+    assert left == pytest.approx(heat, rel=1e-6)
+    assert max(found["winding"], found["winding.left"]) > found["magnets"] > found["base"] > 20.0
+
+
+def test_resistance_sees_copper_by_volume(networks):
+    """In the slots 45 % copper, in the ends 35 %: densities say so."""
+    machine, place = load_machine("pmsm-m1"), networks["pmsm-m1"].place("winding.copper")
+    rho = {p: machine.material_of(p).rho for p in ("winding", "winding.left")}
+    copper = [(rho[p] - 1350.0) * machine.part(p).volume for p in ("winding", "winding.left")]
+    assert place.b[0] / place.b[1] == pytest.approx(copper[0] / copper[1])
+    assert place.b.sum() == pytest.approx(1.0)
+
+
+def test_emissivity_of_the_base_is_the_papers(networks):
+    (link,) = (link for link in networks["pmsm-m1"].links if link.name == "film:base.outer:radiation")
+    assert link.law.factor({}) == 0.1
+    plate = load_machine("pmsm-m1-plate")
+    assert outer_of(plate, "base", surroundings(plate, ()).films).emissivity == 0.03
+
+
+def test_what_turns_hangs_on_the_shaft(ready):
+    contacts = ready["pmsm-m1"].mesh.contacts
+    assert turning(contacts) == {"shaft", "rotor.core", "magnets"}
+    assert turning(ready["tefc-industrial"].mesh.contacts) == {"shaft", "rotor.core", "rotor.cage"}
+
+
+def test_jacket_cell_is_the_exact_exponential():
+    """A wall of one temperature warms the coolant by 1 - exp(-N): Incropera 8.41b."""
+    N = np.array([1e-5, 0.01, 0.5, 2.0, 20.0])
+    phi = mean_share(N)
+    effectiveness = N / (1 + N * phi)  # from h A (T_wall - T_mean) = m cp (T_out - T_in)
+    assert effectiveness == pytest.approx(1 - np.exp(-N), rel=1e-6)
+
+
+def test_jacket_takes_up_what_the_coolant_carries(networks):
+    """Steady: losses = heat to ambient + m cp (T_out - T_in); twice the flow warms half as much."""
+    network = networks["ipmsm-48s8p-jacket"]
+    rise = []
+    for flow in (5.0, 10.0):
+        found = rest(network, current_A=100.0, speed_rpm=3000.0, flow_l_min=flow)
+        (stream,) = (link for link in network.links if link.name == "stream:jacket")
+        rate = float(stream.law.factor({"flow_l_min": np.array([flow])})[0])
+        rise.append(rate * (found["jacket"] - 20.0))
+    assert rise[1] == pytest.approx(rise[0], rel=0.05), "nearly all heat goes to the coolant"
+
+
+def test_jackets_side_by_side_or_one_after_the_other():
+    machine = load_machine("series-dc-100kw-jacket-two")
+    cooling = cooling_of(machine)
+    assert cooling.feeds == {"jacket.left": "coolant", "jacket.right": "coolant"}
+    assert cooling.share("jacket.right") == 0.5
+    joined = dict(machine.sections["cooling"])
+    joined["jacket.right"] = {"inlet": "jacket.left.outlet", "outlet": "out"}
+    cooling = cooling_of(replace(machine, sections={**machine.sections, "cooling": joined}))
+    assert cooling.feeds["jacket.right"] == "jacket.left"
+    assert cooling.share("jacket.right") == 1.0
+
+
+def test_spiral_channel_by_hand():
+    """10 mm high; six turns and seven ribs of 5 mm over 150 mm leave 19.17 mm of width."""
+    channel, wide = channel_of(load_machine("ipmsm-48s8p-jacket"), "jacket"), (150.0 - 7 * 5.0) / 6 * 1e-3
+    assert channel.area == pytest.approx(0.010 * wide)
+    assert channel.diameter == pytest.approx(2 * 0.010 * wide / (0.010 + wide))
+    assert channel.coil == pytest.approx(0.107 + 0.117)
+
+
+def test_shaft_fan_blows_with_speed(networks):
+    network, machine = networks["tefc-industrial"], load_machine("tefc-industrial")
+    (fins,) = (link for link in network.links if link.name == "film:housing.fins:blown")
+    h = [float(fins.law.factor({"speed_rpm": np.array([n])})[0]) for n in (0.0, 730.0, 1460.0)]
+    assert h[0] == 0.0
+    assert 20.0 < h[2] < 120.0, "blown fins: tens of W/m2/K at 10 m/s"
+    assert h[1] < h[2] < 2 * h[1], "less than proportional"
+    assert cowl_of(machine).rear == "left"
+    assert fins_of(machine).area_ratio == pytest.approx(1 + 2 * 40 * 20e-3 / (2 * np.pi * 0.111), rel=1e-6)
+
+
+def test_zones_divide_their_parts(ready):
+    """Every zone pair or set has the whole volume of its part; the teeth reach from the bore to the slots' bottom."""
+    field, zones = ready["pmsm-m1"].field, motor_zones(load_machine("pmsm-m1"))
+    assert {"winding.inner", "winding.outer", "stator.core.teeth", "stator.core.back"} <= set(zones)
+    for part in ("winding", "stator.core"):
+        block = field.blocks[part]
+        centres = block.xyz[block.tets].mean(1)
+        own = [zone.density(centres) for name, zone in zones.items() if zone.part == part]
+        assert np.sum(own, axis=0) == pytest.approx(1.0)
+    assert {f"winding.field.{k}" for k in (1, 2, 3, 4)} <= set(motor_zones(load_machine("series-dc-100kw")))
+    assert {"poles.shoe", "poles.body", "rotor.core.teeth"} <= set(motor_zones(load_machine("series-dc-100kw")))
+
+
+def test_a_loss_at_an_unknown_place_is_refused(ready):
+    machine = load_machine("pmsm-m1")
+    losses = {**machine.sections["losses"], "iron": {**machine.sections["losses"]["iron"], "at": "statr.core"}}
+    wrong = replace(machine, sections={**machine.sections, "losses": losses})
+    with pytest.raises(InputError, match=r"no place 'statr.core'.*known"):
+        means_only(ready["pmsm-m1"], wrong)
+
+
+def test_a_machine_without_losses_can_be_looked_at(ready):
+    machine = load_machine("pmsm-m1")
+    bare = replace(machine, sections={k: v for k, v in machine.sections.items() if k != "losses"})
+    watts = loss_watts(
+        bare, means_only(ready["pmsm-m1"], bare), {k: float(v[0]) for k, v in operating_point(bare).items()}
+    )
+    assert sum(watts.values()) == pytest.approx(100.0)
+    assert set(watts) == {"winding", "winding.left", "winding.right"}
