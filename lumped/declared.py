@@ -6,20 +6,21 @@ import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from geom.errors import InputError
 from lumped.build import bare_network, node_link, node_source, stream, surface_place
-from lumped.circuit import Circuit
-from lumped.declared_circuit import read_circuits
 from lumped.declared_laws import flow_law, loss_kinds, loss_laws, mechanisms, taken_off
 from lumped.declared_parameters import read_parameters
 from lumped.laws import Law
 from lumped.losses import Negative
 from lumped.network import Link, Network, Place, Source
 from lumped.reader import Table, known
+
+if TYPE_CHECKING:
+    from lumped.circuit import Circuit
 
 
 def load_network(path: str | Path) -> Network:
@@ -40,7 +41,7 @@ def load_network(path: str | Path) -> Network:
 def load_circuits(path: str | Path) -> dict[str, Circuit]:
     """The coolant circuits of a network.toml, for pressure drop and pump power."""
     top = Table(tomllib.loads(Path(path).read_text(encoding="utf-8")), Path(path).name)
-    return read_circuits(top, top.tables("nodes"), top.table("network").words("boundaries"))
+    return _circuits(top, top.tables("nodes"), top.table("network").words("boundaries"))
 
 
 def read_network(data: Mapping[str, Any], where: str = "network.toml") -> Network:
@@ -51,7 +52,7 @@ def read_network(data: Mapping[str, Any], where: str = "network.toml") -> Networ
         raise top.error("no nodes", "[nodes.NAME] with C_J_K = ...")
     name, boundaries = head.word("name"), head.words("boundaries")
     head.close()
-    circuits = read_circuits(top, nodes, boundaries)
+    circuits = _circuits(top, nodes, boundaries)
     cells = {n: C for c in circuits.values() for n, C in c.capacities().items()}
     network = bare_network(name, {n: _capacity(t) for n, t in nodes.items()} | cells, boundaries)
     clash = set(nodes) & set(boundaries)
@@ -66,6 +67,15 @@ def read_network(data: Mapping[str, Any], where: str = "network.toml") -> Networ
         table.close()
     top.close()
     return _checked(network, where)
+
+
+def _circuits(top: Table, nodes: Iterable[str], boundaries: Iterable[str]) -> dict[str, Circuit]:
+    """Loaded only where a file has some: the libraries behind their films take a while to load."""
+    if "circuits" not in top:
+        return {}
+    from lumped.declared_circuit import read_circuits
+
+    return read_circuits(top, nodes, boundaries)
 
 
 def _capacity(table: Table) -> float:
