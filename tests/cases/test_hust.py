@@ -11,7 +11,7 @@ from thermoscope.folder import load_case
 from validation.compare import compare
 
 HELD_OUT = {"id_5", "id_8", "id_11", "id_15"}
-NAMED = ("time.offset@id_6", "loss.rotor.load@rotor", "gap.convection@rotor|stator")
+NAMED = ("time.offset@id_6", "loss.rotor.load@rotor", "convection.rotation@rotor")
 
 
 @pytest.fixture(scope="module")
@@ -63,10 +63,13 @@ def test_steady_state_at_standstill_by_hand(folder):
 
 
 def test_named_effects_lower_the_error_on_profiles_never_used(folder, example):
+    """The effects of the case's README, one after the other, as `thermoscope add` does it."""
     start = compare(folder.case)
-    end = compare(example.settled(example.with_effects(folder.case, NAMED)))
+    case = example.calibrated(folder.case)
+    for name in NAMED:
+        case = example.added(case, name)
 
     def whole(comparison):
         return np.sqrt(np.mean(np.square(list(example.errors(comparison, "hold-out").values()))))
 
-    assert whole(end) < 0.9 * whole(start)
+    assert whole(compare(case)) < 0.7 * whole(start)

@@ -8,11 +8,12 @@ from thermoscope.grid import averaged, bridged, rms
 
 
 def test_mean_of_what_lies_around_each_instant():
+    """A ramp is read at the instant itself: readings halfway between two instants count half for each."""
     time = np.arange(0.0, 41.0)
     grid = np.array([0.0, 10.0, 20.0, 30.0, 40.0])
     mean = averaged(time, time, grid)
-    assert mean[0] == pytest.approx(np.mean([0, 1, 2, 3, 4]))
-    assert mean[1:4] == pytest.approx([9.5, 19.5, 29.5])
+    assert mean[0] == pytest.approx((0 + 1 + 2 + 3 + 4 + 0.5 * 5) / 5.5)
+    assert mean[1:4] == pytest.approx([10.0, 20.0, 30.0])
 
 
 def test_alternating_current_keeps_its_heat():
