@@ -27,7 +27,7 @@ def ratings() -> Section:
         Row("torque at 100 kW, 1000 rpm", "955 N m", f"{RATED['power'] / omega:.0f} N m"),
         Row("L_af from T = L_af I^2", "-", f"{1e3 * m.L_af:.3f} mH"),
         Row("back-EMF at the rated point", "-", f"{omega * m.L_af * RATED['current']:.1f} V"),
-        Row("R_a + R_f from eq. 1 at rest of currents", "-", f"{1e3 * m.R:.1f} mOhm"),
+        Row("R_a + R_f from eq. 1 in steady state", "-", f"{1e3 * m.R:.1f} mOhm"),
         Row("loss at the rated point", "-", f"{loss / 1e3:.2f} kW",
             "all of it counts as (R_a + R_f) I^2 (eq. 7); friction and iron loss are not published"),
         Row("efficiency", "-", f"{RATED['power'] / (RATED['power'] + loss):.3f}"),

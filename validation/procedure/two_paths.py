@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from geom.errors import InputError
+from geom.errors import InputError, ThermoscopeError
 from lumped.laws import Constant, Linear
 from lumped.network import Network, Source
 from lumped.steady import Steady, steady
@@ -27,7 +27,8 @@ from validation.predict import thermal
 class TwoPaths:
     """R_ext, R_w (K/W) at one load;  winding_K, machine_K : rises there;  P_w, P_all (W)
 
-    residual : load (share of the current) -> (winding, machine) K that the two resistances miss
+    residual : load (share of the current) -> (winding, machine) K that the two resistances miss; without those loads
+    at which the machine does not come to rest
     """
 
     R_ext: float
@@ -76,7 +77,10 @@ def two_paths(
     residual = {}
     for share in loads:
         level = {n: v * (share if "_A" in n else 1.0) for n, v in inputs.items()}
-        T_w, T_m, P_w, P_all = _state(network, level, ambient, (winding, machine), values)
+        try:
+            T_w, T_m, P_w, P_all = _state(network, level, ambient, (winding, machine), values)
+        except ThermoscopeError:  # at this load the machine runs away
+            continue
         expected = found.rises(P_w, P_all)
         residual[share] = (expected[0] - (T_w - ambient), expected[1] - (T_m - ambient))
     return TwoPaths(found.R_ext, found.R_w, found.winding_K, found.machine_K, found.P_w, found.P_all, residual)
