@@ -56,10 +56,10 @@ def repeated() -> Section:
     U = 2.0 * found.limit / (1.96 * np.sqrt(2.0))
     two = normalised_error(found.mean + found.spread, found.mean, U, U)
     words = (
-        "M1 on the bench three times, rise over ambient in the last quarter; the limit is what 95 % of pairs of runs "
-        "stay below if only the meters' errors act. As published, differences are less than the uncertainty. There is no "
-        "second M1 here; two machines agree while |E_n| is below 1, and the windings of the two runs farthest apart have "
-        f"{abs(two):.2f}."
+        "M1 on the bench three times, rise over ambient in the last quarter; the limit is what 95 % of pairs of "
+        "runs stay below if only the meters' errors act. As published, differences are less than the uncertainty. "
+        "There is no second M1 here; two machines agree while |E_n| is below 1, and the windings of the two runs "
+        f"farthest apart have {abs(two):.2f}."
     )
     return Section("Figures 7 and 8: repeatability", words, table=tuple(table))
 
@@ -135,11 +135,11 @@ def table_two() -> Section:
         published = "1.4 mm" if unit == "mm" else "1.0 x 0.3 m" if name == BENCH else "1.5 x 0.4 m, emissivity 0.03"
         rows.append(Row(label, published, f"{mid:.2f} ({min(a, b):.2f} to {max(a, b):.2f}) {unit}"))
     words = (
-        "The paper sets base and gap by hand until the curves agree; here they are fitted, with 95 % intervals. The gap "
-        "is the drawn one over the fitted multiplier of its conductance; those of M2 and M3 (0.7 and 1.0 mm) are taken as "
-        "drawn, with M1's conductivity. Tested against what was hidden: the gap, and the heat that each base carries off "
-        "per kelvin, lie in their intervals. The contact alone does not on the plate: the data fix contact and films of "
-        "a base together, not one by one."
+        "The paper sets base and gap by hand until the curves agree; here they are fitted, with 95 % intervals. "
+        "The gap is the drawn one over the fitted multiplier of its conductance; those of M2 and M3 (0.7 and 1.0 "
+        "mm) are taken as drawn, with M1's conductivity. Tested against what was hidden: the gap, and the heat "
+        "that each base carries off per kelvin, lie in their intervals. The contact alone does not on the plate: "
+        "the data fix contact and films of a base together, not one by one."
     )
     return Section("Table II: gap and base", words, tuple(rows))
 
