@@ -1,14 +1,10 @@
 """Machine files: what is right is read, what is wrong is refused in one message that says where."""
 
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from geom import InputError, library, load_machine
 from geom.families import families
 from geom.machine import machine_from
-from geom.partition import partition
-from geom.voids import filled
 
 
 def series(**geometry):
@@ -86,36 +82,3 @@ def test_every_parameter_says_what_it_is_and_accepts_its_default(family):
     for parameter in family.parameters:
         assert parameter.doc, parameter.key
         parameter.checked(parameter.default, "test")
-
-
-@st.composite
-def geometry(draw, family):
-    """Values within 12 per cent of the defaults (counts within 2), inside their ranges."""
-    table = {}
-    for parameter in draw(st.lists(st.sampled_from(family.parameters), min_size=1, max_size=8, unique=True)):
-        if parameter.choices:
-            value = draw(st.sampled_from(parameter.choices))
-        elif isinstance(parameter.default, int):
-            low, high = max(parameter.low, parameter.default - 2), min(parameter.high, parameter.default + 2)
-            value = draw(st.integers(int(low), int(high)))
-        else:
-            low, high = max(parameter.low, 0.88 * parameter.default), min(parameter.high, 1.12 * parameter.default)
-            value = draw(st.floats(low, high))
-        table.setdefault(parameter.group, {})[parameter.name] = value
-    return table
-
-
-@pytest.mark.parametrize("family", families().values(), ids=lambda family: family.name)
-@settings(max_examples=25, deadline=None)
-@given(data=st.data())
-def test_random_machine_is_refused_in_one_line_or_fits_together(family, data):
-    table = data.draw(geometry(family))
-    try:
-        machine = machine_from({"machine": {"family": family.name}, "geometry": table}, "random.toml")
-    except InputError as error:
-        refusal = str(error)
-    else:
-        filled(partition((*machine.parts, *machine.fluids), 36))
-        return
-    assert "random.toml [geometry." in refusal
-    assert "must be" in refusal

@@ -1,0 +1,102 @@
+"""Random machines: those that fit are built and fit together, those that do not are refused in one clear line."""
+
+import math
+from functools import partial
+
+import pytest
+from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import strategies as st
+
+from geom import InputError, check_cad
+from geom.families import families
+from geom.machine import machine_from
+from geom.partition import partition
+from geom.voids import filled
+
+# few slots and fins: a machine with 9 slots goes wrong in the same ways as one with 90, ten times as fast
+FEW = {
+    "series-dc": {"rotor.slots": 12, "housing.fins": 8, "jacket.channels": 5, "rotor.ducts": 3, "fan.blades": 3},
+    "pmsm": {"stator.slots": 9, "rotor.poles": 6, "housing.fins": 6, "housing.turns": 3},
+    "tefc": {"stator.slots": 9, "rotor.bars": 9, "housing.fins": 6, "housing.turns": 3},
+}
+OFTEN_ZERO = {"fan.depth_mm": 15.0, "stator.wedge_mm": 0.8, "stator.liner_gap_mm": 0.5, "commutator.bars": 8}
+FAMILIES = pytest.mark.parametrize("family", families().values(), ids=lambda family: family.name)
+quick = partial(settings, deadline=None, suppress_health_check=list(HealthCheck))
+
+
+def table_of(values):
+    table = {}
+    for key, value in values.items():
+        group, name = key.split(".")
+        table.setdefault(group, {})[name] = value
+    return table
+
+
+@st.composite
+def geometry(draw, family):
+    """Up to eight values within 12 per cent of the defaults (counts within 2), inside their ranges."""
+    values = dict(FEW[family.name])
+    for parameter in draw(st.lists(st.sampled_from(family.parameters), max_size=8, unique=True)):
+        usual = values.get(parameter.key, OFTEN_ZERO.get(parameter.key, parameter.default))
+        if parameter.choices:
+            value = draw(st.sampled_from(parameter.choices))
+        elif isinstance(parameter.default, int):
+            value = draw(st.integers(int(max(parameter.low, usual - 2)), int(min(parameter.high, usual + 2))))
+        else:
+            value = draw(st.floats(max(parameter.low, 0.88 * usual), min(parameter.high, 1.12 * usual)))
+        values[parameter.key] = value
+    return values
+
+
+def build(family, values):
+    return machine_from({"machine": {"family": family.name}, "geometry": table_of(values)}, "random.toml")
+
+
+def built_or_refused(family, values):
+    try:
+        return build(family, values), ""
+    except InputError as refusal:
+        return None, str(refusal)
+
+
+@FAMILIES
+@quick(max_examples=200)
+@given(data=st.data())
+def test_two_hundred_random_machines_fit_together(family, data):
+    machine, refusal = built_or_refused(family, data.draw(geometry(family)))
+    assert machine or ("random.toml [geometry." in refusal and "must be" in refusal)
+    assume(machine)  # two hundred that fit are wanted
+    cut = filled(partition((*machine.parts, *machine.fluids), 40))  # 24 chords cut into what clears by 0.5 %
+    assert set(range(len(machine.parts))) <= set(cut.labels.ravel().tolist())
+
+
+@FAMILIES
+@quick(max_examples=3)
+@given(data=st.data())
+def test_random_machines_have_watertight_solids_of_the_right_volume(family, data):
+    machine, _ = built_or_refused(family, data.draw(geometry(family)))
+    assume(machine)
+    for check in check_cad(machine, 0.2):
+        assert check.watertight, check.part
+        assert check.solid_volume == pytest.approx(check.volume, rel=1e-6), check.part
+
+
+def out_of_range(parameter):
+    if parameter.choices:
+        return st.text(max_size=8).filter(lambda word: word not in parameter.choices)
+    beyond = st.floats(parameter.high, 1e9, exclude_min=True) | st.floats(-1e9, parameter.low, exclude_max=True)
+    return beyond | st.just(math.nan) | st.booleans() | st.text(max_size=8)
+
+
+@FAMILIES
+@quick(max_examples=200)
+@given(data=st.data())
+def test_random_invalid_values_are_refused_with_key_value_and_range(family, data):
+    parameter = data.draw(st.sampled_from(family.parameters))
+    value = data.draw(out_of_range(parameter))
+    with pytest.raises(InputError) as caught:
+        build(family, {**FEW[family.name], parameter.key: value})
+    message = str(caught.value)
+    assert f"random.toml [geometry.{parameter.group}] {parameter.name}: {value!r}" in message
+    assert parameter.allowed in message
+    assert "\n" not in message
