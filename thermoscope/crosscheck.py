@@ -49,7 +49,8 @@ class LinkCheck:
 class CrossCheck:
     """parts, links : all of them;  energy_balance : |in - out| / in of the field solution
 
-    state (n,) of the network with its boundaries; field (n,) degC; at : what every link amounts to there
+    state (n,) of the network with its boundaries; field (n,) degC
+    at : what every link amounts to there;  heat : all losses (W)
     """
 
     parts: tuple[PartCheck, ...]
@@ -58,6 +59,7 @@ class CrossCheck:
     field: Array
     links: tuple[LinkCheck, ...]
     at: Coefficients
+    heat: float
 
     @property
     def worst(self) -> PartCheck:
@@ -181,7 +183,7 @@ def crosscheck(
     full = steady(solver or Solver(field), c.films, c.contacts, load, fluids, c.conductivity)
     parts = compared(field, network, full, z[: len(network.states)], ambient)
     u = {**dict(zip(fluids.names, full.u, strict=True)), **fluids.fixed}
-    return CrossCheck(parts, full.energy_balance, z, full.T, through(field, network, full, z, u, c), c)
+    return CrossCheck(parts, full.energy_balance, z, full.T, through(field, network, full, z, u, c), c, full.injected)
 
 
 def _uniform(field: FieldModel, place: str) -> Array:

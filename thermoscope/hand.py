@@ -1,9 +1,8 @@
 """The hand formula beside the field's value, for every link that has a closed form.
 
 Films: 1 / (h A), A exact from the prismatic description. Contacts: 1 / (g A), and from mean to mean of both parts with
-the legs of a plain hollow cylinder (Mellor, Roberts, Turner 1991) or of a thin wall in between. The field's value of
-that is the link of the network of means alone, G = inv(mean of K^-1 load): exact, with negative links where three parts
-meet. A series of legs ignores those, which is what a ratio far from 1 then says.
+the legs of a plain hollow cylinder (Mellor, Roberts, Turner 1991) or half a thin wall on either side. The field's value
+of that is its difference of means over the heat that passes: equal to the legs where neither part is heated itself.
 """
 
 from __future__ import annotations
@@ -18,12 +17,12 @@ from fem.assembly import FieldModel
 from geom import Machine
 from geom.areas import PartRow, part_table
 from lumped.correlations.windings import mellor
-from lumped.linear import linear
-from lumped.network import Array, Network
+from thermoscope.crosscheck import CrossCheck
 
 SEGMENTS = 96  # chords per turn: 0.07 % of a disc
 WHOLE = 0.9  # a face that touches over less than this share of itself has no closed form
-THIN = 0.1  # a wall is thin when its thickness is below this share of the root of its area
+THIN = 2e-3  # m, a layer up to this thickness is a wall
+LEAST = 0.01  # of all heat: below it a difference over a heat means nothing
 
 
 @dataclass(frozen=True)
@@ -43,13 +42,11 @@ class HandRow:
         return {**vars(self), "ratio": self.ratio}
 
 
-def hand_rows(
-    machine: Machine, field: FieldModel, network: Network, films: Mapping[str, float], contacts: Mapping[str, float]
-) -> list[HandRow]:
-    """All links that have a closed form, at film and contact coefficients h and g (W/m2/K)."""
+def hand_rows(machine: Machine, field: FieldModel, check: CrossCheck) -> list[HandRow]:
+    """All links that have a closed form, at the point of a cross-check."""
     rows = {row.name: row for row in part_table(machine, SEGMENTS)}
-    means = _means(machine, rows, field, network, films, contacts)
-    return [*_films(rows, field, films), *_contacts(rows, field, contacts), *means]
+    films, contacts = check.at.films, check.at.contacts
+    return [*_films(rows, field, films), *_contacts(rows, field, contacts), *_means(machine, rows, field, check)]
 
 
 def _films(rows: Mapping[str, PartRow], field: FieldModel, films: Mapping[str, float]) -> Iterator[HandRow]:
@@ -66,27 +63,17 @@ def _contacts(rows: Mapping[str, PartRow], field: FieldModel, contacts: Mapping[
         yield HandRow(f"contact:{name}", "1/(g A)", 1 / (contacts[name] * exact), 1 / (contacts[name] * touch.area))
 
 
-def _means(
-    machine: Machine, rows: Mapping[str, PartRow], field: FieldModel, network: Network, films: Mapping[str, float],
-    contacts: Mapping[str, float],
-) -> Iterator[HandRow]:  # fmt: skip
-    G = of_means(network, films, contacts)
-    names = list(field.blocks)
-    for name, touch in field.contacts.items():
-        a, b = name.split("|")
-        legs = [leg(machine, rows, field, part, other, name) for part, other in ((a, b), (b, a))]
-        link = -G[names.index(a), names.index(b)]
-        if None not in legs and link > 0:
-            (one, how), (two, thus) = legs  # type: ignore[misc]
-            series = one + 1 / (contacts[name] * touch.area) + two
-            yield HandRow(f"{a} to {b}", f"{how} + 1/(g A) + {thus}", series, 1 / float(link))
-
-
-def of_means(network: Network, films: Mapping[str, float], contacts: Mapping[str, float]) -> Array:
-    """(n_part, n_part) W/K between the parts' means, fluids held, in the order of the recovery."""
-    system = linear(network, films, contacts)
-    means = [i for i, state in enumerate(system.solid) if "#" not in network.states[state]]
-    return np.asarray(np.linalg.inv(np.linalg.inv(system.A)[np.ix_(means, means)]))
+def _means(machine: Machine, rows: Mapping[str, PartRow], field: FieldModel, check: CrossCheck) -> Iterator[HandRow]:
+    mean = {part.place: part.fem_mean_C for part in check.parts}
+    for link in check.links:
+        kind, name = link.link.split(":", 1)
+        if kind != "contact" or abs(link.fem_W) < LEAST * check.heat:
+            continue
+        a, b = link.parts
+        one, two = (leg(machine, rows, field, *pair, name) for pair in ((a, b), (b, a)))
+        if one is not None and two is not None:
+            series = one[0] + 1 / (check.at.contacts[name] * field.contacts[name].area) + two[0]
+            yield HandRow(f"{a} to {b}", f"{one[1]} + 1/(g A) + {two[1]}", series, (mean[a] - mean[b]) / link.fem_W)
 
 
 def leg(
@@ -98,7 +85,7 @@ def leg(
     if len(prisms) == 1 and all(_round(loop) for loop in prisms[0][0].loops):
         return _cylinder(prisms[0], k_plane, k_axial, area, field, contact)
     thickness = 2 * rows[part].volume / max(rows[part].contact_area + rows[part].film_area, 1e-12)
-    if rows[part].contact_area > 0 and thickness < THIN * np.sqrt(area):
+    if thickness < THIN:
         return thickness / (2 * k_plane * area), "thin wall"
     return None
 
@@ -120,8 +107,8 @@ def _cylinder(
         ("cylinder, outside", outer, 2 * np.pi * outer * length, circuit.outer),
         ("cylinder, inside", inner, 2 * np.pi * inner * length, circuit.inner),
     ):
-        if abs(at - where) < 0.02 * outer and area > WHOLE * whole:
-            return value, name
+        if abs(at - where) < 0.02 * outer:
+            return (value, name) if area > WHOLE * whole else None
     return (circuit.end, "cylinder, end") if area > WHOLE * np.pi * (outer**2 - inner**2) else None
 
 

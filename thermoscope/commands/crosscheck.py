@@ -49,7 +49,7 @@ def checked(built: Built, found: Sized | None, tell: Progress) -> dict[str, Any]
     shares = loss_shares(built.machine, built.network)
     check = compare(built.field, built.network, point, solver=solver, loads=loads, shares=shares)
     tell("hand formulas")
-    hand = hand_rows(built.machine, built.field, built.network, check.at.films, check.at.contacts)
+    hand = hand_rows(built.machine, built.field, check)
     responsible = {part.place: check.responsible(part.place) for part in check.parts}
     return {
         "operating_point": point,
