@@ -11,4 +11,6 @@ protocol      what to measure when; what a test record lacks or has wrong
 factorial     two-level designs, effects, Lenth's limits
 sensitivity   Morris and Sobol over the same factors
 two_paths     any network as R_ext and R_w
+pm_network    a permanent-magnet machine by hand formulas;  screening: table I on it
+carry         the calibrated model on other machines;  which_base: the base a machine stood on
 """
