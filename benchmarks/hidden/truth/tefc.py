@@ -14,7 +14,7 @@ from hidden.truth.machine import Film, Loss, Machine
 
 Array = NDArray[np.float64]
 RATED = 1500.0
-COPPER, STEEL, ALUMINIUM, IRON = -2e-4, -8e-4, -1e-4, -9e-4
+COPPER, STEEL, ALUMINIUM = -2e-4, -8e-4, -1e-4
 ENDS = (("de", 0.0), ("nde", 1.0))
 
 
@@ -24,7 +24,7 @@ def bodies(d: Draw) -> list[Body]:
 
     side = [b for end, _ in ENDS for b in (
         Body(f"winding.{end}", C(f"winding.{end}", 850.0), 5, 0.12, COPPER), Body(f"stub.{end}", 300.0, 4, 1.6, STEEL),
-        Body(f"flange.{end}", C(f"flange.{end}", 1500.0), 6, 0.3, IRON), Body(f"bearing.{end}", 220.0, 2, 0.2),
+        Body(f"flange.{end}", C(f"flange.{end}", 1500.0), 6, 0.1, ALUMINIUM), Body(f"bearing.{end}", 220.0, 2, 0.2),
         Body(f"air.{end}", 20.0),
     )]  # fmt: skip
     return [
