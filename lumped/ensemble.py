@@ -1,14 +1,16 @@
 """Many runs of one network: on all cores of this computer, or unchanged on a Dask cluster.
 
 y = ensemble(network, record, members, rows)                            # threads: the kernel runs without Python's lock
-y = ensemble(network, record, members, rows, dask_cluster("tcp://10.0.0.5:8786"))
+with dask_cluster("tcp://10.0.0.5:8786") as executor:
+    y = ensemble(network, record, members, rows, executor)
 """
 
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
+from contextlib import contextmanager
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,13 +47,16 @@ def _some(network: Network, record: Record, members: Members, rows: Sequence[Row
     return np.stack([simulate(network, record, values, rows).y for values in members])
 
 
-def dask_cluster(address: str) -> Executor:
+@contextmanager
+def dask_cluster(address: str) -> Iterator[Executor]:
     """The workers of a Dask cluster (optional package `distributed`) as an executor; its workers need this package."""
     try:
         from distributed import Client
     except ImportError:
         raise MissingDependency("the package 'distributed' is not installed: pip install distributed") from None
     try:
-        return Client(address, timeout="10s").get_executor()
+        client = Client(address, timeout="10s")
     except OSError as fault:
         raise InputError(f"no Dask scheduler answers: {fault}", address, "tcp://HOST:8786 of a running one") from None
+    with client:
+        yield client.get_executor()
