@@ -121,7 +121,7 @@ def test_cached_mesh_is_the_same_and_follows_the_content(motor, tmp_path, monkey
     assert np.array_equal(first.tets, again.tets)
     assert first.patches.keys() == again.patches.keys()
     with pytest.raises(TypeError):
-        build_mesh(motor, size_m=0.07, segments=36, across=1, cache=tmp_path)
+        build_mesh(motor, size_m=0.08, segments=37, across=1, cache=tmp_path)
 
 
 def test_point_in_lies_in_the_part(motor, motor_mesh):
