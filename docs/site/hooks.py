@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,18 @@ def on_config(config: Any) -> Any:
     pages = [p.relative_to(docs).as_posix() for p in sorted([*docs.glob("*.md"), *docs.glob("families/*.md")])]
     explained += [page for page in pages if page not in top and page not in explained]
     return config
+
+
+def on_page_markdown(markdown: str, page: Any, config: Any, files: Any) -> str:
+    """Links to files of the checkout that are no pages become their names; what does not exist stays, and fails."""
+    home = ROOT / "docs" / Path(page.file.src_uri).parent
+
+    def named(link: re.Match[str]) -> str:
+        path = (home / link[2]).resolve()
+        outside = path.is_relative_to(ROOT) and not path.is_relative_to(ROOT / "docs")
+        return f"{link[1]} (`{path.relative_to(ROOT)}`)" if outside and path.exists() else link[0]
+
+    return re.sub(r"(?<!!)\[([^\]]+)\]\((\.\./[^)#]+)\)", named, markdown)
 
 
 def on_files(files: Any, config: Any) -> Any:
