@@ -212,17 +212,10 @@ def _missing(session: Session) -> None:
 def _candidates(session: Session) -> None:
     with html.Div(classes="scroll"), html.Table():
         with html.Thead(), html.Tr():
-            for name in ("effect", "evidence", "size", "error", "held out", "looks like", ""):
+            for name in ("effect", "", "evidence", "size", "error", "held out", "looks like"):
                 html.Th(name)
         with html.Tbody(), html.Tr(v_for="c in candidates", key="c.effect", classes=("c.decision",)):
             html.Td("{{ c.effect }}", title=("c.title + '. ' + c.test",))
-            with html.Td(), html.Span(classes="evidence", title=("'score ' + c.score",)):
-                html.Span(classes="now", style=("{ width: c.width + '%' }",))
-                html.Span(classes="mark", style=("{ left: c.threshold + '%' }",))
-            html.Td("{{ c.amplitude }}")
-            html.Td("{{ c.error }}")
-            html.Td("{{ c.held }}")
-            html.Td("{{ c.alike }}")
             with html.Td():
                 v3.VBtn(
                     "Add", size="small", variant=("c.decision === 'no' ? 'text' : 'flat'",),
@@ -230,6 +223,13 @@ def _candidates(session: Session) -> None:
                     click=(lambda effect: started(session.step("add", str(effect))), "[c.effect]"),
                     id=("'add-' + c.effect",), **told(":aria-label", "'add ' + c.effect"),
                 )  # fmt: skip
+            with html.Td(), html.Span(classes="evidence", title=("'score ' + c.score",)):
+                html.Span(classes="now", style=("{ width: c.width + '%' }",))
+                html.Span(classes="mark", style=("{ left: c.threshold + '%' }",))
+            html.Td("{{ c.amplitude }}")
+            html.Td("{{ c.error }}")
+            html.Td("{{ c.held }}")
+            html.Td("{{ c.alike }}")
 
 
 def _steps() -> None:
