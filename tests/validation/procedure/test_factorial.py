@@ -6,7 +6,7 @@ import pytest
 from geom import load_machine
 from geom.errors import InputError
 from validation.procedure.factorial import Factor, effects, fractional, full, lenth
-from validation.procedure.screening import RESPONSES, TABLE_I, screen
+from validation.procedure.screening import RESPONSES, TABLE_I, screen, varied
 from validation.procedure.sensitivity import Varied, morris, sobol
 
 ABC = tuple(Factor(c, c.lower(), -1, 1) for c in "ABC")
@@ -122,3 +122,13 @@ def test_correlated_factors_are_judged_together():
     assert morris(factors, lambda v: v["a"] + v["b"]).ranked[0] == "films"
     with pytest.raises(InputError, match="low below high"):
         sobol([Varied("a", 1.0, 0.0)], lambda v: 0.0)
+
+
+def test_morris_ranks_as_the_factorial():
+    """Films and base lead at the magnets, voids of the winding at the step to it, where the liner gap acts alone."""
+    factors, responses = varied(load_machine("pmsm-m1"))
+    magnets = morris(factors, responses["magnets"], trajectories=6)
+    step = morris(factors, responses["winding minus magnets"], trajectories=6)
+    assert set(magnets.ranked[:3]) == {"convection", "emissivity", "base"}
+    assert step.ranked[0] == "impregnation"
+    assert step.measure["liner gap"] > 3.0 * magnets.measure["liner gap"]
