@@ -14,6 +14,7 @@ import argparse
 import datetime
 import json
 import platform
+import sys
 import tempfile
 import time
 from collections.abc import Callable
@@ -22,10 +23,14 @@ from typing import Any
 
 import numpy as np
 
+sys.path = [p for p in sys.path if Path(p).resolve() != Path(__file__).resolve().parent]  # else `viz` is this file
+# ruff: noqa: E402
+
 from geom import build_mesh, load_machine
 from lumped.network import Row
 from validation.case import Channel, Test
 from viz import require_gl, scene, split, write_recording
+from viz.colours import LIGHT
 from viz.cut import cut_away
 from viz.data import Comparison
 from viz.field import paint
@@ -67,8 +72,9 @@ def pictures(nodes: SplitMesh) -> list[dict[str, Any]]:
 
     def first() -> tuple[Any, Any, Any]:
         p, surface = scene.plotter(), cut_away(nodes)
-        data = paint(p, surface, field(nodes, 1.0), (20.0, 120.0), scene.LIGHT)
+        data = paint(p, surface, field(nodes, 1.0), (20.0, 120.0), LIGHT)
         scene.look(p, surface.points, View())
+        p.render()
         p.screenshot(return_img=True)
         return p, surface, data
 
@@ -76,6 +82,7 @@ def pictures(nodes: SplitMesh) -> list[dict[str, Any]]:
 
     def frame(share: float) -> None:
         data.point_data["T"] = surface.values(field(nodes, share))
+        p.render()
         p.screenshot(return_img=True)
 
     walls, cpus, _ = zip(*(timed(lambda s=s: frame(s)) for s in np.linspace(0.2, 1.0, 7)), strict=True)
@@ -102,6 +109,7 @@ def clipped(nodes: SplitMesh) -> list[tuple[float, float]]:
         left = grid.clip("x", invert=False)
         p.add_mesh(left, scalars="T", clim=(20.0, 120.0))
         p.add_mesh(grid.clip("x").clip("y"), scalars="T", clim=(20.0, 120.0))
+        p.render()
         p.screenshot(return_img=True)
         p.close()
 
@@ -136,6 +144,7 @@ def click(nodes: SplitMesh) -> list[dict[str, Any]]:
         stage.at(*stage.on_screen()[name])
         json.dumps(sensor(comparison, name).to_plotly_json())
         stage.markers(seen, name)
+        stage.plotter.render()
         stage.plotter.screenshot(return_img=True)
 
     clicked("T1")

@@ -64,6 +64,7 @@ def test_dots_are_drawn_where_clicks_find_them(stage):
 
 def test_the_picture_follows_temperature_view_and_paper(stage, surface):
     def picture():
+        stage.plotter.render()
         return np.asarray(stage.plotter.screenshot(return_img=True)).astype(int)
 
     cool = picture()
