@@ -66,14 +66,20 @@ def evidence(folder: Folder, result: revise.Revision) -> dict[str, float | str]:
     return {key: rows[0][key] for key in ("score", "threshold", "decision")} if rows else {}
 
 
+def telling(p: Mapping[str, Any]) -> tuple[bool, float]:
+    """Sorts the effects' own amplitudes first, then what lies farthest from the middle of its prior."""
+    low, high = p["prior"][1:]
+    return "@" not in p["name"], -abs(p["value"] - p["prior"][0]) / max(high - low, 1e-300)
+
+
 def show(document: Mapping[str, Any], folder: Folder) -> None:
     """The error before and after, and the values that the data fixed."""
     rows = [[t["name"], t["role"], t["rmse_K"]["before"], t["rmse_K"]["after"]] for t in document["tests"]]
     name = f"{document['action']} {document['effect'] or ''}".strip()
     table(f"{name}: error per test", ["test", "role", "before (K)", "after (K)"], rows, marked=["hold-out"])
-    seen = [p for p in document["parameters"] if p["identified"] and " of " not in p["name"]]
+    seen = sorted((p for p in document["parameters"] if p["identified"] and " of " not in p["name"]), key=telling)
     blind = [p["name"] for p in document["parameters"] if not p["identified"] and " of " not in p["name"]]
-    values = [[p["name"], p["value"], p["unit"], *p["ci95"], *p["prior"][1:]] for p in seen[-ROWS:]]
+    values = [[p["name"], p["value"], p["unit"], *p["ci95"], *p["prior"][1:]] for p in seen[:ROWS]]
     if values:
         table("What the data fixed", ["parameter", "value", "unit", "from", "to", "prior from", "prior to"], values)
     if blind:
