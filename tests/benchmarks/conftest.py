@@ -1,6 +1,6 @@
-"""The benchmarks are scripts: their folder goes on the path as `python benchmarks/NAME.py` would put it there."""
+"""The benchmarks are scripts: their folder goes on the path, last, for benchmarks/viz.py must not hide the room viz."""
 
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
+sys.path.append(str(Path(__file__).parents[2] / "benchmarks"))
