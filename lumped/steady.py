@@ -56,7 +56,7 @@ def steady(
         u, x0, np.zeros(n), core.K0, core.terms, core.tangents if p else None, core.rows,
         stage(n, u.shape[1], core.terms.row.size, ne), work(n, ne, p), z, y, dy, G,
     )  # fmt: skip
-    if not found or np.linalg.slogdet(G)[0] <= 0:
+    if not found or np.linalg.eigvals(G).real.min() <= 0:
         why = "a node nothing holds, or thermal runaway"
         raise ThermoscopeError(f"network '{network.name}' does not come to rest: {why}")
     return Steady((*network.states, *network.boundaries), z, y[0], dy[0] if p else None)

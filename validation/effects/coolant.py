@@ -10,9 +10,10 @@ from validation.effects.sites import like, neighbours, solids, washed
 
 
 def coolants(network: Network) -> list[str]:
-    """Boundaries and fluid nodes that are a liquid coolant."""
+    """Boundaries and fluid nodes that are a liquid coolant, those that wash a part first (an inlet washes none)."""
     nodes = [p.name for p in network.places.values() if p.kind == "fluid"]
-    return [n for n in (*network.boundaries, *nodes) if like(n, "coolant")]
+    names = [n for n in (*network.boundaries, *nodes) if like(n, "coolant")]
+    return sorted(names, key=lambda n: not washed(network, n))
 
 
 @dataclass(frozen=True)

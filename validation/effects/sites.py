@@ -12,7 +12,7 @@ WORDS = {
     "winding": ("winding", "armature", "copper", "coil"),
     "iron": ("core", "yoke", "stator", "rotor", "iron", "teeth", "tooth", "poles", "lamination"),
     "rotor": ("rotor", "armature", "shaft", "magnet", "commutator"),
-    "coolant": ("coolant", "water", "glycol", "oil"),
+    "coolant": ("coolant", "water", "glycol", "oil", "jacket"),
     "bench": ("bench", "base", "mount", "floor", "plate"),
     "fluid": ("air", "gap", "coolant"),
 }
