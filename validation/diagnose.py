@@ -70,7 +70,7 @@ def diagnose(
 def search(case: Case, evidence: Evidence, null: Null, limit: float, progress: Progress) -> list[Step]:
     """Add the best candidate while one passes the threshold, each time calibrating and estimating the noise anew.
 
-    One that removes less than a tenth of the residual is not worth its place.
+    A further effect that removes less than a tenth of the residual is not worth its place.
     """
     level = dict(zip(evidence.names, null.kappa, strict=True))
     steps: list[Step] = []
@@ -79,7 +79,9 @@ def search(case: Case, evidence: Evidence, null: Null, limit: float, progress: P
         if np.max(evidence.score.z / kappa, initial=0.0) < limit or len(steps) == STEPS:
             return [*steps, Step(evidence, kappa, None)]
         found = race(evidence, kappa, limit, progress)
-        if (steps and weak(evidence, found)) or explained(evidence, found) < WORTH:
+        if case.model.effects and explained(evidence, found) < WORTH:
+            return [*steps, Step(evidence, kappa, None)]
+        if steps and weak(evidence, found):
             return [*steps, Step(evidence, kappa, None)]
         steps.append(Step(evidence, kappa, found))
         if weak(evidence, found):
