@@ -20,7 +20,7 @@ def grid_of(samples: Samples, step: float) -> Array:
 def averaged(time: Array, values: Array, grid: Array) -> Array:
     """Mean of the readings within half a step of each instant, NaN where there is none.
 
-    A reading halfway between two instants counts half for each, so that no mean is early or late.
+    A reading halfway between two instants counts half for each, so that no mean is early or late; alone it is none.
     """
     if grid.size < 2:
         return np.full(grid.size, np.nanmean(values))
@@ -30,7 +30,7 @@ def averaged(time: Array, values: Array, grid: Array) -> Array:
         seen = np.isfinite(values) & (cell >= 0) & (cell < grid.size)
         count += np.bincount(cell[seen], minlength=grid.size)
         total += np.bincount(cell[seen], values[seen], minlength=grid.size)
-    return np.where(count > 0, total / np.maximum(count, 1), np.nan)
+    return np.where(count > 1, total / np.maximum(count, 1), np.nan)
 
 
 def rms(time: Array, values: Array, grid: Array) -> Array:

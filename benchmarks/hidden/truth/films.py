@@ -12,7 +12,7 @@ G0, SIGMA, ZERO = 9.81, 5.670374e-8, 273.15
 def air(T: Array) -> tuple[Array, Array, Array, float]:
     """Conductivity (W/m/K), kinematic viscosity (m2/s), expansion (1/K) and Prandtl number of dry air, 0 to 200 degC.
 
-    Sutherland's law at 1 atm, 1 % of the tables of Incropera.
+    Sutherland's law and the ideal gas at 1 atm: k and mu within 1 % of the tables of Incropera.
     """
     K = T + ZERO
     mu = 1.458e-6 * K**1.5 / (K + 110.4)
