@@ -61,7 +61,7 @@ def demo(out: Path, target: str | None) -> int:
         stages.append(Stage(f"with {named[0]}", held_against(case)))
     headline("7  Pictures, recording, report")
     render(str(case), out, None)
-    report(str(case), out, None)
+    report(str(case), out, None, again=False)
     return closing(stages, done, out, target, time.monotonic() - begun)
 
 

@@ -22,7 +22,8 @@ Document = Mapping[str, Any]
 class Report:
     """What the page is made from; every part but the case's name may be missing.
 
-    comparison, diagnosis : documents of `compare` and `diagnose`
+    comparison, diagnosis : documents of `compare` and `diagnose`; earlier : the diagnosis is of the model before its
+        last step, and the verdict is that of the comparison
     history : revisions, each with number, action, effect and tests as in `add`
     parameters : as in `add` and `calibrate`
     curves : one Comparison per test, the most telling first
@@ -41,6 +42,7 @@ class Report:
     assumptions: Sequence[str] = ()
     commands: Sequence[str] = ()
     made: str = ""
+    earlier: bool = False
 
 
 def write_report(report: Report, path: str | Path) -> Path:
@@ -59,10 +61,11 @@ def render(report: Report) -> str:
 
 
 def _top(r: Report) -> str:
-    tone, sentence = words.verdict(r.diagnosis, r.comparison)
+    diagnosis = None if r.earlier else r.diagnosis
+    tone, sentence = words.verdict(diagnosis, r.comparison)
     head = f"<h1>thermoscope report: {escape(r.case)}</h1>"
     head += f'<p class="verdict"><span class="{tone}">{escape(sentence)}</span></p>'
-    return head + html.text(words.story(r.history), words.detail(r.diagnosis), r.description) + _cards(r)
+    return head + html.text(words.story(r.history), words.detail(diagnosis), r.description) + _cards(r)
 
 
 def _cards(r: Report) -> str:
@@ -122,7 +125,7 @@ def _missing(r: Report) -> str:
     if r.diagnosis.get("confusion"):
         drawn = candidates.confusion(names, candidates.matrix(r.diagnosis["confusion"], names))
         parts.append(html.more("Which of them look alike", html.plot(drawn, "confusion", "Likeness of their traces.")))
-    return html.section("What is missing", *parts)
+    return html.section("What was missing before the last step" if r.earlier else "What is missing", *parts)
 
 
 _HEADERS = ["effect", "score", "threshold", "amplitude", "error now (K)", "with it (K)", "held-out (K)"]

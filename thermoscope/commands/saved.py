@@ -34,8 +34,11 @@ def save_diagnosis(folder: Folder, document: Mapping[str, Any]) -> None:
 
 def saved_diagnosis(folder: Folder) -> dict[str, Any] | None:
     """The kept diagnosis, if nothing in the case has changed since."""
+    kept = last_diagnosis(folder)
+    return kept if kept and kept.get("fingerprint") == fingerprint(folder.settings.path) else None
+
+
+def last_diagnosis(folder: Folder) -> dict[str, Any] | None:
+    """The kept diagnosis, of whatever model it was."""
     path = folder.settings.out / NAME
-    if not path.is_file():
-        return None
-    kept = json.loads(path.read_text(encoding="utf-8"))
-    return kept if kept.get("fingerprint") == fingerprint(folder.settings.path) else None
+    return json.loads(path.read_text(encoding="utf-8")) if path.is_file() else None

@@ -13,7 +13,7 @@ import numpy as np
 
 from geom.errors import MissingDependency
 from thermoscope.commands.opened import opened_to_write
-from thermoscope.commands.saved import save_diagnosis, saved_diagnosis
+from thermoscope.commands.saved import last_diagnosis, save_diagnosis, saved_diagnosis
 from thermoscope.folder import Folder
 from thermoscope.history import Revision
 from thermoscope.runs import at_revision, before_last, fields, held, parameters, readings, steps
@@ -27,13 +27,16 @@ FRAMES = 61
 ORDER = {"hold-out": 0, "validate": 1, "calibrate": 2}
 
 
-def report(case: str, out: Path | None, target: str | None) -> int:
-    """One page, as PDF too where this computer can; the diagnosis is the last one if nothing has changed since."""
+def report(case: str, out: Path | None, target: str | None, again: bool = True) -> int:
+    """One page, as PDF too where this computer can; the diagnosis is the last one if nothing has changed since.
+
+    again : diagnose anew when something has; else the page shows the one that led to the model's last step
+    """
     from viz import write_pdf
 
     with progress() as tell:
         folder = opened_to_write(case, tell)
-        path = write_page(folder, case, out or folder.settings.out, tell)
+        path = write_page(folder, case, out or folder.settings.out, tell, again)
         tell("printing")
         pdf = write_pdf(path)
     document = {"case": folder.case.name, "revision": folder.case.model.revision, "report": str(path)}
@@ -41,18 +44,20 @@ def report(case: str, out: Path | None, target: str | None) -> int:
     return 0
 
 
-def write_page(folder: Folder, case: str, into: Path, tell: Progress) -> Path:
+def write_page(folder: Folder, case: str, into: Path, tell: Progress, again: bool = True) -> Path:
     """Write into/report.html with its pictures; `case` is what the commands on it call the case."""
     from validation.compare import compare
     from viz.report import Report, write_report
 
     tell("running the model")
-    result, diagnosis = compare(folder.case), _diagnosis(folder, tell)
+    result, diagnosis = compare(folder.case), _diagnosis(folder, tell) if again else last_diagnosis(folder)
+    earlier = diagnosis is not None and saved_diagnosis(folder) is None
     curves = [held(folder, test) for test in by_interest(folder)]
     tell("drawing")
     page = Report(
         folder.case.name, folder.settings.description, result.document(), diagnosis, steps(folder),
         parameters(folder), curves, _pictures(folder, into), assumptions(folder), commands(folder, case), made(),
+        earlier,
     )  # fmt: skip
     return write_report(page, into / "report.html")
 
