@@ -125,10 +125,11 @@ def test_a_click_on_the_machine_chooses_the_sensor(page):
     for u in range(10, 90, 4):
         for v in range(20, 80, 6):
             page.mouse.click(box["x"] + box["width"] * u / 100, box["y"] + box["height"] * v / 100)
-        page.wait_for_timeout(100)
+        page.wait_for_timeout(300)
         if page.get_attribute("#sensor-T_winding", "aria-pressed") == "false":
             return
-    raise AssertionError("no click on the machine chose another sensor")
+    page.wait_for_timeout(10_000)  # a busy computer answers late
+    assert page.get_attribute("#sensor-T_winding", "aria-pressed") == "false", "no click chose another sensor"
 
 
 def test_keys_alone_do_everything(page):
