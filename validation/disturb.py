@@ -15,11 +15,10 @@ from numpy.typing import NDArray
 from lumped.laws import Constant, Fixed, Inputs, Law, Power, Table, TemperatureLaw
 from lumped.network import Link, Network, Place, Row, Source
 from validation.case import Channel, Test
+from validation.forms import KNOTS, SETTLE_K
 from validation.predict import shifted
 
 Array = NDArray[np.float64]
-KNOTS = np.array([0.0, 1.0, 2.0, 5.0, 10.0, 20.0, 40.0, 80.0, 160.0, 320.0])
-SETTLE_K = 40.0
 CORE = " (core)"
 
 
@@ -71,8 +70,9 @@ def bent_temperature(law: TemperatureLaw, power: float) -> TemperatureLaw:
     if not isinstance(law, (Constant, Power)):
         return law
     exponent = law.exponent if isinstance(law, Power) else 0.0
-    value = KNOTS**exponent * (np.maximum(KNOTS, 1.0) / SETTLE_K) ** power
-    return Table(tuple(KNOTS), tuple(value))
+    knots: Array = np.array(KNOTS)
+    value = knots**exponent * (np.maximum(knots, 1.0) / SETTLE_K) ** power
+    return Table(KNOTS, tuple(value))
 
 
 def disturbed(network: Network, rng: np.random.Generator, spread: Spread = USUAL) -> Network:

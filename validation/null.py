@@ -173,7 +173,8 @@ def data(setting: Setting, rng: np.random.Generator) -> list[Test]:
     out = []
     for test in setting.tests:
         seen = disturbed_test(test, setting.network, real, rng, spread)
-        white = [min(fit.noise.at(s).white, s.sigma_K) for s in setting.parts if s.test == test.name]
+        level = {s.channel: fit.noise.at(s).white for s in setting.parts if s.test == test.name}
+        white = [min(level.get(c.name, c.sigma_K), c.sigma_K) for c in test.channels]
         y = reading_errors(test, predict(real, seen, values).y, rng, spread, white)
         out.append(replace(test, channels=tuple(replace(c, y=y[:, j]) for j, c in enumerate(test.channels))))
     return out

@@ -51,7 +51,7 @@ def write_page(folder: Folder, case: str, into: Path, tell: Progress, again: boo
 
     tell("running the model")
     result, diagnosis = compare(folder.case), _diagnosis(folder, tell) if again else last_diagnosis(folder)
-    earlier = diagnosis is not None and saved_diagnosis(folder) is None
+    earlier = not again and diagnosis is not None and saved_diagnosis(folder) is None
     curves = [held(folder, test) for test in by_interest(folder)]
     tell("drawing")
     page = Report(

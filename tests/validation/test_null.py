@@ -1,0 +1,23 @@
+"""The simulated null on tests as they come."""
+
+from dataclasses import replace
+
+import numpy as np
+from playground import Truth
+
+from validation.disturb import USUAL
+from validation.evidence import calibrated_case, scored
+from validation.null import Setting, data
+
+
+def test_a_sensor_that_was_not_read_in_one_test_is_simulated_unread():
+    """Its readings stay missing there, and the noise of the others stays theirs."""
+    case = Truth(11).case()
+    first, *rest = case.tests
+    blind = replace(first.channels[0], y=np.full_like(first.channels[0].y, np.nan))
+    case = replace(case, tests=(replace(first, channels=(blind, *first.channels[1:])), *rest))
+    evidence = scored(case, (), calibrated_case(case))
+    setting = Setting(evidence.fit, evidence.fit.network, evidence.tests, evidence.parts, np.array([], int), USUAL, 0)
+    drawn = data(setting, np.random.default_rng(0))[0]
+    assert np.isnan(drawn.channels[0].y).all()
+    assert all(np.isfinite(c.y).all() for c in drawn.channels[1:])
