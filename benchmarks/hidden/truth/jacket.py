@@ -78,7 +78,7 @@ def joints(d: Draw) -> list[Joint]:
 def films(s: Skeleton, d: Draw) -> list[Film]:
     """Room on housing and shields, water on the jacket, both end spaces, the gap."""
     still, emissivity = 0.9 * d.factor("still", 0.15), 0.7
-    wall = 0.09 * d.factor("jacket", 0.15)
+    wall = 0.075 * d.factor("jacket", 0.15)
     weight = np.linspace(1.0 + d.times.get("patchy", 0.0), 1.0 - d.times.get("patchy", 0.0), 8)
 
     def drum(T: Array, Ta: Array, u: Inputs) -> Array:
@@ -89,7 +89,7 @@ def films(s: Skeleton, d: Draw) -> list[Film]:
         return still * plate_still(T, Ta, 0.24) + radiation(T, Ta, emissivity)
 
     def wet(T: Array, Tf: Array, u: Inputs) -> Array:
-        return weight * channel(0.5 * (T + Tf), u["flow_l_min"], 2.4e-4, 0.012)
+        return weight * channel(0.5 * (T + Tf), u["flow_l_min"], 1.2e-4, 0.010)
 
     housing = s.cells("housing")[[0, 2, 3, 5, 6, 7, 9, 10]]
     out = [Film("drum", s.cells("housing"), "T_ambient", np.full(11, 0.32 / 11), drum),

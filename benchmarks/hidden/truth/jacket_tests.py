@@ -17,8 +17,8 @@ Rng = np.random.Generator
 
 
 def drive(at: Array, current: Array, speed: Array, wind: Array, flow: Array, inlet: Array) -> dict[str, Array]:
-    """The chiller starts at 22 degC and is at `inlet` after some minutes."""
-    warming = 22.0 + (inlet - 22.0) * -np.expm1(-at / 200.0)
+    """The chiller starts 5 K below `inlet` and is there after some minutes."""
+    warming = inlet - 5.0 * np.exp(-at / 200.0)
     return {"current_A": current, "speed_rpm": speed, "vehicle_speed_mps": wind, "flow_l_min": flow,
             "T_coolant": warming}  # fmt: skip
 
@@ -26,22 +26,22 @@ def drive(at: Array, current: Array, speed: Array, wind: Array, flow: Array, inl
 def direct(rng: Rng, at: Array) -> dict[str, Array]:
     """Direct current at standstill, then cooling down; the inlet steps up midway."""
     current = levels(at, rng, 120.0, 220.0, 20.0) * until(at, 55.0, 1.0)
-    inlet = 25.0 + 15.0 * (at > 1800.0)
+    inlet = 44.0 + 8.0 * (at > 1800.0)
     return drive(at, current, steady(at, 0.0), steady(at, 0.0), steady(at, 8.0), inlet)
 
 
 def load(rng: Rng, at: Array) -> dict[str, Array]:
-    flow = np.where(at > 2500.0, 5.0, 9.0)
-    return drive(at, levels(at, rng, 60.0, 260.0, 10.0), steady(at, 3000.0), steady(at, 0.0), flow, steady(at, 40.0))
+    flow = np.where(at > 2500.0, 7.0, 10.0)
+    return drive(at, levels(at, rng, 60.0, 260.0, 10.0), steady(at, 3000.0), steady(at, 0.0), flow, steady(at, 50.0))
 
 
 def speeds(rng: Rng, at: Array) -> dict[str, Array]:
     speed = levels(at, rng, 500.0, 8000.0, 9.0)
-    return drive(at, levels(at, rng, 40.0, 160.0, 14.0), speed, steady(at, 0.0), steady(at, 8.0), steady(at, 45.0))
+    return drive(at, levels(at, rng, 40.0, 160.0, 14.0), speed, steady(at, 0.0), steady(at, 8.0), steady(at, 48.0))
 
 
 def road(rng: Rng, at: Array) -> dict[str, Array]:
-    wind, inlet = levels(at, rng, 0.0, 25.0, 5.0), 45.0 + 8.0 * np.sin(at / 900.0 + 6.0 * rng.uniform())
+    wind, inlet = levels(at, rng, 0.0, 25.0, 5.0), 50.0 + 4.0 * np.sin(at / 900.0 + 6.0 * rng.uniform())
     return drive(
         at, levels(at, rng, 40.0, 240.0, 4.0), levels(at, rng, 800.0, 7000.0, 6.0), wind, steady(at, 8.0), inlet
     )
