@@ -12,7 +12,7 @@ from fem.solve import Fluids, Iterative, Solver, Steady, only_fixed, steady
 from fem.streams import Stream, cut, flowing
 from fem.terms import CopperLoss, Radiation, Term, VaryingConductivity
 from fem.transient import transient
-from fem.winding import bundle, unit_cell
+from fem.winding import bundle, homogenised, unit_cell
 
 __all__ = [
     "AirGap",
@@ -33,6 +33,7 @@ __all__ = [
     "bundle",
     "cut",
     "flowing",
+    "homogenised",
     "isotropic",
     "laminated",
     "only_fixed",

@@ -16,12 +16,27 @@ TABLE = Path(__file__).parent / "materials.toml"
 
 
 @dataclass(frozen=True)
+class Mixture:
+    """Wires in resin: share of conductor in the cross-section, conductivities (W/m/K) of it and of what is between.
+
+    along : share of wire length along the axis;  shape : of the wires, "round" or "flat"
+    """
+
+    fill: float
+    k_conductor: float
+    k_between: float
+    along: float
+    shape: str
+
+
+@dataclass(frozen=True)
 class Material:
     """Thermal properties near 60 degC.
 
     k_plane, k_axial : conductivity across and along the machine's axis (W/m/K)
     rho : density (kg/m3); cp : specific heat (J/kg/K); emissivity : of its usual surface, 0 to 1
     spreads, sources : of "k", "rho", "cp" and "emissivity": relative 1-sigma as found in practice, and where from
+    mixture : what a winding is made of; its conductivities here are those of the formula, see fem.winding
     """
 
     name: str
@@ -32,6 +47,7 @@ class Material:
     emissivity: float
     spreads: Mapping[str, float] = field(hash=False)
     sources: Mapping[str, str] = field(hash=False)
+    mixture: Mixture | None = None
 
     @property
     def spread(self) -> float:
@@ -75,7 +91,7 @@ def _table() -> Mapping[str, Any]:
 
 def _read(name: str, values: Mapping[str, Any]) -> Material:
     numbers = {key: values[key] for key in ("k_plane", "k_axial", "rho", "cp", "emissivity") if key in values}
-    numbers |= _mixture(**values["mixture"]) if "mixture" in values else {}
+    numbers |= _mixed(**values["mixture"]) if "mixture" in values else {}
     return Material(name=name, **numbers, spreads=values["spread"], sources=values["source"])
 
 
@@ -96,10 +112,11 @@ def winding_conductivity(fill: float, k_conductor: float, k_resin: float) -> tup
     return across, fill * c + (1 - fill) * r
 
 
-def _mixture(
-    fill: float, k_resin: float, along: float = 1.0, k_conductor: float = 385.0, impregnation: float = 1.0
-) -> dict[str, float]:
-    """Copper wires in resin, with air where the resin is missing; `along` is the share of wire along the axis."""
+def _mixed(
+    fill: float, k_resin: float, along: float = 1.0, k_conductor: float = 385.0, impregnation: float = 1.0,
+    shape: str = "round",
+) -> dict[str, Any]:  # fmt: skip
+    """Copper wires in resin, with air where the resin is missing."""
     k_between = k_resin if impregnation >= 1.0 else _with_air(k_resin, impregnation)
     across, lengthwise = winding_conductivity(fill, k_conductor, k_between)
     copper, resin = fill * 8930.0, (1 - fill) * impregnation * 1350.0
@@ -108,6 +125,7 @@ def _mixture(
         "k_axial": along * lengthwise + (1 - along) * across,
         "rho": copper + resin,
         "cp": (copper * 390.0 + resin * 1500.0) / (copper + resin),
+        "mixture": Mixture(fill, k_conductor, k_between, along, shape),
     }
 
 

@@ -74,20 +74,21 @@ def merged(found: Sequence[Errors]) -> Errors:
                   for part in found[0].parts})  # fmt: skip
 
 
-def errors(network: Network, full: Array, x: Array, largest: float | None = None) -> Errors:
+def errors(network: Network, full: Array, x: Array, largest: float | None = None, floor: float = FLOOR) -> Errors:
     """Compare a field `full` (n,) with the network's states x (n_states,), both as rises over the surroundings (K).
 
     largest : the machine's largest rise (K) that the floor refers to; None: of this field
+    floor : least rise, as a share of the largest, that a percentage refers to; 1: of the largest rise throughout
     """
     shapes = network.recovery
     assert isinstance(shapes, Shapes)
     rng, start = np.random.default_rng(0), 0
-    floor = FLOOR * (float(np.abs(full).max()) if largest is None else largest)
+    least = floor * (float(np.abs(full).max()) if largest is None else largest)
     parts: dict[str, PartError] = {}
     for part, shape in shapes.parts.items():
         T = full[start : start + len(shape.points)]
         start += len(T)
-        parts[part] = _part(T, shape.V @ x[shape.states], shape, floor, rng)
+        parts[part] = _part(T, shape.V @ x[shape.states], shape, least, rng)
     return worst(parts)
 
 

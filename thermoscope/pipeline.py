@@ -11,6 +11,7 @@ import numpy as np
 
 from fem.assembly import FieldModel, HasTensor, assemble
 from fem.material import Conductivity, LoopWound
+from fem.winding import homogenised
 from geom import Machine, NamedMesh, build_mesh
 from geom.materials import Material
 from geom.shapes import evenly
@@ -46,22 +47,27 @@ def cache_folder() -> Path:
 def field_of(machine: Machine, mesh: NamedMesh) -> FieldModel:
     """Conduction of the machine on its mesh, with the materials of its file."""
     found = {part.name: machine.material_of(part.name) for part in machine.parts}
-    conductivity: dict[str, HasTensor] = {
-        name: Conductivity(m.k_plane, m.k_plane, m.k_axial) for name, m in found.items()
-    }
+    conductivity: dict[str, HasTensor] = {name: conductivity_of(m) for name, m in found.items()}
     if "winding.field" in found:
-        conductivity["winding.field"] = _around_poles(machine, found["winding.field"])
+        conductivity["winding.field"] = _around_poles(machine, conductivity_of(found["winding.field"]))
     return assemble(mesh, conductivity, {name: m.rho * m.cp for name, m in found.items()})
 
 
-def _around_poles(machine: Machine, copper: Material) -> LoopWound:
+def conductivity_of(material: Material) -> Conductivity:
+    """Of a winding from its wires and resin, of all else as the table says."""
+    if material.mixture is not None:
+        return homogenised(material.mixture)
+    return Conductivity(material.k_plane, material.k_plane, material.k_axial)
+
+
+def _around_poles(machine: Machine, copper: Conductivity) -> LoopWound:
     """Field coils: the wire runs along the axis beside a pole and across it at the ends."""
     g = machine.geometry
     axes = tuple(float(a) for a in evenly(g.stator.poles, np.pi / 2))
     start, end = machine.part("poles").span
     half = (end - start) / 2 + g.field.insulation
     width = g.stator.body_width / 2 + g.field.insulation
-    return LoopWound(copper.k_axial, copper.k_plane, axes, half, width, (start + end) / 2)
+    return LoopWound(copper.k_z, copper.k_r, axes, half, width, (start + end) / 2)
 
 
 @dataclass(frozen=True)

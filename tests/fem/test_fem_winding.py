@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from fem.winding import HEXAGONAL, SQUARE, bundle, unit_cell
+from fem.material import Conductivity
+from fem.winding import HEXAGONAL, SQUARE, bundle, flat_cell, homogenised, unit_cell
 from geom.errors import InputError
-from geom.materials import winding_conductivity
+from geom.materials import filled, material, winding_conductivity
 
 COPPER, RESIN = 400.0, 0.2
 
@@ -74,3 +75,41 @@ def test_isotropic_across():
 def test_wires_that_overlap_are_refused(packing, fill):
     with pytest.raises(InputError, match="packing"):
         unit_cell([(fill, COPPER)], RESIN, packing)
+
+
+@pytest.mark.parametrize("fill", [0.3, 0.7, 0.95])
+def test_flat_cell_obeys_the_law_of_exchange(fill):
+    """Keller 1964, J. Math. Phys. 5, 548: conductor and resin exchanged, k k' = k_conductor k_resin."""
+    exchanged = flat_cell(fill, COPPER, RESIN) * flat_cell(fill, RESIN, COPPER)
+    assert exchanged == pytest.approx(COPPER * RESIN, rel=2e-4)
+
+
+@pytest.mark.parametrize("fill", [0.66, 0.8, 0.98])
+def test_flat_cell_lies_between_its_bounds(fill):
+    """Strips beside each other and layers on each other (Wiener, row by row) enclose it."""
+    s = np.sqrt(fill)
+    low = (1 - s) * RESIN + s / (s / COPPER + (1 - s) / RESIN)
+    high = 1 / (s / (s * COPPER + (1 - s) * RESIN) + (1 - s) / RESIN)
+    assert low < flat_cell(fill, COPPER, RESIN) < high
+
+
+def test_windings_of_the_table_take_their_cell_above_65_percent():
+    """Round wires hexagonal, flat ones square; up to 65 % the numbers of the materials table."""
+    low, field = material("winding"), material("field-winding").mixture
+    assert homogenised(low.mixture) == Conductivity(low.k_plane, low.k_plane, low.k_axial)
+    assert homogenised(field).k_r == flat_cell(0.7, 385.0, 0.25)
+    dense = homogenised(filled("winding", 0.75, 1.0).mixture)
+    assert dense.k_r == pytest.approx(0.2 * perrins(0.75, 385.0 / 0.2, 6), rel=1e-4)
+    assert dense.k_r > 1.04 * filled("winding", 0.75, 1.0).k_plane
+
+
+def test_loose_wires_conduct_half_along():
+    loose = homogenised(filled("end-winding", 0.7, 1.0).mixture)
+    cell = unit_cell([(0.7, 385.0)], 0.15)
+    assert (loose.k_r, loose.k_z) == pytest.approx((cell, (0.7 * 385 + 0.3 * 0.15 + cell) / 2))
+
+
+@pytest.mark.parametrize("fill", [0.0, 1.0])
+def test_flat_wires_without_resin_are_refused(fill):
+    with pytest.raises(InputError, match="flat wires"):
+        flat_cell(fill, COPPER, RESIN)

@@ -1,0 +1,210 @@
+"""Condensed networks against the fields they come from, on the same mesh: how far off, and what they cost.
+
+    python benchmarks/condensation.py [MACHINE ...] [--size MM] [--segments N] [--accuracy PERCENT]
+                                      [--json FILE] [--table FILE]
+
+For every machine of the library, or those named: the network that `thermoscope build --accuracy` keeps, at coefficients
+and load cases that it has not seen (`condensation_points.py`). Errors are in percent of a part's own rise, at least a
+tenth of the machine's largest; after a step of loss, hot spots and points in percent of the largest rise at that time.
+"wanted" is what the network is built for. Shapes are found anew: the cache of earlier builds is not used.
+"""
+
+from __future__ import annotations
+
+import argparse
+import datetime
+import json
+import os
+import platform
+import re
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from condensation_points import Pair, Point
+
+from fem.solve import Fluids, steady
+from geom import library, load_machine
+from lumped.guard import Errors, errors, merged
+from lumped.network import Network
+from thermoscope.sized import Sized, sized
+
+WANTED = {"mean": 1.0, "hot": 2.0, "point": 2.0}
+AT_RANDOM = {**WANTED, "hot": 3.0}
+BALANCED = 1e-10
+Row = dict[str, Any]
+
+
+def machine_rows(name: str, size_m: float, segments: int, accuracy: float) -> Iterator[Row]:
+    """Size and cost of the network, its errors, and the balances of both."""
+    start = time.process_time()
+    found = sized(load_machine(name), accuracy, size_m, segments)
+    yield row(name, "unknowns of the field", "1", found.built.field.n)
+    yield row(name, "states", "1", len(found.built.network.states))
+    yield row(name, "build, with error against size", "s CPU", time.process_time() - start)
+    pair = Pair.of(found)
+    points = [(point, pair.of_field(point), pair.of_network(point)) for point in pair.points()]
+    for group in dict.fromkeys(point.group for point, _, _ in points):
+        seen = {p.name: over_loads(pair.network, T, z) for p, T, z in points if p.group == group}
+        yield from error_rows(name, group, seen, AT_RANDOM if group == "random" else WANTED)
+    for point in (points[0][0], pair.random(9)):
+        yield from error_rows(name, f"step of loss, {point.group}", after_step(pair, point), WANTED)
+    balance = max(unbalanced(pair, point, z) for point, _, z in points)
+    yield row(name, "heat of a part or the machine left over", "1", balance, BALANCED, "wanted")
+    yield row(name, "energy in minus out of the field", "1", energy(pair), 1e-9, "wanted")
+    yield from recovery_rows(found, points[0][2][:, 0])
+
+
+def over_loads(network: Network, T: np.ndarray, z: np.ndarray, **floors: Any) -> Errors:
+    return merged([errors(network, full, x, **floors) for full, x in zip(T.T, z[: len(network.states)].T, strict=True)])
+
+
+def after_step(pair: Pair, point: Point) -> dict[str, Errors]:
+    """Means in percent of a part's own rise, hot spots and points of the machine's largest at that time."""
+    out = {}
+    for t, T, z in pair.stepped(point):
+        own, largest = over_loads(pair.network, T, z), over_loads(pair.network, T, z, floor=1.0)
+        out[f"{t:g} s"] = Errors(own.mean, largest.hot, largest.point, own.mean_part, largest.hot_part,
+                                 largest.point_part, own.parts)  # fmt: skip
+    return out
+
+
+def error_rows(machine: str, group: str, seen: dict[str, Errors], wanted: dict[str, float]) -> Iterator[Row]:
+    """The worst of each kind, and where it arises."""
+    for kind, limit in wanted.items():
+        at = max(seen, key=lambda name: getattr(seen[name], kind))
+        where = f"{getattr(seen[at], f'{kind}_part')}, {at}"
+        yield {**row(machine, f"{kind}, {group}", "%", getattr(seen[at], kind), limit, "wanted"), "where": where}
+
+
+def unbalanced(pair: Pair, point: Point, z: np.ndarray) -> float:
+    """Largest |loss - heat through faces and contacts| of a part, or of all, over all losses; heat read from means."""
+    network, zones = pair.network, pair.reduction.zones
+    left = {part: np.zeros(z.shape[1]) for part in pair.reduction.field.blocks}
+    for zone, watts in zip(zones.values(), pair.watts, strict=True):
+        left[zone.part] += watts
+    out = {"fluids": pair.heat.sum(0) - point.flow * (pair.streams @ z[_columns(pair)]).sum(0)}
+    for place in network.places.values():
+        if place.kind == "surface":
+            flow = point.films[place.name] * (_read(place.mean, z) - z[network.column(str(place.fluid))])
+            left[place.part] -= place.area * flow
+            out["fluids"] += place.area * flow * (place.fluid in pair.fluids)
+    for link in network.links:
+        if link.kind == "contact":
+            key = link.name.removeprefix("contact:")
+            area = pair.reduction.field.contacts[key].area
+            flow = point.contacts[key] * area * (_read(link.hot, z) - _read(link.cold, z))
+            left[link.places[0]] -= flow
+            left[link.places[1]] += flow
+    scale = np.abs(pair.watts).sum(0) + np.abs(pair.heat).sum(0)
+    return max(float(np.max(np.abs(heat) / scale)) for heat in (*left.values(), *out.values(), sum(left.values())))
+
+
+def _columns(pair: Pair) -> list[int]:
+    return [pair.network.column(name) for name in pair.fluids]
+
+
+def _read(mean: Any, z: np.ndarray) -> np.ndarray:
+    return mean.weights @ z[mean.index]
+
+
+def energy(pair: Pair) -> float:
+    """Of the field with the rated losses, what went in minus what came out, over what went in."""
+    r = pair.reduction
+    fluids = Fluids(pair.fluids, pair.streams, pair.heat[:, 0], dict.fromkeys(pair.network.boundaries, 0.0))
+    return steady(r.solver, r.films, r.contacts, pair.field_loads[:, 0], fluids).energy_balance
+
+
+def recovery_rows(found: Sized, z: np.ndarray) -> Iterator[Row]:
+    """Milliseconds for the whole field, the hot spot of every part, and one more sensor."""
+    network, field = found.built.network, found.built.field
+    shapes, x = network.recovery, z[: len(network.states)]
+    part = max(field.blocks, key=lambda p: len(field.blocks[p].points))
+    xyz = field.blocks[part].xyz[field.blocks[part].tets[0]].mean(0)
+    yield row(found.built.machine.name, "the whole field from a state", "ms", milliseconds(lambda: shapes.field(x)))
+    yield row(found.built.machine.name, "every part's hot spot", "ms",
+              milliseconds(lambda: [shapes.hot_spot(p, x) for p in field.blocks]))  # fmt: skip
+    shapes.row(part, xyz)
+    yield row(found.built.machine.name, "one more sensor at x, y, z", "ms", milliseconds(lambda: shapes.row(part, xyz)))
+
+
+def milliseconds(job: Callable[[], object], times: int = 20) -> float:
+    start = time.process_time()
+    for _ in range(times):
+        job()
+    return 1e3 * (time.process_time() - start) / times
+
+
+def row(
+    case: str, measure: str, unit: str, ours: float, peer: float | None = None, peer_name: str | None = None
+) -> Row:
+    """One line of the document; ratio is ours over what is wanted."""
+    out = {"case": case, "measure": measure, "unit": unit, "ours": float(ours), "peer": peer, "peer_name": peer_name}
+    return {**out, "ratio": float(ours) / peer if peer else None, "n": None, "ci95": None}
+
+
+def shown(r: Row) -> Row:
+    """The same row, printed beside the document."""
+    peer = f"   {r['peer_name']} {r['peer']:.3g}{'' if r['ratio'] <= 1 else '   MISSED'}" if r["peer"] else ""
+    print(f"{r['case']:34} {r['measure']:42} {r['ours']:10.3g} {r['unit']:6}{peer:24} {r.get('where', '')}",
+          file=sys.stderr)  # fmt: skip
+    return r
+
+
+GROUPS = ("nominal", "all films", "one film x10", "contacts", "gap, flow", "random", "step of loss, nominal",
+          "step of loss, random")  # fmt: skip
+
+
+def table(rows: list[Row]) -> str:
+    """One line per machine in Markdown: mean / hot spot / point in percent."""
+    value = {(r["case"], r["measure"]): r["ours"] for r in rows}
+    head = ["machine", "unknowns", "states", *GROUPS]
+    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
+    for name in dict.fromkeys(r["case"] for r in rows):
+        cells = [f"{value[name, 'unknowns of the field']:.0f}", f"{value[name, 'states']:.0f}"]
+        cells += [" / ".join(f"{value[name, f'{kind}, {group}']:.2g}" for kind in WANTED) for group in GROUPS]
+        lines.append(f"| {name} | " + " | ".join(cells) + " |")
+    return "\n".join(lines)
+
+
+def put(text: str, page: Path) -> None:
+    """Replace what stands between the page's markers."""
+    begin, end = "<!-- table:begin -->", "<!-- table:end -->"
+    whole = page.read_text()
+    page.write_text(re.sub(f"{begin}.*{end}", f"{begin}\n{text}\n{end}", whole, flags=re.DOTALL))
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("machines", nargs="*", metavar="MACHINE", help="names of the library; all if none is given")
+    parser.add_argument("--size", type=float, default=60.0, help="largest triangle in the plane, mm")
+    parser.add_argument("--segments", type=int, default=48, help="chords per turn")
+    parser.add_argument("--accuracy", type=float, default=2.0, help="percent, as in `thermoscope build --accuracy`")
+    parser.add_argument("--json", metavar="FILE", help="write the rows there; - is stdout")
+    parser.add_argument("--table", metavar="PAGE", help="put the table between the markers of this Markdown page")
+    given = parser.parse_args()
+    rows: list[Row] = []
+    with tempfile.TemporaryDirectory() as cold:
+        os.environ["THERMOSCOPE_CACHE"] = cold
+        for name in given.machines or library():
+            rows += [shown(r) for r in machine_rows(name, given.size / 1e3, given.segments, given.accuracy)]
+    document = {
+        "benchmark": "condensation",
+        "computer": f"{platform.machine()}, Python {platform.python_version()}",
+        "date": datetime.date.today().isoformat(),
+        "rows": rows,
+    }
+    if given.json == "-":
+        json.dump(document, sys.stdout, indent=1)
+    elif given.json:
+        Path(given.json).write_text(json.dumps(document, indent=1))
+    if given.table:
+        put(table(rows), Path(given.table))
+
+
+if __name__ == "__main__":
+    main()
