@@ -12,6 +12,7 @@ from lumped.network import Network
 Tell = Callable[[str], None]
 FAVOURS = 6  # times the shapes are dealt out anew before new solutions are asked for
 MARGIN = 0.5  # points already learned from are met this much better than wished, because new ones are not
+RESERVE = 0.7  # a size is good enough when the points it is checked at use up no more than this of the wish
 STRONGEST = 4.0  # a part's favour grows at most by this at a time
 
 
@@ -46,7 +47,7 @@ class Adapted:
 class Size:
     """A network of a given size: errors at the nominal coefficients, and the worst of several random ones.
 
-    asked : largest number of states, 0: the means only
+    asked : largest number of states, 0: the means only;  met : with a reserve for points that were not looked at
     """
 
     asked: int
@@ -61,7 +62,7 @@ class Size:
         network = reduction.network(tolerance=0.0, max_states=max(asked, len(reduction.field.blocks)))
         nominal, *drawn = (seen(network, point, cases) for point in points)
         random = merged(drawn)
-        return cls(asked, network, nominal, random, max(excess(nominal, wish), excess(random, wish)) <= 1.0)
+        return cls(asked, network, nominal, random, max(excess(nominal, wish), excess(random, wish)) <= RESERVE)
 
     def document(self) -> dict[str, Any]:
         return {
@@ -77,6 +78,7 @@ def adapt(
     """A network that meets the wish at random points it has not seen, or the one the last of `rounds` looked at.
 
     reduction : lumped.reduction.Reduction;  points : already solved; they are learned first
+    fresh : random points per round, beside one extreme point
     """
     weights: dict[str, float] = {}
     learned, begun = list(points) or [reduction.nominal_point()], len(points)
@@ -85,6 +87,7 @@ def adapt(
     for k in range(rounds):
         network = favoured(reduction, learned, cases, wish, weights)
         new = [reduction.random_point(begun + fresh * k + j) for j in range(fresh)]
+        new.append(reduction.extreme_point(begun + k))
         found = merged([seen(network, point, cases) for point in new])
         done.append(Round(len(network.states), tuple(p.name for p in new), found, excess(found, wish) <= 1.0))
         tell(f"{len(network.states)} states: {found}")

@@ -6,13 +6,14 @@
 
 What comes out, for every family and for imported machines alike (the machine file decides, no names do):
 
-    states      every part's mean ("winding", "magnets", ...), its shapes "winding#1", ..., the fluids ("airgap", ...)
+    states      every part's mean ("winding", "magnets", ...), its shapes "winding#1", ..., the fluids ("airgap", ...;
+                "jacket@0", "jacket@1", ...: the coolant as it leaves each cell of a jacket)
     boundaries  "ambient", and "coolant" where the machine has jackets (the temperature of the coolant's inlet)
     inputs      "current_A", "speed_rpm", "fan_flow_m3h" (open machines), "flow_l_min" (jackets); `operating_point`
                 gives their rated values. With three phases current_A is the rms of each phase, which direct current
                 through the phases in series also is: DC heating is current_A = I, speed_rpm = 0.
-    places      every part, every face ("housing.fins"), every fluid, and the means declared in [sensors], such as
-                "winding.copper": the mean over all copper, what a resistance measurement sees
+    places      every part, every face ("housing.fins"), every fluid, "JACKET.outlet", and the means declared in
+                [sensors], such as "winding.copper": the mean over all copper, what a resistance measurement sees
     parameters  "h.PART" outer faces, "h.FLUID" inner ones, "contact.A|B", "loss.NAME", "capacity.machine", "fan.flow",
                 "coolant.flow", and "k.GROUP" for conductivities declared in [calibration]
 """
@@ -26,11 +27,12 @@ from typing import Any
 import numpy as np
 
 from lumped.motor_air import fan_streams
-from lumped.motor_coolant import FLOW, INLET, coolant_streams
+from lumped.motor_coolant import FLOW, INLET, coolant_streams, outlet_film, outlets
 from lumped.motor_films import Surroundings, face_films, nominal, surroundings
 from lumped.motor_losses import sources
 from lumped.motor_means import means
 from lumped.motor_parameters import parameters
+from lumped.motor_path import cells_of, stem
 from lumped.motor_settings import contact_coefficients
 from lumped.network import Link, Network, Place
 
@@ -39,14 +41,16 @@ AIR_IN_SPACE = 60.0  # J/K, a few tens of litres of air with a part of its walls
 
 def fluids(machine: Any) -> dict[str, float]:
     """Fluid nodes and their heat capacities (J/K)."""
-    return {
-        part.name: AIR_IN_SPACE if part.material == "air" else _liquid_heat(machine, part) for part in machine.fluids
-    }
+    out: dict[str, float] = {}
+    for part in machine.fluids:
+        out |= {part.name: AIR_IN_SPACE} if part.material == "air" else _cells(machine, part)
+    return out
 
 
-def _liquid_heat(machine: Any, part: Any) -> float:
+def _cells(machine: Any, jacket: Any) -> dict[str, float]:
     liquid = surroundings(machine, ()).cooling.liquid  # type: ignore[union-attr]
-    return liquid.rho * liquid.cp * part.volume
+    names = cells_of(machine, jacket.name)
+    return dict.fromkeys(names, liquid.rho * liquid.cp * jacket.volume / len(names))
 
 
 def boundaries(machine: Any) -> tuple[str, ...]:
@@ -82,7 +86,8 @@ def nominal_coefficients(
 def motor_network(machine: Any, condensed: Network) -> Network:
     """The condensed network of a motor, completed to a model that can run a test."""
     around = surroundings(machine, (_contact(link) for link in condensed.links if link.kind == "contact"))
-    network = replace(condensed, places={**condensed.places, **means(machine, condensed)})
+    ports = {} if around.cooling is None else outlets(machine, condensed, around.cooling)
+    network = replace(condensed, places={**condensed.places, **ports, **means(machine, condensed)})
     faces = [place for place in network.places.values() if place.kind == "surface" and place.fluid]
     films = [link for face in faces for link in _film_links(network, face, around)]
     streams = [] if around.fan is None else fan_streams(network, around.fan)
@@ -99,5 +104,7 @@ def _contact(link: Link) -> str:
 
 def _film_links(network: Network, face: Place, around: Surroundings) -> list[Link]:
     laws = face_films(face.part, str(face.fluid), around)
+    if around.cooling is not None and stem(str(face.fluid)) in around.cooling.feeds:
+        laws = {"": outlet_film(around.machine, network, str(face.fluid), around.cooling)}
     name = {mechanism: f"film:{face.name}" + (f":{mechanism}" if mechanism else "") for mechanism in laws}
     return [network.surface_link(name[m], "film", face.name, str(face.fluid), law) for m, law in laws.items()]

@@ -1,10 +1,8 @@
 """Liquid jackets: the channel's film, and the coolant as a stream that picks up heat along its path.
 
 [cooling] in a machine file: coolant, flow_L_per_min, and JACKET = { inlet = ..., outlet = ... }; a jacket whose inlet
-is another's outlet is fed by it, all others share the flow of the inlet, boundary "coolant", evenly.
-
-A jacket is one cell whose node is the coolant's mean temperature T: with N = h A / (m cp) it takes up
-m cp / phi (T - T_in), phi = 1 / (1 - exp(-N)) - 1 / N. Along a wall of one temperature this is the exact exponential.
+is another's outlet is fed by it, all others share the flow of the inlet, boundary "coolant", evenly. Each jacket is a
+row of cells, see motor_path.
 """
 
 from __future__ import annotations
@@ -20,14 +18,16 @@ import numpy as np
 from lumped.correlations.ducts import duct_film, schmidt_helical
 from lumped.laws import Law
 from lumped.motor_laws import Interpolated
+from lumped.motor_path import cells_of, stem
 from lumped.motor_shapes import radius
-from lumped.network import Link, Network, Row
+from lumped.network import Link, Network, Place, Row
 from lumped.properties import Fluid, ethylene_glycol, propylene_glycol, water
 from lumped.reader import Table
 
 INLET, FLOW = "coolant", "flow_l_min"
 LIQUIDS = ("water", "glycol-50", "propylene-glycol-50")
 RANGE = 4.0  # the tables reach up to this times the declared flow
+MOST_UNITS = 5.0  # of one cell: the coolant then leaves it at its walls' temperature, to 1 %
 
 
 @dataclass(frozen=True)
@@ -42,6 +42,13 @@ class Cooling:
     @property
     def liquid(self) -> Fluid:
         return liquid(self.coolant, self.property_C)
+
+    def before(self, jacket: str) -> list[str]:
+        """Where its coolant comes from, backwards as far as the inlet; a circle ends where it closes."""
+        out = [self.feeds[jacket]]
+        while out[-1] != INLET and self.feeds[out[-1]] not in out:
+            out.append(self.feeds[out[-1]])
+        return out
 
     def share(self, jacket: str) -> float:
         """Of the inlet's flow."""
@@ -72,9 +79,9 @@ def cooling_of(machine: Any) -> Cooling | None:
         {name: outlets.get(port.word("inlet", f"{name}.inlet"), INLET) for name, port in ports.items()},
     )  # fmt: skip
     t.number("pressure_bar", 1.0)
-    for jacket, feed in found.feeds.items():
-        if feed != INLET and found.feeds[feed] != INLET:
-            raise t.error(f"{jacket} is the third jacket in a row", "at most two in a row")
+    for jacket in jackets:
+        if INLET not in found.before(jacket):
+            raise t.error(f"{jacket} is fed by itself", "an inlet that no jacket feeds")
     for table in (*ports.values(), t):
         table.close()
     return found
@@ -127,49 +134,49 @@ def jacket_film(machine: Any, jacket: str, cooling: Cooling) -> Law:
     return Interpolated(FLOW, at, tuple(channel.film(share * q, fluid) for q in at))
 
 
+def outlet_film(machine: Any, network: Network, cell: str, cooling: Cooling) -> Law:
+    """W/m2/K over the inlet's flow, onto the temperature at which the coolant leaves a cell."""
+    at = np.array(_flows(cooling))
+    film, rate = np.array(jacket_film(machine, stem(cell), cooling).factor({FLOW: at})), _rate(stem(cell), cooling)
+    wet = sum(p.area or 0.0 for p in network.places.values() if p.kind == "surface" and p.fluid == cell)
+    units = np.minimum(np.divide(film * wet, rate, out=np.zeros_like(rate), where=rate > 0), MOST_UNITS)
+    return Interpolated(FLOW, tuple(at), tuple(film * grown(units)))
+
+
+def grown(units: np.ndarray) -> np.ndarray:
+    """(e^N - 1) / N for N transfer units, 1 without."""
+    return np.where(units > 0, np.expm1(units) / np.where(units > 0, units, 1.0), 1.0)
+
+
 def coolant_streams(machine: Any, network: Network, cooling: Cooling) -> list[Link]:
-    """One stream per jacket."""
-    return [link for jacket in cooling.feeds for link in _cell(machine, network, jacket, cooling)]
-
-
-def _cell(machine: Any, network: Network, jacket: str, cooling: Cooling) -> list[Link]:
-    """From the inlet, or from the outlet of the jacket before: T_in = T_0 + (T_before - T_0) / phi_before."""
-    own, feed = network.column(jacket), cooling.feeds[jacket]
-    rate, phi = _rates(machine, network, jacket, cooling)
-    at = _flows(cooling)
-    if feed == INLET:
-        return [
-            _stream(f"stream:{jacket}", feed, jacket, own, network.column(INLET), Interpolated(FLOW, at, rate / phi))
-        ]
-    before = _rates(machine, network, feed, cooling)[1]
-    first, last = network.column(INLET), network.column(feed)
+    """Every cell takes up m cp (T - T of the cell before); before a jacket's first is the inlet or another jacket."""
+    cells = {jacket: cells_of(machine, jacket) for jacket in cooling.feeds}
+    last = {jacket: own[-1] for jacket, own in cells.items()} | {INLET: INLET}
     return [
-        _stream(f"stream:{jacket}", feed, jacket, own, first, Interpolated(FLOW, at, rate / phi)),
-        _stream(f"stream:{jacket}:from", feed, jacket, first, last, Interpolated(FLOW, at, rate / phi / before), own),
+        _stream(network, feed, cell, Interpolated(FLOW, _flows(cooling), tuple(_rate(jacket, cooling))))
+        for jacket, own in cells.items()
+        for feed, cell in zip((last[cooling.feeds[jacket]], *own), own)
     ]
 
 
-def _stream(name: str, feed: str, jacket: str, plus: int, minus: int, law: Law, row: int | None = None) -> Link:
-    """law (T_plus - T_minus) leaves `row` (default: plus)."""
-    at = plus if row is None else row
-    one = np.array([1.0])
+def _stream(network: Network, feed: str, cell: str, law: Law) -> Link:
+    own, before, one = network.column(cell), network.column(feed), np.array([1.0])
     return Link(
-        name, "stream", (feed, jacket), np.array([at, at]), np.array([plus, minus]), np.array([1.0, -1.0]), law,
-        Row(np.array([plus]), one), Row(np.array([minus]), one),
+        f"stream:{cell}", "stream", (feed, cell), np.array([own, own]), np.array([own, before]), np.array([1.0, -1.0]),
+        law, Row(np.array([own]), one), Row(np.array([before]), one),
     )  # fmt: skip
 
 
-def _rates(machine: Any, network: Network, jacket: str, cooling: Cooling) -> tuple[np.ndarray, np.ndarray]:
-    """Heat capacity rate m cp (W/K) and phi at the flows of the tables."""
-    fluid, at = cooling.liquid, np.array(_flows(cooling))
-    wet = sum(p.area or 0.0 for p in network.places.values() if p.kind == "surface" and p.fluid == jacket)
-    rate = fluid.rho * fluid.cp * at * cooling.share(jacket) / 60000.0
-    film = np.array(jacket_film(machine, jacket, cooling).factor({FLOW: at}))
-    return rate, mean_share(np.divide(film * wet, rate, out=np.full_like(rate, 1e9), where=rate > 0))
+def outlets(machine: Any, network: Network, cooling: Cooling) -> dict[str, Place]:
+    """ "JACKET.outlet": where a thermocouple reads the coolant that leaves."""
+    last = {jacket: network.column(cells_of(machine, jacket)[-1]) for jacket in cooling.feeds}
+    return {
+        f"{jacket}.outlet": Place(f"{jacket}.outlet", "fluid", jacket, np.array([k]), np.ones((1, 1)), np.ones(1))
+        for jacket, k in last.items()
+    }
 
 
-def mean_share(N: np.ndarray) -> np.ndarray:
-    """phi = (T_mean - T_in) / (T_out - T_in) along a wall of one temperature, N transfer units: 1/2 to 1."""
-    small = np.minimum(N, 1e-3)
-    exact = 1.0 / -np.expm1(-np.maximum(N, 1e-3)) - 1.0 / np.maximum(N, 1e-3)
-    return np.where(N < 1e-3, 0.5 + small / 12.0, exact)
+def _rate(jacket: str, cooling: Cooling) -> np.ndarray:
+    """Heat capacity rate m cp (W/K) at the flows of the tables."""
+    fluid = cooling.liquid
+    return fluid.rho * fluid.cp * np.array(_flows(cooling)) * cooling.share(jacket) / 60000.0

@@ -13,6 +13,7 @@ from lumped.laws import Inputs, Law, Radiation, Table
 from lumped.motor_air import Duct, channel_film, duct_of, gap_film, stirred
 from lumped.motor_coolant import Cooling, cooling_of, jacket_film
 from lumped.motor_outer import outer_films
+from lumped.motor_path import stem
 from lumped.motor_settings import Fan, Films, read_fan, read_films
 from lumped.motor_shapes import Gap, gap_of, turning
 
@@ -64,8 +65,8 @@ def face_films(part: str, fluid: str, around: Surroundings) -> dict[str, Law]:
     films, gap = around.films, around.gap
     if fluid == "ambient":
         return outer_films(around.machine, part, films)
-    if around.cooling is not None and fluid in around.cooling.feeds:
-        return {"": jacket_film(around.machine, fluid, around.cooling)}
+    if around.cooling is not None and stem(fluid) in around.cooling.feeds:
+        return {"": jacket_film(around.machine, stem(fluid), around.cooling)}
     if gap is None:
         return {}
     if fluid == "airgap":

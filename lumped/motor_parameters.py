@@ -7,6 +7,7 @@ from typing import Any
 
 from geom.errors import InputError
 from lumped.motor_air import BETWEEN_POLES
+from lumped.motor_path import stem
 from lumped.network import Link, Network, Parameter, Place, Source
 from lumped.reader import known
 
@@ -36,7 +37,7 @@ def _films(faces: Sequence[Place], films: Sequence[Link]) -> list[Parameter]:
     """Outer faces part by part, inner faces by the fluid that washes them."""
     groups: dict[str, list[tuple[str, float]]] = {}
     for face in faces:
-        group = face.part if face.fluid == "ambient" else str(face.fluid)
+        group = face.part if face.fluid == "ambient" else stem(str(face.fluid))
         groups.setdefault(group, []).extend((link.name, 1.0) for link in films if link.places[0] == face.name)
     return [
         Parameter(f"h.{group}", tuple(acts), prior_sd=0.3, low=0.1, high=10.0, source="spread of film correlations")

@@ -97,6 +97,13 @@ class Reduction:
         rng, spread = np.random.default_rng([self.recipe.seed, seed]), self.recipe.spread
         return self.at(f"random {seed}", drawn(self.films, spread, rng), drawn(self.contacts, spread, rng))
 
+    def extreme_point(self, seed: int) -> FullPoint:
+        """A third of the films x10, a third of the contacts x5 and a third x0.2: what one change alone can reach."""
+        rng = np.random.default_rng([self.recipe.seed, seed, 1])
+        films = {face: h * rng.choice([1.0, 1.0, 10.0]) for face, h in self.films.items()}
+        contacts = {name: g * rng.choice([1.0, 5.0, 0.2]) for name, g in self.contacts.items()}
+        return self.at(f"extreme {seed}", films, contacts)
+
     def enriched(self, points: Sequence[FullPoint]) -> Reduction:
         """The same with the solutions of these points among its snapshots."""
         S = np.column_stack([p.X for p in points])

@@ -158,7 +158,7 @@ def _at(z: Array, row: object) -> float:
 
 
 def fluid_nodes(network: Network) -> tuple[str, ...]:
-    return tuple(p.name for p in network.places.values() if p.kind == "fluid")
+    return tuple(p.name for p in network.places.values() if p.kind == "fluid" and p.name in network.states)
 
 
 def crosscheck(

@@ -17,6 +17,7 @@ from fem.assembly import FieldModel
 from geom import Machine
 from geom.areas import PartRow, part_table
 from lumped.correlations.windings import mellor
+from lumped.motor_path import stem
 from thermoscope.crosscheck import CrossCheck
 
 SEGMENTS = 96  # chords per turn: 0.07 % of a disc
@@ -50,10 +51,15 @@ def hand_rows(machine: Machine, field: FieldModel, check: CrossCheck) -> list[Ha
 
 
 def _films(rows: Mapping[str, PartRow], field: FieldModel, films: Mapping[str, float]) -> Iterator[HandRow]:
-    for face, film in field.films.items():
-        area = rows[film.trace.part].faces.get(face, 0.0)
-        if films.get(face, 0.0) > 0 and area > 0:
-            yield HandRow(f"film:{face}", "1/(h A)", 1 / (films[face] * area), 1 / (films[face] * film.trace.area))
+    cells: dict[str, list[str]] = {}
+    for cell in field.films:
+        cells.setdefault(stem(cell), []).append(cell)
+    for face, own in cells.items():
+        exact = rows[field.films[own[0]].trace.part].faces.get(face, 0.0)
+        areas = np.array([field.films[cell].trace.area for cell in own])
+        G = float(areas @ [films.get(cell, 0.0) for cell in own])
+        if G > 0 and exact > 0:
+            yield HandRow(f"film:{face}", "1/(h A)", areas.sum() / (G * exact), 1 / G)
 
 
 def _contacts(rows: Mapping[str, PartRow], field: FieldModel, contacts: Mapping[str, float]) -> Iterator[HandRow]:

@@ -11,11 +11,13 @@ import numpy as np
 
 from fem.assembly import FieldModel, HasTensor, assemble
 from fem.material import Conductivity, LoopWound
+from fem.streams import cut
 from fem.winding import homogenised
 from geom import Machine, NamedMesh, build_mesh
 from geom.materials import Material
 from geom.shapes import evenly
 from lumped.motor import boundaries, fluids, motor_network, nominal_coefficients
+from lumped.motor_path import path_of
 from lumped.network import Network
 from lumped.reduction import Recipe, Reduction, reduce
 from lumped.zone import Zone
@@ -84,10 +86,18 @@ class Prepared:
 def prepared(machine: Machine, size_m: float, segments: int, progress: Progress = silent) -> Prepared:
     """Mesh and conduction."""
     progress("mesh")
-    mesh = build_mesh(machine, size_m=size_m, segments=segments, cache=cache_folder())
+    mesh = with_cells(machine, build_mesh(machine, size_m=size_m, segments=segments, cache=cache_folder()))
     progress(f"conduction on {len(mesh.points)} points")
     faces = {name: (patch.part, patch.fluid) for name, patch in mesh.patches.items()}
     return Prepared(machine, mesh, field_of(machine, mesh), *nominal_coefficients(machine, faces, mesh.contacts))
+
+
+def with_cells(machine: Machine, mesh: NamedMesh) -> NamedMesh:
+    """The mesh with the walls of every jacket cut along the way of its coolant."""
+    for jacket in (part.name for part in machine.fluids if part.material != "air"):
+        path = path_of(machine, jacket)
+        mesh = cut(mesh, jacket, path.along, path.cells)
+    return mesh
 
 
 def reduced(ready: Prepared, recipe: Recipe, zones: Mapping[str, Zone] | None = None) -> Reduction:

@@ -16,8 +16,9 @@ from lumped.network import Network
 from lumped.reduction import Recipe, Reduction
 from thermoscope.pipeline import Built, Progress, prepared, reduced, silent
 
-FINE = Recipe(tolerance=0.01)
+FINE = Recipe(tolerance=0.01, random_points=8)
 ROUNDS = 3
+LOOKS = 3  # random points, and extreme ones, at which every size is checked
 
 
 @dataclass(frozen=True)
@@ -61,7 +62,8 @@ def sized(
     reduction = reduced(ready, recipe, motor_zones(machine))
     cases, wish = load_cases(machine, reduction), wish_of(accuracy)
     progress("error against number of states")
-    points = [reduction.nominal_point(), *(reduction.random_point(k) for k in range(3))]
+    points = [reduction.nominal_point(), *(reduction.random_point(k) for k in range(LOOKS))]
+    points += [reduction.extreme_point(k) for k in range(LOOKS)]
     table = tuple(Size.of(reduction, asked, points, cases, wish) for asked in SIZES)
     good = [size for size in table if size.met]
     found = None if good else adapt(reduction, cases, wish, rounds, points=points, tell=progress)

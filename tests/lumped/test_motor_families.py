@@ -10,10 +10,11 @@ from geom import library, load_machine
 from geom.errors import InputError
 from lumped.condensed import network_in
 from lumped.motor import boundaries, fluids, motor_network, operating_point
-from lumped.motor_coolant import channel_of, cooling_of, mean_share
+from lumped.motor_coolant import channel_of, cooling_of, jacket_film
 from lumped.motor_films import surroundings
 from lumped.motor_losses import _declared, loss_watts
 from lumped.motor_outer import cowl_of, outer_of
+from lumped.motor_path import path_of
 from lumped.motor_shapes import fins_of, turning
 from lumped.motor_zones import motor_zones
 from lumped.multipliers import multipliers
@@ -119,24 +120,55 @@ def test_what_turns_hangs_on_the_shaft(ready):
     assert turning(ready["tefc-industrial"].mesh.contacts) == {"shaft", "rotor.core", "rotor.cage"}
 
 
-def test_jacket_cell_is_the_exact_exponential():
-    """A wall of one temperature warms the coolant by 1 - exp(-N): Incropera 8.41b."""
-    N = np.array([1e-5, 0.01, 0.5, 2.0, 20.0])
-    phi = mean_share(N)
-    effectiveness = N / (1 + N * phi)  # from h A (T_wall - T_mean) = m cp (T_out - T_in)
-    assert effectiveness == pytest.approx(1 - np.exp(-N), rel=1e-6)
+def test_coolant_warms_by_the_exact_exponential_along_walls_of_one_temperature(networks):
+    """T(x) = T_wall - (T_wall - T_in) exp(-h A(x) / mcp) at the end of every cell, at any flow: Incropera 8.41b."""
+    network, machine = networks["ipmsm-48s8p-jacket"], load_machine("ipmsm-48s8p-jacket")
+    cells = [name for name in network.states if name.startswith("jacket@")]
+    wall, cooling = 80.0, cooling_of(machine)
+    for flow in (1.0, 5.0, 12.0):
+        at, T, area = {"flow_l_min": np.array([flow])}, 20.0, 0.0
+        rate = cooling.liquid.rho * cooling.liquid.cp * flow / 60000.0
+        h = float(jacket_film(machine, "jacket", cooling).factor(at)[0])
+        for cell in cells:
+            (film,) = (link for link in network.links if link.kind == "film" and link.places[1] == cell)
+            (stream,) = (link for link in network.links if link.name == f"stream:{cell}")
+            own = network.place(film.places[0]).area
+            area += own
+            G = own * float(film.law.factor(at)[0])
+            assert float(stream.law.factor(at)[0]) == pytest.approx(rate, rel=2e-3)
+            T = (rate * T + G * wall) / (rate + G)
+            # The law's table is piecewise linear in the flow.
+            assert wall - T == pytest.approx((wall - 20.0) * np.exp(-h * area / rate), rel=2e-3)
 
 
 def test_jacket_takes_up_what_the_coolant_carries(networks):
-    """Steady: losses = heat to ambient + m cp (T_out - T_in); twice the flow warms half as much."""
+    """Steady: losses = heat to ambient + m cp (T_out - T_in); twice the flow warms half as much, turn after turn."""
     network = networks["ipmsm-48s8p-jacket"]
-    rise = []
+    carried = []
     for flow in (5.0, 10.0):
         found = rest(network, current_A=100.0, speed_rpm=3000.0, flow_l_min=flow)
-        (stream,) = (link for link in network.links if link.name == "stream:jacket")
-        rate = float(stream.law.factor({"flow_l_min": np.array([flow])})[0])
-        rise.append(rate * (found["jacket"] - 20.0))
-    assert rise[1] == pytest.approx(rise[0], rel=0.05), "nearly all heat goes to the coolant"
+        along = [found[f"jacket@{k}"] for k in range(6)]
+        assert np.all(np.diff([20.0, *along]) > 0)
+        (stream,) = (link for link in network.links if link.name == "stream:jacket@5")
+        outlet = network.place("jacket.outlet").mean
+        assert found.z[outlet.index[0]] == along[-1]
+        carried.append(float(stream.law.factor({"flow_l_min": np.array([flow])})[0]) * (along[-1] - 20.0))
+    assert carried[1] == pytest.approx(carried[0], rel=0.05), "nearly all heat goes to the coolant"
+
+
+def test_walls_are_cut_along_the_way_of_the_coolant(ready):
+    """Turn by turn from the inlet; channel by channel around the axis; the cells have the area of the whole wall."""
+    films = ready["ipmsm-48s8p-jacket"].field.films
+    walls = [films[f"jacket.wall@{k}"].trace for k in range(6)]
+    z = [float(t.b @ ready["ipmsm-48s8p-jacket"].field.xyz[t.dofs, 2]) / t.area for t in walls]
+    assert np.all(np.diff(z) > 0.015)
+    assert max(t.area for t in walls) < 1.1 * min(t.area for t in walls)
+    zigzag = load_machine("series-dc-100kw-jacket-one")
+    path = path_of(zigzag, "jacket.left")
+    around = np.array([np.pi / 2, np.pi / 2 + 0.5, np.pi + 1.0, np.pi / 2 - 0.2])  # starts at the top, anticlockwise
+    come = path.along(np.column_stack([np.cos(around), np.sin(around), 0 * around]))
+    assert path.cells == 6
+    assert np.all(np.diff(come) > 0)
 
 
 def test_jackets_side_by_side_or_one_after_the_other():
@@ -149,6 +181,9 @@ def test_jackets_side_by_side_or_one_after_the_other():
     cooling = cooling_of(replace(machine, sections={**machine.sections, "cooling": joined}))
     assert cooling.feeds["jacket.right"] == "jacket.left"
     assert cooling.share("jacket.right") == 1.0
+    joined["jacket.left"] = {"inlet": "out", "outlet": "jacket.left.outlet"}
+    with pytest.raises(InputError, match=r"is fed by itself.*an inlet that no jacket feeds"):
+        cooling_of(replace(machine, sections={**machine.sections, "cooling": joined}))
 
 
 def test_spiral_channel_by_hand():
