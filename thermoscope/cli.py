@@ -101,11 +101,44 @@ def remove(case: Case, effect: Effect, json: Json = None) -> None:
 
 
 @app.command()
-def calibrate(case: Case, anyway: Anyway = False, json: Json = None) -> None:
-    """Fit the declared parameters to the calibration tests, with intervals and what the data cannot identify."""
-    from thermoscope.commands.revise import calibrate as run
+def undo(
+    case: Case,
+    to: Annotated[int | None, typer.Option(min=0, help="Revision; 0 is the model as declared. Else the last.")] = None,
+    json: Json = None,
+) -> None:
+    """Step back: one revision more, equal to an earlier one. The history stays whole."""
+    from thermoscope.commands.revise import undo as run
 
-    raise typer.Exit(run(case, anyway, json))
+    raise typer.Exit(run(case, to, json))
+
+
+@app.command()
+def improve(
+    case: Case,
+    yes: Annotated[bool, typer.Option("--yes", help="Do not ask; add only effects that stand alone.")] = False,
+    draws: Annotated[int, typer.Option(min=10, help="Data sets of the simulated null.")] = 60,
+    most: Annotated[int, typer.Option(min=1, help="Effects to add at most.")] = 6,
+    json: Json = None,
+) -> None:
+    """Diagnose, ask, add, again, until the model is adequate. Exit code 1 if it stops before."""
+    from thermoscope.commands.improve import improve as run
+
+    raise typer.Exit(run(case, yes, draws, most, json))
+
+
+@app.command()
+def calibrate(
+    case: Case,
+    anyway: Anyway = False,
+    profile: Annotated[list[str] | None, typer.Option(metavar="GLOB", help="Profile these parameters too.")] = None,
+    starts: Annotated[int, typer.Option(min=1, help="Fits from so many points of the prior.")] = 1,
+    seed: Annotated[int, typer.Option(help="Of the points.")] = 0,
+    json: Json = None,
+) -> None:
+    """Fit the declared parameters to the calibration tests, with intervals and what the data cannot identify."""
+    from thermoscope.commands.calibrate import calibrate as run
+
+    raise typer.Exit(run(case, anyway, json, tuple(profile or ()), starts, seed))
 
 
 @app.command()

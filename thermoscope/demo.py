@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING, Any
 
 from geom.errors import InputError
 from thermoscope.commands.build import build
+from thermoscope.commands.calibrate import calibrate
 from thermoscope.commands.compare import compare
 from thermoscope.commands.diagnose import diagnose
 from thermoscope.commands.opened import opened
-from thermoscope.commands.revise import add, calibrate
+from thermoscope.commands.revise import add
 from thermoscope.commands.saved import saved_diagnosis
 from thermoscope.commands.show import render, report
 from thermoscope.folder import find_case

@@ -27,12 +27,13 @@ ROLES = ("calibrate", "validate", "hold-out")
 
 @dataclass(frozen=True)
 class Entry:
-    """A test as case.toml lists it."""
+    """A test as case.toml lists it.  frees : globs of the parameters it is to fix before the others are fitted"""
 
     name: str
     role: Role
     file: Path
     sheet: Path
+    frees: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -102,9 +103,11 @@ def _entry(path: Path, name: str, table: Table) -> Entry:
     file = path / table.word("file", f"tests/{name}.csv")
     plain = file.with_suffix("") if file.suffix == ".gz" else file
     role, beside = table.word("role", None, ROLES), plain.with_suffix(".toml")
-    sheet = path / table.word("sheet") if "sheet" in table else beside
+    sheet, frees = path / table.word("sheet") if "sheet" in table else beside, table.words("frees", [])
+    if frees and role != "calibrate":
+        raise table.error(f"frees parameters though its role is {role}", 'role = "calibrate"')
     table.close()
-    return Entry(name, role, plain, sheet)  # type: ignore[arg-type]
+    return Entry(name, role, plain, sheet, tuple(frees))  # type: ignore[arg-type]
 
 
 def load_case(path: str | Path, progress: Progress = lambda message: None, bare: bool = False) -> Folder:
@@ -121,7 +124,8 @@ def load_case(path: str | Path, progress: Progress = lambda message: None, bare:
         read_test(e.name, e.role, samples[e.name], sheets[e.name], network, settings.sample_s) for e in settings.tests
     ]
     notes = tuple(dict.fromkeys(note for _, doubts in read for note in doubts))
-    tests = tuple(_allowing(test, settings.model_K) for test, _ in read)
+    frees = {e.name: e.frees for e in settings.tests}
+    tests = tuple(replace(_allowing(test, settings.model_K), frees=frees[test.name]) for test, _ in read)
     case = Case(settings.name, _model(network, history), tests, _free(network, settings))
     return Folder(settings, _checked(case, history), history, notes, _positions(sheets.values()), built)
 

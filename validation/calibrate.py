@@ -16,6 +16,7 @@ from validation.sheet import INSTANTS, Segment, segments
 
 Array = NDArray[np.float64]
 Progress = Callable[[str], None]
+Keep = Callable[[Mapping[str, float]], None]
 STATIONARY = 0.1  # of a posterior standard deviation
 WORTH = 0.005  # nats: one tenth of a posterior standard deviation
 FORETOLD = 0.7  # of the predicted gain: a Jacobian that delivers less is made anew
@@ -23,6 +24,10 @@ FORETOLD = 0.7  # of the predicted gain: a Jacobian that delivers less is made a
 
 def silent(message: str) -> None:
     """No progress."""
+
+
+def forgets(values: Mapping[str, float]) -> None:
+    """Nothing is kept between steps."""
 
 
 @dataclass(frozen=True)
@@ -100,16 +105,20 @@ def minimise(
     progress: Progress = silent,
     start: Sequence[Segment] | None = None,
     draft: bool = False,
+    keep: Keep = forgets,
 ) -> Fit:
     """Fit `unknowns` to the tests from `theta` under a given noise (by default that of uncalibrated sensors).
 
     The Jacobian costs ten times a run, so it is held as long as steps do what it foretells, and made anew before the
-    end (unless `draft`); `start`: segments whose Jacobian at a state nearby is good enough, then it is never made anew.
+    end (unless `draft`); `start`: segments whose Jacobian at a state nearby is good enough, then it is never made anew;
+    `keep` is told the values after every step, so that an interrupted fit can go on from there.
     """
     climb = Climb(network, tests, unknowns, dict(fixed or {}), instants, theta, noise, start, draft)
     for iteration in range(iterations):
         progress(f"calibration step {iteration + 1}, objective {climb.objective:.4g}")
-        if climb.step():
+        done = climb.step()
+        keep(unknowns.values(climb.theta))
+        if done:
             break
     return climb.fit()
 
@@ -214,10 +223,13 @@ def calibrated(
     rounds: int = 2,
     progress: Progress = silent,
     noise: Noise | None = None,
+    keep: Keep = forgets,
 ) -> Fit:
     """Calibrate, estimate the noise from the residual, calibrate again under it; `rounds` times."""
     held = {p.name: values.get(p.name, p.value) for p in network.parameters}
-    fit = minimise(network, tests, unknowns, unknowns.coordinates(values), noise, held, progress=progress)
+    fit = minimise(network, tests, unknowns, unknowns.coordinates(values), noise, held, progress=progress, keep=keep)
     for _ in range(rounds):
-        fit = minimise(network, tests, unknowns, fit.theta, fit_noise(fit.parts), held, 10, progress=progress)
+        fit = minimise(
+            network, tests, unknowns, fit.theta, fit_noise(fit.parts), held, 10, progress=progress, keep=keep
+        )
     return fit

@@ -44,6 +44,7 @@ class Test:
     boundaries : boundary name -> (n_time,) degC
     initial : degC for the whole machine, or per place
     role : calibrate (parameters are fitted to it), validate (effects are chosen with it), hold-out (only predicted)
+    frees : globs of the parameters that this test alone is to fix, before the others are fitted
     """
 
     name: str
@@ -53,6 +54,7 @@ class Test:
     boundaries: Mapping[str, Array]
     channels: tuple[Channel, ...]
     initial: float | Mapping[str, float] = 20.0
+    frees: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -14,10 +14,11 @@ from validation.case import AddedEffect, Case
 from validation.evidence import Evidence, calibrated_case, candidates, null_of, possible, scored
 from validation.experiments import next_tests
 from validation.faults import broken_channels
-from validation.findings import Candidate, Decision, Diagnosis, Hidden, NextTest, Verdict
+from validation.findings import Candidate, Decision, Diagnosis, Hidden, NextSensor, NextTest, Verdict
 from validation.fitting import working
 from validation.null import Null
 from validation.rivals import Race, constancy, race
+from validation.sensors import next_sensors
 from validation.sheet import rmse, segments
 from validation.where import Latent, latent_heat
 
@@ -114,7 +115,7 @@ def conclude(case: Case, steps: list[Step], null: Null, limit: float, where: lis
     return Diagnosis(
         verdict, words(verdict, groups, table, pulls, broken, where), tuple(g[0] for g in groups), tuple(groups), table,
         unseen(first, null), tuple(where), ahead, rmse(first.evidence.fit.parts), floor, limit, pulls,
-        confusion(first, [c.effect for c in table[:12]]),
+        confusion(first, [c.effect for c in table[:12]]), sensed(steps) if plan else (), float(np.median(null.kappa)),
     )  # fmt: skip
 
 
@@ -215,7 +216,7 @@ def plain(step: Step, k: int, limit: float) -> Candidate:
         e.names[k], float(s.z[k]) / kappa, limit, a, e.parameters[k].unit, (a - half, a + half),
         "cannot-tell" if hidden else "no", confused_with=tuple(near), absorbed=float(s.absorbed[k]),
         smallest_detectable=float(s.detectable(step.kappa)[k]), twin=twin, title=e.effects[k].title,
-        isolating_test=e.effects[k].isolating_test,
+        isolating_test=e.effects[k].isolating_test, kappa=kappa,
     )  # fmt: skip
 
 
@@ -261,12 +262,28 @@ def unseen(step: Step, null: Null) -> tuple[Hidden, ...]:
 
 def planned(steps: list[Step], null: Null) -> tuple[NextTest, ...]:
     """Tests that would separate the first group that could not be separated."""
+    for step, group, size in unresolved(steps):
+        return tuple(next_tests(step.evidence, group, size, step.kappa))
+    return ()
+
+
+def sensed(steps: list[Step]) -> tuple[NextSensor, ...]:
+    """Sensors that would separate the same group."""
+    for step, group, size in unresolved(steps):
+        return tuple(next_sensors(step.evidence, group, size, step.kappa))
+    return ()
+
+
+def unresolved(steps: list[Step]) -> Iterator[tuple[Step, tuple[int, ...], dict[int, float]]]:
+    """Groups that could not be separated, with the amplitude of each member."""
     for step in steps:
         if step.race and len(step.race.group) > 1:
             found = step.race
-            size = {k: found.fits[found.index.index(k)].values[step.evidence.names[k]] for k in found.group}
-            return tuple(next_tests(step.evidence, found.group, size, step.kappa))
-    return ()
+            yield (
+                step,
+                found.group,
+                {k: found.fits[found.index.index(k)].values[step.evidence.names[k]] for k in found.group},
+            )
 
 
 def confusion(step: Step, names: Sequence[str]) -> dict[str, dict[str, float]]:

@@ -22,6 +22,7 @@ class Candidate:
     rmse_K, holdout_rmse_K : (before, after) on the tests used and on the held-out ones, where it was refitted
     absorbed : share of its trace that the calibration takes;  twin : the calibrated parameter that does the same
     same_over_tests : probability that one amplitude in all tests differs as much as seen
+    kappa : factor on its formal standard deviation, from the simulated null
     """
 
     effect: str
@@ -42,6 +43,7 @@ class Candidate:
     title: str = ""
     isolating_test: str = ""
     note: str = ""
+    kappa: float = 1.0
 
     def document(self) -> dict:
         out = {k: v for k, v in vars(self).items() if k not in ("value", "unit", "ci95", "rmse_K", "holdout_rmse_K")}
@@ -82,8 +84,25 @@ class NextTest:
 
 
 @dataclass(frozen=True)
+class NextSensor:
+    """A further thermocouple in the same tests: the pairs it would set apart and the deviance by which."""
+
+    place: str
+    separates: tuple[str, ...]
+    predicted_gain: float
+    hours: float
+    why: str = ""
+
+    def document(self) -> dict:
+        return {**vars(self), "separates": list(self.separates)}
+
+
+@dataclass(frozen=True)
 class Diagnosis:
-    """The answer. named : the effects to add, best first (one per group); words : the verdict in a sentence."""
+    """The answer. named : the effects to add, best first (one per group); words : the verdict in a sentence.
+
+    kappa : the typical factor of the simulated null on formal standard deviations
+    """
 
     verdict: Verdict
     words: str
@@ -98,6 +117,8 @@ class Diagnosis:
     threshold: float
     pulls: tuple[tuple[str, float, float], ...] = ()
     cosine: dict[str, dict[str, float]] = field(default_factory=dict)
+    next_sensors: tuple[NextSensor, ...] = ()
+    kappa: float = 1.0
 
     def document(self) -> dict:
         return {
@@ -109,6 +130,8 @@ class Diagnosis:
             "cannot_see": [h.document() for h in self.cannot_see],
             "where": [w.document() for w in self.where],
             "next_tests": [t.document() for t in self.next_tests],
+            "next_sensors": [t.document() for t in self.next_sensors],
+            "kappa": self.kappa,
             "rmse_K": self.rmse_K,
             "floor_K": self.floor_K,
             "threshold": self.threshold,

@@ -9,32 +9,18 @@ import numpy as np
 
 from geom.errors import InputError
 from lumped.network import Parameter
-from validation.calibrate import Fit, calibrated, silent
+from validation.calibrate import Fit, silent
 from validation.case import AddedEffect, Case, Model, Test
 from validation.compare import Comparison, compare
 from validation.effects import effect
-from validation.fitting import scene_of, to_value, working
+from validation.fitting import scene_of, working
+from validation.gates import Gate, doubts, gates
+from validation.intervals import FORMAL, Estimate, Profile, Widening, estimates
+from validation.profile import profiles
+from validation.staged import Search, belongs, fitted, merged
 
 Progress = Callable[[str], None]
-UNSEEN = 0.9
 GETS_WORSE = 1.05
-
-
-@dataclass(frozen=True)
-class Estimate:
-    """A fitted parameter. prior : (median, low, high) of its central 95 %; identified: the data narrowed the prior."""
-
-    name: str
-    value: float
-    unit: str
-    ci95: tuple[float, float]
-    prior: tuple[float, float, float]
-    identified: bool
-    partner: str | None = None
-    at_bound: bool = False
-
-    def document(self) -> dict:
-        return {**vars(self), "ci95": list(self.ci95), "prior": list(self.prior)}
 
 
 @dataclass(frozen=True)
@@ -64,6 +50,7 @@ class Revision:
     before: Comparison
     after: Comparison
     converged: bool
+    gates: tuple[Gate, ...] = ()
 
     @property
     def revision(self) -> int:
@@ -79,17 +66,26 @@ class Revision:
             "converged": self.converged,
             "tests": [t.document() for t in self.tests],
             "parameters": [p.document() for p in self.parameters],
+            "gates": [g.document() for g in self.gates],
         }
 
 
 def calibrate(
-    case: Case, roles: Sequence[str] = ("calibrate",), kappa: float = 1.0, progress: Progress = silent
+    case: Case,
+    roles: Sequence[str] = ("calibrate",),
+    wide: Widening = FORMAL,
+    progress: Progress = silent,
+    profiled: Sequence[str] = (),
+    search: Search | None = None,
 ) -> Revision:
-    """Fit the free parameters to the tests of the given roles. kappa widens the intervals (see null.py)."""
-    return _revised(case, case.model, "calibrate", None, roles, kappa, progress)
+    """Fit the free parameters to the tests of the given roles, stage by stage where tests free their own.
+
+    wide : factors on the intervals from a simulated null;  profiled : globs of parameters to profile
+    """
+    return _revised(case, case.model, "calibrate", None, roles, wide, progress, profiled, search)
 
 
-def add(case: Case, name: str, kappa: float = 1.0, progress: Progress = silent) -> Revision:
+def add(case: Case, name: str, wide: Widening = FORMAL, progress: Progress = silent) -> Revision:
     """Add effect 'kind@place' and calibrate on all tests but the held-out ones."""
     one = effect(name, scene_of(case))
     if name in {e.name for e in case.model.effects}:
@@ -97,10 +93,10 @@ def add(case: Case, name: str, kappa: float = 1.0, progress: Progress = silent) 
             f"'{name}' is in the model already", f"case '{case.name}'", "another effect, or `remove` it first"
         )
     model = replace(case.model, effects=(*case.model.effects, AddedEffect(one.kind, one.place)))
-    return _revised(case, model, "add", name, ("calibrate", "validate"), kappa, progress)
+    return _revised(case, model, "add", name, ("calibrate", "validate"), wide, progress)
 
 
-def remove(case: Case, name: str, kappa: float = 1.0, progress: Progress = silent) -> Revision:
+def remove(case: Case, name: str, wide: Widening = FORMAL, progress: Progress = silent) -> Revision:
     """Take an effect out and calibrate on all tests but the held-out ones."""
     left = tuple(e for e in case.model.effects if e.name != name)
     if len(left) == len(case.model.effects):
@@ -108,33 +104,60 @@ def remove(case: Case, name: str, kappa: float = 1.0, progress: Progress = silen
         raise InputError(f"'{name}' is not in the model", f"case '{case.name}'", f"its effects: {known}")
     values = {k: v for k, v in case.model.values.items() if k != name}
     model = replace(case.model, effects=left, values=values)
-    return _revised(case, model, "remove", name, ("calibrate", "validate"), kappa, progress)
+    return _revised(case, model, "remove", name, ("calibrate", "validate"), wide, progress)
 
 
 def _revised(
-    case: Case, model: Model, action: str, name: str | None, roles: Sequence[str], kappa: float, progress: Progress
-) -> Revision:
+    case: Case, model: Model, action: str, name: str | None, roles: Sequence[str], wide: Widening, progress: Progress,
+    profiled: Sequence[str] = (), search: Search | None = None,
+) -> Revision:  # fmt: skip
     before = compare(case)
     tests = [t for t in case.tests if t.role in roles]
     if not tests:
         raise InputError(
             f"no test has the role {' or '.join(roles)}", f"case '{case.name}'", "give at least one that role"
         )
-    fit = fitted(replace(case, model=model), tests, progress)
-    new = replace(model, values={**model.values, **fit.values}, revision=case.model.revision + 1)
+    grown = replace(case, model=model)
+    fits = fitted(grown, tests if action == "calibrate" else _plain(tests), start(grown), search, progress)
+    new = replace(model, values=_values(model, fits), revision=case.model.revision + 1)
     after = compare(replace(case, model=new))
     changes = tuple(Change(b.name, b.role, b.rmse_K, a.rmse_K) for b, a in zip(before.tests, after.tests, strict=True))
-    accepted, why = judge(action, changes, fit, name)
-    return Revision(action, name, new, accepted, why, changes, estimates(fit, kappa), before, after, fit.converged)
+    checks = gates(fits[-1], name, wide.of(name)) if action == "add" and name else ()
+    accepted, why = judge(action, changes, fits, checks)
+    rows = merged(fits, lambda fit: estimates(fit, wide, _profiled(fit, tests, new, profiled, wide, progress)))
+    converged = all(fit.converged for fit in fits)
+    return Revision(action, name, new, accepted, why, changes, tuple(rows), before, after, converged, checks)
 
 
-def fitted(case: Case, tests: Sequence[Test], progress: Progress = silent) -> Fit:
-    """The case's free parameters fitted to some tests, from where the model stands."""
-    network, unknowns = working(case)
-    start = dict(case.model.values)
+def _plain(tests: Sequence[Test]) -> list[Test]:
+    """The tests without stages: an effect is judged on all of them together."""
+    return [replace(t, frees=()) for t in tests]
+
+
+def _values(model: Model, fits: Sequence[Fit]) -> dict[str, float]:
+    """The model's values with those of every stage."""
+    out = dict(model.values)
+    for fit in fits:
+        out |= fit.values
+    return out
+
+
+def _profiled(
+    fit: Fit, tests: Sequence[Test], model: Model, globs: Sequence[str], wide: Widening, progress: Progress
+) -> dict[str, Profile]:  # fmt: skip
+    """Profile intervals of a stage's own parameters that match a glob."""
+    names = [n for n in fit.unknowns.names if " of " not in n and any(belongs(n, g) for g in globs)]
+    own = [t for t in tests if t.name in {s.test for s in fit.parts}]
+    held = {p.name: model.values.get(p.name, p.value) for p in fit.network.parameters}
+    return profiles(fit, own, held, names, wide, progress)
+
+
+def start(case: Case) -> dict[str, float]:
+    """Where the model stands; a new effect a little inside its bounds."""
+    values, (_, unknowns) = dict(case.model.values), working(case)
     for e in case.model.effects:
-        start.setdefault(e.name, nudge(next(p for p in unknowns.parameters if p.name == e.name)))
-    return calibrated(network, tests, unknowns, start, progress=progress)
+        values.setdefault(e.name, nudge(next(p for p in unknowns.parameters if p.name == e.name)))
+    return values
 
 
 def nudge(p: Parameter) -> float:
@@ -142,19 +165,19 @@ def nudge(p: Parameter) -> float:
     return float(np.clip(p.neutral + 0.3 * (p.sign or 1) * p.prior_sd, p.low, p.high))
 
 
-def judge(action: str, changes: Sequence[Change], fit: Fit, name: str | None) -> tuple[bool, str]:
-    """Accept what lowers the error on held-out tests, or leaves it while lowering the others'."""
+def judge(action: str, changes: Sequence[Change], fits: Sequence[Fit], checks: Sequence[Gate]) -> tuple[bool, str]:
+    """Accept what converges, passes its checks and lowers the error on tests that were not fitted."""
     unseen = [c for c in changes if c.role == "hold-out"] or [c for c in changes if c.role == "validate"]
     seen = [c for c in changes if c not in unseen]
     was, now = mean_square(unseen, "before"), mean_square(unseen, "after")
     told = f"error on tests not fitted {was:.3g} -> {now:.3g} K" if unseen else "no held-out test"
+    if not (converged := all(fit.converged for fit in fits)):
+        told = f"not converged; {told}"
     if action == "calibrate":
         fell = mean_square(seen or changes, "after") <= GETS_WORSE * mean_square(seen or changes, "before")
-        return fell and fit.converged, told if fit.converged else f"not converged; {told}"
-    if not fit.converged:
-        return False, f"the calibration did not converge; {told}"
-    if action == "add" and name and bool(fit.at_bound[fit.unknowns.names.index(name)]):
-        return False, f"its amplitude sticks to a physical bound; {told}"
+        return fell and converged, told
+    if not converged or doubts(checks):
+        return False, "; ".join(filter(None, [doubts(checks), told]))
     if unseen:
         return now < was, told
     return mean_square(seen, "after") < mean_square(seen, "before"), told
@@ -163,25 +186,3 @@ def judge(action: str, changes: Sequence[Change], fit: Fit, name: str | None) ->
 def mean_square(changes: Sequence[Change], side: str) -> float:
     values = [getattr(c, side) for c in changes]
     return float(np.sqrt(np.mean(np.square(values)))) if values else float("nan")
-
-
-def estimates(fit: Fit, kappa: float = 1.0) -> tuple[Estimate, ...]:
-    """Values with intervals, what the data could not narrow, and with whom it trades."""
-    cov, sd, u = fit.covariance, fit.sd, fit.unknowns
-    corr = cov / np.outer(sd, sd)
-    np.fill_diagonal(corr, 0.0)
-    out = []
-    for i, p in enumerate(u.parameters):
-        blind = bool(sd[i] > UNSEEN * u.sd[i])
-        partner = int(np.argmax(np.abs(corr[i])))
-        half = 1.96 * min(kappa * sd[i], u.sd[i])
-        low, high = (to_value(p, float(fit.theta[i] + s * half)) for s in (-1.0, 1.0))
-        prior = tuple(float(np.clip(to_value(p, s * 1.96 * p.prior_sd), p.low, p.high)) for s in (0.0, -1.0, 1.0))
-        out.append(
-            Estimate(
-                p.name, to_value(p, float(fit.theta[i])), p.unit, (max(low, p.low), min(high, p.high)),
-                (prior[0], prior[1], prior[2]), not blind,
-                u.names[partner] if abs(corr[i, partner]) > 0.7 else None, bool(fit.at_bound[i]),
-            )
-        )  # fmt: skip
-    return tuple(out)

@@ -1,15 +1,18 @@
-"""thermoscope add | remove CASE EFFECT@PLACE, thermoscope calibrate CASE"""
+"""thermoscope add | remove CASE EFFECT@PLACE, thermoscope undo CASE"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
+from geom.errors import InputError
 from thermoscope.commands.opened import opened_to_write
-from thermoscope.commands.saved import saved_diagnosis
+from thermoscope.commands.saved import saved_diagnosis, widening_of
 from thermoscope.folder import Folder
 from thermoscope.history import Revision, save_history
-from thermoscope.terminal import give, progress, say, table
+from thermoscope.runs import at_revision
+from thermoscope.terminal import cell, give, progress, say, table
+from validation.compare import compare
 
 if TYPE_CHECKING:
     from validation import revise
@@ -21,31 +24,48 @@ def add(case: str, effect: str, anyway: bool, target: str | None) -> int:
     """Exit code 1, and nothing written, when the error on tests that were not fitted does not fall."""
     from validation.revise import add as added
 
-    return _revised(case, lambda folder, tell: added(folder.case, effect, progress=tell), anyway, target)
+    return revised(case, lambda folder, wide, tell: added(folder.case, effect, wide, tell), anyway, target)
 
 
 def remove(case: str, effect: str, target: str | None) -> int:
     """Whatever the error does: taking a step back is the user's right."""
     from validation.revise import remove as removed
 
-    return _revised(case, lambda folder, tell: removed(folder.case, effect, progress=tell), True, target)
+    return revised(case, lambda folder, wide, tell: removed(folder.case, effect, wide, tell), True, target)
 
 
-def calibrate(case: str, anyway: bool, target: str | None) -> int:
-    """Exit code 1, and nothing written, when the fit does not converge."""
-    from validation.revise import calibrate as fitted
-
-    return _revised(case, lambda folder, tell: fitted(folder.case, progress=tell), anyway, target)
-
-
-def _revised(case: str, step: Callable[..., revise.Revision], anyway: bool, target: str | None) -> int:
+def undo(case: str, number: int | None, target: str | None) -> int:
+    """One revision more, equal to the one before the last, or to `number`; nothing is forgotten."""
     with progress() as tell:
         folder = opened_to_write(case, tell)
-        result = step(folder, tell)
+        last = folder.history.last.number
+        if number is None and last == 0:
+            raise InputError("there is no step to undo", str(folder.settings.model_file), "a case that was revised")
+        history = folder.history.back_to(last - 1 if number is None else number)
+        after = at_revision(folder, history.last)
+        tell("running the model")
+        errors = {t.name: t.rmse_K for t in compare(after).tests}
+    save_history(folder.settings.model_file, history)
+    model = {"case": folder.case.name, "revision": history.last.number, "why": history.last.why}
+    document = {**model, "effects": list(history.last.effects), "rmse_K": errors}
+    give(document, target, lambda: say(f"revision {history.last.number}: {history.last.why}; {_told(errors)}"))
+    return 0
+
+
+def _told(errors: Mapping[str, float]) -> str:
+    return ", ".join(f"{name} {rmse:.2f} K" for name, rmse in errors.items())
+
+
+def revised(case: str, step: Callable[..., revise.Revision], anyway: bool, target: str | None) -> int:
+    """Open, take the step, keep it if it is accepted, show it. `step` is given folder, widening and progress."""
+    with progress() as tell:
+        folder = opened_to_write(case, tell)
+        wide = widening_of(folder)
+        result = step(folder, wide, tell)
     keep = result.accepted or anyway
     if keep:
         save_history(folder.settings.model_file, folder.history.and_then(recorded(result, evidence(folder, result))))
-    document = {**result.document(), "case": folder.case.name, "written": keep}
+    document = {**result.document(), "case": folder.case.name, "written": keep, "kappa": wide.typical}
     give(document, target, lambda: show(document, folder))
     return 0 if keep else 1
 
@@ -72,18 +92,42 @@ def telling(p: Mapping[str, Any]) -> tuple[bool, float]:
     return "@" not in p["name"], -abs(p["value"] - p["prior"][0]) / max(high - low, 1e-300)
 
 
+def named(p: Mapping[str, Any]) -> str:
+    """A parameter the data cannot fix, with the one it trades with."""
+    return f"{p['name']} (trades with {p['partner']})" if p["partner"] else str(p["name"])
+
+
+def profiled(p: Mapping[str, Any]) -> str:
+    """The profile's interval; an end in brackets is only the bound."""
+    if p["profile"] is None:
+        return ""
+    ends = zip(p["profile"]["ci95"], p["profile"]["open"], strict=True)
+    return " ... ".join(f"({cell(x)})" if is_open else cell(x) for x, is_open in ends)
+
+
+def note(p: Mapping[str, Any]) -> str:
+    return "at its bound" if p["at_bound"] else f"trades with {p['partner']}" if p["partner"] else ""
+
+
 def show(document: Mapping[str, Any], folder: Folder) -> None:
     """The error before and after, and the values that the data fixed."""
     rows = [[t["name"], t["role"], t["rmse_K"]["before"], t["rmse_K"]["after"]] for t in document["tests"]]
     name = f"{document['action']} {document['effect'] or ''}".strip()
     table(f"{name}: error per test", ["test", "role", "before (K)", "after (K)"], rows, marked=["hold-out"])
     seen = sorted((p for p in document["parameters"] if p["identified"] and " of " not in p["name"]), key=telling)
-    blind = [p["name"] for p in document["parameters"] if not p["identified"] and " of " not in p["name"]]
-    values = [[p["name"], p["value"], p["unit"], *p["ci95"], *p["prior"][1:]] for p in seen[:ROWS]]
+    blind = [named(p) for p in document["parameters"] if not p["identified"] and " of " not in p["name"]]
+    values = [
+        [p["name"], p["value"], p["unit"], *p["ci95"], profiled(p), *p["prior"][1:], note(p)] for p in seen[:ROWS]
+    ]
     if values:
-        table("What the data fixed", ["parameter", "value", "unit", "from", "to", "prior from", "prior to"], values)
+        headers = ["parameter", "value", "unit", "from", "to", "by profile", "prior from", "prior to", ""]
+        table("What the data fixed (95 %)", headers, values)
     if blind:
         say(f"the data do not fix {len(blind)} parameters: {', '.join(blind[:6])}{', ...' if len(blind) > 6 else ''}")
+    if document["kappa"] > 1.0:
+        say(f"intervals are {document['kappa']:.1f} times as wide as formal: the simulated null of the last diagnosis")
+    for gate in document["gates"]:
+        say(f"{'passed' if gate['passed'] else 'FAILED'}  {gate['gate']}: {gate['words']}")
     verdict = "accepted" if document["accepted"] else "not accepted"
     where = f"written to {folder.settings.model_file} as revision {document['revision']}"
     say(f"{verdict}: {document['why']}; {where if document['written'] else 'nothing written (--anyway writes it)'}")

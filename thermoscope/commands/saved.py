@@ -12,23 +12,31 @@ from thermoscope.commands.opened import PACKAGE
 from thermoscope.files import write_whole
 from thermoscope.folder import Folder
 from thermoscope.terminal import plain
+from validation.intervals import FORMAL, Widening
 
 NAME = "diagnosis.json"
 
 
-def fingerprint(case: Path) -> str:
-    """Of everything a result depends on: all files of the case outside out/."""
+def fingerprint(case: Path, but: str = "") -> str:
+    """Of everything a result depends on: all files of the case outside out/, but one."""
     digest = hashlib.sha256()
     for path in sorted(p for p in case.rglob("*") if p.is_file() and "out" not in p.relative_to(case).parts):
-        digest.update(str(path.relative_to(case)).encode() + b"\0" + path.read_bytes())
+        if path.name != but:
+            digest.update(str(path.relative_to(case)).encode() + b"\0" + path.read_bytes())
     return digest.hexdigest()
+
+
+def plan_of(case: Path) -> str:
+    """Fingerprint of machine and tests, whatever the model's history."""
+    return fingerprint(case, "model.toml")
 
 
 def save_diagnosis(folder: Folder, document: Mapping[str, Any]) -> None:
     """Keep it, unless the case lies inside the installed package."""
     if PACKAGE in folder.settings.path.resolve().parents:
         return
-    kept = {**document, "fingerprint": fingerprint(folder.settings.path)}
+    path = folder.settings.path
+    kept = {**document, "fingerprint": fingerprint(path), "plan": plan_of(path)}
     write_whole(folder.settings.out / NAME, json.dumps(plain(kept), indent=1))
 
 
@@ -42,3 +50,11 @@ def last_diagnosis(folder: Folder) -> dict[str, Any] | None:
     """The kept diagnosis, of whatever model it was."""
     path = folder.settings.out / NAME
     return json.loads(path.read_text(encoding="utf-8")) if path.is_file() else None
+
+
+def widening_of(folder: Folder) -> Widening:
+    """How much wider than formal intervals are, from the simulated null of the last diagnosis of these very tests."""
+    kept = last_diagnosis(folder)
+    if kept is None or kept.get("plan") != plan_of(folder.settings.path):
+        return FORMAL
+    return Widening(kept.get("kappa", 1.0), {c["effect"]: c.get("kappa", 1.0) for c in kept["candidates"]})

@@ -1,0 +1,110 @@
+"""The checks of an added effect: each passes where it should and fails where it must; more sensors separate more."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from one_body import LOSS, measured, one_node
+from playground import Truth, wind
+
+from lumped.network import Parameter
+from validation.calibrate import minimise, square_of
+from validation.case import AddedEffect
+from validation.effects import effect
+from validation.evidence import calibrated_case, diagnosing, scored
+from validation.fitting import Unknowns
+from validation.gates import gates, left_out
+from validation.revise import fitted, start
+from validation.score import gram
+from validation.sensors import access, free_places, next_sensors
+from validation.sheet import segments
+
+BIAS = Parameter("bias of body", (("bias:body", 1.0),), value=0.0, low=-9, high=9, prior_sd=0.3, mapping="offset",
+                 neutral=0.0)  # fmt: skip
+RIGHT = "convection@flange.right"
+
+
+@cache
+def case():
+    return Truth(10, wind("flange.right", 12.0)).case()
+
+
+@cache
+def checked(name):
+    """Gates of one effect, by gate."""
+    one = effect(name)
+    grown = replace(case(), model=replace(case().model, effects=(AddedEffect(one.kind, one.place),)))
+    (fit,) = fitted(grown, diagnosing(grown), start(grown))
+    return fit, {g.gate: g for g in gates(fit, name)}
+
+
+def test_the_true_effect_passes_all():
+    _, found = checked(RIGHT)
+    assert {"bounds", "constancy", "left out", "relevance"} == set(found)
+    assert all(g.passed for g in found.values()), found
+
+
+def test_leaving_a_test_out_agrees_with_fitting_without_it():
+    """A linear model: the deviance of each test as predicted by fits to the other, with and without the effect."""
+    tests = [measured("one", shift=0.8), measured("two", shift=-0.3)]
+    network = one_node(LOSS, BIAS)
+    fit = minimise(network, tests, Unknowns((BIAS, LOSS)), np.zeros(2))
+    found = left_out(fit, 1, gram(fit.parts, fit.noise, 1))
+    for test in tests:
+        others = [t for t in tests if t is not test]
+        deviance = []
+        for free in ((BIAS,), (BIAS, LOSS)):
+            alone = minimise(network, others, Unknowns(free), np.zeros(len(free)), fit.noise)
+            deviance.append(square_of(segments(network, [test], alone.values), fit.noise))
+        assert found[test.name] == pytest.approx(deviance[0] - deviance[1], rel=1e-3, abs=1e-6)
+
+
+def test_an_amplitude_at_its_bound_fails():
+    fit, _ = checked(RIGHT)
+    k = fit.unknowns.names.index(RIGHT)
+    low = fit.unknowns.bounds[0]
+    theta = np.array(fit.theta)
+    theta[k] = low[k]
+    stuck = {g.gate: g for g in gates(replace(fit, theta=theta), RIGHT)}
+    assert not stuck["bounds"].passed
+    assert not stuck["relevance"].passed
+
+
+@pytest.mark.parametrize(("loss", "same"), [(1.3, True), (0.9, False)])
+def test_one_amplitude_has_to_do_for_all_tests(loss, same):
+    """30 % more loss in both tests, or 30 % more in one and 10 % less in the other; 25 K of rise, read to 0.3 K."""
+    tests = [measured("one", loss=1.3), measured("two", loss=loss)]
+    fit = minimise(one_node(LOSS, BIAS), tests, Unknowns((BIAS, LOSS)), np.zeros(2))
+    assert {g.gate: g.passed for g in gates(fit, "loss")}["constancy"] == same
+
+
+@cache
+def rivals():
+    """Heat at the shaft or at the rotor: no sensor sits on either."""
+    now = case()
+    return scored(now, [effect("loss.constant@shaft"), effect("loss.constant@rotor")], calibrated_case(now))
+
+
+def test_a_sensor_where_the_rivals_differ_separates_them_best():
+    """Of all free places, one on the rotor or on the shaft gives the largest gap; every place gives at least none."""
+    found = next_sensors(rivals(), (0, 1), {0: 100.0, 1: 100.0}, np.ones(2))
+    assert {s.place for s in found} == {p.name for p in free_places(rivals().fit.network, rivals().tests)}
+    assert max(found, key=lambda s: s.predicted_gain).place in ("rotor", "shaft", "winding.armature")
+    assert [s.predicted_gain / s.hours for s in found] == sorted(
+        (s.predicted_gain / s.hours for s in found), reverse=True
+    )
+
+
+def test_a_further_sensor_never_takes_separation_away():
+    e = rivals()
+    s = e.score
+    V = np.diag(s.V)
+    now = 100.0**2 * min(V) * (1.0 - s.cosine[0, 1] ** 2)
+    assert all(x.predicted_gain >= now * (1 - 1e-9) for x in next_sensors(e, (0, 1), {0: 100.0, 1: 100.0}, np.ones(2)))
+
+
+@pytest.mark.parametrize(("place", "way"), [("shaft", "turning"), ("rotor", "turning"), ("commutator", "turning")])
+def test_what_turns_costs_most(place, way):
+    network = rivals().fit.network
+    assert access(network, network.places[place]) == way

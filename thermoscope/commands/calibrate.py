@@ -1,0 +1,62 @@
+"""thermoscope calibrate CASE"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from thermoscope.commands.revise import revised
+from thermoscope.commands.saved import fingerprint
+from thermoscope.files import write_whole
+from thermoscope.folder import Folder
+from thermoscope.terminal import Progress
+
+if TYPE_CHECKING:
+    from validation.intervals import Widening
+    from validation.revise import Revision
+
+NAME = "calibration.json"
+
+
+def calibrate(
+    case: str, anyway: bool, target: str | None, profile: tuple[str, ...] = (), starts: int = 1, seed: int = 0
+) -> int:
+    """Exit code 1, and nothing written, when the fit does not converge. An interrupted fit goes on where it was."""
+    from validation.revise import calibrate as fitted
+    from validation.staged import Search
+
+    def step(folder: Folder, wide: Widening, tell: Progress) -> Revision:
+        unfinished = Unfinished(folder)
+        search = Search(starts, seed, unfinished.values(tell), unfinished.keep)
+        result = fitted(folder.case, wide=wide, progress=tell, profiled=profile, search=search)
+        unfinished.done()
+        return result
+
+    return revised(case, step, anyway, target)
+
+
+class Unfinished:
+    """The values a calibration has reached so far, in out/, until it is done."""
+
+    def __init__(self, folder: Folder) -> None:
+        self.path: Path = folder.settings.out / NAME
+        self.of = fingerprint(folder.settings.path)
+        self.reached: dict[str, float] = {}
+
+    def values(self, tell: Progress) -> dict[str, float]:
+        """Those of an interrupted calibration of this very case, else none."""
+        kept = json.loads(self.path.read_text(encoding="utf-8")) if self.path.is_file() else {}
+        if kept.get("fingerprint") != self.of:
+            return {}
+        tell("going on with the calibration that was interrupted")
+        self.reached = kept["values"]
+        return dict(self.reached)
+
+    def keep(self, values: Mapping[str, float]) -> None:
+        self.reached |= values
+        write_whole(self.path, json.dumps({"fingerprint": self.of, "values": self.reached}))
+
+    def done(self) -> None:
+        self.path.unlink(missing_ok=True)

@@ -1,0 +1,88 @@
+"""thermoscope improve CASE"""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from thermoscope.commands.opened import opened_to_write
+from thermoscope.commands.revise import recorded
+from thermoscope.commands.saved import save_diagnosis
+from thermoscope.folder import Folder
+from thermoscope.history import History, load_history, save_history
+from thermoscope.terminal import cell, give, progress, say, table
+
+if TYPE_CHECKING:
+    from validation.findings import Candidate, Diagnosis
+    from validation.revise import Revision
+
+
+def improve(case: str, yes: bool, draws: int, most: int, target: str | None) -> int:
+    """Exit code 0 when the model ends adequate, 1 when it stops before. Every step is in model.toml at once."""
+    from thermoscope.pipeline import cache_folder
+    from validation.climb import Guide, climb, singletons
+
+    with progress() as tell:
+        folder = opened_to_write(case, tell)
+        ledger = Ledger(folder)
+        guide = Guide(singletons if yes else asked, ledger.keep)
+        done = climb(folder.case, guide, draws, most, cache_folder() / "null", tell)
+    found = {"case": folder.case.name, "revision": ledger.history.last.number, **done.diagnosis.document()}
+    save_diagnosis(folder, json.loads(json.dumps(found, default=float)))
+    document = {"case": folder.case.name, **done.document(), "written": ledger.written}
+    give(document, target, lambda: show(document, folder))
+    return 0 if done.adequate else 1
+
+
+class Ledger:
+    """model.toml, one revision longer after every step; none of the earlier ones is touched."""
+
+    def __init__(self, folder: Folder) -> None:
+        self.file, self.history, self.written = folder.settings.model_file, folder.history, 0
+
+    def keep(self, step: Revision, evidence: Mapping[str, float | str]) -> None:
+        standing: History = load_history(self.file)
+        self.history = standing.and_then(recorded(step, evidence))
+        save_history(self.file, self.history)
+        self.written += 1
+
+
+def asked(found: Diagnosis, choice: Sequence[Candidate]) -> str | None:
+    """The user's word, on stderr and stdin: a number of the list, or nothing to stop."""
+    lines = [f"  {i + 1}  {offer(c)}" for i, c in enumerate(choice)]
+    print(f"{found.words}\n" + "\n".join(lines), file=sys.stderr)
+    for test in found.next_tests[:3]:
+        print(f"  would decide: {test.test} ({test.hours:.3g} h)", file=sys.stderr)
+    print("add which? (number, or Enter to stop) ", end="", file=sys.stderr, flush=True)
+    word = sys.stdin.readline().strip()
+    return choice[int(word) - 1].effect if word.isdigit() and 1 <= int(word) <= len(choice) else None
+
+
+def offer(c: Candidate) -> str:
+    """A candidate as the question shows it."""
+    low, high = c.ci95
+    size = f"{cell(c.value)} {c.unit} ({cell(low)} ... {cell(high)})"
+    fell = f", error {c.rmse_K[0]:.2f} -> {c.rmse_K[1]:.2f} K" if c.rmse_K else ""
+    return f"{c.effect}: {c.title}, {size}, score {cell(c.score)} over {cell(c.threshold)}{fell}"
+
+
+def show(document: Mapping[str, Any], folder: Folder) -> None:
+    """The error staircase, what would decide if it stopped, and why it ended."""
+    stairs = document["stairs"]
+    headers = ["step", *(f"{t['name']} ({t['role']}, K)" for t in stairs[0]["tests"]), "all (K)", "score"]
+    rows = [
+        [s["effect"] or s["step"], *(t["rmse_K"] for t in s["tests"]), s["rmse_K"], s["evidence"].get("score", "")]
+        for s in stairs
+    ]
+    table("Error, step by step (rms)", headers, rows)
+    found = document["diagnosis"]
+    ahead = [[t["test"], "test", t["hours"], t["predicted_gain"]] for t in found["next_tests"][:3]]
+    ahead += [[s["place"], "sensor", s["hours"], s["predicted_gain"]] for s in found["next_sensors"][:3]]
+    if ahead and not document["adequate"]:
+        table("What would decide", ["what", "kind", "hours", "predicted separation"], ahead)
+    kept = (
+        f"{document['written']} revisions written to {folder.settings.model_file}; `thermoscope undo` takes them back"
+    )
+    say(f"{document['verdict']}: {document['why']}; {kept if document['written'] else 'nothing written'}")

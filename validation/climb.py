@@ -1,0 +1,136 @@
+"""From a model that disagrees to one that does not: diagnose, choose, add, again; with every step's errors kept."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from validation.calibrate import silent
+from validation.case import Case
+from validation.compare import Comparison, compare
+from validation.diagnose import diagnose
+from validation.effects import effect
+from validation.findings import Candidate, Diagnosis
+from validation.fitting import with_model
+from validation.intervals import Widening
+from validation.revise import Revision, add, calibrate
+
+Progress = Callable[[str], None]
+MOST = 6
+
+
+@dataclass(frozen=True)
+class Stair:
+    """The model after one step.
+
+    step : "start", "calibrate" or "add";  evidence : what the diagnosis said about the effect
+    """
+
+    step: str
+    effect: str | None
+    comparison: Comparison
+    evidence: Mapping[str, float | str]
+
+    def document(self) -> dict:
+        tests = [{"name": t.name, "role": t.role, "rmse_K": t.rmse_K} for t in self.comparison.tests]
+        return {
+            "step": self.step, "effect": self.effect, "revision": self.comparison.revision, "tests": tests,
+            "rmse_K": self.comparison.rmse_K, "evidence": dict(self.evidence),
+        }  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Climbed:
+    """All stairs, the last diagnosis, and why it ended there; case : with the model of the last stair."""
+
+    case: Case
+    stairs: tuple[Stair, ...]
+    diagnosis: Diagnosis
+    why: str
+
+    @property
+    def adequate(self) -> bool:
+        return self.diagnosis.verdict == "adequate"
+
+    def document(self) -> dict:
+        return {
+            "verdict": self.diagnosis.verdict, "words": self.diagnosis.words, "adequate": self.adequate,
+            "why": self.why, "stairs": [s.document() for s in self.stairs], "diagnosis": self.diagnosis.document(),
+        }  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Guide:
+    """Who decides and who remembers.
+
+    choose : of the candidates that cannot be told apart (one or more) the name to add, or None to stop
+    keep : told every accepted revision and the evidence for it
+    """
+
+    choose: Callable[[Diagnosis, Sequence[Candidate]], str | None]
+    keep: Callable[[Revision, Mapping[str, float | str]], None]
+
+
+def singletons(diagnosis: Diagnosis, choice: Sequence[Candidate]) -> str | None:
+    """What may be added without asking: physics that stands alone, no fault of the measurement."""
+    alone = len(choice) == 1 and diagnosis.verdict in ("named", "several")
+    return choice[0].effect if alone and not effect(choice[0].effect).fault else None
+
+
+def climb(
+    case: Case, guide: Guide, draws: int = 60, most: int = MOST, cache: Path | None = None, progress: Progress = silent,
+    kinds: Sequence[str] | None = None, workers: int = 2,
+) -> Climbed:  # fmt: skip
+    """Diagnose and add until the model is adequate, the guide says no, or an addition is not accepted.
+
+    A model that was never calibrated is calibrated first. What the diagnosis cannot tell is not offered.
+    """
+    stairs = [Stair("start", None, compare(case), {})]
+    if case.model.revision == 0:
+        progress("calibrating")
+        case = _kept(case, calibrate(case, progress=progress), guide, {}, stairs)
+    while True:
+        found = diagnose(case, draws=draws, kinds=kinds, workers=workers, cache=cache, progress=progress)
+        progress(f"{found.verdict}: {found.words}")
+        choice = offered(found)
+        if not choice:
+            return Climbed(case, tuple(stairs), found, found.words)
+        if len(stairs) > most:
+            return Climbed(case, tuple(stairs), found, f"{most} steps are enough for one run")
+        name = guide.choose(found, choice)
+        if name is None:
+            return Climbed(case, tuple(stairs), found, f"{' or '.join(c.effect for c in choice)}: not added")
+        chosen = next(c for c in choice if c.effect == name)
+        step = add(case, name, widening(found), progress)
+        if not step.accepted:
+            return Climbed(case, tuple(stairs), found, f"{name} was not accepted: {step.why}")
+        case = _kept(case, step, guide, evidence(found, chosen), stairs)
+
+
+def _kept(
+    case: Case, step: Revision, guide: Guide, evidence: Mapping[str, float | str], stairs: list[Stair]
+) -> Case:  # fmt: skip
+    guide.keep(step, evidence)
+    stairs.append(Stair(step.action, step.effect, step.after, evidence))
+    return with_model(case, step.model)
+
+
+def offered(found: Diagnosis) -> tuple[Candidate, ...]:
+    """The first group's candidates; none where the diagnosis cannot tell, or nothing is missing."""
+    first = found.groups[0] if found.groups and found.verdict != "absorbed" else ()
+    rows = [c for c in found.candidates if c.effect in first]
+    return tuple(rows) if all(c.decision in ("named", "group") for c in rows) else ()
+
+
+def evidence(found: Diagnosis, chosen: Candidate) -> dict[str, float | str]:
+    """What speaks for an effect, as the history keeps it."""
+    said: dict[str, float | str] = {
+        "score": chosen.score, "threshold": chosen.threshold, "decision": chosen.decision, "verdict": found.verdict
+    }  # fmt: skip
+    return said | ({"confused_with": ", ".join(chosen.confused_with)} if chosen.confused_with else {})
+
+
+def widening(found: Diagnosis) -> Widening:
+    """How much wider than formal the simulated null says that intervals are."""
+    return Widening(found.kappa, {c.effect: c.kappa for c in found.candidates})

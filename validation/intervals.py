@@ -1,0 +1,108 @@
+"""Fitted values with their intervals: what the data fixed, what they could not, and with whom it trades."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.network import Parameter
+from validation.calibrate import Fit
+from validation.fitting import to_value
+
+Array = NDArray[np.float64]
+UNSEEN = 0.9
+TRADES = 0.7
+NORMAL_95 = 1.96
+
+
+@dataclass(frozen=True)
+class Widening:
+    """Factors on formal standard deviations from a simulated null: of effects by name, `typical` for the rest."""
+
+    typical: float = 1.0
+    own: Mapping[str, float] = field(default_factory=dict)
+
+    def of(self, name: str) -> float:
+        return self.own.get(name, self.typical)
+
+
+FORMAL = Widening()
+
+
+@dataclass(frozen=True)
+class Profile:
+    """Central 95 % by profile likelihood; `open` says which ends are only the parameter's bounds."""
+
+    low: float
+    high: float
+    open: tuple[bool, bool]
+
+    def document(self) -> dict:
+        return {"ci95": [self.low, self.high], "open": list(self.open)}
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A fitted parameter. prior : (median, low, high) of its central 95 %; identified: the data narrowed the prior.
+
+    partner : the parameter it trades with, where their correlation exceeds 0.7;  at_bound : it sticks to a bound
+    """
+
+    name: str
+    value: float
+    unit: str
+    ci95: tuple[float, float]
+    prior: tuple[float, float, float]
+    identified: bool
+    partner: str | None = None
+    at_bound: bool = False
+    profile: Profile | None = None
+
+    def document(self) -> dict:
+        profile = self.profile.document() if self.profile else None
+        return {**vars(self), "ci95": list(self.ci95), "prior": list(self.prior), "profile": profile}
+
+
+def estimates(fit: Fit, wide: Widening = FORMAL, profiles: Mapping[str, Profile] | None = None) -> tuple[Estimate, ...]:
+    """Values with intervals from the scaled covariance, never wider than the prior's."""
+    correlation = correlations(fit)
+    partner = np.argmax(np.abs(correlation), axis=1)
+    known = profiles or {}
+    out = []
+    for i, p in enumerate(fit.unknowns.parameters):
+        trades = abs(correlation[i, partner[i]]) > TRADES
+        out.append(
+            Estimate(
+                p.name, to_value(p, float(fit.theta[i])), p.unit, interval(fit, i, wide.of(p.name)), prior_of(p),
+                bool(fit.sd[i] <= UNSEEN * p.prior_sd), fit.unknowns.names[partner[i]] if trades else None,
+                bool(fit.at_bound[i]), known.get(p.name),
+            )
+        )  # fmt: skip
+    return tuple(out)
+
+
+def correlations(fit: Fit) -> Array:
+    """Posterior correlations with an empty diagonal, (p, p)."""
+    sd = fit.sd
+    out = fit.covariance / np.outer(sd, sd)
+    np.fill_diagonal(out, 0.0)
+    return np.asarray(out, float)
+
+
+def interval(fit: Fit, i: int, kappa: float) -> tuple[float, float]:
+    """Central 95 % of a parameter inside its bounds."""
+    p = fit.unknowns.parameters[i]
+    half = NORMAL_95 * min(kappa * float(fit.sd[i]), p.prior_sd)
+    low, high = (to_value(p, float(fit.theta[i] + s * half)) for s in (-1.0, 1.0))
+    return max(low, p.low), min(high, p.high)
+
+
+def prior_of(p: Parameter) -> tuple[float, float, float]:
+    """Median and central 95 % of the prior inside the bounds."""
+    median, low, high = (
+        float(np.clip(to_value(p, s * NORMAL_95 * p.prior_sd), p.low, p.high)) for s in (0.0, -1.0, 1.0)
+    )
+    return median, low, high

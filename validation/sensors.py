@@ -1,0 +1,104 @@
+"""Where one more thermocouple would set rivals apart best, in the tests as they were driven."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.network import Network, Place
+from validation.case import Channel, Test
+from validation.effects.sites import like, outside
+from validation.evidence import Evidence
+from validation.experiments import DECISIVE
+from validation.findings import NextSensor
+from validation.noise import Noise
+from validation.score import Gram, score, total
+from validation.sheet import Segment, segments
+
+Array = NDArray[np.float64]
+SIGMA_K = 0.5
+PREFIX = "planned: "
+HOURS = {"outside": 0.5, "inside": 4.0, "air": 2.0, "turning": 16.0}  # to mount one, from the bench's own practice
+WHY = {
+    "outside": "glued on from outside", "inside": "the machine has to be opened", "air": "a probe through an opening",
+    "turning": "needs telemetry or slip rings",
+}  # fmt: skip
+
+
+def next_sensors(
+    evidence: Evidence, members: Sequence[int], amplitude: Mapping[int, float], kappa: Array
+) -> list[NextSensor]:  # fmt: skip
+    """Places without a sensor, by the deviance gap of the pair that stays closest, per hour of mounting."""
+    places = free_places(evidence.fit.network, evidence.tests)
+    chosen, out = list(members), []
+    seen = _only(total(evidence.grams), chosen)
+    for place, more in with_sensors(evidence, places, chosen):
+        gaps = gap(evidence, seen + more, chosen, amplitude, kappa)
+        names = [f"{evidence.names[k]} / {evidence.names[m]}" for (k, m), g in gaps.items() if g >= DECISIVE]
+        way = access(evidence.fit.network, place)
+        out.append(NextSensor(place.name, tuple(names), float(min(gaps.values())), HOURS[way], WHY[way]))
+    return sorted(out, key=lambda s: -s.predicted_gain / s.hours)
+
+
+def free_places(network: Network, tests: Sequence[Test]) -> list[Place]:
+    """Where no channel sits: parts, nodes and fluids, and the faces of parts that have several."""
+    taken = {c.place for t in tests for c in t.channels}
+    kinds = ("part", "node", "surface", "fluid")
+    return [p for p in network.places.values() if p.kind in kinds and p.name not in taken]
+
+
+def access(network: Network, place: Place) -> str:
+    """How one gets there."""
+    if place.kind == "fluid":
+        return "air"
+    if like(place.part, "rotor"):
+        return "turning"
+    return "outside" if place.part in outside(network) and place.kind != "part" else "inside"
+
+
+def with_sensors(evidence: Evidence, places: Sequence[Place], chosen: list[int]) -> Iterator[tuple[Place, Gram]]:
+    """What a thermocouple at each place adds to the Gram matrix, its unknown bias projected out."""
+    fit = evidence.fit
+    columns = (*fit.unknowns.parameters, *(evidence.parameters[k] for k in chosen))
+    tests = [_watched(t, places) for t in evidence.tests]
+    parts = segments(evidence.network, tests, fit.values, columns)
+    for place in places:
+        own = [s for s in parts if s.channel == PREFIX + place.name]
+        yield place, _without_bias(own, fit.noise, len(fit.unknowns.parameters))
+
+
+def _watched(test: Test, places: Sequence[Place]) -> Test:
+    """The test with a thermocouple at every place, and nothing else read."""
+    still = np.zeros_like(test.time)
+    return replace(test, channels=tuple(Channel(PREFIX + p.name, p.name, p.mean, still, SIGMA_K) for p in places))
+
+
+def _without_bias(parts: Sequence[Segment], noise: Noise, p: int) -> Gram:
+    """The Gram matrix of one sensor over all tests, with one bias of the usual size taken out; no residual yet."""
+    X = np.vstack([noise.whiten(s, np.column_stack([s.J, np.ones(s.time.size)])) for s in parts])
+    Z, b = X[:, :-1], X[:, -1]
+    G = Z.T @ Z - np.outer(Z.T @ b, b @ Z) / (b @ b + SIGMA_K**-2)
+    K = G.shape[0] - p
+    return Gram(G[:p, :p], G[:p, p:], G[p:, p:], np.zeros(p), np.zeros(K), 0.0)
+
+
+def _only(G: Gram, chosen: list[int]) -> Gram:
+    """The Gram matrix of some of the effects."""
+    return replace(G, JZ=G.JZ[:, chosen], ZZ=G.ZZ[np.ix_(chosen, chosen)], Zr=G.Zr[chosen])
+
+
+def gap(
+    evidence: Evidence, G: Gram, chosen: list[int], amplitude: Mapping[int, float], kappa: Array
+) -> dict[tuple[int, int], float]:  # fmt: skip
+    """For every pair the deviance by which the wrong one fits worse, a^2 V_kk (1 - c_kl^2) / kappa^2, at least."""
+    s = score(G, evidence.fit.theta, evidence.fit.unknowns.sd, evidence.score.sign[chosen])
+    V, c = np.diag(s.V), s.cosine
+    strength = [amplitude[k] ** 2 * V[i] / kappa[k] ** 2 for i, k in enumerate(chosen)]
+    pairs = combinations(range(len(chosen)), 2)
+    return {
+        (chosen[i], chosen[j]): float(min(strength[i], strength[j]) * (1.0 - c[i, j] ** 2)) for i, j in pairs
+    }  # fmt: skip
