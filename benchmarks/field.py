@@ -4,6 +4,7 @@
 
 A laminated hollow cylinder with films (`field_contenders.py`): 50,000 and 300,000 unknowns, with --large a million too.
 "total" is assembly, boundary terms and solve; ngsolve's Cholesky runs at 50,000 only, where it is already the slowest.
+A peer that has not finished after 150 CPU seconds is stopped: its row then holds that time, and says so.
 Before, the series-wound motor on 150,000 nodes (188,000 unknowns, nodes split at contacts): 15 loads, and an hour in
 60 s steps. ngsolve is compared where it is installed (`uv pip install ngsolve`).
 """
@@ -15,6 +16,7 @@ import datetime
 import importlib.util
 import json
 import platform
+import resource
 import subprocess
 import sys
 import tempfile
@@ -36,6 +38,7 @@ from thermoscope.pipeline import field_of
 SIZES = {"50k": 36, "300k": 66}
 LARGE = {"1M": 99}
 OURS = "thermoscope"
+STOPPED = 150  # CPU seconds
 MOTOR: dict[str, Any] = {"size_m": 0.015, "segments": 60, "across": 3}
 
 
@@ -52,13 +55,15 @@ def save_stack(n: int, file: Path) -> int:
     return len(mesh.points)
 
 
-def raced(name: str, file: Path, times: int) -> dict[str, Any]:
-    """What one contender printed in its quickest of some runs."""
+def raced(name: str, file: Path, times: int) -> dict[str, Any] | None:
+    """What one contender printed in its quickest of some runs; None: it was stopped."""
     print(f"{name} ...", file=sys.stderr)
-    script = Path(__file__).with_name("field_contenders.py")
-    command = [sys.executable, script, name, file]
-    runs = [subprocess.run(command, capture_output=True, text=True, check=True).stdout for _ in range(times)]
-    found = [json.loads(printed.splitlines()[-1]) for printed in runs]
+    command = [sys.executable, Path(__file__).with_name("field_contenders.py"), name, file]
+    limit = lambda: resource.setrlimit(resource.RLIMIT_CPU, (STOPPED, STOPPED))  # noqa: E731
+    runs = [subprocess.run(command, stdout=subprocess.PIPE, text=True, preexec_fn=limit) for _ in range(times)]
+    if any(run.returncode < 0 for run in runs):
+        return None
+    found = [json.loads(run.stdout.splitlines()[-1]) for run in runs]
     return min(({**f, "total": sum(f["laps"].values())} for f in found), key=lambda f: f["total"])
 
 
@@ -70,13 +75,23 @@ def stack_rows(case: str, n: int) -> list[dict[str, Any]]:
         file = Path(folder) / "stack.npz"
         points = save_stack(n, file)
         ours, *others = (raced(name, file, 3 if case == "50k" else 1) for name in (OURS, *names))
-    rows = [row(case, "unknowns", "1", points)]
+    assert ours is not None, f"not done after {STOPPED} s"
+    rows = [row(case, "unknowns", "1", points), row(case, "peak memory", "GiB", ours["peak_GiB"])]
     rows += [row(case, lap, "s", seconds) for lap, seconds in ours["laps"].items()]
     for name, found in zip(names, others, strict=True):
-        rows.append(row(case, "total", "s", ours["total"], found["total"], name))
-        rows.append(row(case, "peak memory", "GiB", ours["peak_GiB"], found["peak_GiB"], name))
-        rows.append(row(case, "hottest point", "degC", ours["hottest_C"], found["hottest_C"], name))
+        rows += peer_rows(case, ours, name, found)
     return rows
+
+
+def peer_rows(case: str, ours: dict[str, Any], name: str, found: dict[str, Any] | None) -> list[dict[str, Any]]:
+    """Beside one peer; of one that was stopped, the time it had."""
+    if found is None:
+        return [row(case, "total", "s", ours["total"], float(STOPPED), f"{name}, stopped")]
+    return [
+        row(case, "total", "s", ours["total"], found["total"], name),
+        row(case, "peak memory", "GiB", ours["peak_GiB"], found["peak_GiB"], name),
+        row(case, "hottest point", "degC", ours["hottest_C"], found["hottest_C"], name),
+    ]
 
 
 def motor() -> tuple[FieldModel, dict[str, float], dict[str, float], Fluids]:

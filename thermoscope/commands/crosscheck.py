@@ -41,6 +41,7 @@ def checked(built: Built, found: Sized | None, tell: Progress) -> dict[str, Any]
     from lumped.motor_losses import loss_shares
     from thermoscope.crosscheck import crosscheck as compare
     from thermoscope.hand import hand_rows
+    from thermoscope.local_laws import with_local_laws
 
     tell("field against network")
     point = bearable(built)
@@ -48,13 +49,19 @@ def checked(built: Built, found: Sized | None, tell: Progress) -> dict[str, Any]
     solver = None if found is None else found.reduction.solver
     shares = loss_shares(built.machine, built.network)
     check = compare(built.field, built.network, point, solver=solver, loads=loads, shares=shares)
+    tell("laws point by point")
+    local = with_local_laws(built.field, built.network, point, check, shares, loads, solver).T
     tell("hand formulas")
     hand = hand_rows(built.machine, built.field, check)
     responsible = {part.place: check.responsible(part.place) for part in check.parts}
     return {
         "operating_point": point,
         "crosscheck": [
-            {**vars(part), "responsible": None if link is None else link.link}
+            {
+                **vars(part),
+                "local_max_C": float(local[built.field.blocks[part.place].dofs].max()),
+                "responsible": None if link is None else link.link,
+            }
             for part, link in zip(check.parts, responsible.values(), strict=True)
         ],
         "links": [vars(link) for link in check.links],
@@ -104,6 +111,7 @@ def show(document: Mapping[str, Any], folder: Path) -> None:
         "field max",
         "network max",
         "off (% of rise)",
+        "field max, laws local",
         "link that differs most",
     ]
     title = f"Steady at {point}, 20 degC around: temperatures (degC)"
