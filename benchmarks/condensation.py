@@ -164,7 +164,7 @@ def table(rows: list[Row]) -> str:
     value = {(r["case"], r["measure"]): r["ours"] for r in rows}
     head = ["machine", "unknowns", "states", *GROUPS]
     lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
-    for name in dict.fromkeys(r["case"] for r in rows):
+    for name in sorted({r["case"] for r in rows}):
         cells = [f"{value[name, 'unknowns of the field']:.0f}", f"{value[name, 'states']:.0f}"]
         cells += [" / ".join(f"{value[name, f'{kind}, {group}']:.2g}" for kind in WANTED) for group in GROUPS]
         lines.append(f"| {name} | " + " | ".join(cells) + " |")
@@ -178,16 +178,23 @@ def put(text: str, page: Path) -> None:
     page.write_text(re.sub(f"{begin}.*{end}", f"{begin}\n{text}\n{end}", whole, flags=re.DOTALL))
 
 
+def kept(file: str | None, machines: list[str]) -> list[Row]:
+    """Rows of an earlier run that are not measured again."""
+    if file in (None, "-") or not Path(str(file)).exists():
+        return []
+    return [r for r in json.loads(Path(str(file)).read_text())["rows"] if r["case"] not in machines]
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("machines", nargs="*", metavar="MACHINE", help="names of the library; all if none is given")
     parser.add_argument("--size", type=float, default=60.0, help="largest triangle in the plane, mm")
     parser.add_argument("--segments", type=int, default=48, help="chords per turn")
     parser.add_argument("--accuracy", type=float, default=2.0, help="percent, as in `thermoscope build --accuracy`")
-    parser.add_argument("--json", metavar="FILE", help="write the rows there; - is stdout")
+    parser.add_argument("--json", metavar="FILE", help="write the rows there, - is stdout; other machines' rows stay")
     parser.add_argument("--table", metavar="PAGE", help="put the table between the markers of this Markdown page")
     given = parser.parse_args()
-    rows: list[Row] = []
+    rows = kept(given.json, given.machines or library())
     with tempfile.TemporaryDirectory() as cold:
         os.environ["THERMOSCOPE_CACHE"] = cold
         for name in given.machines or library():

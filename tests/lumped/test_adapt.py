@@ -7,6 +7,7 @@ import lumped.reduction
 from fem.assembly import assemble
 from fem.grids import ring
 from fem.material import isotropic, laminated, wound
+from fem.solve import Solver
 from lumped.adapt import Size, adapt, excess
 from lumped.guard import Wish, mixes, point_errors
 from lumped.reduction import Recipe, Zone, reduce
@@ -15,25 +16,35 @@ CONTACTS = {"coil|core": 400.0, "coil|yoke": 800.0}
 LEFT = Zone("coil", lambda c: (c[:, 2] < 0.06).astype(float))
 
 
+K = {"core": laminated(28.0, 3.0), "coil": wound(250.0, 1.2), "yoke": isotropic(40.0)}
+
+
 @pytest.fixture(scope="module")
-def field():
+def mesh():
     r = np.concatenate([np.linspace(0.02, 0.04, 3), np.linspace(0.04, 0.05, 2)[1:], np.linspace(0.05, 0.07, 3)[1:]])
-    mesh = ring(
+    return ring(
         r, 12, np.linspace(0.0, 0.12, 7),
         lambda c: np.select([c[:, 0] < 0.04, c[:, 0] < 0.05], ["core", "coil"], "yoke").astype(object),
         lambda c: np.select([c[:, 0] > 0.067, c[:, 0] < 0.021], ["ambient", "bore"], "air").astype(object),
     )  # fmt: skip
-    k = {"core": laminated(28.0, 3.0), "coil": wound(250.0, 1.2), "yoke": isotropic(40.0)}
-    return assemble(mesh, k, {"core": 3.6e6, "coil": 2.5e6, "yoke": 3.7e6})
+
+
+def conducting(mesh, **changed):
+    return assemble(mesh, {**K, **changed}, {"core": 3.6e6, "coil": 2.5e6, "yoke": 3.7e6})
+
+
+@pytest.fixture(scope="module")
+def field(mesh):
+    return conducting(mesh)
 
 
 def films(field):
     return {face: 60.0 if face.endswith("bore") else 25.0 for face in field.films}
 
 
-def reduction(field, cache=None, contacts=None, **recipe):
+def reduction(field, cache=None, contacts=None, changed=None, **recipe):
     recipe = Recipe(**{"tolerance": 0.1, "shifts": (), "random_points": 0, **recipe})
-    h = films(field)
+    h = {**films(field), **(changed or {})}
     return reduce(field, h, contacts or CONTACTS, {"bore": 50.0, "air": 30.0}, ("ambient",), recipe, "ring", cache,
                   {"coil.left": LEFT})  # fmt: skip
 
@@ -72,20 +83,30 @@ def test_guard_says_what_it_missed(field):
 
 
 @pytest.mark.parametrize(
-    "change",
+    ("change", "k"),
     [
-        {"contacts": {"coil|core": 900.0, "coil|yoke": 800.0}},
-        {"contacts": {"coil|core": 400.0, "coil|yoke": 200.0}},
-        {},
+        ({"contacts": {"coil|core": 900.0, "coil|yoke": 800.0}}, {}),
+        ({"changed": {"yoke.outer": 70.0}}, {}),
+        ({"changed": {"yoke.outer": 10.0}, "contacts": {"coil|core": 400.0, "coil|yoke": 200.0}}, {}),
+        ({}, {"coil": wound(300.0, 2.0)}),
+        ({}, {}),
     ],
-    ids=["contact", "another contact", "nothing"],
+    ids=["contact", "film", "film and contact", "conductivity", "nothing"],
 )
-def test_a_changed_coefficient_costs_no_solve(field, tmp_path, monkeypatch, change):
+def test_a_changed_coefficient_costs_no_solve(mesh, field, tmp_path, monkeypatch, change, k):
+    """Counted: not one matrix is factorised; the changed values are in the network."""
     reduction(field, tmp_path)
-    monkeypatch.setattr(lumped.reduction, "snapshots", refused)
-    again = reduction(field, tmp_path, **change)
-    contacts = {k: link.law.value for link in again.network().links for k in CONTACTS if link.name == f"contact:{k}"}
+    solves = []
+    monkeypatch.setattr(Solver, "factor", lambda *_: solves.append(1))
+    again = reduction(conducting(mesh, **k), tmp_path, **change)
+    network = again.network()
+    assert not solves
+    contacts = {key: link.law.value for link in network.links for key in CONTACTS if link.name == f"contact:{key}"}
     assert contacts == change.get("contacts", CONTACTS)
+    assert all(again.films[face] == h for face, h in change.get("changed", {}).items())
+    with pytest.raises(TypeError):  # the counter is no factor
+        again.nominal_point()
+    assert solves
 
 
 def refused(*_):
