@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from geom.bases import based
 from geom.errors import InputError
 from geom.families import Family, families
 from geom.materials import Material, filled, material
@@ -18,7 +19,7 @@ from geom.profile import ArcGrid
 LIBRARY = Path(__file__).parent / "machines"
 SECTIONS = (
     "machine", "ratings", "geometry", "materials", "contacts", "films", "losses", "fans", "cooling", "sensors",
-    "calibration",
+    "calibration", "bases",
 )  # fmt: skip
 _HEADER = ("name", "family", "description", "source", "assumed")
 
@@ -143,7 +144,7 @@ def machine_from(sections: Mapping[str, Any], where: str = "machine") -> Machine
         ports=family.ports(values),
     )
     _refuse_outside_envelope(machine, where)
-    return machine
+    return based(machine, load_machine, where)
 
 
 def _refuse_outside_envelope(machine: Machine, where: str) -> None:

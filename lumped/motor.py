@@ -27,6 +27,7 @@ from typing import Any
 import numpy as np
 
 from lumped.motor_air import fan_streams
+from lumped.motor_bases import switched
 from lumped.motor_coolant import FLOW, INLET, coolant_streams, outlet_film, outlets
 from lumped.motor_films import Surroundings, face_films, nominal, surroundings
 from lumped.motor_losses import sources
@@ -95,7 +96,7 @@ def motor_network(machine: Any, condensed: Network) -> Network:
         streams += coolant_streams(machine, network, around.cooling)
     losses = sources(machine, network)
     own = parameters(machine, network, faces, films, streams, losses)
-    return network.extended([*films, *streams], losses, own)
+    return switched(machine, network.extended([*films, *streams], losses, own))
 
 
 def _contact(link: Link) -> str:

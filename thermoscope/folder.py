@@ -41,6 +41,7 @@ class Settings:
     """case.toml.  machine or network is set, the other None;  free : globs of what calibration may move, () for all
 
     model_K : slow misfit (K) the model is not expected to get right, see validation.case.Channel
+    axial_m : thickest layer of the mesh along the axis (m), for long stacks; None: the usual one
     """
 
     path: Path
@@ -52,6 +53,7 @@ class Settings:
     model_K: float
     tests: tuple[Entry, ...]
     free: tuple[str, ...] = ()
+    axial_m: float | None = None
 
     @property
     def out(self) -> Path:
@@ -89,14 +91,16 @@ def read_settings(path: Path) -> Settings:
         )
     sample, free = head.number("sample_s", 10.0, low=1e-3), calibration.words("free", [])
     model_K = head.number("model_error_K", 0.0, low=0.0)
+    axial_m = head.number("axial_mm", low=1.0) / 1e3 if "axial_mm" in head else None
     head.close()
     calibration.close()
     if not tests:
         raise InputError("no tests", str(file), '[tests.NAME] with role = "calibrate"')
     entries = tuple(_entry(path, n, t) for n, t in tests.items())
     return Settings(
-        path, name, description, machine and path / machine, network and path / network, sample, model_K, entries, free
-    )
+        path, name, description, machine and path / machine, network and path / network, sample, model_K, entries, free,
+        axial_m,
+    )  # fmt: skip
 
 
 def _entry(path: Path, name: str, table: Table) -> Entry:
@@ -177,7 +181,8 @@ def _network(settings: Settings, progress: Progress) -> tuple[Network, Built | N
         return load_network(settings.network), None
     from thermoscope.pipeline import build
 
-    built = build(load_machine_file(settings.machine), progress=progress)  # type: ignore[arg-type]
+    machine = load_machine_file(settings.machine)  # type: ignore[arg-type]
+    built = build(machine, progress=progress, axial_m=settings.axial_m)
     return built.network, built
 
 

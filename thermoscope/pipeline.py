@@ -83,10 +83,13 @@ class Prepared:
     contacts: Mapping[str, float]
 
 
-def prepared(machine: Machine, size_m: float, segments: int, progress: Progress = silent) -> Prepared:
-    """Mesh and conduction."""
+def prepared(
+    machine: Machine, size_m: float, segments: int, progress: Progress = silent, axial_m: float | None = None
+) -> Prepared:
+    """Mesh and conduction; axial_m : thickest layer along the axis (m), None for 1.5 size_m."""
     progress("mesh")
-    mesh = with_cells(machine, build_mesh(machine, size_m=size_m, segments=segments, cache=cache_folder()))
+    found = build_mesh(machine, size_m=size_m, segments=segments, axial_m=axial_m, cache=cache_folder())
+    mesh = with_cells(machine, found)
     progress(f"conduction on {len(mesh.points)} points")
     faces = {name: (patch.part, patch.fluid) for name, patch in mesh.patches.items()}
     return Prepared(machine, mesh, field_of(machine, mesh), *nominal_coefficients(machine, faces, mesh.contacts))
@@ -109,10 +112,11 @@ def reduced(ready: Prepared, recipe: Recipe, zones: Mapping[str, Zone] | None = 
 
 
 def build(
-    machine: Machine, size_m: float = 0.06, segments: int = 48, recipe: Recipe = SMALL, progress: Progress = silent
-) -> Built:
+    machine: Machine, size_m: float = 0.06, segments: int = 48, recipe: Recipe = SMALL, progress: Progress = silent,
+    axial_m: float | None = None,
+) -> Built:  # fmt: skip
     """Everything from the machine file to the network, at one mesh size."""
-    ready = prepared(machine, size_m, segments, progress)
+    ready = prepared(machine, size_m, segments, progress, axial_m)
     progress("network from the field")
     condensed = reduced(ready, recipe).network(max_states=recipe.max_states)
     return Built(machine, ready.mesh, ready.field, motor_network(machine, condensed))

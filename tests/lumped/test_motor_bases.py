@@ -1,0 +1,86 @@
+"""One machine on several bases: each switch gives the network of that base, none the bare machine."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from geom import library, load_machine
+from geom.errors import InputError
+from geom.machine import machine_from
+from lumped.balance import balance
+from lumped.motor_bases import Switched
+from lumped.simulate import Record
+from lumped.steady import steady
+from thermoscope.pipeline import build
+
+LOAD = {"current_A": 8.0, "speed_rpm": 0.0}
+PLACES = ("winding.copper", "magnets", "stator.core")
+
+
+def sections(**bases):
+    import tomllib
+
+    return {**tomllib.loads(Path(library()["pmsm-m1"]).read_text(encoding="utf-8")), "bases": bases}
+
+
+@pytest.fixture(scope="module")
+def both():
+    return build(machine_from(sections(bench="own", plate="pmsm-m1-plate"), "both.toml")).network
+
+
+def rest(network, **switches):
+    rows = [network.places[p].mean for p in PLACES]
+    return steady(network, {**LOAD, **switches}, {"ambient": 20.0}, None, rows)
+
+
+@pytest.mark.parametrize(("name", "on"), [("pmsm-m1", (1, 0)), ("pmsm-m1-plate", (0, 1))])
+def test_on_one_base_it_is_that_machine(both, name, on):
+    """Within 1 % of the rise: the mesh has other layers, and the other foot's print meets the air."""
+    alone = rest(build(load_machine(name)).network).y - 20.0
+    together = rest(both, on_bench=on[0], on_plate=on[1]).y - 20.0
+    assert together == pytest.approx(alone, rel=0.01)
+
+
+def test_a_foot_that_is_not_there_takes_no_heat(both):
+    state = rest(both, on_bench=0, on_plate=0)
+    for part in ("foot", "base", "foot.plate", "base.plate"):
+        assert state[part] == pytest.approx(20.0, abs=1e-6)
+    assert state["stator.core"] > rest(both, on_bench=1, on_plate=0)["stator.core"] + 5.0
+
+
+def test_bare_machine_has_the_outer_area_of_one_without_base(both):
+    """The face and both footprints together are the face of the machine that was drawn without a base."""
+    prints = [both.places[name].area for name in ("stator.core.outer", "foot.print", "foot.plate.print")]
+    bare = build(load_machine("pmsm-m1-no-base")).network.places["stator.core.outer"].area
+    assert sum(prints) == pytest.approx(bare, rel=1e-3)
+
+
+def test_heat_is_conserved_when_a_base_is_taken_away(both):
+    time = np.array([0.0, 3600.0, 3600.0, 7200.0])
+    on = np.array([1.0, 1.0, 0.0, 0.0])
+    inputs = {"current_A": np.full(4, 8.0), "speed_rpm": np.zeros(4), "on_bench": on, "on_plate": np.zeros(4)}
+    found = balance(both, Record(time, inputs, {"ambient": np.full(4, 20.0)}, 20.0))
+    assert np.abs(found.residual).max() < 1e-9
+    assert found.power("film:foot.print:natural")[0] == 0.0
+    assert found.power("film:foot.print:natural")[-1] > 0.0
+
+
+def test_footprint_moves_with_the_film_around_it(both):
+    moved = dict(next(p for p in both.parameters if p.name == "h.stator.core").targets)
+    assert {"film:foot.print:natural", "film:foot.plate.print:radiation"} <= set(moved)
+    laws = [link.law for link in both.links if isinstance(link.law, Switched)]
+    assert {law.switch for law in laws} == {"on_bench", "on_plate"}
+
+
+@pytest.mark.parametrize(
+    ("bases", "right"),
+    [
+        ({"bench": "own", "plate": "pmsm-m2-plate"}, "differs in"),
+        ({"bench": "own", "plate": "pmsm-m1-no-base"}, "differs in"),
+        ({"plate": "pmsm-m1-plate"}, "one base 'own'"),
+    ],
+)
+def test_impossible_bases_are_refused(bases, right):
+    with pytest.raises(InputError, match=right):
+        machine_from(sections(**bases), "both.toml")
