@@ -1,6 +1,6 @@
 """Pictures, recording and workbench: how long one waits.
 
-    python benchmarks/viz.py [--size-mm 20] [--json FILE]
+    python benchmarks/viz.py [--size-mm 10] [--segments 200] [--json FILE]
 
 The motor's mesh has about 150,000 nodes at the default size. Wall seconds of one process, and its CPU seconds beside
 them, which say more on a shared computer. Targets: first picture below 5 s, next frames below 0.3 s, an hour's
@@ -162,8 +162,8 @@ def row(case: str, measure: str, unit: str, ours: float, peer: float | None = No
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--size-mm", type=float, default=20.0)
-    parser.add_argument("--segments", type=int, default=96)
+    parser.add_argument("--size-mm", type=float, default=10.0)
+    parser.add_argument("--segments", type=int, default=200)
     parser.add_argument("--json", type=Path)
     options = parser.parse_args()
     require_gl()

@@ -29,9 +29,13 @@ class Label:
 
 
 def callouts(
-    p: pyvista.Plotter, labels: Sequence[Label], points: Array, view: View, theme: Theme = LIGHT, size: int = 15
-) -> None:
-    """Markers on the machine with labels beside it, in the order of their heights so that lines seldom cross."""
+    p: pyvista.Plotter, labels: Sequence[Label], points: Array, view: View, theme: Theme = LIGHT, size: int = 15,
+    dots: bool = True,
+) -> None:  # fmt: skip
+    """Markers on the machine with labels beside it, in the order of their heights so that lines seldom cross.
+
+    points : (n, 3) m that the labels stand beside;  dots : draw the markers too
+    """
     towards, right, up = view.axes()
     across, above = points @ right, points @ up
     front = (points @ towards).max()
@@ -44,18 +48,24 @@ def callouts(
         edge = middle + side * (0.5 + 0.03) * np.ptp(across)
         for q, height in zip(mine, heights, strict=True):
             _callout(p, q, edge * right + height * up + front * towards, side, theme, size)
+            if dots:
+                _dot(p, q)
+
+
+def _dot(p: pyvista.Plotter, label: Label) -> None:
+    import pyvista
+
+    flat: dict[str, Any] = {"lighting": False, "render_points_as_spheres": True}
+    here = pyvista.PolyData(np.array([label.xyz]))
+    on_top(p.add_mesh(here, color="white", point_size=26, **flat), 2)
+    on_top(p.add_mesh(here.copy(), color=label.colour, point_size=19, **flat), 3)
 
 
 def _callout(p: pyvista.Plotter, label: Label, end: Array, side: int, theme: Theme, size: int) -> None:
     import pyvista
 
-    flat: dict[str, Any] = {"lighting": False, "render_points_as_spheres": True}
     line = p.add_mesh(pyvista.Line(label.xyz, end), color=theme.ink, line_width=2.0, opacity=0.8, lighting=False)
-    here = pyvista.PolyData(np.array([label.xyz]))
-    halo = p.add_mesh(here, color="white", point_size=26, **flat)
-    dot = p.add_mesh(here.copy(), color=label.colour, point_size=19, **flat)
-    for actor, order in ((line, 1), (halo, 2), (dot, 3)):
-        on_top(actor, order)
+    on_top(line, 1)
     p.add_actor(text(label.text, end, label.colour, side, size), reset_camera=False, pickable=False)
 
 

@@ -45,6 +45,17 @@ def heat() -> LinearSegmentedColormap:
 
 
 @lru_cache(maxsize=1)
+def power() -> LinearSegmentedColormap:
+    """Pale sand to dark red, lightness falling evenly from 0.86 to 0.36 (OKLab): heat that flows."""
+    from matplotlib.colors import LinearSegmentedColormap
+
+    s = np.linspace(0.0, 1.0, 33)
+    hue, chroma = np.deg2rad(np.interp(s, [0, 0.5, 1], [80, 55, 30])), np.interp(s, [0, 0.5, 1], [0.09, 0.15, 0.14])
+    rgb = _oklab_to_srgb(0.86 - 0.5 * s, chroma * np.cos(hue), chroma * np.sin(hue))
+    return LinearSegmentedColormap.from_list("thermoscope.power", [tuple(c) for c in rgb], N=256)
+
+
+@lru_cache(maxsize=1)
 def missing() -> LinearSegmentedColormap:
     """Blue through light grey to vermilion: too little, nothing, too much."""
     from matplotlib.colors import LinearSegmentedColormap

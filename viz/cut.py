@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_matrix, identity, vstack
 
 from geom.errors import InputError
-from viz.nodes import SplitMesh
+from viz.nodes import SplitMesh, repeated
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -105,11 +105,7 @@ def exposed(nodes: SplitMesh, contacts: bool = False) -> Surface:
     triangles, part = nodes.boundary()
     if contacts:
         return Surface(nodes, identity(nodes.size, format="csr"), triangles, part).compact()
-    key = np.sort(nodes.original[triangles], axis=1)
-    order = np.lexsort(key.T)
-    same = (key[order][1:] == key[order][:-1]).all(axis=1)
-    contact = np.zeros(len(key), bool)
-    contact[order[1:][same]] = contact[order[:-1][same]] = True
+    contact = repeated(nodes.original[triangles])
     return Surface(nodes, identity(nodes.size, format="csr"), triangles[~contact], part[~contact]).compact()
 
 

@@ -90,7 +90,7 @@ def paint(
     scene.outline(p, data, theme)
     p.add_mesh(
         data, scalars="T", cmap=heat(), clim=limits or (float(T.min()), float(T.max())), show_scalar_bar=False,
-        ambient=0.8, diffuse=0.28, specular=0.0, interpolate_before_map=True,
+        ambient=0.8, diffuse=0.28, specular=0.0, interpolate_before_map=True, culling="back",
     )  # fmt: skip
     return data
 

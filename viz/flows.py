@@ -4,18 +4,27 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from lumped.balance import Balance
-from lumped.network import Network
+from lumped.network import Link, Network
+
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class Flow:
-    """Heat (W) from node `start` to node or boundary `end`, through parallel links of one kind."""
+    """Heat (W) from node `start` to node or boundary `end`, through parallel links of one kind.
+
+    conductance : W/K between the two if each had one temperature; 0 where the flows were made without the states
+    """
 
     start: str
     end: str
     kind: str
     watts: float
+    conductance: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -32,10 +41,13 @@ class Heat:
         return sum(self.losses.values()) - sum(self.out.values())
 
 
-def heat_flows(network: Network, balance: Balance, step: int = -1) -> Heat:
-    """Losses, flows and exits over one step of the balance, the last one if not told."""
+def heat_flows(network: Network, balance: Balance, step: int = -1, z: Array | None = None) -> Heat:
+    """Losses, flows and exits over one step of the balance, the last one if not told.
+
+    z : (n_states + n_boundaries,) degC after that step; the conductances follow from it
+    """
     losses = {s.name.removeprefix("loss:"): float(balance.power(s.name)[step]) for s in network.sources}
-    pairs: dict[tuple[str, str, str], float] = {}
+    pairs: dict[tuple[str, str, str], Array] = {}
     out: dict[str, float] = {}
     for link in network.links:
         watts = float(balance.power(link.name)[step])
@@ -46,8 +58,20 @@ def heat_flows(network: Network, balance: Balance, step: int = -1) -> Heat:
             continue
         if start == end:
             continue
-        pairs[start, end, link.kind] = pairs.get((start, end, link.kind), 0.0) + watts
+        both = np.array([watts, 0.0 if z is None else conductance(network, link, (start, end), watts, z)])
+        pairs[start, end, link.kind] = pairs.get((start, end, link.kind), np.zeros(2)) + both
         for boundary, part, sign in ((end, start, 1.0), (start, end, -1.0)):
             if boundary in network.boundaries:
                 out[part] = out.get(part, 0.0) + sign * watts
-    return Heat(losses, tuple(Flow(*key, watts) for key, watts in pairs.items()), out)
+    return Heat(losses, tuple(Flow(*key, *both.tolist()) for key, both in pairs.items()), out)
+
+
+def conductance(network: Network, link: Link, ends: tuple[str, str], watts: float, z: Array) -> float:
+    """W/K of a link between two nodes of one temperature each: its coefficient times the entry of its pattern.
+
+    The coefficient is the heat that passes over what the pattern makes of the temperatures z.
+    """
+    mean = next(network.states.index(end) for end in ends if end in network.states)
+    mine = link.rows == mean
+    driven = float(link.vals[mine] @ z[link.cols[mine]])
+    return abs(watts / driven) * float(link.vals[mine & (link.cols == mean)].sum()) if driven else 0.0

@@ -55,7 +55,7 @@ def missing_in_machine(
     scene.outline(p, data, theme)
     p.add_mesh(
         data, scalars="W", cmap=missing(), clim=(-top, top), nan_color="#E4E8EC", show_scalar_bar=False, ambient=0.8,
-        diffuse=0.28,
+        diffuse=0.28, culling="back",
     )  # fmt: skip
     scene.colour_bar(p, "W", theme)
     scene.headline(p, f"Heat that the model misses, mean over {test}", theme)

@@ -3,29 +3,36 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.errors import InputError
 from geom.mesh import NamedMesh
 from viz import scene
 from viz.callouts import Label, callouts, on_top, text
-from viz.colours import LIGHT, VERMILION, Theme, heat
+from viz.colours import LIGHT, Theme, heat, power
 from viz.cut import HALF, cut_away
-from viz.flows import Flow, Heat
+from viz.flows import Heat
 from viz.nodes import SplitMesh, split
 from viz.scene import Room, View
 
 if TYPE_CHECKING:
     import pyvista
+    from matplotlib.colors import Colormap
 
 Array = NDArray[np.float64]
 SIDE = View(direction=(-1.0, 0.0, 0.0), angle=4.0)
 CLOSEST = 0.075  # distance of two nodes, share of the machine's length
 SMALL = 0.01  # of the largest flow: thinner lines are left out
 LABELLED = 10  # flows whose watts are written
+BELOW: dict[str, Any] = {
+    "vertical": False, "position_x": 0.28, "position_y": 0.04, "width": 0.36, "height": 0.1, "n_labels": 5,
+    "fmt": "%.0f W",
+}  # fmt: skip
 
 
 def network_in_machine(
@@ -37,30 +44,33 @@ def network_in_machine(
     theme: Theme = LIGHT,
     png: str | Path | None = None,
 ) -> pyvista.Plotter:
-    """The upper half of the section: nodes where their parts are, coloured by temperature, lines as wide as the heat.
+    """The upper half of the section: nodes where their parts are, coloured by temperature; a line per flow, as wide as
+    its conductance and coloured by its heat.
 
     Nodes off the axis (feet, base) and flows below 1 % of the largest are left out.
 
-    temperatures : node -> degC;  flow : from viz.flows.heat_flows
+    temperatures : node -> degC;  flow : from viz.flows.heat_flows, made with the states `z`
     """
     p, nodes = scene.plotter(theme), split(mesh)
-    surface = cut_away(nodes, HALF)
+    surface = cut_away(nodes, HALF).clipped(np.array([0.0, 1.0, 0.0]))
     data = scene.polydata(surface)
-    p.add_mesh(data, color="#E4E8EC", ambient=0.9, diffuse=0.1)
+    p.add_mesh(data, color="#E4E8EC" if theme == LIGHT else "#2A323B", ambient=0.9, diffuse=0.1)
     scene.outline(p, data, theme, opacity=0.35)
     at = places(mesh, nodes)
     front = np.array([surface.points[:, 0].min() - 0.02, 0.0, 0.0])
     at = {name: xyz + front for name, xyz in at.items() if xyz[1] > 0 and name in temperatures}
-    low, high = nodes.points.min(axis=0), nodes.points.max(axis=0)
+    low, high = surface.points.min(axis=0), surface.points.max(axis=0)
     at = apart(at, CLOSEST * float(np.ptp(nodes.points[:, 2])))
-    frame = front + np.array([[0, 0, low[2]], [0, high[1], high[2]]])
-    _lines(p, at, flow)
+    frame = front + np.array([[0, -0.2 * high[1], low[2]], [0, high[1], high[2]]])
+    widest = _lines(p, at, flow, power() if theme == LIGHT else power().reversed())
     _nodes(p, at, temperatures)
-    names = [Label(tuple(xyz), f"{name}  {temperatures[name]:.0f} °C", theme.ink) for name, xyz in at.items()]  # type: ignore[arg-type]
-    scene.colour_bar(p, "°C", theme)
-    scene.headline(p, title, theme)
-    scene.look(p, frame, SIDE, Room(0.22, 0.3, scene.TITLE if title else 0.0))
-    callouts(p, names, frame, SIDE, theme, size=13)
+    names = [Label(tuple(xyz), f"{name}  {temperatures[name]:.0f} °C", LIGHT.ink) for name, xyz in at.items()]  # type: ignore[arg-type]
+    scene.colour_bar(p, "°C", theme, mapper=p.actors["nodes"].mapper)
+    if "link 0" in p.actors:
+        scene.colour_bar(p, "", theme, mapper=p.actors["link 0"].mapper, **BELOW)
+    scene.headline(p, f"{title}  widest line {float(f'{widest:.2g}'):g} W/K".strip(), theme)
+    scene.look(p, frame, SIDE, Room(0.18, 0.27, scene.TITLE))
+    callouts(p, names, frame, SIDE, theme, size=13, dots=False)
     scene.save(p, png)
     return p
 
@@ -110,28 +120,31 @@ def _volumes(nodes: SplitMesh) -> Array:
     return np.abs(np.einsum("ij,ij->i", np.cross(edges[:, 0], edges[:, 1]), edges[:, 2])) / 6
 
 
-def _lines(p: pyvista.Plotter, at: Mapping[str, Array], flow: Heat) -> None:
-    """A line per flow; the largest carry their watts where no larger one's stand already."""
-    inner = [Flow(f.start, f.end, f.kind, abs(f.watts)) for f in flow.flows if f.start in at and f.end in at]
-    inner.sort(key=lambda f: -f.watts)
-    widest = inner[0].watts if inner else 1.0
-    taken: list[Array] = []
-    for f in inner:
-        if f.watts < SMALL * widest:
-            continue
-        a, b = at[f.start], at[f.end]
-        _line(p, a, b, float(np.clip(16 * np.sqrt(f.watts / widest), 1.0, 16.0)), VERMILION)
-        middle = (a + b) / 2
-        if len(taken) < LABELLED and all(np.linalg.norm((middle - other) * [0, 2, 1]) > 0.035 for other in taken):
-            p.add_actor(text(f"{f.watts:.0f} W", middle, "#8A3A00", 0, 11), reset_camera=False)
-            taken.append(middle)
-
-
-def _line(p: pyvista.Plotter, a: Array, b: Array, width: float, colour: str) -> None:
+def _lines(p: pyvista.Plotter, at: Mapping[str, Array], flow: Heat, colours: Colormap) -> float:
+    """A line per flow; the largest carry their watts where no larger one's stand already. The widest line's W/K."""
     import pyvista
 
-    actor = p.add_mesh(pyvista.Line(a, b), color=colour, line_width=width, opacity=0.75, lighting=False)
-    on_top(actor, 1)
+    inner = [replace(f, watts=abs(f.watts)) for f in flow.flows if f.start in at and f.end in at]
+    most = max((f.watts for f in inner), default=1.0)
+    drawn = sorted((f for f in inner if f.watts >= SMALL * most), key=lambda f: -f.watts)
+    widest = max((f.conductance for f in drawn), default=0.0)
+    if drawn and not widest > 0:
+        raise InputError("heat flows without conductances", "network", "heat_flows(network, balance, z=...)")
+    taken: list[Array] = []
+    for i, f in enumerate(drawn):
+        a, b = at[f.start], at[f.end]
+        line = pyvista.Line(a, b)
+        line.point_data["W"] = np.full(line.n_points, f.watts)
+        actor = p.add_mesh(
+            line, scalars="W", cmap=colours, clim=(0.0, most), lighting=False, show_scalar_bar=False, name=f"link {i}",
+            line_width=max(2.0, 24 * np.sqrt(f.conductance / widest)),
+        )  # fmt: skip
+        on_top(actor, 1)
+        middle = (a + b) / 2
+        if len(taken) < LABELLED and all(np.linalg.norm((middle - other) * [0, 2, 1]) > 0.035 for other in taken):
+            p.add_actor(text(f"{f.watts:.0f} W", middle, "#6B2A12", 0, 11), reset_camera=False)
+            taken.append(middle)
+    return widest
 
 
 def _nodes(p: pyvista.Plotter, at: Mapping[str, Array], T: Mapping[str, float]) -> None:
@@ -141,6 +154,6 @@ def _nodes(p: pyvista.Plotter, at: Mapping[str, Array], T: Mapping[str, float]) 
     cloud.point_data["T"] = [T[name] for name in at]
     style: dict[str, Any] = {"render_points_as_spheres": True, "lighting": False, "show_scalar_bar": False}
     halo = p.add_mesh(cloud.copy(), color="white", point_size=50, **style)
-    dots = p.add_mesh(cloud, scalars="T", cmap=heat(), point_size=42, **style)
+    dots = p.add_mesh(cloud, scalars="T", cmap=heat(), point_size=42, name="nodes", **style)
     on_top(halo, 4)
     on_top(dots, 5)

@@ -43,12 +43,20 @@ class SplitMesh:
     def boundary(self) -> tuple[Index, Index]:
         """Outer triangles of every part, (n, 3), and the part of each, (n,)."""
         corners = self.tets[:, [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]]].reshape(-1, 3)
-        key = np.sort(corners, axis=1)
-        order = np.lexsort(key.T)
-        same = (key[order][1:] == key[order][:-1]).all(axis=1)
-        inner = np.zeros(len(key), bool)
-        inner[order[1:][same]] = inner[order[:-1][same]] = True
+        inner = repeated(corners)
         return corners[~inner], np.repeat(self.region, 4)[~inner]
+
+
+def repeated(triangles: Index) -> NDArray[np.bool_]:
+    """(n,) which triangles, corners (n, 3) in any order, occur more than once."""
+    a, b, c = np.sort(triangles, axis=1).T
+    step = int(triangles.max(initial=0)) + 1
+    key = (a * step + b) * step + c  # one number per triangle, below 2^63 up to two million nodes
+    order = np.argsort(key)
+    same = key[order][1:] == key[order][:-1]
+    out = np.zeros(len(key), bool)
+    out[order[1:][same]] = out[order[:-1][same]] = True
+    return out
 
 
 def split(mesh: NamedMesh) -> SplitMesh:

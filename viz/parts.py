@@ -99,7 +99,7 @@ def shifts(nodes: SplitMesh, groups: Sequence[Sequence[str]]) -> Array:
 def _paint(p: pyvista.Plotter, surface: Surface, T: Array | None, theme: Theme, shift: Array | None = None) -> None:
     data = scene.polydata(surface, shift)
     scene.outline(p, data, theme)
-    light = {"ambient": 0.55, "diffuse": 0.5, "specular": 0.0}
+    light = {"ambient": 0.55, "diffuse": 0.5, "specular": 0.0, "culling": "back"}
     if T is None:
         rgb = np.array([_rgb(colour) for colour in part_colours(surface.nodes.parts).values()], np.uint8)
         data.cell_data["colour"] = rgb[surface.part]

@@ -38,10 +38,10 @@ def draw(built: Built) -> None:
     found = {part.name: built.machine.material_of(part.name) for part in built.machine.parts}
     k = {name: Conductivity(m.k_plane, m.k_plane, m.k_axial) for name, m in found.items()}
     viz.flux_arrows(nodes, T, k, title="Heat flux after an hour;", png=HERE / "flux.png").close()
-    heat = viz.heat_flows(network, balance(network, record()))
+    heat = viz.heat_flows(network, balance(network, record()), z=z[-1])
     viz.sankey_of_losses(heat, png=HERE / "losses.png")
     means = dict(zip([*network.states, *network.boundaries], z[-1].tolist(), strict=True))
-    viz.network_in_machine(built.mesh, means, heat, title="Heat flows after an hour", png=HERE / "network.png").close()
+    viz.network_in_machine(built.mesh, means, heat, title="Heat flows after an hour;", png=HERE / "network.png").close()
 
 
 if __name__ == "__main__":

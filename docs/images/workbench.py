@@ -1,55 +1,140 @@
-"""Pictures of the workbench for the pages: python docs/images/workbench.py CASE
+"""Walks through the workbench and keeps pictures for the pages: python docs/images/workbench.py CASE [FOLDER]
 
-Serves a copy of the case, so that nothing of the case itself is changed. Needs playwright and Chromium.
+Calibrate, click the failing sensor's dot, diagnose, add what is named, undo, reload, add again, report. Prints how
+long each step took. Serves a copy of the case, so that nothing of the case itself is changed. Needs playwright and
+Chromium.
 """
 
 from __future__ import annotations
 
+import io
 import shutil
 import subprocess
 import sys
 import tempfile
+import time
+from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
+from PIL import Image
 from playwright.sync_api import Page, sync_playwright
+from scipy.ndimage import center_of_mass, label
 
 HERE = Path(__file__).resolve().parent
 LONG = 3_600_000  # ms
+COLD = (0, 114, 178)  # viz.colours.VERDICT["cold"]
 
 
-def shot(page: Page, name: str) -> None:
-    page.wait_for_timeout(2500)
-    page.screenshot(path=HERE / f"workbench-{name}.png")
+class Walk:
+    """A page of the workbench, the folder for its pictures, and a clock."""
+
+    def __init__(self, page: Page, folder: Path) -> None:
+        self.page, self.folder, self.begun = page, folder, time.perf_counter()
+
+    def took(self, step: str) -> None:
+        """Print the time since the last step."""
+        now = time.perf_counter()
+        print(f"{step:40s} {now - self.begun:7.2f} s", flush=True)
+        self.begun = now
+
+    def shot(self, name: str) -> None:
+        """A picture, after the bars have fallen; the clock starts again."""
+        self.page.wait_for_timeout(2500)
+        self.page.screenshot(path=self.folder / f"workbench-{name}.png")
+        self.begun = time.perf_counter()
+
+    def step(self, button: str, what: str) -> None:
+        """Press a button that changes the model, keep the result whatever it is, wait until it is shown."""
+        before = self.page.inner_text("#revision")
+        self.page.click(button)
+        self.page.wait_for_selector("#outcome")
+        self.took(what)
+        if self.page.is_visible("#anyway"):
+            self.page.click("#anyway")
+        self.page.wait_for_function("old => document.querySelector('#revision').innerText !== old", arg=before)
 
 
-def story(page: Page, address: str) -> None:
-    """Open, click the worst sensor, diagnose, add what is named."""
+def dots(page: Page, colour: tuple[int, int, int]) -> Iterator[tuple[float, float]]:
+    """Page coordinates of the dots of that colour on the machine, the largest first."""
+    box = page.locator("#machine").bounding_box()
+    assert box is not None
+    picture = np.asarray(Image.open(io.BytesIO(page.locator("#machine").screenshot())).convert("RGB")).astype(int)
+    patch, count = label(np.abs(picture - colour).max(axis=2) < 12)
+    for i in sorted(range(1, count + 1), key=lambda i: -int((patch == i).sum())):
+        row, column = center_of_mass(patch == i)
+        yield box["x"] + column, box["y"] + row
+
+
+def clicked(walk: Walk, sensor: str) -> None:
+    """Click dot after dot on the machine until that sensor's curves are shown; time the last click."""
+    chosen = f"#sensor-{sensor}.chosen"
+    for x, y in list(dots(walk.page, COLD)):
+        walk.begun = time.perf_counter()
+        walk.page.mouse.click(x, y)
+        walk.page.wait_for_timeout(50)
+        try:
+            walk.page.wait_for_selector(chosen, timeout=1500)
+            walk.page.wait_for_function("document.querySelector('#curve').innerText.includes('flange right')")
+        except Exception:  # another sensor's dot
+            continue
+        return walk.took("click on its dot to its curves")
+    raise SystemExit(f"no dot of {sensor} was found")
+
+
+def story(walk: Walk, address: str) -> None:
+    """All of it, at 1280 x 800."""
+    page = walk.page
     page.set_default_timeout(LONG)
     page.goto(address)
     page.wait_for_selector("#sensors .sensor")
     page.wait_for_selector("#machine img[src^=blob], #machine canvas", state="attached")
-    page.click("#sensors .sensor.chosen")
-    shot(page, "sensor")
+    walk.took("open")
+    walk.step("#calibrate", "calibrate")
+    walk.shot("opened")
+    clicked(walk, "T_flange_right_degC")
+    walk.shot("sensor")
     page.click("#diagnose")
+    page.wait_for_function("/\\d+\\/\\d+/.test(document.querySelector('#job-message')?.innerText)")
+    walk.page.screenshot(path=walk.folder / "workbench-searching.png")
     page.wait_for_selector("#verdict")
+    walk.took("diagnose")
     page.locator("#missing").scroll_into_view_if_needed()
-    shot(page, "diagnosed")
-    page.click("tr.named button, tr.group button")
-    page.wait_for_selector("#outcome")
+    page.evaluate("document.querySelector('#missing').scrollIntoView({block: 'start'}); window.scrollBy(0, -70)")
+    walk.shot("diagnosed")
     page.evaluate("window.scrollTo(0, 0)")
-    shot(page, "added")
+    walk.step("tr.named button, tr.group button", "add")
+    walk.shot("added")
+    walk.step("#undo", "undo")
+    walk.shot("undone")
+    undone = page.inner_text("#errors")
+    page.reload()
+    page.wait_for_selector("#sensors .sensor")
+    walk.took("reload")
+    if page.inner_text("#errors").split("(hold-out)")[-1].split("→")[-1] not in undone:
+        raise SystemExit("the errors after a reload are others than before")
+    page.click("#report")
+    page.wait_for_selector("#report-link")
+    walk.took("report")
+    with page.context.expect_page() as opening:
+        page.click("#report-link")
+    opening.value.screenshot(path=walk.folder / "workbench-report.png")
+    page.click("[aria-label='dark page']")
+    walk.shot("dark")
 
 
 def main() -> None:
     browser = next(filter(None, map(shutil.which, ("chromium", "google-chrome"))))
+    folder = Path(sys.argv[2]) if len(sys.argv) > 2 else HERE
+    folder.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as home, sync_playwright() as engine:
-        case = shutil.copytree(sys.argv[1], Path(home) / "case", ignore=shutil.ignore_patterns("out"))
+        case = shutil.copytree(sys.argv[1], Path(home) / "case", ignore=shutil.ignore_patterns("out", "model.toml"))
         command = [sys.executable, "-c", "from thermoscope.cli import main; main()", "serve", str(case), "--port", "0"]
         server = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
         try:
             address = str(server.stdout.readline()).split()[1]  # type: ignore[union-attr]
             chromium = engine.chromium.launch(executable_path=browser, args=["--no-sandbox", "--disable-gpu"])
-            story(chromium.new_page(viewport={"width": 1440, "height": 900}), address)
+            story(Walk(chromium.new_page(viewport={"width": 1280, "height": 800}), folder), address)
         finally:
             server.terminate()
             server.wait()

@@ -10,7 +10,7 @@ from lumped import Balance, bare_network, node_link, node_source
 from lumped.laws import Fixed
 from viz import paper
 from viz.animation import animate
-from viz.flows import Heat, heat_flows
+from viz.flows import Flow, Heat, heat_flows
 from viz.network import apart, network_in_machine, places
 from viz.nodes import split
 from viz.sankey import sankey_of_losses
@@ -29,8 +29,11 @@ def heat():
     ]
     net = net.extended(links, [node_source(net, "loss:iron", "iron", {"yoke": 1.0}, Fixed(100.0))])
     seconds = np.array([0.0, 10.0])
+    z = np.array([72.5, 35.0, 20.0])  # 75 W through 2 W/K and 5 W/K, air at 20 degC
     through = {"contact:housing|yoke": -75.0 * seconds, "film:housing.outer": 75.0 * seconds}
-    return heat_flows(net, Balance(seconds, through, {"loss:iron": 100.0 * seconds}, 75.0 * seconds, 25.0 * seconds))
+    return heat_flows(
+        net, Balance(seconds, through, {"loss:iron": 100.0 * seconds}, 75.0 * seconds, 25.0 * seconds), z=z
+    )
 
 
 def test_what_is_lost_leaves_or_is_stored(heat):
@@ -43,6 +46,26 @@ def test_flow_keeps_the_sign_of_its_link(heat):
     flow = next(f for f in heat.flows if f.kind == "contact")
     assert (flow.start, flow.end) == ("housing", "yoke")
     assert flow.watts == pytest.approx(-75.0)
+
+
+def test_conductance_is_that_of_the_link(heat):
+    assert {f.kind: f.conductance for f in heat.flows} == pytest.approx({"contact": 2.0, "film": 5.0})
+
+
+def test_width_is_conductance_and_colour_is_heat():
+    """Twice the root of the conductance is twice as wide; equal heat has one colour."""
+    flows = tuple(Flow("yoke", end, "link", w, g) for end, w, g in (("housing", 75.0, 8.0), ("shaft", 75.0, 2.0)))
+    p = network_in_machine(MESH, {"yoke": 90.0, "housing": 40.0, "shaft": 30.0}, Heat({}, flows, {}))
+    wide, narrow = (p.actors[f"link {i}"] for i in (0, 1))
+    assert wide.prop.line_width == pytest.approx(2 * narrow.prop.line_width)
+    assert wide.mapper.dataset["W"].tolist() == narrow.mapper.dataset["W"].tolist()
+    assert "8 W/K" in p.actors["headline"].GetInput()
+    p.close()
+
+
+def test_flows_without_conductances_are_refused():
+    with pytest.raises(InputError, match="z="):
+        network_in_machine(MESH, {"yoke": 90.0, "housing": 40.0}, Heat({}, (Flow("yoke", "housing", "link", 1.0),), {}))
 
 
 def test_ribbons_carry_their_watts():
