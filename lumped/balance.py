@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from lumped.compiled import Compiled, compiled
 from lumped.network import Link, Network
 from lumped.simulate import Record, checked_time, march
+from lumped.terms import ROWS
 
 Array = NDArray[np.float64]
 
@@ -68,7 +69,7 @@ def _through(network: Network, core: Compiled, mean: Array) -> Array:
     """(rows of all terms,) +1 on the first place's rows, or -1 on the second's where the first is outside."""
     out = np.zeros(core.terms.row.size)
     for e, link in enumerate(network.links):
-        span = slice(core.terms.row_start[e], core.terms.row_start[e + 1])
+        span = slice(*core.terms.start[e : e + 2, ROWS])
         out[span] = mean[core.terms.row[span]] * _side(network, link)[core.terms.row[span]]
     return out
 

@@ -114,8 +114,9 @@ def _law_code(law: laws.TemperatureLaw) -> tuple[int, float, float]:
     return (TABLE if isinstance(law, laws.Table) else CONSTANT), 0.0, 0.0
 
 
-def _table(law: laws.TemperatureLaw) -> tuple[Sequence[float], Sequence[float]]:
-    return (law.difference, law.value) if isinstance(law, laws.Table) else ((), ())
+def _table(law: laws.TemperatureLaw) -> Array:
+    points = [law.difference, law.value] if isinstance(law, laws.Table) else [(), ()]
+    return np.ascontiguousarray(np.array(points, float).T)
 
 
 def _start(parts: Sequence[Sequence | NDArray]) -> NDArray[np.int64]:
@@ -130,39 +131,36 @@ def _ints(parts: Sequence[Sequence | NDArray]) -> NDArray[np.int64]:
     return np.concatenate([np.empty(0, np.int64), *(np.asarray(p, np.int64) for p in parts)])
 
 
+def _columns(factors: Sequence[Array], nt: int) -> Array:
+    out = np.empty((nt, len(factors)))
+    for e, factor in enumerate(factors):
+        out[:, e] = factor
+    return out
+
+
 def pack(terms: Sequence[Term], n: int, nt: int) -> Terms:
     """Flat arrays of the terms; a term stands in the constant matrix (dynamic 0) when it is steady."""
     unique = [np.unique(t.rows, return_inverse=True) for t in terms]
-    laws_of = [t.law.temperature for t in terms]
-    codes, tables = [_law_code(x) for x in laws_of], [_table(x) for x in laws_of]
-    rows, vals = [u[0] for u in unique], [t.vals for t in terms]
-    hot, cold = [t.hot for t in terms], [t.cold for t in terms]
-    factor = np.empty((nt, len(terms)))
-    for e, t in enumerate(terms):
-        factor[:, e] = t.factor
+    tables = [_table(t.law.temperature) for t in terms]
+    codes = [_law_code(t.law.temperature) for t in terms]
+    looks = [*(t.hot for t in terms), *(t.cold for t in terms)]
+    at, weight = [t.cols for t in terms], [t.vals for t in terms]
+    every = _start([*at, *(r.index for r in looks)])
+    ne = len(terms)
+    begins = (every[: ne + 1], every[ne : 2 * ne + 1], every[2 * ne :])
     return Terms(
-        start=_start(vals),
+        start=np.column_stack([*begins, _start([u[0] for u in unique]), _start(tables)]),
+        at=_ints([*at, *(r.index for r in looks)]),
+        weight=_floats([*weight, *(r.weights for r in looks)]),
         slot=_ints([u[1] for u in unique]),
-        col=_ints([t.cols for t in terms]),
-        val=_floats(vals),
-        row_start=_start(rows),
-        row=_ints(rows),
-        hot_start=_start([r.index for r in hot]),
-        hot_at=_ints([r.index for r in hot]),
-        hot_w=_floats([r.weights for r in hot]),
-        cold_start=_start([r.index for r in cold]),
-        cold_at=_ints([r.index for r in cold]),
-        cold_w=_floats([r.weights for r in cold]),
-        code=np.array([c[0] for c in codes], np.int64),
+        row=_ints([u[0] for u in unique]),
+        kind=np.array(
+            [(c[0], not t.steady, t.stiff(n), t.bends) for c, t in zip(codes, terms, strict=True)], np.int64
+        ).reshape(-1, 4),
         par=np.array([c[1:] for c in codes], float).reshape(-1, 2),
-        table_start=_start([x for x, _ in tables]),
-        table_x=_floats([x for x, _ in tables]),
-        table_y=_floats([y for _, y in tables]),
+        point=np.concatenate([np.empty((0, 2)), *tables]),
         m=np.array([t.m for t in terms], float),
-        factor=factor,
-        dynamic=np.array([not t.steady for t in terms], np.int64),
-        stiff=np.array([t.stiff(n) for t in terms], np.int64),
-        bends=np.array([t.bends for t in terms], np.int64),
+        factor=_columns([t.factor for t in terms], nt),
     )
 
 

@@ -118,23 +118,21 @@ def march(
     network: Network, record: Record, core: Compiled, through: Array, keep_states: bool, count: bool = False
 ) -> Run:
     """Run the kernel; `through` (rows of all terms,) says which rows count as the heat through a term."""
-    from lumped.kernel import integrate, stage, work
+    from lumped.kernel import integrate, stages, work
 
     time = checked_time(record.time)
     nt, nr, p = time.size, core.rows.start.size - 1, core.tangents.dC.shape[1]
-    z = np.zeros((nt if keep_states else 0, network.size))
+    z, heat = np.zeros((nt if keep_states else 0, network.size)), np.zeros((nt if count else 0, len(core.names)))
     y, dy = np.zeros((nt, nr)), np.zeros((nt, nr, p))
-    heat = np.zeros((nt, len(core.names))) if count else None
-    n, nb, ne = core.C.size, len(network.boundaries), core.terms.m.size
-    a, b = (stage(n, nb, core.terms.row.size, ne) for _ in range(2))
-    tangents = core.tangents if p else None
+    scratch = work(core.C.size, core.terms.m.size, p)
     u, x0 = boundary_table(network, record.boundaries, nt), initial_state(network, record.initial)
     failed = integrate(
-        time, u, x0, core.C, core.K0, core.terms, tangents, core.rows, through, a, b, work(n, ne, p), z, y, dy, heat
+        time, u, core.C, core.K0, core.terms, core.tangents, core.rows, through,
+        stages(x0, u[0], core.terms), scratch, z, y, dy, heat,
     )  # fmt: skip
     if failed >= 0:
         raise ThermoscopeError(_failure(network, core, time[failed]))
-    return Run(time, z if keep_states else None, y, dy if p else None, heat)
+    return Run(time, z if keep_states else None, y, dy if p else None, heat if count else None)
 
 
 def _failure(network: Network, core: Compiled, t: float) -> str:

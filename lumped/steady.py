@@ -38,25 +38,26 @@ def steady(
     rows: Sequence[Row] = (),
     tangents: Sequence[Parameter] = (),
 ) -> Steady:
-    """Newton's method on F(x) = 0 from the mean boundary temperature; arguments as for `simulate`.
+    """Newton's method on F(x) = 0 from the mean boundary temperature: one instant without heat capacities.
+
+    Arguments as for `simulate`.
 
     Raises ThermoscopeError where there is no rest: a node that nothing holds, or losses that grow faster with
     temperature than the cooling does (thermal runaway).
     """
-    from lumped.kernel import rest, stage, work
+    from lumped.kernel import integrate, stages, work
 
     core = compiled(network, inputs, 1, values, rows, tangents)
-    n, nr, p = len(network.states), len(rows), core.tangents.dC.shape[1]
+    n, nr, p, ne = len(network.states), len(rows), core.tangents.dC.shape[1], core.terms.m.size
     u = boundary_table(network, boundaries, 1)
     hidden = np.array(["#" in s for s in network.states], bool)
     x0 = np.where(hidden, 0.0, u.mean() if u.size else 20.0)
-    z, y, dy, G = np.zeros(network.size), np.zeros((1, nr)), np.zeros((1, nr, p)), np.zeros((n, n))
-    ne = core.terms.m.size
-    found = rest(
-        u, x0, np.zeros(n), core.K0, core.terms, core.tangents if p else None, core.rows,
-        stage(n, u.shape[1], core.terms.row.size, ne), work(n, ne, p), z, y, dy, G,
+    z, y, dy, scratch = np.zeros((1, network.size)), np.zeros((1, nr)), np.zeros((1, nr, p)), work(n, ne, p)
+    failed = integrate(
+        np.zeros(1), u, np.zeros(n), core.K0, core.terms, core.tangents, core.rows, np.zeros(core.terms.row.size),
+        stages(x0, u[0], core.terms), scratch, z, y, dy, np.zeros((0, ne)),
     )  # fmt: skip
-    if not found or np.linalg.eigvals(G).real.min() <= 0:
+    if failed >= 0 or np.linalg.eigvals(scratch.G).real.min() <= 0:
         why = "a node nothing holds, or thermal runaway"
         raise ThermoscopeError(f"network '{network.name}' does not come to rest: {why}")
-    return Steady((*network.states, *network.boundaries), z, y[0], dy[0] if p else None)
+    return Steady((*network.states, *network.boundaries), z[0], y[0], dy[0] if p else None)

@@ -17,53 +17,43 @@ SIGMA = 5.670374419e-8
 ZERO_C = 273.15
 SMOOTH = 0.01  # K: |dT| ** p is smoothed below this difference, where its derivative would be unbounded
 CONSTANT, POWER, RADIATION, LINEAR, TABLE = range(5)
+PATTERN, HOT, COLD, ROWS, POINTS = range(5)
+CODE, DYNAMIC, STIFF, BENDS = range(4)
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
 class Terms(NamedTuple):
-    """The terms the kernel follows one by one, in flat arrays; `*_start` (ne + 1,) bound the entries of each term.
+    """The terms the kernel follows one by one, in as few arrays as it takes: compile time goes with their number.
 
-    start, slot, col, val : triplets of P; slot counts the term's own distinct rows
-    row_start, row : distinct rows
-    hot_start, hot_at, hot_w, cold_start, cold_at, cold_w : the two temperatures of the law as rows over z+
-    code, par (ne, 2), table_start, table_x, table_y : temperature law
+    start (ne + 1, 5) : where each term begins: PATTERN, HOT and COLD in (at, weight), ROWS in row, POINTS in point
+    at, weight : entries over z+: first all patterns P (their rows in slot), then the two temperatures of the laws
+    slot : which of the term's own distinct rows an entry of P stands in;  row : those rows
+    kind (ne, 4) : CODE of the temperature law; DYNAMIC: assembled every step, else it stands in the constant matrix;
+        STIFF: touches the matrix; BENDS: its law depends on temperature
+    par (ne, 2), point (np, 2) : of the temperature law: its numbers, its table (x, y)
     m : multipliers; factor (nt, ne) input factors without m
-    dynamic : 1 where the term is assembled every step, 0 where it stands in the constant matrix
-    stiff : 1 where it touches the matrix; bends : 1 where its law depends on temperature
     """
 
     start: Ints
+    at: Ints
+    weight: Floats
     slot: Ints
-    col: Ints
-    val: Floats
-    row_start: Ints
     row: Ints
-    hot_start: Ints
-    hot_at: Ints
-    hot_w: Floats
-    cold_start: Ints
-    cold_at: Ints
-    cold_w: Floats
-    code: Ints
+    kind: Ints
     par: Floats
-    table_start: Ints
-    table_x: Floats
-    table_y: Floats
+    point: Floats
     m: Floats
     factor: Floats
-    dynamic: Ints
-    stiff: Ints
-    bends: Ints
 
 
 @inner
-def _segment(x, start, end, at):
+def _segment(points, start, end, at):
     """Index k of the piece of a table that holds `at`: x[k] <= at < x[k + 1]."""
     while end - start > 1:
         middle = (start + end) // 2
-        if x[middle] <= at:
+        if points[middle, 0] <= at:
             start = middle
         else:
             end = middle
@@ -71,18 +61,18 @@ def _segment(x, start, end, at):
 
 
 @inner
-def _tabulated(T, e, d, out):
-    """Piecewise linear in |d|, flat outside."""
-    first, last, at = T.table_start[e], T.table_start[e + 1] - 1, abs(d)
+def _tabulated(points, first, last, d, out):
+    """Piecewise linear in |d| between two indices, flat outside."""
+    at = abs(d)
     out[1] = 0.0
-    if at >= T.table_x[last]:
-        out[0] = T.table_y[last]
-    elif at <= T.table_x[first]:
-        out[0] = T.table_y[first]
+    if at >= points[last, 0]:
+        out[0] = points[last, 1]
+    elif at <= points[first, 0]:
+        out[0] = points[first, 1]
     else:
-        k = _segment(T.table_x, first, last, at)
-        slope = (T.table_y[k + 1] - T.table_y[k]) / (T.table_x[k + 1] - T.table_x[k])
-        out[0] = T.table_y[k] + slope * (at - T.table_x[k])
+        k = _segment(points, first, last, at)
+        slope = (points[k + 1, 1] - points[k, 1]) / (points[k + 1, 0] - points[k, 0])
+        out[0] = points[k, 1] + slope * (at - points[k, 0])
         out[1] = slope if d >= 0.0 else -slope
     out[2] = -out[1]
 
@@ -120,24 +110,17 @@ def clear(A):
 
 
 @inner
-def _dot(start, at, weight, e, z):
+def _sum(at, weight, first, last, z):
     out = 0.0
-    for i in range(start[e], start[e + 1]):
+    for i in range(first, last):
         out += weight[i] * z[at[i]]
     return out
 
 
 @inner
-def evaluate(T, z, tau):
-    """Temperature laws of all terms at z: tau (ne, 6) = value, d/dhot, d/dcold, hh, hc, cc."""
-    for e in range(T.m.size):
-        if T.bends[e]:
-            hot = _dot(T.hot_start, T.hot_at, T.hot_w, e, z)
-            cold = _dot(T.cold_start, T.cold_at, T.cold_w, e, z)
-            if T.code[e] == TABLE:
-                _tabulated(T, e, hot - cold, tau[e])
-            else:
-                law(T.code[e], T.par[e, 0], T.par[e, 1], hot, cold, tau[e])
+def look(T, e, side, z):
+    """The temperature a law sees at its side HOT or COLD."""
+    return _sum(T.at, T.weight, T.start[e, side], T.start[e + 1, side], z)
 
 
 @inner
@@ -146,46 +129,58 @@ def patterns(T, z, out):
     for s in range(out.size):
         out[s] = 0.0
     for e in range(T.m.size):
-        base = T.row_start[e]
-        for i in range(T.start[e], T.start[e + 1]):
-            out[base + T.slot[i]] += T.val[i] * z[T.col[i]]
+        base = T.start[e, ROWS]
+        for i in range(T.start[e, PATTERN], T.start[e + 1, PATTERN]):
+            out[base + T.slot[i]] += T.weight[i] * z[T.at[i]]
 
 
 @inner
-def force(T, K0, z, f, tau, v, out):
-    """out = F = -K0 z - sum of the dynamic terms; f (ne,) input factors, tau and v = P z at z."""
+def _evaluate(T, z, tau):
+    """Temperature laws of all terms at z: tau (ne, 6) = value, d/dhot, d/dcold, hh, hc, cc."""
+    for e in range(T.m.size):
+        if T.kind[e, BENDS]:
+            hot, cold = look(T, e, HOT, z), look(T, e, COLD, z)
+            if T.kind[e, CODE] == TABLE:
+                _tabulated(T.point, T.start[e, POINTS], T.start[e + 1, POINTS] - 1, hot - cold, tau[e])
+            else:
+                law(T.kind[e, CODE], T.par[e, 0], T.par[e, 1], hot, cold, tau[e])
+
+
+@inner
+def flow(T, K0, z, f, tau, v, out):
+    """out = F = -K0 z - sum of the dynamic terms at z, whose tau and v = P z are left; f (ne,) input factors."""
+    _evaluate(T, z, tau)
+    patterns(T, z, v)
     for i in range(out.size):
         acc = 0.0
         for j in range(z.size):
             acc += K0[i, j] * z[j]
         out[i] = -acc
     for e in range(T.m.size):
-        if T.dynamic[e] and T.m[e] != 0.0:
+        if T.kind[e, DYNAMIC] and T.m[e] != 0.0:
             c = T.m[e] * f[e] * tau[e, 0]
-            for s in range(T.row_start[e], T.row_start[e + 1]):
+            for s in range(T.start[e, ROWS], T.start[e + 1, ROWS]):
                 out[T.row[s]] -= c * v[s]
 
 
 @inner
 def _add_pattern(T, e, c, A):
-    base, n = T.row_start[e], A.shape[0]
-    for i in range(T.start[e], T.start[e + 1]):
-        if T.col[i] < n:
-            A[T.row[base + T.slot[i]], T.col[i]] += c * T.val[i]
+    base, n = T.start[e, ROWS], A.shape[0]
+    for i in range(T.start[e, PATTERN], T.start[e + 1, PATTERN]):
+        if T.at[i] < n:
+            A[T.row[base + T.slot[i]], T.at[i]] += c * T.weight[i]
 
 
 @inner
 def _add_outer(T, e, v, by_hot, by_cold, A):
     """A += v (by_hot hot + by_cold cold)' on the states."""
     n = A.shape[0]
-    for s in range(T.row_start[e], T.row_start[e + 1]):
-        r = T.row[s]
-        for i in range(T.hot_start[e], T.hot_start[e + 1]):
-            if T.hot_at[i] < n:
-                A[r, T.hot_at[i]] += v[s] * by_hot * T.hot_w[i]
-        for i in range(T.cold_start[e], T.cold_start[e + 1]):
-            if T.cold_at[i] < n:
-                A[r, T.cold_at[i]] += v[s] * by_cold * T.cold_w[i]
+    for s in range(T.start[e, ROWS], T.start[e + 1, ROWS]):
+        for side in (HOT, COLD):
+            c = v[s] * (by_hot if side == HOT else by_cold)
+            for i in range(T.start[e, side], T.start[e + 1, side]):
+                if T.at[i] < n:
+                    A[T.row[s], T.at[i]] += c * T.weight[i]
 
 
 @inner
@@ -195,19 +190,18 @@ def jacobian(T, K0, f, tau, v, G):
         for j in range(G.shape[0]):
             G[i, j] = K0[i, j]
     for e in range(T.m.size):
-        if T.dynamic[e] and T.stiff[e] and T.m[e] != 0.0:
+        if T.kind[e, DYNAMIC] and T.kind[e, STIFF] and T.m[e] != 0.0:
             mf = T.m[e] * f[e]
             _add_pattern(T, e, mf * tau[e, 0], G)
-            if T.bends[e]:
+            if T.kind[e, BENDS]:
                 _add_outer(T, e, v, mf * tau[e, 1], mf * tau[e, 2], G)
 
 
 @inner
 def directional(T, e, f, df, tau, z_dot):
     """d/ds of the coefficient c (without m) of term e along z_dot, and along time with df = df/dt."""
-    hot = _dot(T.hot_start, T.hot_at, T.hot_w, e, z_dot)
-    cold = _dot(T.cold_start, T.cold_at, T.cold_w, e, z_dot)
-    return f * (tau[e, 1] * hot + tau[e, 2] * cold) + df * tau[e, 0]
+    turn = tau[e, 1] * look(T, e, HOT, z_dot) + tau[e, 2] * look(T, e, COLD, z_dot)
+    return f * turn + df * tau[e, 0]
 
 
 @inner
@@ -215,12 +209,11 @@ def bend(T, f, df, sign, tau, v, z_dot, v_dot, scale, H):
     """H = scale * how G changes along z_dot and along time (forwards or backwards by sign); df (ne,) slopes."""
     clear(H)
     for e in range(T.m.size):
-        if T.dynamic[e] and T.stiff[e] and T.m[e] != 0.0:
+        if T.kind[e, DYNAMIC] and T.kind[e, STIFF] and T.m[e] != 0.0:
             m, slope = scale * T.m[e], sign * df[e]
             _add_pattern(T, e, m * directional(T, e, f[e], slope, tau, z_dot), H)
-            if T.bends[e]:
-                hot = _dot(T.hot_start, T.hot_at, T.hot_w, e, z_dot)
-                cold = _dot(T.cold_start, T.cold_at, T.cold_w, e, z_dot)
+            if T.kind[e, BENDS]:
+                hot, cold = look(T, e, HOT, z_dot), look(T, e, COLD, z_dot)
                 by_hot = slope * tau[e, 1] + f[e] * (tau[e, 3] * hot + tau[e, 4] * cold)
                 by_cold = slope * tau[e, 2] + f[e] * (tau[e, 4] * hot + tau[e, 5] * cold)
                 _add_outer(T, e, v, m * by_hot, m * by_cold, H)
