@@ -1,7 +1,7 @@
 """Condensed networks against the fields they come from, on the same mesh: how far off, and what they cost.
 
-    python benchmarks/condensation.py [MACHINE ...] [--size MM] [--segments N] [--accuracy PERCENT]
-                                      [--json FILE] [--table FILE]
+    python benchmarks/condensation.py [MACHINE ...] [--coarse] [--accuracy PERCENT] [--json FILE] [--table FILE]
+    python benchmarks/condensation.py --offline [--json FILE]      what condensing the motor on 150,000 nodes costs
 
 For every machine of the library, or those named: the network that `thermoscope build --accuracy` keeps, at coefficients
 and load cases that it has not seen (`condensation_points.py`). Errors are in percent of a part's own rise, at least a
@@ -20,11 +20,12 @@ import re
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from condensation_cost import Row, offline_rows, row
 from condensation_points import Pair, Point
 
 from fem.solve import Fluids, steady
@@ -36,13 +37,13 @@ from thermoscope.sized import Sized, sized
 WANTED = {"mean": 1.0, "hot": 2.0, "point": 2.0}
 AT_RANDOM = {**WANTED, "hot": 3.0}
 BALANCED = 1e-10
-Row = dict[str, Any]
+COARSE = {"size_m": 0.1, "segments": 36, "across": 1, "axial_m": 0.2}
 
 
-def machine_rows(name: str, size_m: float, segments: int, accuracy: float) -> Iterator[Row]:
+def machine_rows(name: str, mesh: Mapping[str, Any], accuracy: float) -> Iterator[Row]:
     """Size and cost of the network, its errors, and the balances of both."""
     start = time.process_time()
-    found = sized(load_machine(name), accuracy, size_m, segments)
+    found = sized(load_machine(name), accuracy, **mesh)
     yield row(name, "unknowns of the field", "1", found.built.field.n)
     yield row(name, "states", "1", len(found.built.network.states))
     yield row(name, "build, with error against size", "s CPU", time.process_time() - start)
@@ -139,14 +140,6 @@ def milliseconds(job: Callable[[], object], times: int = 20) -> float:
     return 1e3 * (time.process_time() - start) / times
 
 
-def row(
-    case: str, measure: str, unit: str, ours: float, peer: float | None = None, peer_name: str | None = None
-) -> Row:
-    """One line of the document; ratio is ours over what is wanted."""
-    out = {"case": case, "measure": measure, "unit": unit, "ours": float(ours), "peer": peer, "peer_name": peer_name}
-    return {**out, "ratio": float(ours) / peer if peer else None, "n": None, "ci95": None}
-
-
 def shown(r: Row) -> Row:
     """The same row, printed beside the document."""
     peer = f"   {r['peer_name']} {r['peer']:.3g}{'' if r['ratio'] <= 1 else '   MISSED'}" if r["peer"] else ""
@@ -161,6 +154,7 @@ GROUPS = ("nominal", "all films", "one film x10", "contacts", "gap, flow", "rand
 
 def table(rows: list[Row]) -> str:
     """One line per machine in Markdown: mean / hot spot / point in percent."""
+    rows = [r for r in rows if not r["case"].startswith("motor,")]
     value = {(r["case"], r["measure"]): r["ours"] for r in rows}
     head = ["machine", "unknowns", "states", *GROUPS]
     lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
@@ -188,17 +182,18 @@ def kept(file: str | None, machines: list[str]) -> list[Row]:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("machines", nargs="*", metavar="MACHINE", help="names of the library; all if none is given")
-    parser.add_argument("--size", type=float, default=60.0, help="largest triangle in the plane, mm")
-    parser.add_argument("--segments", type=int, default=48, help="chords per turn")
+    parser.add_argument("--offline", action="store_true", help="only what condensing a large motor costs")
+    parser.add_argument("--coarse", action="store_true", help="a mesh half as fine as `thermoscope build` makes it")
     parser.add_argument("--accuracy", type=float, default=2.0, help="percent, as in `thermoscope build --accuracy`")
     parser.add_argument("--json", metavar="FILE", help="write the rows there, - is stdout; other machines' rows stay")
     parser.add_argument("--table", metavar="PAGE", help="put the table between the markers of this Markdown page")
     given = parser.parse_args()
-    rows = kept(given.json, given.machines or library())
+    rows = kept(given.json, given.machines or ([] if given.offline else library()))
     with tempfile.TemporaryDirectory() as cold:
         os.environ["THERMOSCOPE_CACHE"] = cold
-        for name in given.machines or library():
-            rows += [shown(r) for r in machine_rows(name, given.size / 1e3, given.segments, given.accuracy)]
+        rows += [shown(r) for r in offline_rows()] if given.offline else []
+        for name in [] if given.offline else given.machines or library():
+            rows += [shown(r) for r in machine_rows(name, COARSE if given.coarse else {}, given.accuracy)]
     document = {
         "benchmark": "condensation",
         "computer": f"{platform.machine()}, Python {platform.python_version()}",

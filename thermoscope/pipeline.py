@@ -84,11 +84,12 @@ class Prepared:
 
 
 def prepared(
-    machine: Machine, size_m: float, segments: int, progress: Progress = silent, axial_m: float | None = None
-) -> Prepared:
-    """Mesh and conduction; axial_m : thickest layer along the axis (m), None for 1.5 size_m."""
+    machine: Machine, size_m: float, segments: int, progress: Progress = silent, axial_m: float | None = None,
+    across: int = 2,
+) -> Prepared:  # fmt: skip
+    """Mesh and conduction; axial_m : thickest layer along the axis (m), None for 1.5 size_m; all as for build_mesh."""
     progress("mesh")
-    found = build_mesh(machine, size_m=size_m, segments=segments, axial_m=axial_m, cache=cache_folder())
+    found = build_mesh(machine, size_m, segments, across, axial_m, cache_folder())
     mesh = with_cells(machine, found)
     progress(f"conduction on {len(mesh.points)} points")
     faces = {name: (patch.part, patch.fluid) for name, patch in mesh.patches.items()}

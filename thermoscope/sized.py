@@ -54,10 +54,10 @@ def wish_of(accuracy: float) -> Wish:
 
 def sized(
     machine: Machine, accuracy: float, size_m: float = 0.06, segments: int = 48, recipe: Recipe = FINE,
-    progress: Progress = silent, rounds: int = ROUNDS,
+    progress: Progress = silent, rounds: int = ROUNDS, across: int = 2, axial_m: float | None = None,
 ) -> Sized:  # fmt: skip
     """Build at several sizes and keep the smallest that meets the wish; if none does, learn from where it fails."""
-    ready = prepared(machine, size_m, segments, progress)
+    ready = prepared(machine, size_m, segments, progress, axial_m, across)
     progress("what the parts can look like")
     reduction = reduced(ready, recipe, motor_zones(machine))
     cases, wish = load_cases(machine, reduction), wish_of(accuracy)
