@@ -50,7 +50,7 @@ def read_network(data: Mapping[str, Any], where: str = "network.toml") -> Networ
     head, nodes = top.table("network"), top.tables("nodes")
     if not nodes:
         raise top.error("no nodes", "[nodes.NAME] with C_J_K = ...")
-    name, boundaries = head.word("name"), head.words("boundaries")
+    name, boundaries, settles = head.word("name"), head.words("boundaries"), head.number("settles_s", 3600.0, low=1.0)
     head.close()
     circuits = _circuits(top, nodes, boundaries)
     cells = {n: C for c in circuits.values() for n, C in c.capacities().items()}
@@ -58,7 +58,7 @@ def read_network(data: Mapping[str, Any], where: str = "network.toml") -> Networ
     clash = set(nodes) & set(boundaries)
     if clash:
         raise head.error(f"'{min(clash)}' is a node and a boundary", "one or the other")
-    network = replace(network, places=_places(network, top, nodes, cells))
+    network = replace(network, places=_places(network, top, nodes, cells), settles_s=settles)
     loops = [link for circuit in circuits.values() for link in circuit.links(network)]
     links = [*_links(network, top), *_streams(network, top), *loops]
     network = replace(network, links=tuple(links), sources=tuple(_sources(network, top)))
@@ -182,7 +182,7 @@ def _taken_off(measured: Source, other: Source) -> Source:
 
 
 def _checked(network: Network, where: str) -> Network:
-    """Names that parameters act on exist, and every node is joined to something."""
+    """Names that parameters act on exist, and every node is joined to something, or says what washes it."""
     items: list[Link | Source] = [*network.links, *network.sources]
     names = {i.name for i in items} | {f"capacity:{s}" for s in network.states}
     for p in network.parameters:
@@ -190,7 +190,8 @@ def _checked(network: Network, where: str) -> Network:
             if target not in names and not target.startswith(("bias:", "gain:", "lag:")):
                 raise InputError(f"acts on unknown '{target}'", f"{where} [parameters.{p.name}]", known(target, names))
     joined = {int(i) for link in network.links for i in (*link.rows, *link.cols)}
+    joined |= {int(i) for place in network.places.values() if place.kind == "surface" for i in place.states}
     for i, node in enumerate(network.states):
         if i not in joined:
-            raise InputError(f"node '{node}' is joined to nothing", where, f"a link or stream with '{node}'")
+            raise InputError(f"node '{node}' is joined to nothing", where, f"a link, stream or surface with '{node}'")
     return network

@@ -154,6 +154,7 @@ class Network:
     boundaries : names of the temperatures given from outside ("ambient", "coolant.in", ...)
     parameters : what calibration may move
     inputs : names of the signals the laws read (e.g. "current_A"), with their units in the name
+    settles_s : time constant (s) of the whole, roughly; with C it says how large a missing path usually is
     """
 
     name: str
@@ -166,6 +167,7 @@ class Network:
     capacity_group: tuple[str, ...] = ()
     parameters: tuple[Parameter, ...] = ()
     recovery: Recovery | None = field(default=None, compare=False)
+    settles_s: float = 3600.0
 
     @property
     def size(self) -> int:

@@ -39,6 +39,7 @@ QUANTITIES = {
     "voltage": Quantity({"V": (1, 0), "mV": (1e-3, 0), "kV": (1e3, 0)}, "voltage_V"),
     "resistance": Quantity({"ohm": (1, 0), "mohm": (1e-3, 0), "kohm": (1e3, 0)}),
     "back_emf": Quantity({"V": (1, 0), "mV": (1e-3, 0), "kV": (1e3, 0)}),
+    "frequency": Quantity({"Hz": (1, 0), "kHz": (1e3, 0)}, "switching_Hz"),
     "share": Quantity({"%": (1, 0), "1": (100, 0)}, "share_percent"),
     "time": Quantity({"s": (1, 0), "ms": (1e-3, 0), "min": (60, 0), "h": (3600, 0)}),
 }

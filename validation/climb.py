@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from validation.calibrate import silent
@@ -64,12 +64,14 @@ class Climbed:
 class Guide:
     """Who decides and who remembers.
 
+    offer : of a diagnosis the candidates that may be added now
     choose : of the candidates that cannot be told apart (one or more) the name to add, or None to stop
     keep : told every accepted revision and the evidence for it
     """
 
     choose: Callable[[Diagnosis, Sequence[Candidate]], str | None]
     keep: Callable[[Revision, Mapping[str, float | str]], None]
+    offer: Callable[[Diagnosis], tuple[Candidate, ...]] = field(default=lambda found: offered(found))
 
 
 def singletons(diagnosis: Diagnosis, choice: Sequence[Candidate]) -> str | None:
@@ -93,7 +95,7 @@ def climb(
     while True:
         found = diagnose(case, draws=draws, kinds=kinds, workers=workers, cache=cache, progress=progress)
         progress(f"{found.verdict}: {found.words}")
-        choice = offered(found)
+        choice = guide.offer(found)
         if not choice:
             return Climbed(case, tuple(stairs), found, found.words)
         if len(stairs) > most:
@@ -121,6 +123,12 @@ def offered(found: Diagnosis) -> tuple[Candidate, ...]:
     first = found.groups[0] if found.groups and found.verdict != "absorbed" else ()
     rows = [c for c in found.candidates if c.effect in first]
     return tuple(rows) if all(c.decision in ("named", "group") for c in rows) else ()
+
+
+def leading(found: Diagnosis) -> tuple[Candidate, ...]:
+    """The first group's candidates, also where the catalogue does not explain all: for studies, not for users."""
+    first = found.groups[0] if found.groups else ()
+    return tuple(c for c in found.candidates if c.effect in first)
 
 
 def evidence(found: Diagnosis, chosen: Candidate) -> dict[str, float | str]:

@@ -17,6 +17,7 @@ from scipy.signal import lfilter
 from lumped.network import Network, Parameter
 from lumped.simulate import Record, simulate
 from validation.case import Test
+from validation.effects.fan_stop import RUNNING
 from validation.effects.sites import ambient
 
 Array = NDArray[np.float64]
@@ -83,12 +84,13 @@ def predict(
 
 
 def record(test: Test, shift: Mapping[str, float]) -> Record:
-    """The test's inputs, with offsets of boundaries and start applied."""
+    """The test's inputs, its time, and that it is this test; offsets of boundaries and start applied."""
     boundaries = {n: np.asarray(u, float) + shift.get(f"boundary:{n}", 0.0) for n, u in test.boundaries.items()}
     move = shift.get(f"initial:{test.name}", 0.0)
     initial = test.initial
     start = {k: v + move for k, v in initial.items()} if isinstance(initial, Mapping) else initial + move
-    return Record(test.time, {**test.inputs, "time_s": test.time}, boundaries, start)
+    own = {"time_s": test.time, f"{RUNNING}{test.name}": np.ones_like(test.time)}
+    return Record(test.time, {**test.inputs, **own}, boundaries, start)
 
 
 Temperatures = Callable[..., tuple[Array, Array | None]]

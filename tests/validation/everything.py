@@ -55,7 +55,7 @@ def moved(link, n):
 
 
 def scene(net):
-    inputs = frozenset({"current_A", "speed_rpm", "vehicle_speed_mps", "fan_flow_m3h", "time_s"})
+    inputs = frozenset({"current_A", "speed_rpm", "vehicle_speed_mps", "fan_flow_m3h", "switching_Hz", "time_s"})
     return Scene(net, inputs, SENSORS, ("warm",))
 
 
@@ -64,6 +64,7 @@ def warm_test(net):
     time = np.arange(0.0, 1200.0, 10.0)
     inputs = stand(200.0, 1000.0)(time, np.random.default_rng(0))
     inputs["vehicle_speed_mps"] = 5.0 + 5.0 * np.sin(time / 100.0)
+    inputs["switching_Hz"] = np.where(time > 300.0, 8000.0, 0.0)
     boundaries = {b: np.full_like(time, t) for b, t in zip(net.boundaries, (20.0, 15.0, 18.0))}
     channels = tuple(Channel(s, s, row(net.column(s)), np.zeros_like(time), 0.5, 10.0) for s in SENSORS)
     return Test("warm", "calibrate", time, inputs, boundaries, channels, 25.0)

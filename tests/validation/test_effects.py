@@ -12,9 +12,18 @@ from validation.effects import catalogue, effect, kinds
 from validation.predict import predict
 
 KINDS = kinds()
-COOLING = ["convection", "convection.constant", "convection.buoyant", "radiation", "conduction.bench", "coolant"]
+COOLING = [
+    "convection",
+    "convection.constant",
+    "convection.buoyant",
+    "radiation",
+    "conduction.bench",
+    "coolant",
+    "conduction.shaft",
+    "conduction.cable",
+]
 HEATING = ["iron", "windage", "bearing.friction", "brush.drop", "brush.friction", "loss.winding", "loss.rotor",
-           "loss.constant", "copper.ac", "copper.feedback"]  # fmt: skip
+           "loss.constant", "iron.pwm", "copper.ac", "copper.feedback"]  # fmt: skip
 SHARED = {"base", "build", "registry", "sites", "__init__"}
 
 

@@ -32,8 +32,8 @@ class Shaped(Law):
 
 
 def conductance_scale(network: Network) -> float:
-    """A conductance (W/K) of this machine's size: what cools all of it with a time constant of one hour."""
-    return float(np.sum(network.C)) / HOUR
+    """A conductance (W/K) of this machine's size: what cools all of it with its time constant."""
+    return float(np.sum(network.C)) / network.settles_s
 
 
 def power_scale(network: Network) -> float:

@@ -90,10 +90,14 @@ def neighbours(network: Network) -> dict[str, set[str]]:
 
 
 def near_pairs(network: Network) -> Iterable[tuple[str, str]]:
-    """Pairs of solids that no link joins though they share a neighbour: where a bridge may have been forgotten."""
+    """Pairs of solids that no link joins: where a bridge may have been forgotten.
+
+    They share a neighbour, or one of them has no solid neighbour at all.
+    """
     around, names = neighbours(network), [p.name for p in solids(network)]
+    solid = {a: around.get(a, set()) & set(names) for a in names}
     for i, a in enumerate(names):
         for b in names[i + 1 :]:
-            shared = around.get(a, set()) & around.get(b, set()) & set(names)
-            if b not in around.get(a, set()) and shared:
+            alone = not solid[a] or not solid[b]
+            if b not in solid[a] and (alone or solid[a] & solid[b]):
                 yield a, b

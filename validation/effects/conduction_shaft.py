@@ -1,0 +1,40 @@
+"""Heat that leaves along the shaft."""
+
+from dataclasses import dataclass
+
+from lumped.laws import Fixed
+from lumped.network import Network
+from validation.effects.base import Effect, Scene, with_parameter
+from validation.effects.build import conductance_scale, exchange
+from validation.effects.sites import ambient, solids
+
+
+def shafts(network: Network) -> list[str]:
+    """Nodes that are the shaft; where there is none, the rotor it belongs to."""
+    names = [p.name for p in solids(network)]
+    return [n for n in names if "shaft" in n.lower()] or [n for n in names if n.lower() == "rotor"]
+
+
+@dataclass(frozen=True)
+class ShaftConduction(Effect):
+    """Conduction through shaft and coupling into a driven machine as cold as the air: q = a (T - T_ambient)."""
+
+    kind = "conduction.shaft"
+    title = "conduction through shaft and coupling"
+    unit = "W/K"
+    source = "one-dimensional conduction k A / L; steel shaft of 30 mm, 100 mm long: 0.35 W/K"
+    isolating_test = "uncouple, or put an insulating disc between the coupling's halves"
+    typical = (0.1, 2.0)
+    prior_sd = 0.1
+    high = 10.0
+    confused_with = ("convection.rotation", "bearing.friction")
+
+    @classmethod
+    def where(cls, scene: Scene) -> list[str]:
+        return shafts(scene.network) if ambient(scene.network) else []
+
+    def extend(self, network: Network) -> Network:
+        link = exchange(network, self.name, self.place, str(ambient(network)), Fixed(1.0))
+        return with_parameter(
+            network.extended(links=[link]), self.parameter(link.name, scale=conductance_scale(network))
+        )
