@@ -12,10 +12,11 @@ import numpy as np
 
 from geom.errors import InputError
 from lumped.build import bare_network, node_link, node_source, stream, surface_place
-from lumped.declared_laws import flow_law, loss_kinds, loss_laws, mechanisms, taken_off
+from lumped.declared_links import flow_law, mechanisms
+from lumped.declared_losses import loss_kinds, loss_laws, taken_off
 from lumped.declared_parameters import read_parameters
 from lumped.laws import Law
-from lumped.losses import Negative
+from lumped.loss_measured import Negative
 from lumped.network import Link, Network, Place, Source
 from lumped.reader import Table, known
 

@@ -5,11 +5,9 @@ What a law declares is what the network injects: the source's weights sum to 1 a
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lumped.laws import CONSTANT, Array, Inputs, Law, Linear, TemperatureLaw
 
@@ -170,89 +168,3 @@ class RippleLoss(Law):
         D = np.minimum(np.abs(np.asarray(inputs[self.voltage], float)) / self.supply, 1.0)
         ripple = self.supply * D * (1.0 - D) / (self.L * self.frequency)
         return self.factor_ * self.R * ripple**2 / 12.0
-
-
-@dataclass(frozen=True)
-class MapLoss(Law):
-    """A measured or computed map (W) over |speed| and |torque|, bilinear; warns outside and takes the nearest edge.
-
-    at_speed (ns,) and at_torque (nt,) rise; watts (ns, nt), row by row; speed, torque: names of the inputs.
-    """
-
-    at_speed: tuple[float, ...]
-    at_torque: tuple[float, ...]
-    watts: tuple[tuple[float, ...], ...]
-    speed: str = "speed_rpm"
-    torque: str = "torque_Nm"
-    temperature: TemperatureLaw = CONSTANT
-
-    @property
-    def reads(self) -> tuple[str, ...]:  # type: ignore[override]
-        return (self.speed, self.torque)
-
-    def factor(self, inputs: Inputs) -> Array:
-        n = self._within(self.speed, inputs, self.at_speed)
-        T = self._within(self.torque, inputs, self.at_torque)
-        i, a = _cell(n, self.at_speed)
-        j, b = _cell(T, self.at_torque)
-        P = np.asarray(self.watts)
-        low, high = (1 - b) * P[i, j] + b * P[i, j + 1], (1 - b) * P[i + 1, j] + b * P[i + 1, j + 1]
-        return (1 - a) * low + a * high
-
-    def _within(self, name: str, inputs: Inputs, at: tuple[float, ...]) -> Array:
-        from lumped.correlations.info import RangeWarning
-
-        x = np.abs(np.asarray(inputs[name], float))
-        if x.size and not at[0] <= x.min() <= x.max() <= at[-1]:
-            said = f"loss map: {name} = {x.min():.4g} to {x.max():.4g} outside {at[0]:g} to {at[-1]:g}"
-            warnings.warn(said, RangeWarning, stacklevel=4)
-        return np.clip(x, at[0], at[-1])
-
-
-def _cell(x: Array, at: tuple[float, ...]) -> tuple[NDArray[np.int64], Array]:
-    """Index of the grid cell that holds x, and the share of the way through it."""
-    grid = np.asarray(at)
-    k = np.clip(np.searchsorted(grid, x, side="right") - 1, 0, grid.size - 2)
-    return k, (x - grid[k]) / (grid[k + 1] - grid[k])
-
-
-@dataclass(frozen=True)
-class Negative(Law):
-    """Minus another law, with its temperature: what a measured total has to leave out."""
-
-    of: Law
-
-    @property
-    def temperature(self) -> TemperatureLaw:  # type: ignore[override]
-        return self.of.temperature
-
-    @property
-    def reads(self) -> tuple[str, ...]:  # type: ignore[override]
-        return self.of.reads
-
-    def factor(self, inputs: Inputs) -> Array | float:
-        return -np.asarray(self.of.factor(inputs), float)
-
-
-@dataclass(frozen=True)
-class MeasuredLoss(Law):
-    """Measured input power minus measured output power (W).
-
-    powers : (factor, inputs): factor * product of the inputs, e.g. (1, ("electrical_W",)) and
-        (-pi/30, ("torque_Nm", "speed_rpm"))
-    What the model separates out of it is taken off by sources of the law `Negative`, at the temperature of the moment.
-    The difference may be negative in transients (energy stored in the rotor and the field) and is not clipped.
-    """
-
-    powers: tuple[tuple[float, tuple[str, ...]], ...]
-
-    @property
-    def reads(self) -> tuple[str, ...]:  # type: ignore[override]
-        names = [name for _, factors in self.powers for name in factors]
-        return tuple(dict.fromkeys(names))
-
-    def factor(self, inputs: Inputs) -> Array | float:
-        total: Array | float = 0.0
-        for scale, names in self.powers:
-            total = total + scale * np.prod([np.asarray(inputs[name], float) for name in names], axis=0)
-        return total

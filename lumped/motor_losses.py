@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from geom.errors import InputError
-from lumped.declared_laws import loss_laws
+from lumped.declared_losses import loss_laws
 from lumped.laws import InputPower, Law, Linear
 from lumped.losses import PowerLoss
 from lumped.motor_settings import Losses, read

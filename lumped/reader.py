@@ -106,3 +106,12 @@ class Table:
         if not isinstance(items, list):
             raise self.error(f"{key} = {value!r} is not possible", f"{key} = [{{ ... }}, ...]")
         return [Table(item, f"{self.where} {key}[{i}]") for i, item in enumerate(items)]
+
+
+def powers(table: Table, key: str = "of") -> tuple[tuple[str, float, float], ...]:
+    """[{ input = ..., at = ..., exponent = ... }]: |input / at| ** exponent each."""
+    out = []
+    for item in table.listed(key):
+        out.append((item.word("input"), item.number("at", 1.0, low=1e-12), item.number("exponent", 1.0, low=-10)))
+        item.close()
+    return tuple(out)

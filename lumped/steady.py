@@ -14,6 +14,7 @@ from lumped.network import Network, Parameter, Row
 from lumped.simulate import boundary_table
 
 Array = NDArray[np.float64]
+ABOVE_K = 30.0  # still air takes nothing without a difference: a start without one would leave the nodes unheld
 
 
 @dataclass(frozen=True)
@@ -38,7 +39,7 @@ def steady(
     rows: Sequence[Row] = (),
     tangents: Sequence[Parameter] = (),
 ) -> Steady:
-    """Newton's method on F(x) = 0 from the mean boundary temperature: one instant without heat capacities.
+    """Newton's method on F(x) = 0 from above the mean boundary temperature: one instant without heat capacities.
 
     Arguments as for `simulate`.
 
@@ -51,7 +52,7 @@ def steady(
     n, nr, p, ne = len(network.states), len(rows), core.tangents.dC.shape[1], core.terms.m.size
     u = boundary_table(network, boundaries, 1)
     hidden = np.array(["#" in s for s in network.states], bool)
-    x0 = np.where(hidden, 0.0, u.mean() if u.size else 20.0)
+    x0 = np.where(hidden, 0.0, ABOVE_K + (u.mean() if u.size else 20.0))
     z, y, dy, scratch = np.zeros((1, network.size)), np.zeros((1, nr)), np.zeros((1, nr, p)), work(n, ne, p)
     failed = integrate(
         np.zeros(1), u, np.zeros(n), core.K0, core.terms, core.tangents, core.rows, np.zeros(core.terms.row.size),

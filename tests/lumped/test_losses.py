@@ -8,7 +8,8 @@ from small_networks import boundaries, every_law, inputs
 from lumped.audit import audit
 from lumped.correlations import RangeWarning
 from lumped.declared import read_network
-from lumped.losses import BrushLoss, CopperLoss, IronLoss, MapLoss, PowerLoss, RippleLoss
+from lumped.loss_map import MapLoss
+from lumped.losses import BrushLoss, CopperLoss, IronLoss, PowerLoss, RippleLoss
 from lumped.simulate import Record
 
 AT = {"speed_rpm": np.array([0.0, 1000.0, 2000.0]), "current_A": np.array([0.0, 100.0, 200.0])}

@@ -1,0 +1,127 @@
+"""The losses of network.toml, by kind."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from itertools import pairwise
+
+from lumped.laws import CONSTANT, Law, Linear, TemperatureLaw
+from lumped.loss_map import MapLoss
+from lumped.loss_measured import MeasuredLoss
+from lumped.losses import ALPHA_CU, BrushLoss, CopperLoss, IronLoss, PowerLoss, RippleLoss
+from lumped.reader import Table, powers
+
+
+def _copper(table: Table) -> Law:
+    given = [key for key in ("R20_ohm", "R_ohm") if key in table]
+    if len(given) != 1:
+        raise table.error("resistance is not given once", "R20_ohm, or R_ohm with reference_degC")
+    reference = 20.0 if given[0] == "R20_ohm" else table.number("reference_degC", low=-273.15)
+    ac = table.raw("ac")
+    speed, at, coefficients = _ac(Table(ac, f"{table.where} ac")) if ac is not None else (None, 1.0, (1.0,))
+    return CopperLoss(
+        table.number(given[0]), table.words("currents"), table.number("factor", 1.0),
+        table.number("alpha_1_K", ALPHA_CU), reference, coefficients, speed, at,
+    )  # fmt: skip
+
+
+def _ac(table: Table) -> tuple[str, float, tuple[float, ...]]:
+    out = table.word("input"), table.number("at", 1.0, low=1e-12), table.numbers("coefficients")
+    table.close()
+    return out
+
+
+def _temperature(table: Table) -> TemperatureLaw:
+    if "alpha_1_K" not in table:
+        return CONSTANT
+    return Linear(table.number("alpha_1_K", low=-1.0), table.number("reference_degC", low=-273.15))
+
+
+def _iron(table: Table) -> Law:
+    excitation = table.word("excitation", "") or None
+    return IronLoss(
+        table.number("hysteresis_W", 0.0), table.number("eddy_W", 0.0), table.word("speed", "speed_rpm"),
+        table.number("speed_at", low=1e-12), excitation, table.number("excitation_at", 1.0, low=1e-12),
+        table.number("flux_exponent", 2.0), _temperature(table), table.number("excess_W", 0.0),
+        table.number("frequency_exponent", 1.0),
+    )  # fmt: skip
+
+
+def _terms(table: Table) -> Law:
+    if "P_W" in table:
+        return PowerLoss(((table.number("P_W"), powers(table)),), _temperature(table))
+    terms = tuple((item.number("P_W"), powers(item)) for item in table.listed("terms"))
+    if not terms:
+        raise table.error(
+            "no power", "P_W = ... with of = { input, at, exponent }, or terms = [{ P_W = ..., of = ... }]"
+        )
+    return PowerLoss(terms, _temperature(table))
+
+
+def _brush(table: Table) -> Law:
+    friction = table.number("friction_W", 0.0)
+    speed = table.word("speed", "speed_rpm") if friction else None
+    at = table.number("speed_at", low=1e-12) if friction else 1.0
+    return BrushLoss(table.number("drop_V"), table.word("current", "current_A"), friction, speed, at)
+
+
+def _measured(table: Table) -> Law:
+    table.words("less", [])
+    return MeasuredLoss(_products(table, "electrical", 1.0) + _products(table, "mechanical", -1.0))
+
+
+def taken_off(table: Table, kinds: Mapping[str, str]) -> tuple[str, ...]:
+    """The losses that a measured one leaves to the model."""
+    less = table.words("less", [])
+    others = [name for name, kind in kinds.items() if kind != "measured"]
+    for name in less:
+        if name not in others:
+            raise table.error(f"less = '{name}' is no loss", f"a loss that is not measured: {', '.join(others)}")
+    return less
+
+
+def _ripple(table: Table) -> Law:
+    return RippleLoss(
+        table.number("supply_V", low=1e-9), table.word("voltage", "voltage_V"), table.number("L_H", low=1e-12),
+        table.number("switching_Hz", low=1e-9), table.number("R20_ohm"), table.number("factor", 1.0),
+        table.number("alpha_1_K", ALPHA_CU),
+    )  # fmt: skip
+
+
+def _map(table: Table) -> Law:
+    speed, torque = table.numbers("at_speed"), table.numbers("at_torque")
+    watts = tuple(tuple(float(p) for p in row) for row in table.raw("P_W", []))
+    rising = all(b > a for at in (speed, torque) for a, b in pairwise(at))
+    if not rising or min(len(speed), len(torque)) < 2 or {len(row) for row in watts} != {len(torque)}:
+        raise table.error("the map is not a grid", "at_speed and at_torque rising, P_W = [[per torque], per speed]")
+    if len(watts) != len(speed):
+        raise table.error(f"P_W has {len(watts)} rows", f"one per speed: {len(speed)}")
+    return MapLoss(speed, torque, watts, table.word("speed", "speed_rpm"), table.word("torque", "torque_Nm"),
+                   _temperature(table))  # fmt: skip
+
+
+def _products(table: Table, key: str, sign: float) -> tuple[tuple[float, tuple[str, ...]], ...]:
+    out = []
+    for item in table.listed(key):
+        names = item.words("product")
+        default = math.pi / 30 if key == "mechanical" and any(name.endswith("_rpm") for name in names) else 1.0
+        out.append((sign * item.number("factor", default, low=-1e12), names))
+        item.close()
+    return tuple(out)
+
+
+LOSSES = {
+    "copper": _copper, "iron": _iron, "brush": _brush, "ripple": _ripple, "map": _map, "measured": _measured,
+}  # fmt: skip
+PLAIN = ("friction", "windage", "stray", "magnet", "switching", "bearing", "constant")
+
+
+def loss_kinds(tables: Mapping[str, Table]) -> dict[str, str]:
+    """Name -> kind."""
+    return {name: table.word("kind", None, (*LOSSES, *PLAIN)) for name, table in tables.items()}
+
+
+def loss_laws(tables: Mapping[str, Table]) -> dict[str, Law]:
+    """Name -> law."""
+    return {name: LOSSES.get(kind, _terms)(tables[name]) for name, kind in loss_kinds(tables).items()}

@@ -1,0 +1,135 @@
+"""Films of known surfaces in network.toml are the correlations they name, and every one of them can be declared."""
+
+import pickle
+
+import numpy as np
+import pytest
+from jsonschema import Draft202012Validator
+
+from geom.errors import InputError
+from lumped.correlations import RangeWarning, air_gap, contacts, ducts, end_space, fins, forced, natural
+from lumped.declared import read_network
+from lumped.declared_films import FORCED, NATURAL
+from lumped.properties import air
+from lumped.schema import schema
+from lumped.simulate import Record, simulate
+from lumped.steady import steady
+
+pytestmark = pytest.mark.filterwarnings("ignore::lumped.correlations.RangeWarning")
+AREA = 0.4
+
+STILL = {
+    "horizontal cylinder": ({"size_m": 0.3}, lambda T: natural.churchill_chu_cylinder(0.3, T, 20.0)),
+    "vertical plate": ({"size_m": 0.3}, lambda T: natural.churchill_chu_plate(0.3, T, 20.0)),
+    "plate facing up": ({"size_m": 0.1}, lambda T: natural.mcadams_plate(0.1, T, 20.0)),
+    "plate facing down": ({"size_m": 0.1}, lambda T: natural.mcadams_plate(0.1, T, 20.0, upward=False)),
+    "vertical cylinder": (
+        {"size_m": 0.3, "diameter_mm": 30.0}, lambda T: natural.popiel_cylinder(0.3, 0.03, T, 20.0),
+    ),
+    "vertical fins": (
+        {"size_m": 0.25, "depth_mm": 20.0, "spacing_mm": 10.0},
+        lambda T: fins.van_de_pol_tierney(0.02, 0.01, 0.25, T, 20.0),
+    ),
+    "horizontal fins": ({"spacing_mm": 12.0}, lambda T: fins.jones_smith(0.012, T, 20.0)),
+    "parallel plates": ({"size_m": 0.2, "spacing_mm": 10.0}, lambda T: fins.elenbaas(0.01, 0.2, T, 20.0)),
+}  # fmt: skip
+MOVING = {
+    "plate": ({"size_m": 0.5}, lambda v: forced.flat_plate(v, 0.5)),
+    "cylinder": ({"size_m": 0.3}, lambda v: forced.churchill_bernstein(v, 0.3)),
+    "fin channel": (
+        {"size_m": 0.25, "diameter_mm": 20.0, "speed_at_end": 0.2, "fluid_degC": 40.0},
+        lambda v: fins.heiles_decaying(v, 0.02, 0.25, fins.straight_decay(0.2)),
+    ),
+    "duct": (
+        {"size_m": 0.3, "diameter_mm": 20.0, "fluid_degC": 40.0}, lambda v: ducts.duct_film(v, 0.02, 0.3),
+    ),
+    "end space": ({}, lambda v: end_space.schubert(v)),
+}  # fmt: skip
+
+
+def document(mechanism, keys):
+    return {
+        "network": {"name": "n", "boundaries": ["ambient"]}, "nodes": {"a": {"C_J_K": 900.0}},
+        "links": {"out": {"between": ["a", "ambient"], "area_m2": AREA, mechanism: keys}},
+        "losses": {"heat": {"kind": "constant", "at": "a", "P_W": 100.0}},
+    }  # fmt: skip
+
+
+def declared(mechanism, keys):
+    data = document(mechanism, keys)
+    assert list(Draft202012Validator(schema("network")).iter_errors(data)) == []
+    return pickle.loads(pickle.dumps(read_network(data)))
+
+
+def test_every_surface_has_a_case_here():
+    assert set(STILL) == set(NATURAL)
+    assert set(MOVING) == set(FORCED)
+
+
+@pytest.mark.parametrize("surface", STILL)
+def test_in_still_air_a_node_rests_where_the_correlation_says(surface):
+    """At rest h A (T - 20) is the loss; 0.3 % for the table between its points (0.1 % for a quarter power)."""
+    keys, film = STILL[surface]
+    T = steady(declared("natural", {"surface": surface, **keys}), {}, {"ambient": 20.0})["a"]
+    assert film(T)[0] * AREA * (T - 20.0) == pytest.approx(100.0, rel=3e-3)
+
+
+@pytest.mark.parametrize("surface", MOVING)
+def test_in_moving_air_too(surface):
+    keys, film = MOVING[surface]
+    network = declared("forced", {"surface": surface, "speed": "v_km_h", "m_s_per_unit": 1 / 3.6, **keys})
+    for v in (2.0, 8.0, 20.0):
+        T = steady(network, {"v_km_h": 3.6 * v}, {"ambient": 20.0})["a"]
+        assert film(v)[0] * AREA * (T - 20.0) == pytest.approx(100.0, rel=3e-3)
+
+
+@pytest.mark.parametrize("law", ["taylor", "becker-kaye"])
+def test_through_the_gap_the_whole_film_counts(law):
+    network = declared("gap", {"rotor_radius_mm": 80.0, "gap_mm": 0.7, "law": law})
+    for rpm in (0.0, 3000.0, 9000.0):
+        omega, fluid = rpm * np.pi / 30, air(80.0)
+        one, whole = (f(omega, 0.08, 0.7e-3, fluid)[0] for f in (air_gap.taylor_film, air_gap.becker_kaye))
+        T = steady(network, {"speed_rpm": rpm}, {"ambient": 20.0})["a"]
+        h = whole if law == "becker-kaye" else 0.5 * one
+        assert h * AREA * (T - 20.0) == pytest.approx(100.0, rel=3e-3)
+
+
+@pytest.mark.parametrize(
+    ("keys", "h"),
+    [
+        ({"gap_mm": 0.037}, contacts.gap_film(0.037e-3)),
+        ({"joint": "lamination - metal, average"}, contacts.gap_film(0.03e-3)),
+        ({"pair": "copper - copper"}, np.sqrt(10000.0 * 25000.0)),
+    ],
+)
+def test_a_joint_is_its_gap_or_its_pair(keys, h):
+    T = steady(declared("contact", keys), {}, {"ambient": 20.0})["a"]
+    assert pytest.approx(100.0 / (h * AREA), rel=1e-9) == T - 20.0
+
+
+def test_thin_air_cools_less():
+    low, high = (
+        declared("natural", {"surface": "vertical plate", "size_m": 0.3, "altitude_m": m}) for m in (0.0, 3000.0)
+    )
+    assert steady(high, {}, {"ambient": 20.0})["a"] > steady(low, {}, {"ambient": 20.0})["a"] + 2.0
+
+
+def test_faster_than_the_table_warns_with_value_and_range():
+    network = declared("forced", {"surface": "plate", "speed": "v", "size_m": 0.5, "up_to_m_s": 10.0})
+    with pytest.warns(RangeWarning, match="v = 30 outside 0 to 10"):
+        simulate(network, Record(np.arange(3.0), {"v": 30.0}, {"ambient": 20.0}))
+
+
+@pytest.mark.parametrize(
+    ("mechanism", "keys", "message"),
+    [
+        ("natural", {"surface": "vertical fins", "size_m": 0.2, "depth_mm": 20.0}, "spacing_mm"),
+        ("natural", {"surface": "sphere"}, "'sphere'.*vertical fins"),
+        ("forced", {"surface": "plate", "size_m": 0.5}, "'speed' is missing"),
+        ("contact", {"joint": "glue"}, "'glue'.*known"),
+        ("gap", {"gap_mm": 1.0}, "rotor_radius_mm"),
+    ],
+)
+def test_slips_are_named(mechanism, keys, message):
+    with pytest.raises(InputError, match=message):
+        read_network(document(mechanism, keys))
