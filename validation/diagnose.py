@@ -29,6 +29,7 @@ BEYOND = 1.6
 LOCATED = 10.0
 PULL = 3.0
 COMPENSATED = 0.3
+SILENT = 6.0
 WORTH = 0.1
 HIDES = "it may hide a missing effect"
 
@@ -157,12 +158,12 @@ def explained(evidence: Evidence, found: Race) -> float:
     return 1.0 - (rmse(found.best.parts) / rmse(evidence.fit.parts)) ** 2
 
 
-def told_by_data(evidence: Evidence, found: Race) -> float:
-    """Share of the best candidate's gain in deviance that the readings contribute; the rest is relief of priors."""
+def told_by_data(evidence: Evidence, found: Race) -> tuple[float, float]:
+    """What the readings contribute to the best candidate's gain in deviance, and their share in it."""
     before, after = (square_of(fit.parts, found.noise) for fit in (evidence.fit, found.best))
     strain, eased = (float(np.sum((fit.theta / fit.unknowns.sd) ** 2)) for fit in (evidence.fit, found.best))
     gain = before - after + max(strain - eased, 0.0)
-    return (before - after) / gain if gain > 0 else 0.0
+    return before - after, (before - after) / gain if gain > 0 else 0.0
 
 
 def weak(evidence: Evidence, found: Race) -> bool:
@@ -170,7 +171,8 @@ def weak(evidence: Evidence, found: Race) -> bool:
     best = found.index[0]
     if evidence.effects[best].fault:
         return False
-    return evidence.twins[best] is not None or told_by_data(evidence, found) < COMPENSATED
+    gain, share = told_by_data(evidence, found)
+    return evidence.twins[best] is not None or (share < COMPENSATED and gain < SILENT)
 
 
 def on_bound(evidence: Evidence, found: Race) -> bool:
@@ -215,7 +217,7 @@ def plain(step: Step, k: int, limit: float) -> Candidate:
     return Candidate(
         e.names[k], float(s.z[k]) / kappa, limit, a, e.parameters[k].unit, (a - half, a + half),
         "cannot-tell" if hidden else "no", confused_with=tuple(near), absorbed=float(s.absorbed[k]),
-        smallest_detectable=float(s.detectable(step.kappa)[k]), twin=twin, title=e.effects[k].title,
+        smallest_detectable=float(s.detectable(step.kappa, limit)[k]), twin=twin, title=e.effects[k].title,
         isolating_test=e.effects[k].isolating_test, kappa=kappa,
     )  # fmt: skip
 
@@ -251,12 +253,12 @@ def held_out(case: Case, before: Fit, after: Fit) -> tuple[float, float] | None:
 def unseen(step: Step, null: Null) -> tuple[Hidden, ...]:
     """Effects that would have to be unusually large to show, most hidden first."""
     e, s = step.evidence, step.evidence.score
-    size = s.detectable(step.kappa) / np.array([p.prior_sd for p in e.parameters])
+    size = s.detectable(step.kappa, null.threshold())
+    unusual = size / np.array([p.prior_sd for p in e.parameters])
     names, twins = e.fit.unknowns.names, e.twins
-    hit = [int(k) for k in np.argsort(-size) if size[k] > 2.0 or twins[k]]
+    hit = [int(k) for k in np.argsort(-unusual) if unusual[k] > 2.0 or twins[k]]
     return tuple(
-        Hidden(e.names[k], float(s.detectable(step.kappa)[k]), e.parameters[k].unit, twins[k] or names[s.absorber[k]])
-        for k in hit
+        Hidden(e.names[k], float(size[k]), e.parameters[k].unit, twins[k] or names[s.absorber[k]]) for k in hit
     )
 
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from lumped.laws import Constant, Fixed, Inputs, Law, Power, Table, TemperatureLaw
 from lumped.network import Link, Network, Place, Row, Source
+from validation.bridges import bridges
 from validation.case import Channel, Test
 from validation.forms import KNOTS, SETTLE_K
 from validation.predict import shifted
@@ -33,7 +34,9 @@ class Spread:
     conductivity: float = 0.15
     capacity: float = 0.05
     core: float = 0.7
-    placement: float = 0.03
+    placement: float = 0.08
+    stream: float = 0.1
+    bridge: float = 0.1
     flow: float = 0.03
     wander_K: float = 0.2
     clock_s: float = 1.0
@@ -81,8 +84,9 @@ def disturbed(network: Network, rng: np.random.Generator, spread: Spread = USUAL
     free = {t for p in network.parameters for t, _ in p.targets}
     links = tuple(_bent_link(network, link, rng, spread, link.name in shared) for link in network.links)
     links = tuple(x if x.name in free else _other_material(x, rng, spread) for x in links)
+    bridged = bridges(network, rng, spread.bridge)
     sources = tuple(_bent_source(s, rng, spread) for s in network.sources)
-    network = replace(network, links=links, sources=sources, C=other_capacities(network, rng, spread))
+    network = replace(network, links=(*links, *bridged), sources=sources, C=other_capacities(network, rng, spread))
     return network if any("#" in s for s in network.states) else with_cores(network, rng, spread)
 
 
@@ -178,12 +182,14 @@ def disturbed_test(test: Test, network: Network, real: Network, rng: np.random.G
 
 
 def _beside(c: Channel, network: Network, n: int, m: int, rng: np.random.Generator, spread: Spread) -> Channel:
-    """A share of a neighbour's temperature in the reading."""
+    """A share of a neighbour's temperature in the reading; in a stream it is not the mean that is read."""
     near = [p for p in _near(network, c.place) if p.kind != "surface"]
     row = moved_row(c.row, n, m)
     if not near:
         return replace(c, row=row)
-    share, other = spread.placement * abs(rng.standard_normal()), moved_row(near[rng.integers(len(near))].mean, n, m)
+    fluid = c.place in network.places and network.places[c.place].kind == "fluid"
+    share = (spread.stream if fluid else spread.placement) * abs(rng.standard_normal())
+    other = moved_row(near[rng.integers(len(near))].mean, n, m)
     index = np.concatenate([row.index, other.index])
     return replace(c, row=Row(index, np.concatenate([(1.0 - share) * row.weights, share * other.weights])))
 

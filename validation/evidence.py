@@ -13,7 +13,7 @@ from lumped.network import Network, Parameter
 from validation.calibrate import Fit, calibrated, minimise, silent
 from validation.case import Case, Test
 from validation.effects import Effect, catalogue, extended
-from validation.fitting import Unknowns, scene_of, working
+from validation.fitting import Unknowns, at_level, scene_of, working
 from validation.noise import Noise, fit_noise
 from validation.null import Null, simulated_null
 from validation.score import Gram, Score, gram, score, total
@@ -73,7 +73,7 @@ def candidates(case: Case, kinds: Sequence[str] | None = None) -> tuple[Effect, 
 
 def scored(case: Case, effects: Sequence[Effect], fit: Fit) -> Evidence:
     """One run of every test with all candidates' tangents at a calibrated state."""
-    network = extended(fit.network, effects)
+    network = at_level(extended(fit.network, effects), {e.name for e in effects}, case.tests)
     by_name = {p.name: p for p in network.parameters}
     parameters = tuple(by_name[e.name] for e in effects)
     tests, p = diagnosing(case), len(fit.unknowns.parameters)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lumped.laws import Law
 from lumped.network import Network, Parameter
 from validation.case import Case, Channel, Model, Test
 from validation.effects import Effect, Scene, effect, extended
@@ -16,8 +17,9 @@ from validation.forms import with_forms
 
 Array = NDArray[np.float64]
 START_SD = 0.5
-GAIN_SD = 0.02
-LAG_SD = 3.0
+GAIN_SD = 0.03
+GAIN_OF_STREAM_SD = 0.1  # a stream is not of one temperature: no thermometer reads its mean
+LAG_SD = 10.0  # diffusion in the part it sits in: L^2 / 2a of some centimetres of metal
 BOUNDARY_SD = 0.5
 CLOCK_SD = 1.0
 
@@ -60,20 +62,22 @@ def to_value(p: Parameter, theta: float) -> float:
     return p.value * float(np.exp(theta)) if p.mapping == "log" else p.neutral + theta
 
 
-def nuisances(tests: Sequence[Test]) -> list[Parameter]:
+def nuisances(network: Network, tests: Sequence[Test]) -> list[Parameter]:
     """What no measurement is free of: bias, slope and lag of sensors, bias of boundary sensors, start, clock."""
     channels = {c.name: c for test in tests for c in test.channels}
     boundaries = dict.fromkeys(b for test in tests for b in test.boundaries)
-    sensors = [p for c in channels.values() for p in _sensor(c)]
+    sensors = [p for c in channels.values() for p in _sensor(network, c)]
     air = [_offset(f"bias of {b}", f"boundary:{b}", BOUNDARY_SD, "sensor of the boundary") for b in boundaries]
     start = [_offset(f"start of {t.name}", f"initial:{t.name}", START_SD, "uneven start") for t in tests]
     clock = [_offset(f"clock of {t.name}", f"delay:{t.name}", CLOCK_SD, "logger's clock", "s") for t in tests]
     return [*sensors, *air, *start, *clock]
 
 
-def _sensor(c: Channel) -> list[Parameter]:
+def _sensor(network: Network, c: Channel) -> list[Parameter]:
     bias = _offset(f"bias of {c.name}", f"bias:{c.name}", c.sigma_K, "calibration of the sensor")
-    gain = _offset(f"slope of {c.name}", f"gain:{c.name}", GAIN_SD, "placement of the sensor")
+    stream = c.place in network.places and network.places[c.place].kind == "fluid"
+    sd = GAIN_OF_STREAM_SD if stream else GAIN_SD
+    gain = _offset(f"slope of {c.name}", f"gain:{c.name}", sd, "placement of the sensor")
     lag = _offset(f"lag of {c.name}", f"lag:{c.name}", max(LAG_SD, 0.3 * c.lag_s), "mounting of the sensor")
     return [bias, replace(gain, unit="1"), replace(lag, unit="s", low=-c.lag_s)]
 
@@ -97,13 +101,34 @@ def effects_of(case: Case) -> tuple[Effect, ...]:
     return tuple(effect(e.name) for e in case.model.effects)
 
 
+def at_level(network: Network, names: Collection[str], tests: Sequence[Test]) -> Network:
+    """The network with the priors and upper bounds of losses that effects bring in for the heat in these tests.
+
+    Declared for the loss's reference (1000 rpm, 100 A), they would be a hundred times too narrow on a motor of 10 A.
+    """
+    laws = {s.name: s.law for s in network.sources}
+    mean = {n: _mean_factor([laws[t] for p in network.parameters if p.name == n for t, _ in p.targets if t in laws],
+                            tests) for n in names}  # fmt: skip
+    return replace(network, parameters=tuple(
+        replace(p, prior_sd=p.prior_sd / f, high=p.high / f) if (f := mean.get(p.name, 0.0)) > 0 else p
+        for p in network.parameters
+    ))  # fmt: skip
+
+
+def _mean_factor(laws: Sequence[Law], tests: Sequence[Test]) -> float:
+    """Mean size of what the laws multiply an amplitude by; 0 where nothing is known."""
+    seen = [np.abs(law.factor(t.inputs)) for law in laws for t in tests if set(law.reads) <= set(t.inputs)]
+    return float(np.mean([np.mean(f) for f in seen])) if seen else 0.0
+
+
 def working(case: Case, more: Sequence[Effect] = ()) -> tuple[Network, Unknowns]:
     """The network with the model's effects, `more` effects and measurement nuisances, and what is free in it.
 
     Free are the case's nuisances (all declared parameters when it names none), the effects and the measurement's.
     """
-    inside, extra = effects_of(case), nuisances(case.tests)
+    inside, extra = effects_of(case), nuisances(case.model.network, case.tests)
     network = extended(case.model.network, (*inside, *more))
+    network = at_level(network, {e.name for e in (*inside, *more)}, case.tests)
     network, forms = with_forms(network, case.tests)
     network = replace(network, parameters=(*network.parameters, *extra))
     chosen = {p.name for p in (case.nuisances or case.model.network.parameters)}

@@ -42,13 +42,15 @@ class Null:
     @property
     def kappa(self) -> Array:
         """How much each effect's formal standard deviation is too small (K,), at least 1, shrunk to the typical."""
-        m, square = self.z.shape[0], np.mean(self.z**2, axis=0)
-        typical = np.median(square)
-        return np.sqrt(np.maximum((m * square + 10.0 * typical) / (m + 10.0), 1.0))
+        return _kappa(np.sum(self.z**2, axis=0), self.z.shape[0])
 
     def threshold(self, alpha: float = 0.05) -> float:
-        """Level that the best scaled score passes with probability alpha when nothing is missing: Gumbel by moments."""
-        best = np.max(self.z / self.kappa, axis=1)
+        """Level that the best scaled score passes with probability alpha when nothing is missing: Gumbel by moments.
+
+        Each draw is scaled by the others, as the measurements are: scaled by itself too, few draws never look unusual.
+        """
+        m, square = self.z.shape[0], np.sum(self.z**2, axis=0)
+        best = np.array([np.max(row / _kappa(square - row**2, m - 1)) for row in self.z])
         scale = np.std(best, ddof=1) * np.sqrt(6.0) / np.pi
         return float(np.mean(best) - EULER * scale - scale * np.log(-np.log1p(-alpha)))
 
@@ -60,6 +62,12 @@ class Null:
     def floor(self) -> Array:
         """Residual (K) per channel that the calibrated model reaches in 95 % of the draws."""
         return np.asarray(np.quantile(self.rms, 0.95, axis=0))
+
+
+def _kappa(square: Array, m: int) -> Array:
+    """From sums of squares (K,) over m draws."""
+    mean = square / m
+    return np.asarray(np.sqrt(np.maximum((square + 10.0 * np.median(mean)) / (m + 10.0), 1.0)))
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ from validation.noise import Noise
 from validation.sheet import Segment
 
 Array = NDArray[np.float64]
-DETECT = 1.645 + 0.842  # one-sided 5 %, power 80 %
+POWER = 0.842  # normal quantile of 80 %
 
 
 @dataclass(frozen=True)
@@ -97,9 +97,9 @@ class Score:
         d = np.where(self.visible, np.sqrt(np.maximum(np.diag(self.V), 1e-300)), np.inf)
         return self.V / np.outer(d, d)
 
-    def detectable(self, kappa: Array) -> Array:
-        """Smallest amplitude found with 80 % power at the 5 % level."""
-        return DETECT * self.sd * kappa
+    def detectable(self, kappa: Array, threshold: float) -> Array:
+        """Smallest amplitude whose score passes the threshold for the best of all effects four times in five."""
+        return (threshold + POWER) * self.sd * kappa
 
     def conditional(self, k: int, other: int) -> float:
         """Signed z of k once `other` is in the model."""

@@ -58,7 +58,7 @@ def _label(kind: Archetype, group: str, seed: int, turn: int) -> Label:
 
 def _one(kind: Archetype, bare: Label, turn: int, rng: np.random.Generator) -> Label:
     """One effect at 1, 2 or 4 times the smallest detectable size, whichever its nature allows."""
-    table, size = detectable()[kind.name], SIZES[turn % len(SIZES)]
+    table, size = detectable()[kind.name], SIZES[(turn + turn // len(SIZES)) % len(SIZES)]
     fit = [h for h in kind.missing if h.name in table and size * table[h.name]["size"] <= h.largest]
     chosen = fit[int(rng.integers(len(fit)))]
     found = table[chosen.name]
@@ -66,9 +66,9 @@ def _one(kind: Archetype, bare: Label, turn: int, rng: np.random.Generator) -> L
                    rivals=tuple(n for n, c in found["alike"].items() if _near(size, c)))  # fmt: skip
 
 
-def _near(size: float, cosine: float) -> bool:
-    """Expected deviance gap below 20: the rival would explain it almost as well (2.487 deviations at size 1)."""
-    return (2.487 * size) ** 2 * (1.0 - cosine**2) < 20.0 and cosine > 0.5
+def _near(z: float, cosine: float) -> bool:
+    """Expected deviance gap below 20: the rival would explain it almost as well. z : deviations of the true effect."""
+    return z**2 * (1.0 - cosine**2) < 20.0 and cosine > 0.5
 
 
 def _two(kind: Archetype, bare: Label, turn: int, rng: np.random.Generator) -> Label:

@@ -17,6 +17,7 @@ from hidden.truth.archetype import measured
 from hidden.truth.change import NOTHING
 from hidden.user import case_of
 from validation.evidence import calibrated_case, candidates, null_of, scored
+from validation.score import POWER
 
 FILE = Path(__file__).parent / "detectable.json"
 REFERENCE_SEEDS = (900001,)
@@ -36,21 +37,24 @@ def measure(kind: str, draws: int) -> dict[str, dict]:
         if found:
             alike = {n: max(f["alike"].get(n, 0.0) for f in found) for f in found for n in f["alike"]}
             size = float(np.mean([f["size"] for f in found]))
-            out[hidden.name] = {"size": size, "unit": found[0]["unit"], "alike": alike}
+            out[hidden.name] = {"size": size, "unit": found[0]["unit"], "alike": alike, "z": found[0]["z"]}
     return out
 
 
 def _one(kind: str, seed: int, draws: int) -> dict[str, dict]:
     case = case_of("reference", kind, measured(KINDS[kind], seed, NOTHING))
     evidence = scored(case, candidates(case), calibrated_case(case))
-    size = evidence.score.detectable(null_of(evidence, draws, workers=1).kappa)
+    null = null_of(evidence, draws, workers=1)
+    limit = null.threshold()
+    size = evidence.score.detectable(null.kappa, limit)
     names, cosine = evidence.names, np.abs(evidence.score.cosine)
     wanted = {h.name for h in KINDS[kind].missing} & set(names)
     out = {}
     for k, name in enumerate(names):
         if name in wanted:
             alike = {names[m]: round(float(cosine[k, m]), 3) for m in np.flatnonzero(cosine[k] > LIKE) if m != k}
-            out[name] = {"size": float(size[k]), "unit": evidence.parameters[k].unit, "alike": alike}
+            out[name] = {"size": float(size[k]), "unit": evidence.parameters[k].unit, "alike": alike,
+                         "z": round(limit + POWER, 3)}  # fmt: skip
     return out
 
 

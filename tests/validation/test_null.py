@@ -7,7 +7,7 @@ from playground import Truth
 
 from validation.disturb import USUAL
 from validation.evidence import calibrated_case, scored
-from validation.null import Setting, data
+from validation.null import Null, Setting, data
 
 
 def test_a_sensor_that_was_not_read_in_one_test_is_simulated_unread():
@@ -21,3 +21,12 @@ def test_a_sensor_that_was_not_read_in_one_test_is_simulated_unread():
     drawn = data(setting, np.random.default_rng(0))[0]
     assert np.isnan(drawn.channels[0].y).all()
     assert all(np.isfinite(c.y).all() for c in drawn.channels[1:])
+
+
+def test_a_threshold_from_few_draws_is_passed_one_time_in_twenty():
+    """40 independent effects of unequal spread, 20 draws: fresh data scaled by the draws' kappa."""
+    rng, sd, passed = np.random.default_rng(5), np.geomspace(0.5, 4.0, 40), []
+    for _ in range(300):
+        null = Null(sd * rng.standard_normal((20, 40)), np.zeros((20, 1)), np.zeros((20, 1)))
+        passed.append(np.max(sd * rng.standard_normal((20, 40)) / null.kappa, axis=1) > null.threshold())
+    assert 0.02 < np.mean(passed) < 0.08

@@ -6,7 +6,7 @@ from lumped.laws import InputPower
 from lumped.network import Network
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import heat, power_scale
-from validation.effects.sites import heated
+from validation.effects.sites import heated, like
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,9 @@ class AcCopper(Effect):
 
     @classmethod
     def where(cls, scene: Scene) -> list[str]:
-        return heated(scene.network, "copper", "winding")
+        """Windings that carry a copper loss; a cage has no strands (its own is the load-dependent loss of a rotor)."""
+        loaded = heated(scene.network, "copper", "winding")
+        return [p for p in loaded if like(p, "winding") or not like(p, "rotor")]
 
     def extend(self, network: Network) -> Network:
         source = heat(

@@ -6,6 +6,7 @@ from lumped.laws import InputPower
 from lumped.network import Network
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import heat, power_scale
+from validation.effects.copper_ac import AcCopper
 from validation.effects.sites import named
 
 
@@ -26,7 +27,8 @@ class RotorLoadLoss(Effect):
 
     @classmethod
     def where(cls, scene: Scene) -> list[str]:
-        return named(scene.network, "rotor")
+        """Rotors and magnets; a winding that turns has the same law as AC copper loss."""
+        return [p for p in named(scene.network, "rotor") if p not in AcCopper.where(scene)]
 
     def extend(self, network: Network) -> Network:
         law = InputPower(1.0, (("speed_rpm", 1000.0, 2.0), ("current_A", 100.0, 2.0)))

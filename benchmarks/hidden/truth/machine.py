@@ -108,7 +108,7 @@ class Machine:
         return np.asarray(np.linalg.inv(np.eye(T.size) - 2.0 / 3.0 * dt * self.jacobian(T, u)))
 
     def _solve(self, T: Array, known: Array, u: Inputs, dt: float, inverse: Array) -> tuple[Array, int]:
-        """The step's end; where an old inverse does not lead there, a new one with half steps (kinks of a film) does."""
+        """The step's end; where an old inverse leads astray, a new one with half steps (kinks of films) does."""
         share = 1.0
         for k in range(60):
             if k == 12:
