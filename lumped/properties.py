@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cache
 
-from geom.errors import InputError
+from geom.errors import InputError, MissingDependency
 
 ZERO_C = 273.15
 GAS_CONSTANT_AIR = 287.0528  # J/kg/K
@@ -78,6 +78,31 @@ def propylene_glycol(T: float, mass_fraction: float) -> Fluid:
     from scp.propylene_glycol import PropyleneGlycol
 
     return _liquid(PropyleneGlycol(mass_fraction), T)
+
+
+OIL, OIL_PRESSURE = "INCOMP::TX22", 1e6  # Pa, above its vapour pressure everywhere
+
+
+@cache
+def oil(T: float) -> Fluid:
+    """Mineral oil, 41 mm2/s at 40 degC, as transmission fluids are (Texatherm 22 of CoolProp); T 0 to 350 degC.
+
+    Raises MissingDependency without the package CoolProp.
+    """
+    try:
+        from CoolProp.CoolProp import PropsSI
+    except ImportError:
+        raise MissingDependency("the package 'CoolProp' is not installed: pip install CoolProp") from None
+    low, high = (PropsSI(end, OIL) - ZERO_C for end in ("Tmin", "Tmax"))
+    if not low <= T <= high:
+        raise InputError(f"T = {T:g} degC", "oil", f"{low:g} to {high:g} degC")
+
+    def of(what: str, T: float) -> float:
+        return float(PropsSI(what, "T", T + ZERO_C, "P", OIL_PRESSURE, OIL))
+
+    step = 0.1 if high - 0.1 > T else -0.1
+    beta = -(of("D", T + step) - of("D", T)) / step / of("D", T)
+    return Fluid(of("D", T), of("C", T), of("L", T), of("V", T), beta)
 
 
 GLYCOL_DENSITY = {"ethylene": 1113.2, "propylene": 1036.1}  # kg/m3 at 20 degC, CRC Handbook
