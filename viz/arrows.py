@@ -64,8 +64,8 @@ def flux_arrows(
     surface = cut_away(nodes, wedge)
     paint(p, surface, T, None, theme)
     at, flux = on_faces(nodes, heat_flux(nodes, T, conductivity), wedge)
+    scene.colour_bar(p, UNIT, theme)  # of what was added last, so before the arrows
     _arrows(p, at, flux, float(np.ptp(nodes.points[:, 2])), theme)
-    scene.colour_bar(p, UNIT, theme)
     largest = float(np.linalg.norm(flux, axis=1).max(initial=0.0))
     scene.headline(p, f"{title}  longest arrow {largest / 1000:.1f} kW/m²".strip(), theme)
     scene.look(p, surface.points, view, Room(0.0, 0.1, TITLE))

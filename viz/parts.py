@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from viz import scene
-from viz.callouts import Label, callouts
+from viz.callouts import Label, callouts, text
 from viz.colours import LIGHT, Theme, heat, part_colours
 from viz.cut import QUARTER, Surface, Wedge, cut_away, exposed
 from viz.nodes import SplitMesh, on_nodes
@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     import pyvista
 
 Array = NDArray[np.float64]
-GAP = 0.12  # between assemblies pulled apart, share of the machine's length
+GAP = 0.25  # between assemblies pulled apart, share of the machine's length
+ASIDE = View(direction=(-1.0, 0.3, 0.22))
 
 
 def regions(
@@ -29,14 +30,18 @@ def regions(
     *,
     wedge: Wedge | None = QUARTER,
     view: View | None = None,
+    mesh: bool = False,
     theme: Theme = LIGHT,
     title: str = "",
     png: str | Path | None = None,
 ) -> pyvista.Plotter:
-    """The parts of the mesh, each in its colour and with its name."""
+    """The parts, each in its colour and with its name.
+
+    mesh : draw the edges of the mesh too; where it is cut, those of the cut tetrahedra
+    """
     p, view = scene.plotter(theme), view or View()
     surface = cut_away(nodes, wedge)
-    _paint(p, surface, None, theme)
+    _paint(p, surface, None, theme, mesh=mesh)
     scene.headline(p, title, theme)
     room = Room(0.2, 0.2, TITLE if title else 0.0)
     scene.look(p, surface.points, view, room)
@@ -54,23 +59,37 @@ def exploded(
     groups: Sequence[Sequence[str]] | None = None,
     view: View | None = None,
     theme: Theme = LIGHT,
+    title: str = "",
     png: str | Path | None = None,
 ) -> pyvista.Plotter:
-    """The machine pulled apart along its axis; coloured by temperature (degC) if given, else by part.
+    """The machine pulled apart along its axis, each group under its names; coloured by temperature (degC) if given.
 
     groups : parts that stay together, from left to right; by their names if not given
     """
     p = scene.plotter(theme)
-    view = view or View(direction=(-1.0, 0.42, 0.42))
-    shift = shifts(nodes, groups or assemblies(nodes.parts))
+    view, groups = view or ASIDE, groups or assemblies(nodes.parts)
+    shift = shifts(nodes, groups)
     surface = exposed(nodes, contacts=True)
     field = None if T is None else on_nodes(nodes, T)
     _paint(p, surface, field, theme, shift)
     if T is not None:
         scene.colour_bar(p, "°C", theme)
-    scene.look(p, surface.points + shift[surface.owner], view, Room(right=0.1 if T is not None else 0.0))
+    moved = nodes.points + shift[nodes.owner]
+    for group in groups:
+        _title(p, moved[np.concatenate([nodes.of(part) for part in group])], group)
+    scene.headline(p, title, theme)
+    scene.look(p, moved, view, Room(right=0.1 if T is not None else 0.0, top=0.25))
     scene.save(p, png)
     return p
+
+
+def _title(p: pyvista.Plotter, points: Array, group: Sequence[str]) -> None:
+    """The names of a group above its middle."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    at = np.array([(low[0] + high[0]) / 2, high[1] + 0.1 * (high[1] - low[1]), (low[2] + high[2]) / 2])
+    names = text(" \n ".join(group), at, LIGHT.ink, 0, 12)
+    names.GetTextProperty().SetVerticalJustificationToBottom()
+    p.add_actor(names, reset_camera=False, pickable=False)
 
 
 def assemblies(parts: Sequence[str]) -> list[list[str]]:
@@ -96,10 +115,13 @@ def shifts(nodes: SplitMesh, groups: Sequence[Sequence[str]]) -> Array:
     return shift
 
 
-def _paint(p: pyvista.Plotter, surface: Surface, T: Array | None, theme: Theme, shift: Array | None = None) -> None:
+def _paint(
+    p: pyvista.Plotter, surface: Surface, T: Array | None, theme: Theme, shift: Array | None = None, mesh: bool = False
+) -> None:  # fmt: skip
     data = scene.polydata(surface, shift)
     scene.outline(p, data, theme)
     light = {"ambient": 0.55, "diffuse": 0.5, "specular": 0.0, "culling": "back"}
+    light |= {"show_edges": mesh, "edge_color": theme.ink, "edge_opacity": 0.45, "line_width": 1.0}
     if T is None:
         rgb = np.array([_rgb(colour) for colour in part_colours(surface.nodes.parts).values()], np.uint8)
         data.cell_data["colour"] = rgb[surface.part]

@@ -33,8 +33,9 @@ def draw(built: Built) -> None:
     assert network.recovery is not None
     T = network.recovery.field(z[-1, : len(network.states)])
     viz.cutaway(nodes, T, title="100 kW traction motor after an hour at 130 A", png=HERE / "field.png").close()
-    exploded(nodes, png=HERE / "exploded.png").close()
+    exploded(nodes, title="The motor pulled apart", png=HERE / "exploded.png").close()
     regions(nodes, title="The parts and their names", png=HERE / "parts.png").close()
+    regions(nodes, mesh=True, title="The mesh", png=HERE / "mesh.png").close()
     found = {part.name: built.machine.material_of(part.name) for part in built.machine.parts}
     k = {name: Conductivity(m.k_plane, m.k_plane, m.k_axial) for name, m in found.items()}
     viz.flux_arrows(nodes, T, k, title="Heat flux after an hour;", png=HERE / "flux.png").close()

@@ -131,3 +131,27 @@ def test_paths_do_not_lead_out(folder):
     assert seen.pop("index.html") == 200
     assert seen.pop("unknown") == "/"
     assert set(seen.values()) == {404}
+
+
+def test_a_duplicated_tab_gets_a_session_of_its_own(folder):
+    """The copy asks with the address of a tab that is still connected; once that one has left, its session is free."""
+
+    async def questions(address, session):
+        async def asked_for(tab):
+            async with session.post(f"{address}{tab}paraview/") as answer:
+                return (await answer.json())["sessionURL"]
+
+        async with session.get(address + "/", allow_redirects=False) as answer:
+            tab = answer.headers["Location"].removesuffix("index.html")
+        first = await asked_for(tab)
+        async with session.ws_connect(first):
+            copy = await asked_for(tab)
+            async with session.ws_connect(copy):
+                pass
+        await asyncio.sleep(1.0)
+        return tab, first, copy, await asked_for(tab)
+
+    tab, first, copy, again = asked(folder, Gate("127.0.0.1", ""), questions)
+    assert first == again
+    assert tab in first
+    assert tab not in copy

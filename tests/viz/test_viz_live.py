@@ -2,13 +2,15 @@
 
 import json
 import shutil
+import sys
 
 import numpy as np
 import pytest
 from fictional import HISTORY, candidates, comparison
+from PIL import Image
 
 import viz.live
-from geom.errors import InputError
+from geom.errors import InputError, MissingDependency
 from viz.candidates import DECISION
 from viz.colours import DARK
 from viz.flows import Heat
@@ -24,6 +26,7 @@ from viz.live import (
     sensor,
     staircase,
 )  # fmt: skip
+from viz.pdf import BROWSERS
 
 HEAT = Heat({"copper": 300.0, "iron": 100.0}, (), {"fan": 250.0, "base": 90.0})
 DRAW = {
@@ -124,7 +127,27 @@ def test_other_endings_are_refused(tmp_path):
         saved(DRAW["parity"](), tmp_path / "p.txt")
 
 
-@pytest.mark.skipif(shutil.which("chromium") is None, reason="needs a browser: apt-get install -y chromium")
-def test_static_picture_through_a_browser(tmp_path):
+BROWSER = next(filter(None, map(shutil.which, BROWSERS)), None)
+
+
+@pytest.mark.skipif(BROWSER is None, reason="needs a browser: apt-get install -y chromium")
+def test_static_pictures_through_a_browser(tmp_path, monkeypatch):
+    """The sheet is twice the figure's 700 x 500, and shows the points; the SVG carries the axes' words."""
     pytest.importorskip("kaleido", reason="needs kaleido: uv pip install kaleido")
-    assert saved(DRAW["parity"](), tmp_path / "p.svg").read_text().startswith("<svg")
+    monkeypatch.setenv("BROWSER_PATH", BROWSER)
+    picture = Image.open(saved(DRAW["parity"](), tmp_path / "p.png")).convert("L")
+    assert picture.size == (1400, 1000)
+    assert np.asarray(picture).std() > 8
+    drawing = saved(DRAW["parity"](), tmp_path / "p.svg").read_text()
+    assert drawing.startswith("<svg")
+    assert "measured (°C)" in drawing
+
+
+@pytest.mark.parametrize("lacking", ["browser", "kaleido"])
+def test_without_a_browser_or_kaleido_the_error_says_what_to_install(lacking, tmp_path, monkeypatch):
+    if lacking == "kaleido":
+        monkeypatch.setitem(sys.modules, "kaleido", None)
+    monkeypatch.setenv("BROWSER_PATH", str(tmp_path / "none"))
+    with pytest.raises(MissingDependency, match="apt-get install -y chromium"):
+        saved(DRAW["parity"](), tmp_path / "p.png")
+    assert not (tmp_path / "p.png").exists()

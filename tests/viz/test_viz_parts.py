@@ -51,6 +51,22 @@ def test_pictures_differ_and_show_something(tmp_path):
     assert np.abs(both[0] - both[1]).mean() > 5
 
 
+def test_the_mesh_can_be_seen(tmp_path):
+    """Its edges are lines of another shade: thousands of pixels."""
+    drawn = []
+    for mesh in (False, True):
+        regions(NODES, mesh=mesh, png=tmp_path / "m.png").close()
+        drawn.append(np.asarray(Image.open(tmp_path / "m.png").convert("L"), float))
+    assert (np.abs(drawn[1] - drawn[0]) > 10).sum() > 2000
+
+
+def test_every_group_stands_under_its_names():
+    p = exploded(NODES)
+    shown = "".join(a.GetInput() for a in p.actors.values() if hasattr(a, "GetInput") and isinstance(a.GetInput(), str))
+    p.close()
+    assert all(part in shown for part in NODES.parts)
+
+
 def test_unknown_part_lists_the_known_ones():
     with pytest.raises(InputError, match=r"unknown part 'rotor'; known: shaft, rotor\.core"):
         exploded(NODES, groups=[["rotor"]])

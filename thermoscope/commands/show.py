@@ -50,14 +50,13 @@ def write_page(folder: Folder, case: str, into: Path, tell: Progress, again: boo
     from viz.report import Report, write_report
 
     tell("running the model")
-    result, diagnosis = compare(folder.case), _diagnosis(folder, tell) if again else last_diagnosis(folder)
-    earlier = not again and diagnosis is not None and saved_diagnosis(folder) is None
+    result, (diagnosis, earlier) = compare(folder.case), _diagnosis(folder, tell, again)
     curves = [held(folder, test) for test in by_interest(folder)]
     tell("drawing")
     page = Report(
         folder.case.name, folder.settings.description, result.document(), diagnosis, steps(folder),
-        parameters(folder), curves, _pictures(folder, into), assumptions(folder), commands(folder, case), made(),
-        earlier,
+        parameters(folder), curves, _pictures(folder, into, None if earlier else diagnosis), assumptions(folder),
+        commands(folder, case), made(), earlier,
     )  # fmt: skip
     return write_report(page, into / "report.html")
 
@@ -69,7 +68,7 @@ def render(case: str, out: Path | None, target: str | None) -> int:
         into = out or folder.settings.out
         into.mkdir(parents=True, exist_ok=True)
         tell("drawing curves")
-        files = [*_plots(folder, into), *_pictures(folder, into).values()]
+        files = [*_plots(folder, into), *_pictures(folder, into, saved_diagnosis(folder)).values()]
         if folder.built is not None:
             tell("writing the recording")
             files.append(_recording(folder, into))
@@ -85,16 +84,20 @@ def by_interest(folder: Folder) -> list[Test]:
     return sorted(folder.case.tests, key=lambda test: ORDER[test.role])
 
 
-def _diagnosis(folder: Folder, tell: Progress) -> Mapping[str, Any]:
+def _diagnosis(folder: Folder, tell: Progress, again: bool) -> tuple[Mapping[str, Any] | None, bool]:
+    """What the page shows, and whether it is of the model before its last step."""
     from thermoscope.pipeline import cache_folder
     from validation.diagnose import diagnose
 
     kept = saved_diagnosis(folder)
     if kept is not None:
-        return kept
+        return kept, False
+    if not again:
+        last = last_diagnosis(folder)
+        return last, last is not None
     document = diagnose(folder.case, cache=cache_folder() / "null", progress=tell).document()
     save_diagnosis(folder, document)
-    return document
+    return document, False
 
 
 def _plots(folder: Folder, into: Path) -> list[Path]:
@@ -112,8 +115,11 @@ def _plots(folder: Folder, into: Path) -> list[Path]:
     return written
 
 
-def _pictures(folder: Folder, into: Path) -> dict[str, Path]:
-    """Caption -> picture of the field at the end of the most telling test, alone or beside the model before."""
+def _pictures(folder: Folder, into: Path, diagnosis: Mapping[str, Any] | None) -> dict[str, Path]:
+    """Caption -> picture of the field at the end of the most telling test, alone or beside the model before.
+
+    diagnosis : of this model; it says where heat is missing
+    """
     if folder.built is None:
         return {}
     from viz import cutaway, pair, require_gl, sensors, split
@@ -129,7 +135,7 @@ def _pictures(folder: Folder, into: Path) -> dict[str, Path]:
     seen = sensors(held(folder, test), folder.positions)
     cutaway(nodes, now, sensors=seen, title=f"{test.name}, model at the end", png=file)
     out = {f"Temperature at the end of {test.name}; labels: measured minus modelled.": file}
-    out |= _missing_heat(folder, nodes, into)
+    out |= _missing_heat(diagnosis, nodes, into)
     earlier = before_last(folder)
     if earlier is not None:
         both = into / "field-before-after.png"
@@ -138,11 +144,11 @@ def _pictures(folder: Folder, into: Path) -> dict[str, Path]:
     return out
 
 
-def _missing_heat(folder: Folder, nodes: SplitMesh, into: Path) -> dict[str, Path]:
-    """Caption -> picture of where the last diagnosis, if it is of this model, puts the missing heat."""
+def _missing_heat(diagnosis: Mapping[str, Any] | None, nodes: SplitMesh, into: Path) -> dict[str, Path]:
+    """Caption -> picture of where a diagnosis puts the missing heat."""
     from viz import missing_in_machine
 
-    where = (saved_diagnosis(folder) or {}).get("where", [])
+    where = (diagnosis or {}).get("where", [])
     if not where:
         return {}
     test, file = list(where[0]["heat"])[-1], into / "missing-heat.png"

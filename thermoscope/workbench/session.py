@@ -46,10 +46,11 @@ class Session:
         return self.bench.folder.settings.model_file
 
     def open(self) -> None:
-        """Show the model, and the last diagnosis if it is of this model."""
+        """Show the model, and the last diagnosis if it is of this model; then what others have made of it since."""
         self.shown.model(self.history, self.bench.first)
         self.diagnosis = saved_diagnosis(self.folder)
         self.shown.found(self.diagnosis)
+        started(self.take_over())
 
     async def diagnose(self) -> None:
         """Look for what is missing."""

@@ -82,13 +82,17 @@ class Tabs:
 
     async def new(self, request: web.Request) -> web.StreamResponse:
         """A session of its own for a browser tab that comes without one."""
+        raise web.HTTPFound(f"/tab/{await self._opened()}/index.html")
+
+    async def _opened(self) -> str:
+        """The name of a new session."""
         if len(self.open) >= MOST:
             await self.sweep(0.0)
         if len(self.open) >= MOST:
             raise web.HTTPServiceUnavailable(text=f"{MOST} tabs are open; close one and try again in a minute")
         name = secrets.token_hex(12)  # the browser side of trame writes addresses in small letters
         self.open[name] = Tab(self.bench, name)
-        raise web.HTTPFound(f"/tab/{name}/index.html")
+        return name
 
     async def fetch(self, request: web.Request) -> web.StreamResponse:
         """The page's own files, the socket, and the report; an unknown tab starts a new one."""
@@ -109,8 +113,13 @@ class Tabs:
         return web.FileResponse(path)
 
     async def address(self, request: web.Request) -> web.Response:
-        """Where the page finds its session, which trame's browser side asks for first."""
+        """Where the page finds its session, which trame's browser side asks for first.
+
+        A browser that duplicates a tab copies its address: the copy gets a session of its own.
+        """
         scheme, tab = "wss" if request.secure else "ws", request.match_info["tab"]
+        if tab in self.open and self.open[tab].connected:
+            tab = await self._opened()
         return web.json_response({"sessionURL": f"{scheme}://{request.host}/tab/{tab}/ws", "secret": "wslink-secret"})
 
     async def sweep(self, idle_s: float = IDLE_S) -> None:

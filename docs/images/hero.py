@@ -1,0 +1,40 @@
+"""Draws the first picture of the pages: python docs/images/hero.py CASE [PNG]
+
+The motor cut open at the end of the test that was never used, labelled by what the model before its last step misses,
+and what that step did to the error. CASE has had an effect added, as the demo's has: out/demo/road-test.
+"""
+
+import sys
+from pathlib import Path
+
+from PIL import Image
+
+from thermoscope.commands.show import by_interest
+from thermoscope.folder import load_case
+from thermoscope.runs import before_last, fields, held
+from viz import Comparison, cutaway, scene, sensors, split
+from viz.colours import LIGHT
+
+
+def draw(case: Path, png: Path) -> None:
+    folder = load_case(case)
+    test, earlier, last = by_interest(folder)[0], before_last(folder), folder.history.last
+    assert earlier is not None, "a case whose model has had a step"
+    now = held(folder, test)
+    wrong = sensors(Comparison(test, now.before), folder.positions)  # type: ignore[arg-type]
+    nodes = split(folder.built.mesh)  # type: ignore[union-attr]
+    before, after = last.rmse_K[test.name]
+    title = f"{test.name}: measured minus modelled"
+    p = cutaway(nodes, fields(earlier, test, nodes, 1)[1][-1], sensors=wrong, title=title)
+    words = f"found missing:\n{last.effect}\nadded: {before:.2f} K → {after:.2f} K rms"
+    line = p.add_text(words, position=(0.69, 0.04), viewport=True, font_size=12, color=LIGHT.ink)
+    scene.set_font(line.GetTextProperty())
+    line.GetTextProperty().SetLineSpacing(1.25)
+    scene.save(p, png)
+    p.close()
+
+
+if __name__ == "__main__":
+    target = Path(sys.argv[2]) if len(sys.argv) > 2 else Path(__file__).parent / "road-test.png"
+    draw(Path(sys.argv[1]), target)
+    Image.open(target).convert("RGB").save(target, optimize=True)
