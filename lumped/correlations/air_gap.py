@@ -56,9 +56,10 @@ def becker_kaye(omega: float, rotor_radius: float, gap: float, fluid: Fluid | No
 def romanazzi_howey(omega: float, rotor_radius: float, gap: float, fluid: Fluid | None = None) -> tuple[float, Info]:
     """Gap with salient poles (switched reluctance, DC field poles), one wall, h (W/m2/K).
 
-    Nu = 0.181 X^0.207, held at 2 where the formula falls below conduction. Only the abstract of Romanazzi and Howey
-    2015 (arXiv 1502.05902) was read: that X is the squared Taylor number omega^2 r_m gap^3 / nu^2 and that Nu is per
-    wall is inferred (unsquared, Nu stays below conduction at every speed), and so is the range.
+    Nu = 0.181 X^0.207, held at 2 where the formula falls below conduction. Only the abstract of the source was
+    read: that X is the squared Taylor number omega^2 r_m gap^3 / nu^2 and that Nu is per
+    wall is inferred (unsquared, Nu stays below conduction at every speed), and so is the range: Ta < 1e4.
+    Source: Romanazzi and Howey 2015, arXiv 1502.05902.
     """
     fluid = fluid or air(80.0)
     Ta = abs(omega) * math.sqrt(rotor_radius + 0.5 * gap) * gap**1.5 / fluid.nu
