@@ -51,7 +51,8 @@ class FanStop(Effect):
         flow, test, part = self.place.rsplit(":", 2)
         (original,) = [p for p in flows(network) if p.name == flow]
         new = []
-        for link in [x for x in network.links if x.name in {t for t, _ in original.targets}]:
+        own = {t for t, _ in original.targets if "@" not in t}  # not what other effects have copied
+        for link in [x for x in network.links if x.name in own]:
             new.append(f"{self.name}:{link.name}")
             law = Shaped(link.law, Stopped(test, int(part)), link.law.temperature, ("time_s",))
             network = copy_link(network, link, new[-1], law)
