@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     import pyvista
 
 BEHIND = 10.0  # nats behind the likeliest place from which a place stays grey
+FAINT = 0.02  # of the largest heat: less is not labelled
 
 
 def mean_heat(where: Sequence[Mapping[str, Any]], test: str) -> dict[str, float]:
@@ -59,13 +60,13 @@ def missing_in_machine(
     )  # fmt: skip
     scene.colour_bar(p, "W", theme)
     scene.headline(p, f"Heat that the model misses, mean over {test}", theme)
-    room = Room(0.16, 0.24, TITLE)
+    room = Room(0.2, 0.27, TITLE)
     scene.look(p, surface.points, view, room)
     seen = anchors(surface, view, room)
     labels = [
         Label(tuple(xyz), f"{nodes.parts[i]}  {watts[i]:+.0f} W", VERMILION if watts[i] > 0 else BLUE)  # type: ignore[arg-type]
-        for i, xyz in seen.items() if np.isfinite(watts[i])
+        for i, xyz in seen.items() if abs(watts[i]) > FAINT * top
     ]  # fmt: skip
-    callouts(p, labels, surface.points, view, theme)
+    callouts(p, labels, surface.points, view, theme, size=13)
     scene.save(p, png)
     return p

@@ -1,8 +1,8 @@
-"""Walks through the workbench and keeps pictures for the pages: python docs/images/workbench.py CASE [FOLDER]
+"""Walks through the workbench and keeps pictures for the pages: python docs/images/workbench.py CASE [FOLDER] [--quick]
 
-Calibrate, click the failing sensor's dot, diagnose, add what is named, undo, reload, add again, report. Prints how
+Calibrate (unless it is), click the failing sensor's dot, diagnose, add what is named, undo, reload, report. Prints how
 long each step took. Serves a copy of the case, so that nothing of the case itself is changed. Needs playwright and
-Chromium.
+Chromium. --quick : 20 draws of chance
 """
 
 from __future__ import annotations
@@ -14,11 +14,12 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
 from PIL import Image
-from playwright.sync_api import Page, sync_playwright
+from playwright.sync_api import Page, TimeoutError, sync_playwright
 from scipy.ndimage import center_of_mass, label
 
 HERE = Path(__file__).resolve().parent
@@ -67,18 +68,18 @@ def dots(page: Page, colour: tuple[int, int, int]) -> Iterator[tuple[float, floa
 
 
 def clicked(walk: Walk, sensor: str) -> None:
-    """Click dot after dot on the machine until that sensor's curves are shown; time the last click."""
-    chosen = f"#sensor-{sensor}.chosen"
-    for x, y in list(dots(walk.page, COLD)):
+    """Click dot after dot on the machine until that sensor is the chosen one; time the last click to its curves."""
+    chosen = "document.querySelector('#sensors .chosen').id"
+    for x, y in list(dots(walk.page, COLD))[1:]:  # the largest is the chosen one
+        before = walk.page.evaluate(chosen)
         walk.begun = time.perf_counter()
         walk.page.mouse.click(x, y)
-        walk.page.wait_for_timeout(50)
-        try:
-            walk.page.wait_for_selector(chosen, timeout=1500)
-            walk.page.wait_for_function("document.querySelector('#curve').innerText.includes('flange right')")
-        except Exception:  # another sensor's dot
-            continue
-        return walk.took("click on its dot to its curves")
+        with suppress(TimeoutError):  # no dot, but something else of its colour
+            walk.page.wait_for_function(f"old => {chosen} !== old", arg=before, timeout=20_000)
+        if walk.page.evaluate(chosen) == f"sensor-{sensor}":
+            words = sensor.removeprefix("T_").removesuffix("_degC").replace("_", " ")
+            walk.page.wait_for_function("name => document.querySelector('#curve').innerText.includes(name)", arg=words)
+            return walk.took("click on its dot to its curves")
     raise SystemExit(f"no dot of {sensor} was found")
 
 
@@ -90,10 +91,14 @@ def story(walk: Walk, address: str) -> None:
     page.wait_for_selector("#sensors .sensor")
     page.wait_for_selector("#machine img[src^=blob], #machine canvas", state="attached")
     walk.took("open")
-    walk.step("#calibrate", "calibrate")
+    if page.inner_text("#revision") == "revision 0":
+        walk.step("#calibrate", "calibrate")
     walk.shot("opened")
     clicked(walk, "T_flange_right_degC")
     walk.shot("sensor")
+    if "--quick" in sys.argv:
+        page.click("#draws", force=True)
+        page.click(".v-list-item >> text=20")
     page.click("#diagnose")
     page.wait_for_function("/\\d+\\/\\d+/.test(document.querySelector('#job-message')?.innerText)")
     walk.page.screenshot(path=walk.folder / "workbench-searching.png")
@@ -125,10 +130,10 @@ def story(walk: Walk, address: str) -> None:
 
 def main() -> None:
     browser = next(filter(None, map(shutil.which, ("chromium", "google-chrome"))))
-    folder = Path(sys.argv[2]) if len(sys.argv) > 2 else HERE
+    folder = Path(next((a for a in sys.argv[2:] if not a.startswith("--")), HERE))
     folder.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as home, sync_playwright() as engine:
-        case = shutil.copytree(sys.argv[1], Path(home) / "case", ignore=shutil.ignore_patterns("out", "model.toml"))
+        case = shutil.copytree(sys.argv[1], Path(home) / "case", ignore=shutil.ignore_patterns("out"))
         command = [sys.executable, "-c", "from thermoscope.cli import main; main()", "serve", str(case), "--port", "0"]
         server = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
         try:

@@ -50,13 +50,13 @@ class Stage:
     def markers(self, sensors: Sequence[Sensor], chosen: str) -> None:
         """Dots at the sensors, coloured by verdict; the chosen one is larger."""
         self._sensors = tuple(sensors)
-        self._dots("others", [s for s in sensors if s.name != chosen], 15, 2)
-        self._dots("chosen", [s for s in sensors if s.name == chosen], 24, 4)
+        self._dots("others", [s for s in sensors if s.name != chosen], 24, 2)
+        self._dots("chosen", [s for s in sensors if s.name == chosen], 38, 4)
 
     def _dots(self, name: str, sensors: Sequence[Sensor], size: int, order: int) -> None:
         """One cloud of white halos and one of dots: few actors draw fast."""
         inside = np.array([np.multiply(_rgb(VERDICT[s.verdict]), 255) for s in sensors], np.uint8)
-        for kind, colours, width in (("halo", np.full_like(inside, 255), size + 6), ("dot", inside, size)):
+        for kind, colours, width in (("halo", np.full_like(inside, 255), size + 10), ("dot", inside, size)):
             self.plotter.remove_actor(f"{name} {kind}", reset_camera=False, render=False)  # type: ignore[arg-type]
             if not sensors:
                 continue
