@@ -14,7 +14,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from fem.assembly import Block, FieldModel, Trace
-from fem.solve import Solver
+from fem.solve import Solve, Solver
 
 Floats = NDArray[np.float64]
 SHIFTS = (1 / 3, 1 / 20, 1 / 120, 1 / 700)  # 1/s
@@ -68,7 +68,7 @@ def snapshots(
     contacts: Mapping[str, float],
     loads: Floats,
     recipe: Recipe,
-    solver: Solver | None = None,
+    solver: Solve | None = None,
 ) -> Floats:
     """(n, n_snapshot) whole-machine solutions for unit losses `loads` (n, n_zone), each of unit energy at nominal."""
     solver = solver or Solver(field)

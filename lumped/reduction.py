@@ -17,7 +17,7 @@ import scipy.sparse as sp
 
 from fem.assembly import FieldModel
 from fem.snapshots import DEFAULT, Principal, Recipe, bases, drawn, energies, enriched, principals, snapshots
-from fem.solve import Solver, film_columns
+from fem.solve import Solve, Solver, film_columns
 from lumped.condensed import network_in
 from lumped.network import Array, Network
 from lumped.shelf import Centre, Shelf
@@ -120,6 +120,7 @@ def reduce(
     name: str = "machine",
     cache: Path | None = None,
     zones: Mapping[str, Zone] | None = None,
+    solver: Solve | None = None,
 ) -> Reduction:
     """Solve for what the parts of a field can look like, or take it from the cache.
 
@@ -128,6 +129,7 @@ def reduce(
     zones : losses that vary alone, by name, beside one uniform loss per part; each becomes a place
     cache : folder. Shapes found for the same mesh around other coefficients, not further away than the recipe's
         spread, serve as they are: a changed film, contact or conductivity costs no solve.
+    solver : of the snapshots; None: the free one of fem.solve
     """
     places = {**{part: Zone(part) for part in field.blocks}, **(zones or {})}
     loads = unit_loads(field, places)
@@ -135,7 +137,7 @@ def reduce(
     centre = Centre({**films}, {**contacts}, {p: float(b.K.diagonal().sum()) for p, b in field.blocks.items()})
     taken = shelf.find(centre, recipe.spread)
     if taken is None:
-        S = snapshots(field, films, contacts, np.column_stack([*loads.values()]), recipe)
+        S = snapshots(field, films, contacts, np.column_stack([*loads.values()]), recipe, solver)
         taken = shelf.keep(centre, principals(field, S, energies(field, films, contacts)), recipe.tolerance**2)
     kept = {part: Principal(*pair) for part, pair in taken.items()}
     return Reduction(field, films, contacts, places, fluids, boundaries, name, recipe, kept)
