@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from thermoscope.files import write_whole
 from thermoscope.folder import load_machine_file
-from thermoscope.terminal import cell, give, plain, progress, say, table
+from thermoscope.terminal import give, plain, progress, say, table
 
 if TYPE_CHECKING:
     from thermoscope.pipeline import Built
@@ -103,7 +103,7 @@ def _csv(rows: Sequence[Mapping[str, Any]]) -> str:
 
 def show(document: Mapping[str, Any], folder: Path) -> None:
     """Parts, the links that differ most, and the hand formulas furthest off."""
-    point = ", ".join(f"{name} {cell(value)}" for name, value in document["operating_point"].items())
+    point = ", ".join(f"{name} {value:.4g}" for name, value in document["operating_point"].items())
     headers = [
         "part",
         "field mean",
@@ -116,9 +116,9 @@ def show(document: Mapping[str, Any], folder: Path) -> None:
     ]
     title = f"Steady at {point}, 20 degC around: temperatures (degC)"
     table(title, headers, [list(part.values()) for part in document["crosscheck"]])
-    links = document["links"][:SHOWN]
+    heats = [(link, f"{link['fem_W']:.1f}", f"{link['network_W']:.1f}") for link in document["links"][:SHOWN]]
     table("Heat through links (W), largest difference first", ["link", "field", "network", "off (% of all heat)"],
-          [[link["link"], link["fem_W"], link["network_W"], link["percent_of_heat"]] for link in links])  # fmt: skip
+          [[link["link"], field, network, link["percent_of_heat"]] for link, field, network in heats])  # fmt: skip
     hand = sorted(document["hand"], key=lambda row: -abs(row["ratio"] - 1.0))
     table("Hand formulas (K/W), furthest off first", ["link", "formula", "textbook", "field", "ratio"],
           [list(row.values()) for row in hand[:SHOWN]])  # fmt: skip
