@@ -26,7 +26,7 @@ _HOME = {
     "FINE": "mesher",
     "mesh_quality": "quality",
     "export_cad": "cad",
-    "check_cad": "cad",
+    "check_cad": "surfaces",
     "part_table": "areas",
     "PartRow": "areas",
     "drawing_of": "drawing",

@@ -1,13 +1,15 @@
-"""Exact solids of a machine (cadquery), their export, and the check of their surfaces (trimesh)."""
+"""Exact solids of a machine (cadquery) and their export."""
 
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from geom.carved import carved, prism
 from geom.errors import InputError
+from geom.glb import write_glb
 from geom.kept import kept_file, written_whole
 from geom.machine import Machine
 from geom.palette import colour
@@ -16,25 +18,12 @@ from geom.step import step_sidecar
 
 if TYPE_CHECKING:
     import cadquery as cq
-    import trimesh
 
 FORMATS = ("step", "stl", "glb")
 
 
-@dataclass(frozen=True)
-class CadCheck:
-    """One part's surface: volumes of formula, solid and triangulated surface (m3), pieces, watertight or not."""
-
-    part: str
-    volume: float
-    solid_volume: float
-    surface_volume: float
-    pieces: int
-    watertight: bool
-
-
 def solids(part: Part, cache: Path | str | None = None) -> list[cq.Solid]:
-    """Exact solids (mm), touching prisms of the part fused into one.
+    """Exact solids (mm), touching prisms of the part fused into one; with ports and helices as they are made.
 
     cache : folder of solids by content of their prisms, so that only what changed is built; None for no cache
     """
@@ -54,18 +43,13 @@ def solids(part: Part, cache: Path | str | None = None) -> list[cq.Solid]:
 def _built(part: Part) -> list[cq.Solid]:
     import cadquery as cq
 
-    prisms = [_prism(profile, z0, z1) for profile, z0, z1 in part.prisms]
+    if part.made is not None:
+        return carved(part.made)
+    prisms = [prism(profile, z0, z1) for profile, z0, z1 in part.prisms]
     if len(_stacked(part)) == len(prisms):
         return prisms
     whole = prisms[0].fuse(*prisms[1:])  # clean() is slow and has made invalid solids
     return [cq.Solid(solid.wrapped) for solid in whole.Solids()]
-
-
-def _prism(profile: Any, z0: float, z1: float) -> cq.Solid:
-    import cadquery as cq
-
-    face = profile.scaled(1e3).to_face()
-    return cq.Solid.extrudeLinear(face, cq.Vector(0, 0, (z1 - z0) * 1e3)).translate(cq.Vector(0, 0, z0 * 1e3))
 
 
 def _stacked(part: Part) -> set[int]:
@@ -89,10 +73,11 @@ def assembly(machine: Machine, cache: Path | str | None = None) -> cq.Assembly:
 def export_cad(
     machine: Machine, folder: Path | str, formats: tuple[str, ...] = FORMATS, cache: Path | str | None = None
 ) -> dict[str, Path]:
-    """Write the machine as STEP and GLB assemblies and one STL per part (mm); returns what was written.
+    """Write the machine as a STEP assembly (mm), a GLB scene (m) and one STL per part (mm); returns what was written.
 
     Keys are "step", "glb" and "stl:<part>". Beside the STEP file its materials are written, as `import_step` reads
-    them. Raises InputError for an unknown format.
+    them. It reads prisms: of a machine with parts made otherwise (`Part.made`) they are in "step:prisms".
+    Raises InputError for an unknown format.
     """
     for name in formats:
         if name not in FORMATS:
@@ -101,11 +86,11 @@ def export_cad(
     folder.mkdir(parents=True, exist_ok=True)
     whole = assembly(machine, cache)
     written: dict[str, Path] = {}
-    for name in [name for name in ("step", "glb") if name in formats]:
-        written[name] = folder / f"{machine.name}.{name}"
-        whole.export(str(written[name]), tolerance=0.1, angularTolerance=0.1)
     if "step" in formats:
-        step_sidecar(written["step"]).write_text(_materials(machine), encoding="utf-8")
+        written |= _steps(machine, whole, folder, cache)
+    if "glb" in formats:
+        written["glb"] = folder / f"{machine.name}.glb"
+        write_glb(whole, written["glb"])
     if "stl" in formats:
         for child in whole.children:
             path = written[f"stl:{child.name}"] = folder / f"{child.name}.stl"
@@ -114,41 +99,20 @@ def export_cad(
     return written
 
 
+def _steps(machine: Machine, whole: cq.Assembly, folder: Path, cache: Path | str | None) -> dict[str, Path]:
+    """STEP files with their sidecars: as made, and where that differs, as prisms."""
+    files = {"step": (folder / f"{machine.name}.step", whole)}
+    if any(part.made is not None for part in machine.parts):
+        plain = replace(machine, parts=tuple(replace(part, made=None) for part in machine.parts))
+        files["step:prisms"] = (folder / f"{machine.name}-prisms.step", assembly(plain, cache))
+    for path, what in files.values():
+        what.export(str(path))
+        step_sidecar(path).write_text(_materials(machine), encoding="utf-8")
+    return {key: path for key, (path, _) in files.items()}
+
+
 def _materials(machine: Machine) -> str:
     """What a STEP file cannot say, as TOML."""
     lines = [f"{json.dumps(part.name)} = {json.dumps(part.material)}" for part in machine.parts]
     head = ["[machine]", f"name = {json.dumps(machine.name)}", f"description = {json.dumps(machine.description)}"]
     return "\n".join([*head, "", "[materials]", *lines, ""])
-
-
-def check_cad(machine: Machine, tolerance_mm: float = 0.02, cache: Path | str | None = None) -> list[CadCheck]:
-    """Volume and watertightness of every part; the surface is triangulated to the tolerance."""
-    return [_checked(part, tolerance_mm, cache) for part in machine.parts]
-
-
-def _checked(part: Part, tolerance_mm: float, cache: Path | str | None) -> CadCheck:
-    kept = kept_file(part, cache, f"check-{tolerance_mm:g}", "json")
-    if kept is not None and kept.exists():
-        return CadCheck(**{**json.loads(kept.read_text()), "part": part.name})
-    found = solids(part, cache)
-    surfaces = [surface(solid, tolerance_mm) for solid in found]
-    check = CadCheck(
-        part=part.name,
-        volume=part.volume,
-        solid_volume=sum(solid.Volume() for solid in found) * 1e-9,
-        surface_volume=sum(float(mesh.volume) for mesh in surfaces) * 1e-9,
-        pieces=len(found),
-        watertight=all(bool(mesh.is_watertight) for mesh in surfaces),
-    )
-    if kept is not None:
-        with written_whole(kept) as partial:
-            partial.write_text(json.dumps(vars(check)))
-    return check
-
-
-def surface(solid: cq.Solid, tolerance_mm: float) -> trimesh.Trimesh:
-    """Triangulated surface (mm) with equal points merged."""
-    import trimesh
-
-    points, triangles = solid.tessellate(tolerance_mm, 0.1)
-    return trimesh.Trimesh([point.toTuple() for point in points], triangles, process=True)

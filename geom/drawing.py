@@ -2,149 +2,125 @@
 
 from __future__ import annotations
 
-import math
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 from html import escape
 from typing import TYPE_CHECKING
 
-from geom.palette import colour
-from geom.profile import ArcGrid, Loop, edges
+from geom.dimensions import counts, diameters, lengths
+from geom.views import Views, fill
 
 if TYPE_CHECKING:
     from geom.machine import Machine
 
-MARGIN = 60.0  # mm around and between the two views
+mm = 1e3
+_THIN = 'stroke="#777" stroke-width="0.5"'
 
 
 @dataclass(frozen=True)
-class Box:
-    """Extent of a view (mm)."""
+class Pen:
+    """Draws dimension lines; unit : height of the text (mm)."""
 
-    x0: float
-    y0: float
-    x1: float
-    y1: float
+    unit: float
+
+    def level(self, x0: float, x1: float, y: float, top: float, text: str) -> str:
+        """A horizontal dimension at y, its ends carried down from `top`."""
+        ends = "".join(f"M{x:.1f} {top:.1f}V{y + 0.3 * self.unit:.1f}" for x in (x0, x1))
+        return f'<path d="{ends}" {_THIN}/>{self._line(f"M{x0:.1f} {y:.1f}H{x1:.1f}")}' + self.text(
+            (x0 + x1) / 2, y - 0.3 * self.unit, text, "middle"
+        )
+
+    def upright(self, y0: float, y1: float, x: float, left: float, text: str) -> str:
+        """A vertical dimension at x, its ends carried over from `left`."""
+        ends = "".join(f"M{left:.1f} {y:.1f}H{x + 0.3 * self.unit:.1f}" for y in (y0, y1))
+        place = f'transform="translate({x - 0.3 * self.unit:.1f} {(y0 + y1) / 2:.1f}) rotate(-90)"'
+        return (
+            f'<path d="{ends}" {_THIN}/>{self._line(f"M{x:.1f} {y0:.1f}V{y1:.1f}")}'
+            f'<text {place} text-anchor="middle">{escape(text)}</text>'
+        )
+
+    def text(self, x: float, y: float, text: str, anchor: str = "start") -> str:
+        return f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}">{escape(text)}</text>'
+
+    def _line(self, d: str) -> str:
+        return f'<path d="{d}" stroke="black" stroke-width="0.7" marker-start="url(#tip)" marker-end="url(#tip)"/>'
 
 
 def drawing_of(machine: Machine, at_z: float | None = None) -> str:
     """SVG text; the cross-section is cut at at_z (m), the middle of the machine if None.
 
-    Left: section normal to the axis. Right: section along the axis, x = 0. Dimensions in mm.
+    Left: section normal to the axis. Right: section along the axis, x = 0. Dimensions in mm; a legend of materials.
     """
-    spans = [part.span for part in machine.parts]
-    z0, z1 = min(a for a, _ in spans) * 1e3, max(b for _, b in spans) * 1e3
-    where = (z0 + z1) / 2e3 if at_z is None else at_z
-    _, across, _ = machine.extent
-    low, high = _heights(machine)
-    front = Box(-across * 500, low, across * 500, high)
-    shift = front.x1 + 2 * MARGIN - z0
-    width, height = shift + z1 + MARGIN - front.x0 + MARGIN, high - low + 2 * MARGIN
+    views = Views(machine, _middle(machine) if at_z is None else at_z)
+    z0, z1 = views.span
+    low, high = views.heights
+    unit = max(views.width + z1 - z0, high - low) / 65
+    pen, gap = Pen(unit), (2 * len(diameters(machine)) + 6) * unit
+    shift = views.width / 2 + gap - z0
     body = [
-        *_cross_section(machine, where),
-        f'<g transform="translate({shift:.2f} 0)">',
-        *_axial_section(machine),
-        "</g>",
-    ]
-    body += [*_dimensions(front), *_dimensions(Box(shift + z0, low, shift + z1, high))]
-    view = f"{front.x0 - MARGIN:.1f} {-high - MARGIN:.1f} {width:.1f} {height:.1f}"
+        *views.across(),
+        f'<g transform="translate({shift:.1f} 0)">', *views.along(), *_along(machine, views, pen), "</g>",
+        pen.level(-views.width / 2, views.width / 2, 2.2 * unit - low, -low, f"{views.width:.0f}"),
+        pen.upright(-high, -low, views.width / 2 + 2 * unit, views.width / 2, f"{high - low:.0f}"),
+    ]  # fmt: skip
+    left, top, bottom = -views.width / 2 - 2 * unit, -high - 2 * unit, -low + (2.2 * len(lengths(machine)) + 2) * unit
+    legend = list(_legend(machine, views, pen, left + 2 * unit, bottom))
+    width, height = views.width + gap + z1 - z0 + 5 * unit, bottom + 1.6 * unit * len(legend) - top
     return "\n".join([
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{view}" font-family="sans-serif" font-size="16">',
-        f"<title>{escape(machine.name)}: section at z = {where * 1e3:.0f} mm, and along the axis; mm</title>",
-        '<rect x="-100%" y="-100%" width="300%" height="300%" fill="white"/>',
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{left:.1f} {top:.1f} {width:.1f} {height:.1f}" '
+        f'font-family="sans-serif" font-size="{unit:.1f}">',
+        f"<title>{escape(machine.name)}: section at z = {views.z * mm:.0f} mm, and along the axis; mm</title>",
+        '<marker id="tip" viewBox="-10 -3 10 6" markerWidth="9" markerHeight="5" orient="auto-start-reverse">'
+        '<path d="M-10 -2.5L0 0L-10 2.5Z"/></marker>',
+        f'<rect x="{left:.1f}" y="{top:.1f}" width="100%" height="100%" fill="white"/>',
         *body,
+        *legend,
         "</svg>\n",
     ])  # fmt: skip
+
+
+def _middle(machine: Machine) -> float:
+    """In the middle of the rotor's stack, or of the machine."""
+    spans = [p.span for p in machine.parts if p.name == "rotor.core"] or [p.span for p in machine.parts]
+    return (min(a for a, _ in spans) + max(b for _, b in spans)) / 2
+
+
+def _along(machine: Machine, views: Views, pen: Pen) -> Iterator[str]:
+    """Dimensions of the section along the axis: diameters to its left, lengths below."""
+    low, (z0, _) = views.heights[0], views.span
+    for i, (word, diameter) in enumerate(diameters(machine)):
+        r, x = diameter * mm / 2, z0 - (1.5 + 2 * i) * pen.unit
+        yield pen.upright(-r, r, x, z0, f"{word} \N{DIAMETER SIGN} {diameter * mm:.4g}")
+    for i, (word, a, b) in enumerate(lengths(machine)):
+        yield pen.level(a * mm, b * mm, -low + 2.2 * (i + 1) * pen.unit, -low, f"{word} {(b - a) * mm:.4g}")
+
+
+def _legend(machine: Machine, views: Views, pen: Pen, x: float, y: float) -> Iterator[str]:
+    """What is counted, then every material with its parts."""
+    made: dict[str, list[str]] = {}
+    for part in views.parts:
+        made.setdefault(part.material, []).append(part.name)
+    rows = [("", counts(machine)), *((material, f"{material}: {', '.join(names)}") for material, names in made.items())]
+    for i, (material, text) in enumerate(row for row in rows if row[1]):
+        at = y + 1.6 * pen.unit * i
+        box = f'<rect x="{x:.1f}" y="{at:.1f}" width="{1.6 * pen.unit:.1f}" height="{pen.unit:.1f}" stroke="#333" '
+        swatch = f'{box}stroke-width="0.4" fill="{fill(material)}"/>' if material else ""
+        yield swatch + pen.text(x + (2.2 * pen.unit if material else 0), at + 0.85 * pen.unit, text)
 
 
 def thumbnail_of(machine: Machine) -> str:
     """A small SVG of the section across the axis and the section along it, without dimensions."""
-    spans = [part.span for part in machine.parts]
-    z0, z1 = min(a for a, _ in spans) * 1e3, max(b for _, b in spans) * 1e3
-    low, high = _heights(machine)
-    across = machine.extent[1] * 1e3
-    gap = 0.08 * across
-    view = f"{-across / 2:.1f} {-high:.1f} {across + gap + z1 - z0:.1f} {high - low:.1f}"
-    body = [*_cross_section(machine, (z0 + z1) / 2e3), f'<g transform="translate({across / 2 + gap - z0:.1f} 0)">']
+    views = Views(machine, _middle(machine))
+    (z0, z1), (low, high), gap = views.span, views.heights, 0.08 * views.width
+    view = f"{-views.width / 2:.1f} {-high:.1f} {views.width + gap + z1 - z0:.1f} {high - low:.1f}"
     text = "\n".join([
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{view}" width="320" height="160">',
         f"<title>{escape(machine.name)}</title>",
-        *body,
-        *_axial_section(machine),
+        *views.across(),
+        f'<g transform="translate({views.width / 2 + gap - z0:.1f} 0)">',
+        *views.along(),
         "</g>",
         "</svg>\n",
     ])  # fmt: skip
     return re.sub(r"(\.\d)\d+", r"\1", text)
-
-
-def _heights(machine: Machine) -> tuple[float, float]:
-    ys = [y * 1e3 for _, _, _, spans in _bars(machine) for pair in spans for y in pair]
-    profiles = [profile for part in machine.parts for profile, _, _ in part.prisms]
-    grid = ArcGrid(profiles, 72)
-    bounds = [profile.to_polygon(grid).bounds for profile in profiles]
-    return min([*ys, *(b[1] * 1e3 for b in bounds)]), max([*ys, *(b[3] * 1e3 for b in bounds)])
-
-
-def _cross_section(machine: Machine, z: float) -> list[str]:
-    return [
-        _shape(part.name, part.material, " ".join(path(loop) for loop in profile.loops))
-        for part in machine.parts
-        for profile, z0, z1 in part.prisms
-        if z0 <= z < z1
-    ]
-
-
-def path(loop: Loop) -> str:
-    """SVG path of a loop in mm, arcs exact, y upwards."""
-    corners = [(x * 1e3, -y * 1e3) for x, y, _ in loop]
-    text = [f"M{corners[0][0]:.3f} {corners[0][1]:.3f}"]
-    for (x, y), (_, arc) in zip([*corners[1:], corners[0]], edges(loop)):
-        if arc is None:
-            text.append(f"L{x:.3f} {y:.3f}")
-        else:
-            flags = f"{int(abs(arc.sweep) > math.pi)} {int(arc.sweep < 0)}"
-            text.append(f"A{arc.radius * 1e3:.3f} {arc.radius * 1e3:.3f} 0 {flags} {x:.3f} {y:.3f}")
-    return "".join(text) + "Z"
-
-
-def _axial_section(machine: Machine) -> list[str]:
-    return [
-        _shape(name, material, f"M{z0 * 1e3:.2f} {-b * 1e3:.2f}H{z1 * 1e3:.2f}V{-a * 1e3:.2f}H{z0 * 1e3:.2f}Z")
-        for name, material, (z0, z1), spans in _bars(machine)
-        for a, b in spans
-    ]
-
-
-def _bars(machine: Machine) -> list[tuple[str, str, tuple[float, float], list[tuple[float, float]]]]:
-    """Name, material, axial range and the intervals of y that each prism takes in the plane x = 0 (m)."""
-    import shapely
-
-    profiles = list(dict.fromkeys(profile for part in machine.parts for profile, _, _ in part.prisms))
-    grid, knife = ArcGrid(profiles, 180), shapely.LineString([(1e-7, -10.0), (1e-7, 10.0)])
-    cuts = {profile: shapely.get_parts(profile.to_polygon(grid).intersection(knife)) for profile in profiles}
-    return [
-        (part.name, part.material, (z0, z1), [(cut.bounds[1], cut.bounds[3]) for cut in cuts[profile] if cut.length])
-        for part in machine.parts
-        for profile, z0, z1 in part.prisms
-    ]
-
-
-def _shape(name: str, material: str, d: str) -> str:
-    rgb = ",".join(str(round(255 * value)) for value in colour(material))
-    style = f'fill="rgb({rgb})" fill-rule="evenodd" stroke="#333" stroke-width="0.4"'
-    return f'<path d="{d}" {style}><title>{escape(name)}</title></path>'
-
-
-def _dimensions(box: Box) -> list[str]:
-    """Width below and height beside a view."""
-    below, beside = -box.y0 + MARGIN / 2, box.x1 + MARGIN / 3
-    middle = ((box.x0 + box.x1) / 2, -(box.y0 + box.y1) / 2)
-    across = f'<path d="M{box.x0:.1f} {below:.1f}H{box.x1:.1f}" stroke="black"/>'
-    up = f'<path d="M{beside:.1f} {-box.y0:.1f}V{-box.y1:.1f}" stroke="black"/>'
-    return [
-        across,
-        f'<text x="{middle[0]:.1f}" y="{below - 4:.1f}" text-anchor="middle">{box.x1 - box.x0:.0f}</text>',
-        up,
-        f'<text transform="translate({beside - 4:.1f} {middle[1]:.1f}) rotate(-90)" text-anchor="middle">'
-        f"{box.y1 - box.y0:.0f}</text>",
-    ]

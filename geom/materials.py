@@ -35,7 +35,7 @@ class Material:
 
     k_plane, k_axial : conductivity across and along the machine's axis (W/m/K)
     rho : density (kg/m3); cp : specific heat (J/kg/K); emissivity : of its usual surface, 0 to 1
-    spreads, sources : of "k", "rho", "cp" and "emissivity": relative 1-sigma as found in practice, and where from
+    spreads, sources : of each of these by its name: relative 1-sigma as found in practice, and where from
     mixture : what a winding is made of; its conductivities here are those of the formula, see fem.winding
     """
 
@@ -51,13 +51,13 @@ class Material:
 
     @property
     def spread(self) -> float:
-        """Relative 1-sigma of the conductivity."""
-        return self.spreads["k"]
+        """Relative 1-sigma of the conductivity across the axis: what fill, resin and voids move."""
+        return self.spreads["k_plane"]
 
     @property
     def source(self) -> str:
-        """Where the conductivity is from."""
-        return self.sources["k"]
+        """Where that conductivity is from."""
+        return self.sources["k_plane"]
 
 
 @cache
@@ -92,7 +92,13 @@ def _table() -> Mapping[str, Any]:
 def _read(name: str, values: Mapping[str, Any]) -> Material:
     numbers = {key: values[key] for key in ("k_plane", "k_axial", "rho", "cp", "emissivity") if key in values}
     numbers |= _mixed(**values["mixture"]) if "mixture" in values else {}
-    return Material(name=name, **numbers, spreads=values["spread"], sources=values["source"])
+    return Material(name=name, **numbers, spreads=_each(values["spread"]), sources=_each(values["source"]))
+
+
+def _each(table: Mapping[str, Any]) -> dict[str, Any]:
+    """The table with "k" given to both conductivities."""
+    both = dict.fromkeys(("k_plane", "k_axial"), table["k"]) if "k" in table else {}
+    return {**both, **{key: value for key, value in table.items() if key != "k"}}
 
 
 def winding_conductivity(fill: float, k_conductor: float, k_resin: float) -> tuple[float, float]:

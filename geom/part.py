@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
@@ -11,12 +12,62 @@ Prism = tuple[Profile, float, float]
 
 
 @dataclass(frozen=True)
+class Helix:
+    """A rectangular channel around the axis as it is made; prisms have rings in its place.
+
+    inner, outer : radii (m);  bottom, top : planes that end it (m);  pitch : per turn (m)
+    width : along the axis (m);  blunt : what is left of the width where it begins and ends (m)
+    angle : where it begins (rad), at the bottom; from there it runs anticlockwise and up
+    """
+
+    inner: float
+    outer: float
+    bottom: float
+    top: float
+    pitch: float
+    width: float
+    blunt: float
+    angle: float
+
+    @property
+    def turns(self) -> float:
+        """From one blunt end to the other."""
+        return (self.top - self.bottom + self.width - 2 * self.blunt) / self.pitch
+
+    @property
+    def volume(self) -> float:
+        """Exact (m3): a strip of the width between the end planes, less what the blunt ends cut off."""
+        ring = math.pi * (self.outer**2 - self.inner**2)
+        return ring * ((self.top - self.bottom) * self.width - self.blunt**2) / self.pitch
+
+
+@dataclass(frozen=True)
+class Rod:
+    """A round bar that points away from the axis: angle (rad), place along the axis, radial extent, diameter (m)."""
+
+    angle: float
+    z: float
+    inner: float
+    outer: float
+    diameter: float
+
+
+@dataclass(frozen=True)
+class Made:
+    """A part as it is made, where its prisms simplify it: what it starts from, and what is cut out."""
+
+    start: tuple[Prism | Rod, ...]
+    cuts: tuple[Prism | Rod | Helix, ...]
+
+
+@dataclass(frozen=True)
 class Part:
     """A prismatic body, or, with solid=False, a space filled by a fluid.
 
     name, material : names as in the mesh and in materials.toml
     prisms : (profile, z0 (m), z1 (m)); prisms of one part touch but do not overlap
     filling : of a winding, share of conductor in its cross-section and share of the rest filled with resin
+    made : what CAD files show instead of the prisms: round ports, helical channels
     Fluids may be drawn loosely: a solid wins where they overlap, and so does the fluid declared first.
     """
 
@@ -25,6 +76,7 @@ class Part:
     prisms: tuple[Prism, ...]
     filling: tuple[float, float] | None = None
     solid: bool = True
+    made: Made | None = None
 
     @property
     def volume(self) -> float:
@@ -39,7 +91,10 @@ class Part:
 
 @dataclass(frozen=True)
 class Port:
-    """Where a liquid enters or leaves: name, e.g. "jacket.left.inlet", the fluid's name and a point (m)."""
+    """Where a liquid enters or leaves: name, e.g. "jacket.left.inlet", the fluid's name, a point on the wall (m).
+
+    The tube there is the part NAME.tube, wet on its face NAME.bore.
+    """
 
     name: str
     fluid: str

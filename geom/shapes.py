@@ -68,9 +68,14 @@ def slotted_loop(radius: float, width: float, bottom: float, angles: Sequence[fl
 
 def bar_loop(inner: float, outer: float, width: float) -> Loop:
     """A parallel-sided bar along +x between two radii: what fills a slot."""
-    y = width / 2
-    (a, b), (x0, x1) = (math.asin(y / inner), math.asin(y / outer)), (on_circle(inner, y), on_circle(outer, y))
-    return (x0, -y, 0.0), (x1, -y, bulge_of(2 * b)), (x1, y, 0.0), (x0, y, -bulge_of(2 * a))
+    return strip_loop(inner, outer, -width / 2, width / 2)
+
+
+def strip_loop(inner: float, outer: float, y0: float, y1: float) -> Loop:
+    """A parallel-sided bar along +x between two radii, from y0 to y1 (m)."""
+    (a0, a1), (b0, b1) = ((math.asin(y0 / r), math.asin(y1 / r)) for r in (inner, outer))
+    (p0, p1), (q0, q1) = ((on_circle(r, y0), on_circle(r, y1)) for r in (inner, outer))
+    return (p0, y0, 0.0), (q0, y0, bulge_of(b1 - b0)), (q1, y1, 0.0), (p1, y1, -bulge_of(a1 - a0))
 
 
 def gaps(angles: Sequence[float]) -> list[float]:

@@ -32,7 +32,7 @@ def path_of(machine: Any, jacket: str) -> Path:
     if prisms[0][0].holes or len(prisms) == 1:
         first, last = machine.part(jacket).span
         back = start is not None and start[2] > (first + last) / 2
-        turns = len({z0 for _, z0, _ in prisms}) if prisms[0][0].holes else CELLS
+        turns = len({z0 for profile, z0, _ in prisms if profile.holes}) if prisms[0][0].holes else CELLS
         return Path((lambda x: -x[:, 2]) if back else (lambda x: x[:, 2]), min(turns, CELLS))
     channels = _channels(prisms)
     top = np.pi / 2 if start is None else np.arctan2(start[1], start[0])

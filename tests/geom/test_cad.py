@@ -65,12 +65,14 @@ def test_stl_comes_back_watertight(small, tmp_path):
         assert mesh.volume * 1e-9 == pytest.approx(part.volume, rel=0.01)
 
 
-def test_glb_comes_back_with_names(small, tmp_path):
+def test_glb_comes_back_with_names_in_metres_and_upright(small, tmp_path):
+    """glTF: metres, y upwards; a rod of 100 mm along z, in a sleeve of 20 mm radius."""
     import trimesh
 
     scene = trimesh.load(export_cad(small, tmp_path, ("glb",))["glb"])
-    names = " ".join(scene.graph.nodes)
-    assert all(part.name in names for part in small.parts)
+    assert {part.name for part in small.parts} < set(scene.graph.nodes)
+    assert sorted(scene.extents) == pytest.approx([0.04, 0.04, 0.1], rel=0.01)
+    assert scene.bounds[1] == pytest.approx([0.02, 0.1, 0.02], rel=0.01)
 
 
 def test_unknown_format_is_refused(small, tmp_path):

@@ -6,8 +6,8 @@ import xml.etree.ElementTree as ElementTree
 import pytest
 
 from geom import drawing_of, load_machine, shapes, write_pages
-from geom.drawing import path
 from geom.families import families
+from geom.views import path
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -18,20 +18,37 @@ def svg():
 
 
 def test_every_part_is_drawn_and_named(svg, motor):
+    """The feet stand beside both sections and are drawn behind them."""
     drawn = {title.text for shape in svg.iter(f"{SVG}path") for title in shape.iter(f"{SVG}title")}
-    # the feet stand beside both sections
-    assert drawn == {part.name for part in motor.parts} - {"feet"}
+    assert drawn == {part.name for part in motor.parts}
 
 
-def test_dimensions_are_the_machines_extent(svg, motor):
-    numbers = [int(text.text) for text in svg.iter(f"{SVG}text")]
-    length, width, height = (round(1e3 * value) for value in motor.extent)
-    assert numbers == [width, height, length, height]
+def test_liquids_are_drawn():
+    svg = ElementTree.fromstring(drawing_of(load_machine("series-dc-100kw-jacket-two")))
+    drawn = {title.text for shape in svg.iter(f"{SVG}path") for title in shape.iter(f"{SVG}title")}
+    assert {"jacket.left", "jacket.right", "jacket.left.inlet.tube"} < drawn
+
+
+def test_dimensions_are_those_of_the_machine_file(svg, motor):
+    g, texts = motor.geometry, {text.text for text in svg.iter(f"{SVG}text")}
+    length, width, height = (f"{1e3 * value:.0f}" for value in motor.extent)
+    assert {width, height, f"overall {length}", f"stack {1e3 * g.rotor.stack_length:g}"} < texts
+    bore = 1e3 * (g.rotor.outer_diameter + 2 * g.stator.air_gap)
+    assert {f"bore \u2300 {bore:g}", f"rotor \u2300 {1e3 * g.rotor.outer_diameter:g}"} < texts
+    assert "4 poles, 46 slots, 36 fins, air gap 2 mm" in texts
+
+
+def test_dimension_lines_are_as_long_as_they_say(svg):
+    """In the drawing's unit, 1 mm."""
+    lines = [shape.attrib["d"] for shape in svg.iter(f"{SVG}path") if "marker-end" in shape.attrib]
+    level = [re.fullmatch(r"M(.+) .+H(.+)", d).groups() for d in lines if "H" in d]
+    lengths = sorted(float(end) - float(start) for start, end in level)
+    assert lengths == pytest.approx([200, 290, 416, 440, 700], abs=0.2)
 
 
 def test_arcs_are_drawn_as_arcs_upside_down():
     """SVG counts y downwards, so an anticlockwise arc has sweep flag 0."""
-    assert re.fullmatch(r"M50.000 -?0.000A50.000 50.000 0 0 0 -50.000 .*Z", path(shapes.disc(0.05).outer))
+    assert re.fullmatch(r"M50.00 -?0.00A50.00 50.00 0 0 0 -50.00 .*Z", path(shapes.disc(0.05).outer))
 
 
 @pytest.fixture(scope="module")

@@ -1,12 +1,18 @@
 """Liquid jackets of the series-wound motor: wetted areas against hand formulas, names, refusals."""
 
 import math
+from dataclasses import replace
 
 import pytest
 from measures import area
 
-from geom import COARSE, InputError, build_mesh, library, load_machine
+from geom import COARSE, InputError, build_mesh, export_cad, import_step, library, load_machine
+from geom.carved import carved, channel
 from geom.machine import machine_from
+from geom.part import Helix
+
+SHIPPED = [name for name in library() if "jacket" in name]
+HELICAL = ["ipmsm-48s8p-jacket", "series-dc-100kw-jacket-one-helical", "series-dc-100kw-jacket-two"]
 
 
 def jacketed(**jacket):
@@ -38,7 +44,9 @@ def test_zigzag_is_one_passage_whose_walls_follow_from_its_channels():
     wetted = separate + (n - 1) * opening
     mesh = build_mesh(machine, **COARSE)
     assert area(mesh, mesh.patches["jacket.left.wall"].facets) == pytest.approx(wetted, rel=0.01)
-    assert coolant.volume == pytest.approx(n * section * (z1 - z0) + (n - 1) * over_rib * g.height)
+    bores = sum(2.5 * g.port * math.pi / 4 * g.port**2 for _ in machine.ports)  # an upper bound of the liquid in ports
+    found = coolant.volume - n * section * (z1 - z0) - (n - 1) * over_rib * g.height
+    assert 0 < found < bores
 
 
 @pytest.mark.parametrize("layout", ["zigzag", "helical"])
@@ -59,10 +67,11 @@ def test_helical_turns_are_rings():
     machine = jacketed(layout="helical", turns=3)
     mesh = build_mesh(machine, **COARSE)
     wetted = 0.0
-    for profile, z0, z1 in machine.part("jacket.left").prisms:
+    rings = [prism for prism in machine.part("jacket.left").prisms if prism[0].holes]
+    for profile, z0, z1 in rings:
         outer, inner = profile.outer[0][0], profile.holes[0][0][0]
         wetted += 2 * math.pi * (outer + inner) * (z1 - z0) + 2 * profile.area
-    assert len(machine.part("jacket.left").prisms) == 3
+    assert len(rings) == 3
     assert area(mesh, mesh.patches["jacket.left.wall"].facets) == pytest.approx(wetted, rel=0.01)
 
 
@@ -75,3 +84,84 @@ def test_ribs_that_leave_no_channel_are_refused(layout):
 def test_unknown_layout_lists_the_known():
     with pytest.raises(InputError, match="zigzag, helical"):
         jacketed(layout="spiral")
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_every_port_is_a_tube_with_a_wet_bore(name):
+    """A square bore of the round one's cross-section: four sides, as long as the tube."""
+    machine = load_machine(name)
+    mesh, bore = build_mesh(machine, **COARSE), 0.010
+    assert len(machine.ports) == 2 * sum(fluid.material != "air" for fluid in machine.fluids)
+    for port in machine.ports:
+        patch = mesh.patches[f"{port.name}.bore"]
+        assert (patch.part, patch.fluid) == (f"{port.name}.tube", port.fluid)
+        exact = 4 * (bore * math.sqrt(math.pi) / 2) * 1.5 * bore
+        assert area(mesh, patch.facets) == pytest.approx(exact, rel=0.02)
+        assert f"{port.name}.tube.outer" in mesh.patches
+        assert f"housing|{port.name}.tube" in mesh.contacts
+
+
+def helices(machine):
+    return [cut for cut in machine.part("housing").made.cuts if isinstance(cut, Helix)]
+
+
+@pytest.mark.parametrize("name", HELICAL)
+def test_helix_has_the_volume_and_the_wetted_area_of_the_rings(name):
+    """The volume (to what the swept surface is interpolated to); the area within 2 %, which its end walls add."""
+    machine = load_machine(name)
+    for helix, jacket in zip(helices(machine), (f for f in machine.fluids if f.material != "air"), strict=True):
+        rings = [(profile, z0, z1) for profile, z0, z1 in jacket.prisms if profile.holes]
+        wetted = sum(2 * math.pi * (helix.inner + helix.outer) * (z1 - z0) + 2 * p.area for p, z0, z1 in rings)
+        solid = channel(helix)
+        assert solid.Volume() * 1e-9 == pytest.approx(sum(p.area * (z1 - z0) for p, z0, z1 in rings), rel=1e-4)
+        assert 1.0 < solid.Area() * 1e-6 / wetted < 1.02
+        assert helix.turns == pytest.approx(len(rings), abs=0.3)
+
+
+@pytest.mark.parametrize("turns", [1, 2, 7])
+@pytest.mark.parametrize("rib", [2.0, 6.0])
+def test_helix_of_any_turns_has_the_rings_volume_and_stays_inside_the_jacket(turns, rib):
+    machine = jacketed(layout="helical", turns=turns, rib_mm=rib, port_mm=3.0)
+    (helix,) = helices(machine)
+    rings = [(profile, z0, z1) for profile, z0, z1 in machine.part("jacket.left").prisms if profile.holes]
+    assert channel(helix).Volume() * 1e-9 == pytest.approx(sum(p.area * (z1 - z0) for p, z0, z1 in rings), rel=1e-4)
+    assert rings[0][1] - rib * 1e-3 < helix.bottom < rings[0][1]
+    assert rings[-1][2] < helix.top < rings[-1][2] + rib * 1e-3
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_bores_of_the_made_housing_lead_into_its_channel(name):
+    """A thin probe through every port meets no metal before the inner wall, in the helix as in the prisms."""
+    import cadquery as cq
+
+    machine = load_machine(name)
+    g = machine.geometry
+    depth = 1e3 * (g.jacket.wall + g.jacket.height if hasattr(g, "jacket") else g.housing.wall + g.housing.channel)
+    (housing,) = carved(machine.part("housing").made)
+    for port in machine.ports:
+        x, y, z = (1e3 * value for value in port.position)
+        out = cq.Vector(x, y, 0).normalized()
+        probe = cq.Solid.makeCylinder(4.0, depth + 5.0, cq.Vector(x, y, z) - out * (depth - 0.5), out)
+        assert housing.intersect(probe).Volume() < 1e-3 * probe.Volume(), port.name
+
+
+def test_step_of_prisms_reads_back_where_the_made_one_is_refused(tmp_path):
+    """Of the housing and its ports: the other parts have nothing to add."""
+    whole = jacketed(layout="helical", turns=2)
+    parts = tuple(part for part in whole.parts if part.made)
+    assert len(parts) == 3
+    machine = replace(whole, parts=parts)
+    written = export_cad(machine, tmp_path, ("step",))
+    back = import_step(written["step:prisms"])
+    assert {part.name for part in back.parts} == {part.name for part in machine.parts}
+    for part in back.parts:
+        assert part.volume == pytest.approx(machine.part(part.name).volume, rel=1e-6), part.name
+    with pytest.raises(InputError, match=r"housing.*not prismatic along the axis"):
+        import_step(written["step"])
+
+
+@pytest.mark.parametrize(("jacket", "words"), [({"port_mm": 60.0}, "port_mm: 60 does not fit"),
+    ({"layout": "helical", "port_mm": 30.0}, "port_mm: 30 does not fit")])  # fmt: skip
+def test_ports_wider_than_their_channel_are_refused(jacket, words):
+    with pytest.raises(InputError, match=words):
+        jacketed(**jacket)

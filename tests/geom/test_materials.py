@@ -8,6 +8,8 @@ from geom import InputError, material, material_table, winding_conductivity
 from geom.machine import machine_from
 from geom.materials import K_AIR
 
+VALUES = {"k_plane", "k_axial", "rho", "cp", "emissivity"}
+
 
 @pytest.mark.parametrize("name", material_table())
 def test_material_is_physical_and_says_where_it_comes_from(name):
@@ -17,10 +19,21 @@ def test_material_is_physical_and_says_where_it_comes_from(name):
     assert 100 < found.rho < 10_000
     assert 100 < found.cp < 4500
     assert 0 < found.emissivity < 1
-    for value in ("k", "rho", "cp", "emissivity"):
+    assert set(found.spreads) == set(found.sources) == VALUES
+    for value in VALUES:
         assert 0 < found.spreads[value] <= 0.6
         assert len(found.sources[value]) >= 7
-    assert (found.spread, found.source) == (found.spreads["k"], found.sources["k"])
+    assert (found.spread, found.source) == (found.spreads["k_plane"], found.sources["k_plane"])
+
+
+def test_conductivities_that_differ_have_a_source_and_a_spread_each():
+    """Resin and voids scatter the way across a winding; along it there is copper, as much as the fill says."""
+    differ = [found for found in material_table().values() if found.k_plane != found.k_axial]
+    assert len(differ) == 5
+    for found in differ:
+        assert found.sources["k_plane"] != found.sources["k_axial"], found.name
+        assert found.spreads["k_plane"] != found.spreads["k_axial"], found.name
+    assert material("winding").spreads["k_axial"] < material("winding").spreads["k_plane"]
 
 
 def test_unknown_material_lists_the_known():

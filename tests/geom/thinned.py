@@ -7,7 +7,11 @@ from dataclasses import replace
 
 
 def thinned(machine):
-    return replace(machine, parts=tuple(replace(part, prisms=_distinct(part.prisms)) for part in machine.parts))
+    return replace(machine, parts=tuple(_thin(part) for part in machine.parts))
+
+
+def _thin(part):
+    return part if part.made else replace(part, prisms=_distinct(part.prisms))
 
 
 def _distinct(prisms):

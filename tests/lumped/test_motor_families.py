@@ -130,11 +130,11 @@ def test_coolant_warms_by_the_exact_exponential_along_walls_of_one_temperature(n
         rate = cooling.liquid.rho * cooling.liquid.cp * flow / 60000.0
         h = float(jacket_film(machine, "jacket", cooling).factor(at)[0])
         for cell in cells:
-            (film,) = (link for link in network.links if link.kind == "film" and link.places[1] == cell)
+            films = [link for link in network.links if link.kind == "film" and link.places[1] == cell]
             (stream,) = (link for link in network.links if link.name == f"stream:{cell}")
-            own = network.place(film.places[0]).area
-            area += own
-            G = own * float(film.law.factor(at)[0])
+            own = [network.place(film.places[0]).area for film in films]
+            area += sum(own)
+            G = sum(A * float(film.law.factor(at)[0]) for A, film in zip(own, films, strict=True))
             assert float(stream.law.factor(at)[0]) == pytest.approx(rate, rel=2e-3)
             T = (rate * T + G * wall) / (rate + G)
             # The law's table is piecewise linear in the flow.

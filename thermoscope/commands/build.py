@@ -13,8 +13,8 @@ from thermoscope.folder import load_machine_file
 from thermoscope.terminal import give, progress, say, table
 
 if TYPE_CHECKING:
-    from geom.cad import CadCheck
     from geom.mesh import NamedMesh
+    from geom.surfaces import CadCheck
     from thermoscope.pipeline import Built
     from thermoscope.sized import Sized
 

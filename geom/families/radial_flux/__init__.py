@@ -17,7 +17,11 @@ from geom.families.radial_flux.rotors import cage_rotor, magnet_rotor, shaft
 from geom.families.radial_flux.stator import stator
 from geom.part import Part, fluid
 
-_FACES = {("housing", "ambient"): "housing.fins", ("housing", "jacket"): "jacket.wall"}
+_FACES = {
+    ("housing", "ambient"): "housing.fins",
+    ("housing", "jacket"): "jacket.wall",
+    **{(f"jacket.{end}.tube", "jacket"): f"jacket.{end}.bore" for end in ("inlet", "outlet")},
+}
 
 
 def build_pmsm(g: Any) -> tuple[Part, ...]:

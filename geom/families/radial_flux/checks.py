@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from geom.families.radial_flux.housing import fin_spans
+from geom.families.nozzles import too_near
+from geom.families.radial_flux.housing import fin_spans, nozzles
 from geom.families.radial_flux.layout import Layout
 from geom.families.radial_flux.rotors import shapes_of_magnets
 from geom.parameters import impossible
@@ -85,7 +86,13 @@ def _housing_rules(g: Any, at: Layout) -> tuple[Rule, ...]:
         rules += [(h.fins * h.fin_spacing < lengths[h.kind], "housing.fin_spacing_mm", h.fin_spacing * mm,
                    f"less than {lengths[h.kind] / h.fins * mm:.4g} mm for {h.fins} fins")]  # fmt: skip
     if h.kind == "spiral":
-        rules += [(h.rib < 0.9 * turn, "housing.rib_mm", h.rib * mm, f"less than {0.9 * turn * mm:.4g} mm")]
+        wide = (at.core1 - at.core0 - h.rib) / h.turns - h.rib
+        rules += [
+            (h.rib < 0.9 * turn, "housing.rib_mm", h.rib * mm, f"less than {0.9 * turn * mm:.4g} mm"),
+            (h.port < 0.8 * wide, "housing.port_mm", h.port * mm, f"less than {0.8 * wide * mm:.4g} mm, the channel"),
+            (h.port >= 0.8 * wide or not too_near(nozzles(g, at)), "housing.port_mm", h.port * mm,
+             "less, to keep the ports apart"),
+        ]  # fmt: skip
     if g.base.kind != "none":
         limit = 1.8 * at.body
         rules += [(g.foot.width < limit, "foot.width_mm", g.foot.width * mm, f"less than {limit * mm:.4g} mm"),

@@ -6,8 +6,10 @@ import math
 from typing import Any
 
 from geom import shapes
+from geom.families.nozzles import Nozzle, opened_ring, slices
 from geom.families.radial_flux.layout import Layout
-from geom.part import Part, Port, Prism, fluid
+from geom.families.turns import Turns
+from geom.part import Made, Part, Port, Prism, fluid
 from geom.profile import Profile
 
 
@@ -24,6 +26,7 @@ def enclosure(g: Any, at: Layout) -> tuple[Part, ...]:
         Part("bearing.left", "bearing", ((bearing, *left),)),
         Part("bearing.right", "bearing", ((bearing, *right),)),
         *_base(g, at),
+        *(nozzle.part() for nozzle in nozzles(g, at)),
     )
 
 
@@ -38,7 +41,7 @@ def _skirts(g: Any, at: Layout) -> tuple[Prism, ...]:
 def _housing(g: Any, at: Layout) -> tuple[Part, ...]:
     prisms = {"none": _none, "plain": _plain, "axial-fins": _axial_fins, "radial-fins": _radial_fins, "spiral": _spiral}
     walls = prisms[g.housing.kind](g, at)
-    return (Part("housing", "aluminium-cast", walls),) if walls else ()
+    return (Part("housing", "aluminium-cast", walls, made=_made(g, at)),) if walls else ()
 
 
 def _none(g: Any, at: Layout) -> tuple[Prism, ...]:
@@ -82,34 +85,53 @@ def fin_spans(g: Any, at: Layout) -> list[tuple[float, float]]:
 
 
 def _spiral(g: Any, at: Layout) -> tuple[Prism, ...]:
-    solid = shapes.ring(at.core, at.body)
-    inner, outer = shapes.ring(at.core, at.wall), shapes.ring(at.channel, at.body)
-    ends = [at.cap0, *(z for turn in turns(g, at) for z in turn), at.cap1]
+    solid, rings = shapes.ring(at.core, at.body), turns_of(g, at).rings
+    ends = [at.cap0, *(z for turn in rings for z in turn), at.cap1]
     ribs = [(solid, a, b) for a, b in zip(ends[::2], ends[1::2])]
-    return (*ribs, *((ring, a, b) for a, b in turns(g, at) for ring in (inner, outer)))
+    outer = [
+        (piece, low, high)
+        for a, b in rings
+        for low, high, ports in slices(a, b, nozzles(g, at))
+        for piece in opened_ring(at.channel, at.body, ports)
+    ]
+    return (*ribs, *((shapes.ring(at.core, at.wall), a, b) for a, b in rings), *outer)
 
 
-def turns(g: Any, at: Layout) -> list[tuple[float, float]]:
-    """Axial range of each turn of the spiral jacket over the stack (m)."""
+def _made(g: Any, at: Layout) -> Made | None:
+    """A spiral jacket as it is made: a helix for the rings, round bores."""
+    if g.housing.kind != "spiral":
+        return None
+    drills = (nozzle.drill for nozzle in nozzles(g, at))
+    return Made(((shapes.ring(at.core, at.body), at.cap0, at.cap1),), (turns_of(g, at).helix(g.housing.port), *drills))
+
+
+def turns_of(g: Any, at: Layout) -> Turns:
+    """The turns of the spiral jacket, over the stack."""
     pitch = (at.core1 - at.core0 - g.housing.rib) / g.housing.turns
-    return [(at.core0 + i * pitch + g.housing.rib, at.core0 + (i + 1) * pitch) for i in range(g.housing.turns)]
+    return Turns(at.wall, at.channel, at.core0 + g.housing.rib, pitch, g.housing.rib, g.housing.turns)
+
+
+def nozzles(g: Any, at: Layout) -> tuple[Nozzle, ...]:
+    """Inlet and outlet of the spiral jacket."""
+    if g.housing.kind != "spiral":
+        return ()
+    bore = g.housing.port
+    places = zip(("inlet", "outlet"), turns_of(g, at).places(bore))
+    return tuple(Nozzle(f"jacket.{end}", "jacket", *place, bore, at.channel, at.body) for end, place in places)
 
 
 def coolant(g: Any, at: Layout) -> tuple[Part, ...]:
+    """What flows in the jacket, to the ends of its ports."""
     if g.housing.kind != "spiral":
         return ()
     ring = shapes.ring(at.wall, at.channel)
-    return (fluid("jacket", *((ring, a, b) for a, b in turns(g, at)), material="glycol-50"),)
+    rings = ((ring, a, b) for a, b in turns_of(g, at).rings)
+    return (fluid("jacket", *rings, *(nozzle.neck for nozzle in nozzles(g, at)), material="glycol-50"),)
 
 
 def ports(g: Any) -> tuple[Port, ...]:
-    """Inlet at the first turn, outlet at the last, both on top of the jacket's outer wall."""
-    at = Layout(g)
-    if g.housing.kind != "spiral":
-        return ()
-    ends = [(z0 + z1) / 2 for z0, z1 in turns(g, at)]
-    places = {"jacket.inlet": ends[0], "jacket.outlet": ends[-1]}
-    return tuple(Port(name, "jacket", (0.0, at.body, z)) for name, z in places.items())
+    """Inlet at the first turn, outlet at the last, on the jacket's outer wall."""
+    return tuple(nozzle.port for nozzle in nozzles(g, Layout(g)))
 
 
 def _base(g: Any, at: Layout) -> tuple[Part, ...]:

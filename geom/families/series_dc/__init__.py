@@ -12,7 +12,8 @@ from geom import shapes
 from geom.families.family import Family
 from geom.families.series_dc.checks import check
 from geom.families.series_dc.fan import fan
-from geom.families.series_dc.housing import coolant, enclosure, ports
+from geom.families.series_dc.housing import enclosure
+from geom.families.series_dc.jacket import coolant, ports
 from geom.families.series_dc.layout import Axial, Radii
 from geom.families.series_dc.parameters import PARAMETERS
 from geom.families.series_dc.rotor import rotor
@@ -41,6 +42,7 @@ def _fluids(g: Any, z: Axial) -> tuple[Part, ...]:
     )
 
 
+_SIDES = ("jacket.left", "jacket.right")
 FAMILY = Family(
     "series-dc",
     "Series-wound DC traction motor with salient poles; housing with fins or liquid jackets",
@@ -50,6 +52,7 @@ FAMILY = Family(
         ("housing", "ambient"): "housing.fins",
         ("housing", "jacket.left"): "jacket.left.wall",
         ("housing", "jacket.right"): "jacket.right.wall",
+        **{(f"{side}.{end}.tube", side): f"{side}.{end}.bore" for side in _SIDES for end in ("inlet", "outlet")},
     },
     ports,
 )

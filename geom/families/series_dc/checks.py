@@ -6,6 +6,8 @@ import math
 from typing import Any
 
 from geom import shapes
+from geom.families.nozzles import too_near
+from geom.families.series_dc.jacket import nozzles
 from geom.families.series_dc.layout import Axial, Radii
 from geom.families.series_dc.rotor import duct_circle
 from geom.parameters import impossible
@@ -130,9 +132,14 @@ def _fan_rules(g: Any, r: Radii) -> tuple[Rule, ...]:
 def _jacket_rules(g: Any, r: Radii, z: Axial) -> tuple[Rule, ...]:
     if not z.jackets:
         return ()
-    length = min(z1 - z0 for z0, z1 in z.jackets.values())
-    around = 2 * math.pi * r.shell / g.jacket.channels
-    along = length / (g.jacket.turns + 1)
-    room = around if g.jacket.layout == "zigzag" else along
+    j, length = g.jacket, min(z1 - z0 for z0, z1 in z.jackets.values())
+    around, along = 2 * math.pi * r.shell / j.channels, length / (j.turns + 1)
+    room = around if j.layout == "zigzag" else along
     right = f"less than {0.9 * min(room, length / 2.5) * mm:.4g} mm, to leave room for the channels"
-    return ((g.jacket.rib < 0.9 * min(room, length / 2.5), "jacket.rib_mm", g.jacket.rib * mm, right),)
+    wide = min(around, length / 2) - j.rib if j.layout == "zigzag" else (length - j.rib) / j.turns - j.rib
+    bore = min(0.8 * wide, 0.6 * around if j.layout == "zigzag" else wide)
+    return (
+        (j.rib < 0.9 * min(room, length / 2.5), "jacket.rib_mm", j.rib * mm, right),
+        (j.port < bore, "jacket.port_mm", j.port * mm, f"less than {bore * mm:.4g} mm, the channel's share for it"),
+        (j.port >= bore or not too_near(nozzles(g)), "jacket.port_mm", j.port * mm, "less, to keep the ports apart"),
+    )  # fmt: skip

@@ -1,0 +1,145 @@
+"""Inlets and outlets of liquid jackets, in every family: tubes, bores, and the walls that the bores open."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+from geom import shapes
+from geom.part import Made, Part, Port, Prism, Rod
+from geom.profile import Loop, Profile, Vertex
+
+TUBE = 1.5  # outer diameter, and length, of a port over its bore
+CLEAR = 0.55  # of the bore: from its middle to the end of the channel
+_THIN = 1e-6  # m; a bore's end nearer than this to another level is there
+
+
+@dataclass(frozen=True)
+class Nozzle:
+    """A port: a tube on the outer wall, radially out, and the bore through the wall.
+
+    angle (rad), z, bore (m); channel, wall : radii of the wall's sides (m)
+    The tube is round as it is made; as prisms it and its bore are square, of the same cross-sections.
+    """
+
+    name: str
+    jacket: str
+    angle: float
+    z: float
+    bore: float
+    channel: float
+    wall: float
+
+    @property
+    def side(self) -> float:
+        """Of the square bore (m)."""
+        return self.bore * math.sqrt(math.pi) / 2
+
+    @property
+    def tip(self) -> float:
+        return self.wall + TUBE * self.bore
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """Axial extent of the square bore (m)."""
+        return self.z - self.side / 2, self.z + self.side / 2
+
+    @property
+    def port(self) -> Port:
+        x, y = self.wall * math.cos(self.angle), self.wall * math.sin(self.angle)
+        return Port(self.name, self.jacket, (x, y, self.z))
+
+    @property
+    def neck(self) -> Prism:
+        """The liquid in the bore."""
+        bar = Profile(shapes.bar_loop(self.channel, self.tip, self.side))
+        return bar.rotated(self.angle), *self.span
+
+    @property
+    def drill(self) -> Rod:
+        """The round bore, through wall and tube."""
+        return Rod(self.angle, self.z, (self.channel + self.wall) / 2 - 0.6 * (self.wall - self.channel),
+                   self.tip + 0.001, self.bore)  # fmt: skip
+
+    def part(self, material: str = "aluminium-cast") -> Part:
+        half, out = self.side / 2, TUBE * self.side / 2
+        low, high = self.span
+        whole = Profile(shapes.strip_loop(self.wall, self.tip, -out, out)).rotated(self.angle)
+        sides = [Profile(shapes.strip_loop(self.wall, self.tip, *y)).rotated(self.angle)
+                 for y in ((-out, -half), (half, out))]  # fmt: skip
+        prisms = ((whole, self.z - out, low), *((side, low, high) for side in sides), (whole, high, self.z + out))
+        return Part(f"{self.name}.tube", material, prisms, made=self._tube())
+
+    def _tube(self) -> Made:
+        inside = (shapes.disc(self.wall), self.z - self.bore, self.z + self.bore)
+        return Made((Rod(self.angle, self.z, 0.9 * self.wall, self.tip, TUBE * self.bore),), (self.drill, inside))
+
+
+def opened_ring(inner: float, outer: float, bored: Sequence[Nozzle]) -> list[Profile]:
+    """What gaps as wide as the bores leave of a ring."""
+    if not bored:
+        return [shapes.ring(inner, outer)]
+    ways = sorted(bored, key=lambda n: n.angle)
+    return [_between(inner, outer, a, b) for a, b in zip(ways, [*ways[1:], ways[0]])]
+
+
+def _between(inner: float, outer: float, here: Nozzle, following: Nozzle) -> Profile:
+    """The ring from one gap, anticlockwise, to the next; each arc in two, as it may be longer than half a turn."""
+    (a, b), (p, q) = ([n.angle + s * math.asin(n.side / 2 / r) for n, s in ((here, 1), (following, -1))]
+                      for r in (outer, inner))  # fmt: skip
+    out, back = ((end - start) % (2 * math.pi) / 2 for start, end in ((a, b), (p, q)))
+    far, near = shapes.bulge_of(out), shapes.bulge_of(-back)
+    return Profile((
+        shapes.polar(outer, a, far), shapes.polar(outer, a + out, far), shapes.polar(outer, b),
+        shapes.polar(inner, q, near), shapes.polar(inner, q - back, near), shapes.polar(inner, p),
+    ))  # fmt: skip
+
+
+def opened_circle(
+    outer: float, channels: Sequence[Profile], radii: tuple[float, float], bored: Sequence[Nozzle]
+) -> Loop:
+    """The circle `outer` with a way in to each channel: sectors between two radii, the one under each nozzle."""
+    ways = sorted(zip(bored, channels, strict=True), key=lambda way: way[0].angle)
+    loops = [_way(outer, radii, *way) for way in ways]
+    ends = [(n.angle + s * math.asin(n.side / 2 / outer)) for n, _ in ways for s in (-1, 1)]
+    out: list[Vertex] = []
+    for i, loop in enumerate(loops):
+        here, following = ends[2 * i + 1], ends[(2 * i + 2) % len(ends)]
+        sweep = (following - here) % (2 * math.pi)
+        out += [*loop, shapes.polar(outer, here, shapes.bulge_of(sweep / 2)),
+                shapes.polar(outer, here + sweep / 2, shapes.bulge_of(sweep / 2))]  # fmt: skip
+    return tuple(out)
+
+
+def _way(outer: float, radii: tuple[float, float], nozzle: Nozzle, channel: Profile) -> Loop:
+    """From the circle at one side of the bore around the channel to the other side, which is left out."""
+    inner, top = radii
+    at, half = nozzle.angle, nozzle.side / 2
+    a, b = math.asin(half / outer), math.asin(half / top)
+    ends = [math.remainder(math.atan2(y, x) - at, 2 * math.pi) for x, y, _ in channel.outer]
+    low, high = at + min(ends), at + max(ends)
+    return (
+        shapes.polar(outer, at - a),
+        shapes.polar(top, at - b, shapes.bulge_of(low - at + b)),
+        shapes.polar(top, low),
+        shapes.polar(inner, low, shapes.bulge_of(high - low)),
+        shapes.polar(inner, high),
+        shapes.polar(top, high, shapes.bulge_of(at + b - high)),
+        shapes.polar(top, at + b),
+    )
+
+
+def slices(z0: float, z1: float, nozzles: Sequence[Nozzle]) -> list[tuple[float, float, tuple[Nozzle, ...]]]:
+    """The axial range cut at the bores; with each piece the nozzles that open it."""
+    cuts = sorted({z0, z1, *(z for n in nozzles for z in n.span if z0 + _THIN < z < z1 - _THIN)})
+    return [(a, b, tuple(n for n in nozzles if n.span[0] < (a + b) / 2 < n.span[1])) for a, b in pairwise(cuts)]
+
+
+def too_near(nozzles: Sequence[Nozzle]) -> bool:
+    """Whether tubes of two ports meet."""
+    points = [n.port.position for n in nozzles]
+    return any(
+        math.dist(a, b) < 1.1 * TUBE * nozzles[0].bore for i, a in enumerate(points) for b in points[:i]
+    )  # fmt: skip

@@ -1,0 +1,122 @@
+"""Liquid jackets around the housing: axial channels in series, or turns around the axis; their ports and coolant."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from geom import shapes
+from geom.families.nozzles import CLEAR, Nozzle, opened_circle, opened_ring, slices
+from geom.families.series_dc.layout import Axial, Radii
+from geom.families.turns import Turns
+from geom.part import Part, Port, Prism, extrude, fluid
+from geom.profile import Profile
+
+
+def jacket_ring(r: Radii) -> Profile:
+    """Section of a jacket between its channels."""
+    return shapes.ring(r.yoke1, r.jacket)
+
+
+def jacket_walls(g: Any, r: Radii, z0: float, z1: float, bored: Sequence[Nozzle]) -> list[Prism]:
+    """The housing's wall around the channels of one jacket, with the bores of its ports."""
+    solid = jacket_ring(r)
+    if g.jacket.layout == "zigzag":
+        pierced = [
+            (_pierced(r, channels, ports), low, high)
+            for channels, a, b in _zigzag(g, r, z0, z1)
+            for low, high, ports in slices(a, b, bored)
+        ]
+        return [(solid, z0, z0 + g.jacket.rib), *pierced, (solid, z1 - g.jacket.rib, z1)]
+    turns = turns_of(g, r, z0, z1).rings
+    ends = [z0, *(z for turn in turns for z in turn), z1]
+    ribs = [(solid, a, b) for a, b in zip(ends[::2], ends[1::2])]
+    outer = [
+        (piece, low, high)
+        for a, b in turns
+        for low, high, ports in slices(a, b, bored)
+        for piece in opened_ring(r.channel, r.jacket, ports)
+    ]
+    return [*ribs, *((shapes.ring(r.yoke1, r.shell), a, b) for a, b in turns), *outer]
+
+
+def _pierced(r: Radii, channels: list[Profile], bored: Sequence[Nozzle]) -> Profile:
+    """Section of a zigzag jacket; a bore opens the channel under it."""
+    inside = shapes.circle_loop(r.yoke1)
+    under = [min(channels, key=lambda channel: _off(channel, nozzle.angle)) for nozzle in bored]
+    out = opened_circle(r.jacket, under, (r.shell, r.channel), bored) if bored else shapes.circle_loop(r.jacket)
+    return Profile(out, (inside, *(channel.outer for channel in channels if channel not in under)))
+
+
+def _off(channel: Profile, angle: float) -> float:
+    """How far (rad) the angle is from the channel's middle."""
+    middle = sum(math.remainder(math.atan2(y, x) - angle, 2 * math.pi) for x, y, _ in channel.outer) / 4
+    return abs(middle)
+
+
+def _zigzag(g: Any, r: Radii, z0: float, z1: float) -> list[tuple[list[Profile], float, float]]:
+    """Channels along the axis, straight first; then those joined in pairs at the left end, and at the right end."""
+    first, last, n = z0 + g.jacket.rib, z1 - g.jacket.rib, g.jacket.channels
+    turn = turn_length(g, z0, z1)
+    straight, left = [(i, i) for i in range(n)], [(i, min(i + 1, n - 1)) for i in range(0, n, 2)]
+    right = [(0, 0), *((i, min(i + 1, n - 1)) for i in range(1, n, 2))]
+    zones = ((straight, first + turn, last - turn), (left, first, first + turn), (right, last - turn, last))
+    return [([_channel(g, r, *pair) for pair in pairs], a, b) for pairs, a, b in zones]
+
+
+def turn_length(g: Any, z0: float, z1: float) -> float:
+    """Axial length (m) over which two channels are joined: as deep as they are high, if there is room."""
+    return min(g.jacket.height, 0.3 * (z1 - z0 - 2 * g.jacket.rib))
+
+
+def _channel(g: Any, r: Radii, i: int, j: int) -> Profile:
+    """From channel i to channel j, what lies between included."""
+    half = math.pi / g.jacket.channels - g.jacket.rib / 2 / r.shell
+    pitch, top = 2 * math.pi / g.jacket.channels, math.pi / 2
+    return shapes.sector(r.shell, r.channel, top + i * pitch - half, top + j * pitch + half)
+
+
+def turns_of(g: Any, r: Radii, z0: float, z1: float) -> Turns:
+    """The turns of a helical jacket, ribs between and at both ends."""
+    pitch = (z1 - z0 - g.jacket.rib) / g.jacket.turns
+    return Turns(r.shell, r.channel, z0 + g.jacket.rib, pitch, g.jacket.rib, g.jacket.turns)
+
+
+def coolant(g: Any, z: Axial) -> tuple[Part, ...]:
+    """What flows in the jackets, one fluid each, to the ends of its ports."""
+    r = Radii(g)
+    necks = {name: [nozzle.neck for nozzle in nozzles(g) if nozzle.jacket == name] for name in z.jackets}
+    return tuple(
+        fluid(name, *_channel_prisms(g, r, *span), *necks[name], material="glycol-50")
+        for name, span in z.jackets.items()
+    )
+
+
+def ports(g: Any) -> tuple[Port, ...]:
+    """Inlet and outlet of every jacket, on its outer wall: first and last channel or turn."""
+    return tuple(nozzle.port for nozzle in nozzles(g))
+
+
+def nozzles(g: Any) -> tuple[Nozzle, ...]:
+    """Inlet and outlet of every jacket."""
+    r = Radii(g)
+    return tuple(
+        Nozzle(f"{name}.{end}", name, *place, g.jacket.port, r.channel, r.jacket)
+        for name, span in Axial(g).jackets.items()
+        for end, place in zip(("inlet", "outlet"), _places(g, r, *span))
+    )
+
+
+def _places(g: Any, r: Radii, z0: float, z1: float) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Angle (rad) and z (m) of inlet and outlet: where the first channel begins and the last ends."""
+    if g.jacket.layout == "helical":
+        return turns_of(g, r, z0, z1).places(g.jacket.port)
+    top, n, inset = math.pi / 2, g.jacket.channels, g.jacket.rib + CLEAR * g.jacket.port
+    return (top, z1 - inset), (top - 2 * math.pi / n, z1 - inset if n % 2 == 0 else z0 + inset)
+
+
+def _channel_prisms(g: Any, r: Radii, z0: float, z1: float) -> tuple[Prism, ...]:
+    if g.jacket.layout == "zigzag":
+        return tuple(prism for channels, a, b in _zigzag(g, r, z0, z1) for prism in extrude(channels, a, b))
+    return tuple((shapes.ring(r.shell, r.channel), a, b) for a, b in turns_of(g, r, z0, z1).rings)
