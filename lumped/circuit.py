@@ -8,20 +8,24 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 
+from geom.errors import InputError
 from lumped.build import node_row
 from lumped.coolant import Coolant
 from lumped.correlations.ducts import duct_film, schmidt_helical, staton_rectangle
 from lumped.exchanger import CellFilm, Effectiveness, Exchanger, Flow, Rate
 from lumped.hydraulics import Duct, parallel_shares, pressure_drop, pumping_power
-from lumped.network import Link, Network
+from lumped.laws import Table
+from lumped.network import Link, Network, Row
 
 RANGE = (0.0, *(2.0**k for k in np.arange(-5, 2.01, 0.125)))  # films are tabulated at these times the declared flow
 PER_M3S = {"l_min": 1 / 60000.0, "m3_h": 1 / 3600.0}
+WARMTH = tuple(float(T) for T in range(0, 161, 5))  # degC, at which films are tabulated where they follow
 TANK_M3 = 5e-5  # of the pipe in which branches meet
 
 
@@ -48,6 +52,7 @@ class Cooler:
 class Circuit:
     """branches : name -> passes in series; branches run in parallel.  flow (m3/s) at which the films are centred
 
+    follows : whether films change with the coolant's temperature, else they hold at `at_degC`
     of, unit : input that carries the flow and its unit, or None for a flow that never changes
     inlet : a boundary for an open circuit; the node "NAME.reservoir" for a closed one
     """
@@ -63,6 +68,7 @@ class Circuit:
     cells: int = 8
     cooler: Cooler | None = None
     pump_efficiency: float = 0.5
+    follows: bool = True
 
     @property
     def heat(self) -> float:
@@ -137,13 +143,28 @@ class Circuit:
         for wall, of in part.walls.items():
             area = part.duct.wall / self.cells * of
             law = CellFilm(tuple(q / unit for q in flows), h, self.stream(share), area, whole)
+            if self.follows:
+                law = replace(law, temperature=self._warming(law, part.duct, self.flow * share))
             nodes = [self.cell(branch, number * self.cells + c) for c in range(self.cells)]
             out.append(_comb(network, f"film:{self.name}.{branch}.{number + 1}:{wall}", wall, nodes, law))
         return out
 
-    def film(self, duct: Duct, flow: float) -> float:
+    def _warming(self, law: CellFilm, duct: Duct, flow: float) -> Table:
+        """The conductance at the usual flow over the coolant's temperature, as a share of that at `at_degC`."""
+        rate = np.array([flow * self.heat])
+        films = dict(self._films_at(duct, flow))
+        usual = law.conductance(rate, self.film(duct, flow))
+        return Table(tuple(films), tuple(float(law.conductance(rate, h) / usual) for h in films.values()))
+
+    def _films_at(self, duct: Duct, flow: float) -> Iterator[tuple[float, float]]:
+        """(degC, W/m2/K) wherever the liquid is known."""
+        for T in WARMTH:
+            with suppress(InputError):
+                yield T, self.film(duct, flow, T)
+
+    def film(self, duct: Duct, flow: float, degC: float | None = None) -> float:
         """h (W/m2/K) in a duct at a flow (m3/s): Gnielinski in straight ones, Schmidt in coils."""
-        speed, fluid = flow / duct.section, self.liquid(self.at_degC)
+        speed, fluid = flow / duct.section, self.liquid(self.at_degC if degC is None else degC)
         if duct.coil:
             return schmidt_helical(speed, duct.diameter, duct.coil, fluid)[0]
         ratio = min(duct.width, duct.height) / max(duct.width, duct.height)
@@ -171,11 +192,12 @@ class Circuit:
 
 
 def _comb(network: Network, name: str, wall: str, cells: list[str], law: CellFilm) -> Link:
-    """One link from a wall to every cell of a pass."""
+    """One link from a wall to every cell of a pass; its law looks at the mean temperature of the cells (degC)."""
     w = network.column(wall)
     c = np.array([network.column(cell) for cell in cells])
     k = np.full(c.size, w)
     rows, cols = np.concatenate([k, k, c, c]), np.concatenate([k, c, c, k])
     one = np.ones(c.size)
     vals = np.concatenate([one, -one, one, -one])
-    return Link(name, "film", (wall, cells[0]), rows, cols, vals, law, node_row(w), node_row(int(c[0])))
+    mean, zero = Row(c, one / c.size), Row(np.empty(0, np.int64), np.empty(0))
+    return Link(name, "film", (wall, cells[0]), rows, cols, vals, law, mean, zero)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lumped.laws import Array, Inputs, Law
+from lumped.laws import CONSTANT, Array, Inputs, Law, TemperatureLaw
 
 Effectiveness = Callable[[Array, Array], Array]
 
@@ -98,6 +98,7 @@ class CellFilm(Law):
     wall of even temperature gives the flow. Where a cell has N > 1 (little flow) it is h A (e - 1).
     h : film (W/m2/K) over the flow `at` (unit of the input, or of `flow` without one), piecewise linear
     area : this wall's share (m2) of the cell;  whole : all its walls (m2)
+    temperature : how the conductance changes with the coolant's temperature, 1 where h holds
     """
 
     at: tuple[float, ...]
@@ -105,6 +106,7 @@ class CellFilm(Law):
     stream: Flow
     area: float
     whole: float
+    temperature: TemperatureLaw = CONSTANT
 
     @property
     def reads(self) -> tuple[str, ...]:  # type: ignore[override]
@@ -112,7 +114,10 @@ class CellFilm(Law):
 
     def factor(self, inputs: Inputs) -> Array | float:
         rate = self.stream.at(inputs)
-        h = np.interp(rate / self.stream.rate, self.at, self.h)
+        return self.conductance(rate, np.interp(rate / self.stream.rate, self.at, self.h))
+
+    def conductance(self, rate: Array, h: Array | float) -> Array | float:
+        """W/K at a heat capacity rate (W/K) and a film (W/m2/K)."""
         N = h * self.whole / np.maximum(rate, 1e-300)
         stretch = np.where(N < 1.0, np.expm1(np.minimum(N, 1.0)) / np.maximum(np.minimum(N, 1.0), 1e-300), np.e - 1.0)
         return _single(h * self.area * stretch)

@@ -110,7 +110,7 @@ def test_what_a_stream_carries_is_m_cp_times_its_rise():
 def test_cells_along_an_even_wall_are_the_exact_exponential():
     """A wall held at one temperature: (T_out - T_in) / (T_wall - T_in) = 1 - exp(-h A / m cp), whatever the cells."""
     for cells in (1, 4, 16):
-        net = network(circuit(cells=cells))
+        net = network(circuit(cells=cells, films="fixed"))
         made = read_circuits(
             Table({"circuits": {"water": circuit(cells=cells)}}, "t"), ["housing", "flange"], ["ambient", "inlet"]
         )
@@ -120,6 +120,24 @@ def test_cells_along_an_even_wall_are_the_exact_exponential():
         if N / cells < 1:
             share = (rest["water.outlet"] - 20.0) / (rest["housing"] - 20.0)
             assert share == pytest.approx(-np.expm1(-N), rel=1e-9)
+
+
+@pytest.mark.parametrize("inlet", [5.0, 20.0, 60.0])
+def test_films_follow_the_coolant_s_temperature(inlet):
+    """What holds at rest with films fixed at the mean temperature of the coolant holds with films that follow it.
+
+    A cold start crosses from laminar to turbulent, so a fixed 60 degC would be wrong by tens of kelvin at 5 degC.
+    """
+    around = {"ambient": 20.0, "inlet": inlet}
+    mean = np.mean([steady(network(circuit()), {}, around)[f"water.1.{k}"] for k in range(1, 9)])
+    following = steady(network(circuit()), {}, around)
+    liquid = {"at_degC": float(mean), "films": "fixed"}
+    fixed = steady(network(circuit(**liquid)), {}, around)
+    step = following["housing"] - following["water.outlet"]
+    assert step == pytest.approx(fixed["housing"] - fixed["water.outlet"], rel=0.03)
+    if inlet == 5.0:
+        hot = steady(network(circuit(films="fixed")), {}, around)
+        assert step > 1.5 * (hot["housing"] - hot["water.outlet"])
 
 
 def test_series_passes_heat_the_second_wall_with_what_the_first_gave():
