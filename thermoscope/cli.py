@@ -65,11 +65,17 @@ def simulate(
 
 
 @app.command()
-def compare(case: Case, json: Json = None) -> None:
+def compare(
+    case: Case,
+    why: Annotated[
+        bool, typer.Option("--why", help="Uncertainty, whiteness, inputs it follows, missing heat.")
+    ] = False,
+    json: Json = None,
+) -> None:
     """The model against every test: error per sensor against its uncertainty. Exit code 1 if it disagrees."""
     from thermoscope.commands.compare import compare as run
 
-    raise typer.Exit(run(case, json))
+    raise typer.Exit(run(case, json, why))
 
 
 @app.command()

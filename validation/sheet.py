@@ -17,6 +17,7 @@ from validation.predict import predict
 Array = NDArray[np.float64]
 INSTANTS = 180
 MODEL_SHARE = 0.02  # a model within 4 % of the rise counts as good: that is two standard deviations
+NUMBERS = 2**25  # of a Jacobian held at once: 270 MB
 WORTH_A_THREAD = 3000  # states times instants below which starting threads costs more than it saves
 
 
@@ -76,17 +77,23 @@ def segments(
 def _of_test(
     network: Network, test: Test, values: Mapping[str, float], tangents: Sequence[Parameter], instants: int
 ) -> list[Segment]:
-    seen = predict(network, test, values, tangents)
+    columns: list[list[Array]] = [[] for _ in test.channels]
     start = groups(len(test.time), instants)
-    out = []
-    for j, c in enumerate(test.channels):
-        read = np.isfinite(c.y).astype(float)
-        if read.sum() < 3:
-            continue
-        both = np.column_stack([np.nan_to_num(c.y) - seen.y[:, j], seen.J[:, j], test.time])
-        mean, _ = block_mean(both, read, start)
-        out.append(Segment(test.name, c.name, mean[:, -1], mean[:, 0], mean[:, 1:-1], c.sigma_K, allowed(c)))
-    return out
+    for k, some in enumerate(portions(tangents, len(test.time) * max(len(test.channels), 1))):
+        seen = predict(network, test, values, some)
+        for j, c in enumerate(test.channels):
+            own = (
+                [seen.J[:, j]] if k else [np.column_stack([test.time, np.nan_to_num(c.y) - seen.y[:, j]]), seen.J[:, j]]
+            )
+            columns[j] += [block_mean(a, np.isfinite(c.y).astype(float), start)[0] for a in own]
+    read = [(c, np.column_stack(a)) for c, a in zip(test.channels, columns, strict=True) if np.isfinite(c.y).sum() >= 3]
+    return [Segment(test.name, c.name, m[:, 0], m[:, 1], m[:, 2:], c.sigma_K, allowed(c)) for c, m in read]
+
+
+def portions(tangents: Sequence[Parameter], each: int) -> list[Sequence[Parameter]]:
+    """Tangents in portions that fit into memory, however long the record; `each` numbers are kept per tangent."""
+    size = max(1, NUMBERS // max(each, 1))
+    return [tangents[i : i + size] for i in range(0, len(tangents), size)] or [()]
 
 
 def allowed(c: Channel) -> float:

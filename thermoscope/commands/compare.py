@@ -8,16 +8,21 @@ from typing import Any
 from thermoscope.commands.opened import opened
 from thermoscope.terminal import give, progress, say, table
 
+EVIDENT = 10.0  # nats
+WHITE = 0.01
 
-def compare(case: str, target: str | None) -> int:
+
+def compare(case: str, target: str | None, why: bool = False) -> int:
     """Exit code 1 when a sensor is outside its uncertainty and outside the 4 % rule."""
     from validation.compare import compare as held_against
+    from validation.failing import failing
 
     with progress() as tell:
         folder = opened(case, tell)
         tell("running the model")
         result = held_against(folder.case)
-    document = result.document()
+        more = failing(folder.case, tell).document() if why else {}
+    document = {**result.document(), **more}
     give(document, target, lambda: show(document))
     return 0 if result.agrees else 1
 
@@ -29,9 +34,41 @@ def show(document: Mapping[str, Any]) -> None:
     for test in document["tests"]:
         title = f"{test['name']} ({test['role']}): rms {test['rmse_K']:.2f} K"
         table(title, headers, [[c[k] for k in keys] for c in test["channels"]], marked=["over"])
+    if "patterns" in document:
+        show_why(document)
     model, over = document["model"], [c for t in document["tests"] for c in t["channels"] if c["verdict"] == "over"]
     effects = f" with {', '.join(model['effects'])}" if model["effects"] else ""
     say(
         f"{document['case']}, revision {model['revision']}{effects}: rms {document['rmse_K']:.2f} K; the sensors' own "
         f"uncertainty explains {document['floor_K']:.2f} K; {len(over)} sensor records out of tolerance"
     )
+
+
+def show_why(document: Mapping[str, Any]) -> None:
+    """The error against the uncertainty of readings, inputs and arithmetic; what it follows; where heat is missing."""
+    headers = ["test", "sensor", "error (K)", "u reading", "u inputs", "u numeric", "explained", "white", "follows"]
+    left = {(p["test"], p["channel"]): p for p in document["patterns"]}
+    rows = []
+    for u in document["uncertainty"]:
+        numbers = [u[k] for k in ("error_K", "reading_K", "input_K", "numeric_K")]
+        p = left.get((u["test"], u["channel"]))
+        rows.append([u["test"], u["channel"], *numbers, "yes" if u["explained"] else "no", *_pattern(p)])
+    table("Against all uncertainties (ASME V&V 20, standard uncertainties in K)", headers, rows, marked=["no"])
+    found = [h for h in document["where"] if h["evidence_nats"] > EVIDENT]
+    for h in found[:3]:
+        name, series = max(h["heat"].items(), key=lambda kv: max(map(abs, kv[1]["heat_W"])))
+        k = max(range(len(series["heat_W"])), key=lambda i: abs(series["heat_W"][i]))
+        watts, when = series["heat_W"][k], series["time_s"][k]
+        say(
+            f"heat missing at {h['place']}: {watts:+.3g} W after {when:.0f} s of {name} ({h['evidence_nats']:.0f} nats)"
+        )
+    if not found:
+        say("no place where heat is clearly missing (beyond what calibration mends)")
+
+
+def _pattern(p: Mapping[str, Any] | None) -> list[str]:
+    if p is None:
+        return ["", ""]
+    ranked = sorted(p["follows"].items(), key=lambda kv: -kv[1])
+    white = min(p["ljung_box_p"], p["periodogram_p"]) > WHITE
+    return ["yes" if white else "no", ", ".join(name for name, ratio in ranked[:2] if ratio > 1.0)]

@@ -1,0 +1,99 @@
+"""How far a comparison can be believed: uncertainty of readings, inputs and arithmetic, per sensor and test.
+
+    u_val^2 = u_reading^2 + u_input^2 + u_numeric^2 ,   model error = E +- 2 u_val ,   E = model - reading
+
+Inputs are moved one at a time by their own standard uncertainty; the arithmetic is judged by running at half the step.
+Source: ASME V&V 20-2009, chapters 3 (inputs, sampled one at a time) and 2 (Richardson).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.network import Network
+from validation.case import Test
+from validation.fitting import BOUNDARY_SD
+from validation.predict import predict
+
+Array = NDArray[np.float64]
+INPUT_SHARE = 0.02  # of a recorded input, where the sheet says nothing: shunts, torque flanges, flow meters
+FIRST_ORDER = 2.0  # error of a step over the change when it is halved, for the lowest order a scheme can have
+COVERAGE = 2.0
+
+
+@dataclass(frozen=True)
+class Uncertainty:
+    """Standard uncertainties (K, rms over the test) of one sensor, and what is left of the error.
+
+    inputs : what each input contributes;  error_K : rms of model minus reading
+    """
+
+    test: str
+    channel: str
+    reading_K: float
+    inputs: Mapping[str, float]
+    numeric_K: float
+    error_K: float
+
+    @property
+    def input_K(self) -> float:
+        return float(np.sqrt(sum(u**2 for u in self.inputs.values())))
+
+    @property
+    def u_val_K(self) -> float:
+        return float(np.sqrt(self.reading_K**2 + self.input_K**2 + self.numeric_K**2))
+
+    @property
+    def explained(self) -> bool:
+        """Is the error no more than what all this leaves open?"""
+        return self.error_K <= COVERAGE * self.u_val_K
+
+    def document(self) -> dict:
+        own = {"reading_K": self.reading_K, "input_K": self.input_K, "numeric_K": self.numeric_K}
+        total = {"u_val_K": self.u_val_K, "error_K": self.error_K, "explained": self.explained}
+        return {"test": self.test, "channel": self.channel, **own, **total, "inputs": dict(self.inputs)}
+
+
+def uncertainties(network: Network, test: Test, values: Mapping[str, float]) -> list[Uncertainty]:
+    """One row per channel that was read."""
+    y = predict(network, test, values).y
+    moved = {name: predict(network, other, values).y - y for name, other in shifted_inputs(test)}
+    numeric = FIRST_ORDER * (predict(network, halved(test), values).y[::2] - y)
+    out = []
+    for j, c in enumerate(test.channels):
+        if np.isfinite(c.y).any():
+            inputs = {name: _rms(d[:, j]) for name, d in moved.items()}
+            error = _rms((y[:, j] - c.y)[np.isfinite(c.y)])
+            out.append(Uncertainty(test.name, c.name, c.sigma_K, inputs, _rms(numeric[:, j]), error))
+    return out
+
+
+def _rms(a: Array) -> float:
+    return float(np.sqrt(np.mean(a**2)))
+
+
+def shifted_inputs(test: Test) -> Iterator[tuple[str, Test]]:
+    """The test with one input or boundary at a time off by its standard uncertainty."""
+    for name, u in test.inputs.items():
+        if np.any(u):
+            yield name, replace(test, inputs={**test.inputs, name: (1.0 + INPUT_SHARE) * np.asarray(u, float)})
+    for name, u in test.boundaries.items():
+        yield name, replace(test, boundaries={**test.boundaries, name: np.asarray(u, float) + BOUNDARY_SD})
+
+
+def halved(test: Test) -> Test:
+    """The test on twice as many instants, straight between the recorded ones."""
+    time = np.empty(2 * len(test.time) - 1)
+    time[::2], time[1::2] = test.time, 0.5 * (test.time[1:] + test.time[:-1])
+
+    def between(u: Array) -> Array:
+        return np.asarray(np.interp(time, test.time, np.broadcast_to(u, test.time.shape)), float)
+
+    inputs = {k: between(np.asarray(u, float)) for k, u in test.inputs.items()}
+    boundaries = {k: between(np.asarray(u, float)) for k, u in test.boundaries.items()}
+    still = tuple(replace(c, y=np.zeros_like(time)) for c in test.channels)
+    return replace(test, time=time, inputs=inputs, boundaries=boundaries, channels=still)
