@@ -88,11 +88,11 @@ class PmPlant(Plant):
     def winding_mean(self, T: Array) -> float:
         return sum(share * self.mean(part, T) for part, share in self.copper_shares().items())
 
-    def base_path(self, T: Array, now: Conditions) -> float:
-        """Heat that foot and base carry off per kelvin between the laminations' mean and ambient (W/K)."""
+    def path(self, T: Array, now: Conditions, below: bool) -> float:
+        """Heat that foot and base (below) or all else carry off per kelvin between laminations and ambient (W/K)."""
         heat = 0.0
         for face in self.body.faces.values():
-            if face.part in ("foot", "base"):
+            if face.fluid == "ambient" and (face.part in ("foot", "base")) == below:
                 h = self.films.coefficient(face.part, "ambient", T[face.nodes], now.ambient, now)
                 heat += float(face.areas * h @ (T[face.nodes] - now.ambient))
         return heat / (self.mean("stator.core", T) - now.ambient)
@@ -129,10 +129,10 @@ def solids(machine: Any, draws: Draws) -> dict[str, Solid]:
     return out
 
 
-def build(name: str, losses: PmLosses, base: str, draws: Draws, size: float, segments: int) -> PmPlant:
-    """The machine of geom's library with this name, meshed with triangles of `size` (m)."""
+def build(name: str, losses: PmLosses, base: str, draws: Draws, axial: float, segments: int) -> PmPlant:
+    """The machine of geom's library with this name; axial (m): thickest layer, laminations conduct badly across."""
     machine = load_machine(name)
-    mesh = build_mesh(machine, size, segments)
+    mesh = build_mesh(machine, 0.06, segments, 1, axial)
     body = conduct.build(mesh, solids(machine, draws), contacts(mesh.contacts, draws))
     films = pm_films.draw(draws, machine.geometry, base)
     return PmPlant(body, losses, films, pm_films.ClosedAir())  # type: ignore[arg-type]

@@ -26,6 +26,8 @@ Array = NDArray[np.float64]
 SEED = 31
 TRUTH = Path(__file__).with_name("pmsm.truth.toml")
 STEP, COOL = 600, 15
+AXIAL = {"pmsm-m1-no-base": 0.01, "pmsm-m1-plate": 0.01}  # thickest layer (m); a base's edges add more
+USUAL = 0.02
 
 
 @dataclass(frozen=True)
@@ -61,7 +63,8 @@ PLANS = {
 class Course:
     """time (n,) s; winding and magnet means (degC); ohm; ambient
 
-    imbalance: heat not accounted for over heat made;  base_path: W/K at the end
+    imbalance: heat not accounted for over heat made
+    base_path, body_path: heat through base and foot, and from the body itself, at the end (W/K over the laminations)
     """
 
     time: Array
@@ -71,6 +74,7 @@ class Course:
     ambient: Array
     imbalance: float
     base_path: float
+    body_path: float
 
 
 def run(plant: PmPlant, plan: Plan, hours: float, quick: bool) -> tuple[Course, Course]:
@@ -94,7 +98,7 @@ def _course(
     stored = float(plant.body.capacity @ (state.T - begun))
     left = (balance[0] - balance[1] - stored) / (balance[0] if on else max(balance[1], 1.0))
     end = Conditions(current, current**2, rpm, 0.0, 0.0, rows[-1][-1])
-    return Course(*np.array(rows).T, float(left), plant.base_path(state.T, end)), state, slope
+    return Course(*np.array(rows).T, float(left), *(plant.path(state.T, end, b) for b in (True, False))), state, slope
 
 
 def _ambient(plan: Plan, t: float) -> float:
@@ -109,8 +113,8 @@ def _seen(plant: PmPlant, plan: Plan, state: State, t: float, on: bool) -> tuple
 def simulate(name: str, quick: bool) -> tuple[Course, Course, dict[str, float]]:
     """A test and the drawn values behind it."""
     draws, plan = Draws(SEED), PLANS[name]
-    size, segments = (0.08, 24) if quick else (0.06, 36)
-    plant = pm_plant.build(plan.machine, plan.losses, plan.base, draws, size, segments)
+    axial, segments = (0.09, 24) if quick else (AXIAL.get(plan.machine, USUAL), 36)
+    plant = pm_plant.build(plan.machine, plan.losses, plan.base, draws, axial, segments)
     loaded, cooling = run(plant, plan, plan.hours, quick)
     print(f"{name}: winding {loaded.winding[-1]:.1f} degC, magnets {loaded.magnets[-1]:.1f} degC", file=sys.stderr)
     return loaded, cooling, draws.taken
@@ -162,6 +166,7 @@ def make(out: Path, truth: Path, quick: bool, names: Sequence[str]) -> None:
                 "magnets_degC": round(float(loaded.magnets[-1]), 2),
                 "ambient_degC": round(float(loaded.ambient[-1]), 2),
                 "base_path_W_K": round(loaded.base_path, 4),
+                "body_path_W_K": round(loaded.body_path, 4),
                 **cold,
             }
     document["drawn"] = {name: float(f"{value:.6g}") for name, value in sorted(draws.taken.items())}

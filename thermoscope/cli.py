@@ -220,6 +220,25 @@ def two_paths(
 
 
 @app.command()
+def curves(
+    case: Case,
+    resolution: Annotated[float, typer.Option(min=1e-3, help="K, of the thermocouples.")] = 0.5, json: Json = None,
+) -> None:  # fmt: skip
+    """Eq. 8, equilibrium, tau_95, the 3 to 4 % rule, equal tests pooled. Exit code 1 if one of the last two fails."""
+    from thermoscope.commands.curves import curves as run
+
+    raise typer.Exit(run(case, resolution, json))
+
+
+@app.command()
+def bases(case: Case, json: Json = None) -> None:
+    """Which base a machine stood on in each test. Exit code 1 if the readings exclude the one that a sheet says."""
+    from thermoscope.commands.bases import bases as run
+
+    raise typer.Exit(run(case, json))
+
+
+@app.command()
 def carry(
     source: Case, targets: Annotated[list[str], typer.Argument(metavar="CASE...", help="Cases of other machines.")],
     json: Json = None,

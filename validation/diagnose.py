@@ -17,6 +17,7 @@ from validation.faults import broken_channels
 from validation.findings import Candidate, Decision, Diagnosis, Hidden, NextSensor, NextTest, Verdict
 from validation.fitting import working
 from validation.null import Null
+from validation.procedure.which_base import wrong_bases
 from validation.rivals import Race, constancy, race
 from validation.sensors import next_sensors
 from validation.sheet import rmse, segments
@@ -108,7 +109,7 @@ def conclude(case: Case, steps: list[Step], null: Null, limit: float, where: lis
     first = steps[0]
     groups = [tuple(s.evidence.names[k] for k in s.race.group) for s in steps if s.race]
     pulls = pulled(first.evidence.fit, null)
-    broken = broken_channels(first.evidence.tests)
+    broken = [*broken_channels(first.evidence.tests), *wrong_bases(case)]
     verdict = judge(steps, null, groups, bool(pulls), bool(broken))
     table = tabulate(case, steps, limit, verdict)
     ahead = planned(steps, null) if plan else ()

@@ -1,23 +1,22 @@
 """Three bases, three machines: what was hidden in M1 is recovered, M2 and M3 are predicted, a wrong base is named."""
 
-import subprocess
-import sys
 import tomllib
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from geom.errors import InputError
-from lumped.steady import steady
+from scripts.pmsm_cases import TESTS, folder_of, text
 from thermoscope.folder import load_case
 from validation.calibrate import calibrated
 from validation.fitting import working
-from validation.predict import thermal
+from validation.procedure.base_heat import base_heat
 from validation.procedure.carry import carried, settled
 from validation.procedure.repeats import repeats
-from validation.procedure.which_base import which_base
+from validation.procedure.which_base import declared_base, on_base, which_base, wrong_bases
 
-GAP, BENCH, PLATE = "link.slot.liner-stator.core", "link.stator.core-base.bench.0", "link.stator.core-base.plate.0"
+GAP = "k.liner-gap"
+SWITCHES = {"plate": "on_plate", "bench": "on_bench"}
 
 
 @pytest.fixture(scope="module")
@@ -30,14 +29,10 @@ def truth(root):
     return tomllib.loads((root / "simulated" / "pmsm.truth.toml").read_text(encoding="utf-8"))
 
 
-def test_networks_are_those_of_the_descriptions(root):
-    """The committed networks are what the script writes now, to a thousandth: libraries round areas differently."""
-    done = subprocess.run(
-        [sys.executable, "-c", "from scripts.pmsm_cases import *\nfor p, d in documents().items():\n"
-         " assert close(tomllib.loads(p.read_text()), tomllib.loads(text(d))), p"],
-        cwd=root, capture_output=True, text=True,
-    )  # fmt: skip
-    assert done.returncode == 0, done.stderr
+@pytest.mark.parametrize("machine", list(TESTS))
+def test_machine_files_are_the_library_s(machine):
+    """One description with only the constructive differences: the library's file with the cold resistance."""
+    assert (folder_of(machine) / "machine.toml").read_text(encoding="utf-8") == text(machine)
 
 
 @pytest.mark.parametrize("name", ["wood", "plate", "bench", "bench-2", "bench-3", "m2", "m3"])
@@ -56,46 +51,33 @@ def test_temperatures_are_right_within_their_uncertainty(bases, truth):
 
 @pytest.fixture(scope="module")
 def fitted(bases):
-    """M1 calibrated anew on wood, plate and bench, and 30 draws of its parameters from their joint uncertainty."""
+    """M1 calibrated anew on wood, plate and bench, and 15 draws of its parameters from their joint uncertainty."""
     network, unknowns = working(bases.case)
     fit = calibrated(network, [t for t in bases.case.tests if t.role == "calibrate"], unknowns, {})
     random, root = np.random.default_rng(0), np.linalg.cholesky(fit.covariance)
-    drawn = [fit.theta + root @ random.standard_normal(fit.theta.size) for _ in range(30)]
-    return thermal(network), fit, [unknowns.values(np.clip(theta, *unknowns.bounds)) for theta in drawn]
+    drawn = [fit.theta + root @ random.standard_normal(fit.theta.size) for _ in range(15)]
+    return network, fit, [unknowns.values(np.clip(theta, *unknowns.bounds)) for theta in drawn]
 
 
-def base_path(network, test, values, base):
-    """Heat into a base per kelvin between laminations and ambient (W/K), at the test's end."""
-    known = {p.name for p in network.parameters}
-    inputs, air = {n: float(v[-1]) for n, v in test.inputs.items()}, float(test.boundaries["ambient"][-1])
-    state = steady(network, inputs, {"ambient": air}, {k: v for k, v in values.items() if k in known})
-    name = f"stator.core-base.{base}.0"
-    link = next(one for one in network.links if one.name == f"link:{name}")
-    G = float(np.ravel(link.law.factor({n: np.array([v]) for n, v in inputs.items()}))[0]) * values[f"link.{name}"]
-    return G * (state["stator.core"] - state[f"base.{base}.0"]) / (state["stator.core"] - air)
-
-
-@pytest.mark.parametrize(("number", "base"), [(1, "plate"), (2, "bench")])
-def test_calibrated_base_holds_the_truth(bases, truth, fitted, number, base):
-    """What a base carries off, by 30 draws of the fit: the hidden value lies within their 95 %."""
+@pytest.mark.parametrize(("number", "base"), [(0, "wood"), (1, "plate"), (2, "bench")])
+def test_calibrated_base_and_body_hold_the_truth(bases, truth, fitted, number, base):
+    """What base and body carry off per kelvin: the hidden values within 2.5 sd of the fit's draws."""
     network, _, draws = fitted
-    test = bases.case.tests[number]
-    low, high = np.percentile([base_path(network, test, values, base) for values in draws], [2.5, 97.5])
-    assert low < truth[base]["base_path_W_K"] < high
+    heat = [base_heat(network, bases.case.tests[number], values) for values in draws]
+    for found, true in (("path_W_K", "base_path_W_K"), ("body_W_K", "body_path_W_K")):
+        drawn = np.array([getattr(h, found) for h in heat])
+        assert abs(drawn.mean() - truth[base][true]) <= 2.5 * drawn.std(ddof=1) + 1e-9, (found, drawn.mean())
 
 
-def test_calibrated_gap_and_film_hold_the_truth(bases, truth):
-    """The hidden multipliers lie in the 95 % intervals of the model's last calibration."""
-    drawn, found = truth["drawn"], bases.history.last.intervals
-    assert found[GAP][0] < drawn["conductivity.slot.gap"] < found[GAP][1]
-    low, high = found["emissivity"]
-    assert low < drawn["emissivity.body"] / 0.85 < high
+def test_calibrated_gap_holds_the_truth(bases, truth):
+    low, high = bases.history.last.intervals[GAP]
+    assert low < truth["drawn"]["conductivity.slot.gap"] < high
 
 
 def test_calibration_is_that_of_the_data(bases, fitted):
     """Calibrating again from the start gives the committed values, within a tenth of their intervals."""
     last = bases.history.last
-    for name in (GAP, BENCH, PLATE, "convection"):
+    for name in (GAP, "h.stator.core", "h.base", "h.base.plate"):
         low, high = last.intervals[name]
         assert fitted[1].values[name] == pytest.approx(last.values[name], abs=0.1 * (high - low))
 
@@ -111,7 +93,8 @@ def test_machines_that_were_not_used_are_predicted(root, bases, name):
     """Difference below the measurement's worst case with M1's values, and closer than without them."""
     other = load_case(root / "cases" / "pmsm-machines" / name).case
     found, plain = carried(bases.case, other), settled(other)
-    assert "convection" in found.parameters
+    assert "h.stator.core" in found.parameters
+    assert not any(name.startswith("loss.") for name in found.parameters)
     assert found.agrees, [r.document() for r in found.rows]
     assert sum(abs(r.difference_K) for r in found.rows) < sum(abs(r.difference_K) for r in plain)
 
@@ -125,22 +108,18 @@ def test_three_equal_tests_repeat(bases):
     assert repeats(rises, bases.case.tests[2].channels[0].sigma_K).repeat
 
 
-SWITCHES = ("on_plate", "on_bench")
+@pytest.mark.parametrize(("test", "said"), [("wood", "bench"), ("wood", "plate"), ("bench", "none"), ("plate", "none")])
+def test_wrong_base_is_named(bases, test, said):
+    """A base forgotten or invented in one sheet is excluded, however films and contacts are calibrated.
 
-
-@pytest.mark.parametrize(("test", "right"), [("wood", ""), ("plate", "on_plate"), ("bench", "on_bench")])
-def test_wrong_base_is_seen_as_such(bases, test, right):
-    """With the films as calibrated, a base forgotten or invented is excluded and the right one is not.
-
-    Plate and bench differ by 4 K only, which these meters do not tell apart in every test: that is not asked for.
+    Plate and bench differ by a few kelvins that their own contacts can make up: that is not asked for.
     """
-    found = {h.base: h for h in which_base(bases.case, test, SWITCHES)}
-    assert not found[right].excluded
-    wrong = SWITCHES if right == "" else ("",)
-    assert all(found[base].excluded for base in wrong)
-    assert all(np.sign(found[base].offset_K) == (-1 if right == "" else 1) for base in wrong)
+    tests = tuple(on_base(t, said, SWITCHES) if t.name == test else t for t in bases.case.tests)
+    wrong = which_base(replace(bases.case, tests=tests), [test])
+    assert next(h for h in wrong if h.declared).excluded
+    right = declared_base(next(t for t in bases.case.tests if t.name == test), SWITCHES)
+    assert not next(h for h in wrong if h.base == right).excluded
 
 
-def test_unknown_test_or_switch(bases):
-    with pytest.raises(InputError, match="tests: wood, plate"):
-        which_base(bases.case, "grass", SWITCHES)
+def test_right_bases_are_believed(bases):
+    assert wrong_bases(bases.case) == []

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
 
 DESIGNS = ("full", "half", "morris", "sobol")
 ROWS = 12
+TRAJECTORIES, SAMPLES = 20, 256  # 160 runs, 2304 runs of some milliseconds
 
 
 def screen(machine: str, design: str, target: str | None) -> int:
@@ -47,7 +49,7 @@ def _by_shares(machine: Machine, design: str) -> dict[str, Any]:
     from validation.procedure.sensitivity import morris, sobol
 
     factors, responses = varied(machine)
-    method = morris if design == "morris" else sobol
+    method = partial(morris, trajectories=TRAJECTORIES) if design == "morris" else partial(sobol, base=SAMPLES)
     return {"rankings": {name: method(factors, response).document() for name, response in responses.items()}}
 
 

@@ -12,5 +12,7 @@ factorial     two-level designs, effects, Lenth's limits
 sensitivity   Morris and Sobol over the same factors
 two_paths     any network as R_ext and R_w
 pm_network    a permanent-magnet machine by hand formulas;  screening: table I on it
-carry         the calibrated model on other machines;  which_base: the base a machine stood on
+curves        all of eq. 8, eq. 9, the rule and the repeats for a case
+carry         the calibrated model on other machines
+which_base    the base a machine stood on in each test;  base_heat: what it carries off
 """

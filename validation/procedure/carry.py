@@ -62,8 +62,11 @@ class Carried:
 
 
 def carried(source: Case, target: Case) -> Carried:
-    """Values of parameters that both networks declare under one name; sensors' own ones stay behind."""
-    theirs = {p.name for p in target.model.network.parameters}
+    """Values of parameters that both networks declare under one name; sensors' own ones and losses stay behind.
+
+    What a machine loses is its own: its resistance is measured cold, its magnetic loss given.
+    """
+    theirs = {p.name for p in target.model.network.parameters if not p.name.startswith("loss.")}
     values = {k: v for k, v in physical(source.model.values).items() if k in theirs}
     case = with_model(target, replace(target.model, values={**target.model.values, **values}))
     return Carried(case, tuple(values), tuple(settled(case)))

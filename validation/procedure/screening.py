@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.machine import Machine
+from lumped.losses import ALPHA_CU
 from lumped.network import Network
 from lumped.simulate import Record, simulate
 from validation.procedure.factorial import Design, Effects, Factor, effects
@@ -27,6 +28,7 @@ TABLE_I = (
     Factor("F", "speed", 200.0, 400.0),
     Factor("G", "magnetic loss", 1.0, 1.5),
 )
+STEP, PATH = "winding minus magnets", "R_w (mK/W)"
 RESPONSES = {"magnets": "magnets", "winding": "winding", "end winding": "winding.left", "lamination": "stator.core"}
 POOR, GOOD = 0.2, 0.8  # impregnation of the end windings, "no" and "yes"
 
@@ -68,9 +70,17 @@ def settings(level: Mapping[str, Any], load: Load) -> PmSettings:
     )  # fmt: skip
 
 
+def path_mK_W(rises: Mapping[str, float], load: Load) -> float:
+    """R_w of fig. 10: the step winding to magnets over the copper loss that drives it (mK/W)."""
+    loss = load.phases * load.resistance_ohm * load.current**2 * (1 + ALPHA_CU * (rises["winding"] + AMBIENT - 20.0))
+    return 1e3 * (rises["winding"] - rises["magnets"]) / loss
+
+
 @dataclass(frozen=True)
 class Screening:
-    """design and rises (n_run, n_response) K, with the effects on every response and on the step winding to magnets."""
+    """design and rises (n_run, n_response) K, with the effects on every response, on the step winding to magnets (K)
+    and on R_w, that step over the copper loss (mK/W).
+    """
 
     design: Design
     rises: Array
@@ -89,7 +99,8 @@ def screen(machine: Machine, design: Design, load: Load | None = None) -> Screen
     found = [run(machine, level, load or Load(), table) for level in design.settings()]
     rises = np.array([list(one.values()) for one in found])
     named = {name: rises[:, j] for j, name in enumerate(RESPONSES)}
-    named["winding minus magnets"] = named["winding"] - named["magnets"]
+    named[STEP] = named["winding"] - named["magnets"]
+    named[PATH] = np.array([path_mK_W(one, load or Load()) for one in found])
     return Screening(design, rises, {name: effects(design, y, name) for name, y in named.items()})
 
 
@@ -105,7 +116,8 @@ def network_of(machine: Machine, levels: Mapping[str, Any], load: Load | None = 
 
 
 def varied(machine: Machine, load: Load | None = None) -> tuple[list[Varied], dict[str, Response]]:
-    """Table I and the liner gap as continuous factors, and two responses: magnets, and the step winding to magnets.
+    """Table I and the liner gap as continuous factors, and three responses: magnets (K), the step winding to magnets
+    (K), and R_w (mK/W).
 
     The voids of slots and of end windings are filled in one and the same bath, so the two count as one group.
     """
@@ -126,5 +138,6 @@ def varied(machine: Machine, load: Load | None = None) -> tuple[list[Varied], di
     ]  # fmt: skip
     return factors, {
         "magnets": lambda levels: rises(levels)["magnets"],
-        "winding minus magnets": lambda levels: rises(levels)["winding"] - rises(levels)["magnets"],
+        STEP: lambda levels: rises(levels)["winding"] - rises(levels)["magnets"],
+        PATH: lambda levels: path_mK_W(rises(levels), test),
     }

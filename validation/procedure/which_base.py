@@ -1,59 +1,126 @@
-"""Which base a machine stood on: every base of the network held against one test, the films left as calibrated.
+"""Which base a machine stood on: every base of the network held against every test, all tests calibrated together.
 
-A wrong base would otherwise be made good by a film that other tests contradict.
+A wrong base must not be made good by the films: for each test and each base the whole model is fitted anew to all
+tests, within the same priors. Tests on other bases hold the body's films, so what a wrong base costs is in the
+deviance: misfit of the readings and strain of the priors.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from geom.errors import InputError
+from lumped.motor_bases import Switched
+from lumped.network import Network
+from validation.calibrate import Fit, calibrated, silent
 from validation.case import Case, Test
-from validation.procedure.carry import Row, settled
+from validation.fitting import working
+from validation.procedure.base_heat import BaseHeat, base_heat
 
-LEVEL = 0.01
-MODEL_K = 1.0  # what a calibrated network of a dozen nodes may miss
+NONE = "none"
+DECISIVE = 10.0  # of deviance, as in the race of effects: odds of 150 to 1
+Progress = Callable[[str], None]
 
 
 @dataclass(frozen=True)
 class Hypothesis:
-    """base : the switch that is 1, "" for none;  p : of a misfit this large by the measurement's uncertainty alone
+    """A base for one test.  deviance : over the best base of this test;  declared : the sheet says so
 
-    offset_K : mean of simulated minus measured: above 0, the real base carries off more heat than this one
+    heat : what this base carries off at the test's end, by mechanism
     """
 
+    test: str
     base: str
-    p: float
-    offset_K: float
-    rows: tuple[Row, ...]
+    declared: bool
+    deviance: float
+    heat: BaseHeat
 
     @property
     def excluded(self) -> bool:
-        return self.p < LEVEL
+        return self.deviance > DECISIVE
 
     def document(self) -> dict[str, Any]:
-        return {"base": self.base or "none", "p": self.p, "offset_K": self.offset_K, "excluded": self.excluded}
+        return {"test": self.test, "base": self.base, "declared": self.declared, "deviance": self.deviance,
+                "excluded": self.excluded, "heat_W": self.heat.document()}  # fmt: skip
 
 
-def which_base(case: Case, name: str, switches: Sequence[str]) -> list[Hypothesis]:
-    """All bases, the most likely first; `switches` are the inputs that couple one base each."""
-    test = next((t for t in case.tests if t.name == name), None)
-    if test is None or any(s not in test.inputs for s in switches):
-        known = ", ".join(t.name for t in case.tests)
-        raise InputError(f"no test '{name}' with inputs {', '.join(switches)}", case.name, f"tests: {known}")
-    found = [_held(case, test, base, switches) for base in ("", *switches)]
-    return sorted(found, key=lambda h: -h.p)
+def switches(network: Network) -> dict[str, str]:
+    """Base -> the input that couples it."""
+    laws = [link.law for link in network.links]
+    found = {law.switch: None for law in laws if isinstance(law, Switched) and law.closed}
+    return {name.removeprefix("on_"): name for name in found}
 
 
-def _held(case: Case, test: Test, base: str, switches: Sequence[str]) -> Hypothesis:
-    from scipy.stats import chi2
+def declared_base(test: Test, bases: Mapping[str, str]) -> str:
+    """The base that the test's inputs say."""
+    return next((base for base, name in bases.items() if float(np.mean(test.inputs[name])) > 0.5), NONE)
 
-    inputs = {**test.inputs, **{s: np.full(test.time.size, float(s == base)) for s in switches}}
-    rows = tuple(settled(replace(case, tests=(replace(test, inputs=inputs),))))
-    sigma = {c.name: float(np.hypot(c.sigma_K, MODEL_K)) for c in test.channels}
-    square = sum((r.difference_K / sigma[r.channel]) ** 2 for r in rows)
-    return Hypothesis(base, float(chi2.sf(square, len(rows))), float(np.mean([r.difference_K for r in rows])), rows)
+
+def on_base(test: Test, base: str, bases: Mapping[str, str]) -> Test:
+    """The test as if on another base."""
+    inputs = {name: np.full(test.time.size, float(one == base)) for one, name in bases.items()}
+    return replace(test, inputs={**test.inputs, **inputs})
+
+
+def which_base(case: Case, names: Sequence[str] = (), progress: Progress = silent) -> list[Hypothesis]:
+    """Every base for every test (or those named) that is not held out, best first within a test."""
+    bases, tests = switches(case.model.network), [t for t in case.tests if t.role != "hold-out"]
+    if not bases:
+        raise InputError("the network knows no bases", case.name, "a machine file with [bases], see docs/protocol.md")
+    if unknown := [n for n in names if n not in [t.name for t in tests]]:
+        known = ", ".join(t.name for t in tests)
+        raise InputError(f"no test '{unknown[0]}'", case.name, f"tests that are not held out: {known}")
+    as_said = _fitted(case, tests, None)
+    chosen = [t for t in tests if not names or t.name in names]
+    return [h for test in chosen for h in _of_test(case, tests, test, bases, as_said, progress)]
+
+
+def _of_test(
+    case: Case, tests: Sequence[Test], test: Test, bases: Mapping[str, str], as_said: Fit, progress: Progress
+) -> list[Hypothesis]:
+    said, found = declared_base(test, bases), {}
+    for base in (NONE, *bases):
+        progress(f"{test.name} on {base}")
+        moved = [on_base(t, base, bases) if t is test else t for t in tests]
+        found[base] = as_said if base == said else _fitted(case, moved, as_said)
+    cost = {base: deviance(fit) for base, fit in found.items()}
+    least = min(cost.values())
+    rows = [
+        Hypothesis(test.name, base, base == said, cost[base] - least,
+                   base_heat(fit.network, on_base(test, base, bases), fit.values))
+        for base, fit in found.items()
+    ]  # fmt: skip
+    return sorted(rows, key=lambda h: h.deviance)
+
+
+def _fitted(case: Case, tests: Sequence[Test], start: Fit | None) -> Fit:
+    """All tests fitted under the sensors' own uncertainty, so that no misfit passes for noise."""
+    network, unknowns = working(case)
+    values = case.model.values if start is None else start.values
+    return calibrated(network, tests, unknowns, values, 0, noise=None if start is None else start.noise)
+
+
+def deviance(fit: Fit) -> float:
+    """Misfit of the readings and strain of the priors: twice the objective."""
+    return 2.0 * fit.objective
+
+
+def wrong_bases(case: Case, progress: Progress = silent) -> list[str]:
+    """In words, every test whose readings exclude the base that its sheet says; none where the network has no bases."""
+    if not switches(case.model.network):
+        return []
+    found = which_base(case, progress=progress)
+    return [_words(h, found) for h in found if h.declared and h.excluded]
+
+
+def _words(said: Hypothesis, found: Sequence[Hypothesis]) -> str:
+    own = [h for h in found if h.test == said.test and not h.excluded]
+    better = " or ".join(h.base for h in own)
+    return (
+        f"{said.test} did not stand on the base its sheet says ({said.base}, deviance {said.deviance:.0f}) but on: "
+        f"{better}. At the base, not in the films of the machine: {said.heat.against(own[0].heat)}"
+    )

@@ -1,0 +1,64 @@
+"""thermoscope curves CASE"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from thermoscope.commands.opened import opened
+from thermoscope.terminal import cell, give, progress, say, table
+
+
+def curves(case: str, resolution: float, target: str | None) -> int:
+    """Exit code 1 when an assembly is further off than 4 %, or equal tests do not repeat."""
+    from validation.procedure.curves import curves as found_in
+
+    with progress() as tell:
+        folder = opened(case, tell)
+        tell("fitting the warming curves")
+        found = found_in(folder.case, resolution)
+    document = found.document()
+    give(document, target, lambda: show(document))
+    return 0 if found.agrees else 1
+
+
+def show(document: Mapping[str, Any]) -> None:
+    """Eq. 8 and eq. 9 sensor by sensor, the rule assembly by assembly, and the repeats."""
+    headers = ["test", "sensor", "a (degC)", "b", "c (1/min)", "rms (K)", "T(0)", "tau_95 (min)", "steady", "K/h"]
+    rows = [[t["name"], c["channel"], *_row(c)] for t in document["tests"] for c in t["curves"]]
+    table("Warming: T = a exp(b exp(c t)), 95 % intervals; steady by eq. 9", headers, rows, marked=["no"])
+    rows = [
+        [t["name"], a["place"], a["measured"], a["calculated"], a["percent"], a["percent_of_rise"], a["verdict"]]
+        for t in document["tests"] for a in t["assemblies"]
+    ]  # fmt: skip
+    headers = ["test", "assembly", "measured (degC)", "calculated (degC)", "%", "% of rise", "verdict"]
+    table("Within 3 to 4 % of the measured temperature, never above 7 %", headers, rows, marked=["beyond 7 %"])
+    rows = [
+        [", ".join(r["tests"]), r["place"], r["mean"], r["sd_mean"], r["spread"], r["limit"],
+         "yes" if r["repeat"] else "no"]
+        for r in document["repeats"]
+    ]  # fmt: skip
+    if rows:
+        headers = ["equal tests", "place", "mean rise (K)", "1 sigma (K)", "largest difference", "95 % limit", "repeat"]
+        table("Equal tests pooled", headers, rows, marked=["no"])
+    for t in document["tests"]:
+        for c in t["curves"]:
+            for words in [*((c["eq8"] or {}).get("warnings", [])), *([c["why"]] if c["why"] else [])]:
+                say(f"{t['name']}, {c['channel']}: {words}")
+
+
+def _row(c: Mapping[str, Any]) -> list[Any]:
+    e, q = c["eq8"], c["equilibrium"]
+    fit = ["-"] * 6 if e is None else [
+        *(_with(e[key], e["ci95"][name]) for key, name in (("a_degC", "a"), ("b", "b"), ("c_1_min", "c"))),
+        e["rmse_K"], e["start_degC"], e["tau95_min"],
+    ]  # fmt: skip
+    return [*fit, *(["-", "-"] if q is None else [_since(q), q["drift_K_h"]])]
+
+
+def _with(value: float, ci: list[float]) -> str:
+    return f"{cell(value)} ({cell(ci[0])} ... {cell(ci[1])})"
+
+
+def _since(q: Mapping[str, Any]) -> str:
+    return f"since {q['from_min']:.0f} min" if q["reached"] else "no"
