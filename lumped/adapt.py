@@ -78,7 +78,7 @@ def adapt(
     """A network that meets the wish at random points it has not seen, or the one the last of `rounds` looked at.
 
     reduction : lumped.reduction.Reduction;  points : already solved; they are learned first
-    fresh : random points per round, beside one extreme point
+    fresh : random points per round; what is learned from them is joined by one extreme point
     """
     weights: dict[str, float] = {}
     learned, begun = list(points) or [reduction.nominal_point()], len(points)
@@ -87,12 +87,12 @@ def adapt(
     for k in range(rounds):
         network = favoured(reduction, learned, cases, wish, weights)
         new = [reduction.random_point(begun + fresh * k + j) for j in range(fresh)]
-        new.append(reduction.extreme_point(begun + k))
         found = merged([seen(network, point, cases) for point in new])
         done.append(Round(len(network.states), tuple(p.name for p in new), found, excess(found, wish) <= 1.0))
         tell(f"{len(network.states)} states: {found}")
         if done[-1].met or k == rounds - 1:
             break
+        new.append(reduction.extreme_point(begun + k))
         learned, reduction = [*learned, *new], reduction.enriched(new)
     return Adapted(reduction, network, dict(weights), tuple(done))
 
