@@ -9,7 +9,7 @@ import numpy as np
 
 from hidden.kinds import KINDS
 from hidden.sizes import detectable
-from hidden.truth.archetype import Archetype, Record, measured
+from hidden.truth.archetype import Archetype, Hidden, Record, measured
 from hidden.truth.change import NOTHING, Change
 
 SIZES = (1.0, 2.0, 4.0)
@@ -56,14 +56,21 @@ def _label(kind: Archetype, group: str, seed: int, turn: int) -> Label:
     return DRAWN[group](kind, bare, turn, np.random.default_rng([seed, 7]))
 
 
+def _possible(kind: Archetype, size: float) -> list[Hidden]:
+    """What can be hidden at `size` smallest detectable ones: as large as nature and the machine allow."""
+    table = detectable()[kind.name]
+    return [h for h in kind.missing if h.name in table
+            and size * table[h.name]["size"] <= min(h.largest, table[h.name]["high"])]  # fmt: skip
+
+
 def _one(kind: Archetype, bare: Label, turn: int, rng: np.random.Generator) -> Label:
     """One effect at 1, 2 or 4 times the smallest detectable size, whichever its nature allows."""
     table, size = detectable()[kind.name], SIZES[(turn + turn // len(SIZES)) % len(SIZES)]
-    fit = [h for h in kind.missing if h.name in table and size * table[h.name]["size"] <= h.largest]
+    fit = _possible(kind, size)
     chosen = fit[int(rng.integers(len(fit)))]
     found = table[chosen.name]
     return replace(bare, truth=(chosen.name,), size=size, amplitude=(size * found["size"],),
-                   rivals=tuple(n for n, c in found["alike"].items() if _near(size, c)))  # fmt: skip
+                   rivals=tuple(n for n, c in found["alike"].items() if _near(size * found["z"], c)))  # fmt: skip
 
 
 def _near(z: float, cosine: float) -> bool:
@@ -74,7 +81,7 @@ def _near(z: float, cosine: float) -> bool:
 def _two(kind: Archetype, bare: Label, turn: int, rng: np.random.Generator) -> Label:
     """Two effects at 4 times the smallest detectable size, neither a rival of the other."""
     table = detectable()[kind.name]
-    fit = [h for h in kind.missing if h.name in table and 4.0 * table[h.name]["size"] <= h.largest]
+    fit = _possible(kind, 4.0)
     a = fit[int(rng.integers(len(fit)))]
     others = [h for h in fit if h is not a and table[a.name]["alike"].get(h.name, 0.0) < 0.7]
     b = others[int(rng.integers(len(others)))]
@@ -97,8 +104,10 @@ def _absorbed(kind: Archetype, bare: Label, turn: int, rng: np.random.Generator)
 
 def _pair(kind: Archetype, bare: Label, turn: int, rng: np.random.Generator) -> Label:
     """One of two effects that the tests cannot tell apart, at 4 times the smallest detectable size."""
-    names, table = kind.twins[turn % len(kind.twins)].names, detectable()[kind.name]
-    here = [n for n in names if n in table]
+    table, fit = detectable()[kind.name], {h.name for h in _possible(kind, 4.0)}
+    usable = [t.names for t in kind.twins if fit & set(t.names)]
+    names = usable[turn % len(usable)]
+    here = [n for n in names if n in fit]
     true = here[int(rng.integers(len(here)))]
     (other,) = set(names) - {true}
     return replace(bare, truth=(true,), rivals=(other,), size=4.0, amplitude=(4.0 * table[true]["size"],))

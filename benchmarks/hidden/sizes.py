@@ -29,7 +29,8 @@ def detectable() -> dict[str, dict[str, dict]]:
 
 
 def measure(kind: str, draws: int) -> dict[str, dict]:
-    """Per effect: smallest detectable amplitude (mean over the reference machines), candidates alike (cosine > 0.5)."""
+    """Per effect: smallest detectable amplitude (mean over the reference machines) and its score, the physical bound,
+    candidates alike (cosine > 0.5)."""
     rows = [_one(kind, seed, draws) for seed in REFERENCE_SEEDS]
     out = {}
     for hidden in KINDS[kind].missing:
@@ -37,7 +38,8 @@ def measure(kind: str, draws: int) -> dict[str, dict]:
         if found:
             alike = {n: max(f["alike"].get(n, 0.0) for f in found) for f in found for n in f["alike"]}
             size = float(np.mean([f["size"] for f in found]))
-            out[hidden.name] = {"size": size, "unit": found[0]["unit"], "alike": alike, "z": found[0]["z"]}
+            out[hidden.name] = {"size": size, "unit": found[0]["unit"], "alike": alike, "z": found[0]["z"],
+                                "high": found[0]["high"]}  # fmt: skip
     return out
 
 
@@ -54,7 +56,7 @@ def _one(kind: str, seed: int, draws: int) -> dict[str, dict]:
         if name in wanted:
             alike = {names[m]: round(float(cosine[k, m]), 3) for m in np.flatnonzero(cosine[k] > LIKE) if m != k}
             out[name] = {"size": float(size[k]), "unit": evidence.parameters[k].unit, "alike": alike,
-                         "z": round(limit + POWER, 3)}  # fmt: skip
+                         "z": round(limit + POWER, 3), "high": evidence.parameters[k].high}  # fmt: skip
     return out
 
 

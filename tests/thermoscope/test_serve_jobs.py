@@ -66,7 +66,7 @@ def test_stopping_ends_the_process_and_its_helpers(tmp_path):
 
 
 def ends(pid: int) -> bool:
-    """It ends by itself or waits to be collected, soon: a signal closes a process's files before the process is gone."""
+    """It ends, or waits to be collected, soon: a signal closes a process's files before the process is gone."""
     for _ in range(500):
         if gone(pid):
             return True

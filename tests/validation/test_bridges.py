@@ -31,7 +31,7 @@ def test_a_bridge_takes_from_one_end_what_it_gives_to_the_other():
     (bridge,) = bridges(chain(), np.random.default_rng(0), 0.1)
     column = np.zeros(4)
     np.add.at(column, bridge.rows, bridge.vals * np.array([10.0, 20.0, 40.0, 0.0])[bridge.cols])
-    assert column.sum() == 0.0 and column[1] == 0.0 and abs(column[0]) == 30.0
+    assert (abs(column[0]), column[1], column.sum()) == (30.0, 0.0, 0.0)
 
 
 def test_a_bridge_is_a_share_of_the_conductance_through_the_node():

@@ -87,7 +87,6 @@ TENSE = {"fit": 0.25, "liner": 0.2, "fan": 0.15, "iron": 0.15, "seat-de": 0.25, 
          "cage": 0.12, "spigot-de": 0.25, "still": 0.15}  # fmt: skip
 TWINS = (
     Twins(("convection.constant@flange.nde", "radiation@flange.nde")),
-    Twins(("loss.rotor.load@rotor", "copper.ac@rotor")),
     Twins(("windage@rotor", "loss.rotor@rotor")),
 )  # fmt: skip
 TEFC = Archetype(
