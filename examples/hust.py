@@ -1,11 +1,12 @@
 """Measured traction motor: the starting network, what the tool names, and the error on four profiles never used.
 
-    python examples/hust.py [--rounds 4] [--draws 24] [--out out/hust]
+    python examples/hust.py [--rounds 4] [--draws 24] [--ablation] [--out out/hust]
 
 What `thermoscope calibrate`, `diagnose` and `add` do, round by round: the effect that leads is added and what was not
 published is calibrated again, until nothing is named. Profiles 5, 8, 11 and 15 are only ever predicted, and nothing
-here looks at them before the end. Prints the tables of cases/hust-ipmsm/README.md and writes them to --out, with the
-model.
+here looks at them before the end. With --ablation every effect that was added is deleted in turn, the rest calibrated
+anew, and the diagnosis asked what is missing. Prints the tables of cases/hust-ipmsm/README.md and writes them to --out,
+with the model.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import argparse
 import json
 import sys
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -63,6 +65,47 @@ def revision(case: Case, steps: Sequence[Step], why: str) -> Revision:
     return Revision(0, "add", names, names[-1], dict(case.model.values), rmse_K=fell, why=why)
 
 
+@dataclass(frozen=True)
+class Found:
+    """What the diagnosis says of a model from which one effect was taken.
+
+    group : the first group it names;  again : the deleted effect is in one of its groups;  score, threshold : its own
+    """
+
+    deleted: str
+    verdict: str
+    group: tuple[str, ...]
+    again: bool
+    score: float
+    threshold: float
+
+    def row(self) -> str:
+        words = "found" if self.again else "not found"
+        group = " or ".join(self.group) or "nothing"
+        return f"| {self.deleted} | {words} | {self.verdict} | {group} | {self.score:.1f} | {self.threshold:.1f} |"
+
+
+def ablated(case: Case, draws: int, tell: Callable[[str], None]) -> list[Found]:
+    """Every effect of the model deleted in turn and looked for."""
+    out = []
+    for name in [e.name for e in case.model.effects]:
+        tell(f"without {name}")
+        less = with_model(case, revise.remove(case, name).model)
+        found = diagnose(less, draws=draws, plan=False, progress=tell)
+        score = next((c.score for c in found.candidates if c.effect == name), float("nan"))
+        group = found.groups[0] if found.groups else ()
+        again = any(name in g for g in found.groups)
+        out.append(Found(name, found.verdict, group, again, score, found.threshold))
+        tell(out[-1].row())
+    return out
+
+
+def ablation(found: Sequence[Found]) -> str:
+    """Markdown of the ablation."""
+    head = ["| deleted | again | verdict | leading | score | threshold |", "|---|---|---|---|---|---|"]
+    return "\n".join([*head, *(f.row() for f in found)])
+
+
 def errors(comparison: Comparison, role: str) -> dict[str, float]:
     """Channel -> error (K) over all tests of a role, all readings together."""
     out = {}
@@ -96,17 +139,23 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--rounds", type=int, default=4)
     parser.add_argument("--draws", type=int, default=24)
+    parser.add_argument("--ablation", action="store_true")
     parser.add_argument("--out", type=Path, default=Path("out/hust"))
     options = parser.parse_args()
 
     def tell(message: str) -> None:
         print(message, file=sys.stderr)
 
-    _, steps, history = rounds(load_case(find_case("hust-ipmsm"), tell).case, options.rounds, options.draws, tell)
+    case, steps, history = rounds(load_case(find_case("hust-ipmsm"), tell).case, options.rounds, options.draws, tell)
     save_history(options.out / "model.toml", history)
-    write_whole(options.out / "table.md", table(steps) + "\n")
+    text = table(steps)
+    write_whole(options.out / "table.md", text + "\n")
     write_whole(options.out / "compare.json", json.dumps(steps[-1][1].document(), indent=1))
-    print(table(steps))
+    print(text)
+    if options.ablation:
+        rows = ablation(ablated(case, options.draws, tell))
+        write_whole(options.out / "ablation.md", rows + "\n")
+        print(rows)
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ WRITES = {
     "residuals": ["residuals-1.png", "residuals-2.png", "parity.html"],
     "machine": ["machine.svg"],
 }
-TESTED_ELSEWHERE = {"hust"}
+TESTED_ELSEWHERE = {"hust", "tclab"}
 
 
 @pytest.mark.parametrize("name", TOLERANCE)

@@ -1,0 +1,171 @@
+"""How long a diagnosis takes, and how much memory: 20 nodes, 12 sensors, 4 tests, at least 60 candidates.
+
+    python benchmarks/diagnosis.py [--json FILE] [--draws 60] [--samples 1000000]
+
+Wall and CPU seconds without and with a fresh simulated null on two cores; then one test of 1e6 samples: time and the
+memory that the residuals and their Gram matrix take, against a test of a hundredth of its length.
+"""
+
+from __future__ import annotations
+
+import argparse
+import datetime
+import json
+import platform
+import resource
+import time
+import tracemalloc
+from collections.abc import Callable
+from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from lumped.build import bare_network, node_link, node_source
+from lumped.laws import Fixed, InputPower, Linear, Power
+from lumped.network import Network, Parameter
+from lumped.simulate import Record, simulate
+from validation.case import Case, Channel, Model, Test
+from validation.diagnose import conclude, diagnose, search
+from validation.evidence import Evidence, calibrated_case, candidates, possible, scored
+from validation.null import Null
+from validation.score import gram
+from validation.sheet import segments
+
+NODES, SENSORS, CANDIDATES = 20, 12, 60
+LIMIT_S = {"without a null": 20.0, "with a fresh null": 180.0}
+
+
+def motor() -> Network:
+    """A chain of 20 nodes with a film on every third, two windings, an iron loss and friction."""
+    names = ["winding.a", "winding.b", "yoke", "rotor", "shaft", "bearing.a", "bearing.b", "flange.a", "flange.b",
+             *(f"housing.{i}" for i in range(NODES - 9))]  # fmt: skip
+    net = bare_network("motor", dict.fromkeys(names, 4000.0), ("ambient",))
+    links = [node_link(net, f"g{i}", "link", a, b, Fixed(8.0)) for i, (a, b) in enumerate(pairwise(names))]
+    links += [node_link(net, f"film{i}", "link", n, "ambient", Fixed(0.6, Power(0.25)))
+              for i, n in enumerate(names) if i % 3 == 0]  # fmt: skip
+    hot = Linear(0.0039, 20.0)
+    losses = {"copper.a": ("winding.a", InputPower(0.02, (("current_A", 1.0, 2.0),), hot)),
+              "copper.b": ("winding.b", InputPower(0.02, (("current_A", 1.0, 2.0),), hot)),
+              "iron": ("yoke", InputPower(60.0, (("speed_rpm", 1000.0, 1.5),))),
+              "friction": ("bearing.a", InputPower(8.0, (("speed_rpm", 1000.0, 1.0),)))}  # fmt: skip
+    sources = [node_source(net, n, n.split(".")[0], {at: 1.0}, law) for n, (at, law) in losses.items()]
+    free = [Parameter(x.name, ((x.name, 1.0),), prior_sd=0.25) for x in links[::4]]
+    free += [Parameter(s.name, ((s.name, 1.0),), prior_sd=0.1) for s in sources]
+    return net.extended(links, sources, free)
+
+
+def recorded(net: Network, name: str, samples: int, step: float, missing: Network | None = None) -> Test:
+    """One test, simulated with another network where one is given; noise of 0.05 K."""
+    rng = np.random.default_rng(sum(map(ord, name)))
+    t = step * np.arange(samples)
+    levels = (t / max(t[-1] / 9.0, step)).astype(int)
+    current, speed = rng.uniform(40, 160, 10)[levels], rng.uniform(200, 1500, 10)[levels]
+    inputs = {"current_A": current, "speed_rpm": speed, "vehicle_speed_mps": speed / 100.0}
+    air = {"ambient": np.full(samples, 20.0)}
+    places = [net.places[n] for n in net.states[:SENSORS]]
+    y = simulate(missing or net, Record(t, inputs, air, 20.0), rows=[p.mean for p in places]).y
+    y = y + 0.05 * rng.standard_normal(y.shape)
+    channels = tuple(Channel(p.name, p.name, p.mean, y[:, j], 0.5) for j, p in enumerate(places))
+    return Test(name, "calibrate", t, inputs, air, channels, 20.0)
+
+
+def case() -> Case:
+    """Four tests of an hour at 1 s; the real machine loses more at the yoke."""
+    net = motor()
+    law = InputPower(4.0, (("vehicle_speed_mps", 10.0, 0.8),))
+    real = net.extended([node_link(net, "wind", "link", "flange.a", "ambient", law)])
+    tests = tuple(recorded(net, f"test-{i}", 3600, 1.0, real) for i in range(4))
+    return Case("motor", Model(net), (*tests[:3], replace(tests[3], role="validate")))
+
+
+def timed(work: Callable[[], Any]) -> tuple[Any, float, float]:
+    """Result, wall seconds, CPU seconds of this process and its children."""
+    begun, cpu = time.perf_counter(), _cpu()
+    out = work()
+    return out, time.perf_counter() - begun, _cpu() - cpu
+
+
+def _cpu() -> float:
+    own, children = (resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+    return own.ru_utime + own.ru_stime + children.ru_utime + children.ru_stime
+
+
+def sixty(now: Case) -> list:
+    """60 candidates, spread evenly over the catalogue."""
+    every = candidates(now)
+    return [every[i] for i in np.linspace(0, len(every) - 1, CANDIDATES).astype(int)]
+
+
+def without_null(now: Case) -> tuple[Evidence, Any]:
+    """Calibrate, score 60 candidates, race, scan: with a null that is known already."""
+    fit = calibrated_case(now)
+    evidence = possible(now, scored(now, sixty(now), fit))
+    K, p, channels = len(evidence.effects), len(fit.unknowns.parameters), len({s.channel for s in fit.parts})
+    z = np.abs(np.random.default_rng(0).standard_normal((40, K)))
+    known = Null(z, np.ones((40, p)), np.full((40, channels), 0.2))
+    steps = search(now, evidence, known, known.threshold(), lambda message: None)
+    return evidence, conclude(now, steps, known, known.threshold(), [], False)
+
+
+def peak(now: Case) -> float:
+    """Peak of Python's memory (MB) while residuals and Gram matrix of a case are made, beyond the recordings."""
+    fit = calibrated_case(replace(now, tests=tuple(_short(t) for t in now.tests)))
+    tracemalloc.start()
+    parts = segments(fit.network, now.tests, fit.values, fit.unknowns.parameters[:8])
+    gram(parts, fit.noise, 8)
+    high = tracemalloc.get_traced_memory()[1] / 1e6
+    tracemalloc.stop()
+    return high
+
+
+def _short(test: Test) -> Test:
+    """The first tenth of a percent of a long test, enough to calibrate on."""
+    n = min(len(test.time), 2000)
+    cut = slice(0, n)
+    channels = tuple(replace(c, y=c.y[cut]) for c in test.channels)
+    inputs = {k: v[cut] for k, v in test.inputs.items()}
+    return replace(test, time=test.time[cut], inputs=inputs, channels=channels,
+                   boundaries={k: v[cut] for k, v in test.boundaries.items()})  # fmt: skip
+
+
+def rows(draws: int, samples: int) -> list[dict[str, Any]]:
+    now, out = case(), []
+    without_null(now)  # compile
+    for name, work in (
+        ("without a null", lambda: without_null(now)),
+        ("with a fresh null", lambda: diagnose(now, draws=draws, workers=2)),
+    ):
+        _, wall, cpu = timed(work)
+        out += [row(name, "wall time", "s", wall, LIMIT_S[name]), row(name, "CPU time", "s", cpu, 2 * LIMIT_S[name])]
+    net = motor()
+    sizes = {n: peak(Case("long", Model(net), (recorded(net, "long", n, 1.0),))) for n in (samples // 100, samples)}
+    share = sizes[samples] / sizes[samples // 100]
+    out.append(row(f"{samples} samples", "memory over that of a hundredth", "1", share, 100.0))
+    return out
+
+
+def row(name: str, measure: str, unit: str, ours: float, limit: float) -> dict[str, Any]:
+    return {"case": name, "measure": measure, "unit": unit, "ours": ours, "peer": limit, "peer_name": "limit",
+            "ratio": ours / limit}  # fmt: skip
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--json", type=Path)
+    parser.add_argument("--draws", type=int, default=60)
+    parser.add_argument("--samples", type=int, default=1_000_000)
+    options = parser.parse_args()
+    found = rows(options.draws, options.samples)
+    document = {"benchmark": "diagnosis", "computer": platform.processor() or platform.machine(),
+                "date": datetime.date.today().isoformat(), "rows": found}  # fmt: skip
+    for r in found:
+        print(f"{r['case']:20} {r['measure']:34} {r['ours']:10.2f} {r['unit']}   limit {r['peer']:g}")
+    if options.json:
+        options.json.write_text(json.dumps(document, indent=1))
+
+
+if __name__ == "__main__":
+    main()
