@@ -224,7 +224,7 @@ def curves(
     case: Case,
     resolution: Annotated[float, typer.Option(min=1e-3, help="K, of the thermocouples.")] = 0.5, json: Json = None,
 ) -> None:  # fmt: skip
-    """Eq. 8, equilibrium, tau_95, the 3 to 4 % rule, equal tests pooled. Exit code 1 if one of the last two fails."""
+    """Warming curves: equilibrium, tau_95, the 3 to 4 % rule, equal tests pooled; exit code 1 if these two fail."""
     from thermoscope.commands.curves import curves as run
 
     raise typer.Exit(run(case, resolution, json))
