@@ -98,10 +98,10 @@ def _between(inner: float, outer: float, here: Nozzle, following: Nozzle) -> Pro
 
 
 def opened_circle(
-    outer: float, channels: Sequence[Profile], radii: tuple[float, float], bored: Sequence[Nozzle]
+    outer: float, sectors: Sequence[tuple[float, float]], radii: tuple[float, float], bored: Sequence[Nozzle]
 ) -> Loop:
-    """The circle `outer` with a way in to each channel: sectors between two radii, the one under each nozzle."""
-    ways = sorted(zip(bored, channels, strict=True), key=lambda way: way[0].angle)
+    """The circle `outer` with a way in to each channel: sectors (rad) between two radii, the one under each nozzle."""
+    ways = sorted(zip(bored, sectors, strict=True), key=lambda way: way[0].angle)
     loops = [_way(outer, radii, *way) for way in ways]
     ends = [(n.angle + s * math.asin(n.side / 2 / outer)) for n, _ in ways for s in (-1, 1)]
     out: list[Vertex] = []
@@ -113,13 +113,13 @@ def opened_circle(
     return tuple(out)
 
 
-def _way(outer: float, radii: tuple[float, float], nozzle: Nozzle, channel: Profile) -> Loop:
+def _way(outer: float, radii: tuple[float, float], nozzle: Nozzle, sector: tuple[float, float]) -> Loop:
     """From the circle at one side of the bore around the channel to the other side, which is left out."""
     inner, top = radii
     at, half = nozzle.angle, nozzle.side / 2
     a, b = math.asin(half / outer), math.asin(half / top)
-    ends = [math.remainder(math.atan2(y, x) - at, 2 * math.pi) for x, y, _ in channel.outer]
-    low, high = at + min(ends), at + max(ends)
+    low = at - (at - sector[0]) % (2 * math.pi)
+    high = low + sector[1] - sector[0]
     return (
         shapes.polar(outer, at - a),
         shapes.polar(top, at - b, shapes.bulge_of(low - at + b)),

@@ -45,12 +45,14 @@ def test_solids_are_watertight_and_have_the_volume_of_the_formula(written):
 
 
 def test_step_keeps_names_and_volumes(written):
+    """The file keeps 7 digits, and the integral over a helix's free-form faces shows it: 5e-5."""
     machine, files, folder = written
     back = {name.split("/")[-1]: shape for shape, name, _, _ in cq.Assembly.load(str(files["step"]))}
     assert back.keys() == {part.name for part in machine.parts}
     for part in machine.parts:
         volume = sum(solid.Volume() for solid in back[part.name].Solids()) * 1e-9
-        assert volume == pytest.approx(_volume(part, folder), rel=1e-6), part.name
+        exact = 1e-4 if part.made else 1e-6
+        assert volume == pytest.approx(_volume(part, folder), rel=exact), part.name
 
 
 def test_stl_is_watertight_and_keeps_the_volume(written):

@@ -6,9 +6,11 @@ import csv
 import io
 import json
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from geom.errors import ThermoscopeError
 from thermoscope.files import write_whole
 from thermoscope.folder import load_machine_file
 from thermoscope.terminal import give, plain, progress, say, table
@@ -71,17 +73,23 @@ def checked(built: Built, found: Sized | None, tell: Progress) -> dict[str, Any]
 
 
 def bearable(built: Built) -> dict[str, float]:
-    """The rated point with its current lowered until the machine settles: a short-time rating has no steady state."""
+    """The rated point with its current lowered until the machine settles: a short-time rating has no steady state.
+
+    Raises ThermoscopeError where it settles at no current: its other losses alone overheat it, or nothing cools it.
+    """
     from lumped.motor import operating_point
     from thermoscope.crosscheck import steady_state
 
     point = {name: float(value[0]) for name, value in operating_point(built.machine).items()}
     named = [i for i, state in enumerate(built.network.states) if "#" not in state]
-    while True:
-        T = steady_state(built.network, point, 20.0)[named]
-        if T.min() > 0.0 and T.max() < HOT:
-            return point
+    rated = point["current_A"]
+    while point["current_A"] > 0.01 * rated:
+        with suppress(ThermoscopeError):  # thermal runaway: copper's losses grow faster than its cooling
+            T = steady_state(built.network, point, 20.0)[named]
+            if T.min() > 0.0 and T.max() < HOT:
+                return point
         point = {**point, "current_A": 0.8 * point["current_A"]}
+    raise ThermoscopeError(f"'{built.machine.name}' does not settle below {HOT:g} degC, even with next to no current")
 
 
 def save(document: Mapping[str, Any], folder: Path) -> None:

@@ -10,8 +10,10 @@ from geom import shapes
 from geom.families.nozzles import CLEAR, Nozzle, opened_circle, opened_ring, slices
 from geom.families.series_dc.layout import Axial, Radii
 from geom.families.turns import Turns
-from geom.part import Part, Port, Prism, extrude, fluid
+from geom.part import Part, Port, Prism, fluid
 from geom.profile import Profile
+
+Sector = tuple[float, float]  # angles (rad) at which a channel begins and ends
 
 
 def jacket_ring(r: Radii) -> Profile:
@@ -24,8 +26,8 @@ def jacket_walls(g: Any, r: Radii, z0: float, z1: float, bored: Sequence[Nozzle]
     solid = jacket_ring(r)
     if g.jacket.layout == "zigzag":
         pierced = [
-            (_pierced(r, channels, ports), low, high)
-            for channels, a, b in _zigzag(g, r, z0, z1)
+            (_pierced(r, sectors, ports), low, high)
+            for sectors, a, b in _zigzag(g, r, z0, z1)
             for low, high, ports in slices(a, b, bored)
         ]
         return [(solid, z0, z0 + g.jacket.rib), *pierced, (solid, z1 - g.jacket.rib, z1)]
@@ -41,28 +43,28 @@ def jacket_walls(g: Any, r: Radii, z0: float, z1: float, bored: Sequence[Nozzle]
     return [*ribs, *((shapes.ring(r.yoke1, r.shell), a, b) for a, b in turns), *outer]
 
 
-def _pierced(r: Radii, channels: list[Profile], bored: Sequence[Nozzle]) -> Profile:
+def _pierced(r: Radii, sectors: list[Sector], bored: Sequence[Nozzle]) -> Profile:
     """Section of a zigzag jacket; a bore opens the channel under it."""
     inside = shapes.circle_loop(r.yoke1)
-    under = [min(channels, key=lambda channel: _off(channel, nozzle.angle)) for nozzle in bored]
+    under = [next(s for s in sectors if _spans(s, nozzle.angle)) for nozzle in bored]
     out = opened_circle(r.jacket, under, (r.shell, r.channel), bored) if bored else shapes.circle_loop(r.jacket)
-    return Profile(out, (inside, *(channel.outer for channel in channels if channel not in under)))
+    closed = (shapes.sector(r.shell, r.channel, *s).outer for s in sectors if s not in under)
+    return Profile(out, (inside, *closed))
 
 
-def _off(channel: Profile, angle: float) -> float:
-    """How far (rad) the angle is from the channel's middle."""
-    middle = sum(math.remainder(math.atan2(y, x) - angle, 2 * math.pi) for x, y, _ in channel.outer) / 4
-    return abs(middle)
+def _spans(sector: Sector, angle: float) -> bool:
+    start, end = sector
+    return (angle - start) % (2 * math.pi) < end - start
 
 
-def _zigzag(g: Any, r: Radii, z0: float, z1: float) -> list[tuple[list[Profile], float, float]]:
+def _zigzag(g: Any, r: Radii, z0: float, z1: float) -> list[tuple[list[Sector], float, float]]:
     """Channels along the axis, straight first; then those joined in pairs at the left end, and at the right end."""
     first, last, n = z0 + g.jacket.rib, z1 - g.jacket.rib, g.jacket.channels
     turn = turn_length(g, z0, z1)
     straight, left = [(i, i) for i in range(n)], [(i, min(i + 1, n - 1)) for i in range(0, n, 2)]
     right = [(0, 0), *((i, min(i + 1, n - 1)) for i in range(1, n, 2))]
     zones = ((straight, first + turn, last - turn), (left, first, first + turn), (right, last - turn, last))
-    return [([_channel(g, r, *pair) for pair in pairs], a, b) for pairs, a, b in zones]
+    return [([_sector(g, r, *pair) for pair in pairs], a, b) for pairs, a, b in zones]
 
 
 def turn_length(g: Any, z0: float, z1: float) -> float:
@@ -70,11 +72,11 @@ def turn_length(g: Any, z0: float, z1: float) -> float:
     return min(g.jacket.height, 0.3 * (z1 - z0 - 2 * g.jacket.rib))
 
 
-def _channel(g: Any, r: Radii, i: int, j: int) -> Profile:
+def _sector(g: Any, r: Radii, i: int, j: int) -> Sector:
     """From channel i to channel j, what lies between included."""
     half = math.pi / g.jacket.channels - g.jacket.rib / 2 / r.shell
     pitch, top = 2 * math.pi / g.jacket.channels, math.pi / 2
-    return shapes.sector(r.shell, r.channel, top + i * pitch - half, top + j * pitch + half)
+    return top + i * pitch - half, top + j * pitch + half
 
 
 def turns_of(g: Any, r: Radii, z0: float, z1: float) -> Turns:
@@ -118,5 +120,9 @@ def _places(g: Any, r: Radii, z0: float, z1: float) -> tuple[tuple[float, float]
 
 def _channel_prisms(g: Any, r: Radii, z0: float, z1: float) -> tuple[Prism, ...]:
     if g.jacket.layout == "zigzag":
-        return tuple(prism for channels, a, b in _zigzag(g, r, z0, z1) for prism in extrude(channels, a, b))
+        return tuple(
+            (shapes.sector(r.shell, r.channel, *sector), a, b)
+            for sectors, a, b in _zigzag(g, r, z0, z1)
+            for sector in sectors
+        )
     return tuple((shapes.ring(r.shell, r.channel), a, b) for a, b in turns_of(g, r, z0, z1).rings)
