@@ -41,6 +41,7 @@ def becker_kaye(omega: float, rotor_radius: float, gap: float, fluid: Fluid | No
     X = Ta_m^2 / F_g^2, Ta_m = omega r_m^(1/2) gap^(3/2) / nu; Nu = 2 h gap / k = 2 (X < 1700), 0.128 X^0.367 (to 1e4),
     0.409 X^0.241 (to 1e7); the branches meet at their crossings.
     omega (rad/s), rotor_radius (m), gap (m); fluid defaults to air at 80 degC.
+    Range: X < 1e7, gap/mean radius < 0.25.
     Source: Becker and Kaye 1962, J. Heat Transfer 84, 97, in Howey, Childs, Holmes 2012, IEEE Trans. Ind. Electron. 59.
     """
     fluid = fluid or air(80.0)
@@ -58,7 +59,8 @@ def romanazzi_howey(omega: float, rotor_radius: float, gap: float, fluid: Fluid 
 
     Nu = 0.181 X^0.207, held at 2 where the formula falls below conduction. Only the abstract of the source was
     read: that X is the squared Taylor number omega^2 r_m gap^3 / nu^2 and that Nu is per
-    wall is inferred (unsquared, Nu stays below conduction at every speed), and so is the range: Ta < 1e4.
+    wall is inferred (unsquared, Nu stays below conduction at every speed), and so is the range.
+    Range: Ta < 1e4.
     Source: Romanazzi and Howey 2015, arXiv 1502.05902.
     """
     fluid = fluid or air(80.0)

@@ -9,6 +9,7 @@ from lumped.correlations.info import Info, checked
 CONTACT_PRESSURE_PA = 2.0e4  # usual spring pressure of carbon brushes, 15 to 25 kPa
 BRUSH_FRICTION = 0.2  # carbon on copper, 0.15 to 0.3
 CARBON_BRUSH_DROP = 2.0  # V, both brushes together (IEC 60034-2-1: 1 V each)
+KYLANDER = (0.45, 0.12, 33.0)  # K s/(W m2), m, m/s
 BRUSH_K = {"electrographite": 30.0, "carbon-graphite": 15.0, "metal-graphite": 40.0}  # W/m/K along the brush
 
 
@@ -20,7 +21,8 @@ def kylander_bearing(diameter: float, omega: float) -> tuple[float, Info]:
     al. 2006 (read in citations, not in the original).
     """
     v = abs(omega) * diameter
-    R = 0.45 * (0.12 - diameter) * (33.0 - v)
+    scale, largest, fastest = KYLANDER
+    R = scale * (largest - diameter) * (fastest - v)
     return R, checked("kylander_bearing", "Kylander 1995", {"d": diameter, "v": v}, {"d": (0.02, 0.11), "v": (0, 30)})
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from lumped.correlations.info import Info, checked
+from lumped.properties import ZERO_C
 
 K_AIR = 0.026
 SIGMA = 5.670374419e-8
@@ -67,8 +68,8 @@ def bearing_resistance(mean_diameter: float, width: float, gap: float = 0.3e-3, 
 
 
 def radiation_film(emissivity: float, hot: float, cold: float, view: float = 1.0) -> tuple[float, Info]:
-    """sigma e F (Th^2 + Tc^2)(Th + Tc) (W/m2/K); hot, cold (degC). Stefan-Boltzmann."""
-    a, b = hot + 273.15, cold + 273.15
+    """sigma e F (Th^2 + Tc^2)(Th + Tc) (W/m2/K); hot, cold (degC). Range: e, F from 0 to 1. Stefan-Boltzmann."""
+    a, b = hot + ZERO_C, cold + ZERO_C
     h = SIGMA * emissivity * view * (a * a + b * b) * (a + b)
     return h, checked("radiation_film", "Stefan-Boltzmann", {"e": emissivity, "F": view}, {"e": (0, 1), "F": (0, 1)})
 

@@ -62,7 +62,7 @@ def schmidt_helical(speed: float, diameter: float, coil_diameter: float, fluid: 
 
     Laminar below Re_crit(coil): Nu = 3.66 + 0.08 (1 + 0.8 (d/D)^0.9) Re^m Pr^(1/3), m = 0.5 + 0.2903 (d/D)^0.194;
     turbulent above 22000 by ht (whose own branch changes there); linear in Re between.
-    diameter: hydraulic (m), coil_diameter: of the helix (m).
+    diameter: hydraulic (m), coil_diameter: of the helix (m). Range: Re < 2e5.
     Source: E. F. Schmidt 1967, Chem. Ing. Tech. 39, 781; VDI Heat Atlas G3.
     """
     Re, Pr, ratio = abs(speed) * diameter / fluid.nu, fluid.Pr, diameter / coil_diameter

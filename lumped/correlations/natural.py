@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import ht
@@ -10,6 +11,7 @@ from lumped.correlations.info import Info, checked
 from lumped.properties import Fluid, air
 
 G = 9.80665
+MOST_CURVED = 5.0
 Of = Callable[[float], Fluid]
 
 
@@ -67,15 +69,19 @@ def mcadams_plate(
 def popiel_cylinder(height: float, diameter: float, surface: float, ambient: float, of: Of = air) -> tuple[float, Info]:
     """Slender vertical cylinder in still fluid, h (W/m2/K): vertical machines, shafts.
 
-    The plate's Nu times 1 + B (sqrt(32) Gr^(-1/4) height/diameter)^C, B and C functions of Pr; where the cylinder is
-    so wide that diameter/height >= 35/Gr^(1/4), the plate's own.
+    The plate's Nu times 1 + B X^C, X = sqrt(32) Gr^(-1/4) height/diameter, B and C functions of Pr. The usual rule that
+    a cylinder with diameter/height >= 35/Gr^(1/4) is a plate would jump by 5 % there; here the factor fades by itself.
+    X is held at 5: the formula would grow without bound as the difference vanishes.
     height, diameter (m); surface, ambient (degC).
-    Range: 0.01 < Pr < 100, Ra < 1e12. Source: Popiel 2008, Heat Transfer Eng. 29, 521 (ht).
+    Range: 0.01 < Pr < 100, Ra < 1e12, X < 5 (ours). Source: Popiel 2008, Heat Transfer Eng. 29, 521 (ht).
     """
     fluid = of(0.5 * (surface + ambient))
-    Gr = _grashof(height, surface, ambient, fluid)
-    thick = Gr == 0.0 or diameter / height >= 35.0 / Gr**0.25
-    plate = ht.Nu_vertical_plate_Churchill(fluid.Pr, Gr)
-    Nu = plate if thick else max(plate, ht.Nu_vertical_cylinder_Popiel_Churchill(fluid.Pr, Gr, height, diameter))
-    numbers, limits = {"Nu": Nu, "Ra": Gr * fluid.Pr, "Pr": fluid.Pr}, {"Ra": (0.0, 1e12), "Pr": (0.01, 100.0)}
+    Gr, slender = _grashof(height, surface, ambient, fluid), height / diameter
+    X = math.sqrt(32.0) * slender / Gr**0.25 if Gr > 0.0 else math.inf
+    least = 32.0**2 * (slender / MOST_CURVED) ** 4
+    factor = ht.Nu_vertical_cylinder_Popiel_Churchill(fluid.Pr, max(Gr, least), height, diameter)
+    factor /= ht.Nu_vertical_plate_Churchill(fluid.Pr, max(Gr, least))
+    Nu = factor * ht.Nu_vertical_plate_Churchill(fluid.Pr, Gr)
+    numbers = {"Nu": Nu, "Ra": Gr * fluid.Pr, "Pr": fluid.Pr, "X": X}
+    limits = {"Ra": (0.0, 1e12), "Pr": (0.01, 100.0), "X": (0.0, MOST_CURVED)}
     return Nu * fluid.k / height, checked("popiel_cylinder", "Popiel 2008", numbers, limits)
