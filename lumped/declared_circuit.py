@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from lumped.circuit import PER_M3S, Circuit, Cooler, Pass
-from lumped.coolant import NAMES, Coolant, coolant
+from lumped.declared_coolant import read_coolant
 from lumped.exchanger import ARRANGEMENTS, Flow
 from lumped.hydraulics import Duct
 from lumped.properties import air
@@ -33,7 +33,7 @@ def _circuit(name: str, table: Table, nodes: list[str], boundaries: list[str]) -
     if not passes:
         raise table.error("no passes", "passes = [{ wall = ..., width_mm = ..., height_mm = ..., length_m = ... }]")
     out = Circuit(
-        name, _coolant(table), table.number("at_degC", 40.0, low=-40.0), flow, passes, inlet, of, unit,
+        name, read_coolant(table), table.number("at_degC", 40.0, low=-40.0), flow, passes, inlet, of, unit,
         int(table.number("cells", 8, 1, 64)), cooler, table.number("pump_efficiency", 0.5, 0.01, 1.0),
         table.word("films", "follow", ("follow", "fixed")) == "follow",
     )  # fmt: skip
@@ -50,17 +50,6 @@ def _flow(table: Table, stem: str) -> tuple[float, str | None, str]:
             of = table.word(f"{stem}_{unit}_input", "") or None
             return table.number(f"{stem}_{unit}", low=1e-9) * scale, of, unit
     raise table.error(f"no {stem}", f"{stem}_l_min or {stem}_m3_h = usual flow; {stem}_l_min_input where it varies")
-
-
-def _coolant(table: Table) -> Coolant:
-    given = table.raw("coolant")
-    if isinstance(given, str):
-        return coolant(table.word("coolant", None, NAMES))
-    inner = Table(given if given is not None else {}, f"{table.where} coolant")
-    name = inner.word("name", None, NAMES)
-    shares = {key: inner.number(key, high=100.0) for key in ("mass_percent", "volume_percent") if key in inner}
-    inner.close()
-    return coolant(name, **shares)
 
 
 def _pass(table: Table, nodes: list[str]) -> Pass:

@@ -1,8 +1,7 @@
-"""Films of known surfaces in network.toml: still air, moving air, the rotor's gap, contacts; by correlation."""
+"""Films of known surfaces in network.toml by correlation: still air, moving air and coolant, contacts."""
 
 from __future__ import annotations
 
-import math
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -15,9 +14,10 @@ from lumped.laws import Array, Fixed, Inputs, Law
 from lumped.properties import Fluid, air
 from lumped.reader import Table
 
-RPM = math.pi / 30.0
 POINTS = 97
 Film = Callable[[float], tuple[float, Info]]
+Still = Callable[[float, float], tuple[float, Info]]
+Of = Callable[[float], Fluid]
 
 
 @dataclass(frozen=True)
@@ -50,26 +50,31 @@ class FilmOver(Law):
 
 def natural(table: Table) -> Law:
     """Still air, tabulated over the temperature difference at one temperature of the air."""
+    at, film, factor = natural_film(table)
+    return Fixed(factor, tabulated(film, fluid_temperature=at))
+
+
+def natural_film(table: Table) -> tuple[float, Still, float]:
+    """(temperature of the air in degC, its film, the factor on it)"""
     at, of = table.number("fluid_degC", 20.0, low=-60.0, high=200.0), _air(table)
-    surface = table.word("surface", None, NATURAL)
-    film = NATURAL[surface](table, of)
-    return Fixed(table.number("factor", 1.0), tabulated(film, fluid_temperature=at))
+    return at, NATURAL[table.word("surface", None, NATURAL)](table, of), table.number("factor", 1.0)
 
 
 def _air(table: Table) -> Callable[[float], Fluid]:
     return partial(air, altitude_m=table.number("altitude_m", 0.0, high=9000.0))
 
 
+def film_air(table: Table, usual_degC: float) -> Fluid:
+    """The air at `fluid_degC` and `altitude_m`."""
+    return _air(table)(table.number("fluid_degC", usual_degC, low=-60.0, high=200.0))
+
+
 def _size(table: Table) -> float:
     return table.number("size_m", low=1e-4, high=100)
 
 
-def _millimetres(table: Table, key: str) -> float:
+def millimetres(table: Table, key: str) -> float:
     return 1e-3 * table.number(key, low=1e-3)
-
-
-Still = Callable[[float, float], tuple[float, Info]]
-Of = Callable[[float], Fluid]
 
 
 def _cylinder(table: Table, of: Of) -> Still:
@@ -93,26 +98,26 @@ def _level(upward: bool, table: Table, of: Of) -> Still:
 def _upright(table: Table, of: Of) -> Still:
     from lumped.correlations.natural import popiel_cylinder
 
-    return partial(popiel_cylinder, _size(table), _millimetres(table, "diameter_mm"), of=of)
+    return partial(popiel_cylinder, _size(table), millimetres(table, "diameter_mm"), of=of)
 
 
 def _vertical_fins(table: Table, of: Of) -> Still:
     from lumped.correlations.fins import van_de_pol_tierney
 
-    depth, spacing = _millimetres(table, "depth_mm"), _millimetres(table, "spacing_mm")
+    depth, spacing = millimetres(table, "depth_mm"), millimetres(table, "spacing_mm")
     return partial(van_de_pol_tierney, depth, spacing, _size(table), of=of)
 
 
 def _horizontal_fins(table: Table, of: Of) -> Still:
     from lumped.correlations.fins import jones_smith
 
-    return partial(jones_smith, _millimetres(table, "spacing_mm"), of=of)
+    return partial(jones_smith, millimetres(table, "spacing_mm"), of=of)
 
 
 def _plates(table: Table, of: Of) -> Still:
     from lumped.correlations.fins import elenbaas
 
-    return partial(elenbaas, _millimetres(table, "spacing_mm"), _size(table), of=of)
+    return partial(elenbaas, millimetres(table, "spacing_mm"), _size(table), of=of)
 
 
 NATURAL: dict[str, Callable[[Table, Of], Still]] = {
@@ -125,7 +130,7 @@ NATURAL: dict[str, Callable[[Table, Of], Still]] = {
 def _duct(table: Table, fluid: Fluid) -> Film:
     from lumped.correlations.ducts import duct_film
 
-    return partial(duct_film, diameter=_millimetres(table, "diameter_mm"), length=_size(table), fluid=fluid)
+    return partial(duct_film, diameter=millimetres(table, "diameter_mm"), length=_size(table), fluid=fluid)
 
 
 def _fin_channel(table: Table, fluid: Fluid) -> Film:
@@ -133,7 +138,7 @@ def _fin_channel(table: Table, fluid: Fluid) -> Film:
 
     end, turbulence = table.number("speed_at_end", 1.0, high=1.0), table.number("turbulence", 1.7)
     return partial(
-        heiles_decaying, diameter=_millimetres(table, "diameter_mm"), length=_size(table), decay=partial(_line, end),
+        heiles_decaying, diameter=millimetres(table, "diameter_mm"), length=_size(table), decay=partial(_line, end),
         turbulence=turbulence, fluid=fluid,
     )  # fmt: skip
 
@@ -160,39 +165,35 @@ def _end_space(table: Table, fluid: Fluid) -> Film:
     return partial(end_space, k1=table.number("k1", 15.0), k2=table.number("k2", 0.4), k3=table.number("k3", 0.9))
 
 
+def _helix(table: Table, fluid: Fluid) -> Film:
+    from lumped.correlations.ducts import schmidt_helical
+
+    inner, coil = millimetres(table, "diameter_mm"), millimetres(table, "coil_diameter_mm")
+    return partial(schmidt_helical, diameter=inner, coil_diameter=coil, fluid=fluid)
+
+
 FORCED: dict[str, Callable[[Table, Fluid], Film]] = {
-    "plate": _flat, "cylinder": _across, "fin channel": _fin_channel, "duct": _duct, "end space": _end_space,
+    "plate": _flat, "cylinder": _across, "fin channel": _fin_channel, "duct": _duct, "helical pipe": _helix,
+    "end space": _end_space,
 }  # fmt: skip
 
 
-def over(table: Table) -> Law:
-    """Moving air over a known surface; its speed is `m_s_per_unit` times an input."""
-    fluid = _air(table)(table.number("fluid_degC", 30.0, low=-60.0, high=200.0))
+def over(table: Table) -> FilmOver:
+    """Air, or a coolant, moving over a known surface; its speed is `m_s_per_unit` times an input."""
+    fluid = _coolant(table) if "coolant" in table else film_air(table, 30.0)
     film = FORCED[table.word("surface", None, FORCED)](table, fluid)
     scale = table.number("m_s_per_unit", 1.0, low=1e-12)
     return FilmOver(table.word("speed"), partial(_scaled, film, scale), table.number("up_to_m_s", 50.0) / scale)
 
 
+def _coolant(table: Table) -> Fluid:
+    from lumped.declared_coolant import read_coolant
+
+    return read_coolant(table)(table.number("fluid_degC", 40.0, low=-60.0, high=200.0))
+
+
 def _scaled(film: Film, scale: float, x: float) -> tuple[float, Info]:
     return film(scale * x)
-
-
-def gap(table: Table) -> Law:
-    """From rotor to stator through the air between them, over the rotor's surface; speed in 1/min."""
-    radius, width = _millimetres(table, "rotor_radius_mm"), _millimetres(table, "gap_mm")
-    fluid = _air(table)(table.number("fluid_degC", 80.0, low=-60.0, high=200.0))
-    law = table.word("law", "taylor", ("taylor", "becker-kaye"))
-    film = partial(_gap_film, law, radius, width, fluid)
-    return FilmOver(table.word("speed", "speed_rpm"), film, table.number("up_to_rpm", 20000.0, low=1.0))
-
-
-def _gap_film(law: str, radius: float, width: float, fluid: Fluid, rpm: float) -> tuple[float, Info]:
-    from lumped.correlations.air_gap import becker_kaye, taylor_film
-
-    if law == "becker-kaye":
-        return becker_kaye(rpm * RPM, radius, width, fluid)
-    one, info = taylor_film(rpm * RPM, radius, width, fluid)
-    return 0.5 * one, info
 
 
 def contact(table: Table) -> Law:
@@ -200,7 +201,7 @@ def contact(table: Table) -> Law:
     from lumped.correlations.contacts import GAPS, PRESSED, contact_film, gap_film
 
     if "gap_mm" in table:
-        return Fixed(gap_film(_millimetres(table, "gap_mm")))
+        return Fixed(gap_film(millimetres(table, "gap_mm")))
     if "pair" in table:
         return Fixed(contact_film(table.word("pair", None, PRESSED))[0])
     return Fixed(gap_film(GAPS[table.word("joint", None, GAPS)]))

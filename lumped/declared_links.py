@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from itertools import pairwise
 
-from lumped.declared_films import contact, gap, natural, over
+from lumped.declared_films import contact, natural, over
+from lumped.declared_mixed import mixed
+from lumped.declared_rotor import gap, rotating
 from lumped.laws import Fixed, InputPower, Law, Power, Radiation
 from lumped.laws import Table as TableLaw
 from lumped.reader import Table, powers
@@ -54,6 +56,11 @@ def _gap(table: Table, has_area: bool) -> tuple[Law, bool]:
     return gap(table), True
 
 
+def _rotating(table: Table, has_area: bool) -> tuple[Law, bool]:
+    _needs_area(table, has_area)
+    return rotating(table), True
+
+
 def _contact(table: Table, has_area: bool) -> tuple[Law, bool]:
     _needs_area(table, has_area)
     return contact(table), True
@@ -89,8 +96,8 @@ def _tabled(table: Table, has_area: bool) -> tuple[Law, bool]:
 
 
 MECHANISMS = {
-    "natural": _natural, "radiation": _radiation, "forced": _forced, "gap": _gap, "contact": _contact,
-    "power": _power, "table": _tabled,
+    "natural": _natural, "radiation": _radiation, "forced": _forced, "gap": _gap, "rotating": _rotating,
+    "contact": _contact, "power": _power, "table": _tabled,
 }  # fmt: skip
 
 
@@ -103,11 +110,21 @@ def mechanisms(table: Table, has_area: bool) -> list[Mechanism]:
             inner = Table(table.raw(word), f"{table.where} {word}")
             out.append((f":{word}", *read(inner, has_area)))
             inner.close()
+    if "mixed" in table:
+        out += _mixed(table, has_area)
     if not out:
         table.raw("prior_sd")
         table.close()
-        raise table.error("a link without a mechanism", f"G_W_K, R_K_W, h_W_m2K, {', '.join(MECHANISMS)}")
+        raise table.error("a link without a mechanism", f"G_W_K, R_K_W, h_W_m2K, {', '.join(MECHANISMS)}, mixed")
     return out
+
+
+def _mixed(table: Table, has_area: bool) -> list[Mechanism]:
+    inner = Table(table.raw("mixed"), f"{table.where} mixed")
+    _needs_area(inner, has_area)
+    laws = mixed(inner)
+    inner.close()
+    return [(f":mixed:{k + 1}", law, True) for k, law in enumerate(laws)]
 
 
 def flow_law(table: Table) -> Law:

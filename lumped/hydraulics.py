@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import fluids
 
@@ -12,6 +13,22 @@ from lumped.correlations.ducts import LAMINAR, TURBULENT
 from lumped.properties import Fluid
 
 ROUGHNESS = 2.5e-6  # m, drawn or die-cast channel
+
+
+class Passage(Protocol):
+    """What pressure needs to know: section of all parallel ones (m2), hydraulic diameter of each, length (m),
+    bends of 90 degrees, diameter of a helix (m) or 0."""
+
+    @property
+    def section(self) -> float: ...
+    @property
+    def diameter(self) -> float: ...
+    @property
+    def length(self) -> float: ...
+    @property
+    def bends(self) -> int: ...
+    @property
+    def coil(self) -> float: ...
 
 
 @dataclass(frozen=True)
@@ -71,7 +88,7 @@ def helical_friction(Re: float, diameter: float, coil: float, relative_roughness
     return (1.0 - share) * low + share * high
 
 
-def pressure_drop(duct: Duct, flow: float, fluid: Fluid, roughness: float = ROUGHNESS) -> float:
+def pressure_drop(duct: Passage, flow: float, fluid: Fluid, roughness: float = ROUGHNESS) -> float:
     """Along a duct (Pa), with a sharp entrance, its bends and its exit; flow (m3/s) through all parallel channels."""
     speed = abs(flow) / duct.section
     Re = speed * duct.diameter / fluid.nu
@@ -84,14 +101,14 @@ def pressure_drop(duct: Duct, flow: float, fluid: Fluid, roughness: float = ROUG
     return fluids.dP_from_K(loss, fluid.rho, speed)
 
 
-def parallel_shares(branches: Sequence[Sequence[Duct]], flow: float, fluid: Fluid) -> tuple[float, ...]:
+def parallel_shares(branches: Sequence[Sequence[Passage]], flow: float, fluid: Fluid) -> tuple[float, ...]:
     """How a flow (m3/s) splits between branches of ducts in series so that all drop the same pressure."""
     from scipy.optimize import brentq
 
-    def drop(branch: Sequence[Duct], q: float) -> float:
+    def drop(branch: Sequence[Passage], q: float) -> float:
         return sum(pressure_drop(duct, q, fluid) for duct in branch)
 
-    def taken(branch: Sequence[Duct], p: float) -> float:
+    def taken(branch: Sequence[Passage], p: float) -> float:
         return 0.0 if p <= 0.0 else float(brentq(lambda q: drop(branch, q) - p, 0.0, flow, xtol=1e-14, rtol=1e-12))
 
     top = min(drop(branch, flow) for branch in branches)

@@ -1,4 +1,11 @@
-"""The air inside: a fan's stream through the machine, and what the walls it passes feel of it and of the rotor."""
+"""The air inside: a fan's stream through the machine, and what the walls it passes feel of it and of the rotor.
+
+    ambient -> [space of the fan] -> left end -> gap, space between the poles, ducts of the rotor -> right end -> out
+
+The gap takes the share that [fans] gives it. The rest divides so that all ways drop the same pressure between the two
+ends: friction, entrance and exit of each. The air in a duct of the rotor is spun up at the shaft's cost: the dynamic
+pressure of its turning, as it comes in relative to the duct, is taken as lost at the inlet, neither more nor less.
+"""
 
 from __future__ import annotations
 
@@ -11,31 +18,43 @@ import numpy as np
 from lumped.correlations.air_gap import taylor_film
 from lumped.correlations.ducts import duct_film
 from lumped.correlations.end_space import end_space
+from lumped.hydraulics import parallel_shares
 from lumped.laws import InputPower, Law
 from lumped.motor_laws import Interpolated
 from lumped.motor_settings import Fan, Films
 from lumped.motor_shapes import Gap
 from lumped.network import Link, Network, Row
+from lumped.properties import air
 
 AIR_HEAT = 1.205 * 1006.0  # rho cp of the air the fan takes in at 20 degC, J/m3/K
-BETWEEN_POLES = "air.interpolar"
+BETWEEN_POLES, IN_ROTOR, AT_FAN = "air.interpolar", "air.ducts", "air.fan"
 STEPS = 121
 
 
 @dataclass(frozen=True)
 class Duct:
-    """A space along the axis (m2, m, m)."""
+    """Equal straight passages along the axis: section and perimeter of all together (m2, m), length (m)."""
 
-    area: float
+    section: float
     perimeter: float
     length: float
+    bends: int = 0
+    coil: float = 0.0
+
+    @property
+    def diameter(self) -> float:
+        """Hydraulic diameter of each (m)."""
+        return 4 * self.section / self.perimeter
 
 
-def duct_of(machine: Any) -> Duct | None:
-    """The space between salient poles, where there is one."""
-    if BETWEEN_POLES not in {part.name for part in machine.fluids}:
-        return None
-    g = machine.geometry
+def ducts_of(machine: Any) -> dict[str, Duct]:
+    """The ways along the axis beside the air gap, by the fluid's name; none where the geometry is not known."""
+    makers = {BETWEEN_POLES: _between_poles, IN_ROTOR: _in_rotor} if machine.geometry is not None else {}
+    there = {part.name for part in machine.fluids}
+    return {name: make(machine.geometry) for name, make in makers.items() if name in there}
+
+
+def _between_poles(g: Any) -> Duct:
     bore = g.rotor.outer_diameter / 2 + g.stator.air_gap
     poles, body = g.stator.poles, g.stator.body_width
     depth = g.stator.yoke_inner_diameter / 2 - bore
@@ -45,10 +64,25 @@ def duct_of(machine: Any) -> Duct | None:
     return Duct(area, perimeter, g.rotor.stack_length)
 
 
-def stirred(share: float, films: Films, gap: Gap, top_rpm: float) -> Law:
-    """Walls of air that the rotor stirs; `share` of its tip speed passes the wall."""
+def _in_rotor(g: Any) -> Duct:
+    number, d = g.rotor.ducts, g.rotor.duct_diameter
+    return Duct(number * np.pi * d**2 / 4, number * np.pi * d, g.rotor.stack_length)
+
+
+def fan_shares(machine: Any, fan: Fan) -> dict[str, float]:
+    """What each way along the axis takes of the fan's air at its rated flow; together 1."""
+    ducts = ducts_of(machine)
+    if not ducts:
+        return {"airgap": 1.0}
+    rest = parallel_shares([[duct] for duct in ducts.values()], fan.flow_m3_h / 3600.0, air(fan.air_C))
+    beside = {name: (1.0 - fan.gap_share) * share for name, share in zip(ducts, rest, strict=True)}
+    return {name: share for name, share in {"airgap": fan.gap_share, **beside}.items() if share > 0.0}
+
+
+def stirred(share: float, films: Films, radius: float, top_rpm: float) -> Law:
+    """Walls of air that a rotor of this radius (m) stirs; `share` of its tip speed passes the wall."""
     speed = np.linspace(0.0, top_rpm, STEPS)
-    tip = speed * 2 * np.pi / 60 * gap.rotor_radius * share
+    tip = speed * 2 * np.pi / 60 * radius * share
     h = end_space(tip, films.end_space_k1_W_m2K, films.end_space_k2, films.end_space_k3)[0]
     return Interpolated("speed_rpm", tuple(speed), tuple(np.asarray(h)))
 
@@ -60,22 +94,21 @@ def gap_film(gap: Gap, top_rpm: float) -> Law:
     return Interpolated("speed_rpm", tuple(speed), tuple(h))
 
 
-def channel_film(duct: Duct) -> Law:
-    """Walls that the fan's air passes along the axis."""
-    flow, diameter = np.linspace(0.0, 600.0, 61), 4 * duct.area / duct.perimeter
-    h = [duct_film(q / 3600 / duct.area, diameter, duct.length)[0] for q in flow]
+def channel_film(duct: Duct, share: float = 1.0) -> Law:
+    """Walls along the axis that `share` of the fan's air passes; a turning duct is taken to stand still."""
+    flow = np.linspace(0.0, 600.0, 61)
+    h = [duct_film(share * q / 3600 / duct.section, duct.diameter, duct.length)[0] for q in flow]
     return Interpolated("fan_flow_m3h", tuple(flow), tuple(h))
 
 
-def fan_streams(network: Network, fan: Fan) -> list[Link]:
-    """The fan's air: ambient -> left end -> gap and space between the poles in parallel -> right end -> out."""
-    gap = fan.gap_share if BETWEEN_POLES in network.states else 1.0
-    between = {BETWEEN_POLES: 1.0 - gap} if gap < 1.0 else {}
+def fan_streams(network: Network, shares: Mapping[str, float]) -> list[Link]:
+    """The fan's air, cell by cell; shares : way along the axis -> its part of the flow."""
+    inlet = {AT_FAN: {"ambient": 1.0}} if AT_FAN in network.states else {}
     feeds = {
-        "air.left": {"ambient": 1.0},
-        "airgap": {"air.left": gap},
-        **{space: {"air.left": share} for space, share in between.items()},
-        "air.right": {"airgap": gap, **between},
+        **inlet,
+        "air.left": dict.fromkeys(inlet or ("ambient",), 1.0),
+        **{way: {"air.left": share} for way, share in shares.items()},
+        "air.right": dict(shares),
     }
     law = InputPower(AIR_HEAT / 3600.0, (("fan_flow_m3h", 1.0, 1.0),))
     return [_cell(network, cell, upstream, law) for cell, upstream in feeds.items()]

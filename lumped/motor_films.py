@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 
 from lumped.laws import Inputs, Law, Radiation, Table
-from lumped.motor_air import Duct, channel_film, duct_of, gap_film, stirred
+from lumped.motor_air import BETWEEN_POLES, IN_ROTOR, Duct, channel_film, ducts_of, fan_shares, gap_film, stirred
 from lumped.motor_coolant import Cooling, cooling_of, jacket_film
 from lumped.motor_outer import outer_films
 from lumped.motor_path import stem
 from lumped.motor_settings import Fan, Films, read_fan, read_films
-from lumped.motor_shapes import Gap, gap_of, turning
+from lumped.motor_shapes import Gap, gap_of, radius, turning
 
 TOP_RPM = 3000.0  # films of speed are tabulated at least this far
 
@@ -40,8 +40,13 @@ class Surroundings:
         return gap_of(self.machine)
 
     @cached_property
-    def duct(self) -> Duct | None:
-        return duct_of(self.machine)
+    def ducts(self) -> dict[str, Duct]:
+        return ducts_of(self.machine)
+
+    @cached_property
+    def shares(self) -> dict[str, float]:
+        """Of the fan's air, along each way; empty without a fan."""
+        return {} if self.fan is None else fan_shares(self.machine, self.fan)
 
     @cached_property
     def cooling(self) -> Cooling | None:
@@ -50,6 +55,14 @@ class Surroundings:
     @cached_property
     def turning(self) -> frozenset[str]:
         return turning(self.contacts)
+
+    @cached_property
+    def tip_radius(self) -> float:
+        """Of the rotor (m), or where no air gap is known, as in an imported machine, of the largest part that turns."""
+        if self.gap is not None:
+            return self.gap.rotor_radius
+        turned = [part for part in self.machine.parts if part.name in self.turning]
+        return max((radius(profile.outer) for part in turned for profile, _, _ in part.prisms), default=0.0)
 
     @cached_property
     def top_rpm(self) -> float:
@@ -67,15 +80,16 @@ def face_films(part: str, fluid: str, around: Surroundings) -> dict[str, Law]:
         return outer_films(around.machine, part, films)
     if around.cooling is not None and stem(fluid) in around.cooling.feeds:
         return {"": jacket_film(around.machine, stem(fluid), around.cooling)}
-    if gap is None:
-        return {}
-    if fluid == "airgap":
+    if fluid == "airgap" and gap is not None:
         return {"": gap_film(gap, around.top_rpm)}
-    if around.duct is not None and fluid == "air.interpolar":
-        axial = {} if around.fan is None else {"axial": channel_film(around.duct)}
-        return {**axial, "stirred": stirred(films.channel_wall_share, films, gap, around.top_rpm)}
+    if fluid == IN_ROTOR and fluid in around.shares:
+        return {"axial": channel_film(around.ducts[fluid], around.shares[fluid])}
+    if fluid == BETWEEN_POLES and fluid in around.ducts:
+        past = 1.0 - around.shares.get(IN_ROTOR, 0.0)  # the gap's air mixes with that between the poles
+        axial = {} if around.fan is None else {"axial": channel_film(around.ducts[fluid], past)}
+        return {**axial, "stirred": stirred(films.channel_wall_share, films, around.tip_radius, around.top_rpm)}
     share = films.moving_wall_share if part in around.turning else films.still_wall_share
-    return {"": stirred(share, films, gap, around.top_rpm)}
+    return {"": stirred(share, films, around.tip_radius, around.top_rpm)}
 
 
 def nominal(laws: Mapping[str, Law], inputs: Inputs, difference: float = 30.0) -> float:

@@ -50,7 +50,7 @@ def _poles(machine: Any) -> dict[str, Zone]:
 
 def _coils(machine: Any) -> dict[str, Zone]:
     """One field coil per pole."""
-    if "winding.field" not in [part.name for part in machine.parts]:
+    if machine.geometry is None or "winding.field" not in [part.name for part in machine.parts]:
         return {}
     axes = np.array(evenly(machine.geometry.stator.poles, np.pi / 2))
     return {f"winding.field.{k + 1}": Zone("winding.field", _nearest(axes, k)) for k in range(len(axes))}

@@ -50,7 +50,7 @@ def field_of(machine: Machine, mesh: NamedMesh) -> FieldModel:
     """Conduction of the machine on its mesh, with the materials of its file."""
     found = {part.name: machine.material_of(part.name) for part in machine.parts}
     conductivity: dict[str, HasTensor] = {name: conductivity_of(m) for name, m in found.items()}
-    if "winding.field" in found:
+    if "winding.field" in found and machine.geometry is not None:  # else its coils' places are not known
         conductivity["winding.field"] = _around_poles(machine, conductivity_of(found["winding.field"]))
     return assemble(mesh, conductivity, {name: m.rho * m.cp for name, m in found.items()})
 

@@ -17,15 +17,17 @@ if TYPE_CHECKING:
     import pyvista
 
 Array = NDArray[np.float64]
+HOLLOW = 0.5  # of the diameter of a dot that something covers is left white
 
 
 @dataclass(frozen=True)
 class Label:
-    """A text at the end of a leader line that starts at `xyz` (m)."""
+    """A text at the end of a leader line that starts at `xyz` (m), at a hollow dot if that is covered."""
 
     xyz: tuple[float, float, float]
     text: str
     colour: str
+    covered: bool = False
 
 
 def callouts(
@@ -59,6 +61,8 @@ def _dot(p: pyvista.Plotter, label: Label) -> None:
     here = pyvista.PolyData(np.array([label.xyz]))
     on_top(p.add_mesh(here, color="white", point_size=26, **flat), 2)
     on_top(p.add_mesh(here.copy(), color=label.colour, point_size=19, **flat), 3)
+    if label.covered:
+        on_top(p.add_mesh(here.copy(), color="white", point_size=HOLLOW * 19, **flat), 4)
 
 
 def _callout(p: pyvista.Plotter, label: Label, end: Array, side: int, theme: Theme, size: int) -> None:

@@ -90,7 +90,7 @@ def amplitude(candidate: Mapping[str, Any]) -> str:
     a = candidate["amplitude"]
     if a["value"] is None or not np.isfinite(a["value"]):
         return ""
-    text = f"{a['value']:.3g} {a['unit']}"
+    text = f"{a['value']:.3g} {a['unit']}".removesuffix(" 1")
     known = a.get("ci95") and np.isfinite(a["ci95"]).all()
     return f"{text} (95 %: {a['ci95'][0]:.3g} … {a['ci95'][1]:.3g})" if known else text
 

@@ -19,6 +19,7 @@ from viz.cut import QUARTER, Surface, Wedge, cut_away
 from viz.data import Sensor, short
 from viz.nodes import SplitMesh, on_nodes
 from viz.scene import TITLE, Room, View
+from viz.sight import covered, obstacle
 
 if TYPE_CHECKING:
     import pyvista
@@ -50,7 +51,7 @@ def cutaway(
     scene.colour_bar(p, UNIT, theme)
     scene.headline(p, title, theme)
     scene.look(p, surface.points, view, _room(bool(sensors), title))
-    callouts(p, [_label(s) for s in sensors], surface.points, view, theme)
+    _mark(p, surface, sensors, view, theme)
     scene.save(p, png)
     return p
 
@@ -100,6 +101,17 @@ def _room(labels: bool, title: str) -> Room:
     return Room(0.16, 0.24, top) if labels else Room(0.0, 0.1, top)
 
 
-def _label(sensor: Sensor) -> Label:
+def _mark(p: pyvista.Plotter, surface: Surface, sensors: Sequence[Sensor], view: View, theme: Theme) -> None:
+    """Dots with labels; what lies behind or inside something is a hollow dot, and the picture says so."""
+    if not sensors:
+        return
+    hidden = covered(obstacle(surface), np.array([s.xyz for s in sensors]), np.array(p.camera.position))
+    labels = [_label(s, bool(h)) for s, h in zip(sensors, hidden, strict=True)]
+    callouts(p, labels, surface.points, view, theme)
+    if hidden.any():
+        scene.footnote(p, "hollow dots lie inside or behind", theme)
+
+
+def _label(sensor: Sensor, hidden: bool) -> Label:
     value = "" if sensor.residual_K is None else f"  {round(sensor.residual_K, 1) + 0.0:+.1f} K"
-    return Label(sensor.xyz, f"{short(sensor.name)}{value}", VERDICT[sensor.verdict])
+    return Label(sensor.xyz, f"{short(sensor.name)}{value}", VERDICT[sensor.verdict], hidden)

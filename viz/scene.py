@@ -126,6 +126,12 @@ def headline(p: pyvista.Plotter, text: str, theme: Theme = LIGHT) -> None:
         set_font(actor.GetTextProperty())
 
 
+def footnote(p: pyvista.Plotter, text: str, theme: Theme = LIGHT) -> None:
+    """A small line below the picture."""
+    actor = p.add_text(text, position=(0.02, 0.025), viewport=True, font_size=9, color=theme.ink, name="footnote")
+    set_font(actor.GetTextProperty())
+
+
 def save(p: pyvista.Plotter, png: str | Path | None) -> None:
     """Write the picture if a path is given; the plotter stays open for the caller."""
     if png is not None:

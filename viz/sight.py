@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt
@@ -12,6 +14,7 @@ from viz.scene import Room, View
 
 Array = NDArray[np.float64]
 SIZE = (640, 400)
+SLACK = 0.006  # m: a thermocouple this deep still counts as lying on the surface
 SMALLEST = 1.5  # pixels from the middle of a patch to its border below which a part counts as hidden
 
 
@@ -36,6 +39,25 @@ def anchors(surface: Surface, view: View, room: Room) -> dict[int, Array]:
         if inside[row, column] >= SMALLEST and np.isfinite(depth[row, column]):
             found[int(part)] = eye + depth[row, column] * _ray(int(row), int(column), view)
     return found
+
+
+def obstacle(surface: Surface) -> Any:
+    """The surface, sorted so that rays through it are fast."""
+    from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
+
+    locator = vtkStaticCellLocator()
+    locator.SetDataSet(scene.polydata(surface))
+    locator.BuildLocator()
+    return locator
+
+
+def covered(obstacle: Any, points: Array, eye: Array) -> NDArray[np.bool_]:
+    """(n,) does something lie between each of the points (n, 3) m and the eye?"""
+    from vtkmodules.vtkCommonCore import vtkIdList, vtkPoints
+
+    away = eye - points
+    start = points + SLACK * away / np.linalg.norm(away, axis=1, keepdims=True)
+    return np.array([obstacle.IntersectWithLine(a, eye, 0.0, vtkPoints(), vtkIdList()) > 0 for a in start], bool)
 
 
 def _ray(row: int, column: int, view: View) -> Array:

@@ -7,16 +7,17 @@ import pytest
 from jsonschema import Draft202012Validator
 
 from geom.errors import InputError
-from lumped.correlations import RangeWarning, air_gap, contacts, ducts, end_space, fins, forced, natural
+from lumped.correlations import RangeWarning, air_gap, contacts, ducts, end_space, fins, forced, natural, rotating
 from lumped.declared import read_network
 from lumped.declared_films import FORCED, NATURAL
-from lumped.properties import air
+from lumped.properties import air, ethylene_glycol
 from lumped.schema import schema
 from lumped.simulate import Record, simulate
 from lumped.steady import steady
 
 pytestmark = pytest.mark.filterwarnings("ignore::lumped.correlations.RangeWarning")
 AREA = 0.4
+GLYCOL = {"name": "ethylene glycol", "mass_percent": 50.0}
 
 STILL = {
     "horizontal cylinder": ({"size_m": 0.3}, lambda T: natural.churchill_chu_cylinder(0.3, T, 20.0)),
@@ -42,6 +43,10 @@ MOVING = {
     ),
     "duct": (
         {"size_m": 0.3, "diameter_mm": 20.0, "fluid_degC": 40.0}, lambda v: ducts.duct_film(v, 0.02, 0.3),
+    ),
+    "helical pipe": (
+        {"diameter_mm": 9.0, "coil_diameter_mm": 200.0, "coolant": GLYCOL, "fluid_degC": 60.0, "m_s_per_unit": 0.1},
+        lambda v: ducts.schmidt_helical(0.36 * v, 0.009, 0.2, ethylene_glycol(60.0, 0.5)),
     ),
     "end space": ({}, lambda v: end_space.schubert(v)),
 }  # fmt: skip
@@ -77,7 +82,7 @@ def test_in_still_air_a_node_rests_where_the_correlation_says(surface):
 @pytest.mark.parametrize("surface", MOVING)
 def test_in_moving_air_too(surface):
     keys, film = MOVING[surface]
-    network = declared("forced", {"surface": surface, "speed": "v_km_h", "m_s_per_unit": 1 / 3.6, **keys})
+    network = declared("forced", {"surface": surface, "speed": "v_km_h", "m_s_per_unit": 1 / 3.6} | keys)
     for v in (2.0, 8.0, 20.0):
         T = steady(network, {"v_km_h": 3.6 * v}, {"ambient": 20.0})["a"]
         assert film(v)[0] * AREA * (T - 20.0) == pytest.approx(100.0, rel=3e-3)
@@ -92,6 +97,50 @@ def test_through_the_gap_the_whole_film_counts(law):
         T = steady(network, {"speed_rpm": rpm}, {"ambient": 20.0})["a"]
         h = whole if law == "becker-kaye" else 0.5 * one
         assert h * AREA * (T - 20.0) == pytest.approx(100.0, rel=3e-3)
+
+
+@pytest.mark.parametrize(
+    ("surface", "film"),
+    [("disc", lambda w: rotating.rotating_disc(w, 0.1)), ("shaft", lambda w: rotating.rotating_shaft(w, 0.2))],
+)
+def test_what_turns_in_open_air(surface, film):
+    network = declared("rotating", {"surface": surface, "diameter_mm": 200.0})
+    for rpm in (500.0, 3000.0, 12000.0):
+        T = steady(network, {"speed_rpm": rpm}, {"ambient": 20.0})["a"]
+        assert film(rpm * np.pi / 30)[0] * AREA * (T - 20.0) == pytest.approx(100.0, rel=3e-3)
+
+
+MIXTURES = {
+    ("vertical plate", "plate"): (natural.churchill_chu_plate, forced.flat_plate, 3.0),
+    ("horizontal cylinder", "cylinder"): (natural.churchill_chu_cylinder, forced.churchill_bernstein, 4.0),
+}
+
+
+@pytest.mark.parametrize("pair", MIXTURES, ids=" ".join)
+def test_still_and_moving_air_mix_by_churchill(pair):
+    """(h_f^n + h_n^n)^(1/n), from still air through 0.1 < Gr/Re^2 < 10 to wind; 0.5 % for the table."""
+    still, moving, n = MIXTURES[pair]
+    keys = {"natural": {"surface": pair[0], "size_m": 0.3}, "exponent": n}
+    keys["forced"] = {"surface": pair[1], "size_m": 0.3, "speed": "v", "up_to_m_s": 20.0}
+    network = declared("mixed", keys)
+    assert len(network.links) <= 6
+    for v in (0.0, 0.2, 0.5, 1.0, 2.0, 6.0, 20.0):
+        T = steady(network, {"v": v}, {"ambient": 20.0})["a"]
+        h = (still(0.3, T, 20.0)[0] ** n + moving(v, 0.3)[0] ** n) ** (1 / n)
+        assert h * AREA * (T - 20.0) == pytest.approx(100.0, rel=5e-3)
+
+
+def test_a_mixture_has_one_multiplier_and_warns_once():
+    keys = {"natural": {"surface": "vertical plate", "size_m": 0.3}}
+    keys["forced"] = {"surface": "plate", "size_m": 0.3, "speed": "v", "up_to_m_s": 20.0}
+    data = document("mixed", keys)
+    data["links"]["out"]["prior_sd"] = 0.2
+    network = read_network(data)
+    (parameter,) = network.parameters
+    assert {name for name, _ in parameter.targets} == {link.name for link in network.links}
+    with pytest.warns(RangeWarning, match="v = 30 outside 0 to 20") as said:
+        simulate(network, Record(np.arange(3.0), {"v": 30.0}, {"ambient": 20.0}))
+    assert len(said) == 1
 
 
 @pytest.mark.parametrize(
@@ -128,6 +177,12 @@ def test_faster_than_the_table_warns_with_value_and_range():
         ("forced", {"surface": "plate", "size_m": 0.5}, "'speed' is missing"),
         ("contact", {"joint": "glue"}, "'glue'.*known"),
         ("gap", {"gap_mm": 1.0}, "rotor_radius_mm"),
+        ("rotating", {"surface": "drum", "diameter_mm": 100.0}, "'drum'.*disc, shaft"),
+        (
+            "mixed",
+            {"natural": {"surface": "vertical plate", "size_m": 0.2}},
+            "mixed forced.*'surface' is missing",
+        ),
     ],
 )
 def test_slips_are_named(mechanism, keys, message):

@@ -51,7 +51,7 @@ def page(browser, served):
 
 def opened(browser, address):
     tab, faults = browser.new_context(viewport={"width": 1280, "height": 800}).new_page(), []
-    tab.set_default_timeout(LONG)
+    tab.context.set_default_timeout(LONG)
     # a call that is under way while the page is left (reload) ends in a bare object: no error of the page
     tab.on("pageerror", lambda fault: str(fault) == "Object" or faults.append(str(fault)))
     tab.goto(address)

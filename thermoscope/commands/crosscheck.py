@@ -83,12 +83,14 @@ def bearable(built: Built) -> dict[str, float]:
     point = {name: float(value[0]) for name, value in operating_point(built.machine).items()}
     named = [i for i, state in enumerate(built.network.states) if "#" not in state]
     rated = point["current_A"]
-    while point["current_A"] > 0.01 * rated:
+    while True:
         with suppress(ThermoscopeError):  # thermal runaway: copper's losses grow faster than its cooling
             T = steady_state(built.network, point, 20.0)[named]
             if T.min() > 0.0 and T.max() < HOT:
                 return point
         point = {**point, "current_A": 0.8 * point["current_A"]}
+        if point["current_A"] <= 0.01 * rated:
+            break
     raise ThermoscopeError(f"'{built.machine.name}' does not settle below {HOT:g} degC, even with next to no current")
 
 

@@ -37,8 +37,9 @@ def draw(session: Session) -> None:
                 _machine(session)
                 _curve()
             with html.Section(classes="right"):
-                _messages(session)
-                _errors()
+                with html.Div(classes="top"):
+                    _messages(session)
+                    _errors()
                 _sensors(session)
                 _missing(session)
                 _steps()
@@ -212,10 +213,13 @@ def _missing(session: Session) -> None:
 def _candidates(session: Session) -> None:
     with html.Div(classes="scroll"), html.Table():
         with html.Thead(), html.Tr():
-            for name in ("effect", "", "evidence", "size", "error", "held out", "looks like"):
+            for name in ("effect", "", "evidence", "error", "held out"):
                 html.Th(name)
         with html.Tbody(), html.Tr(v_for="c in candidates", key="c.effect", classes=("c.decision",)):
-            html.Td("{{ c.effect }}", title=("c.title + '. ' + c.test",))
+            with html.Td(title=("c.title + '. ' + c.test",)):
+                html.Div("{{ c.effect }}", classes="effect")
+                html.Div("{{ c.amplitude }}", classes="faint")
+                html.Div("looks like {{ c.alike }}", v_if=("c.alike",), classes="faint")
             with html.Td():
                 v3.VBtn(
                     "Add", size="small", variant=("c.decision === 'no' ? 'text' : 'flat'",),
@@ -226,10 +230,8 @@ def _candidates(session: Session) -> None:
             with html.Td(), html.Span(classes="evidence", title=("'score ' + c.score",)):
                 html.Span(classes="now", style=("{ width: c.width + '%' }",))
                 html.Span(classes="mark", style=("{ left: c.threshold + '%' }",))
-            html.Td("{{ c.amplitude }}")
             html.Td("{{ c.error }}")
             html.Td("{{ c.held }}")
-            html.Td("{{ c.alike }}")
 
 
 def _steps() -> None:

@@ -62,7 +62,10 @@ def largest(look: Look) -> tuple[float, float]:
 
 def steps(history: History) -> list[Row]:
     """The revisions, the last first."""
-    words = [{"number": r.number, "text": f"{r.action} {r.effect}".strip(), "why": r.why} for r in history.revisions]
+    words = [
+        {"number": r.number, "text": f"{r.action} {r.effect}".strip(), "why": r.why.replace("->", "→")}
+        for r in history.revisions
+    ]
     return [*reversed(words), {"number": 0, "text": "as declared", "why": ""}]
 
 

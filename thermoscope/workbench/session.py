@@ -77,7 +77,10 @@ class Session:
         verdict = "accepted" if good else "not accepted"
         self._refused = None if good else revision
         with self.state:
-            self.state.outcome = {"good": good, "text": f"{action} {effect}: {verdict}; {document['why']}"}
+            self.state.outcome = {
+                "good": good,
+                "text": f"{action} {effect}: {verdict}; {document['why'].replace('->', '→')}",
+            }
             if good:
                 self._write(self.history.and_then(revision), look)
 

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from viz import scene
-from viz.callouts import on_top
+from viz.callouts import HOLLOW, on_top
 from viz.colours import DARK, LIGHT, VERDICT, Theme
 from viz.cut import Surface
 from viz.data import Sensor
 from viz.field import UNIT, paint
 from viz.scene import Room, View
+from viz.sight import covered, obstacle
 
 if TYPE_CHECKING:
     import pyvista
@@ -30,7 +31,7 @@ class Stage:
     def __init__(self, surface: Surface, limits: tuple[float, float], on_pick: Callable[[str], None]) -> None:
         self._surface, self._on_pick = surface, on_pick
         self._sensors: tuple[Sensor, ...] = ()
-        self._pressed = np.zeros(2)
+        self._pressed, self._obstacle, self._chosen = np.zeros(2), obstacle(surface), ""
         self.plotter: pyvista.Plotter = scene.plotter(LIGHT, SIZE)
         self._data = paint(self.plotter, surface, np.zeros(surface.nodes.size), limits, LIGHT)
         scene.colour_bar(self.plotter, UNIT, LIGHT)
@@ -48,27 +49,42 @@ class Stage:
         self._data.point_data["T"] = T
 
     def markers(self, sensors: Sequence[Sensor], chosen: str) -> None:
-        """Dots at the sensors, coloured by verdict; the chosen one is larger."""
-        self._sensors = tuple(sensors)
-        self._dots("others", [s for s in sensors if s.name != chosen], 24, 2)
-        self._dots("chosen", [s for s in sensors if s.name == chosen], 38, 4)
+        """Dots at the sensors, coloured by verdict; the chosen one is larger, those inside or behind are hollow."""
+        self._sensors, self._chosen = tuple(sensors), chosen
+        for name, group, size, order in self._groups():
+            inside = np.array([np.multiply(_rgb(VERDICT[s.verdict]), 255) for s in group], np.uint8)
+            self._dots(f"{name} halo", group, np.full_like(inside, 255), size + 10, order)
+            self._dots(f"{name} dot", group, inside, size, order + 1)
+        self._hollow()
 
-    def _dots(self, name: str, sensors: Sequence[Sensor], size: int, order: int) -> None:
-        """One cloud of white halos and one of dots: few actors draw fast."""
-        inside = np.array([np.multiply(_rgb(VERDICT[s.verdict]), 255) for s in sensors], np.uint8)
-        for kind, colours, width in (("halo", np.full_like(inside, 255), size + 10), ("dot", inside, size)):
-            self.plotter.remove_actor(f"{name} {kind}", reset_camera=False, render=False)  # type: ignore[arg-type]
-            if not sensors:
-                continue
+    def _groups(self) -> Iterator[tuple[str, list[Sensor], int, int]]:
+        """Name, sensors, size in pixels and order of drawing of both sizes of dots."""
+        yield "others", [s for s in self._sensors if s.name != self._chosen], 24, 2
+        yield "chosen", [s for s in self._sensors if s.name == self._chosen], 38, 5
+
+    def _hollow(self) -> None:
+        """White inside the dots that something covers, as the camera stands."""
+        eye = np.array(self.plotter.camera.position)
+        for name, group, size, order in self._groups():
+            hidden = covered(self._obstacle, np.array([s.xyz for s in group]).reshape(-1, 3), eye)
+            behind = [s for s, h in zip(group, hidden, strict=True) if h]
+            white = np.full((len(behind), 3), 255, np.uint8)
+            self._dots(f"{name} core", behind, white, HOLLOW * size, order + 2)
+
+    def _dots(self, name: str, sensors: Sequence[Sensor], rgb: NDArray[np.uint8], width: float, order: int) -> None:
+        """One cloud of dots: few actors draw fast."""
+        self.plotter.remove_actor(name, reset_camera=False, render=False)  # type: ignore[arg-type]
+        if sensors:
             actor = self.plotter.add_points(
-                np.array([s.xyz for s in sensors]), scalars=colours, rgb=True, point_size=width, lighting=False,
-                render_points_as_spheres=True, name=f"{name} {kind}", reset_camera=False, render=False,
+                np.array([s.xyz for s in sensors]), scalars=rgb, rgb=True, point_size=width, lighting=False,
+                render_points_as_spheres=True, name=name, reset_camera=False, render=False,
             )  # fmt: skip
-            on_top(actor, order + (kind == "dot"))
+            on_top(actor, order)
 
     def reset(self) -> None:
         """The first view."""
         scene.look(self.plotter, self._surface.points, View(), Room(right=0.12))
+        self._hollow()
 
     def turn(self, azimuth: float, elevation: float, zoom: float) -> None:
         """Move the camera around the machine (degrees) and towards it (factor)."""
@@ -78,6 +94,7 @@ class Stage:
         camera.OrthogonalizeViewUp()
         camera.Zoom(zoom)
         self.plotter.renderer.ResetCameraClippingRange()
+        self._hollow()
 
     def paper(self, dark: bool) -> None:
         """Light or dark ground."""
@@ -108,6 +125,7 @@ class Stage:
         self._pressed = np.array(interactor.GetEventPosition(), float)
 
     def _release(self, style: Any, _event: str) -> None:
+        self._hollow()
         now = np.array(style.GetInteractor().GetEventPosition(), float)
         found = self.at(*now) if np.linalg.norm(now - self._pressed) <= STILL else None
         if found is not None:

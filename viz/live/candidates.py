@@ -42,12 +42,14 @@ def confusion(names: Sequence[str], cosine: NDArray[np.float64], *, theme: Theme
     """|cosine| between the traces of candidates, (n, n): 1 cannot be told apart with these sensors and tests."""
     c = np.abs(np.asarray(cosine, float))
     out = figure(theme, title={"text": "Traces in common (1: cannot be told apart)", "x": 0.02, "font": {"size": 13}})
+    numbers = [str(i) for i in range(1, len(names) + 1)]
+    labels = [f"{name}  {i}" for name, i in zip(names, numbers, strict=True)]
     out.add_heatmap(
-        z=[plain(row) for row in c], x=list(names), y=list(names), zmin=0, zmax=1, colorscale="Blues", showscale=False,
+        z=[plain(row) for row in c], x=numbers, y=labels, zmin=0, zmax=1, colorscale="Blues", showscale=False,
         texttemplate="%{z:.2f}", hovertemplate="%{x}<br>%{y}<br>%{z:.3f}<extra></extra>",
     )  # fmt: skip
-    out.update_yaxes(autorange="reversed")
-    out.update_xaxes(tickangle=35)
+    out.update_yaxes(autorange="reversed", dtick=1)
+    out.update_xaxes(type="category", dtick=1, tickangle=0)
     return out
 
 

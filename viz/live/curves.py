@@ -48,7 +48,7 @@ def sensor(comparison: Comparison, channel: str, *, theme: Theme = LIGHT) -> go.
         _line(out, x, earlier[thin], "earlier residual", ORANGE, 2, "dash")
     _line(out, x, comparison.residual(c)[thin], "residual", BLUE, 2)
     out.update_yaxes(title="°C", row=1, col=1)
-    out.update_yaxes(title="measured − model (K)", row=2, col=1)
+    out.update_yaxes(title="residual (K)", row=2, col=1)
     out.update_xaxes(title=f"time ({unit})", row=2, col=1)
     return out
 
