@@ -74,9 +74,10 @@ def fan_shares(machine: Any, fan: Fan) -> dict[str, float]:
     ducts = ducts_of(machine)
     if not ducts:
         return {"airgap": 1.0}
-    rest = parallel_shares([[duct] for duct in ducts.values()], fan.flow_m3_h / 3600.0, air(fan.air_C))
-    beside = {name: (1.0 - fan.gap_share) * share for name, share in zip(ducts, rest, strict=True)}
-    return {name: share for name, share in {"airgap": fan.gap_share, **beside}.items() if share > 0.0}
+    beside = 1.0 - fan.gap_share
+    split = parallel_shares([[duct] for duct in ducts.values()], beside * fan.flow_m3_h / 3600.0, air(fan.air_C))
+    shares = {"airgap": fan.gap_share, **{name: beside * share for name, share in zip(ducts, split, strict=True)}}
+    return {name: share for name, share in shares.items() if share > 0.0}
 
 
 def stirred(share: float, films: Films, radius: float, top_rpm: float) -> Law:

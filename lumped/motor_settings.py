@@ -70,7 +70,10 @@ class Fan:
 def read_fan(machine: Any) -> Fan | None:
     """The through-flow of [fans], if the machine is open to it."""
     table = {key: value for key, value in machine.sections.get("fans", {}).items() if key != "cowl"}
-    return read(Fan, table, f"{machine.name} [fans]") if table else None
+    found = read(Fan, table, f"{machine.name} [fans]") if table else None
+    if found is not None and found.gap_share > 1.0:
+        raise InputError(f"gap_share = {found.gap_share:g} is not possible", f"{machine.name} [fans]", "from 0 to 1")
+    return found
 
 
 def read_films(machine: Any) -> Films:
