@@ -69,7 +69,7 @@ def steps(folder: Folder) -> list[dict[str, Any]]:
     roles = {t.name: t.role for t in folder.case.tests}
     return [
         {
-            "number": r.number, "action": r.action, "effect": r.effect, "why": r.why,
+            "number": r.number, "action": r.action, "effect": r.effect, "effects": list(r.effects), "why": r.why,
             "tests": [
                 {"name": name, "role": roles[name], "rmse_K": {"before": before, "after": after}}
                 for name, (before, after) in r.rmse_K.items() if name in roles

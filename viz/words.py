@@ -30,8 +30,8 @@ def verdict(diagnosis: Document | None, comparison: Document | None) -> tuple[st
 
 
 def story(history: Sequence[Document]) -> str:
-    """What the last accepted addition did to the tests that were never used; empty without one."""
-    added = [r for r in history if r["action"] == "add"]
+    """What the last addition that still counts did to the tests that were never used; empty without one."""
+    added = [r for r in history if r["action"] == "add" and r["effect"] in history[-1].get("effects", [r["effect"]])]
     if not added:
         return ""
     held = [t for t in added[-1]["tests"] if t["role"] == "hold-out"]
@@ -47,8 +47,10 @@ def detail(diagnosis: Document | None) -> str:
     best = next((c for c in (diagnosis or {}).get("candidates", []) if c["decision"] == "named"), None)
     if best is None:
         return ""
-    rmse, name = best.get("rmse_K"), spoken([best["effect"]])
-    gain = f" It would bring the error from {rmse['before']:.2f} K to {rmse['after']:.2f} K." if rmse else ""
+    name, held = spoken([best["effect"]]), best.get("holdout_rmse_K")
+    rmse, tests = held or best.get("rmse_K"), "tests never used" if held else "the tests used"
+    without = f" All else fitted anew, the error on {tests} is {rmse['before']:.2f} K without it" if rmse else ""
+    gain = f"{without} and {rmse['after']:.2f} K with it." if rmse else ""
     return f"{name[0].upper()}{name[1:]}: {amplitude(best)}.{gain}"
 
 

@@ -109,6 +109,7 @@ def test_the_whole_loop(root, page, served):
     page.click("#undo")
     page.wait_for_function("document.querySelector('#revision').innerText === 'revision 2'")
     assert error(page, "town") == pytest.approx(start)
+    assert "convection at flange" in page.inner_text("#verdict")  # the diagnosis of this very model is back
     kept(root, page, "5-undone")
 
     page.reload()

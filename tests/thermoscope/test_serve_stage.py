@@ -9,6 +9,7 @@ from thermoscope.workbench.stage import Stage
 from viz import split
 from viz.cut import cut_away
 from viz.data import Sensor
+from viz.scene import View
 
 SENSORS = tuple(Sensor(name, xyz, r, 1.0) for (name, xyz), r in zip(POSITIONS.items(), (0.2, 3.0, -4.0), strict=True))
 
@@ -60,6 +61,19 @@ def test_dots_are_drawn_where_clicks_find_them(stage):
         x, y = stage.on_screen()[sensor.name]
         colour = [int(VERDICT[sensor.verdict][i : i + 2], 16) for i in (1, 3, 5)]
         assert np.abs(picture[picture.shape[0] - round(y), round(x)] - colour).max() < 12
+
+
+def test_a_dot_that_something_covers_is_hollow(surface):
+    """One behind the middle of the machine, one before it."""
+    towards, middle = View().axes()[0], surface.points.mean(axis=0)
+    sensors = tuple(Sensor(f"{by}", tuple(middle + by * towards), 0.0) for by in (-0.5, 0.5))
+    one = Stage(surface, (20.0, 120.0), lambda name: None)
+    one.markers(sensors, "0.5")
+    picture = np.asarray(one.plotter.screenshot(return_img=True)).astype(int)
+    middles = [picture[picture.shape[0] - round(y), round(x)] for x, y in one.on_screen().values()]
+    one.close()
+    assert middles[0].min() > 240
+    assert middles[1].min() < 100
 
 
 def test_the_picture_follows_temperature_view_and_paper(stage, surface):

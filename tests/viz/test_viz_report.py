@@ -8,7 +8,7 @@ from fictional import HISTORY, comparison, documents
 from PIL import Image
 
 from viz.report import Report, render, write_report
-from viz.words import verdict
+from viz.words import story, verdict
 
 
 @pytest.fixture(scope="module")
@@ -104,3 +104,9 @@ def test_pictures_travel_inside(page):
 def test_every_verdict_has_its_words(code, word):
     compare, diagnose = documents()
     assert word in verdict({**diagnose, "verdict": code}, compare)[1]
+
+
+def test_an_addition_that_was_undone_is_no_story():
+    back = {"number": 3, "action": "step back", "effect": "", "effects": [], "tests": []}
+    assert "from 4.85 K to 0.93 K on road-2" in story(HISTORY)
+    assert story([*HISTORY, back]) == ""

@@ -31,19 +31,26 @@ def plan_of(case: Path) -> str:
     return fingerprint(case, "model.toml")
 
 
+def model_of(folder: Folder) -> str:
+    """Fingerprint of the model as it stands, however it came about."""
+    last = folder.history.last
+    return hashlib.sha256(repr((last.effects, sorted(last.values.items()))).encode()).hexdigest()
+
+
 def save_diagnosis(folder: Folder, document: Mapping[str, Any]) -> None:
     """Keep it, unless the case lies inside the installed package."""
     if PACKAGE in folder.settings.path.resolve().parents:
         return
     path = folder.settings.path
-    kept = {**document, "fingerprint": fingerprint(path), "plan": plan_of(path)}
+    kept = {**document, "model": model_of(folder), "plan": plan_of(path)}
     write_whole(folder.settings.out / NAME, json.dumps(plain(kept), indent=1))
 
 
 def saved_diagnosis(folder: Folder) -> dict[str, Any] | None:
-    """The kept diagnosis, if nothing in the case has changed since."""
+    """The kept diagnosis, if it is of these tests and this model: also after a step that was undone."""
     kept = last_diagnosis(folder)
-    return kept if kept and kept.get("fingerprint") == fingerprint(folder.settings.path) else None
+    same = kept and kept.get("model") == model_of(folder) and kept.get("plan") == plan_of(folder.settings.path)
+    return kept if same else None
 
 
 def last_diagnosis(folder: Folder) -> dict[str, Any] | None:

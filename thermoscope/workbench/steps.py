@@ -48,7 +48,8 @@ def stepped(
 
 
 def reported(folder: Folder, tell: Progress) -> Path:
-    """Write out/report.html."""
+    """Write out/report.html; right after an addition with the diagnosis that led to it."""
     from thermoscope.commands.show import write_page
 
-    return write_page(folder, str(folder.settings.path), folder.settings.out, tell)
+    again = folder.history.last.action != "add"
+    return write_page(folder, str(folder.settings.path), folder.settings.out, tell, again)
