@@ -66,7 +66,7 @@ def machine_schema() -> Schema:
     tables["machine"] = {"type": "object", "properties": header, "required": ["family"]}
     tables["geometry"] = {"type": "object", "properties": geometry, "additionalProperties": False}
     return {
-        "$schema": "https://json-schema.org/draft/2020-12/schema", "$id": "machine.json",
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "machine.toml: a machine by its dimensions", "type": "object", "properties": tables,
         "required": ["machine"], "additionalProperties": False,
     }  # fmt: skip
