@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from viz.colours import LIGHT, Theme
 from viz.labels import spread
-from viz.scene import View, set_font
+from viz.scene import SIZE, View, set_font
 
 if TYPE_CHECKING:
     import pyvista
@@ -71,6 +71,11 @@ def _callout(p: pyvista.Plotter, label: Label, end: Array, side: int, theme: The
     line = p.add_mesh(pyvista.Line(label.xyz, end), color=theme.ink, line_width=2.0, opacity=0.8, lighting=False)
     on_top(line, 1)
     p.add_actor(text(label.text, end, label.colour, side, size), reset_camera=False, pickable=False)
+
+
+def width(text: str, size: int) -> float:
+    """Share of the picture's width that a label of that size takes, about."""
+    return 0.55 * size * (len(text) + 1) / SIZE[0]
 
 
 def text(text: str, at: Array, colour: str, side: int, size: int) -> Any:

@@ -10,7 +10,7 @@ import numpy as np
 
 from geom.errors import InputError
 from viz import scene
-from viz.callouts import Label, callouts
+from viz.callouts import Label, callouts, width
 from viz.colours import BLUE, LIGHT, VERMILION, Theme, missing
 from viz.cut import QUARTER, Wedge, cut_away
 from viz.nodes import SplitMesh
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     import pyvista
 
 BEHIND = 10.0  # nats behind the likeliest place from which a place stays grey
+SMALL = 13  # size of the labels
 FAINT = 0.02  # of the largest heat: less is not labelled
 
 
@@ -32,6 +33,13 @@ def mean_heat(where: Sequence[Mapping[str, Any]], test: str) -> dict[str, float]
     best = max(w["evidence_nats"] for w in where)
     near = [w for w in where if w["evidence_nats"] > best - BEHIND]
     return {w["place"]: float(np.mean(w["heat"][test]["heat_W"])) for w in near}
+
+
+def located(where: Sequence[Mapping[str, Any]]) -> bool:
+    """Does the scan put the missing heat somewhere, or could it be anywhere?"""
+    from validation.diagnose import LOCATED
+
+    return max((w["evidence_nats"] for w in where), default=0.0) > LOCATED
 
 
 def missing_in_machine(
@@ -46,6 +54,9 @@ def missing_in_machine(
 ) -> pyvista.Plotter:
     """Parts coloured by the heat (W) that would have to enter them, below zero leave them; unlikely places are grey.
 
+    Each place by itself, not together; its label says how much speaks for it (nats). The headline says when that is too
+    little to locate the heat.
+
     where : as in a `diagnose` document;  test : whose mean is drawn
     """
     p, view, heat = scene.plotter(theme), view or View(), mean_heat(where, test)
@@ -59,14 +70,19 @@ def missing_in_machine(
         diffuse=0.28, culling="back",
     )  # fmt: skip
     scene.colour_bar(p, "W", theme)
-    scene.headline(p, f"Heat that the model misses, mean over {test}", theme)
-    room = Room(0.2, 0.27, TITLE)
+    unsure = "" if located(where) else " (too little evidence to locate it)"
+    scene.headline(p, f"Heat that the model misses, mean over {test}{unsure}", theme)
+    scene.footnote(p, "at each place by itself; nats: evidence for it", theme)
+    nats = {w["place"]: w["evidence_nats"] for w in where}
+    words = {n: f"{n}  {q:+.0f} W, {nats[n]:.0f} nats" for n, q in heat.items() if abs(q) > FAINT * top}
+    wide = width(max(words.values(), key=len), SMALL)
+    room = Room(0.02 + wide, 0.12 + wide, TITLE)
     scene.look(p, surface.points, view, room)
-    seen = anchors(surface, view, room)
+    seen = {nodes.parts[i]: xyz for i, xyz in anchors(surface, view, room).items()}
     labels = [
-        Label(tuple(xyz), f"{nodes.parts[i]}  {watts[i]:+.0f} W", VERMILION if watts[i] > 0 else BLUE)  # type: ignore[arg-type]
-        for i, xyz in seen.items() if abs(watts[i]) > FAINT * top
+        Label(tuple(seen[n]), text, VERMILION if heat[n] > 0 else BLUE)  # type: ignore[arg-type]
+        for n, text in words.items() if n in seen
     ]  # fmt: skip
-    callouts(p, labels, surface.points, view, theme, size=13)
+    callouts(p, labels, surface.points, view, theme, size=SMALL)
     scene.save(p, png)
     return p

@@ -1,8 +1,8 @@
 """Walks through the workbench and keeps pictures for the pages: python docs/images/workbench.py CASE [FOLDER] [--quick]
 
-Calibrate (unless it is), click the failing sensor's dot, diagnose, add what is named, undo, reload, report. Prints how
-long each step took. Serves a copy of the case, so that nothing of the case itself is changed. Needs playwright and
-Chromium. --quick : 20 draws of chance
+Calibrate (unless it is), click the failing sensor's dot; then by keyboard alone diagnose, add what is named, report and
+undo; reload. Prints how long each step took. Serves a copy of the case, so that nothing of the case itself is changed.
+Needs playwright and Chromium. --quick : 20 draws of chance
 """
 
 from __future__ import annotations
@@ -40,15 +40,25 @@ class Walk:
         self.begun = now
 
     def shot(self, name: str) -> None:
-        """A picture, after the bars have fallen; the clock starts again."""
+        """A picture of the page's top, after the bars have fallen; the clock starts again."""
+        if name != "diagnosed":
+            self.page.evaluate("window.scrollTo(0, 0)")
         self.page.wait_for_timeout(2500)
         self.page.screenshot(path=self.folder / f"workbench-{name}.png")
         self.begun = time.perf_counter()
 
-    def step(self, button: str, what: str) -> None:
-        """Press a button that changes the model, keep the result whatever it is, wait until it is shown."""
+    def tab_to(self, button: str) -> None:
+        """Press Tab until the button has the focus."""
+        for _ in range(200):
+            self.page.keyboard.press("Tab")
+            if self.page.evaluate("q => document.activeElement.matches(q)", button):
+                return
+        raise SystemExit(f"Tab does not reach {button}")
+
+    def step(self, key: str, what: str) -> None:
+        """Press a key that changes the model, keep the result whatever it is, wait until it is shown."""
         before = self.page.inner_text("#revision")
-        self.page.click(button)
+        self.page.keyboard.press(key)
         self.page.wait_for_selector("#outcome")
         self.took(what)
         if self.page.is_visible("#anyway"):
@@ -92,25 +102,26 @@ def story(walk: Walk, address: str) -> None:
     page.wait_for_selector("#machine img[src^=blob], #machine canvas", state="attached")
     walk.took("open")
     if page.inner_text("#revision") == "revision 0":
-        walk.step("#calibrate", "calibrate")
+        walk.tab_to("#calibrate")
+        walk.step("Enter", "calibrate")
     walk.shot("opened")
     clicked(walk, "T_flange_right_degC")
     walk.shot("sensor")
     if "--quick" in sys.argv:
         page.click("#draws", force=True)
         page.click(".v-list-item >> text=20")
-    page.click("#diagnose")
+    page.keyboard.press("d")
     page.wait_for_function("/\\d+\\/\\d+/.test(document.querySelector('#job-message')?.innerText)")
-    walk.page.screenshot(path=walk.folder / "workbench-searching.png")
+    page.screenshot(path=walk.folder / "workbench-searching.png")
     page.wait_for_selector("#verdict")
     walk.took("diagnose")
-    page.locator("#missing").scroll_into_view_if_needed()
-    page.evaluate("document.querySelector('#missing').scrollIntoView({block: 'start'}); window.scrollBy(0, -70)")
+    page.evaluate("document.querySelector('#missing').scrollIntoView({block: 'start'})")
     walk.shot("diagnosed")
-    page.evaluate("window.scrollTo(0, 0)")
-    walk.step("tr.named button, tr.group button", "add")
+    walk.tab_to("tr.named button, tr.group button")
+    walk.step("Enter", "add")
     walk.shot("added")
-    walk.step("#undo", "undo")
+    reported(walk)
+    walk.step("u", "undo")
     walk.shot("undone")
     undone = page.inner_text("#errors")
     page.reload()
@@ -118,14 +129,20 @@ def story(walk: Walk, address: str) -> None:
     walk.took("reload")
     if page.inner_text("#errors").split("(hold-out)")[-1].split("→")[-1] not in undone:
         raise SystemExit("the errors after a reload are others than before")
-    page.click("#report")
-    page.wait_for_selector("#report-link")
-    walk.took("report")
-    with page.context.expect_page() as opening:
-        page.click("#report-link")
-    opening.value.screenshot(path=walk.folder / "workbench-report.png")
     page.click("[aria-label='dark page']")
     walk.shot("dark")
+
+
+def reported(walk: Walk) -> None:
+    """Write the report and open it in a tab of its own."""
+    walk.page.keyboard.press("r")
+    walk.page.wait_for_selector("#report-link")
+    walk.took("report")
+    with walk.page.context.expect_page() as opening:
+        walk.page.click("#report-link")
+    opening.value.screenshot(path=walk.folder / "workbench-report.png", full_page=True)
+    opening.value.close()
+    walk.page.evaluate("document.activeElement.blur()")
 
 
 def main() -> None:

@@ -145,11 +145,12 @@ def _pictures(folder: Folder, into: Path, diagnosis: Mapping[str, Any] | None) -
 
 
 def _missing_heat(diagnosis: Mapping[str, Any] | None, nodes: SplitMesh, into: Path) -> dict[str, Path]:
-    """Caption -> picture of where a diagnosis puts the missing heat."""
+    """Caption -> picture of where a diagnosis puts the missing heat; none where it cannot tell."""
     from viz import missing_in_machine
+    from viz.missing import located
 
     where = (diagnosis or {}).get("where", [])
-    if not where:
+    if not located(where):
         return {}
     test, file = list(where[0]["heat"])[-1], into / "missing-heat.png"
     missing_in_machine(nodes, where, test, png=file).close()
