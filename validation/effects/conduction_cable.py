@@ -1,4 +1,4 @@
-"""Heat that leaves along the leads."""
+"""Heat that leaves along the leads of a winding that stands still."""
 
 from dataclasses import dataclass
 
@@ -6,7 +6,7 @@ from lumped.laws import Fixed
 from lumped.network import Network
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import conductance_scale, exchange
-from validation.effects.sites import ambient, named
+from validation.effects.sites import ambient, like, named
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,8 @@ class CableConduction(Effect):
 
     @classmethod
     def where(cls, scene: Scene) -> list[str]:
-        return named(scene.network, "winding") if ambient(scene.network) else []
+        still = [place for place in named(scene.network, "winding") if not like(place, "rotor")]
+        return still if ambient(scene.network) else []
 
     def extend(self, network: Network) -> Network:
         link = exchange(network, self.name, self.place, str(ambient(network)), Fixed(1.0))
