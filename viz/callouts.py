@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     import pyvista
 
 Array = NDArray[np.float64]
-HOLLOW = 0.5  # of the diameter of a dot that something covers is left white
+HOLLOW = 0.42  # of the diameter of a dot that something covers is left white
 
 
 @dataclass(frozen=True)

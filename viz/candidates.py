@@ -85,14 +85,24 @@ def confusion(names: Sequence[str], cosine: NDArray[np.float64], *, png: str | P
     return paper.saved(figure, png)
 
 
-def amplitude(candidate: Mapping[str, Any]) -> str:
-    """'12.3 W/m2/K (95 %: 8.1 ... 16.5)'; empty where it has none."""
+def size(candidate: Mapping[str, Any]) -> str:
+    """'12.3 W/m2/K'; empty where it has none."""
     a = candidate["amplitude"]
     if a["value"] is None or not np.isfinite(a["value"]):
         return ""
-    text = f"{a['value']:.3g} {a['unit']}".removesuffix(" 1")
-    known = a.get("ci95") and np.isfinite(a["ci95"]).all()
-    return f"{text} (95 %: {a['ci95'][0]:.3g} … {a['ci95'][1]:.3g})" if known else text
+    return f"{a['value']:.3g} {a['unit']}".removesuffix(" 1")
+
+
+def interval(candidate: Mapping[str, Any]) -> str:
+    """'8.1 ... 16.5', 95 %; empty where it is not known."""
+    ci95 = candidate["amplitude"].get("ci95")
+    return f"{ci95[0]:.3g} … {ci95[1]:.3g}" if ci95 and np.isfinite(ci95).all() else ""
+
+
+def amplitude(candidate: Mapping[str, Any]) -> str:
+    """'12.3 W/m2/K (95 %: 8.1 ... 16.5)'; empty where it has none."""
+    text, between = size(candidate), interval(candidate)
+    return f"{text} (95 %: {between})" if text and between else text
 
 
 def matrix(cosines: Mapping[str, Mapping[str, float]], names: Sequence[str]) -> NDArray[np.float64]:

@@ -46,8 +46,8 @@ def before_after(
     for label, test in zip(ax.get_yticklabels(), reversed(tests), strict=True):
         label.set_fontweight("bold" if test["role"] == "hold-out" else "normal")
     if floor_K is not None:
-        ax.axvline(floor_K, color=LIGHT.ink, lw=0.9, ls=":")
-        ax.text(floor_K, 0.5, "\u00a0sensors' uncertainty", transform=ax.get_xaxis_transform(), fontsize=8, va="center")
+        ax.axvline(floor_K, color=LIGHT.faint, lw=0.9, ls=":", zorder=0)
+        ax.text(floor_K, 1.0, "sensors' uncertainty", transform=ax.get_xaxis_transform(), fontsize=8, va="bottom")
     ax.grid(False, axis="y")
     ax.set(xlabel="rms error (K)", title=title)
     ax.margins(x=0.12)

@@ -122,22 +122,25 @@ def _missing(r: Report) -> str:
     if located(r.diagnosis.get("where", [])) and r.diagnosis["where"][0].get("heat"):
         caption = "Heat that would have to enter (or leave, below zero) at the likeliest place, with its 2σ band."
         parts.append(html.plot(heat.missing_heat(r.diagnosis["where"]), "heat", caption))
+    parts.append(html.text("Errors: without the effect → with it, all else fitted anew each time."))
+    alike = [(c["effect"], ", ".join(c["confused_with"])) for c in ranked[:12] if c["confused_with"]]
+    likeness = html.table(["effect", "looks like"], alike)
     names = [c["effect"] for c in ranked[:10]]
     if r.diagnosis.get("confusion"):
         drawn = candidates.confusion(names, candidates.matrix(r.diagnosis["confusion"], names))
-        parts.append(html.more("Which of them look alike", html.plot(drawn, "confusion", "Likeness of their traces.")))
+        likeness += html.plot(drawn, "confusion", "Likeness of their traces.")
+    if likeness:
+        parts.append(html.more("Which of them look alike", likeness))
     return html.section("What was missing before the last step" if r.earlier else "What is missing", *parts)
 
 
-_HEADERS = ["effect", "score", "threshold", "amplitude", "error now (K)", "with it (K)", "held-out (K)"]
-_HEADERS += ["confused with", "decision"]
+_HEADERS = ["effect", "decision", "score", "threshold", "size", "95 % interval", "error (K)", "held-out (K)"]
 
 
 def _row(c: Document) -> list[html.Cell]:
-    rmse, held = c.get("rmse_K") or {}, c.get("holdout_rmse_K") or {}
-    numbers = [rmse.get("before"), rmse.get("after"), held.get("after")]
-    alike = ", ".join(c["confused_with"])
-    return [c["effect"], c["score"], c["threshold"], candidates.amplitude(c), *numbers, alike, c["decision"]]
+    """Errors: all else fitted anew, without it and with it."""
+    errors = [f"{e['before']:.2f} → {e['after']:.2f}" if e else "" for e in (c.get("rmse_K"), c.get("holdout_rmse_K"))]
+    return [c["effect"], c["decision"], c["score"], c["threshold"], candidates.size(c), candidates.interval(c), *errors]
 
 
 def _hidden(r: Report) -> str:
@@ -159,15 +162,17 @@ def _hidden(r: Report) -> str:
 
 
 def _values(r: Report) -> str:
-    rows = [
-        (
-            p["name"], _number(p["value"]), p["unit"], _interval(p.get("ci95")), _prior(p.get("prior")),
-            "yes" if p.get("identified", True) else "no: the data do not fix it",
-        )
-        for p in r.parameters
-    ]  # fmt: skip
-    headers = ["parameter", "value", "unit", "95 % interval", "expected before", "fixed by the data"]
-    return html.section("Calibrated values", html.table(headers, rows))
+    """What the data fix is in sight; what they leave as it was expected opens on a click."""
+    fixed = [_value(p) for p in r.parameters if p.get("identified", True) or "@" in p["name"]]
+    left = [_value(p) for p in r.parameters if not p.get("identified", True) and "@" not in p["name"]]
+    headers = ["parameter", "value", "unit", "95 % interval", "expected before"]
+    rest = html.more(f"{len(left)} values that the data do not fix", html.table(headers, left)) if left else ""
+    return html.section("Calibrated values", html.table(headers, fixed), rest)
+
+
+def _value(p: Document) -> list[html.Cell]:
+    unit = "" if p["unit"] == "1" else p["unit"]
+    return [p["name"], _number(p["value"]), unit, _interval(p.get("ci95")), _prior(p.get("prior"))]
 
 
 def _sensors(r: Report) -> str:
@@ -217,6 +222,8 @@ def _interval(ci95: Sequence[float] | None) -> str:
 
 
 def _prior(prior: Any) -> str:
+    if isinstance(prior, Mapping) and set(prior) == {"from", "to"}:
+        return _interval([prior["from"], prior["to"]])
     if isinstance(prior, Mapping):
         return ", ".join(f"{k} {v:.3g}" if isinstance(v, float) else f"{k} {v}" for k, v in prior.items())
     return "" if prior is None else str(prior)
