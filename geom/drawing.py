@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from html import escape
 from typing import TYPE_CHECKING
 
@@ -110,17 +110,27 @@ def _legend(machine: Machine, views: Views, pen: Pen, x: float, y: float) -> Ite
 
 
 def thumbnail_of(machine: Machine) -> str:
-    """A small SVG of the section across the axis and the section along it, without dimensions."""
+    """A small SVG of the section across the axis and the section along it, without dimensions.
+
+    Framed on the machine; a base plate that reaches further is cut off.
+    """
     views = Views(machine, _middle(machine))
-    (z0, z1), (low, high), gap = views.span, views.heights, 0.08 * views.width
-    view = f"{-views.width / 2:.1f} {-high:.1f} {views.width + gap + z1 - z0:.1f} {high - low:.1f}"
+    framed = Views(replace(machine, parts=tuple(part for part in machine.parts if part.name != "base")), views.z)
+    margin = 0.04 * framed.width
+    low, high, z0, z1 = (end + side * margin for end, side in zip((*views.heights, *framed.span), (-1, 1, -1, 1)))
+    wide = framed.width + 2 * margin
     text = "\n".join([
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{view}" width="320" height="160">',
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {wide + margin + z1 - z0:.1f} {high - low:.1f}" '
+        'width="320" height="160">',
         f"<title>{escape(machine.name)}</title>",
-        *views.across(),
-        f'<g transform="translate({views.width / 2 + gap - z0:.1f} 0)">',
-        *views.along(),
-        "</g>",
+        *_window(0.0, -wide / 2, -high, wide, high - low, views.across()),
+        *_window(wide + margin, z0, -high, z1 - z0, high - low, views.along()),
         "</svg>\n",
     ])  # fmt: skip
     return re.sub(r"(\.\d)\d+", r"\1", text)
+
+
+def _window(at: float, x: float, y: float, width: float, height: float, shapes: list[str]) -> list[str]:
+    """What of the shapes lies in a rectangle, drawn from `at` on."""
+    sides = f'x="{at:.1f}" width="{width:.1f}" height="{height:.1f}" viewBox="{x:.1f} {y:.1f} {width:.1f} {height:.1f}"'
+    return [f"<svg {sides}>", *shapes, "</svg>"]

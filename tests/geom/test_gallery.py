@@ -32,6 +32,16 @@ def test_every_machine_has_a_thumbnail_of_its_parts(page):
         assert {part.name for part in machine.parts} <= drawn <= {p.name for p in (*machine.parts, *machine.fluids)}
 
 
+def test_thumbnails_show_the_machine_and_not_the_plate(page):
+    """M1 is 350 mm long and 270 mm wide; its plate of 1500 x 400 mm does not make the picture any wider."""
+    size = {}
+    for name in ("pmsm-m1-plate", "pmsm-m1-no-base"):
+        svg = ElementTree.parse(page.parent / "thumbnails" / f"{name}.svg").getroot()
+        size[name] = float(svg.get("viewBox").split()[2])
+    assert 620.0 < size["pmsm-m1-plate"] < 1.1 * 620.0
+    assert size["pmsm-m1-plate"] == size["pmsm-m1-no-base"]
+
+
 def test_every_machine_says_where_its_numbers_are_from_and_which_are_assumed():
     for entry in catalogue():
         assert len(entry.source) > 10, entry.name

@@ -180,3 +180,20 @@ def test_fins_at_a_spacing_stand_around_the_top():
     tips = sorted({round(math.atan2(y, x), 6) for x, y, _ in loop if math.hypot(x, y) > 0.129})
     assert len(tips) == 18
     assert sum(tips) / 18 == pytest.approx(math.pi / 2, abs=1e-6)
+
+
+def test_radial_fins_go_all_around_but_for_the_foot():
+    """18 discs; those beside the foot lack the strip that it takes, with a fin's thickness free on either side."""
+    machine = load_machine("tefc-industrial-radial")
+    g, housing = machine.geometry, machine.part("housing")
+    wall = g.stator.outer_diameter / 2 + g.housing.thickness
+    tip, half, thick = wall + g.housing.fin_height, g.foot.width / 2 + g.housing.fin_thickness, g.housing.fin_thickness
+    fins = [(profile, z0, z1) for profile, z0, z1 in housing.prisms if profile.area > 1.1 * housing.prisms[0][0].area]
+    assert len(fins) == 18
+    foot0, foot1 = machine.part("foot").span
+    beside = sum(z1 > foot0 - thick / 2 and z0 < foot1 + thick / 2 for _, z0, z1 in fins)
+    assert 3 < beside < 12
+    under = [half * math.sqrt(r**2 - half**2) + r**2 * math.asin(half / r) for r in (tip, wall)]
+    by_hand = thick * (18 * math.pi * (tip**2 - wall**2) - beside * (under[0] - under[1]))
+    bare = housing.prisms[0][0].area * (housing.span[1] - housing.span[0])
+    assert housing.volume - bare == pytest.approx(by_hand, rel=1e-9)

@@ -69,7 +69,7 @@ def test_all_ways_beside_the_gap_drop_the_same_pressure(machine):
 
 
 def test_laminar_ducts_by_hand(machine):
-    """In each of 12 ducts: Hagen and Poiseuille's 128 mu L Q / (pi d^4), and 1.57 dynamic pressures at edge and exit."""
+    """In each of 12 ducts: Hagen and Poiseuille's 128 mu L Q / (pi d^4), 1.57 dynamic pressures at edge and exit."""
     rated, warm = 138.0 / 3600.0, air(40.0)
     each = shares_of(machine)["air.ducts"] * rated / 12
     speed = each / (np.pi * 0.010**2)

@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from geom.families.nozzles import too_near
-from geom.families.radial_flux.housing import fin_spans, nozzles
+from geom.families.radial_flux.housing import nozzles
 from geom.families.radial_flux.layout import Layout
 from geom.families.radial_flux.rotors import shapes_of_magnets
 from geom.parameters import impossible
@@ -100,8 +100,6 @@ def _housing_rules(g: Any, at: Layout) -> tuple[Rule, ...]:
                   (g.foot.length <= g.base.length, "base.length_mm", g.base.length * mm, "at least the foot"),
                   (g.foot.length < g.stator.stack_length, "foot.length_mm", g.foot.length * mm,
                    f"less than the stack, {g.stator.stack_length * mm:.4g} mm")]  # fmt: skip
-        if h.kind == "radial-fins":
-            rules += [(bool(fin_spans(g, at)), "foot.length_mm", g.foot.length * mm, "shorter, to leave room for fins")]
     return tuple(rules)
 
 

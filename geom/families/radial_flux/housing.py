@@ -65,23 +65,29 @@ def _over_foot(g: Any, at: Layout, angle: float) -> bool:
 
 
 def _radial_fins(g: Any, at: Layout) -> tuple[Prism, ...]:
-    """Discs around the housing, none over the foot."""
+    """Discs around the housing, cut out where the foot stands."""
     bare, disc = shapes.ring(at.core, at.wall), shapes.ring(at.core, at.fins)
     prisms, here = [], at.cap0
     for z0, z1 in fin_spans(g, at):
-        prisms += [(bare, here, z0), (disc, z0, z1)]
+        half = (z1 - z0) / 2
+        beside = g.base.kind != "none" and at.foot0 - half < z1 and z0 < at.foot1 + half
+        prisms += [(bare, here, z0), (_around_foot(g, at) if beside else disc, z0, z1)]
         here = z1
     return (*prisms, (bare, here, at.cap1))
+
+
+def _around_foot(g: Any, at: Layout) -> Profile:
+    """A disc that leaves as much as a fin's thickness free on either side of the foot."""
+    free = min(g.housing.fin_thickness, 0.05 * at.wall)
+    loop = shapes.slotted_loop(at.fins, g.foot.width + 2 * free, at.wall, (-math.pi / 2,))
+    return Profile(loop, (shapes.circle_loop(at.core),))
 
 
 def fin_spans(g: Any, at: Layout) -> list[tuple[float, float]]:
     """Axial range of each radial fin (m)."""
     pitch = g.housing.fin_spacing or (at.cap1 - at.cap0) / g.housing.fins
     half, first = g.housing.fin_thickness / 2, at.middle - (g.housing.fins - 1) / 2 * pitch
-    centres = [first + i * pitch for i in range(g.housing.fins)]
-    footed = g.base.kind != "none"
-    clear = [z for z in centres if not footed or z + half < at.foot0 - half or z - half > at.foot1 + half]
-    return [(z - half, z + half) for z in clear]
+    return [(first + i * pitch - half, first + i * pitch + half) for i in range(g.housing.fins)]
 
 
 def _spiral(g: Any, at: Layout) -> tuple[Prism, ...]:
