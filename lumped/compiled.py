@@ -13,7 +13,7 @@ from lumped import laws
 from lumped.kernel import Rows, Tangents
 from lumped.multipliers import multipliers, slopes
 from lumped.network import Link, Network, Parameter, Row, Source
-from lumped.terms import CONSTANT, LINEAR, POWER, RADIATION, TABLE, Terms
+from lumped.terms import CONSTANT, DYNAMIC, LINEAR, POWER, RADIATION, STIFF, TABLE, Terms
 
 Array = NDArray[np.float64]
 NOTHING = Row(np.empty(0, np.int64), np.empty(0))
@@ -55,6 +55,11 @@ class Compiled:
     terms: Terms
     tangents: Tangents
     rows: Rows
+
+    @property
+    def curved(self) -> bool:
+        """Whether any dynamic term touches the matrix."""
+        return bool(np.any(self.terms.kind[:, DYNAMIC] * self.terms.kind[:, STIFF]))
 
 
 def checked_inputs(network: Network, inputs: Mapping[str, Array | float], nt: int) -> dict[str, Array]:

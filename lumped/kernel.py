@@ -132,24 +132,17 @@ def _time_slope(T, K0, f, df, a, out):
 
 
 @inner
-def _factorise(C, gh, G, W, pivot):
-    """W = C + gh G, factorised; False if singular."""
-    n = C.size
-    for i in range(n):
-        for j in range(n):
-            W[i, j] = gh * G[i, j]
-        W[i, i] += C[i]
-    return lu(W, pivot)
-
-
-@inner
 def _rates(T, K0, C, f, f2, u2, h, refactor, a, q):
     """Both stages of one step; False if the matrix is singular."""
     n, gh = C.size, GAMMA * h
     flow(T, K0, a.z[0], f, a.tau[0], a.v[0], q.F)
     if refactor:
         jacobian(T, K0, f, a.tau[0], a.v[0], q.G)
-        if not _factorise(C, gh, q.G, q.W, q.pivot):
+        for i in range(n):
+            for j in range(n):
+                q.W[i, j] = gh * q.G[i, j]
+            q.W[i, i] += C[i]
+        if not lu(q.W, q.pivot):
             return False
     patterns(T, a.w[0], a.vw[0])
     _time_slope(T, K0, f, q.df, a, q.Ft)
@@ -256,24 +249,21 @@ def _begin(T, u, t, h, w, df):
 
 
 @inner
-def _hold(C, F, G, W):
-    """W = G, but states with capacity stay: identity in their rows."""
-    for i in range(C.size):
-        copy(G[i], W[i])
-        if C[i] > 0.0:
-            F[i] = 0.0
-            clear(W[i : i + 1])
-            W[i, i] = 1.0
-
-
-@inner
 def _settle(T, K0, C, f, a, q):
-    """Bring the states without capacity to their balance at fixed others (Newton); q.G is left as -dF/dx there."""
+    """Bring the states without capacity to their balance at fixed others (Newton); q.G is left as -dF/dx there.
+
+    States with capacity stay: the identity stands in their rows.
+    """
     n = C.size
     for _ in range(MOST_ITERATIONS):
         flow(T, K0, a.z[0], f, a.tau[0], a.v[0], q.F)
         jacobian(T, K0, f, a.tau[0], a.v[0], q.G)
-        _hold(C, q.F, q.G, q.W)
+        for i in range(n):
+            copy(q.G[i], q.W[i])
+            if C[i] > 0.0:
+                q.F[i] = 0.0
+                clear(q.W[i : i + 1])
+                q.W[i, i] = 1.0
         if not lu(q.W, q.pivot):
             return False
         solve(q.W, q.pivot, q.F)
@@ -303,48 +293,27 @@ def _settle_tangents(T, S, C, f, a, D, q):
 
 
 @inner
-def _outputs(R, z, y):
+def _outputs(R, z, D, y, dy):
+    """Outputs and, where there are any, their tangents."""
     for r in range(y.size):
         for i in range(R.start[r], R.start[r + 1]):
             y[r] += R.weight[i] * z[R.at[i]]
-
-
-@inner
-def _tangent_outputs(R, D, dy):
-    for r in range(dy.shape[0]):
-        for i in range(R.start[r], R.start[r + 1]):
             if R.at[i] < D.shape[0]:
                 axpy(R.weight[i], D[R.at[i]], dy[r])
 
 
-@inner
-def _stiff(T):
-    """Whether any dynamic term touches the matrix."""
-    found = 0
-    for e in range(T.m.size):
-        found += T.kind[e, DYNAMIC] * T.kind[e, STIFF]
-    return found > 0
-
-
-@inner
-def _has_zero(C):
-    smallest = np.inf
-    for i in range(C.size):
-        smallest = min(smallest, C[i])
-    return smallest == 0.0
-
-
 @entry
-def integrate(time, u, C, K0, T, S, R, through, a, q, z_out, y, dy, heat):
+def integrate(time, u, C, K0, T, S, R, through, curved, massless, a, q, z_out, y, dy, heat):
     """March over the record; -1, or the index of the time at which the matrix was singular or x not finite.
 
     u (nt, nb); C (n,); K0 (n, n + nb + 1) constant terms; T, S, R as declared above
     through : (rows of all terms,) weights that sum a term's rows to the heat through it
+    curved : whether any dynamic term touches the matrix;  massless : whether any state has no capacity
     a, q : from stages() and work()
     z_out (nt or 0, n + nb), y (nt, nr), dy (nt, nr, p), heat (nt or 0, ne) cumulated J: filled here, zero before
     """
     n, nb, ne = C.size, u.shape[1], T.m.size
-    curved, massless, moves, counts = _stiff(T), _has_zero(C), dy.shape[2] > 0, heat.shape[0] > 0
+    moves, counts = dy.shape[2] > 0, heat.shape[0] > 0
     h_last = -1.0
     for t in range(time.size):
         h = time[t] - time[max(t - 1, 0)]
@@ -380,7 +349,5 @@ def integrate(time, u, C, K0, T, S, R, through, a, q, z_out, y, dy, heat):
         if z_out.shape[0] > 0:
             for i in range(n + nb):
                 z_out[t, i] = a.z[0, i]
-        _outputs(R, a.z[0], y[t])
-        if moves:
-            _tangent_outputs(R, q.D, dy[t])
+        _outputs(R, a.z[0], q.D, y[t], dy[t])
     return -1

@@ -128,6 +128,7 @@ def march(
     u, x0 = boundary_table(network, record.boundaries, nt), initial_state(network, record.initial)
     failed = integrate(
         time, u, core.C, core.K0, core.terms, core.tangents, core.rows, through,
+        core.curved, bool(np.any(core.C == 0.0)),
         stages(x0, u[0], core.terms), scratch, z, y, dy, heat,
     )  # fmt: skip
     if failed >= 0:

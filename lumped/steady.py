@@ -56,6 +56,7 @@ def steady(
     z, y, dy, scratch = np.zeros((1, network.size)), np.zeros((1, nr)), np.zeros((1, nr, p)), work(n, ne, p)
     failed = integrate(
         np.zeros(1), u, np.zeros(n), core.K0, core.terms, core.tangents, core.rows, np.zeros(core.terms.row.size),
+        core.curved, True,
         stages(x0, u[0], core.terms), scratch, z, y, dy, np.zeros((0, ne)),
     )  # fmt: skip
     if failed >= 0 or np.linalg.eigvals(scratch.G).real.min() <= 0:

@@ -110,17 +110,12 @@ def clear(A):
 
 
 @inner
-def _sum(at, weight, first, last, z):
-    out = 0.0
-    for i in range(first, last):
-        out += weight[i] * z[at[i]]
-    return out
-
-
-@inner
 def look(T, e, side, z):
     """The temperature a law sees at its side HOT or COLD."""
-    return _sum(T.at, T.weight, T.start[e, side], T.start[e + 1, side], z)
+    out = 0.0
+    for i in range(T.start[e, side], T.start[e + 1, side]):
+        out += T.weight[i] * z[T.at[i]]
+    return out
 
 
 @inner
