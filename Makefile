@@ -3,7 +3,7 @@ export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 BIN := .venv/bin
 
-.PHONY: demo test docs setup check lock clean
+.PHONY: demo test docs benchmark setup check lock clean
 
 demo: setup  ## the whole loop on the shipped hidden-effect case
 	@$(BIN)/thermoscope demo --out out/demo
@@ -13,6 +13,13 @@ test: setup  ## every check: style, types, import contracts, tests
 
 docs: setup  ## the documentation as a site, in out/site
 	@$(BIN)/mkdocs build --quiet
+
+benchmark: setup  ## every benchmark at a small size, results in out/benchmarks; hours at full size: docs/benchmarks.md
+	@mkdir -p out/benchmarks
+	@for name in geometry field network viz; do echo "== $$name"; $(BIN)/python benchmarks/$$name.py --json out/benchmarks/$$name.json || exit 1; done
+	@echo "== condensation"; $(BIN)/python benchmarks/condensation.py series-dc-100kw --coarse --json out/benchmarks/condensation.json
+	@echo "== diagnosis"; $(BIN)/python benchmarks/diagnosis.py --draws 20 --samples 100000 --json out/benchmarks/diagnosis.json
+	@echo "== hidden_effects"; $(BIN)/python benchmarks/hidden_effects.py --seeds dev --count 2 --classes nothing one --json out/benchmarks/hidden_effects.json
 
 setup:
 	@scripts/setup

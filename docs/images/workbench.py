@@ -20,7 +20,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 from playwright.sync_api import Page, TimeoutError, sync_playwright
-from scipy.ndimage import center_of_mass, label
+from scipy.ndimage import binary_dilation, center_of_mass, label
 
 HERE = Path(__file__).resolve().parent
 LONG = 3_600_000  # ms
@@ -67,11 +67,11 @@ class Walk:
 
 
 def dots(page: Page, colour: tuple[int, int, int]) -> Iterator[tuple[float, float]]:
-    """Page coordinates of the dots of that colour on the machine, the largest first."""
+    """Page coordinates of the dots and rings of that colour on the machine, the largest first."""
     box = page.locator("#machine").bounding_box()
     assert box is not None
     picture = np.asarray(Image.open(io.BytesIO(page.locator("#machine").screenshot())).convert("RGB")).astype(int)
-    patch, count = label(np.abs(picture - colour).max(axis=2) < 12)
+    patch, count = label(binary_dilation(np.abs(picture - colour).max(axis=2) < 40, iterations=3))
     for i in sorted(range(1, count + 1), key=lambda i: -int((patch == i).sum())):
         row, column = center_of_mass(patch == i)
         yield box["x"] + column, box["y"] + row

@@ -213,7 +213,7 @@ def _missing(session: Session) -> None:
 def _candidates(session: Session) -> None:
     with html.Div(classes="scroll"), html.Table():
         with html.Thead(), html.Tr():
-            for name in ("effect", "", "evidence", "error", "held out"):
+            for name in ("effect", "", "evidence", "error without → with"):
                 html.Th(name)
         with html.Tbody(), html.Tr(v_for="c in candidates", key="c.effect", classes=("c.decision",)):
             with html.Td(title=("c.title + '. ' + c.test",)):
@@ -230,8 +230,9 @@ def _candidates(session: Session) -> None:
             with html.Td(), html.Span(classes="evidence", title=("'score ' + c.score",)):
                 html.Span(classes="now", style=("{ width: c.width + '%' }",))
                 html.Span(classes="mark", style=("{ left: c.threshold + '%' }",))
-            html.Td("{{ c.error }}")
-            html.Td("{{ c.held }}")
+            with html.Td():
+                html.Div("{{ c.error }}")
+                html.Div("held out {{ c.held }}", v_if=("c.held",), classes="faint")
 
 
 def _steps() -> None:
