@@ -14,6 +14,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from fem.assembly import Block, FieldModel, Trace
+from fem.local import local_solutions, of_unit_energy
 from fem.solve import Solve, Solver
 
 Floats = NDArray[np.float64]
@@ -29,6 +30,7 @@ class Recipe:
     flux_shifts : shifts at which a unit flux through every face is solved too
     random_points : points with every film and contact times spread ** U(-1, 1): shapes know changed coefficients
     flux_points : solve the unit fluxes at the random points too
+    local_points : further points at which each part is solved for alone, between neighbours in `local_states` states
     max_states : largest number of mean nodes and shapes together; parts compete for shapes by energy
     """
 
@@ -37,6 +39,8 @@ class Recipe:
     flux_shifts: tuple[float, ...] = ()
     random_points: int = 4
     flux_points: bool = False
+    local_points: int = 0
+    local_states: int = 40
     spread: float = 5.0
     seed: int = 1
     max_states: int | None = None
@@ -83,12 +87,7 @@ def snapshots(
         out.append(
             solver.factor(field.stiffness(h, g))(np.column_stack([loads, fluxes]) if recipe.flux_points else loads)
         )
-    return scaled(np.column_stack(out), nominal)
-
-
-def scaled(S: Floats, nominal: sp.csr_array) -> Floats:
-    """Solutions (n, k) scaled to unit energy."""
-    return np.asarray(S / np.sqrt(np.einsum("ij,ij->j", S, nominal @ S)))
+    return of_unit_energy(np.column_stack(out), nominal)
 
 
 def drawn(coefficients: Mapping[str, float], spread: float, rng: np.random.Generator) -> dict[str, float]:
@@ -113,9 +112,31 @@ def energies(field: FieldModel, films: Mapping[str, float], contacts: Mapping[st
     return {name: sp.csr_array(K[block.dofs, block.dofs]) for name, block in field.blocks.items()}
 
 
-def principals(field: FieldModel, S: Floats, energy: Mapping[str, sp.csr_array]) -> dict[str, Principal]:
-    """What each part's field can look like, by energy, from snapshots S (n, n_snapshot) of unit energy."""
-    return {name: _principal(block, S[block.dofs], energy[name]) for name, block in field.blocks.items()}
+def alone(
+    field: FieldModel,
+    films: Mapping[str, float],
+    contacts: Mapping[str, float],
+    S: Floats,
+    loads: Floats,
+    recipe: Recipe,
+) -> dict[str, Floats]:
+    """part -> (n_part, k) fields of the part by itself at the recipe's local points; none: (n_part, 0)."""
+    rng = np.random.default_rng([recipe.seed, 2])
+    points = (
+        field.stiffness(drawn(films, recipe.spread, rng), drawn(contacts, recipe.spread, rng))
+        for _ in range(recipe.local_points)
+    )
+    return local_solutions(field, S, loads, points, recipe.local_states, rng)
+
+
+def principals(
+    field: FieldModel, S: Floats, energy: Mapping[str, sp.csr_array], local: Mapping[str, Floats]
+) -> dict[str, Principal]:
+    """What each part's field can look like, by energy, from snapshots S (n, n_snapshot) and the part's own `local`."""
+    return {
+        name: _principal(block, np.hstack([S[block.dofs], local[name]]), energy[name])
+        for name, block in field.blocks.items()
+    }
 
 
 def _principal(block: Block, S: Floats, A: sp.csr_array) -> Principal:
@@ -171,7 +192,7 @@ def enriched(
     energy: Mapping[str, sp.csr_array],
 ) -> dict[str, Principal]:
     """Principal fields with more solutions S (n, k) among the snapshots."""
-    S = scaled(S, field.stiffness(films, contacts))
+    S = of_unit_energy(S, field.stiffness(films, contacts))
     out = {}
     for name, block in field.blocks.items():
         own = np.asarray(found[name].fields, float) * np.sqrt(found[name].strength)

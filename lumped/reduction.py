@@ -16,7 +16,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from fem.assembly import FieldModel
-from fem.snapshots import DEFAULT, Principal, Recipe, bases, drawn, energies, enriched, principals, snapshots
+from fem.snapshots import DEFAULT, Principal, Recipe, alone, bases, drawn, energies, enriched, principals, snapshots
 from fem.solve import Solve, Solver, film_columns
 from lumped.condensed import network_in
 from lumped.network import Array, Network
@@ -137,8 +137,10 @@ def reduce(
     centre = Centre({**films}, {**contacts}, {p: float(b.K.diagonal().sum()) for p, b in field.blocks.items()})
     taken = shelf.find(centre, recipe.spread)
     if taken is None:
-        S = snapshots(field, films, contacts, np.column_stack([*loads.values()]), recipe, solver)
-        taken = shelf.keep(centre, principals(field, S, energies(field, films, contacts)), recipe.tolerance**2)
+        unit = np.column_stack([*loads.values()])
+        S = snapshots(field, films, contacts, unit, recipe, solver)
+        local = alone(field, films, contacts, S, unit, recipe)
+        taken = shelf.keep(centre, principals(field, S, energies(field, films, contacts), local), recipe.tolerance**2)
     kept = {part: Principal(*pair) for part, pair in taken.items()}
     return Reduction(field, films, contacts, places, fluids, boundaries, name, recipe, kept)
 
