@@ -71,7 +71,7 @@ def series_drive(
     def drive(T: Mapping[str, Array]) -> Mapping[str, Array]:
         warm = machine.R * (1.0 + alpha * (T["winding"] - reference_degC))
         cycle: Cycle = drive_cycle(machine, vehicle, controller, time, wanted_mps, slope, resistance=warm)
-        return cycle.inputs()
+        return cycle.inputs() | {"vehicle_speed_wanted_mps": np.asarray(wanted_mps, float)}
 
     return drive
 
@@ -85,7 +85,7 @@ def pm_drive(machine: PMMachine, torque: Array, speed_rpm: Array) -> Drive:
         volts = machine.voltage(i_d, i_q, speed_rpm, T["winding"], T["magnet"])
         return {
             "id_A": i_d, "iq_A": i_q, "current_A": np.hypot(i_d, i_q), "torque_Nm": given, "voltage_V": volts,
-            "speed_rpm": np.asarray(speed_rpm, float),
+            "speed_rpm": np.asarray(speed_rpm, float), "torque_wanted_Nm": np.asarray(torque, float),
         }  # fmt: skip
 
     return drive

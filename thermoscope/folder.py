@@ -76,7 +76,8 @@ class Folder:
     built: Built | None = None
 
 
-def read_settings(path: Path) -> Settings:
+def read_settings(path: Path, untested: bool = False) -> Settings:
+    """What case.toml says; `untested` allows it to name no tests."""
     file = path / "case.toml"
     if path.is_file():
         raise InputError("is a file", str(path), "a folder with a case.toml")
@@ -94,7 +95,7 @@ def read_settings(path: Path) -> Settings:
     axial_m = head.number("axial_mm", low=1.0) / 1e3 if "axial_mm" in head else None
     head.close()
     calibration.close()
-    if not tests:
+    if not tests and not untested:
         raise InputError("no tests", str(file), '[tests.NAME] with role = "calibrate"')
     entries = tuple(_entry(path, n, t) for n, t in tests.items())
     return Settings(
@@ -114,9 +115,14 @@ def _entry(path: Path, name: str, table: Table) -> Entry:
     return Entry(name, role, plain, sheet, tuple(frees))  # type: ignore[arg-type]
 
 
-def load_case(path: str | Path, progress: Progress = lambda message: None, bare: bool = False) -> Folder:
-    """Open a case. All files are read and checked before anything is computed; `bare` skips model.toml."""
-    settings = read_settings(Path(path))
+def load_case(
+    path: str | Path, progress: Progress = lambda message: None, bare: bool = False, untested: bool = False
+) -> Folder:
+    """Open a case. All files are read and checked before anything is computed.
+
+    bare : skip model.toml;  untested : a model alone will do, to run it over a drive cycle
+    """
+    settings = read_settings(Path(path), untested)
     history = History() if bare else load_history(settings.model_file)
     sheets = {e.name: load_sheet(e.sheet) for e in settings.tests}
     samples: dict[str, Samples] = {}

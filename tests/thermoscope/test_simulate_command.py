@@ -141,6 +141,37 @@ def test_a_permanent_magnet_machine_runs_from_torque_and_speed(case, tmp_path):
     assert run["coupling"]["residuals_K"][-1] < 1e-3 < run["coupling"]["residuals_K"][0]
 
 
+def test_what_the_limits_leave_undone_is_said(case, tmp_path, capsys):
+    """60 A cannot give 80 N m with 0.07 Vs and 4 pole pairs: 1.5 p psi I is 25 N m without reluctance."""
+    weak = PM.replace("current_limit_A = 400", "current_limit_A = 60")
+    run = ran(case, cycle_file(case, weak), tmp_path)["runs"][0]
+    assert run["short_of"] == {"torque_Nm": 1.0}
+    assert "torque_Nm: for 100 % of the time short" in capsys.readouterr().out
+    assert ran(case, cycle_file(case, PM), tmp_path)["runs"][0]["short_of"] == {}
+
+
+def test_a_model_alone_runs_a_cycle(case, tmp_path):
+    text = (case / "case.toml").read_text()
+    (case / "case.toml").write_text(text[: text.index("[tests")])
+    assert "sensor" not in str(ran(case, cycle_file(case, DUTY), tmp_path))
+    with pytest.raises(InputError, match=r"nothing to run.*--cycle"):
+        simulate(str(case), None, tmp_path, None)
+
+
+def test_sensors_lag(case, tmp_path):
+    """A slow sensor reads less of the same peak, and later."""
+    before = ran(case, cycle_file(case, DUTY), tmp_path)["runs"][0]
+    sensor = next(p["place"] for p in before["places"] if p["place"].startswith("sensor "))
+    name = sensor.removeprefix("sensor ")
+    for file in (case / "tests").glob("*.toml"):
+        text = file.read_text()
+        file.write_text(text.replace(f"[columns.{name}]", f"[columns.{name}]\nlag_s = 60"))
+    after = ran(case, "mine", tmp_path)["runs"][0]
+    lead, late = (next(p for p in r["places"] if p["place"] == sensor) for r in (before, after))
+    assert late["max_C"] < lead["max_C"]
+    assert late["max_at_s"] > lead["max_at_s"]
+
+
 SLIPS = {
     "unknown key": (DUTY.replace("period_s", "periodd_s"), "'period_s' is missing|periodd_s"),
     "no boundary": (DUTY.replace("ambient = 25", ""), "boundary 'ambient'"),

@@ -12,9 +12,9 @@ from thermoscope.terminal import Progress, notes
 PACKAGE = Path(__file__).resolve().parents[1]
 
 
-def opened(name: str, progress: Progress) -> Folder:
-    """The case for reading; doubts about its data go to stderr."""
-    folder = load_case(find_case(name), progress)
+def opened(name: str, progress: Progress, untested: bool = False) -> Folder:
+    """The case for reading; doubts about its data go to stderr. `untested`: one without tests will do."""
+    folder = load_case(find_case(name), progress, untested=untested)
     notes(folder.notes)
     return folder
 

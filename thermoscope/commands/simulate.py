@@ -10,13 +10,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geom.errors import ThermoscopeError
+from geom.errors import InputError, ThermoscopeError
 from lumped.audit import Audit, audit
 from lumped.coupled import coupled
 from lumped.network import Network, Row
 from lumped.simulate import Record
 from lumped.simulate import simulate as integrated
 from thermoscope.commands.opened import PACKAGE, opened
+from thermoscope.commands.simulate_readings import readings, sensors, short_of
 from thermoscope.cycle import Cycle, find_cycle, load_cycle
 from thermoscope.files import write_whole
 from thermoscope.folder import Folder
@@ -29,7 +30,7 @@ MISMATCH = 0.01  # of all losses: the trapezium's own error at coarse steps; mor
 def simulate(case: str, cycle: str | None, out: Path | None, target: str | None) -> int:
     """All tests of the case, or one cycle."""
     with progress() as tell:
-        folder = opened(case, tell)
+        folder = opened(case, tell, untested=True)
         network, values = _model(folder)
         into = out or _out(folder)
         runs = [_ran(network, values, one, folder, into, tell) for one in _cycles(folder, network, cycle)]
@@ -47,18 +48,20 @@ def _out(folder: Folder) -> Path:
 
 
 def _model(folder: Folder) -> tuple[Network, dict[str, float]]:
-    """The network with the effects added, and the values of its own parameters."""
+    """The network with the effects added, and the values of the parameters that act on heat."""
     from validation.fitting import working
     from validation.predict import thermal
 
-    network = thermal(working(folder.case)[0])
-    mine = {p.name for p in network.parameters}
+    network = working(folder.case)[0]
+    mine = {p.name for p in thermal(network).parameters}
     return network, {k: v for k, v in folder.case.model.values.items() if k in mine}
 
 
 def _cycles(folder: Folder, network: Network, cycle: str | None) -> Iterable[Cycle]:
     from validation.predict import record
 
+    if cycle is None and not folder.case.tests:
+        raise InputError("nothing to run", str(folder.settings.path), "--cycle NAME, or [tests.NAME] in case.toml")
     if cycle is None:
         return [Cycle(test.name, record(test, {})) for test in folder.case.tests]
     ratings = folder.built.machine.sections.get("ratings", {}) if folder.built is not None else {}
@@ -69,26 +72,29 @@ def _ran(
     network: Network, values: Mapping[str, float], cycle: Cycle, folder: Folder, into: Path, tell: Progress
 ) -> dict[str, Any]:
     tell(f"running {cycle.name}")
-    rows = _looks(network, folder)
-    record = cycle.record
+    from validation.predict import thermal
+
+    rows, record, whole = _looks(network, folder), cycle.record, network
+    network = thermal(network)
     residuals: tuple[float, ...] = ()
     if cycle.drive is None:
         run = integrated(network, record, values, list(rows.values()))
     else:
         found = coupled(network, record, cycle.drive, cycle.watched, values, list(rows.values()))
         run, record, residuals = found.run, replace(record, inputs=found.inputs), found.residuals
+    inside = len(rows) - len(sensors(folder))
+    y = np.column_stack([run.y[:, :inside], readings(whole, folder, cycle.name, record, run.y[:, inside:])])
     heat = audit(network, record, values)
     if heat.mismatch > MISMATCH:
         raise ThermoscopeError(f"{cycle.name}: injected and declared losses differ by {100 * heat.mismatch:.3g} %")
-    file = write_whole(into / f"simulate-{cycle.name}.csv", _csv(record, rows, run.y))
-    return _document(cycle, record, rows, run.y, heat, residuals, file)
+    file = write_whole(into / f"simulate-{cycle.name}.csv", _csv(record, rows, y))
+    return _document(cycle, record, rows, y, heat, residuals, file)
 
 
 def _looks(network: Network, folder: Folder) -> dict[str, Row]:
-    """Named temperatures: the means of parts and nodes, then the sensors of the case."""
+    """Named temperatures: the means of parts and nodes, then where the sensors of the case sit."""
     means = {n: p.mean for n, p in network.places.items() if p.kind != "surface" and "#" not in n}
-    sensors = {f"sensor {c.name}": c.row for test in folder.case.tests for c in test.channels}
-    return means | sensors
+    return means | {f"sensor {name}": c.row for name, c in sensors(folder).items()}
 
 
 def _csv(record: Record, rows: Mapping[str, Row], y: Array) -> str:
@@ -116,7 +122,7 @@ def _document(
             for n, J in heat.declared_J.items()
         ],
         "energy_balance": heat.residual, "loss_mismatch": heat.mismatch,
-        "coupling": {"rounds": len(residuals), "residuals_K": list(residuals)},
+        "short_of": short_of(record), "coupling": {"rounds": len(residuals), "residuals_K": list(residuals)},
     }  # fmt: skip
 
 
@@ -138,8 +144,12 @@ def show(document: Mapping[str, Any]) -> None:
     for run in document["runs"]:
         keys = ["place", "start_C", "max_C", "max_at_s", "end_C"]
         headers = ["place", "start (degC)", "largest (degC)", "at (s)", "end (degC)"]
-        table(f"{run['name']}: {run['duration_s']:g} s", headers, [[p[k] for k in keys] for p in run["places"]])
-        table("Losses", ["loss", "mean (W)"], [[x["loss"], x["mean_W"]] for x in run["losses"] if x["mean_W"]])
+        places = [[p[k] if k != "max_at_s" else round(p[k]) for k in keys] for p in run["places"]]
+        table(f"{run['name']}: {run['duration_s']:g} s", headers, places)
+        watts = [[x["loss"], f"{x['mean_W']:.1f}"] for x in run["losses"] if x["mean_W"]]
+        table("Losses", ["loss", "mean (W)"], watts)
+        for name, share in run["short_of"].items():
+            say(f"{name}: for {100 * share:.3g} % of the time short of what was wanted by more than 1 %, at the limits")
         rounds = run["coupling"]["residuals_K"]
         if rounds:
             shown = ", ".join(f"{r:.2g}" for r in rounds)
