@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Callable
 from typing import Any
 
@@ -18,6 +19,7 @@ from viz.live.candidates import confusion
 from viz.live.curves import sensor as sensor_figure
 
 CONFUSED = 8
+MOMENT_S = 0.02
 NOTHING: dict[str, Any] = {"data": [], "layout": {}}
 START: dict[str, Any] = {
     "busy": False, "job": {"title": "", "message": "", "percent": None}, "error": "", "outcome": None, "report": "",
@@ -133,3 +135,21 @@ def within(value: Any, low: float, high: float) -> float:
     """A number from the browser, kept between two; `high` for what is no number."""
     number = value if isinstance(value, int | float) and np.isfinite(value) else high
     return float(np.clip(number, low, high))
+
+
+def soon(draw: Callable[[], None]) -> Callable[[], None]:
+    """`draw` a moment later, once however often it is asked for: curves reach the page before the picture."""
+    waiting = False
+
+    def now() -> None:
+        nonlocal waiting
+        waiting = False
+        draw()
+
+    def ask() -> None:
+        nonlocal waiting
+        if not waiting:
+            waiting = True
+            asyncio.get_running_loop().call_later(MOMENT_S, now)
+
+    return ask
