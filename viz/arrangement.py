@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from viz.data import Comparison
+from viz.data import Comparison, short
 from viz.scene import View
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ def blueprint(comparison: Comparison, first: str, points: NDArray[np.float64], w
 
     end = float(comparison.test.time[-1])
     names = sorted((c.name for c in comparison.channels), key=lambda name: name != first)
-    curves = rrb.Tabs(*(_over_time(f"curves/{name}", f"{name} (°C)", end) for name in names), active_tab=0)
+    curves = rrb.Tabs(*(_over_time(f"curves/{name}", f"{short(name)} (°C)", end) for name in names), active_tab=0)
     right = rrb.Vertical(curves, _over_time("residual", "measured − model (K)", end))
     left = rrb.Vertical(_machine(comparison, points), _text("legend", "legend"), row_shares=[5, 1])
     layout: Any = rrb.Horizontal(left, right, column_shares=[3, 2], name="test")

@@ -23,7 +23,7 @@ from viz.arrangement import blueprint
 from viz.colours import BLUE, LIGHT, ORANGE, VERDICT, heat
 from viz.curves import wrongness
 from viz.cut import QUARTER, Surface, Wedge, cut_away
-from viz.data import Comparison, Sensor
+from viz.data import Comparison, Sensor, short
 from viz.edges import outline_strips
 from viz.errors import PALE, error_paths
 from viz.nodes import SplitMesh, on_nodes
@@ -133,7 +133,7 @@ def _sensors(
     if not placed:
         return
     points = rr.Points3D(
-        [positions[channel.name] for channel in placed], labels=[channel.name for channel in placed],
+        [positions[channel.name] for channel in placed], labels=[short(channel.name) for channel in placed],
         radii=rr.Radius.ui_points(5.0), show_labels=True,
     )  # fmt: skip
     stream.log("machine/sensors", points, static=True)
@@ -165,7 +165,7 @@ def _curves(stream: rr.RecordingStream, c: Comparison) -> None:
             earlier = c.before[channel.name]
             _series(stream, f"curves/{channel.name}/earlier", c.test.time, earlier, ORANGE, "earlier model")
         colour = wrongness(c.residual(channel), 2 * channel.sigma_K)
-        _series(stream, f"residual/{channel.name}", c.test.time, c.residual(channel), colour, channel.name)
+        _series(stream, f"residual/{channel.name}", c.test.time, c.residual(channel), colour, short(channel.name))
 
 
 def _series(stream: rr.RecordingStream, path: str, time: Array, values: Array, colour: str, name: str) -> None:
