@@ -21,7 +21,7 @@ import tempfile
 import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
 import numpy as np
 from network_peers import peers, timed
@@ -174,11 +174,21 @@ def row(case: str, measure: str, unit: str, ours: float, peer: float | None = No
     return {"case": case, "measure": measure, "unit": unit, "ours": ours, **found, "n": None, "ci95": None}
 
 
+def shown(r: dict[str, Any], to: TextIO) -> None:
+    peer = f"  {r['peer_name']} {r['peer']:.4g}  ratio {r['ratio']:.3g}" if r["peer"] else ""
+    print(f"{r['case']:36s} {r['measure']:22s} {r['ours']:.4g} {r['unit']}{peer}", file=to, flush=True)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--json", metavar="FILE", help="write the rows there; - is stdout")
     target = parser.parse_args().json
-    rows = [*compiling(), *sizes(), *ensembles(), *against_peers()]
+    rows: list[dict[str, Any]] = []
+    for part in (compiling, sizes, ensembles, against_peers):
+        found = part()
+        rows += found
+        for r in found:
+            shown(r, sys.stderr if target == "-" else sys.stdout)
     computer = f"{platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}"
     document = {"benchmark": "network", "computer": computer, "date": datetime.date.today().isoformat(), "rows": rows}
     if target == "-":
@@ -186,9 +196,6 @@ def main() -> None:
         return
     if target:
         Path(target).write_text(json.dumps(document, indent=1))
-    for r in rows:
-        peer = f"  {r['peer_name']} {r['peer']:.4g}  ratio {r['ratio']:.3g}" if r["peer"] else ""
-        print(f"{r['case']:36s} {r['measure']:22s} {r['ours']:.4g} {r['unit']}{peer}")
 
 
 if __name__ == "__main__":
