@@ -18,7 +18,10 @@ def on_config(config: Any) -> Any:
     explained = next(entry["Explained"] for entry in config.nav if isinstance(entry, dict) and "Explained" in entry)
     top = [entry for entry in config.nav if isinstance(entry, str)]
     docs = ROOT / "docs"
-    pages = [p.relative_to(docs).as_posix() for p in sorted([*docs.glob("*.md"), *docs.glob("families/*.md")])]
+    pages = [
+        p.relative_to(docs).as_posix()
+        for p in sorted([p for pattern in ("*.md", "families/*.md", "papers/*.md") for p in docs.glob(pattern)])
+    ]
     explained += [page for page in pages if page not in top and page not in explained]
     return config
 
