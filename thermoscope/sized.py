@@ -16,7 +16,7 @@ from lumped.network import Network
 from lumped.reduction import Recipe, Reduction
 from thermoscope.pipeline import Built, Progress, prepared, reduced, silent
 
-FINE = Recipe(tolerance=0.01, random_points=8, local_points=4)
+FINE = Recipe(tolerance=0.01, random_points=8, local_points=12, local_states=16)
 ROUNDS = 3
 LOOKS = 3  # random points, and extreme ones, at which every size is checked
 
