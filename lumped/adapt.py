@@ -1,4 +1,4 @@
-"""From a wish to a network: solve new random points in full, favour the parts that miss, learn the points, repeat."""
+"""From a wish to a network: favour the parts that miss, look at new random points, learn those before them, repeat."""
 
 from __future__ import annotations
 
@@ -77,24 +77,32 @@ def adapt(
 ) -> Adapted:  # fmt: skip
     """A network that meets the wish at random points it has not seen, or the one the last of `rounds` looked at.
 
-    reduction : lumped.reduction.Reduction;  points : already solved; they are learned first
-    fresh : random points per round; what is learned from them is joined by one extreme point
+    reduction : lumped.reduction.Reduction;  points : already solved; random ones guide, the others are learned
+    fresh : random points per round; those that were missed guide the next, and are learned after it with an extreme one
     """
     weights: dict[str, float] = {}
-    learned, begun = list(points) or [reduction.nominal_point()], len(points)
-    reduction = reduction.enriched(points) if points else reduction
+    solved, begun = list(points) or [reduction.nominal_point()], len(points)
+    # Shapes are dealt out by points that were not learned: those that were are met by very few.
+    learned, guides = _parted(solved)
+    reduction = reduction.enriched(learned) if points else reduction
     done: list[Round] = []
     for k in range(rounds):
-        network = favoured(reduction, learned, cases, wish, weights)
+        network = favoured(reduction, [*learned, *guides], cases, wish, weights)
         new = [reduction.random_point(begun + fresh * k + j) for j in range(fresh)]
         found = merged([seen(network, point, cases) for point in new])
         done.append(Round(len(network.states), tuple(p.name for p in new), found, excess(found, wish) <= 1.0))
         tell(f"{len(network.states)} states: {found}")
         if done[-1].met or k == rounds - 1:
             break
-        new.append(reduction.extreme_point(begun + k))
-        learned, reduction = [*learned, *new], reduction.enriched(new)
+        fuller = [*guides, reduction.extreme_point(begun + k)]
+        learned, guides, reduction = [*learned, *fuller], new, reduction.enriched(fuller)
     return Adapted(reduction, network, dict(weights), tuple(done))
+
+
+def _parted(points: Sequence[Any]) -> tuple[list[Any], list[Any]]:
+    """What to learn, and the random ones to be guided by."""
+    guides = [p for p in points if p.name.startswith("random")]
+    return [p for p in points if not p.name.startswith("random")], guides
 
 
 def excess(found: Errors, wish: Wish) -> float:
