@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import os
 import shutil
+import signal
 import socket
 import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
@@ -66,12 +67,19 @@ def _viewer() -> Iterator[ViewerClient]:
         alone = {"WGPU_BACKEND": "vulkan", **os.environ, "HOME": home, "XDG_CONFIG_HOME": home, "XDG_RUNTIME_DIR": home}
         subprocess.run([program, "analytics", "disable"], env=alone, capture_output=True, check=False)
         command = [program, "--headless", "--bind", "127.0.0.1", "--port", str(port), "--hide-welcome-screen"]
-        process = subprocess.Popen(command, env=alone, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        null = subprocess.DEVNULL
+        process = subprocess.Popen(command, env=alone, stdout=null, stderr=null, start_new_session=True)
         try:
             yield _connected(process, port)
         finally:
-            process.terminate()
-            process.wait(timeout=30)
+            _end(process)
+
+
+def _end(process: subprocess.Popen) -> None:
+    """The program is a script that starts the viewer: both are ended."""
+    with suppress(ProcessLookupError):
+        os.killpg(process.pid, signal.SIGTERM)
+    process.wait(timeout=30)
 
 
 def _connected(process: subprocess.Popen, port: int) -> ViewerClient:

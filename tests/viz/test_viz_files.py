@@ -1,8 +1,10 @@
 """Moving pictures, PDF and pictures of a recording: written by real encoders, printers and viewers, and read back."""
 
+import os
 import shutil
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import numpy as np
@@ -69,7 +71,20 @@ def test_every_revision_has_a_field_sensors_and_errors(recording):
         assert any(entity in c for c in chunks), entity
 
 
-def test_the_viewer_shows_it(recording, tmp_path):
+def ended(group: int, tries: int = 300) -> bool:
+    """Whether no process of a group is left, or soon will be."""
+    for _ in range(tries):
+        try:
+            os.killpg(group, 0)
+        except ProcessLookupError:
+            return True
+        time.sleep(0.1)
+    return False
+
+
+def test_the_viewer_shows_it_and_ends(recording, tmp_path, monkeypatch):
+    started, popen = [], subprocess.Popen
+    monkeypatch.setattr(subprocess, "Popen", lambda *a, **k: started.append(popen(*a, **k)) or started[-1])
     if not next(f for f in findings() if f.name == "Vulkan driver").found:
         pytest.skip("needs a Vulkan driver: apt-get install -y libvulkan1 mesa-vulkan-drivers")
     cold, hot = snapshots(
@@ -78,3 +93,4 @@ def test_the_viewer_shows_it(recording, tmp_path):
     a, b = (np.asarray(Image.open(p).convert("RGB")).astype(int) for p in (cold, hot))
     assert a.std() > 10
     assert np.abs(a - b).mean() > 1
+    assert ended(started[-1].pid)  # the program and the viewer it started
