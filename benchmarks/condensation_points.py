@@ -5,7 +5,7 @@ Temperatures are rises over the surroundings (K). Fluids are lumped nodes, with 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -13,15 +13,15 @@ import numpy as np
 
 from fem.snapshots import drawn
 from fem.solve import film_columns
-from lumped.linear import linear, unit_load
+from lumped.linear import coupled, linear, unit_load
 from lumped.motor import operating_point
 from lumped.network import Network
 from lumped.reduction import Reduction
 from thermoscope.crosscheck import coefficients, fluid_nodes
-from thermoscope.sized import Sized, rated_watts
+from thermoscope.load_cases import rated_watts
+from thermoscope.sized import Sized
 
 Floats = np.ndarray
-Inverse = Callable[[Floats], Floats]
 WARM = 20.0  # K, of a coolant's inlet over the surroundings in the third load case
 SPREAD = 5.0
 LATE = 30.0  # s after a step of loss
@@ -101,12 +101,12 @@ class Pair:
         """(n, n_case)"""
         K = self.reduction.field.stiffness(point.films, point.contacts)
         B, G = self._fluids(point)
-        return _coupled(self.reduction.solver.factor(K), self.field_loads, B, G, self.heat)[0]
+        return coupled(self.reduction.solver.factor(K), self.field_loads, B, G, self.heat)[0]
 
     def of_network(self, point: Point) -> Floats:
         """(n_states + n_boundaries, n_case)"""
         system, b, B, G = self._system(point)
-        x, u = _coupled(lambda y: np.linalg.solve(system.A, y), b, B, G, self.heat)
+        x, u = coupled(lambda y: np.linalg.solve(system.A, y), b, B, G, self.heat)
         return self._whole(system.solid, x, u)
 
     def stepped(self, point: Point) -> Iterator[tuple[float, Floats, Floats]]:
@@ -119,8 +119,8 @@ class Pair:
             factor, inverse = solver.factor(K, 1 / dt), np.linalg.inv(system.A + np.diag(system.C) / dt)
             for _ in range(count):
                 t += dt
-                T, _ = _coupled(factor, self.field_loads + field.M @ T / dt, Bf, G, self.heat)
-                x, u = _coupled(inverse.__matmul__, b + system.C[:, None] * x / dt, B, G, self.heat)
+                T, _ = coupled(factor, self.field_loads + field.M @ T / dt, Bf, G, self.heat)
+                x, u = coupled(inverse.__matmul__, b + system.C[:, None] * x / dt, B, G, self.heat)
                 if t >= LATE:
                     yield t, T, self._whole(system.solid, x, u)
 
@@ -143,14 +143,6 @@ class Pair:
     def smaller(self, states: int) -> Pair:
         """The same with a network of at most so many states."""
         return replace(self, network=self.reduction.network(tolerance=0.0, max_states=states))
-
-
-def _coupled(inverse: Inverse, b: Floats, B: Floats, G: Floats, s: Floats) -> tuple[Floats, Floats]:
-    """Solids and fluids of [A, -B; -B', G] [x; u] = [b; s]."""
-    k = b.shape[1]
-    X = inverse(np.column_stack([b, B]))
-    u = np.linalg.solve(G - B.T @ X[:, k:], s + B.T @ X[:, :k])
-    return X[:, :k] + X[:, k:] @ u, u
 
 
 def _at_inlet(network: Network, rise: float) -> Floats:

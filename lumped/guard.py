@@ -119,19 +119,21 @@ class Mixes:
         return np.asarray(X @ np.hstack([self.watts, self.kelvin]).T)
 
 
-def mixes(zones: Sequence[str], fluids: Sequence[str], rated: Mapping[str, float]) -> Mixes:
-    """Load cases: rated losses, losses of every zone drawn at random, and half of rated with warm inner fluids.
+def mixes(
+    zones: Sequence[str], fluids: Sequence[str], rated: Mapping[str, float], rises: Mapping[str, float] | None = None
+) -> Mixes:
+    """Load cases: rated losses, losses of every zone drawn at random, and half of rated with inner fluids 20 K warmer.
 
-    rated : zone -> W
+    rated : zone -> W;  rises : fluid -> K over the surroundings with the rated losses, 0 if not given
     """
     rng = np.random.default_rng(3)
     own = np.array([rated.get(zone, 0.0) for zone in zones])
     own = own if own.any() else np.ones(len(zones))
     drawn = own.sum() * rng.dirichlet(np.full(len(zones), 0.5), DRAWS)
-    warm = np.array([0.0 if fluid == "ambient" else 1.0 for fluid in fluids])
-    return Mixes(
-        tuple(zones), tuple(fluids), np.array([own, *drawn, 0.5 * own]), np.outer([0.0] * (1 + DRAWS) + [20.0], warm)
-    )
+    warm = np.array([0.0 if fluid == "ambient" else 20.0 for fluid in fluids])
+    at_rated = np.array([(rises or {}).get(fluid, 0.0) for fluid in fluids])
+    kelvin = [at_rated, *np.zeros((DRAWS, len(fluids))), 0.5 * at_rated + warm]
+    return Mixes(tuple(zones), tuple(fluids), np.array([own, *drawn, 0.5 * own]), np.array(kelvin))
 
 
 def network_states(network: Network, films: Mapping[str, float], contacts: Mapping[str, float], cases: Mixes) -> Array:

@@ -97,6 +97,10 @@ class Reduction:
         rng, spread = np.random.default_rng([self.recipe.seed, seed]), self.recipe.spread
         return self.at(f"random {seed}", drawn(self.films, spread, rng), drawn(self.contacts, spread, rng))
 
+    def joined_point(self, factor: float) -> FullPoint:
+        """All contacts times a factor."""
+        return self.at(f"contacts x{factor:g}", self.films, {name: factor * g for name, g in self.contacts.items()})
+
     def extreme_point(self, seed: int) -> FullPoint:
         """A third of the films x10, a third of the contacts x5 and a third x0.2: what one change alone can reach."""
         rng = np.random.default_rng([self.recipe.seed, seed, 1])

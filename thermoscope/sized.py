@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from geom import Machine
 from lumped.adapt import Adapted, Size, adapt
-from lumped.guard import Mixes, Wish, mixes
-from lumped.motor import motor_network, operating_point
-from lumped.motor_losses import loss_watts
+from lumped.guard import Wish
+from lumped.motor import motor_network
 from lumped.motor_zones import motor_zones
-from lumped.network import Network
 from lumped.reduction import Recipe, Reduction
+from thermoscope.load_cases import load_cases
 from thermoscope.pipeline import Built, Progress, prepared, reduced, silent
 
 FINE = Recipe(tolerance=0.01, random_points=8, local_points=12, local_states=16)
 ROUNDS = 3
 LOOKS = 3  # random points, and extreme ones, at which every size is checked
+JOINTS = (0.2, 5.0)  # times all contacts, as well
 
 
 @dataclass(frozen=True)
@@ -64,6 +63,7 @@ def sized(
     progress("error against number of states")
     points = [reduction.nominal_point(), *(reduction.random_point(k) for k in range(LOOKS))]
     points += [reduction.extreme_point(k) for k in range(LOOKS)]
+    points += [reduction.joined_point(factor) for factor in JOINTS]
     table = tuple(Size.of(reduction, asked, points, cases, wish) for asked in SIZES)
     good = [size for size in table if size.met]
     found = None if good else adapt(reduction, cases, wish, rounds, points=points, tell=progress)
@@ -73,16 +73,3 @@ def sized(
 
 
 SIZES = (0, 50, 100, 200, 400)  # 0: the means only
-
-
-def load_cases(machine: Machine, reduction: Reduction) -> Mixes:
-    """The losses of the rated point and variations of them, as the guard applies them."""
-    whole = motor_network(machine, reduction.network(max_states=len(reduction.field.blocks)))
-    rated = rated_watts(machine, whole)
-    return mixes(list(reduction.zones), list(reduction.washing), rated)
-
-
-def rated_watts(machine: Machine, network: Network) -> Mapping[str, float]:
-    """Watts per part or zone at the rated point, windings at their reference temperature."""
-    inputs = {name: float(value[0]) for name, value in operating_point(machine).items()}
-    return loss_watts(machine, network, inputs)

@@ -4,14 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from bare_networks import means_only
 
-from fem.snapshots import Basis
 from geom import Machine, load_machine
 from geom.errors import InputError
 from geom.machine import machine_from
-from lumped.condensed import network_in
 from lumped.hydraulics import pressure_drop
-from lumped.motor import boundaries, fluids, motor_network, operating_point
+from lumped.motor import operating_point
 from lumped.motor_air import AIR_HEAT, ducts_of, fan_shares
 from lumped.motor_films import surroundings
 from lumped.network import Network
@@ -31,14 +30,7 @@ def machine() -> Machine:
 
 @pytest.fixture(scope="module")
 def network(machine) -> Network:
-    """No shapes: enough for heat balances, and costs no solve."""
-    ready = prepared(machine, 0.1, 36)
-    none = {p: Basis(np.zeros((len(b.points), 0)), np.zeros(0), np.zeros(0)) for p, b in ready.field.blocks.items()}
-    loads = {part: ready.field.load(part) for part in ready.field.blocks}
-    condensed = network_in(
-        ready.field, none, ready.contacts, loads, frozenset(loads), fluids(machine), boundaries(machine), machine.name
-    )
-    return motor_network(machine, condensed)
+    return means_only(prepared(machine, 0.1, 36))
 
 
 def rest(network: Network, **changed: float) -> np.ndarray:

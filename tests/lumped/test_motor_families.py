@@ -4,12 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from bare_networks import means_only
 
-from fem.snapshots import Basis
 from geom import library, load_machine
 from geom.errors import InputError
-from lumped.condensed import network_in
-from lumped.motor import boundaries, fluids, motor_network, operating_point
+from lumped.motor import operating_point
 from lumped.motor_coolant import channel_of, cooling_of, jacket_film
 from lumped.motor_films import surroundings
 from lumped.motor_losses import _declared, loss_watts
@@ -18,22 +17,10 @@ from lumped.motor_path import path_of
 from lumped.motor_shapes import fins_of, turning
 from lumped.motor_zones import motor_zones
 from lumped.multipliers import multipliers
-from lumped.network import Network
 from lumped.steady import steady
-from thermoscope.pipeline import Prepared, prepared
+from thermoscope.pipeline import prepared
 
 FAMILIES = ("pmsm-m1", "ipmsm-48s8p-jacket", "tefc-industrial")
-
-
-def means_only(ready: Prepared, machine=None) -> Network:
-    """No shapes: enough for everything but temperatures, and costs no solve."""
-    machine = machine or ready.machine
-    none = {p: Basis(np.zeros((len(b.points), 0)), np.zeros(0), np.zeros(0)) for p, b in ready.field.blocks.items()}
-    loads = {part: ready.field.load(part) for part in ready.field.blocks}
-    condensed = network_in(
-        ready.field, none, ready.contacts, loads, frozenset(loads), fluids(machine), boundaries(machine), machine.name
-    )
-    return motor_network(machine, condensed)
 
 
 @pytest.fixture(scope="module")
