@@ -197,7 +197,7 @@ def protocol(
 @app.command()
 def screen(
     machine: Annotated[str, typer.Argument(metavar="MACHINE", help="A machine file, or a name that comes along.")],
-    design: Annotated[str, typer.Option(help="full (128 runs), half (64), morris or sobol.")] = "full",
+    design: Annotated[str, typer.Option(help="full (128 runs), half (64), gap (256), morris or sobol.")] = "full",
     json: Json = None,
 ) -> None:
     """Which factors move the temperatures of a PM machine: effects with Lenth's limits, Morris or Sobol."""

@@ -17,7 +17,7 @@ from validation.faults import broken_channels
 from validation.findings import Candidate, Decision, Diagnosis, Hidden, NextSensor, NextTest, Verdict
 from validation.fitting import working
 from validation.null import Null
-from validation.procedure.which_base import wrong_bases
+from validation.procedure.which_base import Hypothesis, bases_tried, wrong_bases
 from validation.rivals import Race, constancy, race
 from validation.sensors import next_sensors
 from validation.sheet import rmse, segments
@@ -58,16 +58,18 @@ def diagnose(
 
     draws : data sets of the simulated null (40 for a quick look, 200 in earnest);  kinds : restrict the catalogue
     plan : also rank the next tests and scan for latent heat
+    A test that stood on another base than its sheet says is told first; then no effect is searched for.
     """
     fit = calibrated_case(case, progress)
     progress("scoring the catalogue")
     evidence = possible(case, scored(case, candidates(case, kinds), fit))
     null = null_of(evidence, draws, seed, workers, cache, progress)
     limit = null.threshold()
-    steps = search(case, evidence, null, limit, progress)
+    stood = bases_tried(case, progress)
+    steps = [Step(evidence, null.kappa, None)] if wrong_bases(stood) else search(case, evidence, null, limit, progress)
     progress("looking for where heat is missing")
     where = latent_heat(fit, evidence.tests) if plan else []
-    return conclude(case, steps, null, limit, where, plan)
+    return conclude(case, steps, null, limit, where, plan, stood)
 
 
 def search(case: Case, evidence: Evidence, null: Null, limit: float, progress: Progress) -> list[Step]:
@@ -104,12 +106,15 @@ def with_effect(case: Case, kind: str, place: str, fit: Fit) -> Case:
     return replace(case, model=grown)
 
 
-def conclude(case: Case, steps: list[Step], null: Null, limit: float, where: list[Latent], plan: bool) -> Diagnosis:
-    """From the search to a verdict and its tables."""
+def conclude(
+    case: Case, steps: list[Step], null: Null, limit: float, where: list[Latent], plan: bool,
+    stood: Sequence[Hypothesis] = (),
+) -> Diagnosis:  # fmt: skip
+    """From the search to a verdict and its tables.  stood : the bases that were tried"""
     first = steps[0]
     groups = [tuple(s.evidence.names[k] for k in s.race.group) for s in steps if s.race]
     pulls = pulled(first.evidence.fit, null)
-    broken = [*broken_channels(first.evidence.tests), *wrong_bases(case)]
+    broken = [*broken_channels(first.evidence.tests), *wrong_bases(stood)]
     verdict = judge(steps, null, groups, bool(pulls), bool(broken))
     table = tabulate(case, steps, limit, verdict)
     ahead = planned(steps, null) if plan else ()
@@ -118,6 +123,7 @@ def conclude(case: Case, steps: list[Step], null: Null, limit: float, where: lis
         verdict, words(verdict, groups, table, pulls, broken, where), tuple(g[0] for g in groups), tuple(groups), table,
         unseen(first, null), tuple(where), ahead, rmse(first.evidence.fit.parts), floor, limit, pulls,
         confusion(first, [c.effect for c in table[:12]]), sensed(steps) if plan else (), float(np.median(null.kappa)),
+        tuple(stood),
     )  # fmt: skip
 
 

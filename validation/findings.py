@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from validation.where import Latent
+
+if TYPE_CHECKING:
+    from validation.procedure.which_base import Hypothesis
 
 Verdict = Literal["adequate", "named", "group", "several", "outside", "absorbed", "data"]
 Decision = Literal["named", "group", "no", "cannot-tell"]
@@ -102,6 +105,7 @@ class Diagnosis:
     """The answer. named : the effects to add, best first (one per group); words : the verdict in a sentence.
 
     kappa : the typical factor of the simulated null on formal standard deviations
+    bases : every base that a test may have stood on, where the network knows several
     """
 
     verdict: Verdict
@@ -119,6 +123,7 @@ class Diagnosis:
     cosine: dict[str, dict[str, float]] = field(default_factory=dict)
     next_sensors: tuple[NextSensor, ...] = ()
     kappa: float = 1.0
+    bases: tuple[Hypothesis, ...] = ()
 
     def document(self) -> dict:
         return {
@@ -137,4 +142,5 @@ class Diagnosis:
             "threshold": self.threshold,
             "pulls": [{"parameter": n, "value": v, "prior_deviations": p} for n, v, p in self.pulls],
             "confusion": self.cosine,
+            "bases": [h.document() for h in self.bases],
         }

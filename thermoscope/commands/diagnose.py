@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from thermoscope.commands.bases import show_bases
 from thermoscope.commands.opened import opened
 from thermoscope.commands.saved import save_diagnosis
 from thermoscope.terminal import cell, give, progress, say, table
@@ -27,7 +28,16 @@ def diagnose(case: str, draws: int, target: str | None) -> int:
 
 
 def show(document: Mapping[str, Any]) -> None:
-    """Candidates, next tests, and the verdict in a sentence."""
+    """Candidates, next tests, and the verdict in a sentence; of a wrong base only that, for it comes first."""
+    bases = document.get("bases", [])
+    if any(h["declared"] and h["excluded"] for h in bases):
+        show_bases(bases)
+    else:
+        _searched(document)
+    say(f"{document['verdict']}: {document['words']}")
+
+
+def _searched(document: Mapping[str, Any]) -> None:
     rows = [_row(c) for c in document["candidates"][:ROWS]]
     headers = ["effect", "score", "amplitude", "95 %", "error (K)", "held out (K)", "confused with", "decision"]
     title = f"Candidates: a score beyond {document['threshold']:.2f} is not chance"
@@ -38,7 +48,6 @@ def show(document: Mapping[str, Any]) -> None:
     hidden = [h["effect"] for h in document["cannot_see"]]
     if hidden:
         say(f"{len(hidden)} effects could be there unseen, e.g. {', '.join(hidden[:4])} (all in --json)")
-    say(f"{document['verdict']}: {document['words']}")
 
 
 def _row(c: Mapping[str, Any]) -> list[Any]:

@@ -15,7 +15,7 @@ from thermoscope.terminal import give, progress, say, table
 if TYPE_CHECKING:
     from geom import Machine
 
-DESIGNS = ("full", "half", "morris", "sobol")
+DESIGNS = ("full", "half", "gap", "morris", "sobol")
 ROWS = 12
 TRAJECTORIES, SAMPLES = 20, 256  # 160 runs, 2304 runs of some milliseconds
 
@@ -38,10 +38,14 @@ def screen(machine: str, design: str, target: str | None) -> int:
 
 def _by_effects(machine: Machine, design: str) -> dict[str, Any]:
     from validation.procedure.factorial import fractional, full
-    from validation.procedure.screening import TABLE_I, screen
+    from validation.procedure.screening import TABLE_I, WITH_GAP, screen
 
-    plan = full(TABLE_I) if design == "full" else fractional(TABLE_I, {"G": "ABCDEF"})
-    return screen(machine, plan).document()
+    plans = {
+        "full": lambda: full(TABLE_I),
+        "half": lambda: fractional(TABLE_I, {"G": "ABCDEF"}),
+        "gap": lambda: full(WITH_GAP),
+    }
+    return screen(machine, plans[design]()).document()
 
 
 def _by_shares(machine: Machine, design: str) -> dict[str, Any]:
@@ -56,9 +60,10 @@ def _by_shares(machine: Machine, design: str) -> dict[str, Any]:
 def show(document: Mapping[str, Any]) -> None:
     """A table per response, largest first: the Pareto chart."""
     for name, found in document.get("effects", {}).items():
-        title = f"{name}: effects beyond {found['simultaneous']:.2f} K are not chance (Lenth, simultaneous 95 %)"
+        title = f"{name}: effects beyond {found['simultaneous']:.2f} are not chance (Lenth, simultaneous 95 %)"
         rows = [[e["effect"], e["words"], e["value"], "yes" if e["active"] else ""] for e in found["effects"][:ROWS]]
-        table(title, ["effect", "factors", "high - low (K)", "active"], rows, marked=["yes"])
+        unit = "mK/W" if "mK/W" in name else "K"
+        table(title, ["effect", "factors", f"high - low ({unit})", "active"], rows, marked=["yes"])
     for name, found in document.get("rankings", {}).items():
         rows = [[r["factor"], r["measure"], r["conf95"], r["spread"]] for r in found["ranking"]]
         table(f"{name}: {found['method']}, {found['runs']} runs", ["factor", "measure", "+- 95 %", "spread"], rows)

@@ -45,7 +45,8 @@ class PmSettings:
 
     convection : W/m2/K on every outer face, None: by correlation;  emissivity : of the body
     base : what carries heat away below: None, or the emissivity of the machine's base plate
-    impregnation, end_impregnation : share of the voids between wires that resin fills, 0 to 1
+    impregnation, end_impregnation : share of the voids that resin fills, 0 to 1: between the wires, and in the slot
+        also between liner and laminations, for one bath reaches both
     resistance_ohm : at 20 degC as a meter sees it; phases x R x I^2 is the copper loss
     magnetic_W, at 383 rpm;  gap_mm : effective, None as drawn
     """
@@ -82,12 +83,12 @@ def table_of(machine: Machine) -> Rows:
 
 def bundle(fill: float, k_resin: float, impregnation: float) -> float:
     """Conductivity (W/m/K) across a bundle of wires whose voids resin fills only in part: air and resin mixed first."""
-    filler = winding_conductivity(1.0 - 1e-9, k_resin, AIR_K)[0] if impregnation >= 1 else _mixed(impregnation, k_resin)
-    return winding_conductivity(fill, 385.0, filler)[0]
+    return winding_conductivity(fill, 385.0, filled(impregnation, k_resin))[0]
 
 
-def _mixed(share: float, k_resin: float) -> float:
-    return winding_conductivity(share, k_resin, AIR_K)[0]
+def filled(share: float, k_resin: float) -> float:
+    """Conductivity (W/m/K) of a void that resin fills to a share, air the rest."""
+    return k_resin if share >= 1 else winding_conductivity(share, k_resin, AIR_K)[0]
 
 
 class _Builder:
@@ -147,7 +148,7 @@ class _Builder:
         gap_mm = 1e3 * g.stator.liner_gap if self.settings.gap_mm is None else self.settings.gap_mm
         area = rows["stator.core"].contacts["slot.gap"]
         joints = 1 / (JOINTS["gap"] * area) + self.contact("slot.gap", "slot.liner", "gap")
-        k_gap = self.machine.conductivity("slot.gap")[0]
+        k_gap = filled(self.settings.impregnation, self.machine.conductivity("slot.gap")[0])
         self.link("slot.liner", "stator.core", R_K_W=joints + 1e-3 * gap_mm / (k_gap * area), prior_sd=0.3)
         k_end = bundle(0.35, 0.15, self.settings.end_impregnation)
         along = self.machine.conductivity("winding")[1]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from geom.machine import Machine
 from lumped.losses import ALPHA_CU
-from lumped.network import Network
 from lumped.simulate import Record, simulate
 from validation.procedure.factorial import Design, Effects, Factor, effects
 from validation.procedure.pm_network import PmSettings, Rows, pm_network, table_of
@@ -28,6 +27,7 @@ TABLE_I = (
     Factor("F", "speed", 200.0, 400.0),
     Factor("G", "magnetic loss", 1.0, 1.5),
 )
+WITH_GAP = (*TABLE_I, Factor("H", "liner gap", 0.7, 1.4))  # mm, M2's and M1's: calibrated, not screened, in the paper
 STEP, PATH = "winding minus magnets", "R_w (mK/W)"
 RESPONSES = {"magnets": "magnets", "winding": "winding", "end winding": "winding.left", "lamination": "stator.core"}
 POOR, GOOD = 0.2, 0.8  # impregnation of the end windings, "no" and "yes"
@@ -102,17 +102,6 @@ def screen(machine: Machine, design: Design, load: Load | None = None) -> Screen
     named[STEP] = named["winding"] - named["magnets"]
     named[PATH] = np.array([path_mK_W(one, load or Load()) for one in found])
     return Screening(design, rises, {name: effects(design, y, name) for name, y in named.items()})
-
-
-def with_gap(factors: Sequence[Factor] = TABLE_I, low_mm: float = 0.7, high_mm: float = 1.4) -> tuple[Factor, ...]:
-    """Table I and the liner-lamination gap, which the paper calibrates but does not screen."""
-    return (*factors, Factor("H", "liner gap", low_mm, high_mm))
-
-
-def network_of(machine: Machine, levels: Mapping[str, Any], load: Load | None = None) -> Network:
-    """The network behind one run."""
-    level = {f.name: f.low for f in TABLE_I} | dict(levels)
-    return pm_network(machine, settings(level, load or Load()))
 
 
 def varied(machine: Machine, load: Load | None = None) -> tuple[list[Varied], dict[str, Response]]:

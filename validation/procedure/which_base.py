@@ -70,7 +70,8 @@ def which_base(case: Case, names: Sequence[str] = (), progress: Progress = silen
     """Every base for every test (or those named) that is not held out, best first within a test."""
     bases, tests = switches(case.model.network), [t for t in case.tests if t.role != "hold-out"]
     if not bases:
-        raise InputError("the network knows no bases", case.name, "a machine file with [bases], see docs/protocol.md")
+        right = "a machine file with [bases], see docs/how-to/thermal-test.md"
+        raise InputError("the network knows no bases", case.name, right)
     if unknown := [n for n in names if n not in [t.name for t in tests]]:
         known = ", ".join(t.name for t in tests)
         raise InputError(f"no test '{unknown[0]}'", case.name, f"tests that are not held out: {known}")
@@ -109,11 +110,13 @@ def deviance(fit: Fit) -> float:
     return 2.0 * fit.objective
 
 
-def wrong_bases(case: Case, progress: Progress = silent) -> list[str]:
-    """In words, every test whose readings exclude the base that its sheet says; none where the network has no bases."""
-    if not switches(case.model.network):
-        return []
-    found = which_base(case, progress=progress)
+def bases_tried(case: Case, progress: Progress = silent) -> list[Hypothesis]:
+    """Every base for every test; none where the network has no bases."""
+    return which_base(case, progress=progress) if switches(case.model.network) else []
+
+
+def wrong_bases(found: Sequence[Hypothesis]) -> list[str]:
+    """In words, every test whose readings exclude the base that its sheet says."""
     return [_words(h, found) for h in found if h.declared and h.excluded]
 
 

@@ -12,9 +12,16 @@ from lumped.motor_bases import Switched
 from lumped.network import Parameter
 from lumped.simulate import Record, simulate
 from validation.case import Case, Channel, Model, Test
-from validation.diagnose import words
+from validation.diagnose import diagnose
 from validation.procedure.base_heat import base_heat
-from validation.procedure.which_base import declared_base, on_base, switches, which_base, wrong_bases
+from validation.procedure.which_base import (
+    bases_tried,
+    declared_base,
+    on_base,
+    switches,
+    which_base,
+    wrong_bases,
+)
 
 NODES = {"winding": 2.4e3, "stator.core": 2.5e4, "foot": 900.0, "base": 1.2e4, "foot.plate": 900.0, "base.plate": 2e4}
 BASES = {"bench": "on_bench", "plate": "on_plate"}
@@ -40,6 +47,7 @@ def machine():
 
 
 NETWORK = machine()
+KINDS = ("convection", "conduction.bench", "sensor.drift", "sensor.gain")
 HIDDEN = {"h.film:stator.core": 1.12, "h.joint:bench": 0.85, "h.film:base:natural": 1.1, "h.slot": 0.93}
 
 
@@ -72,7 +80,7 @@ def test_bases_of_a_network_and_of_a_test():
 
 
 def test_right_sheets_are_believed():
-    assert wrong_bases(case()) == []
+    assert wrong_bases(bases_tried(case())) == []
     best = {h.test: h.base for h in which_base(case()) if h.deviance == 0.0}
     assert best["wood"] == "none"
 
@@ -88,7 +96,7 @@ def test_wrong_base_is_named_at_the_base(said, right):
     assert found[base].declared
     assert found[base].excluded
     assert not found[right].excluded
-    (sentence,) = [s for s in wrong_bases(wrong) if s.startswith(name)]
+    (sentence,) = [s for s in wrong_bases(bases_tried(wrong)) if s.startswith(name)]
     assert "At the base, not in the films" in sentence
     assert "conduction" in sentence
     assert "radiation" in sentence
@@ -123,9 +131,30 @@ def test_what_cannot_be_asked():
     bare = replace(case(), model=Model(replace(NETWORK, links=NETWORK.links[:2], parameters=NETWORK.parameters[:2])))
     with pytest.raises(InputError, match="knows no bases"):
         which_base(bare)
-    assert wrong_bases(bare) == []
+    assert wrong_bases(bases_tried(bare)) == []
 
 
-def test_diagnosis_says_it_first():
-    """A wrong base counts as a fault of the data, before any effect is named."""
-    assert "check the measurement first: b did not" in words("data", [], [], (), wrong_bases(case(b="none")), [])
+@pytest.fixture(scope="module")
+def diagnosed():
+    """The whole diagnosis of three tests, the one on the bench once with its base and once without."""
+    return {said: diagnose(case(b=said), 10, KINDS, workers=1, plan=False) for said in ("bench", "none")}
+
+
+def test_diagnosis_says_it_first(diagnosed):
+    """The verdict is the base, by mechanism; no sensor and no film is accused of what the base does."""
+    found = diagnosed["none"]
+    assert found.verdict == "data"
+    assert "b did not stand on the base its sheet says (none" in found.words
+    assert "At the base, not in the films of the machine: conduction 0 instead of" in found.words
+    assert found.named == ()
+    assert {c.decision for c in found.candidates} <= {"no", "cannot-tell"}
+    rows = {(h["test"], h["base"]): h["excluded"] for h in found.document()["bases"]}
+    assert rows["b", "none"]
+    assert not rows["b", "bench"]
+
+
+def test_diagnosis_of_the_right_bases_goes_on(diagnosed):
+    """Nothing is missing there: the same tests under the right sheet accuse nobody."""
+    found = diagnosed["bench"]
+    assert found.verdict == "adequate"
+    assert not any(h.declared and h.excluded for h in found.bases)

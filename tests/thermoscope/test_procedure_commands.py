@@ -1,0 +1,180 @@
+"""curves, screen, two-paths and carry through the command line: exit codes, documents, and what they refuse."""
+
+import json
+import shutil
+import sys
+
+import numpy as np
+import pytest
+from small_case import small_case
+
+from thermoscope.cli import main
+
+NETWORK = """
+[network]
+name = "two"
+boundaries = ["ambient"]
+[nodes.winding]
+C_J_K = 3000
+[nodes.core]
+C_J_K = 60000
+[links.slot]
+between = ["winding", "core"]
+G_W_K = 20
+[links.film]
+between = ["core", "ambient"]
+G_W_K = 5
+[losses.copper]
+at = "winding"
+kind = "copper"
+R20_ohm = 1.0
+currents = ["current_A"]
+"""
+SHEET = """
+[test]
+time = "time_s"
+[columns.current_A]
+quantity = "current"
+unit = "A"
+[columns.T_air]
+quantity = "temperature"
+unit = "degC"
+place = "ambient"
+[columns.T_core]
+quantity = "temperature"
+unit = "degC"
+place = "core"
+sigma_K = 0.5
+"""
+RUNS = ("run-1", "run-2", "run-3")
+
+
+def warmed(time, current=15.0):
+    """Winding and core of the network above, by its own equations: backward Euler of 5 s steps."""
+    T, out, step = np.array([20.0, 20.0]), [], 5.0
+    for _ in np.arange(0.0, time[-1] + step, step):
+        out.append(T[1])
+        heat = np.array([current**2 * (1 + 0.00393 * (T[0] - 20.0)), 5.0 * 20.0])
+        A = np.array([[3000 / step + 20, -20.0], [-20.0, 60000 / step + 25.0]])
+        T = np.linalg.solve(A, heat + np.array([3000, 60000]) / step * T)
+    return np.interp(time, np.arange(len(out)) * step, out)
+
+
+def equal_tests(folder, offsets):
+    """A case of equal tests of 20 h at 15 A, each read with its own offset (K)."""
+    (folder / "tests").mkdir(parents=True)
+    (folder / "network.toml").write_text(NETWORK)
+    time = np.arange(0.0, 72001.0, 600.0)
+    true = warmed(time)
+    entries = "".join(f'[tests.{name}]\nrole = "calibrate"\n' for name in RUNS)
+    (folder / "case.toml").write_text(f'[case]\nname = "two"\nnetwork = "network.toml"\nsample_s = 600\n{entries}')
+    for name, off in zip(RUNS, offsets, strict=True):
+        rows = "".join(f"{t:g},15,20,{T + off:.3f}\n" for t, T in zip(time, true, strict=True))
+        (folder / "tests" / f"{name}.csv").write_text(f"time_s,current_A,T_air,T_core\n{rows}")
+        (folder / "tests" / f"{name}.toml").write_text(SHEET)
+    return folder
+
+
+@pytest.fixture
+def ask(monkeypatch, capsys):
+    """ask(*arguments) -> exit code, stdout, stderr of the command line in this process."""
+
+    def run(*arguments):
+        monkeypatch.setattr(sys, "argv", ["thermoscope", *map(str, arguments)])
+        with pytest.raises(SystemExit) as end:
+            main()
+        captured = capsys.readouterr()
+        return end.value.code, captured.out, captured.err
+
+    return run
+
+
+def test_curves_of_equal_tests(thermoscope, tmp_path):
+    """20 h are seven time constants: equilibrium; the rise over ambient follows the two resistances by hand."""
+    done = thermoscope("curves", equal_tests(tmp_path / "two", (-0.3, 0.0, 0.3)), "--json", "-")
+    assert done.code == 0, done.err
+    found = done.document
+    assert found["agrees"]
+    (curve,) = found["tests"][1]["curves"]
+    rise = 15.0**2 / (5.0 - 15.0**2 * 0.00393 * (1 + 5 / 20))  # copper's loss grows with the winding's rise
+    assert curve["equilibrium"]["reached"]
+    assert found["tests"][1]["assemblies"][0]["measured"] - 20.0 == pytest.approx(rise, rel=0.02)
+    assert found["tests"][1]["assemblies"][0]["verdict"] == "calibrated"
+    assert {"a_degC", "b", "c_1_min", "tau95_min", "ci95", "warnings"} <= set(curve["eq8"])
+    (equal,) = found["repeats"]
+    assert (equal["tests"], equal["place"], equal["n"], equal["repeat"]) == (list(RUNS), "core", 3, True)
+
+
+def test_curves_shows_them_and_the_pool(ask, tmp_path):
+    code, out, _ = ask("curves", equal_tests(tmp_path / "two", (-0.3, 0.0, 0.3)), "--json", tmp_path / "found.json")
+    assert code == 0
+    assert (tmp_path / "found.json").is_file()
+    assert "T = a exp(b exp(c t))" in out
+    assert "run-1, run-2, run-3" in out
+
+
+def test_curves_that_do_not_repeat_exit_with_1(ask, tmp_path):
+    code, out, _ = ask("curves", equal_tests(tmp_path / "two", (-4.0, 0.0, 4.0)), "--json", "-")
+    assert code == 1
+    assert '"repeat": false' in out
+
+
+@pytest.mark.parametrize(
+    ("command", "words"),
+    [
+        (("curves", "nowhere"), "no such case folder"),
+        (("bases", "nowhere"), "no such case folder"),
+        (("bases", "CASE"), "the network knows no bases"),
+        (("two-paths", "CASE"), "unknown place 'winding.copper'"),
+        (("two-paths", "CASE", "--winding", "winding", "--machine", "yok"), "unknown place 'yok'"),
+        (("carry", "CASE", "nowhere"), "no such case folder"),
+        (("screen", "pmsm-m9"), "no such machine file"),
+        (("screen", "ipmsm-48s8p-jacket"), "has a housing or no magnets"),
+        (("screen", "pmsm-m1", "--design", "thirds"), "no design 'thirds'"),
+    ],
+)
+def test_what_they_refuse(ask, tmp_path, command, words):
+    """One message on stderr, exit code 2, nothing on stdout."""
+    case = small_case(tmp_path)
+    code, out, err = ask(*(case if word == "CASE" else word for word in command))
+    assert (code, out) == (2, ""), err
+    (message,) = [line for line in err.splitlines() if line.startswith("error:")]
+    assert words in message
+    assert "Traceback" not in err
+
+
+def test_resolution_has_to_be_one(thermoscope, case):
+    done = thermoscope("curves", case, "--resolution", "0")
+    assert done.code == 2
+    assert "--resolution" in done.err
+
+
+def test_screen_gives_the_effects(ask):
+    code, out, _ = ask("screen", "pmsm-m1", "--design", "half")
+    assert code == 0
+    assert "R_w (mK/W)" in out
+    assert "high - low (mK/W)" in out
+
+
+def test_two_paths_by_hand(ask, tmp_path):
+    """R_w of two nodes is 1 / 20 K/W, R_ext 1 / 5 K/W, and constant resistances leave nothing at other loads."""
+    case = equal_tests(tmp_path / "two", (0.0, 0.0, 0.0))
+    code, out, _ = ask("two-paths", case, "--winding", "winding", "--machine", "core", "--json", "-")
+    found = json.loads(out)["tests"]["run-1"]
+    assert code == 0
+    assert found["R_w"] == pytest.approx(0.05, rel=1e-6)
+    assert found["R_ext"] == pytest.approx(0.2, rel=1e-6)
+    assert found["largest_residual_K"] < 1e-6
+
+
+def test_carry_to_another_case(ask, tmp_path):
+    """A machine that is the same agrees; one that is read 6 K off does not, and the exit code says so."""
+    source = equal_tests(tmp_path / "two", (0.0, 0.0, 0.0))
+    other = shutil.copytree(source, tmp_path / "other")
+    assert ask("carry", source, other, "--json", "-")[0] == 0
+    shutil.rmtree(other)
+    equal_tests(other, (0.0, 6.0, 0.0))
+    code, out, _ = ask("carry", source, other, "--json", "-")
+    assert code == 1
+    rows = json.loads(out)["targets"][0]["rows"]
+    assert [r["within"] for r in rows] == [True, False, True]
