@@ -110,27 +110,33 @@ def read_electrical(quantity: str, name: str, table: Table, folder: Path) -> Ele
     reading, at = cold.number("reading", low=1e-9), cold.number("at_degC", low=-273.15)
     rpm = cold.number("rpm", 1.0) if quantity == "back_emf" else 1.0
     cold.close()
-    meter = _meter(table, OHMMETER if quantity == "resistance" else VOLTMETER)
+    meter = meter_of(table, "meter", OHMMETER if quantity == "resistance" else VOLTMETER)
     coefficient = _coefficient(table, COPPER if quantity == "resistance" else NDFEB)
     if quantity == "back_emf":
-        magnets = Magnets(reading, at, rpm, meter, coefficient, _saturation(table))
+        magnets = Magnets(reading, at, rpm, meter, coefficient, saturation_of(table))
         return Electrical(magnets, table.number("speed_rpm", rpm, low=1e-6), None)
     reference = table.number("reference_degC", low=-273.15) if "reference_degC" in table else None
     winding = Winding(reading, at, meter, coefficient, reference)
     return Electrical(winding, 0.0, _after(table, name, folder))
 
 
-def _meter(table: Table, usual: Meter) -> Meter:
-    data = table.table("meter")
-    if not data.data:
+def meter_of(table: Table, key: str, usual: Meter) -> Meter:
+    """A meter by its data sheet: one table of limits, or a list of them, one per range."""
+    given = table.raw(key)
+    if not given:
         return usual
+    rows = given if isinstance(given, list) else [given]
+    return Meter("meter", usual.unit, tuple(_range(Table(row, f"{table.where} {key}")) for row in rows))
+
+
+def _range(data: Table) -> Range:
     span = data.numbers("range", [0.0, 1e12])
     if len(span) != 2 or not span[0] < span[1]:
         raise data.error(f"range = {list(span)} is not possible", "range = [lowest, highest]")
     offset = data.number("offset", 0.0)
     one = Range(*span, data.number("percent", 0.0), offset, data.number("resolution", offset))
     data.close()
-    return Meter("meter", usual.unit, (one,))
+    return one
 
 
 def _coefficient(table: Table, usual: Reading) -> Reading:
@@ -142,7 +148,8 @@ def _coefficient(table: Table, usual: Reading) -> Reading:
     return Reading(usual.name, sum(given) / len(given) / 100.0, abs(given[-1] - given[0]) / 200.0)
 
 
-def _saturation(table: Table) -> Saturation | None:
+def saturation_of(table: Table) -> Saturation | None:
+    """saturation = { emf_V = [...], remanence_T = [...] }, both rising; None where it is not given."""
     data = table.table("saturation")
     if not data.data:
         return None

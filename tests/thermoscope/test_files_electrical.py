@@ -64,6 +64,18 @@ def test_its_uncertainty_is_that_of_the_meters(tmp_path):
     assert 2.0 < found["emf"].sigma_K < 4.0
 
 
+def test_saturation_curve_in_a_sheet(tmp_path):
+    """B_r as the square of the back-EMF, tabulated: its fall, and by eq. 2 the rise, is nearly twice as large."""
+    volts = np.arange(240.0, 301.0, 5.0)
+    curve = f"saturation = {{ emf_V = {volts.tolist()}, remanence_T = {(1e-5 * volts**2).tolist()} }}\n"
+    case = electrical_case(tmp_path)
+    sheet = case / "tests" / "stand.toml"
+    sheet.write_text(sheet.read_text() + curve)
+    y = {c.name: c for c in load_case(case).case.tests[0].channels}["emf"].y
+    least = pd.read_csv(case / "tests" / "stand.csv")["emf"].min()
+    assert np.nanmax(y) == pytest.approx(21.0 + ((least / 290.0) ** 2 - 1) / -0.105e-2, abs=0.05)
+
+
 def test_compare_and_calibrate_take_them(tmp_path):
     from validation.calibrate import calibrated
     from validation.fitting import working

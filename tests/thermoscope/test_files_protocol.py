@@ -8,6 +8,7 @@ import pytest
 
 from geom.errors import InputError
 from thermoscope.commands.protocol import protocol, read_record
+from validation.procedure.protocol import protocol as judged
 
 RECORD = """
 [machine]
@@ -90,3 +91,53 @@ def test_readings_may_stand_in_the_record(record):
     record.write_text(text.replace("[[25, 0.66]", "[[25]"))
     with pytest.raises(InputError, match="no list of pairs"):
         read_record(record)
+
+
+METERS = """[meters]
+resistance = [
+    { range = [0.2, 2.0], percent = 0.05, offset = 0.0005 },
+    { range = [2.0, 20.0], percent = 0.05, offset = 0.005 },
+]
+emf = { range = [0, 600], percent = 0.05, offset = 0.2 }
+"""
+
+
+def width(file, rise):
+    low, high = judged(read_record(file)).document()[rise]["worst"]
+    return high - low
+
+
+def test_other_meters(record):
+    """Finer meters, smaller worst cases: near 0.52 and 0.67 ohm 0.0008 instead of 0.0033 and 0.0037 ohm."""
+    before = {rise: width(record, rise) for rise in ("winding_rise_K", "magnet_rise_K")}
+    record.write_text(RECORD.replace("range_ohm = 4.0", "range_ohm = 2.0") + METERS)
+    assert width(record, "winding_rise_K") == pytest.approx(before["winding_rise_K"] * 0.8 / 3.5, rel=0.1)
+    assert width(record, "magnet_rise_K") < before["magnet_rise_K"]
+    record.write_text(RECORD.replace("range_ohm = 4.0", "range_ohm = 20.0") + METERS)
+    with pytest.raises(InputError, match="range up to 20 ohm"):
+        protocol(record, None)
+    record.write_text(RECORD + METERS.replace("[0.2, 2.0]", "[2.0, 0.2]"))
+    with pytest.raises(InputError, match="lowest, highest"):
+        read_record(record)
+
+
+def test_saturation_curve_of_the_magnets(record):
+    """A straight curve through the origin changes nothing; a saturated one reads the magnets warmer."""
+
+    def warm(remanence):
+        curve = f"saturation = {{ emf_V = [240, 270, 300], remanence_T = {remanence} }}\n"
+        record.write_text(RECORD + curve)
+        return judged(read_record(record)).temperatures["magnets"]
+
+    plain = judged(read_record(record)).temperatures["magnets"]
+    assert warm([0.96, 1.08, 1.2]) == pytest.approx(plain, abs=1e-6)
+    assert warm([0.96, 1.08, 1.3]) > plain + 5.0
+
+
+def test_documented_record_is_one(record, root):
+    """The record in the how-to, with the recordings of this test, is complete; every key of it is known."""
+    page = (root / "docs" / "how-to" / "thermal-test.md").read_text(encoding="utf-8")
+    (text,) = [block.split("```")[0] for block in page.split("```toml\n") if "[machine]\nrated_kW" in block]
+    (record.parent / "run.csv").write_text(pd.read_excel(record.parent / "run.xlsx").to_csv(index=False))
+    record.write_text(text)
+    assert protocol(record, None) == 0

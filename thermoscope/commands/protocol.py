@@ -25,6 +25,13 @@ speed_rpm = 383
 [coefficients]
 beta_percent_K = [0.392, 0.393]
 alpha_percent_K = [-0.11, -0.10]
+saturation = { emf_V = [240, 270, 300], remanence_T = [0.98, 1.12, 1.28] }   # optional, from the field of the machine
+[meters]                   # those of the published procedure if not given; one table per range
+resistance = [
+    { range = [0.4, 4.0], percent = 0.25, offset = 0.002, resolution = 0.002 },
+    { range = [4.0, 40.0], percent = 0.25, offset = 0.02, resolution = 0.02 },
+]
+emf = { range = [0, 1000], percent = 0.1, offset = 1.0 }
 """
 
 from __future__ import annotations
@@ -34,9 +41,11 @@ from typing import Any
 
 from geom.errors import InputError
 from lumped.reader import Table
+from thermoscope.electrical import meter_of, saturation_of
 from thermoscope.formats import read_frame, recording
 from thermoscope.sheet import read_toml
 from thermoscope.terminal import give, progress, say, table
+from validation.procedure.meters import OHMMETER, VOLTMETER
 from validation.procedure.protocol import Cold, Hot, Protocol, Record
 from validation.procedure.protocol import protocol as judged
 from validation.procedure.readings import COPPER, NDFEB
@@ -60,16 +69,18 @@ def protocol(file: Path | None, target: str | None) -> int:
 
 def read_record(file: Path) -> Record:
     """The record of a test; InputError for unknown keys and values that cannot be."""
-    top = Table(read_toml(file, "a record of a thermal test; `thermoscope protocol` lists what it holds"), str(file))
+    top = Table(read_toml(file, "a record of a thermal test, see docs/how-to/thermal-test.md"), str(file))
     machine, cold, load, hot = (top.table(name) for name in ("machine", "cold", "load", "hot"))
-    coefficients = top.table("coefficients")
+    coefficients, meters = top.table("coefficients"), top.table("meters")
     top.close()
     record = Record(
         machine.number("rated_kW", low=1e-3), _cold(cold) if cold.data else None, _pairs(load, file, 60.0),
         load.number("resolution_K", 0.5, low=1e-3), _hot(hot, file) if hot.data else None,
+        meter_of(meters, "resistance", OHMMETER), meter_of(meters, "emf", VOLTMETER),
         beta=_range(coefficients, "beta_percent_K", COPPER), alpha=_range(coefficients, "alpha_percent_K", NDFEB),
+        curve=saturation_of(coefficients),
     )  # fmt: skip
-    for one in (machine, load, coefficients):
+    for one in (machine, load, coefficients, meters):
         one.close()
     return record
 
