@@ -2,7 +2,9 @@
 
 Nothing compiled here allocates or counts references, inner functions have no Python entry of their own, and array
 expressions, of which there are none, are not rewritten: each would cost a good part of the compile time. Every inner
-function costs some time besides its lines: few of them. Only entries are cached; their code holds all inner functions.
+function costs some time besides its lines, because it is optimised alone and once more in each that calls it: those
+called from one place are pasted there (but for the tangents, which then run slower). Only entries are cached; their
+code holds all inner functions.
 """
 
 from typing import Any
@@ -16,4 +18,5 @@ _OPTIONS: dict[str, Any] = {
 entry = njit(**_OPTIONS, cache=True)
 _HIDDEN = {**_OPTIONS, "no_cpython_wrapper": True}
 inner = njit(**_HIDDEN)
+pasted = njit(**_HIDDEN, inline="always")
 inner_reordered = njit(**_HIDDEN, fastmath={"reassoc", "contract"})

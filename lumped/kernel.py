@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from lumped.dense import axpy, copy, lu, solve, solve_many, subtract_product
-from lumped.jit import entry, inner
+from lumped.jit import entry, inner, pasted
 from lumped.terms import (
     BENDS,
     DYNAMIC,
@@ -102,7 +102,7 @@ def work(n: int, ne: int, p: int) -> Work:
     return Work(np.zeros(ne), F, Ft, W, G, H, np.zeros((n, p)), np.zeros((2, n, p)), pivot, seen)
 
 
-@inner
+@pasted
 def _changed(T, f, seen):
     """Whether the matrix differs from the one last factorised."""
     out = False
@@ -114,7 +114,7 @@ def _changed(T, f, seen):
     return out
 
 
-@inner
+@pasted
 def _time_slope(T, K0, f, df, a, out):
     """out = F_t at the start of the step: boundaries move along w, factors along df."""
     n, w, v, vw, tau = out.size, a.w[0], a.v[0], a.vw[0], a.tau[0]
@@ -131,7 +131,7 @@ def _time_slope(T, K0, f, df, a, out):
                 out[T.row[s]] -= c * vw[s] + turn * v[s]
 
 
-@inner
+@pasted
 def _rates(T, K0, C, f, f2, u2, h, refactor, a, q):
     """Both stages of one step; False if the matrix is singular."""
     n, gh = C.size, GAMMA * h
@@ -160,7 +160,7 @@ def _rates(T, K0, C, f, f2, u2, h, refactor, a, q):
     return True
 
 
-@inner
+@pasted
 def _directions(T, a, n):
     """The directions along which each stage linearises: its rate, and time forwards (0) or backwards (1)."""
     for i in range(n):
@@ -181,7 +181,7 @@ def _taken(T, e, s, stage, t, df, a, gh):
     return now + gh * (f * a.tau[0, e, 0] * a.vw[stage, s] + turn * a.v[0, s])
 
 
-@inner
+@pasted
 def _count(T, through, t, h, a, df, before, after):
     """Heat through every term over the step (J), by the scheme's own quadrature."""
     for e in range(T.m.size):
@@ -236,7 +236,7 @@ def _finite(x):
     return total == 0.0
 
 
-@inner
+@pasted
 def _begin(T, u, t, h, w, df):
     """Slopes of factors (df) and boundaries (w) over the step that ends at index t."""
     n = w.size - u.shape[1] - 1
@@ -248,7 +248,7 @@ def _begin(T, u, t, h, w, df):
         w[n + b] = (u[t, b] - u[t - 1, b]) / h
 
 
-@inner
+@pasted
 def _settle(T, K0, C, f, a, q):
     """Bring the states without capacity to their balance at fixed others (Newton); q.G is left as -dF/dx there.
 
@@ -276,7 +276,7 @@ def _settle(T, K0, C, f, a, q):
     return False
 
 
-@inner
+@pasted
 def _settle_tangents(T, S, C, f, a, D, q):
     """D: tangents of the states without capacity, at the balance found just before."""
     clear(q.R[0])
@@ -292,7 +292,7 @@ def _settle_tangents(T, S, C, f, a, D, q):
         copy(q.R[0, i], D[i])
 
 
-@inner
+@pasted
 def _outputs(R, z, D, y, dy):
     """Outputs and, where there are any, their tangents."""
     for r in range(y.size):

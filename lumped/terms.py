@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.jit import inner
+from lumped.jit import inner, pasted
 
 SIGMA = 5.670374419e-8
 ZERO_C = 273.15
@@ -48,7 +48,7 @@ class Terms(NamedTuple):
     factor: Floats
 
 
-@inner
+@pasted
 def _segment(points, start, end, at):
     """Index k of the piece of a table that holds `at`: x[k] <= at < x[k + 1]."""
     while end - start > 1:
@@ -60,7 +60,7 @@ def _segment(points, start, end, at):
     return start
 
 
-@inner
+@pasted
 def _tabulated(points, first, last, d, out):
     """Piecewise linear in |d| between two indices, flat outside."""
     at = abs(d)
@@ -77,7 +77,7 @@ def _tabulated(points, first, last, d, out):
     out[2] = -out[1]
 
 
-@inner
+@pasted
 def law(code, a, b, hot, cold, out):
     """Temperature law: value, its derivatives by hot and cold, and the second ones hh, hc, cc, into out (6,)."""
     if code == POWER:
@@ -129,7 +129,7 @@ def patterns(T, z, out):
             out[base + T.slot[i]] += T.weight[i] * z[T.at[i]]
 
 
-@inner
+@pasted
 def _evaluate(T, z, tau):
     """Temperature laws of all terms at z: tau (ne, 6) = value, d/dhot, d/dcold, hh, hc, cc."""
     for e in range(T.m.size):
