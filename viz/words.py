@@ -24,9 +24,21 @@ def verdict(diagnosis: Document | None, comparison: Document | None) -> tuple[st
         "several": f"Missing from the model: {spoken(names)}.",
         "outside": f"Heat is missing or in excess{_where(diagnosis)}; no known effect explains it.",
         "absorbed": "A calibrated value lies far from what is physically expected; it hides something.",
-        "data": "Check the sensors and inputs first; the error looks like theirs.",
+        "data": _elsewhere(diagnosis) or "Check the sensors and inputs first; the error looks like theirs.",
     }
     return TONE.get(code, "info"), sentences[code]
+
+
+def _elsewhere(diagnosis: Document) -> str:
+    """Tests that stood on another base than their sheets say."""
+    rows = diagnosis.get("bases", [])
+    wrong = [h for h in rows if h["declared"] and h["excluded"]]
+    parts = [
+        f"{w['test']} did not stand on the base its sheet says ({w['base']}), but on "
+        f"{spoken([h['base'] for h in rows if h['test'] == w['test'] and not h['excluded']], 'or')}"
+        for w in wrong
+    ]
+    return f"{'; '.join(parts)}: look at the sheet before the model." if parts else ""
 
 
 def story(history: Sequence[Document]) -> str:

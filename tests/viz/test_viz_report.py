@@ -106,6 +106,13 @@ def test_every_verdict_has_its_words(code, word):
     assert word in verdict({**diagnose, "verdict": code}, compare)[1]
 
 
+def test_a_wrong_base_is_what_the_report_says_first():
+    rows = [("none", True, True), ("bench", False, False), ("plate", False, False)]
+    bases = [{"test": "b", "base": b, "declared": said, "excluded": out} for b, said, out in rows]
+    sentence = verdict({**documents()[1], "verdict": "data", "bases": bases}, None)[1]
+    assert sentence.startswith("b did not stand on the base its sheet says (none), but on bench or plate")
+
+
 def test_an_addition_that_was_undone_is_no_story():
     back = {"number": 3, "action": "step back", "effect": "", "effects": [], "tests": []}
     assert "from 4.85 K to 0.93 K on road-2" in story(HISTORY)

@@ -28,10 +28,12 @@ def show(document: Mapping[str, Any]) -> None:
     rows = [[t["name"], c["channel"], *_row(c)] for t in document["tests"] for c in t["curves"]]
     table("Warming: T = a exp(b exp(c t)), 95 % intervals; steady by eq. 9", headers, rows, marked=["no"])
     rows = [
-        [t["name"], a["place"], a["measured"], a["calculated"], a["percent"], a["percent_of_rise"], a["verdict"]]
+        [t["name"], a["place"], a["measured"], a["calculated"], a["percent"], a["percent_of_rise"],
+         a["U95_percent"], a["verdict"]]
         for t in document["tests"] for a in t["assemblies"]
     ]  # fmt: skip
-    headers = ["test", "assembly", "measured (degC)", "calculated (degC)", "%", "% of rise", "verdict"]
+    headers = ["test", "assembly", "measured (degC)", "calculated (degC)", "%", "% of rise", "reading's 95 % (%)",
+               "verdict"]  # fmt: skip
     table("Within 3 to 4 % of the measured temperature, never above 7 %", headers, rows, marked=["beyond 7 %"])
     rows = [
         [", ".join(r["tests"]), r["place"], r["mean"], r["sd_mean"], r["spread"], r["limit"],

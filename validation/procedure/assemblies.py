@@ -22,6 +22,7 @@ class Assembly:
     """T_e measured and calculated (degC) of one assembly, at equilibrium or, where it was not reached, at the end.
 
     percent : of the measured temperature in degC, as published;  percent_of_rise : of its rise over ambient
+    U95_percent : what the reading itself is uncertain by; where it is more than the rule, the rule asks too much
     """
 
     place: str
@@ -30,6 +31,7 @@ class Assembly:
     calculated: float
     percent: float
     percent_of_rise: float
+    U95_percent: float = 0.0
 
     @property
     def verdict(self) -> Verdict:
@@ -42,11 +44,12 @@ class Assembly:
         return {**vars(self), "verdict": self.verdict}
 
 
-def assembly(place: str, T_exp: tuple[float, bool], T_calc: float, ambient: float) -> Assembly:
-    """T_exp : (degC, whether it had settled)."""
+def assembly(place: str, T_exp: tuple[float, bool], T_calc: float, ambient: float, u_K: float = 0.0) -> Assembly:
+    """T_exp : (degC, whether it had settled);  u_K : its standard uncertainty."""
     measured, settled = T_exp
     off = 100.0 * abs(T_calc - measured)
-    return Assembly(place, settled, measured, T_calc, off / abs(measured), off / max(abs(measured - ambient), 1e-9))
+    rise = max(abs(measured - ambient), 1e-9)
+    return Assembly(place, settled, measured, T_calc, off / abs(measured), off / rise, 200.0 * u_K / abs(measured))
 
 
 def assemblies(test: Test, predicted: Array, resolution_K: float = 0.5, window_min: float = 10.0) -> list[Assembly]:
@@ -60,7 +63,8 @@ def assemblies(test: Test, predicted: Array, resolution_K: float = 0.5, window_m
             found = equilibrium(test.time / 60.0, y, resolution_K, window_min)
             late = test.time >= test.time[-1] - 60.0 * window_min
             calculated = float(np.mean(predicted[late][:, columns]))
-            out.append(assembly(place, (float(np.nanmean(y[late])), found.reached), calculated, ambient))
+            u = max(test.channels[j].sigma_K for j in columns)
+            out.append(assembly(place, (float(np.nanmean(y[late])), found.reached), calculated, ambient, u))
     return out
 
 

@@ -77,7 +77,8 @@ def test_equilibrium_rejects_one_late_disturbance():
 def test_rule_of_3_to_4_percent():
     verdicts = [assembly("flange", (80.0, True), T, 20.0).verdict for T in (82.0, 83.0, 84.0, 86.0)]
     assert verdicts == ["calibrated", "allowed", "correct the model", "beyond 7 %"]
-    row = assembly("flange", (80.0, True), 82.0, 20.0)
+    row = assembly("flange", (80.0, True), 82.0, 20.0, 0.6)
+    assert row.U95_percent == pytest.approx(1.5)
     assert (row.percent, row.percent_of_rise) == (pytest.approx(2.5), pytest.approx(100 * 2 / 60))
 
 
