@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from pathlib import Path
 from typing import Annotated
@@ -16,6 +17,9 @@ app = typer.Typer(
     "--debug after any command shows where an error came from.",
     no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False, rich_markup_mode=None,
 )  # fmt: skip
+
+# The matrices of a diagnosis are small: threads of BLAS wait for each other longer than they work. Read before NumPy is.
+BLAS_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 Case = Annotated[str, typer.Argument(metavar="CASE", help="A case folder, or the name of a case that comes along.")]
 Effect = Annotated[str, typer.Argument(metavar="EFFECT@PLACE", help="For example convection@flange.right.")]
@@ -272,6 +276,8 @@ def check(json: Json = None) -> None:
 
 def main() -> None:
     """Run the command line and exit; what is wrong with the input is one message on stderr and exit code 2."""
+    for name in BLAS_THREADS:
+        os.environ.setdefault(name, "1")
     arguments = [a for a in sys.argv[1:] if a != "--debug"]
     try:
         app(arguments, prog_name="thermoscope")

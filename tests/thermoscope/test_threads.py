@@ -1,0 +1,26 @@
+"""How many threads the command line leaves to BLAS."""
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+AFTER_A_COMMAND = """
+import os, sys
+from thermoscope.cli import main
+sys.argv = ["thermoscope", "--help"]
+try:
+    main()
+except SystemExit:
+    print("numpy" in sys.modules, os.environ["OPENBLAS_NUM_THREADS"])
+"""
+
+
+@pytest.mark.parametrize(("given", "used"), [({}, "1"), ({"OPENBLAS_NUM_THREADS": "3"}, "3")])
+def test_blas_has_one_thread_unless_told_otherwise(given, used):
+    env = {k: v for k, v in os.environ.items() if not k.endswith("_NUM_THREADS")}
+    done = subprocess.run(
+        [sys.executable, "-c", AFTER_A_COMMAND], env=env | given, capture_output=True, text=True, check=True
+    )
+    assert done.stdout.splitlines()[-1] == f"False {used}"
