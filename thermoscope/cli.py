@@ -18,7 +18,7 @@ app = typer.Typer(
     no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False, rich_markup_mode=None,
 )  # fmt: skip
 
-# The matrices of a diagnosis are small: threads of BLAS wait for each other longer than they work. Read before NumPy is.
+# Read when NumPy is imported. The matrices of a diagnosis are small: threads of BLAS would mostly wait for each other.
 BLAS_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 Case = Annotated[str, typer.Argument(metavar="CASE", help="A case folder, or the name of a case that comes along.")]
