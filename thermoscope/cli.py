@@ -202,12 +202,12 @@ def protocol(
 def screen(
     machine: Annotated[str, typer.Argument(metavar="MACHINE", help="A machine file, or a name that comes along.")],
     design: Annotated[str, typer.Option(help="full (128 runs), half (64), gap (256), morris or sobol.")] = "full",
-    json: Json = None,
-) -> None:
+    out: Out = None, json: Json = None,
+) -> None:  # fmt: skip
     """Which factors move the temperatures of a PM machine: effects with Lenth's limits, Morris or Sobol."""
     from thermoscope.commands.screen import screen as run
 
-    raise typer.Exit(run(machine, design, json))
+    raise typer.Exit(run(machine, design, json, out))
 
 
 @app.command("two-paths")

@@ -15,7 +15,7 @@ _HOME = {
     "measured_and_model": "curves", "residuals": "curves", "before_after": "errors", "staircase": "errors",
     "scores": "candidates", "half_normal": "candidates", "confusion": "candidates",
     "write_recording": "recording", "verify": "recording", "Report": "report", "write_report": "report",
-    "write_pdf": "pdf",
+    "write_pdf": "pdf", "screened": "screening", "ranking": "screening",
 }  # fmt: skip
 __all__ = sorted(_HOME)
 

@@ -17,6 +17,7 @@ from validation.procedure.screening import STEP, TABLE_I, WITH_GAP, Screening, s
 from validation.procedure.sensitivity import Ranking, morris, sobol
 from validation.procedure.spread import Spread, spread
 from validation.procedure.switch_off import Cooling, exponentials, rule_150, semilog_at
+from viz.screening import screened
 
 TITLE = "Thermal Test Procedure and Analytical Model Calibration Method for Electrical Machines"
 RISE = 80.0
@@ -194,7 +195,11 @@ def pictures() -> dict[str, object]:
     """File name -> matplotlib figure."""
     from scripts.papers.machines import pictures as drawn
 
-    return {"figure-5.png": _figure_5(), "figure-6.png": _figure_6(), "figure-11.png": _figure_11(), **drawn()}
+    return {"figure-5.png": _figure_5(), "figure-6.png": _figure_6(), "figure-11.png": figure_11_drawn(), **drawn()}
+
+
+def figure_11_drawn() -> object:
+    return screened(screening().effects["magnets"].document(), title="Effects on the magnets")
 
 
 def _figure_5() -> object:
@@ -230,23 +235,3 @@ def _bands(axes: object, x: np.ndarray, found: list[Spread]) -> None:
         (line,) = axes.plot(x, high, label=words, ls="--" if "Monte" in words else "-")  # type: ignore[attr-defined]
         axes.plot(x, low, color=line.get_color(), ls=line.get_linestyle())  # type: ignore[attr-defined]
     axes.legend()  # type: ignore[attr-defined]
-
-
-def _figure_11() -> object:
-    from matplotlib.figure import Figure
-
-    figure = Figure((9, 3.6), layout="constrained")
-    left, right = figure.subplots(1, 2)
-    found = screening().effects["magnets"]
-    letters, quantile, size = found.half_normal()
-    left.plot(size, quantile, "o")
-    left.axvline(found.simultaneous, ls=":", color="grey")
-    for name, x, y in list(zip(letters, size, quantile))[-6:]:
-        left.annotate(name, (x, y), xytext=(4, -4), textcoords="offset points")
-    left.set(xlabel="|effect on the magnets| (K)", ylabel="half-normal quantile", title="Half-normal plot")
-    top = found.ranked[:8][::-1]
-    right.barh([found.words(w) for w, _ in top], [abs(v) for _, v in top])
-    right.axvline(found.simultaneous, ls=":", color="grey", label="Lenth, simultaneous")
-    right.set(xlabel="|effect| (K)", title="Pareto chart")
-    right.legend()
-    return figure

@@ -149,9 +149,13 @@ def test_resolution_has_to_be_one(thermoscope, case):
     assert "--resolution" in done.err
 
 
-def test_screen_gives_the_effects(ask):
-    code, out, _ = ask("screen", "pmsm-m1", "--design", "half")
+def test_screen_gives_the_effects(ask, tmp_path):
+    """Tables on stdout, and a half-normal plot with its Pareto chart for every response."""
+    code, out, err = ask("screen", "pmsm-m1", "--design", "half", "--out", tmp_path)
     assert code == 0
+    names = {"magnets", "winding", "end-winding", "lamination", "winding-minus-magnets", "R_w"}
+    assert {p.stem for p in tmp_path.glob("*.png")} == names
+    assert "magnets.png" in err
     assert "R_w (mK/W)" in out
     assert "high - low (mK/W)" in out
 

@@ -10,10 +10,17 @@ from PIL import Image
 
 from geom.errors import InputError
 from viz import candidates as scores
-from viz import curves, errors, paper
+from viz import curves, errors, paper, screening
 from viz.data import Comparison
 from viz.labels import spread
 
+EFFECTS = {
+    "margin": 1.0, "simultaneous": 1.8,
+    "effects": [{"effect": e, "words": w, "value": v, "active": abs(v) > 1.8} for e, w, v in
+                (("A", "convection", -19.2), ("B", "emissivity", -17.4), ("AB", "convection x emissivity", 4.6),
+                 ("E", "end-winding impregnation", 0.2), ("F", "speed", 0.4))],
+}  # fmt: skip
+RANKED = [{"factor": "base", "measure": 0.44, "conf95": 0.16}, {"factor": "speed", "measure": 0.01, "conf95": 0.01}]
 DRAW = {
     "curves": lambda png: curves.measured_and_model(comparison(before=True), png=png),
     "residuals": lambda png: curves.residuals(comparison(), png=png),
@@ -21,6 +28,8 @@ DRAW = {
     "staircase": lambda png: errors.staircase(HISTORY, floor_K=0.6, png=png),
     "scores": lambda png: scores.scores(candidates(), png=png),
     "half_normal": lambda png: scores.half_normal(candidates(), png=png),
+    "screened": lambda png: screening.screened(EFFECTS, title="magnets", png=png),
+    "ranking": lambda png: screening.ranking(RANKED, measure="Sobol ST", png=png),
     "confusion": lambda png: scores.confusion(["a@x", "b@y"], np.array([[1.0, 0.83], [0.83, 1.0]]), png=png),
 }
 SHOWS = {
@@ -30,6 +39,8 @@ SHOWS = {
     "staircase": ["road-2 (hold-out)", "convection", "rms error (K)"],
     "scores": ["convection@flange.right", "12.3 W/m2/K", "threshold"],
     "half_normal": ["convection@flange.right", "threshold (simulated nulls)"],
+    "screened": ["convection x emissivity", "AB", "half-normal quantile", "Lenth, all at once", "|high - low| (K)"],
+    "ranking": ["base", "speed", "Sobol ST"],
     "confusion": ["a@x", "b@y", ".83"],
 }
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from geom.errors import InputError
 from thermoscope.commands.opened import opened
 from thermoscope.folder import load_machine_file
-from thermoscope.terminal import give, progress, say, table
+from thermoscope.terminal import give, notes, progress, say, table
 
 if TYPE_CHECKING:
     from geom import Machine
@@ -20,8 +20,8 @@ ROWS = 12
 TRAJECTORIES, SAMPLES = 20, 256  # 160 runs, 2304 runs of some milliseconds
 
 
-def screen(machine: str, design: str, target: str | None) -> int:
-    """Which of table I's factors move magnets, winding, end winding and laminations."""
+def screen(machine: str, design: str, target: str | None, out: Path | None = None) -> int:
+    """Which of table I's factors move magnets, winding, end winding and laminations; `out`: folder for plots."""
     if design not in DESIGNS:
         raise InputError(f"no design '{design}'", "--design", f"one of {', '.join(DESIGNS)}")
     described = load_machine_file(Path(machine))
@@ -33,6 +33,8 @@ def screen(machine: str, design: str, target: str | None) -> int:
         document = _by_shares(described, design) if design in ("morris", "sobol") else _by_effects(described, design)
     document = {"machine": described.name, "design": design, **document}
     give(document, target, lambda: show(document))
+    if out is not None:
+        notes(f"written: {path}" for path in plots(document, out))
     return 0
 
 
@@ -62,11 +64,33 @@ def show(document: Mapping[str, Any]) -> None:
     for name, found in document.get("effects", {}).items():
         title = f"{name}: effects beyond {found['simultaneous']:.2f} are not chance (Lenth, simultaneous 95 %)"
         rows = [[e["effect"], e["words"], e["value"], "yes" if e["active"] else ""] for e in found["effects"][:ROWS]]
-        unit = "mK/W" if "mK/W" in name else "K"
-        table(title, ["effect", "factors", f"high - low ({unit})", "active"], rows, marked=["yes"])
+        table(title, ["effect", "factors", f"high - low ({unit_of(name)})", "active"], rows, marked=["yes"])
     for name, found in document.get("rankings", {}).items():
         rows = [[r["factor"], r["measure"], r["conf95"], r["spread"]] for r in found["ranking"]]
         table(f"{name}: {found['method']}, {found['runs']} runs", ["factor", "measure", "+- 95 %", "spread"], rows)
+
+
+def unit_of(response: str) -> str:
+    return "mK/W" if "mK/W" in response else "K"
+
+
+def plots(document: Mapping[str, Any], out: Path) -> list[Path]:
+    """A plot per response: half-normal and Pareto of the effects, or the factors by Morris' or Sobol's measure."""
+    from viz.screening import ranking, screened
+
+    title = f"{document['machine']}, {document['design']}"
+    made = []
+    for name, found in document.get("effects", {}).items():
+        made.append(_png(out, name))
+        screened(found, unit=unit_of(name), title=f"{title}: {name}", png=made[-1])
+    for name, found in document.get("rankings", {}).items():
+        made.append(_png(out, name))
+        ranking(found["ranking"], measure=found["method"], title=f"{title}: {name}", png=made[-1])
+    return made
+
+
+def _png(out: Path, response: str) -> Path:
+    return out / f"{response.split(' (')[0].replace(' ', '-')}.png"
 
 
 def two_paths(case: str, winding: str, machine: str, target: str | None) -> int:
