@@ -8,7 +8,7 @@ import numpy as np
 
 from geom import load_machine
 from scripts.papers.figures import figure_1, figure_2, figures_3_and_9
-from scripts.papers.machines import bases, circuits, machines, repeated, table_two, wrong_base
+from scripts.papers.machines import bases, circuits, constructive, machines, repeated, table_two, wrong_base
 from scripts.papers.page import Row, Section, page
 from validation.procedure.factorial import full
 from validation.procedure.meters import OHMMETER, VOLTMETER, Meter, Range
@@ -187,7 +187,7 @@ def text() -> str:
     )
     return page(TITLE, words, [
         figure_1(), figure_2(), figures_3_and_9(), figure_4(), figure_5(), figure_6(), repeated(), figure_11(),
-        with_gap(), rankings(), circuits(), wrong_base(), bases(), machines(), table_two(),
+        with_gap(), rankings(), circuits(), wrong_base(), bases(), machines(), constructive(), table_two(),
     ])  # fmt: skip
 
 

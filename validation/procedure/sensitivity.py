@@ -73,7 +73,7 @@ def sobol(factors: Sequence[Varied], response: Response, base: int = 64, seed: i
     problem = _problem(factors)
     X = sample.sample(problem, base, calc_second_order=False, seed=seed)
     Y = _answers(problem, X, response)
-    found = analyse.analyze(problem, Y, calc_second_order=False, seed=seed)
+    found = analyse.analyze(problem, Y, calc_second_order=False, seed=seed + 1)  # SALib takes 0 for no seed
     names = list(dict.fromkeys(problem["groups"])) if "groups" in problem else problem["names"]
     share, conf = _named(names, found["ST"]), _named(names, found["ST_conf"])
     return Ranking("Sobol ST", share, conf, _named(names, found["ST"] - found["S1"]), len(X))

@@ -125,6 +125,12 @@ def test_sobol_of_ishigami():
     assert [found.measure[n] for n in "xyz"] == pytest.approx([0.5576, 0.4424, 0.2437], abs=0.05)
 
 
+def test_sobol_says_the_same_twice():
+    """Its intervals come from resampling: from the same draws every time."""
+    once, again = (sobol([Varied("a", 0, 1), Varied("b", 0, 1)], lambda v: v["a"] + 2 * v["b"], 64) for _ in range(2))
+    assert once == again
+
+
 def test_morris_of_a_line():
     """Elementary effects of a linear function are its slopes times the range, without spread."""
     factors = [Varied("a", 0.0, 2.0), Varied("b", 0.0, 1.0), Varied("c", 0.0, 1.0)]
