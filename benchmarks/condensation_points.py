@@ -12,9 +12,9 @@ from functools import cached_property
 import numpy as np
 
 from fem.snapshots import drawn
-from fem.solve import film_columns
-from lumped.linear import coupled, linear, unit_load
-from lumped.motor import operating_point
+from fem.solve import coupled, film_columns
+from lumped.linear import linear, unit_load
+from lumped.motor import rated_inputs
 from lumped.network import Network
 from lumped.reduction import Reduction
 from thermoscope.crosscheck import coefficients, fluid_nodes
@@ -57,7 +57,7 @@ class Pair:
         own = np.array([rated.get(zone, 0.0) for zone in zones])
         rng = np.random.default_rng(7)
         one, two = (own.sum() * rng.dirichlet(np.full(len(zones), 0.5)) for _ in range(2))
-        point = {name: float(value[0]) for name, value in operating_point(machine).items()}
+        point = rated_inputs(machine)
         cold, warm = (coefficients(network, point, _at_inlet(network, rise)) for rise in (0.0, WARM))
         inlet = warm.inflow - cold.inflow
         windage = np.array([rated.get(fluid, 0.0) for fluid in fluids])

@@ -16,6 +16,7 @@ from fem.multifrontal import Factor, Symbolic, analyse, factorise
 from geom.errors import InputError
 
 Floats = NDArray[np.float64]
+Inverse = Callable[[Floats], Floats]
 
 
 class Solve(Protocol):
@@ -126,14 +127,21 @@ def steady(
     factor = solver.factor(K)
     B, D = film_columns(field, films, fluids.names)
     fixed = load + from_fixed(field, films, fluids.fixed)
-    X = factor(np.column_stack([fixed, B]))
-    u = np.asarray(np.linalg.solve(D + fluids.D - B.T @ X[:, 1:], fluids.s + B.T @ X[:, 0]), float)
-    T = X[:, 0] + X[:, 1:] @ u
+    solid, fluid = coupled(factor, fixed[:, None], B, D + fluids.D, fluids.s[:, None])
+    T, u = solid[:, 0], fluid[:, 0]
     left = fixed + B @ u - K @ T
     # The sum of what is left is the error of the energy balance.
     if abs(left.sum()) > 1e-11 * np.abs(fixed).sum():
         T += factor(left)
     return Steady(T, u, float(load.sum()), shed(field, films, fluids, T, u))
+
+
+def coupled(inverse: Inverse, b: Floats, B: Floats, G: Floats, s: Floats) -> tuple[Floats, Floats]:
+    """Solids (n, k) and fluids (n_fluid, k) of [A, -B; -B', G] [x; u] = [b; s]; inverse : y -> A^-1 y."""
+    k = b.shape[1]
+    X = inverse(np.column_stack([b, B]))
+    u = np.asarray(np.linalg.solve(G - B.T @ X[:, k:], s + B.T @ X[:, :k]), float)
+    return X[:, :k] + X[:, k:] @ u, u
 
 
 def shed(field: FieldModel, films: Mapping[str, float], fluids: Fluids, T: Floats, u: Floats) -> float:

@@ -72,18 +72,17 @@ class Size:
 
 
 def adapt(
-    reduction: Any, cases: Mixes, wish: Wish, rounds: int = 3, points: Sequence[Any] = (), fresh: int = 3,
-    tell: Tell = lambda message: None,
+    reduction: Any, cases: Mixes, wish: Wish, rounds: int = 3, points: Sequence[Any] = (), guides: Sequence[Any] = (),
+    fresh: int = 3, tell: Tell = lambda message: None,
 ) -> Adapted:  # fmt: skip
     """A network that meets the wish at random points it has not seen, or the one the last of `rounds` looked at.
 
-    reduction : lumped.reduction.Reduction;  points : already solved; random ones guide, the others are learned
+    reduction : lumped.reduction.Reduction;  points : already solved, to be learned;  guides : random ones, solved too
     fresh : random points per round; those that were missed guide the next, and are learned after it with an extreme one
     """
     weights: dict[str, float] = {}
-    solved, begun = list(points) or [reduction.nominal_point()], len(points)
-    # Shapes are dealt out by points that were not learned: those that were are met by very few.
-    learned, guides = _parted(solved)
+    learned, begun = list(points) or [reduction.nominal_point()], len(points) + len(guides)
+    # Shapes are dealt out by guides, points that were not learned: those that were are met by very few.
     reduction = reduction.enriched(learned) if points else reduction
     done: list[Round] = []
     for k in range(rounds):
@@ -97,12 +96,6 @@ def adapt(
         fuller = [*guides, reduction.extreme_point(begun + k)]
         learned, guides, reduction = [*learned, *fuller], new, reduction.enriched(fuller)
     return Adapted(reduction, network, dict(weights), tuple(done))
-
-
-def _parted(points: Sequence[Any]) -> tuple[list[Any], list[Any]]:
-    """What to learn, and the random ones to be guided by."""
-    guides = [p for p in points if p.name.startswith("random")]
-    return [p for p in points if not p.name.startswith("random")], guides
 
 
 def excess(found: Errors, wish: Wish) -> float:

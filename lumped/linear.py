@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from lumped.laws import CONSTANT, Fixed
 from lumped.network import Array, Link, Network
-
-Inverse = Callable[[Array], Array]
 
 
 @dataclass(frozen=True)
@@ -61,11 +59,3 @@ def unit_load(network: Network, place: str, solid: Array) -> Array:
     out = np.zeros(network.size)
     out[p.states] = p.b
     return out[solid]
-
-
-def coupled(inverse: Inverse, b: Array, B: Array, G: Array, s: Array) -> tuple[Array, Array]:
-    """Solids (n, k) and fluids (n_fluid, k) of [A, -B; -B', G] [x; u] = [b; s]; inverse : y -> A^-1 y."""
-    k = b.shape[1]
-    X = inverse(np.column_stack([b, B]))
-    u = np.asarray(np.linalg.solve(G - B.T @ X[:, k:], s + B.T @ X[:, :k]), float)
-    return X[:, :k] + X[:, k:] @ u, u

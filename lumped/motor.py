@@ -70,6 +70,11 @@ def operating_point(machine: Any) -> dict[str, np.ndarray]:
     return {name: np.array([float(value)]) for name, value in values.items()}
 
 
+def rated_inputs(machine: Any) -> dict[str, float]:
+    """The same, a number each."""
+    return {name: float(value[0]) for name, value in operating_point(machine).items()}
+
+
 def nominal_coefficients(
     machine: Any, faces: Mapping[str, tuple[str, str]], contacts: Iterable[str]
 ) -> tuple[dict[str, float], dict[str, float]]:

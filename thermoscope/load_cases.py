@@ -6,11 +6,11 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from fem.solve import film_columns
+from fem.solve import coupled, film_columns
 from geom import Machine
 from lumped.guard import Mixes, mixes
-from lumped.linear import coupled, linear, unit_load
-from lumped.motor import motor_network, operating_point
+from lumped.linear import linear, unit_load
+from lumped.motor import motor_network, rated_inputs
 from lumped.motor_losses import loss_watts
 from lumped.network import Network
 from lumped.reduction import Reduction
@@ -26,7 +26,7 @@ def load_cases(machine: Machine, reduction: Reduction) -> Mixes:
 
 def rated_watts(machine: Machine, network: Network) -> Mapping[str, float]:
     """Watts per part or zone at the rated point, windings at their reference temperature."""
-    return loss_watts(machine, network, _signals(machine))
+    return loss_watts(machine, network, rated_inputs(machine))
 
 
 def fluid_rises(
@@ -37,13 +37,9 @@ def fluid_rises(
     system = linear(network, reduction.films, reduction.contacts)
     load = sum(rated.get(zone, 0.0) * unit_load(network, zone, system.solid) for zone in zones)
     columns = [list(system.fluid).index(network.column(name)) for name in fluids]
-    streams = coefficients(network, _signals(machine), np.zeros(network.size)).streams
+    streams = coefficients(network, rated_inputs(machine), np.zeros(network.size)).streams
     G = film_columns(reduction.field, reduction.films, fluids)[1] + streams
     own = np.array([[rated.get(fluid, 0.0)] for fluid in fluids])
     inverse = np.linalg.inv(system.A)
     _, u = coupled(lambda y: inverse @ y, np.reshape(load, (-1, 1)), system.B[:, columns], G, own)
     return dict(zip(fluids, u[:, 0].tolist(), strict=True))
-
-
-def _signals(machine: Machine) -> dict[str, float]:
-    return {name: float(value[0]) for name, value in operating_point(machine).items()}

@@ -61,12 +61,12 @@ def sized(
     reduction = reduced(ready, recipe, motor_zones(machine))
     cases, wish = load_cases(machine, reduction), wish_of(accuracy)
     progress("error against number of states")
-    points = [reduction.nominal_point(), *(reduction.random_point(k) for k in range(LOOKS))]
-    points += [reduction.extreme_point(k) for k in range(LOOKS)]
+    guides = [reduction.random_point(k) for k in range(LOOKS)]
+    points = [reduction.nominal_point(), *(reduction.extreme_point(k) for k in range(LOOKS))]
     points += [reduction.joined_point(factor) for factor in JOINTS]
-    table = tuple(Size.of(reduction, asked, points, cases, wish) for asked in SIZES)
+    table = tuple(Size.of(reduction, asked, [*points, *guides], cases, wish) for asked in SIZES)
     good = [size for size in table if size.met]
-    found = None if good else adapt(reduction, cases, wish, rounds, points=points, tell=progress)
+    found = None if good else adapt(reduction, cases, wish, rounds, points, guides, tell=progress)
     condensed = good[0].network if good else found.network  # type: ignore[union-attr]
     kept = reduction if found is None else found.reduction
     return Sized(Built(machine, ready.mesh, ready.field, motor_network(machine, condensed)), kept, wish, table, found)

@@ -77,10 +77,10 @@ def bearable(built: Built) -> dict[str, float]:
 
     Raises ThermoscopeError where it settles at no current: its other losses alone overheat it, or nothing cools it.
     """
-    from lumped.motor import operating_point
+    from lumped.motor import rated_inputs
     from thermoscope.crosscheck import steady_state
 
-    point = {name: float(value[0]) for name, value in operating_point(built.machine).items()}
+    point = rated_inputs(built.machine)
     named = [i for i, state in enumerate(built.network.states) if "#" not in state]
     rated = point["current_A"]
     while True:
