@@ -137,7 +137,7 @@ def steady(
 
 
 def coupled(inverse: Inverse, b: Floats, B: Floats, G: Floats, s: Floats) -> tuple[Floats, Floats]:
-    """Solids (n, k) and fluids (n_fluid, k) of [A, -B; -B', G] [x; u] = [b; s]; inverse : y -> A^-1 y."""
+    """Solids x (n, k) and fluids u (n_fluid, k) of A x - B u = b and G u - B' x = s; inverse : y -> A^-1 y."""
     k = b.shape[1]
     X = inverse(np.column_stack([b, B]))
     u = np.asarray(np.linalg.solve(G - B.T @ X[:, k:], s + B.T @ X[:, :k]), float)
