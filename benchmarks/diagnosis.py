@@ -27,6 +27,7 @@ from lumped.build import bare_network, node_link, node_source
 from lumped.laws import Fixed, InputPower, Linear, Power
 from lumped.network import Network, Parameter
 from lumped.simulate import Record, simulate
+from validation.bar import Bar
 from validation.case import Case, Channel, Model, Test
 from validation.diagnose import conclude, diagnose, search
 from validation.evidence import Evidence, calibrated_case, candidates, possible, scored
@@ -106,8 +107,9 @@ def without_null(now: Case) -> tuple[Evidence, Any]:
     K, p, channels = len(evidence.effects), len(fit.unknowns.parameters), len({s.channel for s in fit.parts})
     z = np.abs(np.random.default_rng(0).standard_normal((40, K)))
     known = Null(z, np.ones((40, p)), np.full((40, channels), 0.2))
-    steps = search(now, evidence, known, known.threshold(), lambda message: None)
-    return evidence, conclude(now, steps, known, known.threshold(), [], False)
+    bar = Bar(known, dict.fromkeys(evidence.names, 1.0))
+    steps = search(now, evidence, bar, lambda message: None)
+    return evidence, conclude(now, steps, bar, [], False)
 
 
 def peak(now: Case) -> float:

@@ -25,6 +25,7 @@ def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seeds", choices=("dev", "test"), default="dev")
     parser.add_argument("--count", type=int, default=24)
+    parser.add_argument("--skip", type=int, default=0, help="leave out the first cases of the plan")
     parser.add_argument("--classes", nargs="+", choices=tuple(SHARES), default=list(SHARES))
     parser.add_argument("--archetypes", nargs="+", choices=tuple(KINDS), default=list(KINDS))
     parser.add_argument("--draws", type=int, default=24, help="data sets of the simulated null")
@@ -44,7 +45,7 @@ def main() -> None:
     if a.sizes:
         return sizes.write(a.draws, a.archetypes)
     out = a.out or Path(f"out/hidden-{a.seeds}")
-    labels = plan(a.seeds, a.count, a.classes, a.archetypes)
+    labels = plan(a.seeds, a.skip + a.count, a.classes, a.archetypes)[a.skip :]
     if not a.score:
         run(labels, out, Wanted(a.draws, a.plan, a.peers, a.after), a.jobs)
     table = rows(pairs(out))

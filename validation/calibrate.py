@@ -106,14 +106,17 @@ def minimise(
     start: Sequence[Segment] | None = None,
     draft: bool = False,
     keep: Keep = forgets,
+    centre: Array | None = None,
+    borrowed: bool = True,
 ) -> Fit:
     """Fit `unknowns` to the tests from `theta` under a given noise (by default that of uncalibrated sensors).
 
     The Jacobian costs ten times a run, so it is held as long as steps do what it foretells, and made anew before the
-    end (unless `draft`); `start`: segments whose Jacobian at a state nearby is good enough, then it is never made anew;
-    `keep` is told the values after every step, so that an interrupted fit can go on from there.
+    end (unless `draft`); `start`: segments whose Jacobian at a state nearby is good enough, then it is never made anew
+    while `borrowed`, and only where steps fail otherwise; `keep` is told the values after every step, so that an
+    interrupted fit can go on from there; `centre`: prior mean (p,), 0 by default.
     """
-    climb = Climb(network, tests, unknowns, dict(fixed or {}), instants, theta, noise, start, draft)
+    climb = Climb(network, tests, unknowns, dict(fixed or {}), instants, theta, noise, start, draft, centre, borrowed)
     for iteration in range(iterations):
         progress(f"calibration step {iteration + 1}, objective {climb.objective:.4g}")
         done = climb.step()
@@ -128,12 +131,14 @@ class Climb:
 
     def __init__(
         self, network: Network, tests: Sequence[Test], unknowns: Unknowns, fixed: dict[str, float], instants: int,
-        theta: Array, noise: Noise | None, start: Sequence[Segment] | None, draft: bool,
+        theta: Array, noise: Noise | None, start: Sequence[Segment] | None, draft: bool, centre: Array | None,
+        borrowed: bool,
     ) -> None:  # fmt: skip
         self.network, self.tests, self.unknowns, self.fixed = network, tests, unknowns, fixed
-        self.instants, self.borrowed, self.draft = instants, start is not None, draft or start is not None
+        self.instants, self.draft = instants, draft or start is not None
+        self.borrowed, self.centre = borrowed and start is not None, np.zeros_like(theta) if centre is None else centre
         self.low, self.high = unknowns.bounds
-        self.weight, self.damping, self.fresh, self.done = unknowns.sd**-2.0, 0.0, not self.borrowed, False
+        self.weight, self.damping, self.fresh, self.done = unknowns.sd**-2.0, 0.0, start is None, False
         self.theta = np.clip(theta, self.low, self.high)
         self.parts = self.residuals(self.theta, start) if start else self.tangents(self.theta)
         self.noise = noise or first_noise(self.parts)
@@ -155,7 +160,15 @@ class Climb:
 
     def weigh(self) -> None:
         self.A, self.b, square = normal(self.parts, self.noise)
-        self.objective = 0.5 * (square + float(self.theta @ (self.weight * self.theta)))
+        self.objective = 0.5 * (square + self.strain(self.theta))
+
+    def strain(self, x: Array) -> float:
+        """Squared distance from the prior mean, in prior deviations."""
+        return float((x - self.centre) @ (self.weight * (x - self.centre)))
+
+    def slope(self) -> tuple[Array, Array]:
+        """Curvature and steepest descent of the objective."""
+        return self.A + np.diag(self.weight), self.b - self.weight * (self.theta - self.centre)
 
     def renew(self) -> None:
         """The Jacobian where the fit stands."""
@@ -164,13 +177,13 @@ class Climb:
 
     def step(self) -> bool:
         """One step; True when there is nothing more to gain."""
-        H, g = self.A + np.diag(self.weight), self.b - self.weight * self.theta
+        H, g = self.slope()
         new = bounded_step(H + self.damping * np.diag(np.diag(H)), g, self.theta, self.low, self.high)
         predicted = float(g @ (new - self.theta) - 0.5 * (new - self.theta) @ H @ (new - self.theta))
         if predicted < self.enough:
             return self.stop()
         trial = self.residuals(new, self.parts)
-        value = 0.5 * (square_of(trial, self.noise) + float(new @ (self.weight * new)))
+        value = 0.5 * (square_of(trial, self.noise) + self.strain(new))
         if not value < self.objective:
             return self.back()
         gained = self.objective - value
@@ -201,7 +214,7 @@ class Climb:
     def fit(self) -> Fit:
         if not (self.fresh or self.draft):
             self.renew()
-        H, g = self.A + np.diag(self.weight), self.b - self.weight * self.theta
+        H, g = self.slope()
         inside = ~((self.theta <= self.low + 1e-9) & (g < 0) | (self.theta >= self.high - 1e-9) & (g > 0))
         slack = float(np.max(np.abs(g / np.sqrt(np.diag(H)))[inside], initial=0.0))
         return Fit(

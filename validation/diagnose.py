@@ -2,25 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from validation.calibrate import Fit, calibrated, silent, square_of
+from validation.bar import Bar, Simulation, bar_of
+from validation.calibrate import Fit, calibrated, silent
 from validation.case import AddedEffect, Case
-from validation.evidence import Evidence, calibrated_case, candidates, null_of, possible, scored
-from validation.experiments import next_tests
+from validation.evidence import Evidence, calibrated_case, candidates, possible, scored
 from validation.faults import broken_channels
-from validation.findings import Candidate, Decision, Diagnosis, Hidden, NextSensor, NextTest, Verdict
+from validation.findings import Candidate, Diagnosis, Verdict
 from validation.fitting import working
 from validation.null import Null
 from validation.procedure.which_base import Hypothesis, bases_tried, wrong_bases
-from validation.rivals import Race, constancy, race
-from validation.sensors import next_sensors
-from validation.sheet import rmse, segments
+from validation.rivals import Race, race, weak
+from validation.rows import Step, confusion, planned, sensed, tabulate, unseen
+from validation.sheet import rmse
 from validation.where import Latent, latent_heat
 
 Array = NDArray[np.float64]
@@ -29,19 +29,8 @@ STEPS = 3
 BEYOND = 1.6
 LOCATED = 10.0
 PULL = 3.0
-COMPENSATED = 0.3
-SILENT = 6.0
-WORTH = 0.1
+WORTH, FURTHER, CLEAR = 0.1, 1.25, 1.6
 HIDES = "it may hide a missing effect"
-
-
-@dataclass(frozen=True)
-class Step:
-    """One round of the search: the evidence, each candidate's kappa, and the race if one passed the threshold."""
-
-    evidence: Evidence
-    kappa: Array
-    race: Race | None
 
 
 def diagnose(
@@ -57,45 +46,47 @@ def diagnose(
     """Diagnose a case on its calibrate and validate tests; held-out tests are only predicted.
 
     draws : data sets of the simulated null (40 for a quick look, 200 in earnest);  kinds : restrict the catalogue
-    plan : also rank the next tests and scan for latent heat
+    plan : also rank the next tests, scan for latent heat, and look for the smallest sizes by calibrating to hidden
+    effects; without it those are the linear ones, which promise too much
     A test that stood on another base than its sheet says is told first; then no effect is searched for.
     """
     fit = calibrated_case(case, progress)
     progress("scoring the catalogue")
     evidence = possible(case, scored(case, candidates(case, kinds), fit))
-    null = null_of(evidence, draws, seed, workers, cache, progress)
-    limit = null.threshold()
+    bar = bar_of(case, evidence, Simulation(draws, seed, workers, cache), plan, progress)
     stood = bases_tried(case, progress)
-    steps = [Step(evidence, null.kappa, None)] if wrong_bases(stood) else search(case, evidence, null, limit, progress)
+    steps = [Step(evidence, bar.null.kappa, None)] if wrong_bases(stood) else search(case, evidence, bar, progress)
     progress("looking for where heat is missing")
     where = latent_heat(fit, evidence.tests) if plan else []
-    return conclude(case, steps, null, limit, where, plan, stood)
+    return conclude(case, steps, bar, where, plan, stood)
 
 
-def search(case: Case, evidence: Evidence, null: Null, limit: float, progress: Progress) -> list[Step]:
+def search(case: Case, evidence: Evidence, bar: Bar, progress: Progress) -> list[Step]:
     """Add the best candidate while one passes the threshold, each time calibrating and estimating the noise anew.
 
-    A further effect that removes less than a tenth of the residual is not worth its place.
+    An effect by another law than the true one leaves a misfit that the null does not know, so what comes after a first
+    one has to pass more: FURTHER times the threshold, and either a tenth of the residual removed or CLEAR times it.
     """
-    level = dict(zip(evidence.names, null.kappa, strict=True))
+    level = dict(zip(evidence.names, bar.null.kappa, strict=True))
     steps: list[Step] = []
     for _ in range(STEPS + 1):
         kappa = np.array([level[n] for n in evidence.names])
-        if np.max(evidence.score.z / kappa, initial=0.0) < limit or len(steps) == STEPS:
+        limit = bar.threshold * (FURTHER if case.model.effects else 1.0)
+        best = np.max(evidence.score.z / kappa, initial=0.0)
+        if best < limit or len(steps) == STEPS:
             return [*steps, Step(evidence, kappa, None)]
         found = race(evidence, kappa, limit, progress)
-        if case.model.effects and explained(evidence, found) < WORTH:
-            return [*steps, Step(evidence, kappa, None)]
-        if steps and weak(evidence, found):
+        little = explained(evidence, found) < WORTH and best < CLEAR * bar.threshold
+        if (case.model.effects and little) or (steps and weak(evidence, found)):
             return [*steps, Step(evidence, kappa, None)]
         steps.append(Step(evidence, kappa, found))
         if weak(evidence, found):
             return [*steps, Step(evidence, kappa, None)]
-        best = evidence.effects[found.index[0]]
-        case = with_effect(case, best.kind, best.place, found.best)
+        added = evidence.effects[found.index[0]]
+        case = with_effect(case, added.kind, added.place, found.best)
         network, unknowns = working(case)
         fit = calibrated(network, evidence.tests, unknowns, found.best.values, 1, progress, found.noise)
-        evidence = scored(case, [e for e in evidence.effects if e.name != best.name], fit)
+        evidence = scored(case, [e for e in evidence.effects if e.name != added.name], fit)
     return steps
 
 
@@ -107,33 +98,32 @@ def with_effect(case: Case, kind: str, place: str, fit: Fit) -> Case:
 
 
 def conclude(
-    case: Case, steps: list[Step], null: Null, limit: float, where: list[Latent], plan: bool,
-    stood: Sequence[Hypothesis] = (),
+    case: Case, steps: list[Step], bar: Bar, where: list[Latent], plan: bool, stood: Sequence[Hypothesis] = (),
 ) -> Diagnosis:  # fmt: skip
     """From the search to a verdict and its tables.  stood : the bases that were tried"""
-    first = steps[0]
+    first, null = steps[0], bar.null
     groups = [tuple(s.evidence.names[k] for k in s.race.group) for s in steps if s.race]
     pulls = pulled(first.evidence.fit, null)
     broken = [*broken_channels(first.evidence.tests), *wrong_bases(stood)]
-    verdict = judge(steps, null, groups, bool(pulls), bool(broken))
-    table = tabulate(case, steps, limit, verdict)
-    ahead = planned(steps, null) if plan else ()
+    verdict = judge(steps, bar, groups, bool(pulls), bool(broken))
+    table = tabulate(case, steps, bar, verdict)
+    ahead = planned(steps) if plan else ()
     floor = float(np.sqrt(np.mean(null.floor**2)))
     return Diagnosis(
         verdict, words(verdict, groups, table, pulls, broken, where), tuple(g[0] for g in groups), tuple(groups), table,
-        unseen(first, null), tuple(where), ahead, rmse(first.evidence.fit.parts), floor, limit, pulls,
+        unseen(first, bar), tuple(where), ahead, rmse(first.evidence.fit.parts), floor, bar.threshold, pulls,
         confusion(first, [c.effect for c in table[:12]]), sensed(steps) if plan else (), float(np.median(null.kappa)),
         tuple(stood),
     )  # fmt: skip
 
 
-def judge(steps: list[Step], null: Null, groups: list[tuple[str, ...]], pulled_: bool, broken: bool) -> Verdict:
+def judge(steps: list[Step], bar: Bar, groups: list[tuple[str, ...]], pulled_: bool, broken: bool) -> Verdict:
     """The verdict, method of docs/diagnosis."""
     last, rounds = steps[-1], [s for s in steps if s.race]
     if broken:
         return "data"
     left = last.evidence.score.z / last.kappa
-    if beyond(last.evidence.fit, null) or (len(rounds) == STEPS and np.max(left, initial=0.0) > null.threshold()):
+    if beyond(last.evidence.fit, bar.null) or (len(rounds) == STEPS and np.max(left, initial=0.0) > bar.threshold):
         return "outside"
     if not rounds:
         return "absorbed" if pulled_ else "adequate"
@@ -165,23 +155,6 @@ def explained(evidence: Evidence, found: Race) -> float:
     return 1.0 - (rmse(found.best.parts) / rmse(evidence.fit.parts)) ** 2
 
 
-def told_by_data(evidence: Evidence, found: Race) -> tuple[float, float]:
-    """What the readings contribute to the best candidate's gain in deviance, and their share in it."""
-    before, after = (square_of(fit.parts, found.noise) for fit in (evidence.fit, found.best))
-    strain, eased = (float(np.sum((fit.theta / fit.unknowns.sd) ** 2)) for fit in (evidence.fit, found.best))
-    gain = before - after + max(strain - eased, 0.0)
-    return before - after, (before - after) / gain if gain > 0 else 0.0
-
-
-def weak(evidence: Evidence, found: Race) -> bool:
-    """Does the calibration explain the readings as well, against its priors only?"""
-    best = found.index[0]
-    if evidence.effects[best].fault:
-        return False
-    gain, share = told_by_data(evidence, found)
-    return evidence.twins[best] is not None or (share < COMPENSATED and gain < SILENT)
-
-
 def on_bound(evidence: Evidence, found: Race) -> bool:
     """Does the best candidate's amplitude stick to its upper physical bound?"""
     return bool(found.best.at_bound[-1])
@@ -198,109 +171,6 @@ def pulled(fit: Fit, null: Null) -> tuple[tuple[str, float, float], ...]:
 def pull_threshold(null: Null) -> float:
     best = np.max(np.abs(null.pulls / null.pull_scale), axis=1)
     return float(np.mean(best) + 2.6 * np.std(best))
-
-
-def tabulate(case: Case, steps: list[Step], limit: float, verdict: Verdict, rows: int = 20) -> tuple[Candidate, ...]:
-    """Candidates that were in a race first, then the others by score."""
-    out: dict[str, Candidate] = {}
-    for step in steps:
-        if step.race:
-            for k in step.race.index:
-                out.setdefault(step.evidence.names[k], raced(case, step, k, limit, verdict))
-    first = steps[0]
-    for k in np.argsort(-first.evidence.score.z / first.kappa)[:rows]:
-        out.setdefault(first.evidence.names[k], plain(first, int(k), limit))
-    order = {"named": 0, "group": 1, "cannot-tell": 2, "no": 3}
-    return tuple(sorted(out.values(), key=lambda c: (order[c.decision], -c.score)))
-
-
-def plain(step: Step, k: int, limit: float) -> Candidate:
-    """A row from the score alone."""
-    e, s, kappa = step.evidence, step.evidence.score, float(step.kappa[k])
-    a, half, twin = float(s.amplitude[k]), 1.96 * kappa * float(s.sd[k]), e.twins[k]
-    like = s.cosine[k]
-    near = [e.names[m] for m in np.argsort(-np.abs(like)) if m != k and abs(like[m]) > 0.9][:5]
-    hidden = not s.visible[k] or s.absorbed[k] > 0.995
-    return Candidate(
-        e.names[k], float(s.z[k]) / kappa, limit, a, e.parameters[k].unit, (a - half, a + half),
-        "cannot-tell" if hidden else "no", confused_with=tuple(near), absorbed=float(s.absorbed[k]),
-        smallest_detectable=float(s.detectable(step.kappa, limit)[k]), twin=twin, title=e.effects[k].title,
-        isolating_test=e.effects[k].isolating_test, kappa=kappa,
-    )  # fmt: skip
-
-
-def raced(case: Case, step: Step, k: int, limit: float, verdict: Verdict) -> Candidate:
-    """A row with the refit's numbers."""
-    assert step.race is not None
-    e, found, row = step.evidence, step.race, plain(step, k, limit)
-    fit, kappa = found.fits[found.index.index(k)], float(step.kappa[k])
-    a, half = fit.values[e.names[k]], 1.96 * kappa * float(fit.sd[-1])
-    before, after = rmse(e.fit.parts), rmse(fit.parts)
-    group = tuple(e.names[m] for m in found.group if m != k)
-    member = k in found.group
-    decision: Decision = "no" if not member else "group" if group else "named"
-    if decision == "named" and verdict in ("outside", "absorbed"):
-        decision = "cannot-tell"
-    return replace(
-        row, value=a, ci95=(a - half, a + half), decision=decision, rmse_K=(before, after),
-        explained=1.0 - (after / before) ** 2, holdout_rmse_K=held_out(case, e.fit, fit),
-        confused_with=group if member else row.confused_with,
-        same_over_tests=constancy(e, k, kappa),
-    )  # fmt: skip
-
-
-def held_out(case: Case, before: Fit, after: Fit) -> tuple[float, float] | None:
-    """Error (K) on the held-out tests, with nothing fitted to them."""
-    tests = [t for t in case.tests if t.role == "hold-out"]
-    if not tests:
-        return None
-    return (rmse(segments(before.network, tests, before.values)), rmse(segments(after.network, tests, after.values)))
-
-
-def unseen(step: Step, null: Null) -> tuple[Hidden, ...]:
-    """Effects that would have to be unusually large to show, most hidden first."""
-    e, s = step.evidence, step.evidence.score
-    size = s.detectable(step.kappa, null.threshold())
-    unusual = size / np.array([p.prior_sd for p in e.parameters])
-    names, twins = e.fit.unknowns.names, e.twins
-    hit = [int(k) for k in np.argsort(-unusual) if unusual[k] > 2.0 or twins[k]]
-    return tuple(
-        Hidden(e.names[k], float(size[k]), e.parameters[k].unit, twins[k] or names[s.absorber[k]]) for k in hit
-    )
-
-
-def planned(steps: list[Step], null: Null) -> tuple[NextTest, ...]:
-    """Tests that would separate the first group that could not be separated."""
-    for step, group, size in unresolved(steps):
-        return tuple(next_tests(step.evidence, group, size, step.kappa))
-    return ()
-
-
-def sensed(steps: list[Step]) -> tuple[NextSensor, ...]:
-    """Sensors that would separate the same group."""
-    for step, group, size in unresolved(steps):
-        return tuple(next_sensors(step.evidence, group, size, step.kappa))
-    return ()
-
-
-def unresolved(steps: list[Step]) -> Iterator[tuple[Step, tuple[int, ...], dict[int, float]]]:
-    """Groups that could not be separated, with the amplitude of each member."""
-    for step in steps:
-        if step.race and len(step.race.group) > 1:
-            found = step.race
-            yield (
-                step,
-                found.group,
-                {k: found.fits[found.index.index(k)].values[step.evidence.names[k]] for k in found.group},
-            )
-
-
-def confusion(step: Step, names: Sequence[str]) -> dict[str, dict[str, float]]:
-    """Cosines between the traces of some candidates."""
-    known = {n: k for k, n in enumerate(step.evidence.names)}
-    c = step.evidence.score.cosine
-    chosen = [n for n in names if n in known]
-    return {a: {b: float(c[known[a], known[b]]) for b in chosen} for a in chosen}
 
 
 def words(

@@ -121,7 +121,7 @@ def widened(parameter: Parameter) -> Parameter:
 
 def refit(evidence: Evidence, members: Sequence[int], noise: Noise | None = None, start: Fit | None = None) -> Fit:
     """All free parameters and the amplitudes of some candidates, fitted anew with the evidence's Jacobian."""
-    network, unknowns, held = _with_members(evidence, members)
+    network, unknowns, held = with_members(evidence, members)
     p = evidence.fit.theta.size
     theta = start.theta if start else np.concatenate([evidence.fit.theta, first_amplitudes(evidence, members)])
     near = [replace(s, J=s.J[:, [*range(p), *(p + k for k in members)]]) for s in evidence.parts]
@@ -130,11 +130,11 @@ def refit(evidence: Evidence, members: Sequence[int], noise: Noise | None = None
 
 def polished(evidence: Evidence, members: Sequence[int], fit: Fit) -> Fit:
     """A refit gone on with a Jacobian of its own."""
-    network, unknowns, held = _with_members(evidence, members)
+    network, unknowns, held = with_members(evidence, members)
     return minimise(network, evidence.tests, unknowns, fit.theta, fit.noise, held, 8, draft=True)
 
 
-def _with_members(evidence: Evidence, members: Sequence[int]) -> tuple[Network, Unknowns, dict[str, float]]:
+def with_members(evidence: Evidence, members: Sequence[int]) -> tuple[Network, Unknowns, dict[str, float]]:
     fit, chosen = evidence.fit, [evidence.parameters[k] for k in members]
     network = extended(fit.network, [evidence.effects[k] for k in members])
     unknowns = Unknowns((*fit.unknowns.parameters, *(widened(p) for p in chosen)))

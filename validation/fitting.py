@@ -129,7 +129,7 @@ def working(case: Case, more: Sequence[Effect] = ()) -> tuple[Network, Unknowns]
     inside, extra = effects_of(case), nuisances(case.model.network, case.tests)
     network = extended(case.model.network, (*inside, *more))
     network = at_level(network, {e.name for e in (*inside, *more)}, case.tests)
-    network, forms = with_forms(network, case.tests)
+    network, forms = with_forms(network, case.tests, {e.name for e in inside})
     network = replace(network, parameters=(*network.parameters, *extra))
     chosen = {p.name for p in (case.nuisances or case.model.network.parameters)}
     chosen |= {e.name for e in (*inside, *more)} | {p.name for p in extra} | set(forms)

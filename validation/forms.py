@@ -3,12 +3,12 @@
 No correlation has the right exponent for one machine. A fit that may not move them presses their error into whatever
 else it may move. So every film and loss brings, as nuisances with narrow priors, an exponent for each input its law
 follows, one for the temperature difference of free convection, and the share of each part that one film is spread over.
-They are neutral at zero (shares at one).
+They are neutral at zero (shares at one). An effect that was added brings its exponents along as well.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -114,21 +114,26 @@ def varied(tests: Sequence[Test], name: str) -> bool:
     return bool(np.ptp(v) > 0.1 * np.mean(v))
 
 
-def with_forms(network: Network, tests: Sequence[Test]) -> tuple[Network, tuple[str, ...]]:
-    """The network with its form nuisances, and their names."""
+def with_forms(network: Network, tests: Sequence[Test], added: Collection[str] = ()) -> tuple[Network, tuple[str, ...]]:
+    """The network with its form nuisances, and their names.
+
+    added : effects that are in the model: their laws are no truer than the model's own
+    """
     level, before = levels(tests), {p.name for p in network.parameters}
     moving = {n for n in level if varied(tests, n)}
     first = first_of(network)
     for p in network.parameters:
-        if p.mapping == "log":
-            films = [x for x in network.links if first.get(x.name) == p.name and is_film(network, x)]
+        if p.mapping == "log" or p.name in added:
+            own = [x for x in network.links if first.get(x.name) == p.name]
+            films = [x for x in own if p.name in added or is_film(network, x)]
             losses = [x for x in network.sources if first.get(x.name) == p.name and x.kind not in KNOWN]
             laws = [x.law for x in films] + [x.law for x in losses]
             for name in sorted({r for law in laws for r in law.reads} & moving):
                 network = _with_input(network, p.name, name, films, losses, level)
             network = _with_difference(network, p.name, films)
             network = _with_warming(network, p.name, losses)
-            network = replace(network, parameters=(*network.parameters, *shares(p.name, films)))
+            if p.name not in added:
+                network = replace(network, parameters=(*network.parameters, *shares(p.name, films)))
     return network, tuple(p.name for p in network.parameters if p.name not in before)
 
 

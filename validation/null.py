@@ -8,9 +8,7 @@ effect's formal uncertainty is too small.
 from __future__ import annotations
 
 import hashlib
-import multiprocessing
 from collections.abc import Callable, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -25,6 +23,7 @@ from validation.noise import first_noise, fit_noise
 from validation.predict import predict
 from validation.score import gram, score, total
 from validation.sheet import Segment, segments
+from validation.side_by_side import side_by_side
 
 Array = NDArray[np.float64]
 Drawn = tuple[Array, Array, Array]
@@ -83,9 +82,6 @@ class Setting:
     seed: int
 
 
-_shared: list[Setting] = []
-
-
 def simulated_null(
     fit: Fit,
     network: Network,
@@ -108,7 +104,7 @@ def simulated_null(
     if file and file.exists():
         with np.load(file) as saved:
             return Null(saved["z"], saved["pulls"], saved["rms"])
-    rows = _run(setting, draws, workers, progress)
+    rows = side_by_side(draw, setting, draws, workers, progress, "simulated null")
     z, pulls, rms = (np.array(column) for column in zip(*rows, strict=True))
     if file:
         file.parent.mkdir(parents=True, exist_ok=True)
@@ -123,27 +119,6 @@ def fingerprint(setting: Setting, draws: int) -> str:
     for s in setting.parts:
         h.update(f"{s.test}/{s.channel}".encode() + np.float32(s.J[:: max(1, len(s.J) // 8)]).tobytes())
     return h.hexdigest()[:20]
-
-
-def _run(
-    setting: Setting, draws: int, workers: int, progress: Callable[[str], None]
-) -> list[tuple[Array, Array, Array]]:
-    done: list[tuple[Array, Array, Array]] = []
-    if workers < 2 or "fork" not in multiprocessing.get_all_start_methods():
-        for i in range(draws):
-            done.append(draw(setting, i))
-            progress(f"simulated null {i + 1}/{draws}")
-        return done
-    _shared[:] = [setting]
-    with ProcessPoolExecutor(workers, multiprocessing.get_context("fork")) as pool:
-        for i, row in enumerate(pool.map(_draw_shared, range(draws))):
-            done.append(row)
-            progress(f"simulated null {i + 1}/{draws}")
-    return done
-
-
-def _draw_shared(i: int) -> Drawn:
-    return draw(_shared[0], i)
 
 
 def draw(setting: Setting, i: int) -> Drawn:

@@ -9,13 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import chi2
 
-from validation.calibrate import Fit, silent
+from validation.calibrate import Fit, silent, square_of
 from validation.evidence import Evidence, polished, refit, sharpened
 from validation.noise import Noise
 from validation.score import per_test
 
 Array = NDArray[np.float64]
 GAP = 10.0
+COMPENSATED = 0.3
+SILENT = 6.0
 REFITS = 6
 
 
@@ -41,14 +43,19 @@ class Race:
         return self.fits[0]
 
 
+def leading(evidence: Evidence, kappa: Array, level: float, progress: Callable[[str], None] = silent) -> dict[int, Fit]:
+    """Refits of the candidates that score best, three at most and all above a level."""
+    scaled = evidence.score.z / kappa
+    first = [int(k) for k in np.argsort(-scaled)[:3] if scaled[k] > level]
+    if first:
+        progress(f"refitting {', '.join(evidence.names[k] for k in first)}")
+    return {k: polished(evidence, [k], refit(evidence, [k])) for k in first}
+
+
 def race(evidence: Evidence, kappa: Array, threshold: float, progress: Callable[[str], None] = silent) -> Race:
     """Refit the most likely candidates, take the best one's residual as noise, and compare all under it."""
-    level = evidence.score.z / kappa
-    order = [int(k) for k in np.argsort(-level)]
-    first = [k for k in order if level[k] > threshold][:3]
-    progress(f"refitting {', '.join(evidence.names[k] for k in first)}")
-    fits = {k: polished(evidence, [k], refit(evidence, [k])) for k in first}
-    leader = min(first, key=lambda k: fits[k].objective)
+    fits = leading(evidence, kappa, threshold, progress)
+    leader = min(fits, key=lambda k: fits[k].objective)
     for _ in range(2):
         noise = sharpened(fits[leader])
         runners = shortlist(evidence, noise, kappa, leader)
@@ -96,3 +103,20 @@ def constancy(evidence: Evidence, k: int, kappa: float) -> float:
         return 1.0
     mean = np.sum(a / var) / np.sum(1.0 / var)
     return float(chi2.sf(np.sum((a - mean) ** 2 / var) / kappa**2, a.size - 1))
+
+
+def told_by_data(evidence: Evidence, found: Race) -> tuple[float, float]:
+    """What the readings contribute to the best candidate's gain in deviance, and their share in it."""
+    before, after = (square_of(fit.parts, found.noise) for fit in (evidence.fit, found.best))
+    strain, eased = (float(np.sum((fit.theta / fit.unknowns.sd) ** 2)) for fit in (evidence.fit, found.best))
+    gain = before - after + max(strain - eased, 0.0)
+    return before - after, (before - after) / gain if gain > 0 else 0.0
+
+
+def weak(evidence: Evidence, found: Race) -> bool:
+    """Does the calibration explain the readings as well, against its priors only?"""
+    best = found.index[0]
+    if evidence.effects[best].fault:
+        return False
+    gain, share = told_by_data(evidence, found)
+    return evidence.twins[best] is not None or (share < COMPENSATED and gain < SILENT)

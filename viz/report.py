@@ -147,7 +147,8 @@ def _hidden(r: Report) -> str:
     """What these tests cannot see, and which test would show more."""
     if r.diagnosis is None:
         return ""
-    blind = [(b["effect"], _number(b["smallest_detectable"]), b["unit"]) for b in r.diagnosis.get("cannot_see", [])]
+    hidden = [(b["effect"], _number(b["smallest_detectable"]), b["unit"]) for b in r.diagnosis.get("cannot_see", [])]
+    blind = [(name, "none that physics allows" if size is None else size, unit) for name, size, unit in hidden]
     tests = [
         (t["test"], ", ".join(t["separates"]), _number(t["predicted_gain"]), _number(t.get("hours")), t.get("why", ""))
         for t in r.diagnosis.get("next_tests", [])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
+from itertools import permutations
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from hidden.truth.archetype import Archetype, Hidden, Record, measured
 from hidden.truth.change import NOTHING, Change
 
 SIZES = (1.0, 2.0, 4.0)
+DECISIVE, ALIKE = 20.0, 5.0
 SHARES = {"nothing": 300, "one": 300, "two": 100, "pair": 100, "foreign": 60, "absorbed": 40, "fault": 60, "tense": 60}
 FIRST_SEED = {"dev": 0, "test": 500000}
 
@@ -21,7 +23,7 @@ FIRST_SEED = {"dev": 0, "test": 500000}
 class Label:
     """What is true of a case; written to its own file, never shown to the diagnosis.
 
-    truth : names of what is hidden;  size : in smallest detectable ones;  amplitude : in the names' units
+    truth : names of what is hidden;  size : in smallest detectable ones;  amplitude : in the names' units, as it shows
     rivals : what could be taken for it;  place : node where a foreign effect acts
     """
 
@@ -59,8 +61,9 @@ def _label(kind: Archetype, group: str, seed: int, turn: int) -> Label:
 def _possible(kind: Archetype, size: float) -> list[Hidden]:
     """What can be hidden at `size` smallest detectable ones: as large as nature and the machine allow."""
     table = detectable()[kind.name]
-    return [h for h in kind.missing if h.name in table
-            and size * table[h.name]["size"] <= min(h.largest, table[h.name]["high"])]  # fmt: skip
+    most = {h.name: min(h.largest * table[h.name]["shown"], table[h.name]["high"])
+            for h in kind.missing if h.name in table}  # fmt: skip
+    return [h for h in kind.missing if h.name in most and size * table[h.name]["size"] <= most[h.name]]
 
 
 def _one(kind: Archetype, bare: Label, turn: int, rng: np.random.Generator) -> Label:
@@ -68,14 +71,13 @@ def _one(kind: Archetype, bare: Label, turn: int, rng: np.random.Generator) -> L
     table, size = detectable()[kind.name], SIZES[(turn + turn // len(SIZES)) % len(SIZES)]
     fit = _possible(kind, size)
     chosen = fit[int(rng.integers(len(fit)))]
-    found = table[chosen.name]
-    return replace(bare, truth=(chosen.name,), size=size, amplitude=(size * found["size"],),
-                   rivals=tuple(n for n, c in found["alike"].items() if _near(size * found["z"], c)))  # fmt: skip
+    return replace(bare, truth=(chosen.name,), size=size, amplitude=(size * table[chosen.name]["size"],),
+                   rivals=rivals(kind, chosen.name, size))  # fmt: skip
 
 
-def _near(z: float, cosine: float) -> bool:
-    """Expected deviance gap below 20: the rival would explain it almost as well. z : deviations of the true effect."""
-    return z**2 * (1.0 - cosine**2) < 20.0 and cosine > 0.5
+def rivals(kind: Archetype, name: str, size: float) -> tuple[str, ...]:
+    """What would explain an effect of this size almost as well, on a machine with nothing else missing."""
+    return tuple(n for n, gap in detectable()[kind.name][name]["gaps"][f"{size:g}"].items() if gap < DECISIVE)
 
 
 def _two(kind: Archetype, bare: Label, turn: int, rng: np.random.Generator) -> Label:
@@ -83,7 +85,8 @@ def _two(kind: Archetype, bare: Label, turn: int, rng: np.random.Generator) -> L
     table = detectable()[kind.name]
     fit = _possible(kind, 4.0)
     a = fit[int(rng.integers(len(fit)))]
-    others = [h for h in fit if h is not a and table[a.name]["alike"].get(h.name, 0.0) < 0.7]
+    others = [h for h in fit if h is not a and h.name not in rivals(kind, a.name, 4.0)
+              and a.name not in rivals(kind, h.name, 4.0)]  # fmt: skip
     b = others[int(rng.integers(len(others)))]
     sizes = tuple(4.0 * table[h.name]["size"] for h in (a, b))
     return replace(bare, truth=(a.name, b.name), size=4.0, amplitude=sizes)
@@ -103,14 +106,19 @@ def _absorbed(kind: Archetype, bare: Label, turn: int, rng: np.random.Generator)
 
 
 def _pair(kind: Archetype, bare: Label, turn: int, rng: np.random.Generator) -> Label:
-    """One of two effects that the tests cannot tell apart, at 4 times the smallest detectable size."""
-    table, fit = detectable()[kind.name], {h.name for h in _possible(kind, 4.0)}
-    usable = [t.names for t in kind.twins if fit & set(t.names)]
-    names = usable[turn % len(usable)]
-    here = [n for n in names if n in fit]
-    true = here[int(rng.integers(len(here)))]
-    (other,) = set(names) - {true}
-    return replace(bare, truth=(true,), rivals=(other,), size=4.0, amplitude=(4.0 * table[true]["size"],))
+    """One of two effects that the tests cannot tell apart, at the largest size at which that is so."""
+    usable = [(true, other, size) for twins in kind.twins for true, other in permutations(twins.names)
+              if (size := _confounded(kind, true, other)) > 0.0]  # fmt: skip
+    true, other, size = usable[turn % len(usable)]
+    amplitude = size * detectable()[kind.name][true]["size"]
+    return replace(bare, truth=(true,), rivals=(other,), size=size, amplitude=(amplitude,))
+
+
+def _confounded(kind: Archetype, true: str, other: str) -> float:
+    """The largest multiple of the detectable size at which the other explains the true one as well; 0 if none."""
+    sizes = [s for s in SIZES if true in {h.name for h in _possible(kind, s)}]
+    gaps = {s: detectable()[kind.name][true]["gaps"][f"{s:g}"].get(other, np.inf) for s in sizes}
+    return max((s for s, gap in gaps.items() if gap < ALIKE), default=0.0)
 
 
 def _bare(kind: Archetype, bare: Label, turn: int, rng: np.random.Generator) -> Label:
@@ -124,8 +132,8 @@ DRAWN = {"nothing": _bare, "one": _one, "two": _two, "pair": _pair, "foreign": _
 def hidden_in(kind: Archetype, label: Label) -> Change:
     """The change of the true machine that a label speaks of."""
     if label.group in ("one", "two", "pair"):
-        table = {h.name: h for h in kind.missing}
-        changes = [table[n].make(a) for n, a in zip(label.truth, label.amplitude, strict=True)]
+        table, shown = {h.name: h for h in kind.missing}, detectable()[kind.name]
+        changes = [table[n].make(a / shown[n]["shown"]) for n, a in zip(label.truth, label.amplitude, strict=True)]
         return sum(changes[1:], changes[0])
     if label.group == "tense":
         return _wrong_priors(kind, label.seed)

@@ -1,4 +1,4 @@
-"""The smallest detectable size of every effect that can be hidden, and its look-alikes, where nothing is missing.
+"""The smallest detectable size of every effect that can be hidden, and its rivals, where nothing is missing.
 
 Made once on development seeds by `hidden_effects.py --sizes` and kept in detectable.json, so that a case stays the same
 case while the diagnosis improves.
@@ -11,17 +11,23 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import minimize_scalar
 
 from hidden.kinds import KINDS
-from hidden.truth.archetype import measured
+from hidden.truth.archetype import Hidden, measured
 from hidden.truth.change import NOTHING
 from hidden.user import case_of
-from validation.evidence import calibrated_case, candidates, null_of, scored
+from validation.case import Test
+from validation.detectable import Search, mistaken, readings_with, smallest
+from validation.evidence import Evidence, calibrated_case, candidates, null_of, scored
 from validation.score import POWER
+from validation.side_by_side import side_by_side
 
 FILE = Path(__file__).parent / "detectable.json"
-REFERENCE_SEEDS = (900001,)
-LIKE = 0.5
+REFERENCE_SEED = 900001
+LIKE, MOST = 0.4, 12
+MULTIPLES = (1.0, 2.0, 4.0)
 
 
 def detectable() -> dict[str, dict[str, dict]]:
@@ -29,35 +35,57 @@ def detectable() -> dict[str, dict[str, dict]]:
 
 
 def measure(kind: str, draws: int) -> dict[str, dict]:
-    """Per effect: smallest detectable amplitude (mean over the reference machines) and its score, the physical bound,
-    candidates alike (cosine > 0.5)."""
-    rows = [_one(kind, seed, draws) for seed in REFERENCE_SEEDS]
-    out = {}
-    for hidden in KINDS[kind].missing:
-        found = [r[hidden.name] for r in rows if hidden.name in r]
-        if found:
-            alike = {n: max(f["alike"].get(n, 0.0) for f in found) for f in found for n in f["alike"]}
-            size = float(np.mean([f["size"] for f in found]))
-            out[hidden.name] = {"size": size, "unit": found[0]["unit"], "alike": alike, "z": found[0]["z"],
-                                "high": found[0]["high"]}  # fmt: skip
-    return out
-
-
-def _one(kind: str, seed: int, draws: int) -> dict[str, dict]:
-    case = case_of("reference", kind, measured(KINDS[kind], seed, NOTHING))
+    """Per effect: smallest detectable amplitude; the physical bound; how much of the true machine's amplitude its
+    thermometers show in the catalogue's terms; and for each multiple of the size the deviance by which other candidates
+    would explain it worse, over kappa^2."""
+    case = case_of("reference", kind, measured(KINDS[kind], REFERENCE_SEED, NOTHING))
     evidence = scored(case, candidates(case), calibrated_case(case))
-    null = null_of(evidence, draws, workers=1)
-    limit = null.threshold()
-    size = evidence.score.detectable(null.kappa, limit)
-    names, cosine = evidence.names, np.abs(evidence.score.cosine)
-    wanted = {h.name for h in KINDS[kind].missing} & set(names)
-    out = {}
-    for k, name in enumerate(names):
-        if name in wanted:
-            alike = {names[m]: round(float(cosine[k, m]), 3) for m in np.flatnonzero(cosine[k] > LIKE) if m != k}
-            out[name] = {"size": float(size[k]), "unit": evidence.parameters[k].unit, "alike": alike,
-                         "z": round(limit + POWER, 3), "high": evidence.parameters[k].high}  # fmt: skip
-    return out
+    null = null_of(evidence, draws)
+    search = Search(evidence, null.kappa, null.threshold() + POWER)
+    wanted = [h for h in KINDS[kind].missing if h.name in evidence.names]
+    rows = side_by_side(_row, (kind, search, wanted), len(wanted), 2, lambda words: None, "effects")
+    return {h.name: row for h, row in zip(wanted, rows, strict=True) if row}
+
+
+def _row(given: tuple[str, Search, list[Hidden]], i: int) -> dict:
+    (kind, search, wanted), e = given, given[1].evidence
+    k = e.names.index(wanted[i].name)
+    size, high = smallest(search, k), e.parameters[k].high
+    if not np.isfinite(size):
+        return {}
+    gaps = {f"{m:g}": _gaps(e, k, m * size, float(search.kappa[k])) for m in MULTIPLES if m * size <= high}
+    return {"size": size, "unit": e.parameters[k].unit, "high": high, "gaps": gaps,
+            "shown": _shown(kind, e, k, wanted[i], 2.0 * size)}  # fmt: skip
+
+
+def _shown(kind: str, evidence: Evidence, k: int, hidden: Hidden, amplitude: float) -> float:
+    """The catalogue's amplitude over the true machine's: the one that moves the thermometers as much, least squares."""
+    tests = {name: case_of("", kind, measured(KINDS[kind], REFERENCE_SEED, c)).tests
+             for name, c in (("with", hidden.make(amplitude)), ("without", NOTHING))}  # fmt: skip
+    names = [t.name for t in evidence.tests]
+    wanted = _moved(*([t for t in tests[n] if t.name in names] for n in ("with", "without")))
+    still = readings_with(evidence, {k: 0.0})
+
+    def miss(a: float) -> float:
+        return float(np.nansum((wanted - _moved(readings_with(evidence, {k: a}), still)) ** 2))
+
+    most = min(4.0 * amplitude, evidence.parameters[k].high)
+    return (
+        float(minimize_scalar(miss, bounds=(0.0, most), method="bounded", options={"xatol": 1e-3 * most}).x) / amplitude
+    )
+
+
+def _moved(one: Sequence[Test], other: Sequence[Test]) -> NDArray[np.float64]:
+    """Differences of all readings."""
+    pairs = [(a.y - b.y) for s, t in zip(one, other, strict=True) for a, b in zip(s.channels, t.channels, strict=True)]
+    return np.concatenate(pairs)
+
+
+def _gaps(evidence: Evidence, k: int, amplitude: float, kappa: float) -> dict[str, float]:
+    """Candidate -> deviance gap, for those whose traces are alike."""
+    alike = np.abs(evidence.score.cosine[k])
+    near = [int(m) for m in np.argsort(-alike) if m != k and alike[m] > LIKE][:MOST]
+    return {evidence.names[m]: round(mistaken(evidence, k, amplitude, m) / kappa**2, 2) for m in near}
 
 
 def write(draws: int, machines: Sequence[str]) -> None:

@@ -7,6 +7,7 @@ import pytest
 from playground import Truth, network
 
 from lumped.laws import Fixed, InputPower, Power
+from validation.effects import effect, extended
 from validation.forms import Bend, BendOfDifference, levels, shares, with_forms
 from validation.predict import predict
 
@@ -68,3 +69,17 @@ def test_shares_name_each_body_once():
 def test_levels_pool_all_tests(case):
     every = np.concatenate([t.inputs["current_A"] for t in case.tests])
     assert levels(case.tests)["current_A"] == pytest.approx(np.sqrt(np.mean(every**2)))
+
+
+def test_an_added_effect_brings_its_own_exponent(case):
+    """Wind to the 0.8 may be wind to another power; while there is none that changes nothing."""
+    wind = effect("convection@flange.right")
+    grown, names = with_forms(extended(network(), [wind]), case.tests, {wind.name})
+    own = f"{wind.name}^vehicle_speed_mps"
+    assert own in names
+    assert own not in with_forms(extended(network(), [wind]), case.tests)[1]
+    road = next(t for t in case.tests if t.name == "road-1")
+    still, bent = (predict(grown, road, {own: e}).y for e in (0.0, 0.2))
+    np.testing.assert_allclose(still, bent, atol=1e-9)
+    here = {wind.name: 5.0}
+    assert np.max(np.abs(predict(grown, road, {**here, own: 0.2}).y - predict(grown, road, here).y)) > 0.01

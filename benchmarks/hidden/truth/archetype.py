@@ -119,6 +119,7 @@ def _logged(kind: Archetype, machine: Machine, sensors: list[Sensor], plan: Plan
     start = float(room[0] + rng.uniform(-0.5, 1.0))
     T = machine.run(fine, driving, start + 0.2 * rng.standard_normal(machine.skeleton.C.size))
     readings = {s.name: read(s, fine, T[:, s.cell], room, at, rng) for s in sensors}
+    readings |= {name: shows(readings[name]) for name, shows in change.shown.items()}
     readings = with_gaps(readings, rng)
     for a, b in change.swaps:
         readings[a], readings[b] = readings[b], readings[a]

@@ -9,7 +9,7 @@ from hidden.truth import faults, foreign
 from hidden.truth.archetype import Archetype, Hidden, Plan, Spot, Twins
 from hidden.truth.brushed import machine
 from hidden.truth.change import Change
-from hidden.truth.effects import airflow, bridge, draught, fading, glowing, heating, stirred_gap
+from hidden.truth.effects import airflow, bridge, draught, fading, heating, stirred_gap
 from hidden.truth.profile import levels, steady, until
 
 Array = NDArray[np.float64]
@@ -50,7 +50,6 @@ MISSING = (
     Hidden("convection@yoke", lambda a: airflow("yoke", a), 60.0),
     Hidden("conduction.bench@flange.de", lambda a: bridge("foot", a, "flange.de", "bench", (0.5, 0.1)), 15.0),
     Hidden("convection.constant@flange.nde", lambda a: draught("flange.nde", a), 15.0),
-    Hidden("radiation@flange.nde", lambda a: glowing("flange.nde", a), 1.5),
     Hidden("brush.drop@commutator", lambda a: heating("commutator", a, (0, 0), (1.0, 0.9), fade=0.001), 400.0),
     Hidden("brush.friction@commutator", lambda a: heating("commutator", a, (1.0, 0.9), fade=0.001), 300.0),
     Hidden("windage@rotor", lambda a: heating("core", a, (3.0, 2.8)), 200.0),
@@ -83,10 +82,7 @@ ABSORBED = {
 }  # fmt: skip
 TENSE = {"bolts": 0.25, "coil": 0.25, "fan": 0.12, "iron": 0.15, "hub": 0.25, "feet": 0.25, "spigot-de": 0.25,
          "rub": 0.2, "still": 0.15, "capacity.yoke": 0.08}  # fmt: skip
-TWINS = (
-    Twins(("convection.constant@flange.nde", "radiation@flange.nde")),
-    Twins(("convection.constant@flange.nde", "convection.buoyant@flange.nde")),
-)
+TWINS = (Twins(("convection.constant@flange.nde", "convection.buoyant@flange.nde")),)
 BRUSHED = Archetype(
     "brushed", machine, PLANS,
     {"commutator": Spot("commutator", 0.5), "poles": Spot("poles", 0.5), "winding.field": Spot("field", 0.5),

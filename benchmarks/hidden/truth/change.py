@@ -25,6 +25,7 @@ class Change:
     """factors : on drawn parameters;  bodies, joints, terms : more physics
     signals : what else drives the machine and nobody records, name -> (time in s) -> value
     readings : sensor -> what happens to its readings (time, T, ambient);  swaps : pairs of exchanged plugs
+    shown : sensor -> what the logger makes of the finished readings, noise and steps included
     offsets : input -> how far (K) the recorded value lies above the true one
     """
 
@@ -36,6 +37,7 @@ class Change:
     readings: Mapping[str, Reading] = field(default_factory=dict)
     swaps: tuple[tuple[str, str], ...] = ()
     offsets: Mapping[str, float] = field(default_factory=dict)
+    shown: Mapping[str, Callable[[Array], Array]] = field(default_factory=dict)
 
     def __add__(self, other: Change) -> Change:
         factors = {k: self.factors.get(k, 1.0) * other.factors.get(k, 1.0) for k in {**self.factors, **other.factors}}
@@ -43,6 +45,7 @@ class Change:
             factors, self.bodies + other.bodies, self.joints + other.joints,
             lambda s: self.terms(s) + other.terms(s), {**self.signals, **other.signals},
             {**self.readings, **other.readings}, self.swaps + other.swaps, {**self.offsets, **other.offsets},
+            {**self.shown, **other.shown},
         )  # fmt: skip
 
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from hidden.truth.body import Joint, Skeleton
 from hidden.truth.change import Change
-from hidden.truth.films import radiation, wind
+from hidden.truth.films import wind
 from hidden.truth.machine import Film, Loss
 
 Array = NDArray[np.float64]
@@ -46,11 +46,6 @@ def draught(body: str, a: float) -> Change:
     """Steady extra cooling, a W/K at 40 degC, 0.1 %/K more when hotter."""
 
     return to_room(body, lambda T, Ta, u: a * (1.0 + 0.001 * (T - 40.0)))
-
-
-def glowing(body: str, a: float) -> Change:
-    """Extra radiation to the room, a m2 of black surface."""
-    return to_room(body, lambda T, Ta, u: a * radiation(T, Ta, 1.0))
 
 
 def spinning(body: str, a: float) -> Change:

@@ -44,12 +44,13 @@ def drift(sensor: str, kelvin_hour: float) -> Change:
 
 
 def frozen(sensor: str, share: float) -> Change:
-    return reading(sensor, lambda time, T, air: np.where(time > share * time[-1], np.round(T[int(share * T.size)]), T))
+    """The logger repeats one value from this share of the test on."""
+    return Change(shown={sensor: lambda y: np.where(np.arange(y.size) > share * y.size, y[int(share * y.size)], y)})
 
 
 def clipped(sensor: str, share: float) -> Change:
     """A range too small: nothing above this share of the rise."""
-    return reading(sensor, lambda time, T, air: np.minimum(T, T[0] + share * (T.max() - T[0])))
+    return Change(shown={sensor: lambda y: np.minimum(y, np.round(y[0] + share * (y.max() - y[0]), 1))})
 
 
 def swapped(a: str, b: str) -> Change:

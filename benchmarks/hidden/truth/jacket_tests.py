@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from hidden.truth import faults, foreign
 from hidden.truth.archetype import Archetype, Hidden, Plan, Spot, Twins
 from hidden.truth.change import Change
-from hidden.truth.effects import airflow, draught, glowing, heating, stirred_gap
+from hidden.truth.effects import airflow, draught, heating, stirred_gap
 from hidden.truth.jacket import machine
 from hidden.truth.profile import levels, steady, until
 
@@ -56,7 +56,6 @@ MISSING = (
     Hidden("convection@shield.de", lambda a: airflow("shield.de", a), 30.0),
     Hidden("convection@housing", lambda a: airflow("housing", a), 80.0),
     Hidden("convection.constant@shield.nde", lambda a: draught("shield.nde", a), 20.0),
-    Hidden("radiation@shield.nde", lambda a: glowing("shield.nde", a), 1.0),
     Hidden("windage@rotor", lambda a: heating("rotor", a, (3.0, 2.8)), 20.0),
     Hidden("loss.rotor@magnets", lambda a: heating("magnets", a, (2.0, 1.8), fade=0.001), 60.0),
     Hidden("loss.rotor.load@magnets", lambda a: heating("magnets", a, (2.0, 1.8), (2.0, 2.0)), 60.0),
@@ -89,8 +88,7 @@ ABSORBED = {
 TENSE = {"fit": 0.25, "liner": 0.2, "jacket": 0.15, "iron": 0.15, "glue": 0.2, "mount": 0.25, "spigot-de": 0.25,
          "potting-de": 0.25, "gap": 0.15, "magnet": 0.2}  # fmt: skip
 TWINS = (
-    Twins(("convection.constant@shield.nde", "radiation@shield.nde")),
-    Twins(("windage@rotor", "loss.rotor@rotor")),
+    Twins(("convection.constant@shield.nde", "convection.buoyant@shield.nde")),
 )  # fmt: skip
 JACKET = Archetype(
     "jacket", machine, PLANS,

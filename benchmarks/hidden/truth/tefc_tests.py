@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from hidden.truth import faults, foreign
 from hidden.truth.archetype import Archetype, Hidden, Plan, Spot, Twins
 from hidden.truth.change import Change
-from hidden.truth.effects import airflow, bridge, draught, fading, glowing, heating, spinning, stirred_gap
+from hidden.truth.effects import airflow, bridge, draught, fading, heating, spinning, stirred_gap
 from hidden.truth.profile import levels, steady, until
 from hidden.truth.tefc import machine
 
@@ -51,7 +51,6 @@ MISSING = (
     Hidden("convection@housing", lambda a: airflow("housing", a), 60.0),
     Hidden("conduction.bench@flange.de", lambda a: bridge("foot", a, "flange.de", "bench", (0.5, 0.1)), 8.0),
     Hidden("convection.constant@flange.nde", lambda a: draught("flange.nde", a), 8.0),
-    Hidden("radiation@flange.nde", lambda a: glowing("flange.nde", a), 1.0),
     Hidden("windage@rotor", lambda a: heating("rotor", a, (3.0, 2.8)), 60.0),
     Hidden("copper.ac@winding.slot", lambda a: heating("slot", a, (2.0, 1.8), (2.0, 2.0), fade=0.002), 2e4),
     Hidden("loss.rotor.load@rotor", lambda a: heating("rotor", a, (2.0, 1.7), (2.0, 2.0)), 2e4),
@@ -86,7 +85,7 @@ ABSORBED = {
 TENSE = {"fit": 0.25, "liner": 0.2, "fan": 0.15, "iron": 0.15, "seat-de": 0.25, "feet": 0.25, "capacity.housing": 0.1,
          "cage": 0.12, "spigot-de": 0.25, "still": 0.15}  # fmt: skip
 TWINS = (
-    Twins(("convection.constant@flange.nde", "radiation@flange.nde")),
+    Twins(("convection.constant@flange.nde", "convection.buoyant@flange.nde")),
     Twins(("windage@rotor", "loss.rotor@rotor")),
 )  # fmt: skip
 TEFC = Archetype(

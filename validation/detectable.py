@@ -1,0 +1,158 @@
+"""The smallest amplitude of each effect that a diagnosis would see, found by hiding it and calibrating to the result.
+
+A deviation and a threshold say too little: a large effect drives the calibrated parameters far, where they follow it
+better than their tangents foretell, and a conductance added to a conductance shows less and less. So the effect is put
+into the calibrated model, the model without it is calibrated to what that reads, and the amplitude is sought at which
+the deviance left passes the threshold four times in five, and is not only a strain of priors.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.network import Network
+from validation.calibrate import minimise, silent, square_of
+from validation.case import Test
+from validation.effects import extended
+from validation.evidence import Evidence, with_members
+from validation.fitting import at_level
+from validation.predict import predict
+from validation.rivals import COMPENSATED, SILENT
+from validation.score import POWER
+from validation.side_by_side import side_by_side
+
+Array = NDArray[np.float64]
+CLOSE = 0.05  # of the level sought: a twentieth of a score is far below its scatter of one
+TRIALS = 6
+INSIDE = 0.98  # of a physical bound
+
+
+@dataclass(frozen=True)
+class Search:
+    """What every effect's search needs.  kappa : (n_effect,);  level : scaled score to be reached"""
+
+    evidence: Evidence
+    kappa: Array
+    level: float
+
+
+@dataclass(frozen=True)
+class Left:
+    """A deviance, and the part of it that the readings contribute; the rest is the strain of the priors."""
+
+    deviance: float
+    readings: float
+
+
+def smallest_sizes(
+    evidence: Evidence,
+    kappa: Array,
+    threshold: float,
+    workers: int = 2,
+    cache: Path | None = None,
+    progress: Callable[[str], None] = silent,
+) -> Array:
+    """Smallest detectable amplitude (n_effect,) of every candidate, inf where none that physics allows would show."""
+    search = Search(evidence, kappa, threshold + POWER)
+    file = cache / f"sizes-{fingerprint(search)}.npz" if cache else None
+    if file and file.exists():
+        with np.load(file) as saved:
+            return np.asarray(saved["sizes"], float)
+    found = side_by_side(smallest, search, len(evidence.effects), workers, progress, "smallest detectable sizes")
+    sizes = np.array(found, float)
+    if file:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        np.savez(file, sizes=sizes)
+    return sizes
+
+
+def fingerprint(search: Search) -> str:
+    """Hash of what the sizes depend on."""
+    e = search.evidence
+    h = hashlib.sha256(repr((e.names, round(search.level, 6))).encode())
+    for numbers in (e.fit.theta, search.kappa, e.score.V):
+        h.update(np.float32(numbers).tobytes())
+    return h.hexdigest()[:20]
+
+
+def smallest(search: Search, k: int) -> float:
+    """The amplitude at which effect k's scaled score reaches the level; by secants of score over amplitude in logs."""
+    e, kappa = search.evidence, float(search.kappa[k])
+    if not e.score.visible[k]:
+        return float("inf")
+    most = INSIDE * abs(e.parameters[k].low if e.score.sign[k] < 0 else e.parameters[k].high)
+    a, known, theta = min(search.level * kappa * float(e.score.sd[k]), most), (0.0, 0.0), e.fit.theta
+    for _ in range(TRIALS):
+        left, theta = followed(e, k, a, theta)
+        by_itself = np.inf if e.effects[k].fault else told(left)
+        reached = min(float(np.sqrt(left.deviance)) / kappa, search.level * by_itself)
+        if a >= most and reached < search.level:
+            return float("inf")
+        if abs(reached / search.level - 1.0) < CLOSE:
+            break
+        steep = np.log(reached / known[1]) / np.log(a / known[0]) if known[0] and a != known[0] else 1.0
+        known = (a, reached)
+        grow = float(np.clip((search.level / reached) ** (1.0 / np.clip(steep, 0.3, 2.0)), 0.2, 5.0))
+        new = min(a * grow, most)
+        theta = e.fit.theta + (theta - e.fit.theta) * (new / a)
+        a = new
+    return a
+
+
+def told(left: Left) -> float:
+    """How much of what the readings must say themselves they say: 1 is enough four times in five (see rivals.weak)."""
+    if left.readings > COMPENSATED * left.deviance:
+        return float("inf")
+    return float(np.sqrt(left.readings)) / (SILENT**0.5 + POWER)
+
+
+def followed(evidence: Evidence, k: int, amplitude: float, theta: Array) -> tuple[Left, Array]:
+    """What is left when the model without effect k is calibrated to what the model with it reads; the calibration.
+
+    amplitude : on the side physics allows;  theta : where to start.  The prior is centred on the calibrated state,
+    which stands for the truth.
+    """
+    fit = evidence.fit
+    hidden = readings_with(evidence, {k: amplitude * (int(evidence.score.sign[k]) or 1)})
+    bare = [replace(s, J=s.J[:, : fit.theta.size]) for s in evidence.parts]
+    held = {p.name: p.value for p in fit.network.parameters} | fit.values
+    found = minimise(fit.network, hidden, fit.unknowns, theta, fit.noise, held, start=bare, centre=fit.theta,
+                     borrowed=False)  # fmt: skip
+    own = square_of(found.parts, found.noise)
+    return Left(max(2.0 * found.objective, 1e-12), max(own, 1e-12)), found.theta
+
+
+def readings_with(evidence: Evidence, amplitudes: dict[int, float]) -> list[Test]:
+    """The tests as the calibrated model with some effects reads them, where there are readings."""
+    fit, effects = evidence.fit, [evidence.effects[k] for k in amplitudes]
+    network = at_level(extended(fit.network, effects), {e.name for e in effects}, evidence.tests)
+    values = {p.name: p.value for p in network.parameters} | fit.values
+    values |= {evidence.names[k]: a for k, a in amplitudes.items()}
+    return [_reading(network, test, values) for test in evidence.tests]
+
+
+def _reading(network: Network, test: Test, values: dict[str, float]) -> Test:
+    y = predict(network, test, values).y
+    own = (np.where(np.isfinite(c.y), y[:, j], np.nan) for j, c in enumerate(test.channels))
+    return replace(test, channels=tuple(replace(c, y=seen) for c, seen in zip(test.channels, own, strict=True)))
+
+
+def mistaken(evidence: Evidence, true: int, amplitude: float, other: int) -> float:
+    """Deviance left when effect `other` and the calibration explain what effect `true` does; 20 and more decide.
+
+    amplitude : on the side physics allows
+    """
+    fit, p, V = evidence.fit, evidence.fit.theta.size, evidence.score.V
+    signed, rival = amplitude * (int(evidence.score.sign[true]) or 1), evidence.parameters[other]
+    network, unknowns, held = with_members(evidence, [other])
+    near = [replace(s, J=s.J[:, [*range(p), p + other]]) for s in evidence.parts]
+    start = float(np.clip(signed * V[true, other] / V[other, other], 0.9 * rival.low, 0.9 * rival.high))
+    found = minimise(network, readings_with(evidence, {true: signed}), unknowns, np.append(fit.theta, start), fit.noise,
+                     held, start=near, centre=np.append(fit.theta, 0.0), borrowed=False)  # fmt: skip
+    return 2.0 * found.objective
