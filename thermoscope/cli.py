@@ -86,12 +86,13 @@ def compare(
 def diagnose(
     case: Case,
     draws: Annotated[int, typer.Option(min=10, help="Data sets of the simulated null: 40 quick, 200 in earnest.")] = 60,
+    sizes: Annotated[bool, typer.Option("--sizes", help="Search the smallest detectable sizes (minutes).")] = False,
     json: Json = None,
 ) -> None:
     """Which effect is missing, how sure, what it is confused with, which test would decide. Exit code 1 if none."""
     from thermoscope.commands.diagnose import diagnose as run
 
-    raise typer.Exit(run(case, draws, json))
+    raise typer.Exit(run(case, draws, sizes, json))
 
 
 @app.command()

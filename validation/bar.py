@@ -42,11 +42,11 @@ class Simulation:
 
 
 def bar_of(
-    case: Case, evidence: Evidence, how: Simulation, sizes: bool = True, progress: Callable[[str], None] = silent
+    case: Case, evidence: Evidence, how: Simulation, sizes: bool = False, progress: Callable[[str], None] = silent
 ) -> Bar:
     """The bar for a model and its tests.
 
-    sizes : search the smallest sizes; without it those are the linear ones, which promise too much
+    sizes : search the smallest sizes; without it they are linear, often a tenth and at times several times too small
     """
     leaders = leading(evidence, np.ones(len(evidence.effects)), SUSPECT, progress)
     evidence = undisturbed(case, evidence, leaders) if leaders else evidence

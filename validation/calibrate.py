@@ -19,7 +19,7 @@ Progress = Callable[[str], None]
 Keep = Callable[[Mapping[str, float]], None]
 STATIONARY = 0.1  # of a posterior standard deviation
 WORTH = 0.005  # nats: one tenth of a posterior standard deviation
-FORETOLD = 0.7  # of the predicted gain: a Jacobian that delivers less is made anew
+FORETOLD, LITTLE = 0.7, 0.3  # of the predicted gain: a Jacobian that delivers less is made anew; one given for a start
 
 
 def silent(message: str) -> None:
@@ -108,15 +108,18 @@ def minimise(
     keep: Keep = forgets,
     centre: Array | None = None,
     borrowed: bool = True,
+    worth: float = WORTH,
 ) -> Fit:
     """Fit `unknowns` to the tests from `theta` under a given noise (by default that of uncalibrated sensors).
 
     The Jacobian costs ten times a run, so it is held as long as steps do what it foretells, and made anew before the
     end (unless `draft`); `start`: segments whose Jacobian at a state nearby is good enough, then it is never made anew
     while `borrowed`, and only where steps fail otherwise; `keep` is told the values after every step, so that an
-    interrupted fit can go on from there; `centre`: prior mean (p,), 0 by default.
+    interrupted fit can go on from there; `centre`: prior mean (p,), 0 by default; `worth`: gain (nats) for which one
+    more step is made.
     """
     climb = Climb(network, tests, unknowns, dict(fixed or {}), instants, theta, noise, start, draft, centre, borrowed)
+    climb.worth = worth
     for iteration in range(iterations):
         progress(f"calibration step {iteration + 1}, objective {climb.objective:.4g}")
         done = climb.step()
@@ -135,7 +138,8 @@ class Climb:
         borrowed: bool,
     ) -> None:  # fmt: skip
         self.network, self.tests, self.unknowns, self.fixed = network, tests, unknowns, fixed
-        self.instants, self.draft = instants, draft or start is not None
+        self.instants, self.draft, self.worth = instants, draft or start is not None, WORTH
+        self.foretold = FORETOLD if start is None else LITTLE
         self.borrowed, self.centre = borrowed and start is not None, np.zeros_like(theta) if centre is None else centre
         self.low, self.high = unknowns.bounds
         self.weight, self.damping, self.fresh, self.done = unknowns.sd**-2.0, 0.0, start is None, False
@@ -156,11 +160,19 @@ class Climb:
     @property
     def enough(self) -> float:
         """Gain in objective below which a step is not worth making."""
-        return WORTH * (1.0 + 1e-3 * self.objective)
+        return self.worth * (1.0 + 1e-3 * self.objective)
 
     def weigh(self) -> None:
-        self.A, self.b, square = normal(self.parts, self.noise)
-        self.objective = 0.5 * (square + self.strain(self.theta))
+        """After a new Jacobian."""
+        self.white = [self.noise.whiten(s, s.J) for s in self.parts]
+        self.A = np.asarray(sum(W.T @ W for W in self.white))
+        self.read()
+
+    def read(self) -> None:
+        """After new residuals."""
+        r = [self.noise.whiten(s, s.r[:, None])[:, 0] for s in self.parts]
+        self.b = np.asarray(sum(W.T @ own for W, own in zip(self.white, r, strict=True)))
+        self.objective = 0.5 * (sum(float(own @ own) for own in r) + self.strain(self.theta))
 
     def strain(self, x: Array) -> float:
         """Squared distance from the prior mean, in prior deviations."""
@@ -189,10 +201,10 @@ class Climb:
         gained = self.objective - value
         self.theta, self.parts, self.fresh = new, trial, False
         self.damping = self.damping / 10.0 if self.damping > 1e-3 else 0.0
-        if gained < FORETOLD * predicted and not self.borrowed:
+        if gained < self.foretold * predicted and not self.borrowed:
             self.renew()
         else:
-            self.weigh()
+            self.read()
         return gained < self.enough and self.stop()
 
     def stop(self) -> bool:

@@ -42,18 +42,19 @@ def diagnose(
     cache: Path | None = None,
     progress: Progress = silent,
     plan: bool = True,
+    sizes: bool = False,
 ) -> Diagnosis:
     """Diagnose a case on its calibrate and validate tests; held-out tests are only predicted.
 
     draws : data sets of the simulated null (40 for a quick look, 200 in earnest);  kinds : restrict the catalogue
-    plan : also rank the next tests, scan for latent heat, and look for the smallest sizes by calibrating to hidden
-    effects; without it those are the linear ones, which promise too much
+    plan : also rank the next tests and scan for latent heat;  sizes : search the smallest detectable sizes, half a
+    second and more per effect; without it they are linear, which is often a tenth and at times several times too small
     A test that stood on another base than its sheet says is told first; then no effect is searched for.
     """
     fit = calibrated_case(case, progress)
     progress("scoring the catalogue")
     evidence = possible(case, scored(case, candidates(case, kinds), fit))
-    bar = bar_of(case, evidence, Simulation(draws, seed, workers, cache), plan, progress)
+    bar = bar_of(case, evidence, Simulation(draws, seed, workers, cache), sizes, progress)
     stood = bases_tried(case, progress)
     steps = [Step(evidence, bar.null.kappa, None)] if wrong_bases(stood) else search(case, evidence, bar, progress)
     progress("looking for where heat is missing")

@@ -102,7 +102,7 @@ def remove(case: Case, name: str, wide: Widening = FORMAL, progress: Progress = 
     if len(left) == len(case.model.effects):
         known = ", ".join(e.name for e in case.model.effects) or "none"
         raise InputError(f"'{name}' is not in the model", f"case '{case.name}'", f"its effects: {known}")
-    values = {k: v for k, v in case.model.values.items() if k != name}
+    values = {k: v for k, v in case.model.values.items() if k != name and not k.startswith(f"{name}^")}
     model = replace(case.model, effects=left, values=values)
     return _revised(case, model, "remove", name, ("calibrate", "validate"), wide, progress)
 

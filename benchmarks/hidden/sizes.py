@@ -41,7 +41,7 @@ def measure(kind: str, draws: int) -> dict[str, dict]:
     case = case_of("reference", kind, measured(KINDS[kind], REFERENCE_SEED, NOTHING))
     evidence = scored(case, candidates(case), calibrated_case(case))
     null = null_of(evidence, draws)
-    search = Search(evidence, null.kappa, null.threshold() + POWER)
+    search = Search(evidence, null.kappa, null.threshold() + POWER, small=0.0)
     wanted = [h for h in KINDS[kind].missing if h.name in evidence.names]
     rows = side_by_side(_row, (kind, search, wanted), len(wanted), 2, lambda words: None, "effects")
     return {h.name: row for h, row in zip(wanted, rows, strict=True) if row}

@@ -21,7 +21,7 @@ def evidence():
 
 
 def search(evidence):
-    return Search(evidence, np.ones(len(evidence.effects)), LEVEL)
+    return Search(evidence, np.ones(len(evidence.effects)), LEVEL, small=0.0)
 
 
 def test_heat_in_a_linear_path_has_the_linear_size(evidence):

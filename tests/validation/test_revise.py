@@ -56,6 +56,7 @@ def test_removing_brings_the_error_back():
     assert not gone.accepted
     assert gone.model.effects == ()
     assert gone.model.revision == 3
+    assert not any(v.startswith(EFFECT) for v in gone.model.values), "neither it nor its exponents"
 
 
 def test_what_the_data_cannot_tell_is_said():

@@ -13,14 +13,14 @@ from thermoscope.terminal import cell, give, progress, say, table
 ROWS = 10
 
 
-def diagnose(case: str, draws: int, target: str | None) -> int:
+def diagnose(case: str, draws: int, sizes: bool, target: str | None) -> int:
     """Exit code 1 when no effect is named."""
     from thermoscope.pipeline import cache_folder
     from validation.diagnose import diagnose as search
 
     with progress() as tell:
         folder = opened(case, tell)
-        found = search(folder.case, draws=draws, cache=cache_folder() / "null", progress=tell)
+        found = search(folder.case, draws=draws, cache=cache_folder() / "null", progress=tell, sizes=sizes)
     document = {"case": folder.case.name, "revision": folder.case.model.revision, **found.document()}
     save_diagnosis(folder, document)
     give(document, target, lambda: show(document))
