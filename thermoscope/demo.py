@@ -53,7 +53,7 @@ def demo(out: Path, target: str | None) -> int:
     turned = old_way(case)
     stages.append(Stage(f"{KNOB} x {turned.factor:.2f} instead", turned.comparison))
     headline("5  What is missing?")
-    diagnose(str(case), DRAWS, str(out / "diagnose.json"))
+    diagnose(str(case), DRAWS, False, str(out / "diagnose.json"))
     named = (saved_diagnosis(opened(str(case), lambda _: None)) or {}).get("named", [])
     done = False
     if named:
