@@ -65,14 +65,15 @@ def diagnose(
 def search(case: Case, evidence: Evidence, bar: Bar, progress: Progress) -> list[Step]:
     """Add the best candidate while one passes the threshold, each time calibrating and estimating the noise anew.
 
-    An effect by another law than the true one leaves a misfit that the null does not know, so what comes after a first
-    one has to pass more: FURTHER times the threshold, and either a tenth of the residual removed or CLEAR times it.
+    An effect by another law than the true one leaves a misfit that the null does not know, so what follows in the same
+    search has to pass FURTHER times the threshold. In a model that has effects, one that removes less than a tenth of
+    the residual is worth its place only beyond CLEAR times the threshold.
     """
     level = dict(zip(evidence.names, bar.null.kappa, strict=True))
     steps: list[Step] = []
     for _ in range(STEPS + 1):
         kappa = np.array([level[n] for n in evidence.names])
-        limit = bar.threshold * (FURTHER if case.model.effects else 1.0)
+        limit = bar.threshold * (FURTHER if steps else 1.0)
         best = np.max(evidence.score.z / kappa, initial=0.0)
         if best < limit or len(steps) == STEPS:
             return [*steps, Step(evidence, kappa, None)]
