@@ -100,6 +100,23 @@ def test_removed_again(story, thermoscope, tmp_path):
     assert thermoscope("compare", case, "--json", "-").document["model"] == {"revision": 3, "effects": []}
 
 
+def test_sizes_are_searched_on_request(story, thermoscope, tmp_path):
+    """The same effects cannot be seen, or more of them; none is seen at a smaller size than half the estimate."""
+    import shutil
+
+    case = shutil.copytree(story[0], tmp_path / "copy")
+    quick, searched = (
+        {
+            c["effect"]: c["smallest_detectable"]
+            for c in thermoscope("diagnose", case, "--draws", 12, "--json", "-", *more).document["candidates"]
+        }
+        for more in ((), ("--sizes",))
+    )
+    assert set(quick) == set(searched)
+    assert quick != searched
+    assert all(searched[e] is None or searched[e] > 0.5 * quick[e] for e in quick if quick[e])
+
+
 def test_an_effect_against_its_sign_is_not_written(thermoscope, tmp_path, contents):
     """The truth here loses less heat in wind, which no convection can explain."""
     case = small_case(tmp_path, strength=-1.0)
