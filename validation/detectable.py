@@ -91,7 +91,7 @@ def smallest(search: Search, k: int) -> float:
     """The amplitude at which effect k's scaled score reaches the level; by secants of score over amplitude in logs.
 
     The linear size where that is small against the effect's prior: a machine bends little over so small an effect
-    (half of such sizes within 1 %, nine in ten within 60 %, on the machines of the benchmark).
+    (of such sizes half came out within 8 %, nine in ten within 60 %, on machines of the benchmark).
     """
     e, kappa = search.evidence, float(search.kappa[k])
     if not e.score.visible[k]:
