@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -21,10 +21,11 @@ SUSPECT = 3.0  # formal deviations
 
 @dataclass(frozen=True)
 class Bar:
-    """sizes : effect -> smallest detectable amplitude in its unit"""
+    """sizes : effect -> smallest detectable amplitude in its unit;  refits : of the candidates that scored best"""
 
     null: Null
     sizes: Mapping[str, float]
+    refits: Mapping[int, Fit] = field(default_factory=dict)
 
     @cached_property
     def threshold(self) -> float:
@@ -51,13 +52,13 @@ def bar_of(
     leaders = leading(evidence, np.ones(len(evidence.effects)), SUSPECT, progress)
     evidence = undisturbed(case, evidence, leaders) if leaders else evidence
     null = null_of(evidence, how.draws, how.seed, how.workers, how.cache, progress)
-    bar = Bar(null, {})
+    limit = null.threshold()
     found = (
-        smallest_sizes(evidence, null.kappa, bar.threshold, how.workers, how.cache, progress)
+        smallest_sizes(evidence, null.kappa, limit, how.workers, how.cache, progress)
         if sizes
-        else evidence.score.detectable(null.kappa, bar.threshold)
+        else evidence.score.detectable(null.kappa, limit)
     )
-    return replace(bar, sizes=dict(zip(evidence.names, found.tolist(), strict=True)))
+    return Bar(null, dict(zip(evidence.names, found.tolist(), strict=True)), leaders)
 
 
 def undisturbed(case: Case, evidence: Evidence, leaders: Mapping[int, Fit]) -> Evidence:

@@ -19,7 +19,7 @@ Progress = Callable[[str], None]
 Keep = Callable[[Mapping[str, float]], None]
 STATIONARY = 0.1  # of a posterior standard deviation
 WORTH = 0.005  # nats: one tenth of a posterior standard deviation
-FORETOLD, LITTLE = 0.7, 0.3  # of the predicted gain: a Jacobian that delivers less is made anew; one given for a start
+FORETOLD = 0.7  # of the predicted gain: a Jacobian that delivers less is made anew
 
 
 def silent(message: str) -> None:
@@ -118,8 +118,8 @@ def minimise(
     interrupted fit can go on from there; `centre`: prior mean (p,), 0 by default; `worth`: gain (nats) for which one
     more step is made.
     """
-    climb = Climb(network, tests, unknowns, dict(fixed or {}), instants, theta, noise, start, draft, centre, borrowed)
-    climb.worth = worth
+    fixed = dict(fixed or {})
+    climb = Climb(network, tests, unknowns, fixed, instants, theta, noise, start, draft, centre, borrowed, worth)
     for iteration in range(iterations):
         progress(f"calibration step {iteration + 1}, objective {climb.objective:.4g}")
         done = climb.step()
@@ -135,11 +135,10 @@ class Climb:
     def __init__(
         self, network: Network, tests: Sequence[Test], unknowns: Unknowns, fixed: dict[str, float], instants: int,
         theta: Array, noise: Noise | None, start: Sequence[Segment] | None, draft: bool, centre: Array | None,
-        borrowed: bool,
+        borrowed: bool, worth: float,
     ) -> None:  # fmt: skip
         self.network, self.tests, self.unknowns, self.fixed = network, tests, unknowns, fixed
-        self.instants, self.draft, self.worth = instants, draft or start is not None, WORTH
-        self.foretold = FORETOLD if start is None else LITTLE
+        self.instants, self.draft, self.worth = instants, draft or start is not None, worth
         self.borrowed, self.centre = borrowed and start is not None, np.zeros_like(theta) if centre is None else centre
         self.low, self.high = unknowns.bounds
         self.weight, self.damping, self.fresh, self.done = unknowns.sd**-2.0, 0.0, start is None, False
@@ -201,7 +200,7 @@ class Climb:
         gained = self.objective - value
         self.theta, self.parts, self.fresh = new, trial, False
         self.damping = self.damping / 10.0 if self.damping > 1e-3 else 0.0
-        if gained < self.foretold * predicted and not self.borrowed:
+        if gained < FORETOLD * predicted and not self.borrowed:
             self.renew()
         else:
             self.read()

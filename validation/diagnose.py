@@ -77,7 +77,7 @@ def search(case: Case, evidence: Evidence, bar: Bar, progress: Progress) -> list
         best = np.max(evidence.score.z / kappa, initial=0.0)
         if best < limit or len(steps) == STEPS:
             return [*steps, Step(evidence, kappa, None)]
-        found = race(evidence, kappa, limit, progress)
+        found = race(evidence, kappa, limit, progress, {} if steps else bar.refits)
         little = explained(evidence, found) < WORTH and best < CLEAR * bar.threshold
         if (case.model.effects and little) or (steps and weak(evidence, found)):
             return [*steps, Step(evidence, kappa, None)]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,18 +44,30 @@ class Race:
         return self.fits[0]
 
 
-def leading(evidence: Evidence, kappa: Array, level: float, progress: Callable[[str], None] = silent) -> dict[int, Fit]:
-    """Refits of the candidates that score best, three at most and all above a level."""
+def leading(
+    evidence: Evidence, kappa: Array, level: float, progress: Callable[[str], None] = silent,
+    known: Mapping[int, Fit] = MappingProxyType({}),
+) -> dict[int, Fit]:  # fmt: skip
+    """Refits of the candidates that score best, three at most and all above a level.
+
+    known : refits of this evidence that were made before
+    """
     scaled = evidence.score.z / kappa
     first = [int(k) for k in np.argsort(-scaled)[:3] if scaled[k] > level]
-    if first:
-        progress(f"refitting {', '.join(evidence.names[k] for k in first)}")
-    return {k: polished(evidence, [k], refit(evidence, [k])) for k in first}
+    if new := [evidence.names[k] for k in first if k not in known]:
+        progress(f"refitting {', '.join(new)}")
+    return {k: known[k] if k in known else polished(evidence, [k], refit(evidence, [k])) for k in first}
 
 
-def race(evidence: Evidence, kappa: Array, threshold: float, progress: Callable[[str], None] = silent) -> Race:
-    """Refit the most likely candidates, take the best one's residual as noise, and compare all under it."""
-    fits = leading(evidence, kappa, threshold, progress)
+def race(
+    evidence: Evidence, kappa: Array, threshold: float, progress: Callable[[str], None] = silent,
+    known: Mapping[int, Fit] = MappingProxyType({}),
+) -> Race:  # fmt: skip
+    """Refit the most likely candidates, take the best one's residual as noise, and compare all under it.
+
+    known : refits of this evidence that were made before
+    """
+    fits = leading(evidence, kappa, threshold, progress, known)
     leader = min(fits, key=lambda k: fits[k].objective)
     for _ in range(2):
         noise = sharpened(fits[leader])

@@ -9,11 +9,10 @@ from itertools import permutations
 import numpy as np
 
 from hidden.kinds import KINDS
-from hidden.sizes import detectable
+from hidden.sizes import MULTIPLES, detectable
 from hidden.truth.archetype import Archetype, Hidden, Record, measured
 from hidden.truth.change import NOTHING, Change
 
-SIZES = (1.0, 2.0, 4.0)
 DECISIVE, ALIKE = 20.0, 5.0
 SHARES = {"nothing": 300, "one": 300, "two": 100, "pair": 100, "foreign": 60, "absorbed": 40, "fault": 60, "tense": 60}
 FIRST_SEED = {"dev": 0, "test": 500000}
@@ -68,7 +67,7 @@ def _possible(kind: Archetype, size: float) -> list[Hidden]:
 
 def _one(kind: Archetype, bare: Label, turn: int, rng: np.random.Generator) -> Label:
     """One effect at 1, 2 or 4 times the smallest detectable size, whichever its nature allows."""
-    table, size = detectable()[kind.name], SIZES[(turn + turn // len(SIZES)) % len(SIZES)]
+    table, size = detectable()[kind.name], MULTIPLES[(turn + turn // len(MULTIPLES)) % len(MULTIPLES)]
     fit = _possible(kind, size)
     chosen = fit[int(rng.integers(len(fit)))]
     return replace(bare, truth=(chosen.name,), size=size, amplitude=(size * table[chosen.name]["size"],),
@@ -116,7 +115,7 @@ def _pair(kind: Archetype, bare: Label, turn: int, rng: np.random.Generator) -> 
 
 def _confounded(kind: Archetype, true: str, other: str) -> float:
     """The largest multiple of the detectable size at which the other explains the true one as well; 0 if none."""
-    sizes = [s for s in SIZES if true in {h.name for h in _possible(kind, s)}]
+    sizes = [s for s in MULTIPLES if true in {h.name for h in _possible(kind, s)}]
     gaps = {s: detectable()[kind.name][true]["gaps"][f"{s:g}"].get(other, np.inf) for s in sizes}
     return max((s for s, gap in gaps.items() if gap < ALIKE), default=0.0)
 
