@@ -9,8 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.compiled import Compiled, compiled
+from lumped.count import count
 from lumped.network import Link, Network
-from lumped.simulate import Record, checked_time, march
+from lumped.simulate import Record, Run, boundary_table, checked_time, march
+from lumped.stages import stages, work
 from lumped.terms import ROWS
 
 Array = NDArray[np.float64]
@@ -46,23 +48,32 @@ class Balance:
 
 
 def balance(network: Network, record: Record, values: Mapping[str, float] | None = None) -> Balance:
-    """Run the record and count the heat. Twice the cost of a run, and more for networks with many constant links."""
+    """Run the record and count the heat: a few times the cost of a run."""
     core = compiled(network, record.inputs, checked_time(record.time).size, values, all_terms=True)
     mean = np.array(["#" not in s for s in network.states], float)
-    everywhere = mean[core.terms.row]
-    run = march(network, record, core, _through(network, core, mean), keep_states=True, count=True)
-    left = march(network, record, core, everywhere, keep_states=False, count=True)
-    assert run.heat is not None
-    assert left.heat is not None
+    run = march(network, record, core, keep_states=True, keep_rates=True)
+    heat = _counted(network, record, core, run, _through(network, core, mean))
+    left = _counted(network, record, core, run, mean[core.terms.row])
     assert run.z is not None
     links, n = len(network.links), len(network.states)
     return Balance(
         run.time,
-        {name: run.heat[:, e] for e, name in enumerate(core.names[:links])},
-        {name: -left.heat[:, links + s] for s, name in enumerate(core.names[links:])},
-        left.heat[:, :links].sum(axis=1),
+        {name: heat[:, e] for e, name in enumerate(core.names[:links])},
+        {name: -left[:, links + s] for s, name in enumerate(core.names[links:])},
+        left[:, :links].sum(axis=1),
         (run.z[:, :n] - run.z[0, :n]) @ (core.C * mean),
     )
+
+
+def _counted(network: Network, record: Record, core: Compiled, run: Run, through: Array) -> Array:
+    """(nt, n_terms) J; `through` (rows of all terms,) says which rows count as the heat through a term."""
+    u, n, ne = boundary_table(network, record.boundaries, run.time.size), core.C.size, core.terms.m.size
+    assert run.z is not None
+    assert run.k is not None
+    out = np.zeros((run.time.size, ne))
+    arrays = stages(run.z[0, :n], u[0], core.terms), work(n, ne, 0)
+    count(run.time, u, core.K0, core.terms, through, run.z, run.k, *arrays, out)
+    return out
 
 
 def _through(network: Network, core: Compiled, mean: Array) -> Array:

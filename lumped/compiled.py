@@ -148,16 +148,20 @@ def pack(terms: Sequence[Term], n: int, nt: int) -> Terms:
     unique = [np.unique(t.rows, return_inverse=True) for t in terms]
     tables = [_table(t.law.temperature) for t in terms]
     codes = [_law_code(t.law.temperature) for t in terms]
-    looks = [*(t.hot for t in terms), *(t.cold for t in terms)]
-    at, weight = [t.cols for t in terms], [t.vals for t in terms]
-    every = _start([*at, *(r.index for r in looks)])
-    ne = len(terms)
-    begins = (every[: ne + 1], every[ne : 2 * ne + 1], every[2 * ne :])
+    rows = _start([u[0] for u in unique])
+    seen = [(t.hot, t.cold) if t.bends else (NOTHING, NOTHING) for t in terms]
+    at = [_ints([t.cols, hot.index, cold.index]) for t, (hot, cold) in zip(terms, seen, strict=True)]
+    to = [
+        np.concatenate([rows[e] + u[1], np.repeat(rows[-1] + 2 * e + np.arange(2), [x.index.size for x in s])])
+        for e, (u, s) in enumerate(zip(unique, seen, strict=True))
+    ]
     return Terms(
-        start=np.column_stack([*begins, _start([u[0] for u in unique]), _start(tables)]),
-        at=_ints([*at, *(r.index for r in looks)]),
-        weight=_floats([*weight, *(r.weights for r in looks)]),
-        slot=_ints([u[1] for u in unique]),
+        start=np.column_stack([_start(at), rows, _start(tables)]),
+        to=_ints(to),
+        at=_ints(at),
+        weight=_floats(
+            [x for t, (hot, cold) in zip(terms, seen, strict=True) for x in (t.vals, hot.weights, cold.weights)]
+        ),
         row=_ints([u[0] for u in unique]),
         kind=np.array(
             [(c[0], not t.steady, t.stiff(n), t.bends) for c, t in zip(codes, terms, strict=True)], np.int64

@@ -10,7 +10,7 @@ from lumped.jit import inner, inner_reordered
 @inner
 def lu(A, pivot):
     """LU in place, rows swapped only where the diagonal is below a tenth of its column; False if singular."""
-    n = A.shape[0]
+    n = len(A)
     for k in range(n):
         best = k
         for i in range(k + 1, n):
@@ -33,10 +33,20 @@ def lu(A, pivot):
     return True
 
 
+@inner
+def shifted(A, c, d, out):
+    """out = c A + diag(d)."""
+    n = len(A)
+    for i in range(n):
+        for j in range(n):
+            out[i, j] = c * A[i, j]
+        out[i, i] += d[i]
+
+
 @inner_reordered
 def solve(A, pivot, b):
     """One right-hand side, in place."""
-    n = A.shape[0]
+    n = len(A)
     for i in range(n):
         b[i], b[pivot[i]] = b[pivot[i]], b[i]
     for i in range(1, n):
@@ -68,7 +78,7 @@ def copy(x, y):
 @inner
 def solve_many(A, pivot, B):
     """Right-hand sides in the columns of B (n, p), in place."""
-    n, p = B.shape
+    n, p = len(B), B[0].size
     for i in range(n):
         if pivot[i] != i:
             for j in range(p):
@@ -86,6 +96,6 @@ def solve_many(A, pivot, B):
 @inner
 def subtract_product(A, X, out):
     """out -= A X."""
-    for i in range(A.shape[0]):
-        for j in range(A.shape[1]):
+    for i in range(len(A)):
+        for j in range(A[0].size):
             axpy(-A[i, j], X[j], out[i])

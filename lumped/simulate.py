@@ -7,13 +7,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError, ThermoscopeError
 from lumped.compiled import Compiled, compiled
+from lumped.kernel import integrate
 from lumped.network import Network, Parameter, Row
+from lumped.settle import settle
+from lumped.stages import stages, work
+from lumped.terms import BENDS, DYNAMIC, STIFF, Terms
 
 Array = NDArray[np.float64]
 
@@ -35,14 +40,14 @@ class Record:
 class Run:
     """time (nt,); z (nt, n_states + n_boundaries) degC if kept; y (nt, n_rows); dy (nt, n_rows, n_tangents).
 
-    heat : (nt, n_terms) J that went through every link and source since the start, if counted (see balance.py)
+    k : (nt, 2, n_states) K/s at both stages of the step that ends there, if kept
     """
 
     time: Array
     z: Array | None
     y: Array
     dy: Array | None
-    heat: Array | None = None
+    k: Array | None = None
 
 
 def checked_time(time: Array) -> Array:
@@ -110,30 +115,46 @@ def simulate(
         mappings "amplitude", "relative" and "offset", d y / d log(value) for "log"
     """
     time = checked_time(record.time)
-    core = compiled(network, record.inputs, time.size, values, rows, tangents)
-    return march(network, record, core, np.zeros(core.terms.row.size), keep_states)
+    return march(network, record, compiled(network, record.inputs, time.size, values, rows, tangents), keep_states)
 
 
-def march(
-    network: Network, record: Record, core: Compiled, through: Array, keep_states: bool, count: bool = False
-) -> Run:
-    """Run the kernel; `through` (rows of all terms,) says which rows count as the heat through a term."""
-    from lumped.kernel import integrate, stages, work
-
-    time = checked_time(record.time)
+def march(network: Network, record: Record, core: Compiled, keep_states: bool, keep_rates: bool = False) -> Run:
+    """Run the kernel, from rest of the states without capacity: at the start and wherever a time is given twice."""
+    time, u = checked_time(record.time), boundary_table(network, record.boundaries, len(record.time))
     nt, nr, p = time.size, core.rows.start.size - 1, core.tangents.dC.shape[1]
-    z, heat = np.zeros((nt if keep_states else 0, network.size)), np.zeros((nt if count else 0, len(core.names)))
+    z, k = np.zeros((nt if keep_states else 0, network.size)), np.zeros((nt if keep_rates else 0, 2, core.C.size))
     y, dy = np.zeros((nt, nr)), np.zeros((nt, nr, p))
     scratch = work(core.C.size, core.terms.m.size, p)
-    u, x0 = boundary_table(network, record.boundaries, nt), initial_state(network, record.initial)
-    failed = integrate(
-        time, u, core.C, core.K0, core.terms, core.tangents, core.rows, through,
-        core.curved, bool(np.any(core.C == 0.0)),
-        stages(x0, u[0], core.terms), scratch, z, y, dy, heat,
-    )  # fmt: skip
-    if failed >= 0:
-        raise ThermoscopeError(_failure(network, core, time[failed]))
-    return Run(time, z if keep_states else None, y, dy if p else None, heat if count else None)
+    both = stages(initial_state(network, record.initial), u[0], core.terms)
+    renew = _renewals(time, core.terms)
+    for part in _parts(time, core.C):
+        terms = core.terms._replace(factor=core.terms.factor[part])
+        both.z[0, core.C.size : -1] = u[part.start]
+        rests = np.all(core.C > 0.0) or settle(core.C, core.K0, terms, core.tangents, terms.factor[0], both, scratch)
+        failed = 0 if not rests else integrate(
+            time[part], u[part], core.C, core.K0, terms, core.tangents, core.rows, renew[part], core.curved,
+            both, scratch, z[part], k[part], y[part], dy[part],
+        )  # fmt: skip
+        if failed >= 0:
+            raise ThermoscopeError(_failure(network, core, time[part.start + failed]))
+    return Run(time, z if keep_states else None, y, dy if p else None, k if keep_rates else None)
+
+
+def _renewals(time: Array, terms: Terms) -> NDArray[np.bool_]:
+    """(nt,) whether the matrix of the step that ends there differs from that of the step before."""
+    stiff = (terms.kind[:, DYNAMIC] * terms.kind[:, STIFF] == 1) & (terms.m != 0.0)
+    steps = np.flatnonzero(np.diff(time) > 0.0)
+    if np.any(terms.kind[stiff, BENDS]):
+        return np.ones(time.size, bool)
+    out, used = np.zeros(time.size, bool), terms.factor[np.ix_(steps, stiff)]
+    out[steps[1:] + 1] = np.any(used[1:] != used[:-1], axis=1)
+    return out
+
+
+def _parts(time: Array, C: Array) -> list[slice]:
+    """The record between its jumps, if any state has no capacity: there such states start from a new balance."""
+    jumps = np.flatnonzero(np.diff(time, prepend=-np.inf) == 0.0) if np.any(C == 0.0) else np.empty(0, int)
+    return [slice(a, b) for a, b in pairwise([0, *jumps, time.size])]
 
 
 def _failure(network: Network, core: Compiled, t: float) -> str:

@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 from geom.errors import ThermoscopeError
 from lumped.compiled import compiled
 from lumped.network import Network, Parameter, Row
+from lumped.settle import settle
 from lumped.simulate import boundary_table
+from lumped.stages import stages, work
 
 Array = NDArray[np.float64]
 ABOVE_K = 30.0  # still air takes nothing without a difference: a start without one would leave the nodes unheld
@@ -46,20 +48,16 @@ def steady(
     Raises ThermoscopeError where there is no rest: a node that nothing holds, or losses that grow faster with
     temperature than the cooling does (thermal runaway).
     """
-    from lumped.kernel import integrate, stages, work
-
     core = compiled(network, inputs, 1, values, rows, tangents)
-    n, nr, p, ne = len(network.states), len(rows), core.tangents.dC.shape[1], core.terms.m.size
-    u = boundary_table(network, boundaries, 1)
+    n, p = len(network.states), core.tangents.dC.shape[1]
+    u = boundary_table(network, boundaries, 1)[0]
     hidden = np.array(["#" in s for s in network.states], bool)
     x0 = np.where(hidden, 0.0, ABOVE_K + (u.mean() if u.size else 20.0))
-    z, y, dy, scratch = np.zeros((1, network.size)), np.zeros((1, nr)), np.zeros((1, nr, p)), work(n, ne, p)
-    failed = integrate(
-        np.zeros(1), u, np.zeros(n), core.K0, core.terms, core.tangents, core.rows, np.zeros(core.terms.row.size),
-        core.curved, True,
-        stages(x0, u[0], core.terms), scratch, z, y, dy, np.zeros((0, ne)),
-    )  # fmt: skip
-    if failed >= 0 or np.linalg.eigvals(scratch.G).real.min() <= 0:
+    both, scratch = stages(x0, u, core.terms), work(n, core.terms.m.size, p)
+    rests = settle(np.zeros(n), core.K0, core.terms, core.tangents, core.terms.factor[0], both, scratch)
+    if not rests or np.linalg.eigvals(scratch.G).real.min() <= 0:
         why = "a node nothing holds, or thermal runaway"
         raise ThermoscopeError(f"network '{network.name}' does not come to rest: {why}")
-    return Steady((*network.states, *network.boundaries), z[0], y[0], dy[0] if p else None)
+    z, dz = both.z[0, :-1], np.vstack([scratch.D, np.zeros((u.size, p))])
+    y, dy = [r.weights @ z[r.index] for r in rows], [r.weights @ dz[r.index] for r in rows]
+    return Steady((*network.states, *network.boundaries), z, np.array(y), np.reshape(dy, (len(rows), p)) if p else None)

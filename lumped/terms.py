@@ -17,7 +17,7 @@ SIGMA = 5.670374419e-8
 ZERO_C = 273.15
 SMOOTH = 0.01  # K: |dT| ** p is smoothed below this difference, where its derivative would be unbounded
 CONSTANT, POWER, RADIATION, LINEAR, TABLE = range(5)
-PATTERN, HOT, COLD, ROWS, POINTS = range(5)
+ENTRIES, ROWS, POINTS = range(3)
 CODE, DYNAMIC, STIFF, BENDS = range(4)
 
 Floats = NDArray[np.float64]
@@ -27,9 +27,9 @@ Ints = NDArray[np.int64]
 class Terms(NamedTuple):
     """The terms the kernel follows one by one, in as few arrays as it takes: compile time goes with their number.
 
-    start (ne + 1, 5) : where each term begins: PATTERN, HOT and COLD in (at, weight), ROWS in row, POINTS in point
-    at, weight : entries over z+: first all patterns P (their rows in slot), then the two temperatures of the laws
-    slot : which of the term's own distinct rows an entry of P stands in;  row : those rows
+    start (ne + 1, 3) : where each term begins: ENTRIES in (to, at, weight), ROWS in row, POINTS in point
+    to, at, weight : v[to] += weight z+[at] makes v = [P z+ of all terms; then hot and cold of each in turn]
+    row (nv,) : the state each row of P takes from
     kind (ne, 4) : CODE of the temperature law; DYNAMIC: assembled every step, else it stands in the constant matrix;
         STIFF: touches the matrix; BENDS: its law depends on temperature
     par (ne, 2), point (np, 2) : of the temperature law: its numbers, its table (x, y)
@@ -37,9 +37,9 @@ class Terms(NamedTuple):
     """
 
     start: Ints
+    to: Ints
     at: Ints
     weight: Floats
-    slot: Ints
     row: Ints
     kind: Ints
     par: Floats
@@ -104,37 +104,26 @@ def law(code, a, b, hot, cold, out):
 
 @inner
 def clear(A):
-    for i in range(A.shape[0]):
-        for j in range(A.shape[1]):
+    for i in range(len(A)):
+        for j in range(A[0].size):
             A[i, j] = 0.0
 
 
 @inner
-def look(T, e, side, z):
-    """The temperature a law sees at its side HOT or COLD."""
-    out = 0.0
-    for i in range(T.start[e, side], T.start[e + 1, side]):
-        out += T.weight[i] * z[T.at[i]]
-    return out
-
-
-@inner
 def patterns(T, z, out):
-    """P z of every term, on its own rows."""
+    """Rows of all terms at z+, and the two temperatures of their laws."""
     for s in range(out.size):
         out[s] = 0.0
-    for e in range(T.m.size):
-        base = T.start[e, ROWS]
-        for i in range(T.start[e, PATTERN], T.start[e + 1, PATTERN]):
-            out[base + T.slot[i]] += T.weight[i] * z[T.at[i]]
+    for i in range(T.at.size):
+        out[T.to[i]] += T.weight[i] * z[T.at[i]]
 
 
 @pasted
-def _evaluate(T, z, tau):
-    """Temperature laws of all terms at z: tau (ne, 6) = value, d/dhot, d/dcold, hh, hc, cc."""
+def _evaluate(T, v, tau):
+    """Temperature laws of all terms: tau (ne, 6) = value, d/dhot, d/dcold, hh, hc, cc."""
     for e in range(T.m.size):
         if T.kind[e, BENDS]:
-            hot, cold = look(T, e, HOT, z), look(T, e, COLD, z)
+            hot, cold = v[T.row.size + 2 * e], v[T.row.size + 2 * e + 1]
             if T.kind[e, CODE] == TABLE:
                 _tabulated(T.point, T.start[e, POINTS], T.start[e + 1, POINTS] - 1, hot - cold, tau[e])
             else:
@@ -144,8 +133,8 @@ def _evaluate(T, z, tau):
 @inner
 def flow(T, K0, z, f, tau, v, out):
     """out = F = -K0 z - sum of the dynamic terms at z, whose tau and v = P z are left; f (ne,) input factors."""
-    _evaluate(T, z, tau)
     patterns(T, z, v)
+    _evaluate(T, v, tau)
     for i in range(out.size):
         acc = 0.0
         for j in range(z.size):
@@ -159,57 +148,49 @@ def flow(T, K0, z, f, tau, v, out):
 
 
 @inner
-def _add_pattern(T, e, c, A):
-    base, n = T.start[e, ROWS], A.shape[0]
-    for i in range(T.start[e, PATTERN], T.start[e + 1, PATTERN]):
-        if T.at[i] < n:
-            A[T.row[base + T.slot[i]], T.at[i]] += c * T.weight[i]
-
-
-@inner
-def _add_outer(T, e, v, by_hot, by_cold, A):
-    """A += v (by_hot hot + by_cold cold)' on the states."""
-    n = A.shape[0]
-    for s in range(T.start[e, ROWS], T.start[e + 1, ROWS]):
-        for side in (HOT, COLD):
-            c = v[s] * (by_hot if side == HOT else by_cold)
-            for i in range(T.start[e, side], T.start[e + 1, side]):
-                if T.at[i] < n:
-                    A[T.row[s], T.at[i]] += c * T.weight[i]
+def _add(T, e, c, v, by_hot, by_cold, A):
+    """A += c P + v (by_hot hot + by_cold cold)' on the states, for term e."""
+    first = T.row.size + 2 * e
+    for i in range(T.start[e, ENTRIES], T.start[e + 1, ENTRIES]):
+        if T.at[i] < len(A):
+            if T.to[i] < first:
+                A[T.row[T.to[i]], T.at[i]] += c * T.weight[i]
+            else:
+                by = T.weight[i] * (by_hot if T.to[i] == first else by_cold)
+                for s in range(T.start[e, ROWS], T.start[e + 1, ROWS]):
+                    A[T.row[s], T.at[i]] += v[s] * by
 
 
 @inner
 def jacobian(T, K0, f, tau, v, G):
     """G = -dF/dx (n, n)."""
-    for i in range(G.shape[0]):
-        for j in range(G.shape[0]):
+    for i in range(len(G)):
+        for j in range(len(G)):
             G[i, j] = K0[i, j]
     for e in range(T.m.size):
         if T.kind[e, DYNAMIC] and T.kind[e, STIFF] and T.m[e] != 0.0:
             mf = T.m[e] * f[e]
-            _add_pattern(T, e, mf * tau[e, 0], G)
-            if T.kind[e, BENDS]:
-                _add_outer(T, e, v, mf * tau[e, 1], mf * tau[e, 2], G)
+            _add(T, e, mf * tau[e, 0], v, mf * tau[e, 1], mf * tau[e, 2], G)
 
 
 @inner
-def directional(T, e, f, df, tau, z_dot):
-    """d/ds of the coefficient c (without m) of term e along z_dot, and along time with df = df/dt."""
-    turn = tau[e, 1] * look(T, e, HOT, z_dot) + tau[e, 2] * look(T, e, COLD, z_dot)
+def directional(e, f, df, tau, v_dot, rows):
+    """d/ds of the coefficient c (without m) of term e along v_dot, and along time with df = df/dt."""
+    turn = tau[e, 1] * v_dot[rows + 2 * e] + tau[e, 2] * v_dot[rows + 2 * e + 1]
     return f * turn + df * tau[e, 0]
 
 
 @inner
-def bend(T, f, df, sign, tau, v, z_dot, v_dot, scale, H):
-    """H = scale * how G changes along z_dot and along time (forwards or backwards by sign); df (ne,) slopes."""
+def bend(T, f, df, sign, tau, v, v_dot, scale, H):
+    """H = scale * how G changes along v_dot and along time (forwards or backwards by sign); df (ne,) slopes."""
+    rows = T.row.size
     clear(H)
     for e in range(T.m.size):
         if T.kind[e, DYNAMIC] and T.kind[e, STIFF] and T.m[e] != 0.0:
             m, slope = scale * T.m[e], sign * df[e]
-            _add_pattern(T, e, m * directional(T, e, f[e], slope, tau, z_dot), H)
+            hot, cold = v_dot[rows + 2 * e], v_dot[rows + 2 * e + 1]
+            by_hot = slope * tau[e, 1] + f[e] * (tau[e, 3] * hot + tau[e, 4] * cold)
+            by_cold = slope * tau[e, 2] + f[e] * (tau[e, 4] * hot + tau[e, 5] * cold)
+            _add(T, e, m * directional(e, f[e], slope, tau, v_dot, rows), v, m * by_hot, m * by_cold, H)
             if T.kind[e, BENDS]:
-                hot, cold = look(T, e, HOT, z_dot), look(T, e, COLD, z_dot)
-                by_hot = slope * tau[e, 1] + f[e] * (tau[e, 3] * hot + tau[e, 4] * cold)
-                by_cold = slope * tau[e, 2] + f[e] * (tau[e, 4] * hot + tau[e, 5] * cold)
-                _add_outer(T, e, v, m * by_hot, m * by_cold, H)
-                _add_outer(T, e, v_dot, m * f[e] * tau[e, 1], m * f[e] * tau[e, 2], H)
+                _add(T, e, 0.0, v_dot, m * f[e] * tau[e, 1], m * f[e] * tau[e, 2], H)
