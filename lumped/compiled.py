@@ -8,41 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from geom.errors import InputError
-from lumped import laws
+from lumped.assembly import assembly, floats, ints, starts
 from lumped.kernel import Rows, Tangents
 from lumped.multipliers import multipliers, slopes
-from lumped.network import Link, Network, Parameter, Row, Source
-from lumped.terms import CONSTANT, DYNAMIC, LINEAR, POWER, RADIATION, STIFF, TABLE, Terms
+from lumped.network import Network, Parameter, Row
+from lumped.signals import Signals
+from lumped.terms import DYNAMIC, STIFF, Terms
 
 Array = NDArray[np.float64]
-NOTHING = Row(np.empty(0, np.int64), np.empty(0))
-
-
-@dataclass(frozen=True)
-class Term:
-    """A link or source as a pattern over z+ = [x; u; 1] with its law, multiplier and input factor (number or (nt,))."""
-
-    name: str
-    rows: NDArray[np.int64]
-    cols: NDArray[np.int64]
-    vals: Array
-    law: laws.Law
-    hot: Row
-    cold: Row
-    m: float
-    factor: Array
-
-    @property
-    def bends(self) -> bool:
-        return not isinstance(self.law.temperature, laws.Constant)
-
-    @property
-    def steady(self) -> bool:
-        return not self.bends and self.factor.ndim == 0
-
-    def stiff(self, n: int) -> bool:
-        return self.bends or bool(np.any(self.cols < n))
 
 
 @dataclass(frozen=True)
@@ -62,133 +35,13 @@ class Compiled:
         return bool(np.any(self.terms.kind[:, DYNAMIC] * self.terms.kind[:, STIFF]))
 
 
-def checked_inputs(network: Network, inputs: Mapping[str, Array | float], nt: int) -> dict[str, Array]:
-    """Every input as a finite array (nt,)."""
-    out = {}
-    for name, value in inputs.items():
-        array = np.asarray(value, float)
-        if array.shape not in ((), (nt,)):
-            raise InputError(
-                f"input '{name}' has shape {array.shape}", f"network '{network.name}'", f"a number or ({nt},)"
-            )
-        if not np.all(np.isfinite(array)):
-            raise InputError(
-                f"input '{name}' is not finite everywhere", f"network '{network.name}'", "fill its gaps first"
-            )
-        out[name] = np.broadcast_to(array, (nt,))
-    return out
-
-
-def _factor(item: Link | Source, inputs: Mapping[str, Array], nt: int) -> Array:
-    missing = [name for name in item.law.reads if name not in inputs]
-    if missing:
-        known = ", ".join(sorted(inputs)) or "none"
-        raise InputError(f"input '{missing[0]}' is missing", f"'{item.name}'", f"given: {known}")
-    value = np.asarray(item.law.factor(inputs), float)
-    if value.shape not in ((), (nt,)) or not np.all(np.isfinite(value)):
-        raise InputError(
-            f"the input factor is not finite or has shape {value.shape}", f"'{item.name}'", f"finite, () or ({nt},)"
-        )
-    constant = value.ndim == 1 and bool(np.all(value == value[0]))
-    return np.asarray(value[0]) if constant else value
-
-
-def _link(link: Link, m: float, factor: Array) -> Term:
-    return Term(link.name, link.rows, link.cols, link.vals, link.law, link.hot, link.cold, m, factor)
-
-
-def _source(source: Source, m: float, factor: Array, size: int) -> Term:
-    cols = np.full(len(source.index), size, np.int64)
-    return Term(source.name, source.index, cols, -source.weights, source.law, source.probe, NOTHING, m, factor)
-
-
-def terms_of(network: Network, inputs: Mapping[str, Array], m: Mapping[str, float], nt: int) -> list[Term]:
-    """All links, then all sources."""
-    links = [_link(x, m.get(x.name, 1.0), _factor(x, inputs, nt)) for x in network.links]
-    sources = [_source(x, m.get(x.name, 1.0), _factor(x, inputs, nt), network.size) for x in network.sources]
-    return links + sources
-
-
-def _law_code(law: laws.TemperatureLaw) -> tuple[int, float, float]:
-    if isinstance(law, laws.Power):
-        return POWER, law.exponent, 0.0
-    if isinstance(law, laws.Radiation):
-        return RADIATION, 0.0, 0.0
-    if isinstance(law, laws.Linear):
-        return LINEAR, law.alpha, law.reference
-    return (TABLE if isinstance(law, laws.Table) else CONSTANT), 0.0, 0.0
-
-
-def _table(law: laws.TemperatureLaw) -> Array:
-    points = [law.difference, law.value] if isinstance(law, laws.Table) else [(), ()]
-    return np.ascontiguousarray(np.array(points, float).T)
-
-
-def _start(parts: Sequence[Sequence | NDArray]) -> NDArray[np.int64]:
-    return np.concatenate([[0], np.cumsum([len(p) for p in parts])]).astype(np.int64)
-
-
-def _floats(parts: Sequence[Sequence | NDArray]) -> Array:
-    return np.concatenate([np.empty(0), *(np.asarray(p, float) for p in parts)])
-
-
-def _ints(parts: Sequence[Sequence | NDArray]) -> NDArray[np.int64]:
-    return np.concatenate([np.empty(0, np.int64), *(np.asarray(p, np.int64) for p in parts)])
-
-
-def _columns(factors: Sequence[Array], nt: int) -> Array:
-    out = np.empty((nt, len(factors)))
-    for e, factor in enumerate(factors):
-        out[:, e] = factor
-    return out
-
-
-def pack(terms: Sequence[Term], n: int, nt: int) -> Terms:
-    """Flat arrays of the terms; a term stands in the constant matrix (dynamic 0) when it is steady."""
-    unique = [np.unique(t.rows, return_inverse=True) for t in terms]
-    tables = [_table(t.law.temperature) for t in terms]
-    codes = [_law_code(t.law.temperature) for t in terms]
-    rows = _start([u[0] for u in unique])
-    seen = [(t.hot, t.cold) if t.bends else (NOTHING, NOTHING) for t in terms]
-    at = [_ints([t.cols, hot.index, cold.index]) for t, (hot, cold) in zip(terms, seen, strict=True)]
-    to = [
-        np.concatenate([rows[e] + u[1], np.repeat(rows[-1] + 2 * e + np.arange(2), [x.index.size for x in s])])
-        for e, (u, s) in enumerate(zip(unique, seen, strict=True))
-    ]
-    return Terms(
-        start=np.column_stack([_start(at), rows, _start(tables)]),
-        to=_ints(to),
-        at=_ints(at),
-        weight=_floats(
-            [x for t, (hot, cold) in zip(terms, seen, strict=True) for x in (t.vals, hot.weights, cold.weights)]
-        ),
-        row=_ints([u[0] for u in unique]),
-        kind=np.array(
-            [(c[0], not t.steady, t.stiff(n), t.bends) for c, t in zip(codes, terms, strict=True)], np.int64
-        ).reshape(-1, 4),
-        par=np.array([c[1:] for c in codes], float).reshape(-1, 2),
-        point=np.concatenate([np.empty((0, 2)), *tables]),
-        m=np.array([t.m for t in terms], float),
-        factor=_columns([t.factor for t in terms], nt),
-    )
-
-
-def constant_matrix(terms: Sequence[Term], n: int, size: int) -> Array:
-    """K0 (n, size + 1): the sum of the steady terms; one without effect leaves it as it is, to the bit."""
-    K0 = np.zeros((n, size + 1))
-    for t in terms:
-        if t.steady and t.m != 0.0:
-            np.add.at(K0, (t.rows, t.cols), t.m * float(t.factor) * t.vals)
-    return K0
-
-
 def capacity_multipliers(network: Network, m: Mapping[str, float]) -> Array:
     groups = network.capacity_group or network.states
     return np.array([m.get(f"capacity:{g}", 1.0) for g in groups])
 
 
 def pack_rows(rows: Sequence[Row]) -> Rows:
-    return Rows(_start([r.index for r in rows]), _ints([r.index for r in rows]), _floats([r.weights for r in rows]))
+    return Rows(starts([r.index for r in rows]), ints([r.index for r in rows]), floats([r.weights for r in rows]))
 
 
 def _pack_tangents(network: Network, slope: Sequence[Mapping[str, float]], names: Sequence[str]) -> Tangents:
@@ -219,17 +72,23 @@ def compiled(
     all_terms: bool = False,
 ) -> Compiled:
     """The kernel's view. Terms that are steady and that no tangent moves exist in the constant matrix only."""
-    n, m = len(network.states), multipliers(network, values)
-    terms = terms_of(network, checked_inputs(network, inputs, nt), m, nt)
-    slope = [slopes(network, values, p) for p in tangents]
+    every, signals = assembly(network), inputs if isinstance(inputs, Signals) else Signals(inputs, nt)
+    acting, slope = multipliers(network, values), slopes(network, values, tangents)
+    m = np.array([acting.get(name, 1.0) for name in every.names])
+    factors = [signals.factor(p.name, p.law) for p in every.patterns]
+    steady = ~every.bends & np.array([f.ndim == 0 for f in factors], bool)
     watched = {target for d in slope for target in d}
-    live = [t for t in terms if all_terms or t.name in watched or not (t.steady or t.m == 0.0)]
-    names = tuple(t.name for t in live)
+    live = all_terms | np.array([name in watched for name in every.names], bool) | ~(steady | (m == 0.0))
+    constant = np.array([float(f) if s else 0.0 for f, s in zip(factors, steady, strict=True)])
+    names = tuple(name for name, alive in zip(every.names, live, strict=True) if alive)
+    factor = np.empty((nt, len(names)))
+    for e, k in enumerate(np.flatnonzero(live)):
+        factor[:, e] = factors[k]
     return Compiled(
-        network.C * capacity_multipliers(network, m),
-        constant_matrix(terms, n, network.size),
+        network.C * capacity_multipliers(network, acting),
+        every.matrix(m * constant),
         names,
-        pack(live, n, nt),
+        every.packed(live, steady)._replace(m=m[live], factor=factor),
         _pack_tangents(network, slope, names),
         pack_rows(rows),
     )

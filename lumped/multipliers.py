@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
+from math import prod
 
 from geom.errors import InputError
 from lumped.network import Network, Parameter
@@ -48,38 +48,44 @@ def _targets(network: Network, parameter: Parameter, known: set[str]) -> list[tu
     return kept
 
 
-def multipliers(network: Network, values: Mapping[str, float] | None = None) -> dict[str, float]:
-    """Target name -> multiplier, for every target that some parameter acts on."""
-    now, known = values_of(network, values), _known_targets(network)
-    out: dict[str, float] = {}
+def _acting(network: Network, now: Mapping[str, float]) -> dict[str, list[tuple[str, float, float]]]:
+    """Target -> what acts on it: (parameter, its factor, exponent)."""
+    known = _known_targets(network)
+    out: dict[str, list[tuple[str, float, float]]] = {}
     for p in network.parameters:
         f = factor(p, now[p.name])[0]
         for target, exponent in _targets(network, p, known):
-            out[target] = out.get(target, 1.0) * f**exponent
+            out.setdefault(target, []).append((p.name, f, exponent))
     return out
 
 
-def slopes(network: Network, values: Mapping[str, float] | None, parameter: Parameter) -> dict[str, float]:
-    """Target name -> d multiplier / d parameter (d log(value) for mapping "log")."""
-    now, known = values_of(network, values), _known_targets(network)
-    own = network_parameter(network, parameter)
-    f, df = factor(own, now[own.name])
-    rest = replace(network, parameters=tuple(p for p in network.parameters if p.name != own.name))
-    others = multipliers(rest, {k: v for k, v in now.items() if k != own.name})
-    out: dict[str, float] = {}
-    exponents: dict[str, float] = {}
-    for target, exponent in _targets(network, own, known):
-        exponents[target] = exponents.get(target, 0.0) + exponent
-    for target, exponent in exponents.items():
-        out[target] = others.get(target, 1.0) * exponent * f ** (exponent - 1.0) * df
+def multipliers(network: Network, values: Mapping[str, float] | None = None) -> dict[str, float]:
+    """Target name -> multiplier, for every target that some parameter acts on."""
+    acting = _acting(network, values_of(network, values))
+    return {target: prod(f**exponent for _, f, exponent in on) for target, on in acting.items()}
+
+
+def slopes(
+    network: Network, values: Mapping[str, float] | None, parameters: Sequence[Parameter]
+) -> list[dict[str, float]]:
+    """For each parameter: target name -> d multiplier / d parameter (d log(value) for mapping "log")."""
+    if not parameters:
+        return []
+    now = values_of(network, values)
+    acting, declared = _acting(network, now), {p.name: p for p in network.parameters}
+    out = []
+    for parameter in parameters:
+        if parameter.name not in declared:
+            where = f"network '{network.name}'"
+            raise InputError(f"unknown parameter '{parameter.name}'", where, "tangents are of its own parameters")
+        own = declared[parameter.name]
+        f, df = factor(own, now[own.name])
+        moved = dict.fromkeys(target for target, _ in own.targets if target in acting)
+        out.append({target: _slope(acting[target], own.name, f) * df for target in moved})
     return out
 
 
-def network_parameter(network: Network, parameter: Parameter) -> Parameter:
-    """The network's own declaration of a parameter."""
-    for p in network.parameters:
-        if p.name == parameter.name:
-            return p
-    raise InputError(
-        f"unknown parameter '{parameter.name}'", f"network '{network.name}'", "tangents are of its own parameters"
-    )
+def _slope(acting: Sequence[tuple[str, float, float]], own: str, f: float) -> float:
+    """Derivative of a product of powers by one of its factors."""
+    exponent = sum(e for name, _, e in acting if name == own)
+    return prod(g**e for name, g, e in acting if name != own) * exponent * f ** (exponent - 1.0)

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Literal
+from functools import cached_property
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lumped.network import Network, Parameter, Row
+from lumped.signals import Signals
 
 Array = NDArray[np.float64]
 Role = Literal["calibrate", "validate", "hold-out"]
+RUNNING = "running "  # the input that is 1 in one test only
 
 
 @dataclass(frozen=True)
@@ -55,6 +58,13 @@ class Test:
     channels: tuple[Channel, ...]
     initial: float | Mapping[str, float] = 20.0
     frees: tuple[str, ...] = ()
+    __test__: ClassVar[bool] = False  # its name makes pytest think so
+
+    @cached_property
+    def signals(self) -> Signals:
+        """What the laws of a network may read: inputs, time, and that it is this test."""
+        own = {"time_s": self.time, f"{RUNNING}{self.name}": np.ones_like(self.time)}
+        return Signals({**self.inputs, **own}, self.time.size)
 
 
 @dataclass(frozen=True)

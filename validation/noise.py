@@ -47,9 +47,31 @@ class Shape:
         return -0.5 * float(fast**2 + slow**2)
 
     def matrix(self, time: Array) -> Array:
-        gap = np.abs(time[:, None] - time[None, :])
-        d = np.sqrt(3.0) * gap / self.ell
-        return np.eye(time.size) + self.a * np.exp(-gap / self.tau) + self.b * (1.0 + d) * np.exp(-d)
+        key = stamp(time)
+        out: Array = self.a * _decay(key, self.tau) + self.b * _matern(key, self.ell)
+        out[np.diag_indices(time.size)] += 1.0
+        return out
+
+
+def stamp(time: Array) -> bytes:
+    """A time grid as a key."""
+    return np.round(time - time[0], 3).tobytes()
+
+
+def _gaps(time: bytes) -> Array:
+    t = np.frombuffer(time)
+    return np.asarray(np.abs(t[:, None] - t[None, :]))
+
+
+@lru_cache(maxsize=64)
+def _decay(time: bytes, tau: float) -> Array:
+    return np.asarray(np.exp(-_gaps(time) / tau))
+
+
+@lru_cache(maxsize=64)
+def _matern(time: bytes, ell: float) -> Array:
+    d = np.sqrt(3.0) * _gaps(time) / ell
+    return np.asarray((1.0 + d) * np.exp(-d))
 
 
 def shapes() -> tuple[Shape, ...]:
@@ -76,11 +98,6 @@ def _factors(time: bytes) -> tuple[Array, Array]:
 
 def factors(time: Array) -> tuple[Array, Array]:
     return _factors(stamp(time))
-
-
-def stamp(time: Array) -> bytes:
-    """A time grid as a key."""
-    return np.round(time - time[0], 3).tobytes()
 
 
 @lru_cache(maxsize=256)

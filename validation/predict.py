@@ -17,7 +17,6 @@ from scipy.signal import lfilter
 from lumped.network import Network, Parameter
 from lumped.simulate import Record, simulate
 from validation.case import Test
-from validation.effects.fan_stop import RUNNING
 from validation.effects.sites import ambient
 
 Array = NDArray[np.float64]
@@ -71,7 +70,8 @@ def predict(
         return run.y, run.dy
 
     T, dT = temperatures(now, hot)
-    y = observe(network, test, T, now)
+    late = delayed(test, T, now)
+    y = read(network, test, late, now)
     J = np.zeros((*y.shape, len(tangents)))
     if hot and dT is not None:
         J[:, :, [i for i, p in enumerate(tangents) if head(p) == "thermal"]] = observe(network, test, dT, now, True)
@@ -79,7 +79,7 @@ def predict(
         if head(p) in SHIFTS:
             J[:, :, i] = _shift_tangent(network, test, now, p, T, temperatures)
         elif head(p) in OPERATORS:
-            J[:, :, i] = _operator_tangent(network, test, T, now, p)
+            J[:, :, i] = _operator_tangent(network, test, T, late, y, now, p)
     return Prediction(y, J)
 
 
@@ -89,8 +89,7 @@ def record(test: Test, shift: Mapping[str, float]) -> Record:
     move = shift.get(f"initial:{test.name}", 0.0)
     initial = test.initial
     start = {k: v + move for k, v in initial.items()} if isinstance(initial, Mapping) else initial + move
-    own = {"time_s": test.time, f"{RUNNING}{test.name}": np.ones_like(test.time)}
-    return Record(test.time, {**test.inputs, **own}, boundaries, start)
+    return Record(test.time, test.signals, boundaries, start)
 
 
 Temperatures = Callable[..., tuple[Array, Array | None]]
@@ -106,33 +105,45 @@ def _shift_tangent(network: Network, test: Test, now: dict, p: Parameter, T: Arr
     return observe(network, test, (moved - T) / step, now, True)
 
 
-def _operator_tangent(network: Network, test: Test, T: Array, now: dict, p: Parameter) -> Array:
+def _operator_tangent(network: Network, test: Test, T: Array, late: Array, y: Array, now: dict, p: Parameter) -> Array:
+    """T at the sensors, late: with the delay, y: as read."""
     target = p.targets[0][0]
     step = STEP.get(head(p), 1e-3)
     moved = {**now, target: now.get(target, 0.0) + step}
-    out, names = np.zeros_like(T), [c.name for c in test.channels]
-    if any(key.startswith("swap:") for key in moved) or head(p) == "delay":
-        return (observe(network, test, T, moved) - observe(network, test, T, now)) / step
-    if (name := target.split(":", 1)[1]) in names:
-        j = [names.index(name)]
-        one = replace(test, channels=(test.channels[j[0]],))
-        out[:, j] = (observe(network, one, T[:, j], moved) - observe(network, one, T[:, j], now)) / step
+    if head(p) == "delay":
+        return (observe(network, test, T, moved) - y) / step
+    if any(key.startswith("swap:") for key in moved):
+        return (read(network, test, late, moved) - y) / step
+    out, air = np.zeros_like(T), _air(network, test)
+    for j, c in enumerate(test.channels):
+        if c.name == target.split(":", 1)[1]:
+            out[:, j] = (_channel(test.time, late[:, j], c.name, c.lag_s, air, moved, 1.0) - y[:, j]) / step
     return out
 
 
 def observe(network: Network, test: Test, T: Array, now: Mapping[str, float], linear: bool = False) -> Array:
     """Readings from the temperatures at the sensors, (n_time, n_channel, ...); `linear` leaves out the constants."""
-    out = np.array(T, float)
-    one = 0.0 if linear else 1.0
-    if delay := now.get(f"delay:{test.name}", 0.0):
-        out = shifted(test.time, out, delay)
-    air = test.boundaries.get(ambient(network) or "")
+    return read(network, test, delayed(test, T, now), now, linear)
+
+
+def delayed(test: Test, T: Array, now: Mapping[str, float]) -> Array:
+    delay = now.get(f"delay:{test.name}", 0.0)
+    return shifted(test.time, T, delay) if delay else T
+
+
+def read(network: Network, test: Test, T: Array, now: Mapping[str, float], linear: bool = False) -> Array:
+    """What observe makes of temperatures that are delayed already."""
+    out, air = np.array(T, float), _air(network, test)
     for j, c in enumerate(test.channels):
-        out[:, j] = _channel(test.time, out[:, j], c.name, c.lag_s, air, now, one)
+        out[:, j] = _channel(test.time, out[:, j], c.name, c.lag_s, air, now, 0.0 if linear else 1.0)
     for key, a in now.items():
         if key.startswith("swap:"):
             _swap(out, [c.name for c in test.channels], key, a)
     return out
+
+
+def _air(network: Network, test: Test) -> Array | None:
+    return test.boundaries.get(ambient(network) or "")
 
 
 def _channel(time: Array, T: Array, name: str, lag_s: float, air: Array | None, now: Mapping, one: float) -> Array:

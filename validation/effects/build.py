@@ -81,9 +81,8 @@ def heat(network: Network, name: str, kind: str, place: str, law: Law) -> Source
 
 def follow(parameters: tuple[Parameter, ...], original: str, copy: str) -> tuple[Parameter, ...]:
     """Parameters that also act on the copy of a link or source as they do on the original."""
-    return tuple(
-        replace(p, targets=(*p.targets, *((copy, e) for t, e in p.targets if t == original))) for p in parameters
-    )
+    more = [tuple((copy, e) for t, e in p.targets if t == original) for p in parameters]
+    return tuple(replace(p, targets=p.targets + m) if m else p for p, m in zip(parameters, more, strict=True))
 
 
 def copy_link(network: Network, link: Link, name: str, law: Law) -> Network:

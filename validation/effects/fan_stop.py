@@ -6,12 +6,12 @@ import numpy as np
 
 from lumped.laws import Inputs
 from lumped.network import Network
+from validation.case import RUNNING
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import Shaped, copy_link
 from validation.effects.flow import flows
 
 PARTS = (25, 50, 75)  # percent of the test after which it may have stopped
-RUNNING = "running "  # the input that is 1 in one test only
 
 
 @dataclass(frozen=True)
