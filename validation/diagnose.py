@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validation.bar import Bar, Simulation, bar_of
-from validation.calibrate import Fit, calibrated, silent
+from validation.calibrate import Fit, calibrated, minimise, silent
 from validation.case import AddedEffect, Case
+from validation.effects import Effect
 from validation.evidence import Evidence, calibrated_case, candidates, possible, scored
 from validation.faults import broken_channels
 from validation.findings import Candidate, Diagnosis, Verdict
@@ -81,22 +82,32 @@ def search(case: Case, evidence: Evidence, bar: Bar, progress: Progress) -> list
         little = explained(evidence, found) < WORTH and best < CLEAR * bar.threshold
         if (case.model.effects and little) or (steps and weak(evidence, found)):
             return [*steps, Step(evidence, kappa, None)]
-        steps.append(Step(evidence, kappa, found))
         if weak(evidence, found):
-            return [*steps, Step(evidence, kappa, None)]
-        added = evidence.effects[found.index[0]]
-        case = with_effect(case, added.kind, added.place, found.best)
+            return [*steps, Step(evidence, kappa, found), Step(evidence, kappa, None)]
+        progress(f"adding {', '.join(evidence.names[k] for k in found.group)} in turn")
+        settled = {k: added(case, evidence, k, found) for k in found.group}
+        steps.append(Step(evidence, kappa, found, settled))
+        best = found.index[0]
+        case = with_effect(case, evidence.effects[best], settled[best].values)
         network, unknowns = working(case)
-        fit = calibrated(network, evidence.tests, unknowns, found.best.values, 1, progress, found.noise)
-        evidence = scored(case, [e for e in evidence.effects if e.name != added.name], fit)
+        fit = calibrated(network, evidence.tests, unknowns, settled[best].values, 1, progress, found.noise)
+        evidence = scored(case, [e for e in evidence.effects if e.name != evidence.names[best]], fit)
     return steps
 
 
-def with_effect(case: Case, kind: str, place: str, fit: Fit) -> Case:
+def added(case: Case, evidence: Evidence, k: int, found: Race) -> Fit:
+    """The model with a candidate in it: as large as the data say, the exponents of its law as free as the model's."""
+    start = found.fits[found.index.index(k)].values
+    network, unknowns = working(with_effect(case, evidence.effects[k], start))
+    held = {p.name: start.get(p.name, p.value) for p in network.parameters}
+    return minimise(network, evidence.tests, unknowns, unknowns.coordinates(start), found.noise, held)
+
+
+def with_effect(case: Case, new: Effect, values: Mapping[str, float]) -> Case:
     """The case with one effect more, standing at fitted values."""
     model = case.model
-    grown = replace(model, effects=(*model.effects, AddedEffect(kind, place)), values={**model.values, **fit.values})
-    return replace(case, model=grown)
+    grown = (*model.effects, AddedEffect(new.kind, new.place))
+    return replace(case, model=replace(model, effects=grown, values={**model.values, **values}))
 
 
 def conclude(

@@ -22,6 +22,7 @@ GAIN_OF_STREAM_SD = 0.1  # a stream is not of one temperature: no thermometer re
 LAG_SD = 10.0  # diffusion in the part it sits in: L^2 / 2a of some centimetres of metal
 BOUNDARY_SD = 0.5
 CLOCK_SD = 1.0
+FREE = 30.0
 
 
 @dataclass(frozen=True)
@@ -115,6 +116,17 @@ def at_level(network: Network, names: Collection[str], tests: Sequence[Test]) ->
     ))  # fmt: skip
 
 
+def freed(network: Network, names: Collection[str]) -> Network:
+    """The network with the data alone to say how large some effects are.
+
+    The prior of an effect speaks of machines at large. For one that is in the model because the readings ask for it, it
+    would press the rest of the effect into whatever else may move.
+    """
+    return replace(network, parameters=tuple(
+        replace(p, prior_sd=FREE * p.prior_sd) if p.name in names else p for p in network.parameters
+    ))  # fmt: skip
+
+
 def _mean_factor(laws: Sequence[Law], tests: Sequence[Test]) -> float:
     """Mean size of what the laws multiply an amplitude by; 0 where nothing is known."""
     seen = [np.abs(law.factor(t.inputs)) for law in laws for t in tests if set(law.reads) <= set(t.inputs)]
@@ -129,6 +141,7 @@ def working(case: Case, more: Sequence[Effect] = ()) -> tuple[Network, Unknowns]
     inside, extra = effects_of(case), nuisances(case.model.network, case.tests)
     network = extended(case.model.network, (*inside, *more))
     network = at_level(network, {e.name for e in (*inside, *more)}, case.tests)
+    network = freed(network, {e.name for e in inside})
     network, forms = with_forms(network, case.tests, {e.name for e in inside})
     network = replace(network, parameters=(*network.parameters, *extra))
     chosen = {p.name for p in (case.nuisances or case.model.network.parameters)}

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,11 +23,15 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Step:
-    """One round of the search: the evidence, each candidate's kappa, and the race if one passed the threshold."""
+    """One round of the search: the evidence, each candidate's kappa, and the race if one passed the threshold.
+
+    settled : the model with a candidate in it, for each that is named
+    """
 
     evidence: Evidence
     kappa: Array
     race: Race | None
+    settled: Mapping[int, Fit] = field(default_factory=dict)
 
 
 def tabulate(case: Case, steps: list[Step], bar: Bar, verdict: Verdict, rows: int = 20) -> tuple[Candidate, ...]:
@@ -63,8 +67,8 @@ def raced(case: Case, step: Step, k: int, bar: Bar, verdict: Verdict) -> Candida
     """A row with the refit's numbers."""
     assert step.race is not None
     e, found, row = step.evidence, step.race, plain(step, k, bar)
-    fit, kappa = found.fits[found.index.index(k)], float(step.kappa[k])
-    a, half = fit.values[e.names[k]], 1.96 * kappa * float(fit.sd[-1])
+    fit, kappa = step.settled.get(k, found.fits[found.index.index(k)]), float(step.kappa[k])
+    a, half = fit.values[e.names[k]], 1.96 * kappa * float(fit.sd[fit.unknowns.names.index(e.names[k])])
     before, after = rmse(e.fit.parts), rmse(fit.parts)
     group = tuple(e.names[m] for m in found.group if m != k)
     member = k in found.group

@@ -50,6 +50,18 @@ def test_held_out_error_falls():
     assert done.accepted, done.why
 
 
+def test_an_effect_far_larger_than_usual_is_not_shrunk():
+    """Three times the prior's deviation: what it takes away must not go into iron and copper instead."""
+
+    def stray(T, u, t):
+        return {"rotor": 120.0 * (u["speed_rpm"] / 1000.0) ** 2 * (u["current_A"] / 100.0) ** 2}
+
+    case = Truth(3, stray).case()
+    done = add(replace(case, model=calibrate(case).model), "loss.rotor.load@rotor")
+    (found,) = [p for p in done.parameters if p.name == "loss.rotor.load@rotor"]
+    assert found.value == pytest.approx(120.0, rel=0.15)
+
+
 def test_removing_brings_the_error_back():
     case, _ = stand()
     gone = remove(replace(case, model=added().model), EFFECT)
