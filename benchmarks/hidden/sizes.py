@@ -37,8 +37,8 @@ def detectable() -> dict[str, dict[str, dict]]:
 
 def measure(kind: str, draws: int) -> dict[str, dict]:
     """Per effect: smallest detectable amplitude, median of three machines; the physical bound; how much of the true
-    machine's amplitude its thermometers show in the catalogue's terms; and for each multiple of the size the deviance by
-    which other candidates would explain it worse, over kappa^2."""
+    machine's amplitude its thermometers show in the catalogue's terms; and for each multiple of the size the deviance
+    by which other candidates would explain it worse, over kappa^2."""
     search, *more = (_search(kind, seed, draws) for seed in (REFERENCE_SEED, *MORE_SEEDS))
     wanted = [h for h in KINDS[kind].missing if h.name in search.evidence.names]
     given = (kind, search, more, wanted)
