@@ -13,7 +13,7 @@ from validation.calibrate import Fit, silent
 from validation.case import AddedEffect, Case, Model, Test
 from validation.compare import Comparison, compare
 from validation.effects import effect
-from validation.fitting import scene_of, working
+from validation.fitting import FREE, scene_of, working
 from validation.gates import Gate, doubts, gates
 from validation.intervals import FORMAL, Estimate, Profile, Widening, estimates
 from validation.profile import profiles
@@ -161,8 +161,8 @@ def start(case: Case) -> dict[str, float]:
 
 
 def nudge(p: Parameter) -> float:
-    """A start a little inside the bounds, on the side the sign allows."""
-    return float(np.clip(p.neutral + 0.3 * (p.sign or 1) * p.prior_sd, p.low, p.high))
+    """A start a little inside the bounds, on the side the sign allows: a third of the usual size."""
+    return float(np.clip(p.neutral + 0.3 * (p.sign or 1) * p.prior_sd / FREE, p.low, p.high))
 
 
 def judge(action: str, changes: Sequence[Change], fits: Sequence[Fit], checks: Sequence[Gate]) -> tuple[bool, str]:

@@ -48,8 +48,9 @@ class FanStop(Effect):
         return [f"{flow}:{test}:{part}" for flow in names for test in scene.tests for part in PARTS]
 
     def extend(self, network: Network) -> Network:
-        flow, test, part = self.place.rsplit(":", 2)
-        (original,) = [p for p in flows(network) if p.name == flow]
+        which, part = self.place.rsplit(":", 1)
+        original = next(p for p in flows(network) if which.startswith(f"{p.name}:"))
+        test = which.removeprefix(f"{original.name}:")
         new = []
         own = {t for t, _ in original.targets if "@" not in t}  # not what other effects have copied
         for link in [x for x in network.links if x.name in own]:
