@@ -21,7 +21,7 @@ NOTHING = Row(np.empty(0, np.int64), np.empty(0))
 @dataclass(frozen=True)
 class Pattern:
     """A link or source over z+ = [x; u; 1], without multiplier and input factor; row: its distinct rows, `to` which of
-    them an entry stands in."""
+    them an entry stands in; touches: whether any entry stands in a state's column."""
 
     name: str
     cols: NDArray[np.int64]
@@ -31,11 +31,15 @@ class Pattern:
     law: laws.Law
     hot: Row
     cold: Row
-    stiff: bool
+    touches: bool
 
     @property
     def bends(self) -> bool:
         return not isinstance(self.law.temperature, laws.Constant)
+
+    @property
+    def stiff(self) -> bool:
+        return self.bends or self.touches
 
 
 class Assembly:
@@ -83,16 +87,14 @@ def assembly(network: Network) -> Assembly:
 
 def _link(link: Link, n: int) -> Pattern:
     row, to = np.unique(link.rows, return_inverse=True)
-    bends = not isinstance(link.law.temperature, laws.Constant)
-    stiff = bends or bool(np.any(link.cols < n))
-    return Pattern(link.name, link.cols, link.vals, row, to, link.law, link.hot, link.cold, stiff)
+    touches = bool(np.any(link.cols < n))
+    return Pattern(link.name, link.cols, link.vals, row, to, link.law, link.hot, link.cold, touches)
 
 
 def _source(source: Source, size: int) -> Pattern:
     row, to = np.unique(source.index, return_inverse=True)
     cols = np.full(len(source.index), size, np.int64)
-    bends = not isinstance(source.law.temperature, laws.Constant)
-    return Pattern(source.name, cols, -source.weights, row, to, source.law, source.probe, NOTHING, bends)
+    return Pattern(source.name, cols, -source.weights, row, to, source.law, source.probe, NOTHING, False)
 
 
 def _code(law: laws.TemperatureLaw) -> tuple[int, float, float]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from lumped.compiled import Compiled, compiled
 from lumped.count import count
 from lumped.network import Link, Network
-from lumped.simulate import Record, Run, boundary_table, checked_time, march
+from lumped.simulate import Record, Run, checked_time, march
 from lumped.stages import stages, work
 from lumped.terms import ROWS
 
@@ -52,8 +52,7 @@ def balance(network: Network, record: Record, values: Mapping[str, float] | None
     core = compiled(network, record.inputs, checked_time(record.time).size, values, all_terms=True)
     mean = np.array(["#" not in s for s in network.states], float)
     run = march(network, record, core, keep_states=True, keep_rates=True)
-    heat = _counted(network, record, core, run, _through(network, core, mean))
-    left = _counted(network, record, core, run, mean[core.terms.row])
+    heat, left = _counted(core, run, np.stack([_through(network, core, mean), mean[core.terms.row]]))
     assert run.z is not None
     links, n = len(network.links), len(network.states)
     return Balance(
@@ -65,12 +64,12 @@ def balance(network: Network, record: Record, values: Mapping[str, float] | None
     )
 
 
-def _counted(network: Network, record: Record, core: Compiled, run: Run, through: Array) -> Array:
-    """(nt, n_terms) J; `through` (rows of all terms,) says which rows count as the heat through a term."""
-    u, n, ne = boundary_table(network, record.boundaries, run.time.size), core.C.size, core.terms.m.size
+def _counted(core: Compiled, run: Run, through: Array) -> Array:
+    """(nw, nt, n_terms) J; `through` (nw, rows of all terms) says which rows count as the heat through a term."""
     assert run.z is not None
     assert run.k is not None
-    out = np.zeros((run.time.size, ne))
+    n, ne = core.C.size, core.terms.m.size
+    out, u = np.zeros((len(through), run.time.size, ne)), np.ascontiguousarray(run.z[:, n:])
     arrays = stages(run.z[0, :n], u[0], core.terms), work(n, ne, 0)
     count(run.time, u, core.K0, core.terms, through, run.z, run.k, *arrays, out)
     return out

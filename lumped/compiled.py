@@ -30,9 +30,14 @@ class Compiled:
     rows: Rows
 
     @property
+    def stiff(self) -> NDArray[np.bool_]:
+        """(ne,) which terms are dynamic and touch the matrix."""
+        return self.terms.kind[:, DYNAMIC] * self.terms.kind[:, STIFF] == 1
+
+    @property
     def curved(self) -> bool:
         """Whether any dynamic term touches the matrix."""
-        return bool(np.any(self.terms.kind[:, DYNAMIC] * self.terms.kind[:, STIFF]))
+        return bool(np.any(self.stiff))
 
 
 def capacity_multipliers(network: Network, m: Mapping[str, float]) -> Array:

@@ -9,10 +9,10 @@ from lumped.terms import ROWS, flow
 
 @entry
 def count(time, u, K0, T, through, z, k, a, q, heat):
-    """heat (nt, ne): cumulated J through every term since the start; filled here, zero before.
+    """heat (nw, nt, ne): cumulated J through every term since the start, by each weighting; filled here, zero before.
 
     z (nt, n + nb), k (nt, 2, n): states and rates of a run;  a, q : from stages() and work()
-    through : (rows of all terms,) weights that sum a term's rows to the heat through it
+    through : (nw, rows of all terms) weights that sum a term's rows to the heat through it
     """
     n = k[0, 0].size
     for t in range(1, time.size):
@@ -28,8 +28,10 @@ def count(time, u, K0, T, through, z, k, a, q, heat):
                 flow(T, K0, a.z[stage], T.factor[t - 1 + stage], a.tau[stage], a.v[stage], q.F)
             directions(T, a)
         for e in range(T.m.size):
-            acc = 0.0
+            for w in range(len(through)):
+                heat[w, t, e] = heat[w, t - 1, e]
             for s in range(T.start[e, ROWS], T.start[e + 1, ROWS]):
                 for stage in range(2):
-                    acc += through[s] * taken(T, e, s, stage, t, q.df[e], a, GAMMA * h)
-            heat[t, e] = heat[t - 1, e] + 0.5 * h * T.m[e] * acc
+                    out = 0.5 * h * T.m[e] * taken(T, e, s, stage, t, q.df[e], a, GAMMA * h)
+                    for w in range(len(through)):
+                        heat[w, t, e] += through[w, s] * out

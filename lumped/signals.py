@@ -13,10 +13,11 @@ from geom.errors import InputError
 from lumped.laws import Law
 
 Array = NDArray[np.float64]
+LONG = 200_000  # samples: factors of longer records are not kept, whose runs take far longer than their factors
 
 
 class Signals(dict[str, Array]):
-    """Input -> finite array (nt,); a factor stays known as long as its law is alive.
+    """Input -> finite array (nt,); a factor of a record that is not LONG stays known as long as its law.
 
     Laws and signals never change, so the runs of a fit, which differ in multipliers alone, share them.
     """
@@ -35,7 +36,8 @@ class Signals(dict[str, Array]):
         if found is not None and found[0]() is law:
             return found[1]
         value, key = self._made(name, law), id(law)
-        self._known[key] = ref(law, lambda _: self._known.pop(key, None)), value
+        if self.nt <= LONG:
+            self._known[key] = ref(law, lambda _: self._known.pop(key, None)), value
         return value
 
     def _made(self, name: str, law: Law) -> Array:

@@ -18,7 +18,7 @@ from lumped.kernel import integrate
 from lumped.network import Network, Parameter, Row
 from lumped.settle import settle
 from lumped.stages import stages, work
-from lumped.terms import BENDS, DYNAMIC, STIFF, Terms
+from lumped.terms import BENDS
 
 Array = NDArray[np.float64]
 
@@ -126,7 +126,7 @@ def march(network: Network, record: Record, core: Compiled, keep_states: bool, k
     y, dy = np.zeros((nt, nr)), np.zeros((nt, nr, p))
     scratch = work(core.C.size, core.terms.m.size, p)
     both = stages(initial_state(network, record.initial), u[0], core.terms)
-    renew = _renewals(time, core.terms)
+    renew = _renewals(time, core)
     for part in _parts(time, core.C):
         terms = core.terms._replace(factor=core.terms.factor[part])
         both.z[0, core.C.size : -1] = u[part.start]
@@ -140,12 +140,12 @@ def march(network: Network, record: Record, core: Compiled, keep_states: bool, k
     return Run(time, z if keep_states else None, y, dy if p else None, k if keep_rates else None)
 
 
-def _renewals(time: Array, terms: Terms) -> NDArray[np.bool_]:
+def _renewals(time: Array, core: Compiled) -> NDArray[np.bool_]:
     """(nt,) whether the matrix of the step that ends there differs from that of the step before."""
-    stiff = (terms.kind[:, DYNAMIC] * terms.kind[:, STIFF] == 1) & (terms.m != 0.0)
-    steps = np.flatnonzero(np.diff(time) > 0.0)
+    terms, stiff = core.terms, core.stiff & (core.terms.m != 0.0)
     if np.any(terms.kind[stiff, BENDS]):
         return np.ones(time.size, bool)
+    steps = np.flatnonzero(np.diff(time) > 0.0)
     out, used = np.zeros(time.size, bool), terms.factor[np.ix_(steps, stiff)]
     out[steps[1:] + 1] = np.any(used[1:] != used[:-1], axis=1)
     return out

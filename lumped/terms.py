@@ -25,7 +25,7 @@ Ints = NDArray[np.int64]
 
 
 class Terms(NamedTuple):
-    """The terms the kernel follows one by one, in as few arrays as it takes: compile time goes with their number.
+    """The terms the kernel follows one by one, as flat arrays.
 
     start (ne + 1, 3) : where each term begins: ENTRIES in (to, at, weight), ROWS in row, POINTS in point
     to, at, weight : v[to] += weight z+[at] makes v = [P z+ of all terms; then hot and cold of each in turn]

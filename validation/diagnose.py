@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validation.bar import Bar, Simulation, bar_of
-from validation.calibrate import Fit, calibrated, minimise, silent
+from validation.calibrate import Fit, minimise, silent
 from validation.case import AddedEffect, Case
 from validation.effects import Effect
-from validation.evidence import Evidence, calibrated_case, candidates, possible, scored
+from validation.evidence import Evidence, calibrated_case, candidates, possible, scored, sharpened
 from validation.faults import broken_channels
 from validation.findings import Candidate, Diagnosis, Verdict
 from validation.fitting import working
@@ -88,9 +88,7 @@ def search(case: Case, evidence: Evidence, bar: Bar, progress: Progress) -> list
         settled = {k: added(case, evidence, k, found) for k in found.group}
         steps.append(Step(evidence, kappa, found, settled))
         best = found.index[0]
-        case = with_effect(case, evidence.effects[best], settled[best].values)
-        network, unknowns = working(case)
-        fit = calibrated(network, evidence.tests, unknowns, settled[best].values, 1, progress, found.noise)
+        case, fit = with_effect(case, evidence.effects[best], settled[best].values), sharper(evidence, settled[best])
         evidence = scored(case, [e for e in evidence.effects if e.name != evidence.names[best]], fit)
     return steps
 
@@ -101,6 +99,13 @@ def added(case: Case, evidence: Evidence, k: int, found: Race) -> Fit:
     network, unknowns = working(with_effect(case, evidence.effects[k], start))
     held = {p.name: start.get(p.name, p.value) for p in network.parameters}
     return minimise(network, evidence.tests, unknowns, unknowns.coordinates(start), found.noise, held)
+
+
+def sharper(evidence: Evidence, fit: Fit) -> Fit:
+    """The fit gone on under the noise of the residual that it leaves."""
+    values = fit.values
+    held = {p.name: values.get(p.name, p.value) for p in fit.network.parameters}
+    return minimise(fit.network, evidence.tests, fit.unknowns, fit.theta, sharpened(fit), held, 10)
 
 
 def with_effect(case: Case, new: Effect, values: Mapping[str, float]) -> Case:
