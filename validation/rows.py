@@ -105,26 +105,26 @@ def unseen(step: Step, bar: Bar) -> tuple[Hidden, ...]:
 
 def planned(steps: list[Step]) -> tuple[NextTest, ...]:
     """Tests that would separate the first group that could not be separated."""
-    for step, group, size in unresolved(steps):
-        return tuple(next_tests(step.evidence, group, size, step.kappa))
+    for step, found, size in unresolved(steps):
+        return tuple(next_tests(step.evidence, found, size, step.kappa))
     return ()
 
 
 def sensed(steps: list[Step]) -> tuple[NextSensor, ...]:
     """Sensors that would separate the same group."""
-    for step, group, size in unresolved(steps):
-        return tuple(next_sensors(step.evidence, group, size, step.kappa))
+    for step, found, size in unresolved(steps):
+        return tuple(next_sensors(step.evidence, found.group, size, step.kappa))
     return ()
 
 
-def unresolved(steps: list[Step]) -> Iterator[tuple[Step, tuple[int, ...], dict[int, float]]]:
-    """Groups that could not be separated, with the amplitude of each member."""
+def unresolved(steps: list[Step]) -> Iterator[tuple[Step, Race, dict[int, float]]]:
+    """Races that ended in a group, with the amplitude of each of its members."""
     for step in steps:
         if step.race and len(step.race.group) > 1:
             found = step.race
             yield (
                 step,
-                found.group,
+                found,
                 {k: found.fits[found.index.index(k)].values[step.evidence.names[k]] for k in found.group},
             )
 

@@ -158,7 +158,7 @@ def _hidden(r: Report) -> str:
     return html.section(
         "What these tests cannot see, and what would help",
         seen and html.more("Effects that could be there unseen", seen),
-        following and "<h3>Tests that would decide</h3>" + following,
+        following and "<h3>Tests to come</h3>" + following,
     )
 
 

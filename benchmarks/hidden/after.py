@@ -9,9 +9,10 @@ from hidden.answer import answer
 from hidden.cases import Label, hidden_in
 from hidden.kinds import KINDS
 from hidden.truth.archetype import measured
-from hidden.truth.menu import carried_out
+from hidden.truth.menu import MENU, carried_out
 from hidden.user import network_of, test_of
 from validation import Case, Revision, add, calibrate
+from validation.experiments import DECISIVE
 
 Answer = dict[str, Any]
 
@@ -40,14 +41,13 @@ def held_out(done: Revision) -> float:
 
 
 def followed(case: Case, label: Label, found: Answer, draws: int) -> Answer | None:
-    """The best proposed test carried out on the true machine, and what the diagnosis says then."""
+    """The best test that is said to decide, carried out on the true machine, and what the diagnosis says then."""
     kind = KINDS[label.machine]
-    if found["verdict"] != "group" or not found["next"]:
+    said = [name for name, gain, _ in found["next"] if gain >= DECISIVE and name in MENU]
+    if found["verdict"] != "group" or not said:
         return None
-    name = found["next"][0][0]
+    name = said[0]
     plan = carried_out(name, kind.plans[3])
-    if plan is None:
-        return None
     (record,) = measured(kind, label.seed, hidden_in(kind, label), (plan,))
     longer = replace(case, tests=(test_of(network_of(kind.name), record), *case.tests))
     return {"test": name, **answer(longer, draws, plan=False)}

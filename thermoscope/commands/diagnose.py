@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from thermoscope.commands.ahead import show_ahead
 from thermoscope.commands.bases import show_bases
 from thermoscope.commands.opened import opened
 from thermoscope.commands.saved import save_diagnosis
@@ -42,9 +43,7 @@ def _searched(document: Mapping[str, Any]) -> None:
     headers = ["effect", "score", "amplitude", "95 %", "error (K)", "held out (K)", "confused with", "decision"]
     title = f"Candidates: a score beyond {document['threshold']:.2f} is not chance"
     table(title, headers, rows, marked=["named", "group"])
-    tests = [[t["test"], "; ".join(t["separates"]), t["predicted_gain"]] for t in document["next_tests"]]
-    if tests:
-        table("Tests that would decide", ["test", "separates", "predicted gain"], tests[:ROWS])
+    show_ahead(document)
     hidden = [h["effect"] for h in document["cannot_see"]]
     if hidden:
         say(f"{len(hidden)} effects could be there unseen, e.g. {', '.join(hidden[:4])} (all in --json)")

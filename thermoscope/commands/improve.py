@@ -7,6 +7,7 @@ import sys
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from thermoscope.commands.ahead import show_ahead
 from thermoscope.commands.opened import opened_to_write
 from thermoscope.commands.revise import recorded
 from thermoscope.commands.saved import save_diagnosis
@@ -53,7 +54,7 @@ def asked(found: Diagnosis, choice: Sequence[Candidate]) -> str | None:
     """The user's word, on stderr and stdin: a number of the list, or nothing to stop."""
     lines = [f"  {i + 1}  {offer(c)}" for i, c in enumerate(choice)]
     print(f"{found.words}\n" + "\n".join(lines), file=sys.stderr)
-    for test in found.next_tests[:3]:
+    for test in [t for t in found.next_tests if t.separates][:3]:
         print(f"  would decide: {test.test} ({test.hours:.3g} h)", file=sys.stderr)
     print("add which? (number, or Enter to stop) ", end="", file=sys.stderr, flush=True)
     word = sys.stdin.readline().strip()
@@ -77,11 +78,8 @@ def show(document: Mapping[str, Any], folder: Folder) -> None:
         for s in stairs
     ]
     table("Error, step by step (rms)", headers, rows)
-    found = document["diagnosis"]
-    ahead = [[t["test"], "test", t["hours"], t["predicted_gain"]] for t in found["next_tests"][:3]]
-    ahead += [[s["place"], "sensor", s["hours"], s["predicted_gain"]] for s in found["next_sensors"][:3]]
-    if ahead and not document["adequate"]:
-        table("What would decide", ["what", "kind", "hours", "predicted separation"], ahead)
+    if not document["adequate"]:
+        show_ahead(document["diagnosis"])
     kept = (
         f"{document['written']} revisions written to {folder.settings.model_file}; `thermoscope undo` takes them back"
     )

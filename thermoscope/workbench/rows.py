@@ -88,7 +88,8 @@ def conclusion(diagnosis: Mapping[str, Any]) -> Row:
     """The verdict in a sentence, and what the tests cannot see."""
     tone, sentence = verdict(diagnosis, None)
     hidden = [h["effect"] for h in diagnosis["cannot_see"]]
-    ahead = [f"{t['test']}: separates {', '.join(t['separates'])}" for t in diagnosis["next_tests"][:3]]
+    deciding = [t for t in diagnosis["next_tests"] if t["separates"]]
+    ahead = [f"{t['test']}: separates {', '.join(t['separates'])}" for t in deciding[:3]]
     unseen = f"{len(hidden)} effects could be there unseen, e.g. {', '.join(hidden[:4])}." if hidden else ""
     return {"tone": tone, "sentence": sentence, "words": diagnosis["words"], "unseen": unseen, "ahead": ahead}
 

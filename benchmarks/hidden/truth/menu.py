@@ -37,6 +37,19 @@ def no_bars(at: Array, u: Inputs) -> Inputs:
     return {k: np.zeros(at.size) if k == "rotor_A" else v for k, v in u.items()}
 
 
+def overloaded_then_off(at: Array, u: Inputs) -> Inputs:
+    """30 % more than the effective current until half time, nothing after."""
+    on = 1.3 * (at < at[-1] / 2)
+    return {k: on * np.sqrt(np.mean(v**2)) if k.endswith("_A") else v for k, v in u.items()}
+
+
+def at_two_speeds(at: Array, u: Inputs) -> Inputs:
+    """A quarter of the time each: the highest speed of the record, a third of it, and again."""
+    top = np.abs(u["speed_rpm"]).max()
+    quarter = np.floor(4 * at / (at[-1] + 1.0))
+    return {**u, "speed_rpm": np.where(quarter % 2 == 0, top, top / 3.0)}
+
+
 def halved_flow(at: Array, u: Inputs) -> Inputs:
     late = np.where(at > 0.5 * at[-1], 0.5, 1.0)
     return {k: v * late if "flow" in k else v for k, v in u.items()}
@@ -50,6 +63,8 @@ def warmer(name: str, rise: float) -> Step:
 STILL = held(speed_rpm=0.0, vehicle_speed_mps=0.0)
 MENU: Mapping[str, tuple[Step, ...]] = {
     "DC heating at standstill": (even_current, no_bars, STILL),
+    "heating at standstill, then cooling down": (overloaded_then_off, no_bars, STILL),
+    "no load, fast and slow": (held(current_A=0.0, rotor_A=0.0, vehicle_speed_mps=0.0), at_two_speeds),
     "spin without current": (held(current_A=0.0, rotor_A=0.0, speed_rpm=1000.0, vehicle_speed_mps=0.0),),
     "same current at two speeds": (even_current, on_off("speed_rpm", 1500.0, 2)),
     "cool-down with wind on and off": (held(speed_rpm=0.0), no_bars, on_off("vehicle_speed_mps", 12.0, 3)),
@@ -60,10 +75,8 @@ MENU: Mapping[str, tuple[Step, ...]] = {
 }  # fmt: skip
 
 
-def carried_out(name: str, base: Plan) -> Plan | None:
-    """The plan of a test of the menu, to be calibrated with; None where the true machine cannot do it."""
-    if name not in MENU:
-        return None
+def carried_out(name: str, base: Plan) -> Plan:
+    """The plan of a test of the menu, to be calibrated with."""
 
     def inputs(rng: np.random.Generator, at: Array) -> Inputs:
         u = base.inputs(rng, at)

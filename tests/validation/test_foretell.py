@@ -1,0 +1,82 @@
+"""What a planned test is said to decide is what it decides when it is driven."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+from playground import Truth, network, steps
+
+from validation.case import Case, Model
+from validation.effects import effect
+from validation.evidence import calibrated_case, scored
+from validation.experiments import DECISIVE, next_tests
+from validation.foretell import foretold, read_by
+from validation.menu import MENU
+from validation.rivals import GAP, race
+from validation.sheet import segments
+
+RIVALS = ("brush.friction@commutator", "loss.constant@commutator")
+
+
+def rubbing(T, u, t):
+    return {"commutator": 800.0 * abs(u["speed_rpm"]) / 1000.0}
+
+
+def one_speed(time, rng):
+    return {
+        "current_A": steps(time, rng, 150.0, 250.0, 900.0), "vehicle_speed_mps": np.zeros_like(time),
+        "speed_rpm": np.full_like(time, 900.0), "fan_flow_m3h": np.full_like(time, 138.0),
+    }  # fmt: skip
+
+
+def planned(name, test):
+    return next(e for e in MENU if e.name == name).made_from(test)
+
+
+@cache
+def driven():
+    """The true machine, and two tests at one and the same speed."""
+    truth = Truth(10, rubbing)
+    return truth, tuple(truth.test(name, "calibrate", one_speed) for name in ("first", "second"))
+
+
+@cache
+def raced(more=None):
+    """Evidence and race of the rivals; more: the test of the menu that was driven besides."""
+    truth, tests = driven()
+    if more:
+        plan = planned(more, tests[-1])
+        tests = (*tests, truth.test(more, "calibrate", lambda time, rng: plan.inputs))
+    case = Case("rubbing", Model(network()), tests)
+    evidence = scored(case, [effect(name) for name in RIVALS], calibrated_case(case))
+    return evidence, race(evidence, np.ones(2), 0.0)
+
+
+def test_tests_at_one_speed_cannot_tell():
+    assert len(raced()[1].group) == 2
+
+
+def test_a_model_reads_what_it_foretells():
+    evidence, found = raced()
+    test = read_by(found.best, planned("same current at two speeds", evidence.tests[-1]))
+    values = {p.name: p.value for p in found.best.network.parameters} | found.best.values
+    assert max(np.max(np.abs(s.r)) for s in segments(found.best.network, [test], values)) < 1e-9
+
+
+def test_the_same_again_decides_nothing():
+    evidence, found = raced()
+    assert foretold(evidence, found, replace(evidence.tests[-1], name="again"), (0, 1), 1.0) < GAP
+
+
+def test_two_speeds_are_said_to_decide():
+    evidence, found = raced()
+    amplitude = {k: fit.values[RIVALS[k]] for k, fit in zip(found.index, found.fits, strict=True)}
+    said = {t.test: t for t in next_tests(evidence, found, amplitude, np.ones(2))}
+    assert said["same current at two speeds"].predicted_gain > DECISIVE
+    assert said["same current at two speeds"].separates
+    assert not said["spin without current"].separates  # at one speed again
+
+
+def test_driven_it_decides():
+    _, found = raced("same current at two speeds")
+    assert [RIVALS[k] for k in found.group] == ["brush.friction@commutator"]

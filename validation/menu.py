@@ -1,0 +1,135 @@
+"""The engineer's menu of tests, each made from a test at hand."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from validation.case import Test
+
+Array = NDArray[np.float64]
+OVERLOAD = 1.3  # of the root mean square current, for as long as a winding takes to follow
+CURRENTS = ("current_A", "id_A", "iq_A", "rotor_A")
+Inputs = dict[str, Array]
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """A change of a test's inputs and boundaries.
+
+    needs : inputs without which it makes no sense;  hours : time on the bench
+    """
+
+    name: str
+    change: Callable[[Array, Inputs, Inputs], tuple[Inputs, Inputs]]
+    needs: tuple[str, ...] = ()
+    hours: float = 2.0
+
+    def made_from(self, test: Test) -> Test:
+        inputs = {k: np.array(v, float) for k, v in test.inputs.items()}
+        boundaries = {k: np.array(np.broadcast_to(v, test.time.shape), float) for k, v in test.boundaries.items()}
+        inputs, boundaries = self.change(test.time, inputs, boundaries)
+        still = tuple(replace(c, y=np.zeros_like(test.time)) for c in test.channels)
+        return replace(test, name=f"planned: {self.name}", inputs=inputs, boundaries=boundaries, channels=still)
+
+
+def _set(**levels: float | Callable[[Array], Array]) -> Callable[[Array, Inputs, Inputs], tuple[Inputs, Inputs]]:
+    """Inputs held at a number, or given as a function of time; those the machine lacks are left out."""
+
+    def change(time: Array, inputs: Inputs, boundaries: Inputs) -> tuple[Inputs, Inputs]:
+        new = {k: (v(time) if callable(v) else np.full_like(time, v)) for k, v in levels.items() if k in inputs}
+        return {**inputs, **new}, boundaries
+
+    return change
+
+
+def _even(factor: float) -> Callable[[Array, Inputs, Inputs], tuple[Inputs, Inputs]]:
+    """Currents held at a multiple of the root mean square of their records."""
+
+    def change(time: Array, inputs: Inputs, boundaries: Inputs) -> tuple[Inputs, Inputs]:
+        rms = {k: np.full_like(time, factor * np.sqrt(np.mean(v**2))) for k, v in inputs.items() if k in CURRENTS}
+        return {**inputs, **rms}, boundaries
+
+    return change
+
+
+def _then(*changes: Callable) -> Callable[[Array, Inputs, Inputs], tuple[Inputs, Inputs]]:
+    def change(time: Array, inputs: Inputs, boundaries: Inputs) -> tuple[Inputs, Inputs]:
+        for one in changes:
+            inputs, boundaries = one(time, inputs, boundaries)
+        return inputs, boundaries
+
+    return change
+
+
+def _boundary_step(word: str, rise: float) -> Callable[[Array, Inputs, Inputs], tuple[Inputs, Inputs]]:
+    def change(time: Array, inputs: Inputs, boundaries: Inputs) -> tuple[Inputs, Inputs]:
+        late = time > 0.4 * time[-1]
+        return inputs, {k: v + rise * late if word in k else v for k, v in boundaries.items()}
+
+    return change
+
+
+def _on_off(level: float, periods: int = 3) -> Callable[[Array], Array]:
+    return lambda time: np.where((time * 2 * periods / (time[-1] + 1.0)).astype(int) % 2 == 0, level, 0.0)
+
+
+def _half_time(time: Array, inputs: Inputs, boundaries: Inputs) -> tuple[Inputs, Inputs]:
+    """Currents switched off midway."""
+    early = time < 0.5 * time[-1]
+    return {k: v * early if k in CURRENTS else v for k, v in inputs.items()}, boundaries
+
+
+def _fast_and_slow(time: Array, inputs: Inputs, boundaries: Inputs) -> tuple[Inputs, Inputs]:
+    """The highest speed of the record and a third of it in turn."""
+    top = np.max(np.abs(inputs["speed_rpm"]))
+    return {**inputs, "speed_rpm": top / 3.0 + _on_off(2.0 * top / 3.0, 2)(time)}, boundaries
+
+
+def _half(scale: str) -> Callable[[Array, Inputs, Inputs], tuple[Inputs, Inputs]]:
+    def change(time: Array, inputs: Inputs, boundaries: Inputs) -> tuple[Inputs, Inputs]:
+        return {**inputs, scale: inputs[scale] * np.where(time > 0.5 * time[-1], 0.5, 1.0)}, boundaries
+
+    return change
+
+
+STILL = _set(speed_rpm=0.0, rotor_A=0.0)  # bars that stand still under direct current carry none
+STANDING = _then(STILL, _set(vehicle_speed_mps=0.0))
+IDLE = _set(**dict.fromkeys(CURRENTS, 0.0), torque_Nm=0.0, vehicle_speed_mps=0.0)
+SPINNING = _then(IDLE, _set(speed_rpm=1000.0))
+COOLING = _then(STILL, _set(vehicle_speed_mps=_on_off(12.0)))
+BLOWN = _then(STILL, _set(vehicle_speed_mps=_on_off(8.0)))
+TWO_SPEEDS = _set(speed_rpm=_on_off(1500.0, 2))
+EVEN, HEAVY = _even(1.0), _even(OVERLOAD)
+MENU = (
+    Experiment("DC heating at standstill", _then(EVEN, STANDING), ("current_A",)),
+    Experiment("spin without current", SPINNING, ("speed_rpm",)),
+    Experiment("heating at standstill, then cooling down", _then(HEAVY, STANDING, _half_time), ("current_A",)),
+    Experiment("no load, fast and slow", _then(IDLE, _fast_and_slow), ("speed_rpm",)),
+    Experiment("same current at two speeds", _then(EVEN, TWO_SPEEDS), ("speed_rpm", "current_A")),
+    Experiment("cool-down with wind on and off", COOLING, ("vehicle_speed_mps",)),
+    Experiment("blower on the machine at standstill", _then(EVEN, BLOWN), ("vehicle_speed_mps", "current_A")),
+    Experiment("fan flow halved midway", _half("fan_flow_m3h"), ("fan_flow_m3h",)),
+    Experiment("ambient raised by 20 K", _boundary_step("ambient", 20.0), (), 6.0),
+    Experiment("coolant inlet raised by 20 K", _boundary_step("coolant", 20.0), (), 3.0),
+    Experiment("bench plate heated by 20 K", _boundary_step("bench", 20.0), (), 4.0),
+)  # fmt: skip
+
+
+def possible(test: Test) -> list[Experiment]:
+    """Experiments that change something on this machine."""
+    out = []
+    for e in MENU:
+        if set(e.needs) <= set(test.inputs):
+            new = e.made_from(test)
+            same = all(np.array_equal(new.inputs[k], v) for k, v in test.inputs.items())
+            fixed = all(
+                np.array_equal(new.boundaries[k], np.broadcast_to(v, test.time.shape))
+                for k, v in test.boundaries.items()
+            )
+            if not (same and fixed):
+                out.append(e)
+    return out
