@@ -2,8 +2,8 @@
 
     python examples/hust.py [--rounds 4] [--draws 24] [--ablation] [--out out/hust]
 
-What `thermoscope calibrate`, `diagnose` and `add` do, round by round: the effect that leads is added and what was not
-published is calibrated again, until nothing is named. Profiles 5, 8, 11 and 15 are only ever predicted, and nothing
+What `thermoscope calibrate`, `diagnose` and `add` do, round by round: the effect that leads is added and what case.toml
+leaves free is calibrated again, until nothing is named. Profiles 5, 8, 11 and 15 are only ever predicted, and nothing
 here looks at them before the end. With --ablation every effect that was added is deleted in turn, the rest calibrated
 anew, and the diagnosis asked what is missing. Prints the tables of cases/hust-ipmsm/README.md and writes them to --out,
 with the model.
@@ -27,9 +27,13 @@ from validation import revise
 from validation.case import Case
 from validation.compare import Comparison, compare
 from validation.diagnose import diagnose
+from validation.findings import Diagnosis
 from validation.fitting import with_model
 
 CHANNELS = ("winding", "stator", "rotor")
+EVIDENCE = (
+    "| added | size (95 % interval) | score | threshold | verdict | confused with |", "|---|---|---|---|---|---|",
+)  # fmt: skip
 Step = tuple[str, Comparison]
 
 
@@ -41,9 +45,19 @@ def added(case: Case, name: str) -> Case:
     return with_model(case, revise.add(case, name).model)
 
 
-def rounds(case: Case, most: int, draws: int, tell: Callable[[str], None]) -> tuple[Case, list[Step], History]:
-    """Diagnose and add what leads, at most `most` times: the case at the end, every step's errors, the revisions."""
-    steps, history = [("start", compare(case))], History()
+@dataclass(frozen=True)
+class Climbed:
+    """The case at the end, every step's errors, the revisions, and a row of evidence for each addition."""
+
+    case: Case
+    steps: list[Step]
+    history: History
+    evidence: list[str]
+
+
+def rounds(case: Case, most: int, draws: int, tell: Callable[[str], None]) -> Climbed:
+    """Diagnose and add what leads, at most `most` times."""
+    steps, history, rows = [("published", compare(case))], History(), []
     case = calibrated(case)
     steps.append(("calibrated", compare(case)))
     for _ in range(most):
@@ -52,10 +66,24 @@ def rounds(case: Case, most: int, draws: int, tell: Callable[[str], None]) -> tu
         named = [n for n in found.named if n not in {e.name for e in case.model.effects}]
         if not named:
             break
+        rows.append(evidence(found, named[0]))
         case = added(case, named[0])
         steps.append((f"+ {named[0]}", compare(case)))
         history = history.and_then(revision(case, steps, f"{found.verdict}: {found.words}"))
-    return case, steps, history
+    return Climbed(case, steps, history, rows)
+
+
+def evidence(found: Diagnosis, name: str) -> str:
+    """What speaks for an effect, as a row of Markdown."""
+    c = next(c for c in found.candidates if c.effect == name)
+    size = f"{c.value:.3g} {c.unit} ({c.ci95[0]:.3g} to {c.ci95[1]:.3g})"
+    alike = cell(", ".join(c.confused_with)) or "nothing"
+    return f"| {cell(name)} | {size} | {c.score:.1f} | {c.threshold:.1f} | {found.verdict} | {alike} |"
+
+
+def cell(text: str) -> str:
+    """Text that a table of Markdown takes as one cell."""
+    return text.replace("|", "\\|")
 
 
 def revision(case: Case, steps: Sequence[Step], why: str) -> Revision:
@@ -81,8 +109,10 @@ class Found:
 
     def row(self) -> str:
         words = "found" if self.again else "not found"
-        group = " or ".join(self.group) or "nothing"
-        return f"| {self.deleted} | {words} | {self.verdict} | {group} | {self.score:.1f} | {self.threshold:.1f} |"
+        group = cell(" or ".join(self.group) or "nothing")
+        return (
+            f"| {cell(self.deleted)} | {words} | {self.verdict} | {group} | {self.score:.1f} | {self.threshold:.1f} |"
+        )
 
 
 def ablated(case: Case, draws: int, tell: Callable[[str], None]) -> list[Found]:
@@ -116,9 +146,9 @@ def errors(comparison: Comparison, role: str) -> dict[str, float]:
 
 
 def table(steps: Sequence[Step]) -> str:
-    """Markdown: error (K) of every held-out profile and sensor at start and end, then every step's errors."""
+    """Markdown: error (K) of every held-out profile and sensor, published and at the end; then every step's errors."""
     (_, first), (_, last) = steps[0], steps[-1]
-    lines = ["| held-out profile | sensor | start (K) | end (K) |", "|---|---|---|---|"]
+    lines = ["| held-out profile | sensor | published (K) | end (K) |", "|---|---|---|---|"]
     for a, b in zip(first.tests, last.tests, strict=True):
         if a.role == "hold-out":
             ends = {c.channel: c.rmse_K for c in b.channels}
@@ -130,7 +160,7 @@ def table(steps: Sequence[Step]) -> str:
             e = errors(comparison, role)
             whole = np.sqrt(np.mean(np.square(list(e.values()))))
             lines.append(
-                f"| {name} | {role} | {e['winding']:.2f} | {e['stator']:.2f} | {e['rotor']:.2f} | {whole:.2f} |"
+                f"| {cell(name)} | {role} | {e['winding']:.2f} | {e['stator']:.2f} | {e['rotor']:.2f} | {whole:.2f} |"
             )
     return "\n".join(lines)
 
@@ -146,14 +176,14 @@ def main() -> None:
     def tell(message: str) -> None:
         print(message, file=sys.stderr)
 
-    case, steps, history = rounds(load_case(find_case("hust-ipmsm"), tell).case, options.rounds, options.draws, tell)
-    save_history(options.out / "model.toml", history)
-    text = table(steps)
+    done = rounds(load_case(find_case("hust-ipmsm"), tell).case, options.rounds, options.draws, tell)
+    save_history(options.out / "model.toml", done.history)
+    text = "\n".join([table(done.steps), "", *EVIDENCE, *done.evidence, ""])
     write_whole(options.out / "table.md", text + "\n")
-    write_whole(options.out / "compare.json", json.dumps(steps[-1][1].document(), indent=1))
+    write_whole(options.out / "compare.json", json.dumps(done.steps[-1][1].document(), indent=1))
     print(text)
     if options.ablation:
-        rows = ablation(ablated(case, options.draws, tell))
+        rows = ablation(ablated(done.case, options.draws, tell))
         write_whole(options.out / "ablation.md", rows + "\n")
         print(rows)
 
