@@ -20,20 +20,31 @@ Inputs = dict[str, Array]
 class Experiment:
     """A change of a test's inputs and boundaries.
 
-    needs : inputs without which it makes no sense;  hours : time on the bench
+    needs : inputs without which it makes no sense;  hours : time on the bench, for which the test at hand is repeated
     """
 
     name: str
     change: Callable[[Array, Inputs, Inputs], tuple[Inputs, Inputs]]
     needs: tuple[str, ...] = ()
-    hours: float = 2.0
+    hours: float = 4.0
 
     def made_from(self, test: Test) -> Test:
-        inputs = {k: np.array(v, float) for k, v in test.inputs.items()}
-        boundaries = {k: np.array(np.broadcast_to(v, test.time.shape), float) for k, v in test.boundaries.items()}
-        inputs, boundaries = self.change(test.time, inputs, boundaries)
-        still = tuple(replace(c, y=np.zeros_like(test.time)) for c in test.channels)
-        return replace(test, name=f"planned: {self.name}", inputs=inputs, boundaries=boundaries, channels=still)
+        """The planned test; its channels have no readings yet."""
+        base = repeated(test, self.hours)
+        inputs, boundaries = self.change(base.time, dict(base.inputs), dict(base.boundaries))  # type: ignore[arg-type]
+        return replace(base, name=f"planned: {self.name}", inputs=inputs, boundaries=boundaries)
+
+
+def repeated(test: Test, hours: float) -> Test:
+    """A test driven again and again until the hours are over, once at least; nothing is read."""
+    time = test.time - test.time[0]
+    period = float(time[-1] + np.mean(np.diff(time)))
+    n = max(time.size, round(3600.0 * hours / period * time.size))
+    turn, at = np.divmod(np.arange(n), time.size)
+    inputs = {k: np.asarray(v, float)[at] for k, v in test.inputs.items()}
+    boundaries = {k: np.broadcast_to(np.asarray(v, float), time.shape)[at] for k, v in test.boundaries.items()}
+    still = tuple(replace(c, y=np.zeros(n)) for c in test.channels)
+    return replace(test, time=time[at] + period * turn, inputs=inputs, boundaries=boundaries, channels=still)
 
 
 def _set(**levels: float | Callable[[Array], Array]) -> Callable[[Array, Inputs, Inputs], tuple[Inputs, Inputs]]:
@@ -113,23 +124,17 @@ MENU = (
     Experiment("cool-down with wind on and off", COOLING, ("vehicle_speed_mps",)),
     Experiment("blower on the machine at standstill", _then(EVEN, BLOWN), ("vehicle_speed_mps", "current_A")),
     Experiment("fan flow halved midway", _half("fan_flow_m3h"), ("fan_flow_m3h",)),
-    Experiment("ambient raised by 20 K", _boundary_step("ambient", 20.0), (), 6.0),
-    Experiment("coolant inlet raised by 20 K", _boundary_step("coolant", 20.0), (), 3.0),
-    Experiment("bench plate heated by 20 K", _boundary_step("bench", 20.0), (), 4.0),
+    Experiment("ambient raised by 20 K", _boundary_step("ambient", 20.0), (), 8.0),
+    Experiment("coolant inlet raised by 20 K", _boundary_step("coolant", 20.0), (), 4.0),
+    Experiment("bench plate heated by 20 K", _boundary_step("bench", 20.0), (), 6.0),
 )  # fmt: skip
 
 
 def possible(test: Test) -> list[Experiment]:
     """Experiments that change something on this machine."""
-    out = []
-    for e in MENU:
-        if set(e.needs) <= set(test.inputs):
-            new = e.made_from(test)
-            same = all(np.array_equal(new.inputs[k], v) for k, v in test.inputs.items())
-            fixed = all(
-                np.array_equal(new.boundaries[k], np.broadcast_to(v, test.time.shape))
-                for k, v in test.boundaries.items()
-            )
-            if not (same and fixed):
-                out.append(e)
-    return out
+    return [e for e in MENU if set(e.needs) <= set(test.inputs) and _differ(e.made_from(test), repeated(test, e.hours))]
+
+
+def _differ(new: Test, old: Test) -> bool:
+    pairs = [(new.inputs, old.inputs), (new.boundaries, old.boundaries)]
+    return any(not np.array_equal(a[k], b[k]) for a, b in pairs for k in b)

@@ -158,9 +158,9 @@ class Truth:
         done = solve_ivp(slope, (time[0], time[-1]), x0, "LSODA", time, rtol=1e-6, atol=1e-6, max_step=60.0)
         return done.y[n:].T
 
-    def test(self, name, role, plan):
+    def test(self, name, role, plan, hours=1.0):
         """A measured test: plan(time, rng) -> inputs."""
-        time = np.arange(0.0, 3600.0, 10.0)
+        time = np.arange(0.0, 3600.0 * hours, 10.0)
         rng = np.random.default_rng([self.seed, sum(map(ord, name))])
         inputs = plan(time, rng)
         air = 20.0 + 4.0 * rng.uniform() + 0.5 * np.sin(time / 900.0 + rng.uniform())

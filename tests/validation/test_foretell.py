@@ -4,6 +4,7 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
+import pytest
 from playground import Truth, network, steps
 
 from validation.case import Case, Model
@@ -46,10 +47,19 @@ def raced(more=None):
     truth, tests = driven()
     if more:
         plan = planned(more, tests[-1])
-        tests = (*tests, truth.test(more, "calibrate", lambda time, rng: plan.inputs))
+        tests = (*tests, truth.test(more, "calibrate", lambda time, rng: plan.inputs, hours=4.0))
     case = Case("rubbing", Model(network()), tests)
     evidence = scored(case, [effect(name) for name in RIVALS], calibrated_case(case))
     return evidence, race(evidence, np.ones(2), 0.0)
+
+
+def test_a_plan_is_as_long_as_it_says_and_repeats_what_it_does_not_change():
+    test = driven()[1][0]
+    plan = planned("same current at two speeds", test)
+    assert plan.time[-1] + 10.0 == pytest.approx(4.0 * 3600.0)
+    assert np.ptp(np.diff(plan.time)) == 0.0
+    np.testing.assert_array_equal(plan.inputs["fan_flow_m3h"][720:1080], test.inputs["fan_flow_m3h"])
+    assert np.ptp(plan.inputs["current_A"]) == 0.0
 
 
 def test_tests_at_one_speed_cannot_tell():
