@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.assembly import assembly, floats, ints, starts
-from lumped.kernel import Rows, Tangents
+from lumped.kernel import Rows
 from lumped.multipliers import multipliers, slopes
 from lumped.network import Network, Parameter, Row
 from lumped.signals import Signals
+from lumped.tangents import Tangents
 from lumped.terms import DYNAMIC, STIFF, Terms
 
 Array = NDArray[np.float64]

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from lumped.jit import entry
-from lumped.stages import GAMMA, begin, directions, taken
-from lumped.terms import ROWS, flow
+from lumped.stages import GAMMA, begin, directions, restored, taken
+from lumped.terms import ROWS
 
 
 @entry
@@ -14,18 +14,11 @@ def count(time, u, K0, T, through, z, k, a, q, heat):
     z (nt, n + nb), k (nt, 2, n): states and rates of a run;  a, q : from stages() and work()
     through : (nw, rows of all terms) weights that sum a term's rows to the heat through it
     """
-    n = k[0, 0].size
     for t in range(1, time.size):
         h = time[t] - time[t - 1]
         if h > 0.0:
             begin(T, u, t, h, a.w, q.df)
-            for i in range(n):
-                a.w[0, i], a.w[1, i] = k[t, 0, i], k[t, 1, i]
-                a.z[0, i], a.z[1, i] = z[t - 1, i], z[t - 1, i] + h * k[t, 0, i]
-            for i in range(n, z[0].size):
-                a.z[0, i], a.z[1, i] = z[t - 1, i], z[t, i]
-            for stage in range(2):
-                flow(T, K0, a.z[stage], T.factor[t - 1 + stage], a.tau[stage], a.v[stage], q.F)
+            restored(T, K0, z, k, t, h, a, q.F)
             directions(T, a)
         for e in range(T.m.size):
             for w in range(len(through)):

@@ -17,10 +17,12 @@ from lumped.compiled import Compiled, compiled
 from lumped.kernel import integrate
 from lumped.network import Network, Parameter, Row
 from lumped.settle import settle
-from lumped.stages import stages, work
+from lumped.stages import Stages, Work, stages, work
+from lumped.tangents import differentiate
 from lumped.terms import BENDS
 
 Array = NDArray[np.float64]
+PORTION = 4096  # steps whose states are kept for their tangents
 
 
 @dataclass(frozen=True)
@@ -121,23 +123,42 @@ def simulate(
 def march(network: Network, record: Record, core: Compiled, keep_states: bool, keep_rates: bool = False) -> Run:
     """Run the kernel, from rest of the states without capacity: at the start and wherever a time is given twice."""
     time, u = checked_time(record.time), boundary_table(network, record.boundaries, len(record.time))
-    nt, nr, p = time.size, core.rows.start.size - 1, core.tangents.dC.shape[1]
-    z, k = np.zeros((nt if keep_states else 0, network.size)), np.zeros((nt if keep_rates else 0, 2, core.C.size))
-    y, dy = np.zeros((nt, nr)), np.zeros((nt, nr, p))
-    scratch = work(core.C.size, core.terms.m.size, p)
-    both = stages(initial_state(network, record.initial), u[0], core.terms)
-    renew = _renewals(time, core)
+    nt, n, nr, p = time.size, core.C.size, core.rows.start.size - 1, core.tangents.dC.shape[1]
+    z, k = np.zeros((nt if keep_states else 0, network.size)), np.zeros((nt if keep_rates else 0, 2, n))
+    y, dy, longest = np.zeros((nt, nr)), np.zeros((nt, nr, p)), min(nt, PORTION + 1)
+    Z, K, renew = np.zeros((longest, network.size)), np.zeros((longest, 2, n)), _renewals(time, core)
+    both, scratch = stages(initial_state(network, record.initial), u[0], core.terms), work(n, core.terms.m.size, p)
     for part in _parts(time, core.C):
-        terms = core.terms._replace(factor=core.terms.factor[part])
-        both.z[0, core.C.size : -1] = u[part.start]
-        rests = np.all(core.C > 0.0) or settle(core.C, core.K0, terms, core.tangents, terms.factor[0], both, scratch)
-        failed = 0 if not rests else integrate(
-            time[part], u[part], core.C, core.K0, terms, core.tangents, core.rows, renew[part], core.curved,
-            both, scratch, z[part], k[part], y[part], dy[part],
-        )  # fmt: skip
-        if failed >= 0:
-            raise ThermoscopeError(_failure(network, core, time[part.start + failed]))
+        _rest(network, core, time, u, part.start, both, scratch)
+        for some in _portions(part):
+            at, own = (time[some], u[some], core.C, core.K0), slice(0, some.stop - some.start)
+            terms = core.terms._replace(factor=core.terms.factor[some])
+            failed = integrate(*at, terms, core.rows, renew[some], both, scratch, Z[own], K[own], y[some])
+            if failed >= 0:
+                raise ThermoscopeError(_failure(network, core, time[some.start + failed]))
+            if p:
+                run = (renew[some], core.curved, Z[own], K[own])
+                differentiate(*at, terms, core.tangents, core.rows, *run, both, scratch, dy[some])
+            if keep_states:
+                z[some] = Z[own]
+            if keep_rates:
+                k[some.start + 1 : some.stop] = K[1 : own.stop]
     return Run(time, z if keep_states else None, y, dy if p else None, k if keep_rates else None)
+
+
+def _rest(network: Network, core: Compiled, time: Array, u: Array, at: int, both: Stages, scratch: Work) -> None:
+    """Before a part of the record that starts at index `at`: boundaries there, states without capacity at balance."""
+    both.z[0, core.C.size : -1] = u[at]
+    if np.any(core.C == 0.0):
+        factor = core.terms.factor[at]
+        if not settle(core.C, core.K0, core.terms, core.tangents, factor, both, scratch):
+            raise ThermoscopeError(_failure(network, core, time[at]))
+
+
+def _portions(part: slice) -> list[slice]:
+    """A part of the record in portions of so many steps, each from the end of the one before."""
+    starts = range(part.start, max(part.stop - 1, part.start + 1), PORTION)
+    return [slice(a, min(a + PORTION + 1, part.stop)) for a in starts]
 
 
 def _renewals(time: Array, core: Compiled) -> NDArray[np.bool_]:

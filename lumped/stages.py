@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from lumped.jit import inner, pasted
-from lumped.terms import Floats, Ints, Terms, directional, patterns
+from lumped.terms import Floats, Ints, Terms, directional, flow, patterns
 
 GAMMA = 1.0 - 1.0 / np.sqrt(2.0)
 
@@ -69,6 +69,19 @@ def begin(T, u, t, h, w, df):
     for b in range(u[0].size):
         w[0, n + b] = (u[t, b] - u[t - 1, b]) / h
         w[1, n + b] = -w[0, n + b]
+
+
+@pasted
+def restored(T, K0, z, k, t, h, a, F):
+    """Both stages of the step to index t of a run, from its states z and rates k: z+, v, laws, rates; F is scratch."""
+    n = k[0, 0].size
+    for i in range(n):
+        a.w[0, i], a.w[1, i] = k[t, 0, i], k[t, 1, i]
+        a.z[0, i], a.z[1, i] = z[t - 1, i], z[t - 1, i] + h * k[t, 0, i]
+    for i in range(n, z[0].size):
+        a.z[0, i], a.z[1, i] = z[t - 1, i], z[t, i]
+    for stage in range(2):
+        flow(T, K0, a.z[stage], T.factor[t - 1 + stage], a.tau[stage], a.v[stage], F)
 
 
 @pasted

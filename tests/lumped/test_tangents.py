@@ -1,5 +1,7 @@
 """Tangents are the derivative of the discrete scheme itself; links without strength change nothing, to the bit."""
 
+import sys
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
@@ -12,6 +14,7 @@ from lumped.network import Parameter
 from lumped.simulate import Record, simulate
 
 NETWORK = every_law()
+simulating = sys.modules[simulate.__module__]  # `lumped.simulate` itself is the function
 TIME = np.arange(0.0, 1200.0, 10.0)
 RECORD = Record(TIME, inputs(TIME), boundaries(TIME), 35.0)
 ROWS = [NETWORK.place(node).mean for node in NETWORK.states]
@@ -44,6 +47,15 @@ def test_asking_for_tangents_leaves_the_answer_as_it_is():
     assert_array_equal(
         simulate(NETWORK, RECORD, None, ROWS, NETWORK.parameters).y, simulate(NETWORK, RECORD, None, ROWS).y
     )
+
+
+@pytest.mark.parametrize("steps", [1, 7, TIME.size - 1])
+def test_a_run_in_portions_is_the_run_in_one(steps, monkeypatch):
+    whole = simulate(NETWORK, RECORD, None, ROWS, NETWORK.parameters, keep_states=True)
+    monkeypatch.setattr(simulating, "PORTION", steps)
+    cut = simulate(NETWORK, RECORD, None, ROWS, NETWORK.parameters, keep_states=True)
+    for name in ("z", "y", "dy"):
+        assert_allclose(getattr(cut, name), getattr(whole, name), rtol=1e-12)
 
 
 def test_channel_operators_have_no_tangent_here():
