@@ -30,7 +30,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--archetypes", nargs="+", choices=tuple(KINDS), default=list(KINDS))
     parser.add_argument("--draws", type=int, default=24, help="data sets of the simulated null")
     parser.add_argument("--jobs", type=int, default=1)
-    parser.add_argument("--plan", action="store_true", help="also rank next tests and scan for latent heat (slower)")
+    parser.add_argument("--plan", action="store_true", help="also rank next tests (slower)")
     parser.add_argument("--peers", action="store_true", help="also ask the simpler methods of hidden/peers.py")
     parser.add_argument("--after", action="store_true", help="also add what is claimed and carry out the proposed test")
     parser.add_argument("--out", type=Path, default=None, help="folder of answers and labels, to be resumed")

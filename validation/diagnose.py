@@ -48,8 +48,8 @@ def diagnose(
     """Diagnose a case on its calibrate and validate tests; held-out tests are only predicted.
 
     draws : data sets of the simulated null (40 for a quick look, 200 in earnest);  kinds : restrict the catalogue
-    plan : also rank the next tests and scan for latent heat;  sizes : search the smallest detectable sizes, half a
-    second and more per effect; without it they are linear, which is often a tenth and at times several times too small
+    plan : also rank the next tests and sensors;  sizes : search the smallest detectable sizes, half a second and more
+    per effect; without it they are linear, which is often a tenth and at times several times too small
     A test that stood on another base than its sheet says is told first; then no effect is searched for.
     """
     fit = calibrated_case(case, progress)
@@ -59,7 +59,7 @@ def diagnose(
     stood = bases_tried(case, progress)
     steps = [Step(evidence, bar.null.kappa, None)] if wrong_bases(stood) else search(case, evidence, bar, progress)
     progress("looking for where heat is missing")
-    where = latent_heat(fit, evidence.tests) if plan else []
+    where = latent_heat(fit, evidence.tests)
     return conclude(case, steps, bar, where, plan, stood)
 
 

@@ -36,7 +36,7 @@ def _lines(file: Path) -> list[dict]:
 
 @dataclass(frozen=True)
 class Wanted:
-    """draws : of the simulated null;  plan : next tests and latent heat;  peers : the simpler methods as well;
+    """draws : of the simulated null;  plan : next tests;  peers : the simpler methods as well;
     after : add what is claimed, and carry out the proposed test"""
 
     draws: int = 24
