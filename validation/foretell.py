@@ -1,18 +1,24 @@
-"""What a planned test would decide: its readings as one candidate foretells them, explained by another."""
+"""What further readings would decide: as one candidate foretells them, explained by another that is fitted anew."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
+from validation.apart import Gaps
 from validation.calibrate import Fit, minimise
 from validation.case import Test
 from validation.evidence import Evidence, with_members
 from validation.fitting import Unknowns, nuisances
 from validation.predict import predict
-from validation.rivals import Race, behind
+from validation.rivals import GAP, Race, behind
 from validation.sheet import segments
+
+Array = NDArray[np.float64]
+CHECKED = 3
 
 
 def read_by(fit: Fit, test: Test) -> Test:
@@ -22,25 +28,47 @@ def read_by(fit: Fit, test: Test) -> Test:
     return replace(test, channels=tuple(replace(c, y=y[:, j]) for j, c in enumerate(test.channels)))
 
 
-def foretold(evidence: Evidence, found: Race, planned: Test, pair: tuple[int, int], kappa: float) -> float:
-    """Deviance by which the wrong one of a pair would be behind with the planned test added, the smaller way.
+def proven(
+    evidence: Evidence, found: Race, promised: Sequence[tuple[Sequence[Test], Gaps]], kappa: Array
+) -> list[Gaps]:
+    """What is left of the gaps that tangents promise, for each plan: its tests, planned or with a sensor more.
+
+    Tangents promise too much: they do not know how far the rivals can bend. Refits show how much for the first CHECKED
+    plans and the pairs that might come apart; what was not refitted keeps the largest share that any of those kept.
+    """
+    kept: list[Gaps] = [
+        {pair: foretold(evidence, found, new, pair, float(kappa[pair[0]])) for pair, gap in gaps.items() if gap >= GAP}
+        for new, gaps in promised[:CHECKED]
+    ]
+    kept += [{}] * (len(promised) - len(kept))
+    shares = [g / gaps[pair] for own, (_, gaps) in zip(kept, promised, strict=True) for pair, g in own.items()]
+    share = float(np.clip(max(shares, default=1.0), 0.0, 1.0))
+    return [
+        {pair: max(min(gap, own.get(pair, share * gap)), 0.0) for pair, gap in gaps.items()}
+        for own, (_, gaps) in zip(kept, promised, strict=True)
+    ]
+
+
+def foretold(evidence: Evidence, found: Race, new: Sequence[Test], pair: tuple[int, int], kappa: float) -> float:
+    """Deviance by which the wrong one of a pair would be behind with further readings, the smaller way.
 
     Unlike a gap in the tangents it counts what the tests at hand say already, and all that the wrong one may still
-    bend: its own refit, with the start and the clock of the new test, meets noiseless readings of the right one.
+    bend: its own refit, with start and clock of a new test or bias and lag of a new sensor, meets noiseless readings of
+    the right one.
     """
-    return min(_behind(evidence, found, planned, right, wrong, kappa) for right, wrong in (pair, pair[::-1]))
+    return min(_behind(evidence, found, new, right, wrong, kappa) for right, wrong in (pair, pair[::-1]))
 
 
-def _behind(evidence: Evidence, found: Race, planned: Test, right: int, wrong: int, kappa: float) -> float:
+def _behind(evidence: Evidence, found: Race, new: Sequence[Test], right: int, wrong: int, kappa: float) -> float:
     fits = dict(zip(found.index, found.fits, strict=True))
-    new, rival = read_by(fits[right], planned), fits[wrong]
+    read, rival = [read_by(fits[right], t) for t in new], fits[wrong]
     network, unknowns, held = with_members(evidence, [wrong])
     known = {p.name for p in network.parameters}
-    own = tuple(p for p in nuisances(network, [new]) if p.name not in known)
+    own = tuple(p for p in nuisances(network, read) if p.name not in known)
     network, free = replace(network, parameters=(*network.parameters, *own)), (*unknowns.parameters, *own)
     here = {**held, **{p.name: p.value for p in own}, **rival.values}
     near = [replace(s, J=np.pad(s.J, ((0, 0), (0, len(own))))) for s in rival.parts]
-    near += segments(network, [new], here, free)
-    theta, tests = np.concatenate([rival.theta, np.zeros(len(own))]), (*evidence.tests, new)
+    near += segments(network, read, here, free)
+    theta, tests = np.concatenate([rival.theta, np.zeros(len(own))]), (*evidence.tests, *read)
     fit = minimise(network, tests, Unknowns(free), theta, found.noise, held, start=near)
     return behind(fit, fits[right], kappa)

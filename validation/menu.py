@@ -130,9 +130,10 @@ MENU = (
 )  # fmt: skip
 
 
-def possible(test: Test) -> list[Experiment]:
-    """Experiments that change something on this machine."""
-    return [e for e in MENU if set(e.needs) <= set(test.inputs) and _differ(e.made_from(test), repeated(test, e.hours))]
+def possible(test: Test) -> list[tuple[Experiment, Test]]:
+    """Experiments that change something on this machine, and the tests made from the one at hand."""
+    made = [(e, e.made_from(test)) for e in MENU if set(e.needs) <= set(test.inputs)]
+    return [(e, new) for e, new in made if _differ(new, repeated(test, e.hours))]
 
 
 def _differ(new: Test, old: Test) -> bool:

@@ -113,7 +113,7 @@ def planned(steps: list[Step]) -> tuple[NextTest, ...]:
 def sensed(steps: list[Step]) -> tuple[NextSensor, ...]:
     """Sensors that would separate the same group."""
     for step, found, size in unresolved(steps):
-        return tuple(next_sensors(step.evidence, found.group, size, step.kappa))
+        return tuple(next_sensors(step.evidence, found, size, step.kappa))
     return ()
 
 

@@ -4,19 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lumped.network import Network, Place
+from validation.apart import separation, told_apart
 from validation.case import Channel, Test
 from validation.effects.sites import like, outside
 from validation.evidence import Evidence
-from validation.experiments import DECISIVE
 from validation.findings import NextSensor
+from validation.foretell import proven
 from validation.noise import Noise
-from validation.score import Gram, score, total
+from validation.rivals import Race
+from validation.score import Gram
 from validation.sheet import Segment, segments
 
 Array = NDArray[np.float64]
@@ -30,17 +31,20 @@ WHY = {
 
 
 def next_sensors(
-    evidence: Evidence, members: Sequence[int], amplitude: Mapping[int, float], kappa: Array
+    evidence: Evidence, found: Race, amplitude: Mapping[int, float], kappa: Array
 ) -> list[NextSensor]:  # fmt: skip
     """Places without a sensor, by the deviance gap of the pair that stays closest, per hour of mounting."""
-    places = free_places(evidence.fit.network, evidence.tests)
-    chosen, out = list(members), []
-    seen = _only(total(evidence.grams), chosen)
-    for place, more in with_sensors(evidence, places, chosen):
-        gaps = gap(evidence, seen + more, chosen, amplitude, kappa)
-        names = [f"{evidence.names[k]} / {evidence.names[m]}" for (k, m), g in gaps.items() if g >= DECISIVE]
-        way = access(evidence.fit.network, place)
-        out.append(NextSensor(place.name, tuple(names), float(min(gaps.values())), HOURS[way], WHY[way]))
+    network = evidence.fit.network
+    places, promised = free_places(network, evidence.tests), []
+    for place, more in with_sensors(evidence, places, found.group):
+        gaps, hours = separation(evidence, more, found.group, amplitude, kappa), HOURS[access(network, place)]
+        promised.append((place, [watched(t, [place]) for t in evidence.tests], gaps, hours))
+    promised.sort(key=lambda row: -min(row[2].values()) / row[3])
+    left = proven(evidence, found, [(tests, gaps) for _, tests, gaps, _ in promised], kappa)
+    out = [
+        NextSensor(place.name, told_apart(evidence, gaps), min(gaps.values()), hours, WHY[access(network, place)])
+        for (place, _, _, hours), gaps in zip(promised, left, strict=True)
+    ]
     return sorted(out, key=lambda s: -s.predicted_gain / s.hours)
 
 
@@ -60,18 +64,18 @@ def access(network: Network, place: Place) -> str:
     return "outside" if place.part in outside(network) and place.kind != "part" else "inside"
 
 
-def with_sensors(evidence: Evidence, places: Sequence[Place], chosen: list[int]) -> Iterator[tuple[Place, Gram]]:
+def with_sensors(evidence: Evidence, places: Sequence[Place], chosen: Sequence[int]) -> Iterator[tuple[Place, Gram]]:
     """What a thermocouple at each place adds to the Gram matrix, its unknown bias projected out."""
     fit = evidence.fit
     columns = (*fit.unknowns.parameters, *(evidence.parameters[k] for k in chosen))
-    tests = [_watched(t, places) for t in evidence.tests]
+    tests = [watched(t, places) for t in evidence.tests]
     parts = segments(evidence.network, tests, fit.values, columns)
     for place in places:
         own = [s for s in parts if s.channel == PREFIX + place.name]
         yield place, _without_bias(own, fit.noise, len(fit.unknowns.parameters))
 
 
-def _watched(test: Test, places: Sequence[Place]) -> Test:
+def watched(test: Test, places: Sequence[Place]) -> Test:
     """The test with a thermocouple at every place, and nothing else read."""
     still = np.zeros_like(test.time)
     return replace(test, channels=tuple(Channel(PREFIX + p.name, p.name, p.mean, still, SIGMA_K) for p in places))
@@ -84,21 +88,3 @@ def _without_bias(parts: Sequence[Segment], noise: Noise, p: int) -> Gram:
     G = Z.T @ Z - np.outer(Z.T @ b, b @ Z) / (b @ b + SIGMA_K**-2)
     K = G.shape[0] - p
     return Gram(G[:p, :p], G[:p, p:], G[p:, p:], np.zeros(p), np.zeros(K), 0.0)
-
-
-def _only(G: Gram, chosen: list[int]) -> Gram:
-    """The Gram matrix of some of the effects."""
-    return replace(G, JZ=G.JZ[:, chosen], ZZ=G.ZZ[np.ix_(chosen, chosen)], Zr=G.Zr[chosen])
-
-
-def gap(
-    evidence: Evidence, G: Gram, chosen: list[int], amplitude: Mapping[int, float], kappa: Array
-) -> dict[tuple[int, int], float]:  # fmt: skip
-    """For every pair the deviance by which the wrong one fits worse, a^2 V_kk (1 - c_kl^2) / kappa^2, at least."""
-    s = score(G, evidence.fit.theta, evidence.fit.unknowns.sd, evidence.score.sign[chosen])
-    V, c = np.diag(s.V), s.cosine
-    strength = [amplitude[k] ** 2 * V[i] / kappa[k] ** 2 for i, k in enumerate(chosen)]
-    pairs = combinations(range(len(chosen)), 2)
-    return {
-        (chosen[i], chosen[j]): float(min(strength[i], strength[j]) * (1.0 - c[i, j] ** 2)) for i, j in pairs
-    }  # fmt: skip

@@ -12,7 +12,7 @@ from hidden.truth.archetype import measured
 from hidden.truth.menu import MENU, carried_out
 from hidden.user import network_of, test_of
 from validation import Case, Revision, add, calibrate
-from validation.experiments import DECISIVE
+from validation.apart import DECISIVE
 
 Answer = dict[str, Any]
 

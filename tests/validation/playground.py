@@ -102,6 +102,7 @@ class Truth:
     bias: dict = field(default_factory=dict)
     lag: dict = field(default_factory=dict)
     change: dict = field(default_factory=dict)
+    sensors: tuple = SENSORS
 
     def __post_init__(self):
         rng = self.rng = np.random.default_rng(self.seed)
@@ -115,8 +116,8 @@ class Truth:
         self.fan_exponent = 0.63 + 0.1 * rng.uniform()
         self.natural_exponent = 0.25 + 0.08 * rng.uniform()
         self.iron_exponent = 1.3 + 0.3 * rng.uniform()
-        self.real_bias = {s: 0.4 * rng.standard_normal() + self.bias.get(s, 0.0) for s in SENSORS}
-        self.real_lag = {s: 5.0 + 10.0 * rng.uniform() + self.lag.get(s, 0.0) for s in SENSORS}
+        self.real_bias = {s: 0.4 * rng.standard_normal() + self.bias.get(s, 0.0) for s in self.sensors}
+        self.real_lag = {s: 5.0 + 10.0 * rng.uniform() + self.lag.get(s, 0.0) for s in self.sensors}
         for table, key, factor in self.change.values():
             getattr(self, table)[key] *= factor
 
@@ -166,7 +167,7 @@ class Truth:
         air = 20.0 + 4.0 * rng.uniform() + 0.5 * np.sin(time / 900.0 + rng.uniform())
         T = self.run(time, inputs, air, start := float(air[0] + rng.uniform()))
         channels = []
-        for s in SENSORS:
+        for s in self.sensors:
             seen = slow(time, T[:, NAMES.index(s)], self.real_lag[s]) + self.real_bias[s]
             seen = seen + 0.05 * rng.standard_normal(time.size)
             channels.append(Channel(s, s, row(NAMES.index(s)), np.round(seen, 1), 0.5, 10.0))

@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 from playground import Truth, network, steps
 
+from validation.apart import DECISIVE
 from validation.case import Case, Model
 from validation.effects import effect
 from validation.evidence import calibrated_case, scored
-from validation.experiments import DECISIVE, next_tests
+from validation.experiments import next_tests
 from validation.foretell import foretold, read_by
 from validation.menu import MENU
 from validation.rivals import GAP, race
@@ -77,7 +78,7 @@ def test_a_model_reads_what_it_foretells():
 
 def test_the_same_again_decides_nothing():
     evidence, found = raced()
-    assert foretold(evidence, found, replace(evidence.tests[-1], name="again"), (0, 1), 1.0) < GAP
+    assert foretold(evidence, found, [replace(evidence.tests[-1], name="again")], (0, 1), 1.0) < GAP
 
 
 def test_two_speeds_are_said_to_decide():

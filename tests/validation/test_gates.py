@@ -1,4 +1,4 @@
-"""The checks of an added effect: each passes where it should and fails where it must; more sensors separate more."""
+"""The checks of an added effect: each passes where it should and fails where it must."""
 
 from dataclasses import replace
 from functools import cache
@@ -12,12 +12,11 @@ from lumped.network import Parameter
 from validation.calibrate import minimise, square_of
 from validation.case import AddedEffect
 from validation.effects import effect
-from validation.evidence import calibrated_case, diagnosing, scored
+from validation.evidence import diagnosing
 from validation.fitting import Unknowns
 from validation.gates import gates, left_out
 from validation.revise import fitted, start
 from validation.score import gram
-from validation.sensors import access, free_places, next_sensors
 from validation.sheet import segments
 
 BIAS = Parameter("bias of body", (("bias:body", 1.0),), value=0.0, low=-9, high=9, prior_sd=0.3, mapping="offset",
@@ -77,34 +76,3 @@ def test_one_amplitude_has_to_do_for_all_tests(loss, same):
     tests = [measured("one", loss=1.3), measured("two", loss=loss)]
     fit = minimise(one_node(LOSS, BIAS), tests, Unknowns((BIAS, LOSS)), np.zeros(2))
     assert {g.gate: g.passed for g in gates(fit, "loss")}["constancy"] == same
-
-
-@cache
-def rivals():
-    """Heat at the shaft or at the rotor: no sensor sits on either."""
-    now = case()
-    return scored(now, [effect("loss.constant@shaft"), effect("loss.constant@rotor")], calibrated_case(now))
-
-
-def test_a_sensor_where_the_rivals_differ_separates_them_best():
-    """Of all free places, one on the rotor or on the shaft gives the largest gap; every place gives at least none."""
-    found = next_sensors(rivals(), (0, 1), {0: 100.0, 1: 100.0}, np.ones(2))
-    assert {s.place for s in found} == {p.name for p in free_places(rivals().fit.network, rivals().tests)}
-    assert max(found, key=lambda s: s.predicted_gain).place in ("rotor", "shaft", "winding.armature")
-    assert [s.predicted_gain / s.hours for s in found] == sorted(
-        (s.predicted_gain / s.hours for s in found), reverse=True
-    )
-
-
-def test_a_further_sensor_never_takes_separation_away():
-    e = rivals()
-    s = e.score
-    V = np.diag(s.V)
-    now = 100.0**2 * min(V) * (1.0 - s.cosine[0, 1] ** 2)
-    assert all(x.predicted_gain >= now * (1 - 1e-9) for x in next_sensors(e, (0, 1), {0: 100.0, 1: 100.0}, np.ones(2)))
-
-
-@pytest.mark.parametrize(("place", "way"), [("shaft", "turning"), ("rotor", "turning"), ("commutator", "turning")])
-def test_what_turns_costs_most(place, way):
-    network = rivals().fit.network
-    assert access(network, network.places[place]) == way
