@@ -9,6 +9,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,13 +57,24 @@ class Table(TemperatureLaw):
 
 
 CONSTANT = Constant()
+CLOCK = "time_s"  # the input that is the record's time
 
 
 class Law(ABC):
-    """A coefficient g(t, T) = factor(inputs) * temperature(T)."""
+    """A coefficient g(t, T) = factor(inputs) * temperature(T).
+
+    The factor at an instant is made of the inputs at that instant; a law that reads "time_s", or has `over_record` set,
+    may look at the whole record.
+    """
 
     temperature: TemperatureLaw = CONSTANT
     reads: tuple[str, ...] = ()
+    over_record: ClassVar[bool] = False
+
+    @property
+    def looks_at_all(self) -> bool:
+        """Whether a factor at an instant may depend on what the inputs are at others."""
+        return self.over_record or CLOCK in self.reads
 
     @abstractmethod
     def factor(self, inputs: Inputs) -> Array | float:

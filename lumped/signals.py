@@ -25,7 +25,16 @@ class Signals(dict[str, Array]):
     def __init__(self, inputs: Mapping[str, Any], nt: int) -> None:
         super().__init__({name: _checked(name, value, nt) for name, value in inputs.items()})
         self.nt = nt
+        self._around: tuple[Signals, slice] | None = None
         self._known: dict[int, tuple[ref[Law], Array]] = {}
+
+    def part(self, some: slice) -> Signals:
+        """The signals of a stretch of the record; all of it is itself."""
+        if (some.start, some.stop) == (0, self.nt):
+            return self
+        out = Signals({name: value[some] for name, value in self.items()}, some.stop - some.start)
+        out._around = self, some
+        return out
 
     def __reduce__(self) -> Any:
         return Signals, (dict(self), self.nt)
@@ -46,7 +55,12 @@ class Signals(dict[str, Array]):
             raise InputError(
                 f"input '{missing[0]}' is missing", f"'{name}'", f"given: {', '.join(sorted(self)) or 'none'}"
             )
-        value = np.asarray(law.factor(self), float)
+        if self._around and law.looks_at_all:
+            whole, some = self._around
+            value = whole.factor(name, law)
+            value = value if value.ndim == 0 else value[some]
+        else:
+            value = np.asarray(law.factor(self), float)
         if value.shape not in ((), (self.nt,)) or not np.all(np.isfinite(value)):
             raise InputError(
                 f"the input factor is not finite or has shape {value.shape}", f"'{name}'", f"finite, () or ({self.nt},)"

@@ -39,16 +39,25 @@ class Record:
 
 
 @dataclass(frozen=True)
+class Stand:
+    """Where a run stands at its end, and another may begin: x (n_states,) degC, D (n_states, n_tangents)."""
+
+    x: Array
+    D: Array
+
+
+@dataclass(frozen=True)
 class Run:
     """time (nt,); z (nt, n_states + n_boundaries) degC if kept; y (nt, n_rows); dy (nt, n_rows, n_tangents).
 
-    k : (nt, 2, n_states) K/s at both stages of the step that ends there, if kept
+    k : (nt, 2, n_states) K/s at both stages of the step that ends there, if kept;  end : for a run that goes on
     """
 
     time: Array
     z: Array | None
     y: Array
     dy: Array | None
+    end: Stand
     k: Array | None = None
 
 
@@ -108,6 +117,7 @@ def simulate(
     rows: Sequence[Row] = (),
     tangents: Sequence[Parameter] = (),
     keep_states: bool = False,
+    begin: Stand | None = None,
 ) -> Run:
     """Integrate the network over the record.
 
@@ -115,21 +125,30 @@ def simulate(
     rows : linear outputs of z = [x; u] (sensors, before bias, gain and lag)
     tangents : parameters of the network with respect to which y is differentiated: d y / d value for
         mappings "amplitude", "relative" and "offset", d y / d log(value) for "log"
+    begin : where another run of the same network, values and tangents ended, at this record's first time
     """
     time = checked_time(record.time)
-    return march(network, record, compiled(network, record.inputs, time.size, values, rows, tangents), keep_states)
+    core = compiled(network, record.inputs, time.size, values, rows, tangents)
+    return march(network, record, core, keep_states, begin=begin)
 
 
-def march(network: Network, record: Record, core: Compiled, keep_states: bool, keep_rates: bool = False) -> Run:
+def march(
+    network: Network, record: Record, core: Compiled, keep_states: bool, keep_rates: bool = False,
+    begin: Stand | None = None,
+) -> Run:  # fmt: skip
     """Run the kernel, from rest of the states without capacity: at the start and wherever a time is given twice."""
     time, u = checked_time(record.time), boundary_table(network, record.boundaries, len(record.time))
     nt, n, nr, p = time.size, core.C.size, core.rows.start.size - 1, core.tangents.dC.shape[1]
     z, k = np.zeros((nt if keep_states else 0, network.size)), np.zeros((nt if keep_rates else 0, 2, n))
     y, dy, longest = np.zeros((nt, nr)), np.zeros((nt, nr, p)), min(nt, PORTION + 1)
     Z, K, renew = np.zeros((longest, network.size)), np.zeros((longest, 2, n)), _renewals(time, core)
-    both, scratch = stages(initial_state(network, record.initial), u[0], core.terms), work(n, core.terms.m.size, p)
+    x0 = begin.x if begin else initial_state(network, record.initial)
+    both, scratch = stages(x0, u[0], core.terms), work(n, core.terms.m.size, p)
+    if begin:
+        scratch.D[:] = begin.D
     for part in _parts(time, core.C):
-        _rest(network, core, time, u, part.start, both, scratch)
+        if part.start > 0 or not begin:
+            _rest(network, core, time, u, part.start, both, scratch)
         for some in _portions(part):
             at, own = (time[some], u[some], core.C, core.K0), slice(0, some.stop - some.start)
             terms = core.terms._replace(factor=core.terms.factor[some])
@@ -143,7 +162,8 @@ def march(network: Network, record: Record, core: Compiled, keep_states: bool, k
                 z[some] = Z[own]
             if keep_rates:
                 k[some.start + 1 : some.stop] = K[1 : own.stop]
-    return Run(time, z if keep_states else None, y, dy if p else None, k if keep_rates else None)
+    end = Stand(both.z[0, :n].copy(), scratch.D.copy())
+    return Run(time, z if keep_states else None, y, dy if p else None, end, k if keep_rates else None)
 
 
 def _rest(network: Network, core: Compiled, time: Array, u: Array, at: int, both: Stages, scratch: Work) -> None:

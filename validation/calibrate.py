@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.network import Network
+from validation.blocks import INSTANTS
 from validation.case import Test
 from validation.fitting import Unknowns
 from validation.noise import Noise, first_noise, fit_noise
-from validation.sheet import INSTANTS, Segment, segments
+from validation.sheet import Segment, segments
 
 Array = NDArray[np.float64]
 Progress = Callable[[str], None]

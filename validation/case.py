@@ -10,6 +10,7 @@ from typing import ClassVar, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from lumped.laws import CLOCK
 from lumped.network import Network, Parameter, Row
 from lumped.signals import Signals
 
@@ -63,7 +64,7 @@ class Test:
     @cached_property
     def signals(self) -> Signals:
         """What the laws of a network may read: inputs, time, and that it is this test."""
-        own = {"time_s": self.time, f"{RUNNING}{self.name}": np.ones_like(self.time)}
+        own = {CLOCK: self.time, f"{RUNNING}{self.name}": np.ones_like(self.time)}
         return Signals({**self.inputs, **own}, self.time.size)
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +18,7 @@ from lumped.network import Link, Network, Place, Row, Source
 from validation.bridges import bridges
 from validation.case import Channel, Test
 from validation.forms import KNOTS, SETTLE_K
-from validation.predict import shifted
+from validation.operators import shifted
 
 Array = NDArray[np.float64]
 CORE = " (core)"
@@ -55,6 +56,7 @@ class Bent(Law):
     scale: float
     temperature: TemperatureLaw
     reads: tuple[str, ...] = field(init=False, default=())
+    over_record: ClassVar[bool] = True  # bent about the level of the record
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "reads", self.base.reads)

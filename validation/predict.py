@@ -1,29 +1,24 @@
-"""What the sensors of a test would read: the network's run, seen through each channel's operator.
+"""What the sensors of a test would read: the network's run, seen through each channel's operator (operators.py).
 
-Order of the operator: delay, stem conduction, lag, gain, bias, drift, exchanged plugs. Each is affine in the
-temperatures, so tangents pass through its linear part.
+Long tests are looked at in stretches, so that their tangents are never in memory as a whole.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
-from scipy.signal import lfilter
 
 from lumped.network import Network, Parameter
-from lumped.simulate import Record, simulate
+from lumped.simulate import Record, Run, Stand, simulate
 from validation.case import Test
-from validation.effects.sites import ambient
+from validation.operators import OPERATORS, SHIFTS, Memory, Stretch, head, moved, setting, shifted, stretch_of
 
 Array = NDArray[np.float64]
-OPERATORS = ("bias", "gain", "lag", "stem", "drift", "delay", "swap")
-SHIFTS = ("boundary", "initial")
-GAIN_ZERO = 20.0
-STEP = {"lag": 0.05, "delay": 0.05}
+SHIFT_K = 0.5
+MARGIN = 40  # samples on either side of a stretch after which a spline no longer feels where it was cut
 
 
 @dataclass(frozen=True)
@@ -34,167 +29,143 @@ class Prediction:
     J: Array
 
 
-def head(parameter: Parameter) -> str:
-    """What a parameter acts on: 'bias', 'boundary', ... or 'thermal'."""
-    first = parameter.targets[0][0].split(":", 1)[0] if parameter.targets else "thermal"
-    return first if first in OPERATORS + SHIFTS else "thermal"
-
-
 def thermal(network: Network) -> Network:
     """The network with only the parameters that act on heat."""
     return replace(network, parameters=tuple(p for p in network.parameters if head(p) == "thermal"))
-
-
-def setting(parameters: Sequence[Parameter], values: Mapping[str, float]) -> dict[str, float]:
-    """Total of what acts on each channel, boundary and start: 'bias:CHANNEL' -> K, ... (neutral ones left out)."""
-    out: dict[str, float] = {}
-    for p in parameters:
-        if head(p) != "thermal":
-            for target, factor in p.targets:
-                out[target] = out.get(target, 0.0) + factor * values.get(p.name, p.value)
-    return {target: value for target, value in out.items() if value != 0.0}
 
 
 def predict(
     network: Network, test: Test, values: Mapping[str, float], tangents: Sequence[Parameter] = ()
 ) -> Prediction:
     """Readings of every channel of a test and their derivatives with respect to `tangents`."""
-    bare, hot = thermal(network), [p for p in tangents if head(p) == "thermal"]
-    now = setting(network.parameters, values)
-    known = {p.name for p in bare.parameters}
-    heat = {k: v for k, v in values.items() if k in known}
-    rows = [c.row for c in test.channels]
-
-    def temperatures(shift: Mapping[str, float], wanted: Sequence[Parameter] = ()) -> tuple[Array, Array | None]:
-        run = simulate(bare, record(test, shift), heat, rows, wanted)
-        return run.y, run.dy
-
-    T, dT = temperatures(now, hot)
-    late = delayed(test, T, now)
-    y = read(network, test, late, now)
-    J = np.zeros((*y.shape, len(tangents)))
-    if hot and dT is not None:
-        J[:, :, [i for i, p in enumerate(tangents) if head(p) == "thermal"]] = observe(network, test, dT, now, True)
-    for i, p in enumerate(tangents):
-        if head(p) in SHIFTS:
-            J[:, :, i] = _shift_tangent(network, test, now, p, T, temperatures)
-        elif head(p) in OPERATORS:
-            J[:, :, i] = _operator_tangent(network, test, T, late, y, now, p)
-    return Prediction(y, J)
+    return Watch(network, test, values, tangents).until(len(test.time))
 
 
 def record(test: Test, shift: Mapping[str, float]) -> Record:
     """The test's inputs, its time, and that it is this test; offsets of boundaries and start applied."""
-    boundaries = {n: np.asarray(u, float) + shift.get(f"boundary:{n}", 0.0) for n, u in test.boundaries.items()}
-    move = shift.get(f"initial:{test.name}", 0.0)
-    initial = test.initial
+    return stretch_of_record(test, shift, slice(0, len(test.time)))
+
+
+def stretch_of_record(test: Test, shift: Mapping[str, float], some: slice) -> Record:
+    """The samples of the record from some.start to some.stop, beginning as the whole does."""
+    air = {n: np.broadcast_to(np.asarray(u, float), test.time.shape)[some] for n, u in test.boundaries.items()}
+    boundaries = {n: u + shift.get(f"boundary:{n}", 0.0) for n, u in air.items()}
+    move, initial = shift.get(f"initial:{test.name}", 0.0), test.initial
     start = {k: v + move for k, v in initial.items()} if isinstance(initial, Mapping) else initial + move
-    return Record(test.time, test.signals, boundaries, start)
+    return Record(test.time[some], test.signals.part(some), boundaries, start)
 
 
-Temperatures = Callable[..., tuple[Array, Array | None]]
+class Course:
+    """A run of the network over a test, as far as it was asked for."""
+
+    def __init__(
+        self, network: Network, test: Test, heat: Mapping[str, float], shift: Mapping[str, float],
+        tangents: Sequence[Parameter] = (),
+    ) -> None:  # fmt: skip
+        self.network, self.test, self.heat, self.tangents = network, test, heat, tangents
+        self.shift, self.kept = shift, slice(0, 0)
+        self.end: Stand | None = None
+        self.T, self.dT = np.empty((0, 0)), np.empty((0, 0, 0))
+
+    def over(self, some: slice) -> tuple[Array, Array]:
+        """Temperatures (n, n_channel) at the sensors and their tangents (n, n_channel, n_tangent) of some samples.
+
+        What was asked for last is kept, so the next may begin, and end, anywhere from its beginning, and end, on.
+        """
+        first = some.start - self.kept.start
+        T, dT = self.T[first:], self.dT[first:]
+        if some.stop > self.kept.stop:
+            run = self._run(slice(max(self.kept.stop - 1, 0), some.stop))
+            new = run.dy if run.dy is not None else np.empty((*run.y.shape, 0))
+            T, dT = (np.concatenate([T, run.y[1:]]), np.concatenate([dT, new[1:]])) if self.end else (run.y, new)
+            self.end = run.end
+        self.T, self.dT, self.kept = T, dT, some
+        return T, dT
+
+    def _run(self, some: slice) -> Run:
+        part, rows = stretch_of_record(self.test, self.shift, some), [c.row for c in self.test.channels]
+        return simulate(self.network, part, self.heat, rows, self.tangents, begin=self.end)
 
 
-def _shift_tangent(network: Network, test: Test, now: dict, p: Parameter, T: Array, run: Temperatures) -> Array:
-    """By a difference over 0.5 K: the response to a boundary or start is linear but for the films' weak curvature."""
-    target, step = p.targets[0][0], 0.5
-    name = target.split(":", 1)[1]
-    if name not in test.boundaries and name != test.name:
-        return np.zeros_like(T)
-    moved, _ = run({**now, target: now.get(target, 0.0) + step})
-    return observe(network, test, (moved - T) / step, now, True)
+class Watch:
+    """A test as its sensors read it under some values, from its beginning on, as far as it was asked for.
+
+    tangents : parameters with respect to which the readings are differentiated
+    """
+
+    def __init__(
+        self, network: Network, test: Test, values: Mapping[str, float], tangents: Sequence[Parameter] = ()
+    ) -> None:
+        self.network, self.test, self.tangents = network, test, tangents
+        self.now, self.done, self.memory = setting(network.parameters, values), 0, Memory()
+        bare, self.heads = thermal(network), [head(p) for p in tangents]
+        known = {p.name for p in bare.parameters}
+        heat = {k: v for k, v in values.items() if k in known}
+        hot = [p for p, kind in zip(tangents, self.heads, strict=True) if kind == "thermal"]
+        self.course = Course(bare, test, heat, self.now, hot)
+        self.shifted = {
+            i: Course(bare, test, heat, _further(self.now, p.targets[0][0]))
+            for i, (p, kind) in enumerate(zip(tangents, self.heads, strict=True))
+            if kind in SHIFTS and _felt(test, p)
+        }
+        self.late_s = abs(self.now.get(f"delay:{test.name}", 0.0))
+
+    def until(self, stop: int) -> Prediction:
+        """Readings and derivatives from where the last look ended to sample `stop`."""
+        some = slice(max(self.done - 1, 0), stop)
+        self.around = self._around(some)
+        look = stretch_of(self.network, self.test, some, self.memory)
+        T, dT = self.course.over(self.around)
+        late = self._late(T, some, self.now)
+        y = look.read(late, self.now)
+        J = np.zeros((*y.shape, len(self.tangents)))
+        hot = [i for i, kind in enumerate(self.heads) if kind == "thermal"]
+        if hot:
+            J[:, :, hot] = look.read(self._late(dT, some, self.now), self.now, "heat", linear=True)
+        for i, shift in self.shifted.items():
+            rise = (shift.over(self.around)[0] - T) / SHIFT_K
+            J[:, :, i] = look.read(self._late(rise, some, self.now), self.now, f"shift {i}", linear=True)
+        for i, kind in enumerate(self.heads):
+            if kind in OPERATORS:
+                J[:, :, i] = self._operator(look, T, late, y, some, i)
+        fresh, self.done = self.done - some.start, stop
+        return Prediction(y[fresh:], J[fresh:])
+
+    def _around(self, some: slice) -> slice:
+        """The samples that a late clock makes those depend on."""
+        time = self.test.time
+        if not (self.late_s or "delay" in self.heads):
+            return some
+        low, high = np.searchsorted(time, [time[some.start] - self.late_s, time[some.stop - 1] + self.late_s])
+        return slice(max(int(low) - MARGIN, 0), min(int(high) + MARGIN, time.size))
+
+    def _late(self, T: Array, some: slice, now: Mapping[str, float]) -> Array:
+        """Temperatures of the samples, out of those around, when the recorder's clock is late."""
+        delay, time = now.get(f"delay:{self.test.name}", 0.0), self.test.time
+        if not delay:
+            return T[some.start - self.around.start : some.stop - self.around.start]
+        return shifted(time[self.around], T, delay, time[some], (float(time[0]), float(time[-1])))
+
+    def _operator(self, look: Stretch, T: Array, late: Array, y: Array, some: slice, i: int) -> Array:
+        """Tangent by a step of what the i-th parameter acts on. T: around, late: with the delay, y: as read."""
+        now, step = moved(self.now, self.tangents[i])
+        if self.heads[i] == "delay":
+            return (look.read(self._late(T, some, now), now, f"step {i}") - y) / step
+        if any(key.startswith("swap:") for key in now):
+            return (look.read(late, now, f"step {i}") - y) / step
+        out, name = np.zeros_like(y), self.tangents[i].targets[0][0].split(":", 1)[1]
+        for j, c in enumerate(look.channels):
+            if c.name == name:
+                out[:, j] = (look.channel(j, late[:, j], now, f"step {i}") - y[:, j]) / step
+        return out
 
 
-def _operator_tangent(network: Network, test: Test, T: Array, late: Array, y: Array, now: dict, p: Parameter) -> Array:
-    """T at the sensors, late: with the delay, y: as read."""
-    target = p.targets[0][0]
-    step = STEP.get(head(p), 1e-3)
-    moved = {**now, target: now.get(target, 0.0) + step}
-    if head(p) == "delay":
-        return (observe(network, test, T, moved) - y) / step
-    if any(key.startswith("swap:") for key in moved):
-        return (read(network, test, late, moved) - y) / step
-    out, air = np.zeros_like(T), _air(network, test)
-    for j, c in enumerate(test.channels):
-        if c.name == target.split(":", 1)[1]:
-            out[:, j] = (_channel(test.time, late[:, j], c.name, c.lag_s, air, moved, 1.0) - y[:, j]) / step
-    return out
+def _further(now: Mapping[str, float], target: str) -> dict[str, float]:
+    """Half a kelvin more at a boundary or at the start: the response is linear but for the films' weak curvature."""
+    return {**now, target: now.get(target, 0.0) + SHIFT_K}
 
 
-def observe(network: Network, test: Test, T: Array, now: Mapping[str, float], linear: bool = False) -> Array:
-    """Readings from the temperatures at the sensors, (n_time, n_channel, ...); `linear` leaves out the constants."""
-    return read(network, test, delayed(test, T, now), now, linear)
-
-
-def delayed(test: Test, T: Array, now: Mapping[str, float]) -> Array:
-    delay = now.get(f"delay:{test.name}", 0.0)
-    return shifted(test.time, T, delay) if delay else T
-
-
-def read(network: Network, test: Test, T: Array, now: Mapping[str, float], linear: bool = False) -> Array:
-    """What observe makes of temperatures that are delayed already."""
-    out, air = np.array(T, float), _air(network, test)
-    for j, c in enumerate(test.channels):
-        out[:, j] = _channel(test.time, out[:, j], c.name, c.lag_s, air, now, 0.0 if linear else 1.0)
-    for key, a in now.items():
-        if key.startswith("swap:"):
-            _swap(out, [c.name for c in test.channels], key, a)
-    return out
-
-
-def _air(network: Network, test: Test) -> Array | None:
-    return test.boundaries.get(ambient(network) or "")
-
-
-def _channel(time: Array, T: Array, name: str, lag_s: float, air: Array | None, now: Mapping, one: float) -> Array:
-    stem, gain = now.get(f"stem:{name}", 0.0), now.get(f"gain:{name}", 0.0)
-    bias, drift = now.get(f"bias:{name}", 0.0), now.get(f"drift:{name}", 0.0)
-    shape = (-1,) + (1,) * (T.ndim - 1)
-    if stem and air is not None:
-        T = T + stem * (one * np.broadcast_to(air, time.shape).reshape(shape) - T)
-    T = lagged(time, T, lag_s + now.get(f"lag:{name}", 0.0))
-    if gain:
-        T = T + gain * (T - one * GAIN_ZERO)
-    if bias:
-        T = T + one * bias
-    if drift:
-        T = T + one * drift * ((time - time[0]) / 3600.0).reshape(shape)
-    return T
-
-
-def _swap(out: Array, names: list[str], key: str, a: float) -> None:
-    pair = [names.index(n) for n in key.split(":", 1)[1].split("|") if n in names]
-    if len(pair) == 2:
-        i, j = pair
-        out[:, i], out[:, j] = out[:, i] + a * (out[:, j] - out[:, i]), out[:, j] + a * (out[:, i] - out[:, j])
-
-
-def lagged(time: Array, T: Array, tau: float) -> Array:
-    """First-order lag tau (s), exact for readings linear between the times, in equilibrium at the start."""
-    if tau <= 0.0:
-        return T
-    dt = np.diff(time)
-    decay = np.exp(-dt / tau)
-    share = np.where(dt > 0, tau / np.maximum(dt, 1e-12) * (1.0 - decay), 0.0)
-    push = -share.reshape(-1, *(1,) * (T.ndim - 1)) * np.diff(T, axis=0)
-    out = np.array(T)
-    out[1:] += _even(push, decay[0]) if np.ptp(dt) < 1e-9 * dt[0] else _uneven(push, decay)
-    return out
-
-
-def _even(push: Array, decay: float) -> Array:
-    """b[n] = decay b[n-1] + push[n]."""
-    return np.asarray(lfilter([1.0], [1.0, -decay], push, axis=0))
-
-
-def _uneven(push: Array, decay: Array) -> Array:
-    """The same with a decay of its own for each step."""
-    behind = np.array(push)
-    for n in range(1, len(push)):
-        behind[n] += decay[n] * behind[n - 1]
-    return behind
-
-
-def shifted(time: Array, T: Array, delay: float) -> Array:
-    """What was true `delay` seconds ago; a cubic spline, so that a fit may move the delay through zero smoothly."""
-    return np.asarray(CubicSpline(time, T)(np.clip(time - delay, time[0], time[-1])))
+def _felt(test: Test, p: Parameter) -> bool:
+    """Is the boundary one of this test's, or the start this test's?"""
+    name = p.targets[0][0].split(":", 1)[1]
+    return name in test.boundaries or name == test.name

@@ -13,8 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import kstwobign
 
+from validation.blocks import groups
 from validation.case import Test
-from validation.sheet import Segment, groups
+from validation.sheet import Segment
 
 Array = NDArray[np.float64]
 LAGS = 20

@@ -11,13 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.network import Network, Parameter
+from validation.blocks import INSTANTS, Blocks, groups
 from validation.case import Channel, Test
-from validation.predict import predict
+from validation.predict import Watch
 
 Array = NDArray[np.float64]
-INSTANTS = 180
 MODEL_SHARE = 0.02  # a model within 4 % of the rise counts as good: that is two standard deviations
-NUMBERS = 2**25  # of a Jacobian held at once: 270 MB
+NUMBERS = 2**22  # of a Jacobian looked at together: 34 MB, and some copies
+SHORTEST = 500  # samples of a stretch
 WORTH_A_THREAD = 3000  # states times instants below which starting threads costs more than it saves
 
 
@@ -42,20 +43,6 @@ class Segment:
         return float(np.hypot(self.sigma_K, self.model_K))
 
 
-def groups(nt: int, instants: int = INSTANTS) -> NDArray[np.int64]:
-    """Start of each block when `nt` samples are averaged to at most `instants`."""
-    return np.arange(0, nt, max(1, -(-nt // instants)))
-
-
-def block_mean(a: Array, weight: Array, start: NDArray[np.int64]) -> tuple[Array, NDArray[np.bool_]]:
-    """Weighted means of the blocks of a (n, ...), and which blocks hold at least half their samples."""
-    w = weight.reshape(-1, *(1,) * (a.ndim - 1))
-    total = np.add.reduceat(weight, start)
-    full = total >= 0.5 * np.add.reduceat(np.ones_like(weight), start)
-    mean = np.add.reduceat(np.where(w > 0, a, 0.0), start, axis=0)[full]
-    return mean / total[full].reshape(-1, *(1,) * (a.ndim - 1)), full
-
-
 def segments(
     network: Network,
     tests: Sequence[Test],
@@ -77,30 +64,30 @@ def segments(
 def _of_test(
     network: Network, test: Test, values: Mapping[str, float], tangents: Sequence[Parameter], instants: int
 ) -> list[Segment]:
-    columns: list[list[Array]] = [[] for _ in test.channels]
-    start = groups(len(test.time), instants)
-    for k, some in enumerate(portions(tangents, len(test.time) * max(len(test.channels), 1))):
-        seen = predict(network, test, values, some)
+    n, length = len(test.time), stretch(len(test.channels), len(tangents))
+    watch, start = Watch(network, test, values, tangents), groups(n, instants)
+    means = [Blocks(start, 2 + len(tangents)) for _ in test.channels]
+    for first in range(0, n, length):
+        own = slice(first, min(first + length, n))
+        seen = watch.until(own.stop)
         for j, c in enumerate(test.channels):
-            own = (
-                [seen.J[:, j]] if k else [np.column_stack([test.time, np.nan_to_num(c.y) - seen.y[:, j]]), seen.J[:, j]]
-            )
-            columns[j] += [block_mean(a, np.isfinite(c.y).astype(float), start)[0] for a in own]
-    read = [(c, np.column_stack(a)) for c, a in zip(test.channels, columns, strict=True) if np.isfinite(c.y).sum() >= 3]
+            r = np.nan_to_num(c.y[own]) - seen.y[:, j]
+            means[j].add(first, np.column_stack([test.time[own], r, seen.J[:, j]]), np.isfinite(c.y[own]).astype(float))
+    read = [(c, b.means()) for c, b in zip(test.channels, means, strict=True) if np.isfinite(c.y).sum() >= 3]
     return [Segment(test.name, c.name, m[:, 0], m[:, 1], m[:, 2:], c.sigma_K, allowed(c)) for c, m in read]
 
 
-def portions(tangents: Sequence[Parameter], each: int) -> list[Sequence[Parameter]]:
-    """Tangents in portions that fit into memory, however long the record; `each` numbers are kept per tangent."""
-    size = max(1, NUMBERS // max(each, 1))
-    return [tangents[i : i + size] for i in range(0, len(tangents), size)] or [()]
+def stretch(channels: int, tangents: int) -> int:
+    """Samples looked at together, so that a long test needs no more memory than a short one."""
+    return int(max(NUMBERS // (max(channels, 1) * (tangents + 1)), SHORTEST))
 
 
 def allowed(c: Channel) -> float:
     """Slow misfit (K) that a model of this kind may have at a channel: the sensor's own, or what the case says, and a
     share of the rise."""
-    seen = c.y[np.isfinite(c.y)]
-    return float(np.hypot(max(c.model_K, c.sigma_K), MODEL_SHARE * np.max(np.abs(seen - seen[0]))))
+    first = c.y[np.argmax(np.isfinite(c.y))]
+    rise = max(float(np.nanmax(c.y) - first), float(first - np.nanmin(c.y)))
+    return float(np.hypot(max(c.model_K, c.sigma_K), MODEL_SHARE * rise))
 
 
 def stacked(parts: Sequence[Segment]) -> Array:

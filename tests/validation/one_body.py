@@ -21,8 +21,8 @@ def one_node(*parameters):
     )
 
 
-def measured(name="warm", role="calibrate", frees=(), shift=0.0, loss=1.0):
-    time = np.arange(0.0, 20000.0, 100.0)
+def measured(name="warm", role="calibrate", frees=(), shift=0.0, loss=1.0, samples=200):
+    time = 100.0 * np.arange(samples)
     y = 20.0 + loss * P / G * (1.0 - np.exp(-time * G / C)) + shift
     channel = Channel("body", "body", Row(np.array([0]), np.ones(1)), y, SIGMA)
     air = {"ambient": np.full_like(time, 20.0)}

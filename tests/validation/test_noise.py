@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from validation.noise import GRID, fit_noise
-from validation.sheet import Segment, block_mean, groups
+from validation.sheet import Segment
 
 TIME = np.arange(0.0, 3600.0, 20.0)
 
@@ -33,11 +33,3 @@ def test_white_noise_is_not_taken_for_slow_error():
     noise = fit_noise(parts(drawn(GRID[0], 0.3, range(6))))
     level = noise.at(parts([np.zeros(TIME.size)])[0])
     assert np.hypot(level.white, np.hypot(level.fast, level.slow)) == pytest.approx(0.3, rel=0.1)
-
-
-def test_blocks_average_what_was_read():
-    y = np.array([1.0, 3.0, np.nan, 5.0, np.nan, np.nan])
-    mean, full = block_mean(np.nan_to_num(y), np.isfinite(y).astype(float), np.array([0, 2, 4]))
-    np.testing.assert_allclose(mean, [2.0, 5.0])
-    assert full.tolist() == [True, True, False]
-    assert len(groups(1_000_000)) <= 180

@@ -5,7 +5,8 @@ import pytest
 from everything import machine, warm_test
 
 from lumped.network import Parameter
-from validation.predict import lagged, predict
+from validation.operators import lagged
+from validation.predict import Watch, predict
 
 TIME = np.arange(0.0, 600.0, 10.0)
 
@@ -59,3 +60,24 @@ def predict_without_lag(net, test):
 
     channels = tuple(replace(c, lag_s=0.0) for c in test.channels)
     return predict(net, replace(test, channels=channels), {}).y[:, 3]
+
+
+HEADS = ("bias:yoke", "gain:yoke", "stem:housing", "drift:yoke", "lag:yoke", "boundary:ambient", "initial:warm",
+         "delay:warm", "swap:yoke|housing")  # fmt: skip
+
+
+@pytest.mark.parametrize("stop", [50, 7])
+@pytest.mark.parametrize("delay", [0.0, 23.0])
+def test_a_test_looked_at_in_stretches_is_the_test_as_a_whole(delay, stop):
+    """Readings and tangents by heat and by every operator, with a clock that is right, or late by several samples."""
+    from dataclasses import replace
+
+    net, test = machine(), warm_test(machine())
+    own = [operator(target) for target in HEADS]
+    net = replace(net, parameters=(*net.parameters, *own))
+    values = {p.name: 0.02 for p in own} | {"delay:warm": delay, "lag:yoke": 5.0}
+    tangents = (*net.parameters[:3], *own)
+    whole, watch = predict(net, test, values, tangents), Watch(net, test, values, tangents)
+    parts = [watch.until(min(n + stop, len(test.time))) for n in range(0, len(test.time), stop)]
+    np.testing.assert_allclose(np.concatenate([p.y for p in parts]), whole.y, rtol=1e-11)
+    np.testing.assert_allclose(np.concatenate([p.J for p in parts]), whole.J, atol=1e-7 * np.abs(whole.J).max())

@@ -22,7 +22,7 @@ def sensors(folder: Folder) -> dict[str, Channel]:
 
 def readings(network: Network, folder: Folder, name: str, record: Record, T: Array) -> Array:
     """From the temperatures T (n_time, n_sensor) at the sensors, in the order of `sensors`."""
-    from validation.predict import observe, setting
+    from validation.operators import observe, setting
 
     if not folder.case.tests:
         return T
