@@ -149,17 +149,31 @@ def _hidden(r: Report) -> str:
         return ""
     hidden = [(b["effect"], _number(b["smallest_detectable"]), b["unit"]) for b in r.diagnosis.get("cannot_see", [])]
     blind = [(name, "none that physics allows" if size is None else size, unit) for name, size, unit in hidden]
-    tests = [
-        (t["test"], ", ".join(t["separates"]), _number(t["predicted_gain"]), _number(t.get("hours")), t.get("why", ""))
-        for t in r.diagnosis.get("next_tests", [])
-    ]
     seen = html.table(["effect", "smallest that would be seen", "unit"], blind)
-    following = html.table(["test", "separates", "gain (20 decides)", "hours", "why"], tests)
     return html.section(
         "What these tests cannot see, and what would help",
         seen and html.more("Effects that could be there unseen", seen),
-        following and "<h3>Tests to come</h3>" + following,
+        _ahead(r.diagnosis),
     )
+
+
+def _ahead(diagnosis: Document) -> str:
+    """Tests and sensors that would tell a group apart, or that no test would."""
+    tests, sensors = diagnosis.get("next_tests", []), diagnosis.get("next_sensors", [])
+    found = [("test", t["test"], t) for t in tests] + [("sensor", s["place"], s) for s in sensors]
+    rows = [
+        (kind, name, ", ".join(o["separates"]), _number(o["predicted_gain"]), _number(o.get("hours")), o.get("why", ""))
+        for kind, name, o in found if o["separates"]
+    ]  # fmt: skip
+    if rows:
+        return "<h3>What would decide</h3>" + html.table(
+            ["kind", "what", "separates", "gain (20 decides)", "hours", "why"], rows
+        )
+    if not tests:
+        return ""
+    best = max(tests, key=lambda t: t["predicted_gain"])
+    gain = f"a predicted gain of {best['predicted_gain']:.2g} where 20 decides"
+    return html.text(f"No test of the menu would tell them apart: '{best['test']}' comes nearest, with {gain}.")
 
 
 def _values(r: Report) -> str:

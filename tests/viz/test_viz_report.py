@@ -117,3 +117,25 @@ def test_an_addition_that_was_undone_is_no_story():
     back = {"number": 3, "action": "step back", "effect": "", "effects": [], "tests": []}
     assert "from 4.85 K to 0.93 K on road-2" in story(HISTORY)
     assert story([*HISTORY, back]) == ""
+
+
+def told(**ahead):
+    _, diagnose = documents()
+    page = render(Report("a", "", None, {**diagnose, "next_tests": [], "next_sensors": [], **ahead}))
+    return re.sub(r"<[^>]+>", " ", page)
+
+
+def test_only_what_would_decide_is_proposed():
+    spin = {"test": "spin without current", "separates": [], "predicted_gain": 3.0, "hours": 4.0}
+    blower = {"test": "blower on", "separates": ["a@b / c@d"], "predicted_gain": 44.0, "hours": 4.0}
+    probe = {"place": "shaft", "separates": ["a@b / c@d"], "predicted_gain": 31.0, "hours": 16.0}
+    text = told(next_tests=[spin, blower], next_sensors=[probe])
+    assert "What would decide" in text
+    assert "blower on" in text
+    assert "shaft" in text
+    assert "spin" not in text
+
+
+def test_if_no_test_would_decide_the_report_says_so():
+    spin = {"test": "spin without current", "separates": [], "predicted_gain": 3.0, "hours": 4.0}
+    assert "No test of the menu would tell them apart" in told(next_tests=[spin])
