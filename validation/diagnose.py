@@ -17,6 +17,7 @@ from validation.evidence import Evidence, calibrated_case, candidates, possible,
 from validation.faults import broken_channels
 from validation.findings import Candidate, Diagnosis, Verdict
 from validation.fitting import working
+from validation.gates import relevance
 from validation.null import Null
 from validation.procedure.which_base import Hypothesis, bases_tried, wrong_bases
 from validation.rivals import Race, race, weak
@@ -68,19 +69,20 @@ def search(case: Case, evidence: Evidence, bar: Bar, progress: Progress) -> list
 
     An effect by another law than the true one leaves a misfit that the null does not know, so what follows in the same
     search has to pass FURTHER times the threshold. In a model that has effects, one that removes less than a tenth of
-    the residual is worth its place only beyond CLEAR times the threshold.
+    the residual is worth its place only beyond CLEAR times the threshold. What moves no reading by 1 K is no reason to
+    search: it may be in a group, but not be all of it.
     """
     level = dict(zip(evidence.names, bar.null.kappa, strict=True))
     steps: list[Step] = []
     for _ in range(STEPS + 1):
         kappa = np.array([level[n] for n in evidence.names])
         limit = bar.threshold * (FURTHER if steps else 1.0)
-        best = np.max(evidence.score.z / kappa, initial=0.0)
+        best = np.max((evidence.score.z / kappa)[evidence.matters], initial=0.0)
         if best < limit or len(steps) == STEPS:
             return [*steps, Step(evidence, kappa, None)]
         found = race(evidence, kappa, limit, progress, {} if steps else bar.refits)
         little = explained(evidence, found) < WORTH and best < CLEAR * bar.threshold
-        if (case.model.effects and little) or (steps and weak(evidence, found)):
+        if (case.model.effects and little) or (steps and weak(evidence, found)) or trifling(evidence, found):
             return [*steps, Step(evidence, kappa, None)]
         if weak(evidence, found):
             return [*steps, Step(evidence, kappa, found), Step(evidence, kappa, None)]
@@ -140,7 +142,7 @@ def judge(steps: list[Step], bar: Bar, groups: list[tuple[str, ...]], pulled_: b
     last, rounds = steps[-1], [s for s in steps if s.race]
     if broken:
         return "data"
-    left = last.evidence.score.z / last.kappa
+    left = (last.evidence.score.z / last.kappa)[last.evidence.matters]
     if beyond(last.evidence.fit, bar.null) or (len(rounds) == STEPS and np.max(left, initial=0.0) > bar.threshold):
         return "outside"
     if not rounds:
@@ -171,6 +173,12 @@ def beyond(fit: Fit, null: Null) -> bool:
 def explained(evidence: Evidence, found: Race) -> float:
     """Share of the residual's sum of squares that the best candidate removes."""
     return 1.0 - (rmse(found.best.parts) / rmse(evidence.fit.parts)) ** 2
+
+
+def trifling(evidence: Evidence, found: Race) -> bool:
+    """Would everything that explains the readings as well as the best move none of them by as much as one minds?"""
+    fits = dict(zip(found.index, found.fits, strict=True))
+    return not any(relevance(fits[k], fits[k].theta.size - 1).passed for k in found.group)
 
 
 def on_bound(evidence: Evidence, found: Race) -> bool:

@@ -22,6 +22,7 @@ from validation.sheet import Segment, segments
 Array = NDArray[np.float64]
 TWIN = 0.9995
 WIDER = 3.0
+MATTERS_K = 1.0
 
 
 @dataclass(frozen=True)
@@ -53,11 +54,23 @@ class Evidence:
         best = np.argmax(alike, axis=0)
         return [self.fit.unknowns.names[j] if alike[j, k] > TWIN else None for k, j in enumerate(best)]
 
+    @property
+    def matters(self) -> NDArray[np.bool_]:
+        """Which effects, as large as the score has them, would move any reading by more than a user cares for (K,)."""
+        p, a = len(self.fit.unknowns.parameters), np.abs(self.score.amplitude)
+        reach = a * np.max([np.max(np.abs(s.J[:, p:]), axis=0) for s in self.parts], axis=0)
+        return np.asarray(reach >= cared_for(self.parts))
+
     def resharpened(self, noise: Noise) -> Score:
         """The score under another noise."""
         p = len(self.fit.unknowns.parameters)
         G = total(gram(self.parts, noise, p))
         return score(G, self.fit.theta, self.fit.unknowns.sd, self.score.sign)
+
+
+def cared_for(parts: Sequence[Segment]) -> float:
+    """Change of a reading (K) below which nobody minds what is missing: 1 K, or what the sensors may be wrong by."""
+    return max(MATTERS_K, float(np.median([s.sigma_K for s in parts])))
 
 
 def diagnosing(case: Case) -> tuple[Test, ...]:

@@ -1,5 +1,6 @@
 """The verdicts on machines whose truth is known, made by formulas that the model does not share."""
 
+import sys
 from dataclasses import replace
 from functools import cache
 
@@ -44,6 +45,12 @@ def test_hidden_wind_is_named():
     assert found.named == ("convection@flange.right",)
     for before, after in (found.candidates[0].rmse_K, found.candidates[0].holdout_rmse_K):
         assert after < before
+
+
+def test_an_effect_that_nobody_would_mind_is_not_claimed(monkeypatch):
+    """The wind moves the flange by some 20 K; a user who minds nothing below 200 K is not told of it."""
+    monkeypatch.setattr(sys.modules["validation.evidence"], "MATTERS_K", 200.0)
+    assert not diagnose(TRUTHS["wind"]().case(), draws=8, workers=1, plan=False).groups
 
 
 def test_amplitude_of_the_wind_is_covered():

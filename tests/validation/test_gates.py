@@ -12,7 +12,7 @@ from lumped.network import Parameter
 from validation.calibrate import minimise, square_of
 from validation.case import AddedEffect
 from validation.effects import effect
-from validation.evidence import diagnosing
+from validation.evidence import calibrated_case, diagnosing, scored
 from validation.fitting import Unknowns
 from validation.gates import gates, left_out
 from validation.revise import fitted, start
@@ -76,3 +76,12 @@ def test_one_amplitude_has_to_do_for_all_tests(loss, same):
     tests = [measured("one", loss=1.3), measured("two", loss=loss)]
     fit = minimise(one_node(LOSS, BIAS), tests, Unknowns((BIAS, LOSS)), np.zeros(2))
     assert {g.gate: g.passed for g in gates(fit, "loss")}["constancy"] == same
+
+
+def test_what_matters_is_what_moves_a_reading_by_a_kelvin():
+    """The wind does; a hundredth of it does not."""
+    now = case()
+    evidence = scored(now, [effect(RIGHT)], calibrated_case(now))
+    assert evidence.matters.tolist() == [True]
+    small = replace(evidence, score=replace(evidence.score, u=0.01 * evidence.score.u))
+    assert small.matters.tolist() == [False]
