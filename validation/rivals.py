@@ -26,7 +26,8 @@ REFITS = 6
 class Race:
     """The refitted candidates, best first.
 
-    index : candidates;  fits : their refits under `noise`;  gap : deviance behind the best over the best's kappa^2;
+    index : candidates;  fits : their refits under `noise`;  gap : deviance behind the best over the best's kappa^2,
+        alone or, where that tells them apart, beside it
     group : the candidates that cannot be told from the best
     """
 
@@ -78,9 +79,40 @@ def race(
         if best == leader:
             break
         leader = best
-    runners.sort(key=lambda k: fits[k].objective)
-    gap = [behind(fits[k], fits[leader], float(kappa[leader])) for k in runners]
-    return Race(tuple(runners), tuple(fits[k] for k in runners), tuple(gap), noise)
+    progress(f"setting {evidence.names[leader]} beside its rivals")
+    leader, gap = sorted_out(evidence, fits, runners, leader, noise, kappa)
+    runners.sort(key=lambda k: (k != leader, fits[k].objective))
+    return Race(tuple(runners), tuple(fits[k] for k in runners), tuple(gap[k] for k in runners), noise)
+
+
+def sorted_out(
+    evidence: Evidence, fits: Mapping[int, Fit], runners: Sequence[int], leader: int, noise: Noise, kappa: Array
+) -> tuple[int, dict[int, float]]:
+    """The leader, and how far it is ahead of each runner: from the two alone, or from the two side by side.
+
+    Of two that explain as much alone, one is told from the other if it gains beside the other more than machines with
+    nothing missing let it, and the other beside it does not. An effect whose score scatters widely on such machines
+    explains what every model gets wrong, and with it a good part of anything: it may fit best, and yet not be what is
+    missing.
+    """
+    for last in (False, True):
+        alone = {k: max(behind(fits[k], fits[leader], float(kappa[leader])), 0.0) for k in runners}
+        near = [k for k in runners if k != leader and alone[k] < GAP]
+        beside = {k: each_beside(evidence, fits, leader, k, noise, kappa) for k in near}
+        over = [k for k, (ahead, own) in beside.items() if own >= GAP > ahead]
+        if last or not over:
+            break
+        leader = max(over, key=lambda k: beside[k][1])
+    told = {k: ahead for k, (ahead, own) in beside.items() if ahead >= GAP > own}
+    return leader, alone | told
+
+
+def each_beside(
+    evidence: Evidence, fits: Mapping[int, Fit], one: int, other: int, noise: Noise, kappa: Array
+) -> tuple[float, float]:
+    """Deviance that each of two effects gains beside the other, each over its own kappa^2."""
+    both = polished(evidence, [one, other], refit(evidence, [one, other], noise))
+    return behind(fits[other], both, float(kappa[one])), behind(fits[one], both, float(kappa[other]))
 
 
 def compared(

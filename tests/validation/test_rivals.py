@@ -1,0 +1,63 @@
+"""Which of two effects that explain the readings is the one: what each still adds beside the other."""
+
+from functools import cache
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from playground import Truth, wind
+
+from validation import rivals
+from validation.effects import effect
+from validation.evidence import calibrated_case, scored
+from validation.rivals import GAP, each_beside, race, sorted_out
+
+WIND, STILL = "convection@flange.right", "convection.constant@flange.right"
+FITS = {0: SimpleNamespace(objective=100.0), 1: SimpleNamespace(objective=103.0), 2: SimpleNamespace(objective=300.0)}
+
+
+@cache
+def raced():
+    case = Truth(10, wind("flange.right", 12.0)).case()
+    evidence = scored(case, [effect(WIND), effect(STILL)], calibrated_case(case))
+    return evidence, race(evidence, np.ones(2), 0.0)
+
+
+def test_the_true_one_adds_beside_the_other_and_not_the_other_beside_it():
+    """Films by road wind and by still air at one place, all tests together."""
+    evidence, found = raced()
+    fits = dict(zip(found.index, found.fits, strict=True))
+    of_wind, of_still = each_beside(evidence, fits, 0, 1, found.noise, np.ones(2))
+    assert of_wind > GAP > of_still
+
+
+def test_neither_adds_less_than_nothing():
+    evidence, found = raced()
+    fits = dict(zip(found.index, found.fits, strict=True))
+    assert min(each_beside(evidence, fits, 0, 1, found.noise, np.ones(2))) > -1.0  # what a fit leaves undone
+
+
+def told(monkeypatch, beside):
+    """Leader and its distances, where each pair has been fitted side by side with these gains."""
+
+    def gains(evidence, fits, one, other, noise, kappa):
+        return beside[one, other] if (one, other) in beside else beside[other, one][::-1]
+
+    monkeypatch.setattr(rivals, "each_beside", gains)
+    return sorted_out(None, FITS, (0, 1, 2), 0, None, np.ones(3))
+
+
+@pytest.mark.parametrize(
+    ("gains", "leader", "alike"),
+    [
+        ((0.5, 1.0), 0, {0, 1}),  # neither beside the other
+        ((30.0, 1.0), 0, {0}),  # the leader beside its rival
+        ((1.0, 30.0), 1, {1}),  # the rival beside the leader, which only fitted best
+        ((30.0, 30.0), 0, {0, 1}),  # both are wanted: told apart by no more than before
+    ],
+)
+def test_who_leads_and_who_is_alike(monkeypatch, gains, leader, alike):
+    """Candidate 2 is far behind and never asked; 1 is 6 behind alone."""
+    found, gap = told(monkeypatch, {(0, 1): gains})
+    assert found == leader
+    assert {k for k, g in gap.items() if g < GAP} == alike
