@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 from lumped.dense import lu, shifted, solve
 from lumped.jit import entry, pasted
-from lumped.stages import GAMMA, begin, finite
+from lumped.stages import GAMMA, begin, finite, length
 from lumped.terms import DYNAMIC, ROWS, Floats, Ints, directional, flow, jacobian, patterns
 
 
@@ -94,9 +94,8 @@ def integrate(time, u, C, K0, T, R, renew, a, q, z, k, y):
     n, nb = C.size, u[0].size
     h_last = -1.0
     for t in range(time.size):
-        h = time[t] - time[max(t - 1, 0)]
+        h = length(time, t, h_last)
         if h > 0.0:
-            h = h_last if abs(h - h_last) <= 1e-12 * h else h
             begin(T, u, t, h, a.w, q.df)
             if not _rates(T, K0, C, u, t, h, renew[t] or h != h_last, a, q):
                 return t

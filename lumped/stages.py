@@ -59,6 +59,13 @@ def work(n: int, ne: int, p: int) -> Work:
 
 
 @pasted
+def length(time, t, last):
+    """The step (s) that ends at index t, 0 at the first; one that differs from the last by rounding is the last."""
+    h = time[t] - time[max(t - 1, 0)]
+    return last if abs(h - last) <= 1e-12 * h else h
+
+
+@pasted
 def begin(T, u, t, h, w, df):
     """Over the step that ends at index t: slopes of factors (df) and of boundaries (w), backwards in stage 1."""
     n = w[0].size - u[0].size - 1

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from lumped.dense import axpy, lu, shifted, solve_many, subtract_product
 from lumped.jit import entry, inner, pasted
-from lumped.stages import GAMMA, begin, directions, restored, taken
+from lumped.stages import GAMMA, begin, directions, length, restored, taken
 from lumped.terms import ROWS, Floats, Ints, bend, clear, jacobian
 
 
@@ -78,9 +78,8 @@ def differentiate(time, u, C, K0, T, S, R, renew, curved, z, k, a, q, dy):
     """
     h_last = -1.0
     for t in range(time.size):
-        h = time[t] - time[max(t - 1, 0)]
+        h = length(time, t, h_last)
         if h > 0.0:
-            h = h_last if abs(h - h_last) <= 1e-12 * h else h
             begin(T, u, t, h, a.w, q.df)
             restored(T, K0, z, k, t, h, a, q.F)
             if renew[t] or h != h_last:
