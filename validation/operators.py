@@ -6,14 +6,15 @@ pass through its linear part.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
-from scipy.signal import lfilter
+from scipy.interpolate import make_interp_spline
 
+from lumped.jit import entry
 from lumped.network import Network, Parameter
 from validation.case import Channel, Test
 from validation.effects.sites import ambient
@@ -22,8 +23,8 @@ Array = NDArray[np.float64]
 OPERATORS = ("bias", "gain", "lag", "stem", "drift", "delay", "swap")
 SHIFTS = ("boundary", "initial")
 GAIN_ZERO = 20.0
-STEP = {"lag": 0.05, "delay": 0.05}
-Memory = dict[tuple[str, str], Array]
+STEP = {"lag": 0.05, "delay": 0.05, "boundary": 0.5, "initial": 0.5}  # the last two are linear but for the films
+Memory = dict[str, Array]
 
 
 def head(parameter: Parameter) -> str:
@@ -52,8 +53,8 @@ def moved(now: Mapping[str, float], p: Parameter) -> tuple[dict[str, float], flo
 class Stretch:
     """A part of a test: its times (s), the air around (degC), where the test began (s), and its channels.
 
-    memory : (variant, channel) -> how far the sensor is behind at the end of what was read last. A stretch that
-        follows another starts with the time at which that ended.
+    memory : variant -> how far its sensors are behind at the end of what was read last. A stretch that follows another
+        starts with the time at which that ended.
     """
 
     time: Array
@@ -67,34 +68,35 @@ class Stretch:
 
         Each variant remembers its own lags.
         """
-        out = np.array(T, float)
-        for j in range(len(self.channels)):
-            out[:, j] = self.channel(j, out[:, j], now, variant, linear)
+        out = self.through(self.channels, T, now, variant, linear)
         for key, a in now.items():
             if key.startswith("swap:"):
                 _swap(out, [c.name for c in self.channels], key, a)
         return out
 
-    def channel(self, j: int, T: Array, now: Mapping[str, float], variant: str = "", linear: bool = False) -> Array:
-        """What one channel reads, but for exchanged plugs."""
-        name, one = self.channels[j].name, 0.0 if linear else 1.0
-        stem, gain = now.get(f"stem:{name}", 0.0), now.get(f"gain:{name}", 0.0)
-        bias, drift = now.get(f"bias:{name}", 0.0), now.get(f"drift:{name}", 0.0)
-        shape = (-1,) + (1,) * (T.ndim - 1)
-        if stem and self.air is not None:
-            T = T + stem * (one * self.air.reshape(shape) - T)
-        tau = self.channels[j].lag_s + now.get(f"lag:{name}", 0.0)
-        if tau > 0.0:
-            late = trailing(self.time, T, tau, self.memory.get((variant, name)))
-            self.memory[variant, name] = late[-1].copy()
-            T = T + late
-        if gain:
-            T = T + gain * (T - one * GAIN_ZERO)
-        if bias:
-            T = T + one * bias
-        if drift:
-            T = T + one * drift * ((self.time - self.began) / 3600.0).reshape(shape)
-        return T
+    def through(
+        self, channels: Sequence[Channel], T: Array, now: Mapping[str, float], variant: str = "", linear: bool = False
+    ) -> Array:
+        """What some channels read, a column of T (n_time, n_channel, ...) each, but for exchanged plugs."""
+        out, one = np.array(T, float, order="C"), 0.0 if linear else 1.0
+        columns, rows = (-1,) + (1,) * (T.ndim - 2), (-1,) + (1,) * (T.ndim - 1)
+
+        def each(kind: str) -> Array:
+            return np.array([now.get(f"{kind}:{c.name}", 0.0) for c in channels]).reshape(columns)
+
+        stem, gain, bias, drift = each("stem"), each("gain"), each("bias"), each("drift")
+        if stem.any() and self.air is not None:
+            out += stem * (one * self.air.reshape(rows) - out)
+        tau = np.array([c.lag_s for c in channels]) + each("lag").ravel()
+        if np.any(tau > 0.0):
+            self.memory[variant] = behind(self.time, out, tau, self.memory.get(variant))
+        if gain.any():
+            out += gain * (out - one * GAIN_ZERO)
+        if bias.any():
+            out += one * bias
+        if drift.any():
+            out += one * drift * ((self.time - self.began) / 3600.0).reshape(rows)
+        return out
 
 
 def stretch_of(network: Network, test: Test, some: slice, memory: Memory) -> Stretch:
@@ -118,24 +120,35 @@ def _swap(out: Array, names: list[str], key: str, a: float) -> None:
         out[:, i], out[:, j] = out[:, i] + a * (out[:, j] - out[:, i]), out[:, j] + a * (out[:, i] - out[:, j])
 
 
-def lagged(time: Array, T: Array, tau: float) -> Array:
-    """First-order lag tau (s), exact for readings linear between the times, in equilibrium at the start."""
-    return T + trailing(time, T, tau) if tau > 0.0 else T
+def behind(time: Array, T: Array, tau: Array, first: Array | None = None) -> Array:
+    """Let first-order lags tau (n_channel,) s follow T (n_time, n_channel, ...), which becomes what they show.
+
+    Exact for temperatures linear between the times.
+    first : how far they are behind at the first time, 0 in equilibrium.  Returns the same at the last time.
+    """
+    flat = T.reshape(len(T), tau.size, -1)
+    state = np.zeros((2, *flat.shape[1:]))
+    if first is not None:
+        state[0] = first
+    _follow(time, flat, tau, state)
+    return np.asarray(state[0])
 
 
-def trailing(time: Array, T: Array, tau: float, first: Array | None = None) -> Array:
-    """What a first-order lag tau (s) adds to T; `first`: at the first time, 0 in equilibrium."""
-    dt, out = np.diff(time), np.empty_like(T)
-    out[0] = 0.0 if first is None else first
-    decay = np.exp(-dt / tau)
-    share = np.where(dt > 0, tau / np.maximum(dt, 1e-12) * (1.0 - decay), 0.0)
-    push = -share.reshape(-1, *(1,) * (T.ndim - 1)) * np.diff(T, axis=0)
-    if dt.size and np.ptp(dt) < 1e-9 * dt[0]:
-        out[1:] = lfilter([1.0], [1.0, -decay[0]], push, axis=0, zi=decay[0] * out[:1])[0]
-    else:
-        for n in range(dt.size):
-            out[n + 1] = decay[n] * out[n] + push[n]
-    return out
+@entry
+def _follow(time, T, tau, state):
+    """state (2, n_channel, n): how far each is behind, and what it followed last."""
+    nt, nc, n = T.shape
+    for t in range(nt):
+        h = time[t] - time[max(t - 1, 0)]
+        for j in range(nc):
+            if tau[j] > 0.0:
+                decay = math.exp(-h / tau[j])
+                share = tau[j] / h * (1.0 - decay) if h > 0.0 else 0.0
+                for k in range(n):
+                    now = T[t, j, k]
+                    state[0, j, k] = decay * state[0, j, k] - share * (now - state[1, j, k])
+                    state[1, j, k] = now
+                    T[t, j, k] = now + state[0, j, k]
 
 
 def shifted(
@@ -146,4 +159,5 @@ def shifted(
     at : when (s), by default `time`;  ends : beyond these nothing changes, by default those of `time`
     """
     low, high = ends or (time[0], time[-1])
-    return np.asarray(CubicSpline(time, T)(np.clip((time if at is None else at) - delay, low, high)))
+    spline = make_interp_spline(time, T, min(3, time.size - 1))
+    return np.asarray(spline(np.clip((time if at is None else at) - delay, low, high)))

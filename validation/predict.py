@@ -14,10 +14,9 @@ from numpy.typing import NDArray
 from lumped.network import Network, Parameter
 from lumped.simulate import Record, Run, Stand, simulate
 from validation.case import Test
-from validation.operators import OPERATORS, SHIFTS, Memory, Stretch, head, moved, setting, shifted, stretch_of
+from validation.operators import OPERATORS, SHIFTS, STEP, Memory, Stretch, head, moved, setting, shifted, stretch_of
 
 Array = NDArray[np.float64]
-SHIFT_K = 0.5
 MARGIN = 40  # samples on either side of a stretch after which a spline no longer feels where it was cut
 
 
@@ -104,7 +103,7 @@ class Watch:
         hot = [p for p, kind in zip(tangents, self.heads, strict=True) if kind == "thermal"]
         self.course = Course(bare, test, heat, self.now, hot)
         self.shifted = {
-            i: Course(bare, test, heat, _further(self.now, p.targets[0][0]))
+            i: Course(bare, test, heat, moved(self.now, p)[0])
             for i, (p, kind) in enumerate(zip(tangents, self.heads, strict=True))
             if kind in SHIFTS and _felt(test, p)
         }
@@ -123,7 +122,7 @@ class Watch:
         if hot:
             J[:, :, hot] = look.read(self._late(dT, some, self.now), self.now, "heat", linear=True)
         for i, shift in self.shifted.items():
-            rise = (shift.over(self.around)[0] - T) / SHIFT_K
+            rise = (shift.over(self.around)[0] - T) / STEP[self.heads[i]]
             J[:, :, i] = look.read(self._late(rise, some, self.now), self.now, f"shift {i}", linear=True)
         for i, kind in enumerate(self.heads):
             if kind in OPERATORS:
@@ -156,13 +155,8 @@ class Watch:
         out, name = np.zeros_like(y), self.tangents[i].targets[0][0].split(":", 1)[1]
         for j, c in enumerate(look.channels):
             if c.name == name:
-                out[:, j] = (look.channel(j, late[:, j], now, f"step {i}") - y[:, j]) / step
+                out[:, j] = (look.through([c], late[:, j : j + 1], now, f"step {i}")[:, 0] - y[:, j]) / step
         return out
-
-
-def _further(now: Mapping[str, float], target: str) -> dict[str, float]:
-    """Half a kelvin more at a boundary or at the start: the response is linear but for the films' weak curvature."""
-    return {**now, target: now.get(target, 0.0) + SHIFT_K}
 
 
 def _felt(test: Test, p: Parameter) -> bool:
