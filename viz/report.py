@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from viz import candidates, curves, errors, heat, html, words
+from viz.ahead import deciding, undecided
 from viz.data import Comparison
 from viz.missing import located
 
@@ -159,21 +160,12 @@ def _hidden(r: Report) -> str:
 
 def _ahead(diagnosis: Document) -> str:
     """Tests and sensors that would tell a group apart, or that no test would."""
-    tests, sensors = diagnosis.get("next_tests", []), diagnosis.get("next_sensors", [])
-    found = [("test", t["test"], t) for t in tests] + [("sensor", s["place"], s) for s in sensors]
-    rows = [
-        (kind, name, ", ".join(o["separates"]), _number(o["predicted_gain"]), _number(o.get("hours")), o.get("why", ""))
-        for kind, name, o in found if o["separates"]
-    ]  # fmt: skip
-    if rows:
-        return "<h3>What would decide</h3>" + html.table(
-            ["kind", "what", "separates", "gain (20 decides)", "hours", "why"], rows
-        )
-    if not tests:
-        return ""
-    best = max(tests, key=lambda t: t["predicted_gain"])
-    gain = f"a predicted gain of {best['predicted_gain']:.2g} where 20 decides"
-    return html.text(f"No test of the menu would tell them apart: '{best['test']}' comes nearest, with {gain}.")
+    rows = [(o.kind, o.what, ", ".join(o.separates), _number(o.gain), _number(o.hours), o.why)
+            for o in deciding(diagnosis)]  # fmt: skip
+    if not rows:
+        return html.text(undecided(diagnosis))
+    headers = ["kind", "what", "separates", "gain (20 decides)", "hours", "why"]
+    return "<h3>What would decide</h3>" + html.table(headers, rows)
 
 
 def _values(r: Report) -> str:

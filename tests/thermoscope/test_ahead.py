@@ -20,7 +20,7 @@ def test_a_test_that_separates_is_shown_and_the_others_are_not(capsys):
 
 def test_that_none_would_decide_is_said_with_the_nearest(capsys):
     out = shown(capsys, next_tests=[planned("spin", 4.0), planned("blower on", 7.0)])
-    assert "no test of the menu" in out
+    assert "No test of the menu" in out
     assert "blower on" in out
 
 

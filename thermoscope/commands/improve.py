@@ -14,6 +14,7 @@ from thermoscope.commands.saved import save_diagnosis
 from thermoscope.folder import Folder
 from thermoscope.history import History, load_history, save_history
 from thermoscope.terminal import cell, give, progress, say, table
+from viz.ahead import deciding
 
 if TYPE_CHECKING:
     from validation.findings import Candidate, Diagnosis
@@ -54,8 +55,8 @@ def asked(found: Diagnosis, choice: Sequence[Candidate]) -> str | None:
     """The user's word, on stderr and stdin: a number of the list, or nothing to stop."""
     lines = [f"  {i + 1}  {offer(c)}" for i, c in enumerate(choice)]
     print(f"{found.words}\n" + "\n".join(lines), file=sys.stderr)
-    for test in [t for t in found.next_tests if t.separates][:3]:
-        print(f"  would decide: {test.test} ({test.hours:.3g} h)", file=sys.stderr)
+    for further in deciding(found.document())[:3]:
+        print(f"  would decide: {further.kind} {further.what} ({further.hours:.3g} h)", file=sys.stderr)
     print("add which? (number, or Enter to stop) ", end="", file=sys.stderr, flush=True)
     word = sys.stdin.readline().strip()
     return choice[int(word) - 1].effect if word.isdigit() and 1 <= int(word) <= len(choice) else None

@@ -7,6 +7,7 @@ from typing import Any
 
 from thermoscope.history import History
 from thermoscope.workbench.look import Look
+from viz.ahead import deciding
 from viz.candidates import amplitude
 from viz.data import Sensor, sensors, short
 from viz.words import verdict
@@ -88,8 +89,7 @@ def conclusion(diagnosis: Mapping[str, Any]) -> Row:
     """The verdict in a sentence, and what the tests cannot see."""
     tone, sentence = verdict(diagnosis, None)
     hidden = [h["effect"] for h in diagnosis["cannot_see"]]
-    deciding = [t for t in diagnosis["next_tests"] if t["separates"]]
-    ahead = [f"{t['test']}: separates {', '.join(t['separates'])}" for t in deciding[:3]]
+    ahead = [f"{o.kind} {o.what}: separates {', '.join(o.separates)}" for o in deciding(diagnosis)[:3]]
     unseen = f"{len(hidden)} effects could be there unseen, e.g. {', '.join(hidden[:4])}." if hidden else ""
     return {"tone": tone, "sentence": sentence, "words": diagnosis["words"], "unseen": unseen, "ahead": ahead}
 

@@ -1,0 +1,39 @@
+"""What would tell a group of candidates apart, from a diagnosis's document: tests, sensors, or that no test would."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+Document = Mapping[str, Any]
+
+
+class Offer(NamedTuple):
+    """kind : "test" or "sensor";  separates : pairs of effects;  gain : predicted deviance, 20 decides"""
+
+    kind: str
+    what: str
+    separates: list[str]
+    gain: float
+    hours: float | None
+    why: str
+
+
+def deciding(diagnosis: Document) -> list[Offer]:
+    """Tests, then sensors, each best first, that are expected to tell at least one pair apart."""
+    kinds = {"test": diagnosis.get("next_tests", []), "sensor": diagnosis.get("next_sensors", [])}
+    return [
+        Offer(kind, o[name], o["separates"], o["predicted_gain"], o.get("hours"), o.get("why", ""))
+        for (kind, offers), name in zip(kinds.items(), ("test", "place"), strict=True)
+        for o in offers if o["separates"]
+    ]  # fmt: skip
+
+
+def undecided(diagnosis: Document) -> str:
+    """That no test of the menu is expected to decide, and which comes nearest; empty where no test was looked at."""
+    tests = diagnosis.get("next_tests", [])
+    if not tests:
+        return ""
+    best = max(tests, key=lambda t: t["predicted_gain"])
+    gain = f"with a predicted gain of {best['predicted_gain']:.2g} where 20 decides"
+    return f"No test of the menu would tell them apart: '{best['test']}' comes nearest, {gain}."
