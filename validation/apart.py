@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import combinations
 
@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validation.evidence import Evidence
+from validation.rivals import Race
 from validation.score import Gram, score, total
 
 Array = NDArray[np.float64]
@@ -23,14 +24,14 @@ def seen(evidence: Evidence, chosen: Sequence[int]) -> Gram:
     return replace(G, JZ=G.JZ[:, few], ZZ=G.ZZ[np.ix_(few, few)], Zr=G.Zr[few])
 
 
-def separation(
-    evidence: Evidence, more: Gram, chosen: Sequence[int], amplitude: Mapping[int, float], kappa: Array
-) -> Gaps:
-    """For every pair of effects the gap with more readings than the evidence has, the smaller way."""
+def separation(evidence: Evidence, found: Race, more: Gram, kappa: Array) -> Gaps:
+    """For every pair of a race's group the gap with more readings than the evidence has, the smaller way."""
+    chosen = found.group
     fit, sign = evidence.fit, evidence.score.sign[list(chosen)]
     s = score(seen(evidence, chosen) + more, fit.theta, fit.unknowns.sd, sign)
     V, c = np.diag(s.V), s.cosine
-    strength = [amplitude[k] ** 2 * V[i] / kappa[k] ** 2 for i, k in enumerate(chosen)]
+    size = [found.fit(k).values[evidence.names[k]] for k in chosen]
+    strength = [size[i] ** 2 * V[i] / kappa[k] ** 2 for i, k in enumerate(chosen)]
     return {
         (chosen[i], chosen[j]): float(min(strength[i], strength[j]) * (1.0 - c[i, j] ** 2))
         for i, j in combinations(range(len(chosen)), 2)

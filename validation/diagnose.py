@@ -97,7 +97,7 @@ def search(case: Case, evidence: Evidence, bar: Bar, progress: Progress) -> list
 
 def added(case: Case, evidence: Evidence, k: int, found: Race) -> Fit:
     """The model with a candidate in it: as large as the data say, the exponents of its law as free as the model's."""
-    start = found.fits[found.index.index(k)].values
+    start = found.fit(k).values
     network, unknowns = working(with_effect(case, evidence.effects[k], start))
     held = {p.name: start.get(p.name, p.value) for p in network.parameters}
     return minimise(network, evidence.tests, unknowns, unknowns.coordinates(start), found.noise, held)

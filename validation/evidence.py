@@ -17,7 +17,7 @@ from validation.fitting import Unknowns, at_level, scene_of, working
 from validation.noise import Noise, fit_noise
 from validation.null import Null, simulated_null
 from validation.score import Gram, Score, gram, score, total
-from validation.sheet import Segment, segments
+from validation.sheet import Segment, reach, segments
 
 Array = NDArray[np.float64]
 TWIN = 0.9995
@@ -58,8 +58,7 @@ class Evidence:
     def matters(self) -> NDArray[np.bool_]:
         """Which effects, as large as the score has them, would move any reading by more than a user cares for (K,)."""
         p, a = len(self.fit.unknowns.parameters), np.abs(self.score.amplitude)
-        reach = a * np.max([np.max(np.abs(s.J[:, p:]), axis=0) for s in self.parts], axis=0)
-        return np.asarray(reach >= cared_for(self.parts))
+        return np.asarray(a * reach(self.parts)[p:] >= cared_for(self.parts))
 
     def resharpened(self, noise: Noise) -> Score:
         """The score under another noise."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from validation.apart import separation, told_apart
 from validation.evidence import Evidence
 from validation.findings import NextTest
-from validation.foretell import proven, read_by
+from validation.foretell import Plan, proven, read_by
 from validation.menu import possible
 from validation.rivals import Race
 from validation.score import gram
@@ -19,24 +19,19 @@ from validation.sheet import segments
 Array = NDArray[np.float64]
 
 
-def next_tests(
-    evidence: Evidence, found: Race, amplitude: Mapping[int, float], kappa: Array
-) -> list[NextTest]:  # fmt: skip
+def next_tests(evidence: Evidence, found: Race, kappa: Array) -> list[NextTest]:
     """Tests that separate the race's group, best gain per hour first.
 
     Gain: the smallest deviance, over all pairs, by which the wrong one would fit worse with the new test added.
     """
-    fit, base = evidence.fit, evidence.tests[-1]
+    left = proven(evidence, found, _planned(evidence, found, kappa), kappa)
+    return [NextTest(p.what, told_apart(evidence, p.gaps), p.gain, p.hours) for p in left]
+
+
+def _planned(evidence: Evidence, found: Race, kappa: Array) -> Iterator[Plan]:
+    fit = evidence.fit
     p, columns = fit.theta.size, (*fit.unknowns.parameters, *(evidence.parameters[k] for k in found.group))
-    promised = []
-    for experiment, plan in possible(base):
+    for experiment, plan in possible(evidence.tests[-1]):
         test = read_by(found.best, plan)
         (more,) = gram(segments(evidence.network, [test], fit.values, columns), fit.noise, p).values()
-        promised.append((experiment, [test], separation(evidence, more, found.group, amplitude, kappa)))
-    promised.sort(key=lambda row: -min(row[2].values()) / row[0].hours)
-    left = proven(evidence, found, [(new, gaps) for _, new, gaps in promised], kappa)
-    out = [
-        NextTest(e.name, told_apart(evidence, gaps), min(gaps.values()), e.hours)
-        for (e, _, _), gaps in zip(promised, left, strict=True)
-    ]
-    return sorted(out, key=lambda t: -t.predicted_gain / t.hours)
+        yield Plan(experiment.name, experiment.hours, [test], separation(evidence, found, more, kappa))

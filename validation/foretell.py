@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,27 @@ Array = NDArray[np.float64]
 CHECKED = 3
 
 
+@dataclass(frozen=True)
+class Plan:
+    """Further readings.  tests : that have them, planned ones or those at hand with a sensor more;  gaps : between the
+    rivals with them, for every pair"""
+
+    what: str
+    hours: float
+    tests: Sequence[Test]
+    gaps: Gaps
+
+    @property
+    def gain(self) -> float:
+        """Deviance between the two that stay closest."""
+        return min(self.gaps.values())
+
+    @property
+    def worth(self) -> float:
+        """Gain per hour."""
+        return self.gain / self.hours
+
+
 def read_by(fit: Fit, test: Test) -> Test:
     """The test with the readings that a fitted model foretells."""
     standing = {p.name: p.value for p in fit.network.parameters}
@@ -28,25 +49,29 @@ def read_by(fit: Fit, test: Test) -> Test:
     return replace(test, channels=tuple(replace(c, y=y[:, j]) for j, c in enumerate(test.channels)))
 
 
-def proven(
-    evidence: Evidence, found: Race, promised: Sequence[tuple[Sequence[Test], Gaps]], kappa: Array
-) -> list[Gaps]:
-    """What is left of the gaps that tangents promise, for each plan: its tests, planned or with a sensor more.
+def proven(evidence: Evidence, found: Race, promised: Iterable[Plan], kappa: Array) -> list[Plan]:
+    """The plans with what is left of the gaps that tangents promise, best gain per hour first.
 
     Tangents promise too much: they do not know how far the rivals can bend. Refits show how much for the first CHECKED
     plans and the pairs that might come apart; what was not refitted keeps the largest share that any of those kept.
     """
+    plans = sorted(promised, key=lambda p: -p.worth)
     kept: list[Gaps] = [
-        {pair: foretold(evidence, found, new, pair, float(kappa[pair[0]])) for pair, gap in gaps.items() if gap >= GAP}
-        for new, gaps in promised[:CHECKED]
+        {
+            pair: foretold(evidence, found, p.tests, pair, float(kappa[pair[0]]))
+            for pair, g in p.gaps.items()
+            if g >= GAP
+        }
+        for p in plans[:CHECKED]
     ]
-    kept += [{}] * (len(promised) - len(kept))
-    shares = [g / gaps[pair] for own, (_, gaps) in zip(kept, promised, strict=True) for pair, g in own.items()]
+    kept += [{}] * (len(plans) - len(kept))
+    shares = [g / p.gaps[pair] for own, p in zip(kept, plans, strict=True) for pair, g in own.items()]
     share = float(np.clip(max(shares, default=1.0), 0.0, 1.0))
-    return [
-        {pair: max(min(gap, own.get(pair, share * gap)), 0.0) for pair, gap in gaps.items()}
-        for own, (_, gaps) in zip(kept, promised, strict=True)
+    left = [
+        replace(p, gaps={pair: max(min(gap, own.get(pair, share * gap)), 0.0) for pair, gap in p.gaps.items()})
+        for own, p in zip(kept, plans, strict=True)
     ]
+    return sorted(left, key=lambda p: -p.worth)
 
 
 def foretold(evidence: Evidence, found: Race, new: Sequence[Test], pair: tuple[int, int], kappa: float) -> float:
@@ -60,8 +85,7 @@ def foretold(evidence: Evidence, found: Race, new: Sequence[Test], pair: tuple[i
 
 
 def _behind(evidence: Evidence, found: Race, new: Sequence[Test], right: int, wrong: int, kappa: float) -> float:
-    fits = dict(zip(found.index, found.fits, strict=True))
-    read, rival = [read_by(fits[right], t) for t in new], fits[wrong]
+    read, rival = [read_by(found.fit(right), t) for t in new], found.fit(wrong)
     network, unknowns, held = with_members(evidence, [wrong])
     known = {p.name for p in network.parameters}
     own = tuple(p for p in nuisances(network, read) if p.name not in known)
@@ -71,4 +95,4 @@ def _behind(evidence: Evidence, found: Race, new: Sequence[Test], right: int, wr
     near += segments(network, read, here, free)
     theta, tests = np.concatenate([rival.theta, np.zeros(len(own))]), (*evidence.tests, *read)
     fit = minimise(network, tests, Unknowns(free), theta, found.noise, held, start=near)
-    return behind(fit, fits[right], kappa)
+    return behind(fit, found.fit(right), kappa)

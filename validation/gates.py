@@ -16,7 +16,7 @@ from validation.calibrate import Fit
 from validation.evidence import cared_for
 from validation.fitting import to_value
 from validation.score import Gram, gram, per_test, total
-from validation.sheet import Segment
+from validation.sheet import Segment, reach
 
 Array = NDArray[np.float64]
 CONSTANT = 0.01  # probability below which one amplitude in all tests is not believed
@@ -129,7 +129,7 @@ def _deviance(own: tuple[Array, Array, float], step: Array) -> float:
 
 def relevance(fit: Fit, k: int) -> Gate:
     """The largest change of any reading that the effect makes, at fixed other parameters (K)."""
-    moved = max((float(np.max(np.abs(s.J[:, k]))) for s in fit.parts), default=0.0) * abs(float(fit.theta[k]))
+    moved = float(reach(fit.parts)[k] * abs(fit.theta[k]))
     limit = cared_for(fit.parts)
     return Gate("relevance", moved >= limit, moved, limit, f"moves a reading by up to {moved:.2g} K")
 

@@ -44,6 +44,10 @@ class Race:
     def best(self) -> Fit:
         return self.fits[0]
 
+    def fit(self, k: int) -> Fit:
+        """The refit with candidate k."""
+        return self.fits[self.index.index(k)]
+
 
 def leading(
     evidence: Evidence, kappa: Array, level: float, progress: Callable[[str], None] = silent,

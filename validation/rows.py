@@ -67,7 +67,7 @@ def raced(case: Case, step: Step, k: int, bar: Bar, verdict: Verdict) -> Candida
     """A row with the refit's numbers."""
     assert step.race is not None
     e, found, row = step.evidence, step.race, plain(step, k, bar)
-    fit, kappa = step.settled.get(k, found.fits[found.index.index(k)]), float(step.kappa[k])
+    fit, kappa = step.settled.get(k, found.fit(k)), float(step.kappa[k])
     a, half = fit.values[e.names[k]], 1.96 * kappa * float(fit.sd[fit.unknowns.names.index(e.names[k])])
     before, after = rmse(e.fit.parts), rmse(fit.parts)
     group = tuple(e.names[m] for m in found.group if m != k)
@@ -105,28 +105,17 @@ def unseen(step: Step, bar: Bar) -> tuple[Hidden, ...]:
 
 def planned(steps: list[Step]) -> tuple[NextTest, ...]:
     """Tests that would separate the first group that could not be separated."""
-    for step, found, size in unresolved(steps):
-        return tuple(next_tests(step.evidence, found, size, step.kappa))
-    return ()
+    return next((tuple(next_tests(step.evidence, found, step.kappa)) for step, found in unresolved(steps)), ())
 
 
 def sensed(steps: list[Step]) -> tuple[NextSensor, ...]:
     """Sensors that would separate the same group."""
-    for step, found, size in unresolved(steps):
-        return tuple(next_sensors(step.evidence, found, size, step.kappa))
-    return ()
+    return next((tuple(next_sensors(step.evidence, found, step.kappa)) for step, found in unresolved(steps)), ())
 
 
-def unresolved(steps: list[Step]) -> Iterator[tuple[Step, Race, dict[int, float]]]:
-    """Races that ended in a group, with the amplitude of each of its members."""
-    for step in steps:
-        if step.race and len(step.race.group) > 1:
-            found = step.race
-            yield (
-                step,
-                found,
-                {k: found.fits[found.index.index(k)].values[step.evidence.names[k]] for k in found.group},
-            )
+def unresolved(steps: list[Step]) -> Iterator[tuple[Step, Race]]:
+    """Races that ended in a group."""
+    return ((step, step.race) for step in steps if step.race and len(step.race.group) > 1)
 
 
 def confusion(step: Step, names: Sequence[str]) -> dict[str, dict[str, float]]:

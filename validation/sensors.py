@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -14,7 +14,7 @@ from validation.case import Channel, Test
 from validation.effects.sites import like, outside
 from validation.evidence import Evidence
 from validation.findings import NextSensor
-from validation.foretell import proven
+from validation.foretell import Plan, proven
 from validation.noise import Noise
 from validation.rivals import Race
 from validation.score import Gram
@@ -30,22 +30,21 @@ WHY = {
 }  # fmt: skip
 
 
-def next_sensors(
-    evidence: Evidence, found: Race, amplitude: Mapping[int, float], kappa: Array
-) -> list[NextSensor]:  # fmt: skip
+def next_sensors(evidence: Evidence, found: Race, kappa: Array) -> list[NextSensor]:
     """Places without a sensor, by the deviance gap of the pair that stays closest, per hour of mounting."""
     network = evidence.fit.network
-    places, promised = free_places(network, evidence.tests), []
-    for place, more in with_sensors(evidence, places, found.group):
-        gaps, hours = separation(evidence, more, found.group, amplitude, kappa), HOURS[access(network, place)]
-        promised.append((place, [watched(t, [place]) for t in evidence.tests], gaps, hours))
-    promised.sort(key=lambda row: -min(row[2].values()) / row[3])
-    left = proven(evidence, found, [(tests, gaps) for _, tests, gaps, _ in promised], kappa)
-    out = [
-        NextSensor(place.name, told_apart(evidence, gaps), min(gaps.values()), hours, WHY[access(network, place)])
-        for (place, _, _, hours), gaps in zip(promised, left, strict=True)
+    places = {p.name: p for p in free_places(network, evidence.tests)}
+    plans = [
+        Plan(
+            place.name, HOURS[access(network, place)], [watched(t, [place]) for t in evidence.tests],
+            separation(evidence, found, more, kappa),
+        )
+        for place, more in with_sensors(evidence, tuple(places.values()), found.group)
+    ]  # fmt: skip
+    return [
+        NextSensor(p.what, told_apart(evidence, p.gaps), p.gain, p.hours, WHY[access(network, places[p.what])])
+        for p in proven(evidence, found, plans, kappa)
     ]
-    return sorted(out, key=lambda s: -s.predicted_gain / s.hours)
 
 
 def free_places(network: Network, tests: Sequence[Test]) -> list[Place]:

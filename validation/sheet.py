@@ -95,6 +95,11 @@ def stacked(parts: Sequence[Segment]) -> Array:
     return np.concatenate([s.r for s in parts]) if parts else np.zeros(0)
 
 
+def reach(parts: Sequence[Segment]) -> Array:
+    """(p,) largest change of any reading (K) by one unit of each parameter."""
+    return np.asarray(np.max([np.max(np.abs(s.J), axis=0) for s in parts], axis=0))
+
+
 def rmse(parts: Sequence[Segment]) -> float:
     """Root mean square residual (K) over all channels and tests."""
     return float(np.sqrt(np.mean(stacked(parts) ** 2))) if parts else float("nan")

@@ -83,8 +83,7 @@ def test_the_same_again_decides_nothing():
 
 def test_two_speeds_are_said_to_decide():
     evidence, found = raced()
-    amplitude = {k: fit.values[RIVALS[k]] for k, fit in zip(found.index, found.fits, strict=True)}
-    said = {t.test: t for t in next_tests(evidence, found, amplitude, np.ones(2))}
+    said = {t.test: t for t in next_tests(evidence, found, np.ones(2))}
     assert said["same current at two speeds"].predicted_gain > DECISIVE
     assert said["same current at two speeds"].separates
     assert not said["spin without current"].separates  # at one speed again

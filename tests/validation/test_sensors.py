@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from playground import SENSORS, Truth, network
 
-from validation.apart import DECISIVE
+from validation.apart import DECISIVE, separation
 from validation.case import Case, Model
 from validation.effects import effect
 from validation.evidence import calibrated_case, scored
 from validation.rivals import race
-from validation.sensors import access, free_places, next_sensors
+from validation.sensors import access, free_places, next_sensors, with_sensors
 
 PLACES = ("winding.armature", "rotor")
 RIVALS = tuple(f"loss.constant@{place}" for place in PLACES)
@@ -33,8 +33,7 @@ def raced(*more):
 @cache
 def said(kappa=1.0):
     evidence, found = raced()
-    amplitude = {k: fit.values[RIVALS[k]] for k, fit in zip(found.index, found.fits, strict=True)}
-    return {s.place: s for s in next_sensors(evidence, found, amplitude, np.full(2, kappa))}
+    return {s.place: s for s in next_sensors(evidence, found, np.full(2, kappa))}
 
 
 def test_without_a_sensor_on_either_they_cannot_be_told_apart():
@@ -49,7 +48,21 @@ def test_every_free_place_is_ranked_by_gain_per_hour():
 
 
 def test_a_sensor_on_one_of_the_two_is_said_to_decide():
-    assert max(said()[place].predicted_gain for place in PLACES) > DECISIVE
+    best = max(said().values(), key=lambda s: s.predicted_gain)
+    assert best.place in PLACES
+    assert best.predicted_gain > DECISIVE
+
+
+def test_a_further_sensor_never_takes_separation_away():
+    """In the tangents: with it, every pair is at least as far apart as without."""
+    evidence, found = raced()
+    size = np.array([found.fit(k).values[name] for k, name in enumerate(evidence.names)])
+    now = min(size**2 * np.diag(evidence.score.V)) * (1.0 - evidence.score.cosine[0, 1] ** 2)
+    places = free_places(network(), evidence.tests)
+    more = [gram for _, gram in with_sensors(evidence, places, found.group)]
+    with_one = [separation(evidence, found, gram, np.ones(2)) for gram in more]
+    assert len(with_one) == len(places)
+    assert all(gap >= now * (1 - 1e-9) for gaps in with_one for gap in gaps.values())
 
 
 def test_mounted_it_decides():
