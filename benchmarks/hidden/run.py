@@ -17,6 +17,7 @@ from hidden.peers import peers
 from hidden.user import case_of
 
 LABELS, ANSWERS = "labels.jsonl", "answers.jsonl"
+COMPARED, FOLLOWED = ("one", "nothing"), ("one", "pair")  # classes peers are asked about; what is said is acted on
 
 
 def answered(out: Path) -> dict[str, dict]:
@@ -36,8 +37,8 @@ def _lines(file: Path) -> list[dict]:
 
 @dataclass(frozen=True)
 class Wanted:
-    """draws : of the simulated null;  plan : next tests;  peers : the simpler methods as well;
-    after : add what is claimed, and carry out the proposed test"""
+    """draws : of the simulated null;  plan : next tests;  peers : the simpler methods as well, on classes COMPARED;
+    after : add what is claimed, and carry out the proposed test, on classes FOLLOWED"""
 
     draws: int = 24
     plan: bool = False
@@ -65,10 +66,11 @@ def _diagnosed(label: Label, wanted: Wanted) -> dict:
     start = time.process_time()
     case = case_of(label.case, label.machine, records_of(label))
     made = time.process_time() - start
-    found = {**answer(case, wanted.draws, wanted.plan or wanted.after), "made_s": made}
-    if wanted.peers:
+    after = wanted.after and label.group in FOLLOWED
+    found = {**answer(case, wanted.draws, wanted.plan or after), "made_s": made}
+    if wanted.peers and label.group in COMPARED:
         found["peers"] = peers(case)
-    if wanted.after:
+    if after:
         found |= {"worth": worth(case, label, found), "followed": followed(case, label, found, wanted.draws)}
     return found
 
