@@ -15,24 +15,19 @@ from validation.case import AddedEffect, Case
 from validation.effects import Effect
 from validation.evidence import Evidence, calibrated_case, candidates, possible, scored, sharpened
 from validation.faults import broken_channels
-from validation.findings import Candidate, Diagnosis, Verdict
+from validation.findings import Diagnosis
 from validation.fitting import working
 from validation.gates import relevance
-from validation.null import Null
 from validation.procedure.which_base import Hypothesis, bases_tried, wrong_bases
 from validation.rivals import Race, race, weak
 from validation.rows import Step, confusion, planned, sensed, tabulate, unseen
 from validation.sheet import rmse
+from validation.verdict import STEPS, against, judge, pulled, words
 from validation.where import Latent, latent_heat
 
 Array = NDArray[np.float64]
 Progress = Callable[[str], None]
-STEPS = 3
-BEYOND = 1.6
-LOCATED = 10.0
-PULL = 3.0
 WORTH, FURTHER, CLEAR = 0.1, 1.25, 1.6
-HIDES = "it may hide a missing effect"
 
 
 def diagnose(
@@ -123,51 +118,19 @@ def conclude(
     """From the search to a verdict and its tables.  stood : the bases that were tried"""
     first, null = steps[0], bar.null
     groups = [tuple(s.evidence.names[k] for k in s.race.group) for s in steps if s.race]
-    pulls = pulled(first.evidence.fit, null)
+    pulls, doubt = pulled(first.evidence.fit, bar), against(case, steps, bar)
     broken = [*broken_channels(first.evidence.tests), *wrong_bases(stood)]
-    verdict = judge(steps, bar, groups, bool(pulls), bool(broken))
+    verdict = judge(steps, bar, bool(doubt), bool(pulls), bool(broken))
     table = tabulate(case, steps, bar, verdict)
     ahead = planned(steps) if plan else ()
     floor = float(np.sqrt(np.mean(null.floor**2)))
+    told = words(verdict, groups, table, pulls, broken, where, doubt)
     return Diagnosis(
-        verdict, words(verdict, groups, table, pulls, broken, where), tuple(g[0] for g in groups), tuple(groups), table,
+        verdict, told, tuple(g[0] for g in groups), tuple(groups), table,
         unseen(first, bar), tuple(where), ahead, rmse(first.evidence.fit.parts), floor, bar.threshold, pulls,
         confusion(first, [c.effect for c in table[:12]]), sensed(steps) if plan else (), float(np.median(null.kappa)),
         tuple(stood),
     )  # fmt: skip
-
-
-def judge(steps: list[Step], bar: Bar, groups: list[tuple[str, ...]], pulled_: bool, broken: bool) -> Verdict:
-    """The verdict, method of docs/diagnosis."""
-    last, rounds = steps[-1], [s for s in steps if s.race]
-    if broken:
-        return "data"
-    left = (last.evidence.score.z / last.kappa)[last.evidence.matters]
-    if beyond(last.evidence.fit, bar.null) or (len(rounds) == STEPS and np.max(left, initial=0.0) > bar.threshold):
-        return "outside"
-    if not rounds:
-        return "absorbed" if pulled_ else "adequate"
-    if len(rounds) > 1:
-        return "several"
-    evidence, found = rounds[0].evidence, rounds[0].race
-    assert found is not None
-    if all(evidence.effects[k].fault for k in found.group):
-        return "data"
-    if weak(evidence, found):
-        return "absorbed"
-    if len(found.group) > 1:
-        return "group"
-    return "outside" if on_bound(evidence, found) else "named"
-
-
-def beyond(fit: Fit, null: Null) -> bool:
-    """Is more left than simulated machines of this kind leave, and more than a model may be wrong by?"""
-    channels = list(dict.fromkeys(s.channel for s in fit.parts))
-    own = [[s for s in fit.parts if s.channel == c] for c in channels]
-    left = np.array([rmse(parts) for parts in own])
-    allowed = np.array([np.sqrt(np.mean([s.model_K**2 for s in parts])) for parts in own])
-    usual = np.maximum(np.maximum(null.floor, np.median(null.floor)), allowed)
-    return bool(np.any(left > BEYOND * usual))
 
 
 def explained(evidence: Evidence, found: Race) -> float:
@@ -177,49 +140,5 @@ def explained(evidence: Evidence, found: Race) -> float:
 
 def trifling(evidence: Evidence, found: Race) -> bool:
     """Would everything that explains the readings as well as the best move none of them by as much as one minds?"""
-    fits = dict(zip(found.index, found.fits, strict=True))
-    return not any(relevance(fits[k], fits[k].theta.size - 1).passed for k in found.group)
-
-
-def on_bound(evidence: Evidence, found: Race) -> bool:
-    """Does the best candidate's amplitude stick to its upper physical bound?"""
-    return bool(found.best.at_bound[-1])
-
-
-def pulled(fit: Fit, null: Null) -> tuple[tuple[str, float, float], ...]:
-    """Calibrated parameters further from their prior than chance allows: (name, value, prior deviations)."""
-    pull = fit.theta / fit.unknowns.sd / null.pull_scale
-    limit = max(PULL, pull_threshold(null))
-    hit = [i for i in np.argsort(-np.abs(pull)) if abs(pull[i]) > limit]
-    return tuple((fit.unknowns.names[i], fit.values[fit.unknowns.names[i]], float(pull[i])) for i in hit)
-
-
-def pull_threshold(null: Null) -> float:
-    best = np.max(np.abs(null.pulls / null.pull_scale), axis=1)
-    return float(np.mean(best) + 2.6 * np.std(best))
-
-
-def words(
-    verdict: Verdict, groups: list[tuple[str, ...]], table: Sequence[Candidate], pulls: tuple, broken: Sequence[str],
-    where: list[Latent],
-) -> str:  # fmt: skip
-    """The verdict in a sentence."""
-    if verdict == "adequate":
-        return "no evidence of a missing effect"
-    if verdict == "absorbed":
-        if pulls:
-            return f"calibration of {pulls[0][0]} is {abs(pulls[0][2]):.1f} deviations from its prior: {HIDES}"
-        return f"{table[0].effect} would do what calibration of {table[0].twin or 'the rest'} has done: {HIDES}"
-    if broken:
-        return f"check the measurement first: {'; '.join(broken)}"
-    if verdict == "outside":
-        place = f" at {where[0].place}" if where and where[0].evidence_nats > LOCATED else ""
-        return f"heat is missing or in excess{place}; nothing in the catalogue explains all of it"
-    if verdict == "data":
-        return f"check the measurement first: {' or '.join(groups[0])}"
-    best = table[0]
-    if verdict == "named":
-        return f"missing: {best.title} at {best.effect.split('@')[1]}, {best.value:.3g} {best.unit}"
-    if verdict == "group":
-        return f"one of {', '.join(groups[0])}; these tests and sensors cannot tell them apart"
-    return "missing: " + "; ".join(" or ".join(g) for g in groups)
+    fits = [found.fit(k) for k in found.group]
+    return not any(relevance(fit, fit.theta.size - 1).passed for fit in fits)

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.errors import InputError
 from lumped.network import Network, Parameter
 from validation.calibrate import Fit, calibrated, minimise, silent
 from validation.case import Case, Test
@@ -80,7 +81,11 @@ def diagnosing(case: Case) -> tuple[Test, ...]:
 def candidates(case: Case, kinds: Sequence[str] | None = None) -> tuple[Effect, ...]:
     """The catalogue on this case, less what the model has already."""
     inside = {e.name for e in case.model.effects}
-    return tuple(e for e in catalogue(scene_of(case), kinds) if e.name not in inside)
+    found = tuple(e for e in catalogue(scene_of(case), kinds) if e.name not in inside)
+    if not found:
+        where = f"case '{case.name}', kinds {', '.join(kinds or ['of the catalogue'])}"
+        raise InputError("no effect can sit anywhere in this network", where, "other kinds, or inputs that they need")
+    return found
 
 
 def scored(case: Case, effects: Sequence[Effect], fit: Fit) -> Evidence:

@@ -37,7 +37,7 @@ def mean_heat(where: Sequence[Mapping[str, Any]], test: str) -> dict[str, float]
 
 def located(where: Sequence[Mapping[str, Any]]) -> bool:
     """Does the scan put the missing heat somewhere, or could it be anywhere?"""
-    from validation.diagnose import LOCATED
+    from validation.verdict import LOCATED
 
     return max((w["evidence_nats"] for w in where), default=0.0) > LOCATED
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from importlib import import_module
 from importlib.metadata import entry_points
 from pkgutil import iter_modules
@@ -35,25 +35,30 @@ def kinds() -> dict[str, type[Effect]]:
 
 def catalogue(scene: Scene, only: Iterable[str] | None = None) -> tuple[Effect, ...]:
     """All effects that can sit somewhere in the scene; `only` restricts the kinds."""
-    chosen = kinds() if only is None else {k: kinds()[k] for k in only}
-    return tuple(cls(place) for cls in chosen.values() for place in cls.places(scene))
+    known = kinds()
+    chosen = [_of(kind, known, "the kinds to look for") for kind in (known if only is None else only)]
+    return tuple(cls(place) for cls in chosen for place in cls.places(scene))
+
+
+def _of(kind: str, known: Mapping[str, type[Effect]], where: str) -> type[Effect]:
+    if kind not in known:
+        raise InputError(f"unknown effect '{kind}'", where, f"known: {', '.join(known)}")
+    return known[kind]
 
 
 def effect(name: str, scene: Scene | None = None) -> Effect:
     """The effect called 'kind@place'; with a scene, only if it can sit there."""
     kind, _, place = name.partition("@")
-    known = kinds()
-    if kind not in known:
-        raise InputError(f"unknown effect '{kind}'", f"effect '{name}'", f"known: {', '.join(known)}")
-    if scene is not None and place not in (places := known[kind].places(scene)):
-        needs = ", ".join(known[kind].needs)
+    found = _of(kind, kinds(), f"effect '{name}'")
+    if scene is not None and place not in (places := found.places(scene)):
+        needs = ", ".join(found.needs)
         right = (
             f"it can sit at: {', '.join(places)}"
             if places
             else f"it can sit nowhere here; it needs: {needs or 'a place'}"
         )
         raise InputError(f"'{kind}' cannot sit at '{place}'", f"effect '{name}'", right)
-    return known[kind](place)
+    return found(place)
 
 
 def extended(network: Network, effects: Iterable[Effect]) -> Network:

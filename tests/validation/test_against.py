@@ -1,0 +1,41 @@
+"""A name is given only to what `add` would accept, and only where calibration is at ease with it."""
+
+import pytest
+from playground import Truth, wind
+
+from geom.errors import InputError
+from validation import diagnose
+
+
+def rub(T, u, t):
+    """A seal on the left flange that rubs once the rotor is 8 K above the yoke."""
+    return {"flange.left": 120.0 * u["speed_rpm"] / 1000.0 * max(T["rotor"] - T["yoke"] - 8.0, 0.0) / 10.0}
+
+
+def found(kinds, hidden, **machine):
+    return diagnose(Truth(10, hidden, **machine).case(), draws=8, workers=1, plan=False, kinds=kinds)
+
+
+def test_what_sticks_to_its_bound_is_not_claimed():
+    """Heat on a flange, to be explained by films that foul: more than 95 % of one would have to be gone."""
+    answer = found(["fouling"], rub)
+    assert answer.groups[0][0] == "fouling@flange.left"
+    assert answer.verdict == "outside"
+    assert "sticks to a bound" in answer.words
+
+
+def test_a_declared_value_that_stays_far_off_is_told():
+    """Wind and nothing else is in the catalogue; a bearing with six times the friction, 30 % believed, remains."""
+    strained = {"change": {"": ("friction", "bearing.left", 6.0)}}
+    answer = found(["convection"], wind("flange.right", 12.0), **strained)
+    assert answer.groups[0][0] == "convection@flange.right"
+    assert answer.verdict == "outside"
+    assert "loss.friction.bearing.left is still" in answer.words
+
+
+@pytest.mark.parametrize(
+    ("kinds", "words"), [(["wear"], "unknown effect 'wear'"), (["conduction.bench"], "no effect can")]
+)
+def test_kinds_that_are_not_there_are_told(kinds, words):
+    with pytest.raises(InputError, match=words):
+        found(kinds, None)

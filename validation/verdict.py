@@ -1,0 +1,112 @@
+"""From the rounds of a search to one of seven verdicts, and its sentence."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from validation.bar import Bar
+from validation.calibrate import Fit
+from validation.case import Case
+from validation.findings import Candidate, Verdict
+from validation.gates import doubts, gates
+from validation.null import Null
+from validation.rivals import weak
+from validation.rows import Step
+from validation.sheet import rmse
+from validation.where import Latent
+
+STEPS = 3
+BEYOND = 1.6
+LOCATED = 10.0
+PULL = 3.0
+HIDES = "it may hide a missing effect"
+
+
+def judge(steps: list[Step], bar: Bar, doubtful: bool, pulled_: bool, broken: bool) -> Verdict:
+    """The verdict, method of docs/diagnosis."""
+    last, rounds = steps[-1], [s for s in steps if s.race]
+    if broken:
+        return "data"
+    left = (last.evidence.score.z / last.kappa)[last.evidence.matters]
+    if beyond(last.evidence.fit, bar.null) or (len(rounds) == STEPS and np.max(left, initial=0.0) > bar.threshold):
+        return "outside"
+    if not rounds:
+        return "absorbed" if pulled_ else "adequate"
+    evidence, found = rounds[0].evidence, rounds[0].race
+    assert found is not None
+    if len(rounds) == 1 and all(evidence.effects[k].fault for k in found.group):
+        return "data"
+    if len(rounds) == 1 and weak(evidence, found):
+        return "absorbed"
+    if doubtful:
+        return "outside"
+    if len(rounds) > 1:
+        return "several"
+    return "group" if len(found.group) > 1 else "named"
+
+
+def against(case: Case, steps: list[Step], bar: Bar) -> str:
+    """What speaks against what was found, or nothing: checks for which `add` would refuse each of a group, or a
+    declared parameter that calibration with all of it in the model still pulls further than chance allows."""
+    for s in steps:
+        if s.race and not any(s.evidence.effects[k].fault for k in s.race.group):
+            names = {k: s.evidence.names[k] for k in s.race.group}
+            told = [doubts(gates(s.race.fit(k), name, float(s.kappa[k]))) for k, name in names.items()]
+            if all(told):
+                return f"{names[s.race.group[0]]} comes nearest, but {told[0]}"
+    declared = {p.name for p in case.nuisances or case.model.network.parameters}
+    left = [p for p in pulled(steps[-1].evidence.fit, bar) if p[0] in declared]
+    return f"calibration of {left[0][0]} is still {abs(left[0][2]):.1f} deviations from its prior" if left else ""
+
+
+def beyond(fit: Fit, null: Null) -> bool:
+    """Is more left than simulated machines of this kind leave, and more than a model may be wrong by?"""
+    channels = list(dict.fromkeys(s.channel for s in fit.parts))
+    own = [[s for s in fit.parts if s.channel == c] for c in channels]
+    left = np.array([rmse(parts) for parts in own])
+    allowed = np.array([np.sqrt(np.mean([s.model_K**2 for s in parts])) for parts in own])
+    usual = np.maximum(np.maximum(null.floor, np.median(null.floor)), allowed)
+    return bool(np.any(left > BEYOND * usual))
+
+
+def pulled(fit: Fit, bar: Bar) -> tuple[tuple[str, float, float], ...]:
+    """Calibrated parameters further from their prior than chance allows: (name, value, prior deviations)."""
+    pull = dict(zip(fit.unknowns.names, fit.theta / fit.unknowns.sd, strict=True))
+    pull = {n: pull[n] / usual for n, usual in bar.pulls.items() if n in pull}
+    limit = max(PULL, pull_threshold(bar.null))
+    hit = [n for n in sorted(pull, key=lambda n: -abs(pull[n])) if abs(pull[n]) > limit]
+    return tuple((n, fit.values[n], float(pull[n])) for n in hit)
+
+
+def pull_threshold(null: Null) -> float:
+    best = np.max(np.abs(null.pulls / null.pull_scale), axis=1)
+    return float(np.mean(best) + 2.6 * np.std(best))
+
+
+def words(
+    verdict: Verdict, groups: list[tuple[str, ...]], table: Sequence[Candidate], pulls: tuple, broken: Sequence[str],
+    where: list[Latent], doubt: str = "",
+) -> str:  # fmt: skip
+    """The verdict in a sentence."""
+    if verdict == "adequate":
+        return "no evidence of a missing effect"
+    if verdict == "absorbed":
+        if pulls:
+            return f"calibration of {pulls[0][0]} is {abs(pulls[0][2]):.1f} deviations from its prior: {HIDES}"
+        return f"{table[0].effect} would do what calibration of {table[0].twin or 'the rest'} has done: {HIDES}"
+    if broken:
+        return f"check the measurement first: {'; '.join(broken)}"
+    if verdict == "outside":
+        place = f" at {where[0].place}" if where and where[0].evidence_nats > LOCATED else ""
+        why = f" ({doubt})" if doubt else ""
+        return f"heat is missing or in excess{place}; nothing in the catalogue explains all of it{why}"
+    if verdict == "data":
+        return f"check the measurement first: {' or '.join(groups[0])}"
+    best = table[0]
+    if verdict == "named":
+        return f"missing: {best.title} at {best.effect.split('@')[1]}, {best.value:.3g} {best.unit}"
+    if verdict == "group":
+        return f"one of {', '.join(groups[0])}; these tests and sensors cannot tell them apart"
+    return "missing: " + "; ".join(" or ".join(g) for g in groups)
