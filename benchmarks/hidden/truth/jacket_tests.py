@@ -56,7 +56,7 @@ MISSING = (
     Hidden("convection@shield.de", lambda a: airflow("shield.de", a), 30.0),
     Hidden("convection@housing", lambda a: airflow("housing", a), 80.0),
     Hidden("convection.constant@shield.nde", lambda a: draught("shield.nde", a), 20.0),
-    Hidden("windage@rotor", lambda a: heating("rotor", a, (3.0, 2.8)), 20.0),
+    Hidden("windage@rotor", lambda a: heating("rotor", a, (3.0, 2.8)), 10.0),  # 240 degC in the magnets
     Hidden("loss.rotor@magnets", lambda a: heating("magnets", a, (2.0, 1.8), fade=0.001), 60.0),
     Hidden("loss.rotor.load@magnets", lambda a: heating("magnets", a, (2.0, 1.8), (2.0, 2.0)), 60.0),
     Hidden("copper.ac@winding.slot", lambda a: heating("slot", a, (2.0, 1.8), (2.0, 2.0), fade=0.002), 60.0),
