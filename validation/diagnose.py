@@ -22,12 +22,12 @@ from validation.procedure.which_base import Hypothesis, bases_tried, wrong_bases
 from validation.rivals import Race, race, weak
 from validation.rows import Step, confusion, planned, sensed, tabulate, unseen
 from validation.sheet import rmse
-from validation.verdict import STEPS, against, judge, pulled, words
+from validation.verdict import FURTHER, STEPS, against, judge, pulled, words
 from validation.where import Latent, latent_heat
 
 Array = NDArray[np.float64]
 Progress = Callable[[str], None]
-WORTH, FURTHER, CLEAR = 0.1, 1.25, 1.6
+WORTH, CLEAR = 0.1, 1.6
 
 
 def diagnose(

@@ -25,8 +25,8 @@ def test_what_sticks_to_its_bound_is_not_claimed():
 
 
 def test_a_declared_value_that_stays_far_off_is_told():
-    """Wind and nothing else is in the catalogue; a bearing with six times the friction, 30 % believed, remains."""
-    strained = {"change": {"": ("friction", "bearing.left", 6.0)}}
+    """Wind and nothing else is in the catalogue; a bearing with eight times the friction, 30 % believed, remains."""
+    strained = {"change": {"": ("friction", "bearing.left", 8.0)}}
     answer = found(["convection"], wind("flange.right", 12.0), **strained)
     assert answer.groups[0][0] == "convection@flange.right"
     assert answer.verdict == "outside"
