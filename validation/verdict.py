@@ -23,6 +23,7 @@ LOCATED = 10.0
 PULL = 3.0
 FURTHER = 1.25  # beside what is found, the misfit of its form stays, which the null does not know
 HIDES = "it may hide a missing effect"
+NOTHING = "nothing in the catalogue explains all of it"
 
 
 def judge(steps: list[Step], bar: Bar, doubtful: bool, pulled_: bool, broken: bool) -> Verdict:
@@ -48,29 +49,28 @@ def judge(steps: list[Step], bar: Bar, doubtful: bool, pulled_: bool, broken: bo
     return "group" if len(found.group) > 1 else "named"
 
 
-def against(case: Case, steps: list[Step], bar: Bar) -> str:
-    """What speaks against what was found, or nothing: checks for which `add` would refuse each of a group, or a
-    declared parameter that calibration with all of it in the model still pulls FURTHER than chance allows.
+def refused(steps: list[Step]) -> str:
+    """Checks for which `add` would refuse each of the group that was found, in words, or nothing.
 
-    Of several effects, found one after the other, the checks are not asked: before the others are in the model an
-    effect is judged by their residual, and with all in it three tests are too few to predict one from the others.
+    Of several effects, found one after the other, they are not asked: before the others are in the model an effect is
+    judged by their residual, and with all in it three tests are too few to predict one from the others.
     """
-    rounds = [s for s in steps if s.race]
-    if len(rounds) == 1 and (told := refused(rounds[0])):
-        return told
+    rounds = [(s, s.race) for s in steps if s.race]
+    if len(rounds) != 1:
+        return ""
+    ((step, found),) = rounds
+    names, group = step.evidence.names, found.group
+    if any(step.evidence.effects[k].fault for k in group):
+        return ""
+    told = [doubts(gates(found.fit(k), names[k], float(step.kappa[k]))) for k in group]
+    return f"{names[group[0]]} comes nearest, but {told[0]}" if all(told) else ""
+
+
+def strained(case: Case, steps: list[Step], bar: Bar) -> str:
+    """The declared parameter that calibration pulls FURTHER than chance allows with all that was found in the model."""
     declared = {p.name for p in case.nuisances or case.model.network.parameters}
     left = [p for p in pulled(steps[-1].evidence.fit, bar, FURTHER) if p[0] in declared]
     return f"calibration of {left[0][0]} is still {abs(left[0][2]):.1f} deviations from its prior" if left else ""
-
-
-def refused(step: Step) -> str:
-    """The checks that the best of a group does not pass, if none of the group passes all."""
-    assert step.race is not None
-    names, group = step.evidence.names, step.race.group
-    if any(step.evidence.effects[k].fault for k in group):
-        return ""
-    told = [doubts(gates(step.race.fit(k), names[k], float(step.kappa[k]))) for k in group]
-    return f"{names[group[0]]} comes nearest, but {told[0]}" if all(told) else ""
 
 
 def beyond(fit: Fit, null: Null) -> bool:
@@ -99,9 +99,9 @@ def pull_threshold(null: Null) -> float:
 
 def words(
     verdict: Verdict, groups: list[tuple[str, ...]], table: Sequence[Candidate], pulls: tuple, broken: Sequence[str],
-    where: list[Latent], doubt: str = "",
+    where: list[Latent], doubt: str = "", strain: str = "",
 ) -> str:  # fmt: skip
-    """The verdict in a sentence."""
+    """The verdict in a sentence.  doubt, strain : see `refused` and `strained`"""
     if verdict == "adequate":
         return "no evidence of a missing effect"
     if verdict == "absorbed":
@@ -112,11 +112,13 @@ def words(
         return f"check the measurement first: {'; '.join(broken)}"
     if verdict == "outside":
         place = f" at {where[0].place}" if where and where[0].evidence_nats > LOCATED else ""
-        why = f" ({doubt})" if doubt else ""
-        return f"heat is missing or in excess{place}; nothing in the catalogue explains all of it{why}"
+        return "; ".join(filter(None, [f"heat is missing or in excess{place}", NOTHING, doubt]))
     if verdict == "data":
         return f"check the measurement first: {' or '.join(groups[0])}"
-    best = table[0]
+    return "; ".join(filter(None, [_found(verdict, groups, table[0]), strain]))
+
+
+def _found(verdict: Verdict, groups: list[tuple[str, ...]], best: Candidate) -> str:
     if verdict == "named":
         return f"missing: {best.title} at {best.effect.split('@')[1]}, {best.value:.3g} {best.unit}"
     if verdict == "group":

@@ -1,4 +1,4 @@
-"""A name is given only to what `add` would accept, and only where calibration is at ease with it."""
+"""A name is given only to what `add` would accept; that calibration is not at ease with it is told."""
 
 import pytest
 from playground import Truth, wind
@@ -29,7 +29,7 @@ def test_a_declared_value_that_stays_far_off_is_told():
     strained = {"change": {"": ("friction", "bearing.left", 8.0)}}
     answer = found(["convection"], wind("flange.right", 12.0), **strained)
     assert answer.groups[0][0] == "convection@flange.right"
-    assert answer.verdict == "outside"
+    assert answer.verdict == "named"
     assert "loss.friction.bearing.left is still" in answer.words
 
 
