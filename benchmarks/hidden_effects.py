@@ -15,7 +15,7 @@ import platform
 from pathlib import Path
 
 from hidden import sizes
-from hidden.cases import FEW, SHARES, plan
+from hidden.cases import SHARES, plan
 from hidden.kinds import KINDS
 from hidden.run import Wanted, answered, pairs, run
 from hidden.score import rows
@@ -26,7 +26,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--seeds", choices=("dev", "test"), default="dev")
     parser.add_argument("--count", type=int, default=24)
     parser.add_argument("--skip", type=int, default=0, help="leave out the first cases of the plan")
-    parser.add_argument("--classes", nargs="+", choices=(*SHARES, *FEW), default=list(SHARES))
+    parser.add_argument("--classes", nargs="+", choices=tuple(SHARES), default=list(SHARES))
     parser.add_argument("--archetypes", nargs="+", choices=tuple(KINDS), default=list(KINDS))
     parser.add_argument("--draws", type=int, default=24, help="data sets of the simulated null")
     parser.add_argument("--jobs", type=int, default=1)

@@ -15,8 +15,6 @@ from hidden.truth.change import NOTHING, Change
 
 DECISIVE, ALIKE = 20.0, 5.0
 SHARES = {"nothing": 300, "one": 300, "two": 100, "pair": 100, "foreign": 60, "absorbed": 40, "fault": 60, "tense": 60}
-FEW = {"few": 60}  # on request: one effect, and too few tests to tell it from others
-DRIVEN = ("load", "road", "road-2")  # the tests of a case with few
 FIRST_SEED = {"dev": 0, "test": 500000}
 
 
@@ -44,7 +42,7 @@ class Label:
 
 def plan(seeds: str, count: int, classes: Sequence[str], machines: Sequence[str]) -> list[Label]:
     """`count` cases, classes in the proportions of the full set and evenly mixed, machines in turn."""
-    share = np.array([(SHARES | FEW)[c] for c in classes], float)
+    share = np.array([SHARES[c] for c in classes], float)
     done, out = np.zeros(len(classes)), []
     for i in range(count):
         k = int(np.argmax((i + 1) * share / share.sum() - done))
@@ -74,13 +72,6 @@ def _one(kind: Archetype, bare: Label, turn: int, rng: np.random.Generator) -> L
     chosen = fit[int(rng.integers(len(fit)))]
     return replace(bare, truth=(chosen.name,), size=size, amplitude=(size * table[chosen.name]["size"],),
                    rivals=rivals(kind, chosen.name, size))  # fmt: skip
-
-
-def _few(kind: Archetype, bare: Label, turn: int, rng: np.random.Generator) -> Label:
-    """One effect at 4 times the size that all tests would show."""
-    table, fit = detectable()[kind.name], _possible(kind, 4.0)
-    chosen = fit[int(rng.integers(len(fit)))].name
-    return replace(bare, truth=(chosen,), size=4.0, amplitude=(4.0 * table[chosen]["size"],))
 
 
 def rivals(kind: Archetype, name: str, size: float) -> tuple[str, ...]:
@@ -133,13 +124,13 @@ def _bare(kind: Archetype, bare: Label, turn: int, rng: np.random.Generator) -> 
     return bare
 
 
-DRAWN = {"nothing": _bare, "one": _one, "few": _few, "two": _two, "pair": _pair, "foreign": _foreign,
-         "absorbed": _absorbed, "fault": _fault, "tense": _bare}  # fmt: skip
+DRAWN = {"nothing": _bare, "one": _one, "two": _two, "pair": _pair, "foreign": _foreign, "absorbed": _absorbed,
+         "fault": _fault, "tense": _bare}  # fmt: skip
 
 
 def hidden_in(kind: Archetype, label: Label) -> Change:
     """The change of the true machine that a label speaks of."""
-    if label.group in ("one", "few", "two", "pair"):
+    if label.group in ("one", "two", "pair"):
         table, shown = {h.name: h for h in kind.missing}, detectable()[kind.name]
         changes = [table[n].make(a / shown[n]["shown"]) for n, a in zip(label.truth, label.amplitude, strict=True)]
         return sum(changes[1:], changes[0])
@@ -158,9 +149,5 @@ def _wrong_priors(kind: Archetype, seed: int) -> Change:
 
 def records_of(label: Label) -> tuple[Record, ...]:
     kind = KINDS[label.machine]
-    plans = kind.plans
-    if label.group == "pair":
-        plans = next((t.plans for t in kind.twins if label.truth[0] in t.names and t.plans), plans)
-    if label.group == "few":
-        plans = tuple(p for p in plans if p.name in DRIVEN)
-    return measured(kind, label.seed, hidden_in(kind, label), plans)
+    shortened = [t.plans for t in kind.twins if label.group == "pair" and label.truth[0] in t.names and t.plans]
+    return measured(kind, label.seed, hidden_in(kind, label), *shortened[:1])

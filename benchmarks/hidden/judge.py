@@ -138,7 +138,7 @@ def share_of_fall(answer: Answer) -> float | None:
 def resolved(label: Answer, answer: Answer) -> bool | None:
     """After the proposed test: the truth alone."""
     after = answer.get("followed")
-    if not after or label["group"] not in ("one", "pair", "few"):
+    if not after or label["group"] not in ("one", "pair"):
         return None
     return after["verdict"] == "named" and after["groups"][0] == label["truth"]
 

@@ -17,7 +17,7 @@ from hidden.peers import peers
 from hidden.user import case_of
 
 LABELS, ANSWERS = "labels.jsonl", "answers.jsonl"
-COMPARED, FOLLOWED = ("one", "nothing"), ("one", "pair", "few")  # classes peers are asked of, and that are gone on with
+COMPARED, FOLLOWED = ("one", "nothing"), ("one", "pair")  # classes peers are asked about; what is said is acted on
 
 
 def answered(out: Path) -> dict[str, dict]:
