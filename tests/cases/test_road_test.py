@@ -1,0 +1,18 @@
+"""The shipped road test, made by a 3-D generator of its own: the wind on the right flange is named."""
+
+import shutil
+
+from thermoscope.folder import load_case
+from validation import calibrate, diagnose
+from validation.fitting import with_model
+
+
+def test_the_wind_on_the_right_flange_is_named(root, tmp_path):
+    folder = tmp_path / "road-test"
+    shutil.copytree(root / "cases" / "road-test", folder, ignore=shutil.ignore_patterns("out", "model.toml"))
+    case = load_case(folder).case
+    stand = with_model(case, calibrate(case).model)
+    found = diagnose(stand, draws=10, workers=1, plan=False)
+    assert found.verdict == "named"
+    assert found.named == ("convection@flange.right",)
+    assert found.candidates[0].value > 0.0
