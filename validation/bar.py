@@ -21,12 +21,10 @@ SUSPECT = 3.0  # formal deviations
 
 @dataclass(frozen=True)
 class Bar:
-    """sizes : effect -> smallest detectable amplitude in its unit;  pulls : calibrated parameter -> how widely machines
-    with nothing missing scatter it, in prior deviations;  refits : of the candidates that scored best"""
+    """sizes : effect -> smallest detectable amplitude in its unit;  refits : of the candidates that scored best"""
 
     null: Null
     sizes: Mapping[str, float]
-    pulls: Mapping[str, float]
     refits: Mapping[int, Fit] = field(default_factory=dict)
 
     @cached_property
@@ -60,8 +58,7 @@ def bar_of(
         if sizes
         else evidence.score.detectable(null.kappa, limit)
     )
-    size = dict(zip(evidence.names, found.tolist(), strict=True))
-    return Bar(null, size, dict(zip(evidence.fit.unknowns.names, null.pull_scale.tolist(), strict=True)), leaders)
+    return Bar(null, dict(zip(evidence.names, found.tolist(), strict=True)), leaders)
 
 
 def undisturbed(case: Case, evidence: Evidence, leaders: Mapping[int, Fit]) -> Evidence:

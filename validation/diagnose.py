@@ -118,13 +118,13 @@ def conclude(
     """From the search to a verdict and its tables.  stood : the bases that were tried"""
     first, null = steps[0], bar.null
     groups = [tuple(s.evidence.names[k] for k in s.race.group) for s in steps if s.race]
-    pulls, doubt = pulled(first.evidence.fit, bar), refused(steps)
+    pulls, doubt = pulled(first.evidence.fit, first.evidence.fit, null), refused(steps)
     broken = [*broken_channels(first.evidence.tests), *wrong_bases(stood)]
     verdict = judge(steps, bar, bool(doubt), bool(pulls), bool(broken))
     table = tabulate(case, steps, bar, verdict)
     ahead = planned(steps) if plan else ()
     floor = float(np.sqrt(np.mean(null.floor**2)))
-    told = words(verdict, groups, table, pulls, broken, where, doubt, strained(case, steps, bar))
+    told = words(verdict, groups, table, pulls, broken, where, doubt, strained(case, steps, null))
     return Diagnosis(
         verdict, told, tuple(g[0] for g in groups), tuple(groups), table,
         unseen(first, bar), tuple(where), ahead, rmse(first.evidence.fit.parts), floor, bar.threshold, pulls,

@@ -78,10 +78,9 @@ def _matern(time: bytes, ell: float) -> Array:
 FASTS = ((0.0, TAU), *product((1.0, 10.0, 100.0), (60.0, 240.0)))
 ELLS = (ELL, 600.0, 2400.0)
 SLOWS = np.array([0.0, 1.0, 10.0, 100.0, 1000.0, 10000.0])
-CHOSEN = [
-    (f, e, b) for f, e, b in product(range(len(FASTS)), range(len(ELLS)), range(len(SLOWS))) if b or ELLS[e] == ELL
-]
-GRID = tuple(Shape(*FASTS[f], float(SLOWS[b]), ELLS[e]) for f, e, b in CHOSEN)
+_AT = [(f, e, b) for f, e, b in product(range(len(FASTS)), range(len(ELLS)), range(len(SLOWS))) if b or ELLS[e] == ELL]
+GRID = tuple(Shape(*FASTS[f], float(SLOWS[b]), ELLS[e]) for f, e, b in _AT)
+CHOSEN = tuple(np.array(_AT).T)  # of all fast parts, lengths and slow parts those on the grid
 
 
 class Bases(NamedTuple):
@@ -100,8 +99,7 @@ class Bases(NamedTuple):
         scale = 1.0 + SLOWS[:, None] * self.slow[:, :, None, :]
         norm = (1.0 / scale) @ square
         logdet = self.logdet[:, None, None] + np.log(scale).sum(axis=-1)
-        chosen = tuple(np.array(CHOSEN).T)
-        return norm[chosen], logdet[chosen]
+        return norm[CHOSEN], logdet[CHOSEN]
 
 
 @lru_cache(maxsize=16)

@@ -36,16 +36,16 @@ def judge(steps: list[Step], bar: Bar, doubtful: bool, pulled_: bool, broken: bo
         return "outside"
     if not rounds:
         return "absorbed" if pulled_ else "adequate"
+    if len(rounds) > 1:
+        return "several"
     evidence, found = rounds[0].evidence, rounds[0].race
     assert found is not None
-    if len(rounds) == 1 and all(evidence.effects[k].fault for k in found.group):
+    if all(evidence.effects[k].fault for k in found.group):
         return "data"
-    if len(rounds) == 1 and weak(evidence, found):
+    if weak(evidence, found):
         return "absorbed"
     if doubtful:
         return "outside"
-    if len(rounds) > 1:
-        return "several"
     return "group" if len(found.group) > 1 else "named"
 
 
@@ -66,10 +66,10 @@ def refused(steps: list[Step]) -> str:
     return f"{names[group[0]]} comes nearest, but {told[0]}" if all(told) else ""
 
 
-def strained(case: Case, steps: list[Step], bar: Bar) -> str:
+def strained(case: Case, steps: list[Step], null: Null) -> str:
     """The declared parameter that calibration pulls FURTHER than chance allows with all that was found in the model."""
     declared = {p.name for p in case.nuisances or case.model.network.parameters}
-    left = [p for p in pulled(steps[-1].evidence.fit, bar, FURTHER) if p[0] in declared]
+    left = [p for p in pulled(steps[-1].evidence.fit, steps[0].evidence.fit, null, FURTHER) if p[0] in declared]
     return f"calibration of {left[0][0]} is still {abs(left[0][2]):.1f} deviations from its prior" if left else ""
 
 
@@ -83,11 +83,14 @@ def beyond(fit: Fit, null: Null) -> bool:
     return bool(np.any(left > BEYOND * usual))
 
 
-def pulled(fit: Fit, bar: Bar, times: float = 1.0) -> tuple[tuple[str, float, float], ...]:
-    """Calibrated parameters further from their prior than so many times what chance allows: name, value, deviations."""
+def pulled(fit: Fit, first: Fit, null: Null, times: float = 1.0) -> tuple[tuple[str, float, float], ...]:
+    """Calibrated parameters further from their prior than so many times what chance allows: name, value, deviations.
+
+    first : the fit that the null was simulated for, whose parameters are in both
+    """
     pull = dict(zip(fit.unknowns.names, fit.theta / fit.unknowns.sd, strict=True))
-    pull = {n: pull[n] / usual for n, usual in bar.pulls.items() if n in pull}
-    limit = times * max(PULL, pull_threshold(bar.null))
+    pull = {n: pull[n] / usual for n, usual in zip(first.unknowns.names, null.pull_scale, strict=True)}
+    limit = times * max(PULL, pull_threshold(null))
     hit = [n for n in sorted(pull, key=lambda n: -abs(pull[n])) if abs(pull[n]) > limit]
     return tuple((n, fit.values[n], float(pull[n])) for n in hit)
 

@@ -21,11 +21,10 @@ class Offer(NamedTuple):
 
 def deciding(diagnosis: Document) -> list[Offer]:
     """Tests, then sensors, each best first, that are expected to tell at least one pair apart."""
-    kinds = {"test": diagnosis.get("next_tests", []), "sensor": diagnosis.get("next_sensors", [])}
     return [
         Offer(kind, o[name], o["separates"], o["predicted_gain"], o.get("hours"), o.get("why", ""))
-        for (kind, offers), name in zip(kinds.items(), ("test", "place"), strict=True)
-        for o in offers if o["separates"]
+        for kind, key, name in (("test", "next_tests", "test"), ("sensor", "next_sensors", "place"))
+        for o in diagnosis.get(key, []) if o["separates"]
     ]  # fmt: skip
 
 

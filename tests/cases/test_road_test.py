@@ -15,4 +15,5 @@ def test_the_wind_on_the_right_flange_is_named(root, tmp_path):
     found = diagnose(stand, draws=10, workers=1, plan=False)
     assert found.verdict == "named"
     assert found.named == ("convection@flange.right",)
-    assert found.candidates[0].value > 0.0
+    before, after = found.candidates[0].holdout_rmse_K
+    assert after < before
