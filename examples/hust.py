@@ -2,11 +2,11 @@
 
     python examples/hust.py [--rounds 4] [--draws 24] [--ablation] [--out out/hust]
 
-What `thermoscope calibrate`, `diagnose` and `add` do, round by round: the effect that leads is added and what case.toml
-leaves free is calibrated again, until nothing is named. Profiles 5, 8, 11 and 15 are only ever predicted, and nothing
-here looks at them before the end. With --ablation every effect that was added is deleted in turn, the rest calibrated
-anew, and the diagnosis asked what is missing. Prints the tables of cases/hust-ipmsm/README.md and writes them to --out,
-with the model.
+What `thermoscope improve` does, the best-fitting of a group taken unasked: the effect that leads is added and what
+case.toml leaves free is calibrated again, until nothing is named. Profiles 5, 8, 11 and 15 are only ever predicted, and
+nothing here looks at them before the end. With --ablation every effect that was added is deleted in turn, the rest
+calibrated anew, and the diagnosis asked what is missing. Prints the tables of cases/hust-ipmsm/README.md and writes
+them to --out, with the model.
 """
 
 from __future__ import annotations
@@ -14,83 +14,58 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
+from thermoscope.commands.revise import recorded
 from thermoscope.files import write_whole
 from thermoscope.folder import find_case, load_case
-from thermoscope.history import History, Revision, save_history
+from thermoscope.history import History, save_history
 from validation import revise
 from validation.case import Case
-from validation.compare import Comparison, compare
+from validation.climb import Climbed, Guide, Stair, best, climb
+from validation.compare import Comparison
 from validation.diagnose import diagnose
-from validation.findings import Diagnosis
 from validation.fitting import with_model
 
 CHANNELS = ("winding", "stator", "rotor")
 EVIDENCE = (
     "| added | size (95 % interval) | score | threshold | verdict | confused with |", "|---|---|---|---|---|---|",
 )  # fmt: skip
-Step = tuple[str, Comparison]
 
 
-def calibrated(case: Case) -> Case:
-    return with_model(case, revise.calibrate(case).model)
+def climbed(draws: int, most: int, tell: Callable[[str], None]) -> tuple[Climbed, History]:
+    """Diagnose and add what leads, at most `most` times; every step as model.toml keeps it."""
+    history = [History()]
+
+    def keep(step: revise.Revision, evidence: Mapping[str, float | str]) -> None:
+        history.append(history[-1].and_then(recorded(step, evidence)))
+
+    done = climb(load_case(find_case("hust-ipmsm"), tell).case, Guide(best, keep), draws, most, progress=tell)
+    return done, history[-1]
 
 
-def added(case: Case, name: str) -> Case:
-    return with_model(case, revise.add(case, name).model)
+def name(stair: Stair) -> str:
+    """A model as the tables call it."""
+    return f"+ {stair.effect}" if stair.effect else {"start": "published", "calibrate": "calibrated"}[stair.step]
 
 
-@dataclass(frozen=True)
-class Climbed:
-    """The case at the end, every step's errors, the revisions, and a row of evidence for each addition."""
-
-    case: Case
-    steps: list[Step]
-    history: History
-    evidence: list[str]
-
-
-def rounds(case: Case, most: int, draws: int, tell: Callable[[str], None]) -> Climbed:
-    """Diagnose and add what leads, at most `most` times."""
-    steps, history, rows = [("published", compare(case))], History(), []
-    case = calibrated(case)
-    steps.append(("calibrated", compare(case)))
-    for _ in range(most):
-        found = diagnose(case, draws=draws, plan=False, progress=tell)
-        tell(f"{found.verdict}: {found.words}")
-        named = [n for n in found.named if n not in {e.name for e in case.model.effects}]
-        if not named:
-            break
-        rows.append(evidence(found, named[0]))
-        case = added(case, named[0])
-        steps.append((f"+ {named[0]}", compare(case)))
-        history = history.and_then(revision(case, steps, f"{found.verdict}: {found.words}"))
-    return Climbed(case, steps, history, rows)
-
-
-def evidence(found: Diagnosis, name: str) -> str:
-    """What speaks for an effect, as a row of Markdown."""
-    c = next(c for c in found.candidates if c.effect == name)
-    size = f"{c.value:.3g} {c.unit} ({c.ci95[0]:.3g} to {c.ci95[1]:.3g})"
-    alike = cell(", ".join(c.confused_with)) or "nothing"
-    return f"| {cell(name)} | {size} | {c.score:.1f} | {c.threshold:.1f} | {found.verdict} | {alike} |"
+def evidence(stair: Stair) -> str:
+    """What speaks for the effect that was added, as a row of Markdown."""
+    assert stair.revision
+    p = next(p for p in stair.revision.parameters if p.name == stair.effect)
+    size = f"{p.value:.3g} {p.unit} ({p.ci95[0]:.3g} to {p.ci95[1]:.3g})"
+    e = stair.evidence
+    alike = cell(str(e.get("confused_with", "nothing")))
+    return f"| {cell(p.name)} | {size} | {e['score']:.1f} | {e['threshold']:.1f} | {e['verdict']} | {alike} |"
 
 
 def cell(text: str) -> str:
     """Text that a table of Markdown takes as one cell."""
     return text.replace("|", "\\|")
-
-
-def revision(case: Case, steps: Sequence[Step], why: str) -> Revision:
-    before = {t.name: t.rmse_K for t in steps[-2][1].tests}
-    names = tuple(e.name for e in case.model.effects)
-    fell = {t.name: (before[t.name], t.rmse_K) for t in steps[-1][1].tests}
-    return Revision(0, "add", names, names[-1], dict(case.model.values), rmse_K=fell, why=why)
 
 
 @dataclass(frozen=True)
@@ -145,9 +120,9 @@ def errors(comparison: Comparison, role: str) -> dict[str, float]:
     return out
 
 
-def table(steps: Sequence[Step]) -> str:
+def table(stairs: Sequence[Stair]) -> str:
     """Markdown: error (K) of every held-out profile and sensor, published and at the end; then every step's errors."""
-    (_, first), (_, last) = steps[0], steps[-1]
+    first, last = stairs[0].comparison, stairs[-1].comparison
     lines = ["| held-out profile | sensor | published (K) | end (K) |", "|---|---|---|---|"]
     for a, b in zip(first.tests, last.tests, strict=True):
         if a.role == "hold-out":
@@ -155,13 +130,12 @@ def table(steps: Sequence[Step]) -> str:
             lines += [f"| {a.name} | {c.channel} | {c.rmse_K:.2f} | {ends[c.channel]:.2f} |" for c in a.channels]
             lines.append(f"| **{a.name}** | **all** | **{a.rmse_K:.2f}** | **{b.rmse_K:.2f}** |")
     lines += ["", "| model | role | winding (K) | stator (K) | rotor (K) | all (K) |", "|---|---|---|---|---|---|"]
-    for name, comparison in steps:
+    for stair in stairs:
         for role in ("calibrate", "validate", "hold-out"):
-            e = errors(comparison, role)
+            e = errors(stair.comparison, role)
             whole = np.sqrt(np.mean(np.square(list(e.values()))))
-            lines.append(
-                f"| {cell(name)} | {role} | {e['winding']:.2f} | {e['stator']:.2f} | {e['rotor']:.2f} | {whole:.2f} |"
-            )
+            numbers = " | ".join(f"{x:.2f}" for x in (*e.values(), whole))
+            lines.append(f"| {cell(name(stair))} | {role} | {numbers} |")
     return "\n".join(lines)
 
 
@@ -176,11 +150,11 @@ def main() -> None:
     def tell(message: str) -> None:
         print(message, file=sys.stderr)
 
-    done = rounds(load_case(find_case("hust-ipmsm"), tell).case, options.rounds, options.draws, tell)
-    save_history(options.out / "model.toml", done.history)
-    text = "\n".join([table(done.steps), "", *EVIDENCE, *done.evidence, ""])
+    done, history = climbed(options.draws, options.rounds, tell)
+    save_history(options.out / "model.toml", history)
+    text = "\n".join([table(done.stairs), "", *EVIDENCE, *(evidence(s) for s in done.stairs if s.effect), ""])
     write_whole(options.out / "table.md", text + "\n")
-    write_whole(options.out / "compare.json", json.dumps(done.steps[-1][1].document(), indent=1))
+    write_whole(options.out / "compare.json", json.dumps(done.stairs[-1].comparison.document(), indent=1))
     print(text)
     if options.ablation:
         rows = ablation(ablated(done.case, options.draws, tell))

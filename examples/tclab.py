@@ -11,57 +11,38 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable
 from pathlib import Path
 
 from thermoscope.files import write_whole
 from thermoscope.folder import find_case, load_case
-from validation.climb import Climbed, Guide, Stair, climb, leading
-from validation.findings import Candidate, Diagnosis
-from validation.revise import Revision
+from validation.climb import Climbed, Guide, Stair, best, climb, leading
 
 PATHS = ("convection.constant", "convection.buoyant", "radiation", "coupling", "sensor.lag")
 
 
-def first(found: Diagnosis, choice: Sequence[Candidate]) -> str | None:
-    """Of a group its best-fitting member: the candidates come in that order."""
-    return choice[0].effect
-
-
-class Rungs:
-    """Every accepted step with its evidence and the effect's interval."""
-
-    def __init__(self) -> None:
-        self.steps: list[tuple[Revision, Mapping[str, float | str]]] = []
-
-    def keep(self, step: Revision, evidence: Mapping[str, float | str]) -> None:
-        self.steps.append((step, evidence))
-
-
-def ladder(draws: int, tell: Callable[[str], None], most: int = 8, cache: Path | None = None) -> tuple[Climbed, Rungs]:
+def ladder(draws: int, tell: Callable[[str], None], most: int = 8, cache: Path | None = None) -> Climbed:
     """All rungs of the case."""
-    rungs = Rungs()
     case = load_case(find_case("tclab"), tell, bare=True).case
-    return climb(case, Guide(first, rungs.keep, leading), draws, most, cache, tell, PATHS), rungs
+    return climb(case, Guide(best, offer=leading), draws, most, cache, tell, PATHS)
 
 
-def table(done: Climbed, rungs: Rungs) -> str:
+def table(done: Climbed) -> str:
     """Markdown: error (K) per recording after every rung, the effect's size, and what it could also have been."""
     lines = ["| model | steps | random-1 | **random-2 (held out)** | size (95 %) | verdict | also possible |",
-             "|---|---|---|---|---|---|---|", row(done.stairs[0], "", {})]  # fmt: skip
-    for stair, (step, evidence) in zip(done.stairs[1:], rungs.steps, strict=True):
-        lines.append(row(stair, size(step), evidence))
-    return "\n".join(lines)
+             "|---|---|---|---|---|---|---|"]  # fmt: skip
+    return "\n".join([*lines, *(row(stair) for stair in done.stairs)])
 
 
-def row(stair: Stair, size: str, evidence: Mapping[str, float | str]) -> str:
+def row(stair: Stair) -> str:
     errors = " | ".join(f"{t.rmse_K:.2f}" for t in stair.comparison.tests)
     name = f"+ {stair.effect}" if stair.effect else stair.step
-    return f"| {name} | {errors} | {size} | {evidence.get('verdict', '')} | {evidence.get('confused_with', '')} |"
+    verdict, alike = (stair.evidence.get(key, "") for key in ("verdict", "confused_with"))
+    return f"| {name} | {errors} | {size(stair)} | {verdict} | {alike} |"
 
 
-def size(step: Revision) -> str:
-    found = [p for p in step.parameters if p.name == step.effect]
+def size(stair: Stair) -> str:
+    found = [p for p in stair.revision.parameters if p.name == stair.effect] if stair.revision else []
     return "".join(f"{p.value:.3g} {p.unit} ({p.ci95[0]:.3g} to {p.ci95[1]:.3g})" for p in found)
 
 
@@ -77,8 +58,8 @@ def main() -> None:
     parser.add_argument("--draws", type=int, default=24)
     parser.add_argument("--out", type=Path, default=Path("out/tclab"))
     options = parser.parse_args()
-    done, rungs = ladder(options.draws, lambda message: print(message, file=sys.stderr))
-    text = f"{table(done, rungs)}\n{ends(done)}"
+    done = ladder(options.draws, lambda message: print(message, file=sys.stderr))
+    text = f"{table(done)}\n{ends(done)}"
     write_whole(options.out / "table.md", text + "\n")
     print(text)
 

@@ -24,13 +24,22 @@ MOST = 6
 class Stair:
     """The model after one step.
 
-    step : "start", "calibrate" or "add";  evidence : what the diagnosis said about the effect
+    evidence : what the diagnosis said about the effect;  revision : the step that led here, None at the start
     """
 
-    step: str
-    effect: str | None
     comparison: Comparison
     evidence: Mapping[str, float | str]
+    revision: Revision | None = None
+
+    @property
+    def step(self) -> str:
+        """ "start", "calibrate" or "add"."""
+        return self.revision.action if self.revision else "start"
+
+    @property
+    def effect(self) -> str | None:
+        """What was added."""
+        return self.revision.effect if self.revision else None
 
     def document(self) -> dict:
         tests = [{"name": t.name, "role": t.role, "rmse_K": t.rmse_K} for t in self.comparison.tests]
@@ -70,7 +79,7 @@ class Guide:
     """
 
     choose: Callable[[Diagnosis, Sequence[Candidate]], str | None]
-    keep: Callable[[Revision, Mapping[str, float | str]], None]
+    keep: Callable[[Revision, Mapping[str, float | str]], None] = field(default=lambda step, evidence: None)
     offer: Callable[[Diagnosis], tuple[Candidate, ...]] = field(default=lambda found: offered(found))
 
 
@@ -78,6 +87,11 @@ def singletons(diagnosis: Diagnosis, choice: Sequence[Candidate]) -> str | None:
     """What may be added without asking: physics that stands alone, no fault of the measurement."""
     alone = len(choice) == 1 and diagnosis.verdict in ("named", "several")
     return choice[0].effect if alone and not effect(choice[0].effect).fault else None
+
+
+def best(diagnosis: Diagnosis, choice: Sequence[Candidate]) -> str:
+    """Of a group its best-fitting member, which comes first: for studies, where nobody is asked."""
+    return choice[0].effect
 
 
 def climb(
@@ -88,7 +102,7 @@ def climb(
 
     A model that was never calibrated is calibrated first. What the diagnosis cannot tell is not offered.
     """
-    stairs = [Stair("start", None, compare(case), {})]
+    stairs = [Stair(compare(case), {})]
     if case.model.revision == 0:
         progress("calibrating")
         case = _kept(case, calibrate(case, progress=progress), guide, {}, stairs)
@@ -114,7 +128,7 @@ def _kept(
     case: Case, step: Revision, guide: Guide, evidence: Mapping[str, float | str], stairs: list[Stair]
 ) -> Case:  # fmt: skip
     guide.keep(step, evidence)
-    stairs.append(Stair(step.action, step.effect, step.after, evidence))
+    stairs.append(Stair(step.after, evidence, step))
     return with_model(case, step.model)
 
 

@@ -9,6 +9,8 @@ import pytest
 from lumped.simulate import Record, simulate
 from thermoscope.folder import load_case
 from validation.compare import compare
+from validation.fitting import with_model
+from validation.revise import add, calibrate
 
 HELD_OUT = {"id_5", "id_8", "id_11", "id_15"}
 NAMED = ("gap.convection@rotor|stator",)
@@ -100,8 +102,8 @@ def test_the_start_is_the_published_model(root, folder, profile):
 def test_what_is_found_halves_every_error_of_the_published_model_on_profiles_never_used(folder, example):
     """What the case's README says is named, as `thermoscope add` adds it."""
     before = example.errors(compare(folder.case), "hold-out")
-    case = example.calibrated(folder.case)
+    case = with_model(folder.case, calibrate(folder.case).model)
     for name in NAMED:
-        case = example.added(case, name)
+        case = with_model(case, add(case, name).model)
     after = example.errors(compare(case), "hold-out")
     assert {c: after[c] <= 0.5 * before[c] for c in before} == dict.fromkeys(before, True)

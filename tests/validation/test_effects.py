@@ -8,6 +8,7 @@ from everything import machine, scene, warm_test
 
 import validation.effects as folder
 from geom.errors import InputError
+from lumped.laws import InputPower
 from validation.effects import catalogue, effect, kinds
 from validation.predict import predict
 
@@ -101,10 +102,43 @@ def test_cooling_cools_and_heating_heats(kind, way, net):
     assert way * late[np.argmax(np.abs(late))] > 0
 
 
+INPUT = {"rpm": ("speed_rpm", 1.0), "A": ("current_A", 1.0), "m/s": ("vehicle_speed_mps", 1.0),
+         "kHz": ("switching_Hz", 1000.0)}  # fmt: skip
+
+
+def condition(at):
+    """{input: value} of words such as "1000 rpm and 100 A"."""
+    terms = [term.split() for term in at.split(" and ")]
+    return {INPUT[unit][0]: float(number) * INPUT[unit][1] for number, unit in terms}
+
+
+@pytest.mark.parametrize("kind", [k for k, cls in KINDS.items() if cls.at and k != "convection.buoyant"])
+def test_an_amplitude_is_what_the_effect_amounts_to_at_its_condition(kind, net):
+    bigger, p = grown(first(kind, net), net)
+    new = [*bigger.links[len(net.links) :], *bigger.sources[len(net.sources) :]]
+    at = condition(KINDS[kind].at)
+    assert [float(one.law.factor(at)) for one in new] == pytest.approx([1.0] * len(new))
+    assert p.unit.endswith(f" at {KINDS[kind].at}")
+
+
+def test_natural_convection_is_its_amplitude_at_the_rise_it_says(net):
+    bigger, p = grown(first("convection.buoyant", net), net)
+    (law,) = {link.law for link in bigger.links[len(net.links) :]}
+    assert law.factor({}) * 40.0**law.temperature.exponent == pytest.approx(1.0)
+    assert p.unit.endswith(" at 40 K")
+
+
+@pytest.mark.parametrize("kind", [k for k, cls in KINDS.items() if not cls.at])
+def test_what_scales_with_an_input_says_at_which(kind, net):
+    bigger, _ = grown(first(kind, net), net)
+    new = [*bigger.links[len(net.links) :], *bigger.sources[len(net.sources) :]]
+    assert not [one.name for one in new if isinstance(one.law, InputPower)]
+
+
 def test_place_of_a_part_with_faces_is_its_name(net):
     one = effect("convection@flange.right", scene(net)).extend(net)
-    assert one.parameters[-1].unit == "W/m2/K"
-    assert effect("convection@housing", scene(net)).extend(net).parameters[-1].unit == "W/K"
+    assert one.parameters[-1].unit == "W/m2/K at 10 m/s"
+    assert effect("convection@housing", scene(net)).extend(net).parameters[-1].unit == "W/K at 10 m/s"
 
 
 @pytest.mark.parametrize("name", ["wind@flange.right", "convection@nowhere", "convection"])

@@ -1,7 +1,9 @@
 """Somebody else's effect: a package with an entry point, found, placed, scored and added like our own."""
 
+import re
 import subprocess
 import sys
+import tomllib
 from dataclasses import replace
 
 import pytest
@@ -9,46 +11,19 @@ from everything import machine, scene, warm_test
 
 from validation.predict import predict
 
-MODULE = '''
-from dataclasses import dataclass
-
-from lumped.laws import Fixed
-from validation.effects.base import Effect, with_parameter
-from validation.effects.build import heat
-
-
-@dataclass(frozen=True)
-class Sun(Effect):
-    """Sunshine on the housing, a watts."""
-
-    kind = "acme.sun"
-    title = "sunshine"
-    unit = "W"
-    source = "definition"
-    isolating_test = "shade it"
-    typical = (5.0, 50.0)
-    prior_sd = 20.0
-    high = 200.0
-    confused_with = ("loss.constant",)
-
-    @classmethod
-    def where(cls, scene):
-        return [p for p in scene.network.places if p == "housing"]
-
-    def extend(self, network):
-        source = heat(network, self.name, "constant", self.place, Fixed(1.0))
-        return with_parameter(network.extended(sources=[source]), self.parameter(source.name))
-'''
-
 
 @pytest.fixture
-def acme(tmp_path, monkeypatch):
-    """The package as an installer leaves it: a module, and its metadata with one entry point."""
-    (tmp_path / "acme_effects.py").write_text(MODULE)
+def acme(root, tmp_path, monkeypatch):
+    """What docs/how-to/own-effect.md shows, as an installer leaves it: a module, and metadata with its entry point."""
+    page = (root / "docs" / "how-to" / "own-effect.md").read_text()
+    module, project = re.findall(r"```(?:python|toml)\n(.*?)```", page, re.DOTALL)
+    (tmp_path / "acme_effects.py").write_text(module)
     info = tmp_path / "acme_effects-1.0.dist-info"
     info.mkdir()
     (info / "METADATA").write_text("Metadata-Version: 2.1\nName: acme-effects\nVersion: 1.0\n")
-    (info / "entry_points.txt").write_text("[thermoscope.effects]\nsun = acme_effects:Sun\n")
+    points = tomllib.loads(project)["project"]["entry-points"]["thermoscope.effects"]
+    lines = ["[thermoscope.effects]", *(f"{name} = {target}" for name, target in points.items())]
+    (info / "entry_points.txt").write_text("\n".join(lines))
     monkeypatch.syspath_prepend(str(tmp_path))
     yield tmp_path
     sys.modules.pop("acme_effects", None)

@@ -30,6 +30,7 @@ class Effect(ABC):
 
     kind, title : short name and words;  place : where it sits
     unit, sign, prior_sd, low, high : of its one parameter; sign is what physics allows (0: both)
+    at : speed, current, ... at which the parameter is what the effect amounts to ("" : everywhere)
     typical : usual magnitude in `unit`
     confused_with : kinds that leave a similar trace;  isolating_test : the test that sets it apart
     needs : inputs that must be recorded for it to act
@@ -42,6 +43,7 @@ class Effect(ABC):
     kind: ClassVar[str]
     title: ClassVar[str]
     unit: ClassVar[str]
+    at: ClassVar[str] = ""
     source: ClassVar[str]
     isolating_test: ClassVar[str]
     typical: ClassVar[tuple[float, float]]
@@ -76,11 +78,12 @@ class Effect(ABC):
 
     def parameter(self, *targets: str, scale: float = 1.0, unit: str | None = None) -> Parameter:
         """Its parameter; `scale` multiplies prior and upper bound (bare nodes count in W/K instead of W/m2/K)."""
+        unit = unit or self.unit
         return Parameter(
             name=self.name,
             targets=tuple((t, 1.0) for t in targets),
             value=self.neutral,
-            unit=unit or self.unit,
+            unit=f"{unit} at {self.at}" if self.at else unit,
             low=self.low,
             high=self.high * scale,
             prior_sd=self.prior_sd * scale,

@@ -16,6 +16,7 @@ class BearingFriction(Effect):
     kind = "bearing.friction"
     title = "bearing friction"
     unit = "W"
+    at = "1000 rpm"
     source = "Palmgren 1959: viscous moment ~ (nu n)^(2/3), so power ~ n^(5/3)"
     isolating_test = "back-driven spin, uncoupled; vary the grease temperature"
     typical = (5.0, 100.0)

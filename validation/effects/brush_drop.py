@@ -16,6 +16,7 @@ class BrushDrop(Effect):
     kind = "brush.drop"
     title = "brush contact drop"
     unit = "W"
+    at = "100 A"
     source = "carbon brushes, about 1 V per brush (IEC 60276)"
     isolating_test = "measure the drop across the brushes at standstill"
     typical = (50.0, 250.0)

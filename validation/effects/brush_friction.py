@@ -16,6 +16,7 @@ class BrushFriction(Effect):
     kind = "brush.friction"
     title = "brush friction"
     unit = "W"
+    at = "1000 rpm"
     source = "Coulomb friction, mu 0.15 to 0.3, 15 to 25 kPa"
     isolating_test = "lift the brushes and spin"
     typical = (20.0, 300.0)

@@ -19,6 +19,7 @@ class Convection(Effect):
     kind = "convection"
     title = "forced convection by vehicle wind"
     unit = "W/m2/K"
+    at = "10 m/s"
     source = "McAdams 1954, turbulent flat plate, Nu ~ Re^0.8"
     isolating_test = "roll at two speeds with the motor off; blow on the face and shield it"
     typical = (5.0, 60.0)

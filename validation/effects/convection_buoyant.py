@@ -16,6 +16,7 @@ class BuoyantConvection(Effect):
     kind = "convection.buoyant"
     title = "natural convection growing with the rise"
     unit = "W/m2/K"
+    at = "40 K"
     source = "McAdams 1954, vertical plate, laminar, Nu ~ Ra^(1/4)"
     isolating_test = "hold two loss levels to steady state: h must grow with the rise to the power 1/4"
     typical = (1.0, 8.0)

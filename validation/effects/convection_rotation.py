@@ -16,6 +16,7 @@ class RotationConvection(Effect):
     kind = "convection.rotation"
     title = "cooling of a turning part to ambient"
     unit = "W/m2/K"
+    at = "1000 rpm"
     source = "rotating cylinder in still air, Nu = 0.133 Re^(2/3) Pr^(1/3) (Kays and Bjorklund 1958)"
     isolating_test = "cool down at several speeds without current"
     typical = (1.0, 60.0)

@@ -15,6 +15,7 @@ class EndSpaceMixing(Effect):
     kind = "end.mixing"
     title = "end-space air stirred by the rotor"
     unit = "W/m2/K"
+    at = "1000 rpm"
     source = "Schubert 1968: h = 15 (1 + 0.4 v^0.9)"
     isolating_test = "same loss at two speeds, sensors on end winding and flange"
     typical = (5.0, 60.0)

@@ -29,6 +29,7 @@ class GapConvection(Effect):
     kind = "gap.convection"
     title = "air-gap convection with speed"
     unit = "W/m2/K"
+    at = "1000 rpm"
     source = "Becker and Kaye 1962: Nu ~ Ta^0.48 beyond the critical Taylor number"
     isolating_test = "cool down at several speeds; rotor temperature from back-EMF or resistance"
     typical = (5.0, 60.0)

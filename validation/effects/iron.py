@@ -16,6 +16,7 @@ class IronLoss(Effect):
     kind = "iron"
     title = "iron loss growing with speed"
     unit = "W"
+    at = "1000 rpm"
     source = "Steinmetz 1892, exponent 1 (hysteresis) to 2 (eddy current)"
     isolating_test = "back-driven spin without current, then with field current"
     typical = (20.0, 500.0)

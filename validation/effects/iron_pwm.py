@@ -27,6 +27,7 @@ class PwmIronLoss(Effect):
     kind = "iron.pwm"
     title = "iron loss of the inverter's ripple"
     unit = "W"
+    at = "8 kHz"
     source = "Boglietti et al. 1996, iron loss under PWM: falls with the switching frequency, hardly follows the load"
     isolating_test = "no load at two switching frequencies"
     typical = (5.0, 200.0)

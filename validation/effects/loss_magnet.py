@@ -16,6 +16,7 @@ class MagnetLoss(Effect):
     kind = "loss.rotor"
     title = "loss in rotor or magnets"
     unit = "W"
+    at = "1000 rpm"
     source = "eddy currents in thin conductors, P ~ f^2"
     isolating_test = "spin without current and with a dummy rotor"
     typical = (5.0, 200.0)

@@ -17,6 +17,7 @@ class RotorLoadLoss(Effect):
     kind = "loss.rotor.load"
     title = "load-dependent loss in rotor or magnets"
     unit = "W"
+    at = "1000 rpm and 100 A"
     source = "winding harmonics of the armature field, B ~ I; eddy currents in thin conductors, P ~ (f B)^2"
     isolating_test = "same speed at two currents; rotor temperature from back-EMF"
     typical = (1.0, 50.0)

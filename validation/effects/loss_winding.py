@@ -16,6 +16,7 @@ class WindingLoss(Effect):
     kind = "loss.winding"
     title = "copper loss larger than assumed"
     unit = "W"
+    at = "100 A"
     source = "Joule's law"
     isolating_test = "four-wire resistance of the winding at a known temperature"
     typical = (10.0, 300.0)

@@ -16,6 +16,7 @@ class Windage(Effect):
     kind = "windage"
     title = "windage"
     unit = "W"
+    at = "1000 rpm"
     source = "Saari 1998, rotating cylinder, P ~ n^3 at constant friction factor"
     isolating_test = "spin at two gas pressures, or with the fan taken off"
     typical = (2.0, 100.0)
