@@ -107,7 +107,7 @@ def without_null(now: Case) -> tuple[Evidence, Any]:
     evidence = possible(now, scored(now, sixty(now), fit))
     K, p, channels = len(evidence.effects), len(fit.unknowns.parameters), len({s.channel for s in fit.parts})
     z = np.abs(np.random.default_rng(0).standard_normal((40, K)))
-    known = Null(z, np.ones((40, p)), np.full((40, channels), 0.2))
+    known = Null(z, np.ones((40, p)), np.full((40, channels), 0.2), np.zeros(40))
     bar = Bar(known, dict.fromkeys(evidence.names, 1.0))
     steps = search(now, evidence, bar, lambda message: None)
     return evidence, conclude(now, steps, bar, [], False)

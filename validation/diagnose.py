@@ -22,6 +22,7 @@ from validation.procedure.which_base import Hypothesis, bases_tried, wrong_bases
 from validation.rivals import Race, race, weak
 from validation.rows import Step, confusion, planned, sensed, tabulate, unseen
 from validation.sheet import rmse
+from validation.threads import one_blas_thread
 from validation.verdict import FURTHER, STEPS, judge, pulled, refused, strained, words
 from validation.where import Latent, latent_heat
 
@@ -30,6 +31,7 @@ Progress = Callable[[str], None]
 WORTH, CLEAR = 0.1, 1.6
 
 
+@one_blas_thread
 def diagnose(
     case: Case,
     draws: int = 60,
@@ -120,16 +122,16 @@ def conclude(
     groups = [tuple(s.evidence.names[k] for k in s.race.group) for s in steps if s.race]
     pulls, doubt = pulled(first.evidence.fit, first.evidence.fit, null), refused(steps)
     broken = [*broken_channels(first.evidence.tests), *wrong_bases(stood)]
-    verdict = judge(steps, bar, bool(doubt), bool(pulls), bool(broken))
+    verdict = judge(steps, bar, where, bool(doubt), bool(pulls), bool(broken))
     table = tabulate(case, steps, bar, verdict)
     ahead = planned(steps) if plan else ()
     floor = float(np.sqrt(np.mean(null.floor**2)))
-    told = words(verdict, groups, table, pulls, broken, where, doubt, strained(case, steps, null))
+    told = words(verdict, groups, table, pulls, broken, where, null.heat_nats, doubt, strained(case, steps, null))
     return Diagnosis(
         verdict, told, tuple(g[0] for g in groups), tuple(groups), table,
         unseen(first, bar), tuple(where), ahead, rmse(first.evidence.fit.parts), floor, bar.threshold, pulls,
         confusion(first, [c.effect for c in table[:12]]), sensed(steps) if plan else (), float(np.median(null.kappa)),
-        tuple(stood),
+        tuple(stood), null.heat_nats,
     )  # fmt: skip
 
 

@@ -12,6 +12,7 @@ from validation.evidence import calibrated_case, diagnosing
 from validation.fitting import working
 from validation.residuals import Pattern, patterns
 from validation.sheet import segments
+from validation.threads import one_blas_thread
 from validation.uncertainty import Uncertainty, uncertainties
 from validation.where import Latent, latent_heat
 
@@ -32,6 +33,7 @@ class Failing:
         }
 
 
+@one_blas_thread
 def failing(case: Case, progress: Callable[[str], None] = silent) -> Failing:
     """The model as it stands; the scan for heat is made after calibration, or it would find what calibration mends."""
     network, _ = working(case)

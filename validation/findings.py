@@ -106,6 +106,7 @@ class Diagnosis:
 
     kappa : the typical factor of the simulated null on formal standard deviations
     bases : every base that a test may have stood on, where the network knows several
+    usual_nats : evidence of missing heat that 95 % of simulated machines stay below that lack none
     """
 
     verdict: Verdict
@@ -124,6 +125,7 @@ class Diagnosis:
     next_sensors: tuple[NextSensor, ...] = ()
     kappa: float = 1.0
     bases: tuple[Hypothesis, ...] = ()
+    usual_nats: float = 0.0
 
     def document(self) -> dict:
         return {
@@ -134,6 +136,7 @@ class Diagnosis:
             "candidates": [c.document() for c in self.candidates],
             "cannot_see": [h.document() for h in self.cannot_see],
             "where": [w.document() for w in self.where],
+            "usual_nats": self.usual_nats,
             "next_tests": [t.document() for t in self.next_tests],
             "next_sensors": [t.document() for t in self.next_sensors],
             "kappa": self.kappa,

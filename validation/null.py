@@ -24,19 +24,23 @@ from validation.predict import predict
 from validation.score import gram, score, total
 from validation.sheet import Segment, segments
 from validation.side_by_side import side_by_side
+from validation.where import Scan, scan
 
 Array = NDArray[np.float64]
-Drawn = tuple[Array, Array, Array]
+Drawn = tuple[Array, Array, Array, float]
 EULER = 0.5772156649
+FORM = 2  # of what a null keeps: older files are not read
 
 
 @dataclass(frozen=True)
 class Null:
-    """Of m draws: z (m, K) scores, pulls (m, p) calibrated shifts over prior sd, rms (m, n_channel) residuals (K)."""
+    """Of m draws: z (m, K) scores, pulls (m, p) calibrated shifts over prior sd, rms (m, n_channel) residuals (K),
+    heat (m,) evidence (nats) of a heat input at the place that wants it most."""
 
     z: Array
     pulls: Array
     rms: Array
+    heat: Array
 
     @property
     def kappa(self) -> Array:
@@ -61,6 +65,11 @@ class Null:
     def floor(self) -> Array:
         """Residual (K) per channel that the calibrated model reaches in 95 % of the draws."""
         return np.asarray(np.quantile(self.rms, 0.95, axis=0))
+
+    @property
+    def heat_nats(self) -> float:
+        """Evidence of missing heat that 95 % of the draws stay below."""
+        return float(np.quantile(self.heat, 0.95))
 
 
 def _kappa(square: Array, m: int) -> Array:
@@ -103,30 +112,31 @@ def simulated_null(
     file = cache / f"null-{fingerprint(setting, draws)}.npz" if cache else None
     if file and file.exists():
         with np.load(file) as saved:
-            return Null(saved["z"], saved["pulls"], saved["rms"])
-    rows = side_by_side(draw, setting, draws, workers, progress, "simulated null")
-    z, pulls, rms = (np.array(column) for column in zip(*rows, strict=True))
+            return Null(saved["z"], saved["pulls"], saved["rms"], saved["heat"])
+    rows = side_by_side(draw, (setting, scan(fit, tests)), draws, workers, progress, "simulated null")
+    z, pulls, rms, heat = (np.array(column) for column in zip(*rows, strict=True))
     if file:
         file.parent.mkdir(parents=True, exist_ok=True)
-        np.savez(file, z=z, pulls=pulls, rms=rms)
-    return Null(z, pulls, rms)
+        np.savez(file, z=z, pulls=pulls, rms=rms, heat=heat)
+    return Null(z, pulls, rms, heat)
 
 
 def fingerprint(setting: Setting, draws: int) -> str:
     """Hash of what the null depends on."""
-    h = hashlib.sha256(repr((draws, setting.seed, setting.spread, setting.fit.unknowns.names)).encode())
+    h = hashlib.sha256(repr((FORM, draws, setting.seed, setting.spread, setting.fit.unknowns.names)).encode())
     h.update(np.round(setting.fit.theta, 3).tobytes())
     for s in setting.parts:
         h.update(f"{s.test}/{s.channel}".encode() + np.float32(s.J[:: max(1, len(s.J) // 8)]).tobytes())
     return h.hexdigest()[:20]
 
 
-def draw(setting: Setting, i: int) -> Drawn:
-    """One data set: simulate, calibrate with the Jacobian held, score.
+def draw(of: tuple[Setting, Scan], i: int) -> Drawn:
+    """One data set: simulate, calibrate with the Jacobian held, score, and look where heat would be missing.
 
     The truth stays at the calibrated state and the prior is drawn around it: the same tension between prior and data as
     with a drawn truth, and the Jacobian stays valid.
     """
+    setting, heat = of
     fit, p = setting.fit, len(setting.fit.unknowns.parameters)
     rng = np.random.default_rng([setting.seed, i])
     tests = data(setting, rng)
@@ -145,7 +155,8 @@ def draw(setting: Setting, i: int) -> Drawn:
         delta, noise = new, fit_noise(parts)
     S = score(total(gram(parts, noise, p)), delta - centre, fit.unknowns.sd, setting.sign)
     rms = [np.sqrt(np.mean(np.concatenate([s.r for s in parts if s.channel == c]) ** 2)) for c in noise.levels]
-    return S.z, (delta - centre) / fit.unknowns.sd, np.array(rms)
+    most = heat.read(parts, noise, delta - centre)[0].evidence_nats
+    return S.z, (delta - centre) / fit.unknowns.sd, np.array(rms), most
 
 
 def data(setting: Setting, rng: np.random.Generator) -> list[Test]:

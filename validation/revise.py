@@ -18,6 +18,7 @@ from validation.gates import Gate, doubts, gates
 from validation.intervals import FORMAL, Estimate, Profile, Widening, estimates
 from validation.profile import profiles
 from validation.staged import Search, belongs, fitted, merged
+from validation.threads import one_blas_thread
 
 Progress = Callable[[str], None]
 GETS_WORSE = 1.05
@@ -107,6 +108,7 @@ def remove(case: Case, name: str, wide: Widening = FORMAL, progress: Progress = 
     return _revised(case, model, "remove", name, ("calibrate", "validate"), wide, progress)
 
 
+@one_blas_thread
 def _revised(
     case: Case, model: Model, action: str, name: str | None, roles: Sequence[str], wide: Widening, progress: Progress,
     profiled: Sequence[str] = (), search: Search | None = None,

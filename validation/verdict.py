@@ -15,18 +15,19 @@ from validation.null import Null
 from validation.rivals import weak
 from validation.rows import Step
 from validation.sheet import rmse
-from validation.where import Latent
+from validation.where import Latent, located
 
 STEPS = 3
 BEYOND = 1.6
-LOCATED = 10.0
 PULL = 3.0
 FURTHER = 1.25  # beside what is found, the misfit of its form stays, which the null does not know
 HIDES = "it may hide a missing effect"
 NOTHING = "nothing in the catalogue explains all of it"
 
 
-def judge(steps: list[Step], bar: Bar, doubtful: bool, pulled_: bool, broken: bool) -> Verdict:
+def judge(
+    steps: list[Step], bar: Bar, where: Sequence[Latent], doubtful: bool, pulled_: bool, broken: bool
+) -> Verdict:  # fmt: skip
     """The verdict, method of docs/diagnosis."""
     last, rounds = steps[-1], [s for s in steps if s.race]
     if broken:
@@ -35,7 +36,7 @@ def judge(steps: list[Step], bar: Bar, doubtful: bool, pulled_: bool, broken: bo
     if beyond(last.evidence.fit, bar.null) or (len(rounds) == STEPS and np.max(left, initial=0.0) > bar.threshold):
         return "outside"
     if not rounds:
-        return "absorbed" if pulled_ else "adequate"
+        return "absorbed" if pulled_ else "outside" if heat_beyond(where, bar.null) else "adequate"
     if len(rounds) > 1:
         return "several"
     evidence, found = rounds[0].evidence, rounds[0].race
@@ -83,6 +84,11 @@ def beyond(fit: Fit, null: Null) -> bool:
     return bool(np.any(left > BEYOND * usual))
 
 
+def heat_beyond(where: Sequence[Latent], null: Null) -> bool:
+    """Does a place ask for heat far more than any does in simulated machines that lack none?"""
+    return bool(where) and located(where[0].evidence_nats, BEYOND * null.heat_nats)
+
+
 def pulled(fit: Fit, first: Fit, null: Null, times: float = 1.0) -> tuple[tuple[str, float, float], ...]:
     """Calibrated parameters further from their prior than so many times what chance allows: name, value, deviations.
 
@@ -102,9 +108,9 @@ def pull_threshold(null: Null) -> float:
 
 def words(
     verdict: Verdict, groups: list[tuple[str, ...]], table: Sequence[Candidate], pulls: tuple, broken: Sequence[str],
-    where: list[Latent], doubt: str = "", strain: str = "",
+    where: list[Latent], usual_nats: float, doubt: str = "", strain: str = "",
 ) -> str:  # fmt: skip
-    """The verdict in a sentence.  doubt, strain : see `refused` and `strained`"""
+    """The verdict in a sentence.  usual_nats : as in Diagnosis;  doubt, strain : see `refused` and `strained`"""
     if verdict == "adequate":
         return "no evidence of a missing effect"
     if verdict == "absorbed":
@@ -114,7 +120,7 @@ def words(
     if broken:
         return f"check the measurement first: {'; '.join(broken)}"
     if verdict == "outside":
-        place = f" at {where[0].place}" if where and where[0].evidence_nats > LOCATED else ""
+        place = f" at {where[0].place}" if where and located(where[0].evidence_nats, usual_nats) else ""
         return "; ".join(filter(None, [f"heat is missing or in excess{place}", NOTHING, doubt]))
     if verdict == "data":
         return f"check the measurement first: {' or '.join(groups[0])}"

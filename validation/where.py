@@ -1,12 +1,13 @@
 """Where and when heat is missing: a free heat input at each node in turn, as hat functions of time.
 
-log evidence of a heat input q ~ N(0, s^2) per hat at node i, nuisances projected out; 10 nats locate it.
+log evidence of a heat input q ~ N(0, s^2) per hat at node i, nuisances projected out; 10 nats locate it, or what the
+simulated null gives where that is more.
 Source: Sarkka, Alvarez and Lawrence 2019 (latent force models); Rasmussen and Williams 2006, 5.4.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -16,16 +17,19 @@ from scipy.linalg import block_diag
 
 from lumped.laws import Fixed, Inputs
 from lumped.network import Network, Parameter
+from validation.blocks import INSTANTS
 from validation.calibrate import Fit
 from validation.case import Test
 from validation.effects.build import Shaped, heat, power_scale
 from validation.effects.sites import solids
+from validation.noise import Noise
 from validation.score import Gram, gram
-from validation.sheet import segments
+from validation.sheet import Segment, segments
 
 Array = NDArray[np.float64]
 KNOT_S = 180.0
 MEMORY_S = (60.0, 1200.0)
+LOCATED = 10.0  # nats
 
 
 @dataclass(frozen=True)
@@ -54,22 +58,73 @@ class Hat:
         return np.maximum(0.0, 1.0 - np.abs(np.asarray(inputs["time_s"], float) - self.at) / self.width)
 
 
+@dataclass(frozen=True)
+class Scan:
+    """What a heat input at every solid and instant would do to the readings of a calibrated model.
+
+    knots : test -> instants (s) of its hats;  parts : derivatives by calibrated parameters (standard deviations `sd` of
+    their priors), then by every place's hats;  scale : usual heat (W)
+    """
+
+    places: tuple[str, ...]
+    knots: Mapping[str, Array]
+    parts: tuple[Segment, ...]
+    sd: Array
+    scale: float
+
+    def read(self, residual: Sequence[Segment], noise: Noise, theta: Array) -> list[Latent]:
+        """All places, most evident first, by the residual's own noise: it places heat, it tests nothing.
+
+        theta : where the parameters stand, from the mean of their priors
+        """
+        left = {(s.test, s.channel): s.r for s in residual}
+        parts = [replace(s, r=left[s.test, s.channel]) for s in self.parts]
+        grams = gram(parts, replace(noise, allow=0.0), self.sd.size)
+        weight = self.sd**-2.0
+        H = sum(g.JJ for g in grams.values()) + np.diag(weight)
+        Jr = sum(g.Jr for g in grams.values()) - weight * theta
+        cov = np.asarray(np.linalg.inv(H), float)
+        found = [self._at(i, grams, cov, Jr) for i in range(len(self.places))]
+        return sorted(found, key=lambda x: -x.evidence_nats)
+
+    def _at(self, i: int, grams: Mapping[str, Gram], cov: Array, Jr: Array) -> Latent:
+        size = [len(k) for k in self.knots.values()]
+        start = np.concatenate([[0], np.cumsum(size)])
+        A, u = np.zeros((start[-1], start[-1])), np.zeros(start[-1])
+        JZ = np.zeros((cov.shape[0], start[-1]))
+        for d, name in enumerate(self.knots):
+            g, own, block = grams[name], slice(i * size[d], (i + 1) * size[d]), slice(start[d], start[d + 1])
+            A[block, block], u[block], JZ[:, block] = g.ZZ[own, own], g.Zr[own], g.JZ[:, own]
+        A, u = A - JZ.T @ cov @ JZ, u - JZ.T @ cov @ Jr
+        sizes = self.scale * 10.0 ** np.arange(-3.0, 1.5, 0.5)
+        forms = [_correlation(list(self.knots.values()), memory) for memory in MEMORY_S]
+        best, q, sd = max((_evidence(A, u, s, R) for s in sizes for R in forms), key=lambda x: x[0])
+        cut = [slice(a, b) for a, b in pairwise(start)]
+        heat_W = {name: (k, q[c], sd[c]) for (name, k), c in zip(self.knots.items(), cut, strict=True)}
+        return Latent(self.places[i], float(best), heat_W)
+
+
+def located(evidence_nats: float, usual_nats: float) -> bool:
+    """Is there more evidence than it takes to place heat, and than machines give that lack none?"""
+    return evidence_nats > max(LOCATED, usual_nats)
+
+
 def latent_heat(fit: Fit, tests: Sequence[Test], knot_s: float = KNOT_S) -> list[Latent]:
-    """The scan over all solids, most evident first, by the residual's own noise: it places heat, it tests nothing."""
-    places, noise = [p.name for p in solids(fit.network)], replace(fit.noise, allow=0.0)
-    p, weight = len(fit.unknowns.parameters), fit.unknowns.sd**-2.0
-    knots, grams = {}, {}
+    """The scan of a calibrated model's residual."""
+    return scan(fit, tests, knot_s).read(fit.parts, fit.noise, fit.theta)
+
+
+def scan(fit: Fit, tests: Sequence[Test], knot_s: float = KNOT_S) -> Scan:
+    """Hats every `knot_s`, or as many in a long test as its residual has instants to tell apart."""
+    places, knots = tuple(p.name for p in solids(fit.network)), {}
+    parts: list[Segment] = []
     for test in tests:
         span = test.time[-1] - test.time[0]
-        knots[test.name] = test.time[0] + np.linspace(0.0, span, max(2, round(span / knot_s) + 1))
+        count = int(np.clip(round(span / knot_s) + 1, 2, INSTANTS // 2))
+        knots[test.name] = test.time[0] + np.linspace(0.0, span, count)
         network, hats = with_hats(fit.network, places, knots[test.name])
-        parts = segments(network, [test], fit.values, (*fit.unknowns.parameters, *hats))
-        grams[test.name] = gram(parts, noise, p)[test.name]
-    H = sum(g.JJ for g in grams.values()) + np.diag(weight)
-    Jr = sum(g.Jr for g in grams.values()) - weight * fit.theta
-    cov, scale = np.asarray(np.linalg.inv(H), float), power_scale(fit.network)
-    out = [_at(place, i, knots, grams, cov, Jr, scale) for i, place in enumerate(places)]
-    return sorted(out, key=lambda x: -x.evidence_nats)
+        parts += segments(network, [test], fit.values, (*fit.unknowns.parameters, *hats))
+    return Scan(places, knots, tuple(parts), fit.unknowns.sd, power_scale(fit.network))
 
 
 def with_hats(network: Network, places: Sequence[str], knots: Array) -> tuple[Network, list[Parameter]]:
@@ -83,23 +138,6 @@ def with_hats(network: Network, places: Sequence[str], knots: Array) -> tuple[Ne
             hats.append(Parameter(name, ((name, 1.0),), 0.0, "W", mapping="amplitude", neutral=0.0))
     network = network.extended(sources=sources)
     return replace(network, parameters=(*network.parameters, *hats)), hats
-
-
-def _at(place: str, i: int, knots: dict, grams: dict[str, Gram], cov: Array, Jr: Array, scale: float) -> Latent:
-    size = [len(k) for k in knots.values()]
-    start = np.concatenate([[0], np.cumsum(size)])
-    A, u = np.zeros((start[-1], start[-1])), np.zeros(start[-1])
-    JZ = np.zeros((cov.shape[0], start[-1]))
-    for d, g in enumerate(grams.values()):
-        own, block = slice(i * size[d], (i + 1) * size[d]), slice(start[d], start[d + 1])
-        A[block, block], u[block], JZ[:, block] = g.ZZ[own, own], g.Zr[own], g.JZ[:, own]
-    A, u = A - JZ.T @ cov @ JZ, u - JZ.T @ cov @ Jr
-    sizes = scale * 10.0 ** np.arange(-3.0, 1.5, 0.5)
-    forms = [_correlation(list(knots.values()), memory) for memory in MEMORY_S]
-    best, q, sd = max((_evidence(A, u, s, R) for s in sizes for R in forms), key=lambda x: x[0])
-    cut = [slice(a, b) for a, b in pairwise(start)]
-    heat_W = {name: (knots[name], q[c], sd[c]) for name, c in zip(knots, cut, strict=True)}
-    return Latent(place, float(best), heat_W)
 
 
 def _correlation(knots: Sequence[Array], memory: float) -> Array:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from geom.errors import InputError
+from validation.where import located
 from viz import scene
 from viz.callouts import Label, callouts, width
 from viz.colours import BLUE, LIGHT, VERMILION, Theme, missing
@@ -35,11 +36,10 @@ def mean_heat(where: Sequence[Mapping[str, Any]], test: str) -> dict[str, float]
     return {w["place"]: float(np.mean(w["heat"][test]["heat_W"])) for w in near}
 
 
-def located(where: Sequence[Mapping[str, Any]]) -> bool:
-    """Does the scan put the missing heat somewhere, or could it be anywhere?"""
-    from validation.verdict import LOCATED
-
-    return max((w["evidence_nats"] for w in where), default=0.0) > LOCATED
+def placed(diagnosis: Mapping[str, Any]) -> bool:
+    """Does the scan of a `diagnose` document put the missing heat somewhere, or could it be anywhere?"""
+    best = max((w["evidence_nats"] for w in diagnosis.get("where", [])), default=0.0)
+    return located(best, diagnosis.get("usual_nats", 0.0))
 
 
 def missing_in_machine(
@@ -47,6 +47,7 @@ def missing_in_machine(
     where: Sequence[Mapping[str, Any]],
     test: str,
     *,
+    usual_nats: float = 0.0,
     wedge: Wedge | None = QUARTER,
     view: View | None = None,
     theme: Theme = LIGHT,
@@ -57,7 +58,7 @@ def missing_in_machine(
     Each place by itself, not together; its label says how much speaks for it (nats). The headline says when that is too
     little to locate the heat.
 
-    where : as in a `diagnose` document;  test : whose mean is drawn
+    where, usual_nats : as in a `diagnose` document;  test : whose mean is drawn
     """
     p, view, heat = scene.plotter(theme), view or View(), mean_heat(where, test)
     surface = cut_away(nodes, wedge)
@@ -70,7 +71,7 @@ def missing_in_machine(
         diffuse=0.28, culling="back",
     )  # fmt: skip
     scene.colour_bar(p, "W", theme)
-    unsure = "" if located(where) else " (too little evidence to locate it)"
+    unsure = "" if placed({"where": where, "usual_nats": usual_nats}) else " (too little evidence to locate it)"
     scene.headline(p, f"Heat that the model misses, mean over {test}{unsure}", theme)
     scene.footnote(p, "at each place by itself; nats: evidence for it", theme)
     nats = {w["place"]: w["evidence_nats"] for w in where}

@@ -15,7 +15,7 @@ from typing import Any
 from viz import candidates, curves, errors, heat, html, words
 from viz.ahead import deciding, undecided
 from viz.data import Comparison
-from viz.missing import located
+from viz.missing import placed
 
 Document = Mapping[str, Any]
 
@@ -120,7 +120,7 @@ def _missing(r: Report) -> str:
         html.plot(candidates.scores(ranked), "scores", "Candidates by score; beyond the black mark is not chance.")
     ]
     parts.append(html.table(_HEADERS, [_row(c) for c in ranked[:12]], [c["decision"] == "named" for c in ranked]))
-    if located(r.diagnosis.get("where", [])) and r.diagnosis["where"][0].get("heat"):
+    if placed(r.diagnosis) and r.diagnosis["where"][0].get("heat"):
         caption = "Heat that would have to enter (or leave, below zero) at the likeliest place, with its 2σ band."
         parts.append(html.plot(heat.missing_heat(r.diagnosis["where"]), "heat", caption))
     parts.append(html.text("Errors: without the effect → with it, all else fitted anew each time."))

@@ -8,7 +8,7 @@ from small_motor import motor
 from geom.errors import InputError
 from viz import missing_in_machine, split
 from viz.colours import BLUE, VERMILION
-from viz.missing import mean_heat
+from viz.missing import mean_heat, placed
 
 NODES = split(motor(24))
 
@@ -19,6 +19,15 @@ def place(name, nats, watts):
 
 
 WHERE = [place("flange.right", 60.0, -300.0), place("housing", 52.0, -250.0), place("yoke", 10.0, 400.0)]
+
+
+@pytest.mark.parametrize(("usual", "says"), [(0.0, True), (20.0, True), (80.0, False)])
+def test_heat_is_placed_only_beyond_what_machines_give_that_lack_none(usual, says):
+    assert placed({"where": WHERE, "usual_nats": usual}) is says
+
+
+def test_nothing_was_looked_for():
+    assert not placed({"where": []})
 
 
 def test_places_far_behind_are_left_out():

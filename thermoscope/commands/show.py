@@ -147,13 +147,13 @@ def _pictures(folder: Folder, into: Path, diagnosis: Mapping[str, Any] | None) -
 def _missing_heat(diagnosis: Mapping[str, Any] | None, nodes: SplitMesh, into: Path) -> dict[str, Path]:
     """Caption -> picture of where a diagnosis puts the missing heat; none where it cannot tell."""
     from viz import missing_in_machine
-    from viz.missing import located
+    from viz.missing import placed
 
-    where = (diagnosis or {}).get("where", [])
-    if not located(where):
+    if diagnosis is None or not placed(diagnosis):
         return {}
+    where, usual = diagnosis["where"], diagnosis.get("usual_nats", 0.0)
     test, file = list(where[0]["heat"])[-1], into / "missing-heat.png"
-    missing_in_machine(nodes, where, test, png=file).close()
+    missing_in_machine(nodes, where, test, usual_nats=usual, png=file).close()
     return {f"Heat that would have to enter (or leave, below zero) during {test}; unlikely places are grey.": file}
 
 
