@@ -110,7 +110,7 @@ def without_null(now: Case) -> tuple[Evidence, Any]:
     known = Null(z, np.ones((40, p)), np.full((40, channels), 0.2), np.zeros(40))
     bar = Bar(known, dict.fromkeys(evidence.names, 1.0))
     steps = search(now, evidence, bar, lambda message: None)
-    return evidence, conclude(now, steps, bar, [], False)
+    return evidence, conclude(now, steps, bar, [], [], False)
 
 
 def peak(now: Case) -> float:

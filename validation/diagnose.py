@@ -58,7 +58,8 @@ def diagnose(
     steps = [Step(evidence, bar.null.kappa, None)] if wrong_bases(stood) else search(case, evidence, bar, progress)
     progress("looking for where heat is missing")
     where = latent_heat(fit, evidence.tests)
-    return conclude(case, steps, bar, where, plan, stood)
+    left = latent_heat(steps[-1].evidence.fit, evidence.tests) if len(steps) > 1 else where
+    return conclude(case, steps, bar, where, left, plan, stood)
 
 
 def search(case: Case, evidence: Evidence, bar: Bar, progress: Progress) -> list[Step]:
@@ -115,18 +116,22 @@ def with_effect(case: Case, new: Effect, values: Mapping[str, float]) -> Case:
 
 
 def conclude(
-    case: Case, steps: list[Step], bar: Bar, where: list[Latent], plan: bool, stood: Sequence[Hypothesis] = (),
+    case: Case, steps: list[Step], bar: Bar, where: list[Latent], left: list[Latent], plan: bool,
+    stood: Sequence[Hypothesis] = (),
 ) -> Diagnosis:  # fmt: skip
-    """From the search to a verdict and its tables.  stood : the bases that were tried"""
+    """From the search to a verdict and its tables.
+
+    where, left : heat missing before, and with all in the model that was found;  stood : the bases that were tried
+    """
     first, null = steps[0], bar.null
     groups = [tuple(s.evidence.names[k] for k in s.race.group) for s in steps if s.race]
     pulls, doubt = pulled(first.evidence.fit, first.evidence.fit, null), refused(steps)
     broken = [*broken_channels(first.evidence.tests), *wrong_bases(stood)]
-    verdict = judge(steps, bar, where, bool(doubt), bool(pulls), bool(broken))
+    verdict = judge(steps, bar, left, bool(doubt), bool(pulls), bool(broken))
     table = tabulate(case, steps, bar, verdict)
     ahead = planned(steps) if plan else ()
     floor = float(np.sqrt(np.mean(null.floor**2)))
-    told = words(verdict, groups, table, pulls, broken, where, null.heat_nats, doubt, strained(case, steps, null))
+    told = words(verdict, groups, table, pulls, broken, left, null.heat_nats, doubt, strained(case, steps, null))
     return Diagnosis(
         verdict, told, tuple(g[0] for g in groups), tuple(groups), table,
         unseen(first, bar), tuple(where), ahead, rmse(first.evidence.fit.parts), floor, bar.threshold, pulls,

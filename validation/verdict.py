@@ -19,6 +19,7 @@ from validation.where import Latent, located
 
 STEPS = 3
 BEYOND = 1.6
+CLEARLY = 2.0  # in nats; what the null does not know made 1.4 and, beside what was found, 1.5 of it (development seeds)
 PULL = 3.0
 FURTHER = 1.25  # beside what is found, the misfit of its form stays, which the null does not know
 HIDES = "it may hide a missing effect"
@@ -26,9 +27,12 @@ NOTHING = "nothing in the catalogue explains all of it"
 
 
 def judge(
-    steps: list[Step], bar: Bar, where: Sequence[Latent], doubtful: bool, pulled_: bool, broken: bool
+    steps: list[Step], bar: Bar, heat: Sequence[Latent], doubtful: bool, pulled_: bool, broken: bool
 ) -> Verdict:  # fmt: skip
-    """The verdict, method of docs/diagnosis."""
+    """The verdict, method of docs/diagnosis.
+
+    heat : missing where all that was found is in the model, most evident first
+    """
     last, rounds = steps[-1], [s for s in steps if s.race]
     if broken:
         return "data"
@@ -36,16 +40,17 @@ def judge(
     if beyond(last.evidence.fit, bar.null) or (len(rounds) == STEPS and np.max(left, initial=0.0) > bar.threshold):
         return "outside"
     if not rounds:
-        return "absorbed" if pulled_ else "outside" if heat_beyond(where, bar.null) else "adequate"
+        return "absorbed" if pulled_ else "outside" if unexplained(heat, bar.null) else "adequate"
+    more = unexplained(heat, bar.null, FURTHER)
     if len(rounds) > 1:
-        return "several"
+        return "outside" if more else "several"
     evidence, found = rounds[0].evidence, rounds[0].race
     assert found is not None
     if all(evidence.effects[k].fault for k in found.group):
         return "data"
     if weak(evidence, found):
         return "absorbed"
-    if doubtful:
+    if doubtful or more:
         return "outside"
     return "group" if len(found.group) > 1 else "named"
 
@@ -84,9 +89,9 @@ def beyond(fit: Fit, null: Null) -> bool:
     return bool(np.any(left > BEYOND * usual))
 
 
-def heat_beyond(where: Sequence[Latent], null: Null) -> bool:
-    """Does a place ask for heat far more than any does in simulated machines that lack none?"""
-    return bool(where) and located(where[0].evidence_nats, BEYOND * null.heat_nats)
+def unexplained(heat: Sequence[Latent], null: Null, times: float = 1.0) -> bool:
+    """Does a place ask for heat far more clearly than any does in simulated machines that lack none?"""
+    return bool(heat) and located(heat[0].evidence_nats, times * CLEARLY * null.heat_nats)
 
 
 def pulled(fit: Fit, first: Fit, null: Null, times: float = 1.0) -> tuple[tuple[str, float, float], ...]:
@@ -108,9 +113,12 @@ def pull_threshold(null: Null) -> float:
 
 def words(
     verdict: Verdict, groups: list[tuple[str, ...]], table: Sequence[Candidate], pulls: tuple, broken: Sequence[str],
-    where: list[Latent], usual_nats: float, doubt: str = "", strain: str = "",
+    heat: list[Latent], usual_nats: float, doubt: str = "", strain: str = "",
 ) -> str:  # fmt: skip
-    """The verdict in a sentence.  usual_nats : as in Diagnosis;  doubt, strain : see `refused` and `strained`"""
+    """The verdict in a sentence.
+
+    heat : as in `judge`;  usual_nats : as in Diagnosis;  doubt, strain : see `refused` and `strained`
+    """
     if verdict == "adequate":
         return "no evidence of a missing effect"
     if verdict == "absorbed":
@@ -120,8 +128,9 @@ def words(
     if broken:
         return f"check the measurement first: {'; '.join(broken)}"
     if verdict == "outside":
-        place = f" at {where[0].place}" if where and located(where[0].evidence_nats, usual_nats) else ""
-        return "; ".join(filter(None, [f"heat is missing or in excess{place}", NOTHING, doubt]))
+        place = f" at {heat[0].place}" if heat and located(heat[0].evidence_nats, usual_nats) else ""
+        beside = f" beside what {' and '.join(g[0] for g in groups)} would explain" if groups and not doubt else ""
+        return "; ".join(filter(None, [f"heat is missing or in excess{place}{beside}", NOTHING, doubt]))
     if verdict == "data":
         return f"check the measurement first: {' or '.join(groups[0])}"
     return "; ".join(filter(None, [_found(verdict, groups, table[0]), strain]))

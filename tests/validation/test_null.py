@@ -9,7 +9,7 @@ from validation import diagnose
 from validation.disturb import USUAL
 from validation.evidence import calibrated_case, scored
 from validation.null import Null, Setting, data
-from validation.verdict import BEYOND
+from validation.verdict import CLEARLY
 
 
 def test_a_sensor_that_was_not_read_in_one_test_is_simulated_unread():
@@ -29,7 +29,7 @@ def test_evidence_of_missing_heat_is_drawn_too():
     """What 95 % of the machines that lack none stay below; a case of that kind stays there too."""
     answer = diagnose(Truth(12).case(), draws=8, workers=1, plan=False, kinds=["convection"])
     assert 0.0 < answer.usual_nats < 100.0
-    assert answer.where[0].evidence_nats < BEYOND * answer.usual_nats
+    assert answer.where[0].evidence_nats < CLEARLY * answer.usual_nats
 
 
 def test_a_threshold_from_few_draws_is_passed_one_time_in_twenty():

@@ -37,6 +37,14 @@ def test_heat_that_comes_and_goes_unexplained_is_told_though_the_error_is_small(
     assert "heat is missing or in excess at yoke" in answer.words
 
 
+def test_what_is_found_does_not_hide_that_more_is_missing():
+    air = wind("flange.right", 12.0)
+    answer = found(["convection"], lambda T, u, t: air(T, u, t) | bursts(T, u, t))
+    assert answer.groups == (("convection@flange.right",),)
+    assert answer.verdict == "outside"
+    assert "at yoke beside what convection@flange.right would explain" in answer.words
+
+
 def test_a_declared_value_that_stays_far_off_is_told():
     """Wind and nothing else is in the catalogue; a bearing with eight times the friction, 30 % believed, remains."""
     strained = {"change": {"": ("friction", "bearing.left", 8.0)}}
