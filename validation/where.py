@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -87,6 +88,12 @@ class Scan:
         found = [self._at(i, grams, cov, Jr) for i in range(len(self.places))]
         return sorted(found, key=lambda x: -x.evidence_nats)
 
+    @cached_property
+    def roots(self) -> list[Array]:
+        """Cholesky factor of the heat's correlation at the knots, for each memory."""
+        forms = [_correlation(list(self.knots.values()), memory) for memory in MEMORY_S]
+        return [np.asarray(np.linalg.cholesky(R), float) for R in forms]
+
     def _at(self, i: int, grams: Mapping[str, Gram], cov: Array, Jr: Array) -> Latent:
         size = [len(k) for k in self.knots.values()]
         start = np.concatenate([[0], np.cumsum(size)])
@@ -97,8 +104,7 @@ class Scan:
             A[block, block], u[block], JZ[:, block] = g.ZZ[own, own], g.Zr[own], g.JZ[:, own]
         A, u = A - JZ.T @ cov @ JZ, u - JZ.T @ cov @ Jr
         sizes = self.scale * 10.0 ** np.arange(-3.0, 1.5, 0.5)
-        forms = [_correlation(list(self.knots.values()), memory) for memory in MEMORY_S]
-        best, q, sd = max((_evidence(A, u, s, R) for s in sizes for R in forms), key=lambda x: x[0])
+        best, q, sd = max((_evidence(A, u, sizes, root) for root in self.roots), key=lambda x: x[0])
         cut = [slice(a, b) for a, b in pairwise(start)]
         heat_W = {name: (k, q[c], sd[c]) for (name, k), c in zip(self.knots.items(), cut, strict=True)}
         return Latent(self.places[i], float(best), heat_W)
@@ -145,11 +151,16 @@ def _correlation(knots: Sequence[Array], memory: float) -> Array:
     return block_diag(*(np.exp(-np.abs(k[:, None] - k[None, :]) / memory) for k in knots))
 
 
-def _evidence(A: Array, u: Array, s: float, R: Array) -> tuple[float, Array, Array]:
-    """Log evidence of q ~ N(0, s^2 R), posterior mean and standard deviation."""
-    K = s**2 * R
-    M = np.eye(len(u)) + K @ A
-    cov = np.linalg.solve(M, K)
-    q = np.asarray(cov @ u, float)
-    _, logdet = np.linalg.slogdet(M)
-    return 0.5 * float(u @ q) - 0.5 * float(logdet), q, np.asarray(np.sqrt(np.maximum(np.diag(cov), 0.0)), float)
+def _evidence(A: Array, u: Array, sizes: Array, root: Array) -> tuple[float, Array, Array]:
+    """Log evidence of q ~ N(0, s^2 root root') for the best of the sizes s, posterior mean and standard deviation.
+
+    In the eigenvectors of root' A root every size is a sum: log ev = 1/2 sum(s^2 b^2 / (1 + s^2 l) - log(1 + s^2 l)).
+    """
+    eigenvalues, vectors = np.linalg.eigh(root.T @ A @ root)
+    basis = root @ vectors
+    b, square = basis.T @ u, sizes[:, None] ** 2
+    grown = 1.0 + square * np.maximum(eigenvalues, 0.0)
+    evidence = 0.5 * np.sum(square * b**2 / grown - np.log(grown), axis=1)
+    best = int(np.argmax(evidence))
+    share = square[best] / grown[best]
+    return float(evidence[best]), basis @ (share * b), np.asarray(np.sqrt(basis**2 @ share))
