@@ -92,6 +92,12 @@ def out() -> Any:
     return console if console.is_terminal else Console(width=WIDTH)
 
 
+def sized(value: float | None, low: float | None, high: float | None) -> str:
+    """A value with its interval: three digits tell what an interval leaves sure."""
+    one, *two = (f"{x:.3g}" if x is not None and math.isfinite(x) else "-" for x in (value, low, high))
+    return f"{one} ({' ... '.join(two)})"
+
+
 def cell(value: Any) -> str:
     """A value as a table shows it."""
     if value is None or (isinstance(value, float) and not math.isfinite(value)):

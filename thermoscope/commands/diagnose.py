@@ -9,7 +9,7 @@ from thermoscope.commands.ahead import show_ahead
 from thermoscope.commands.bases import show_bases
 from thermoscope.commands.opened import opened
 from thermoscope.commands.saved import save_diagnosis
-from thermoscope.terminal import cell, give, progress, say, table
+from thermoscope.terminal import give, progress, say, sized, table
 
 ROWS = 10
 
@@ -40,9 +40,11 @@ def show(document: Mapping[str, Any]) -> None:
 
 def _searched(document: Mapping[str, Any]) -> None:
     rows = [_row(c) for c in document["candidates"][:ROWS]]
-    headers = ["effect", "score", "amplitude", "95 %", "error (K)", "held out (K)", "confused with", "decision"]
+    headers = ["effect", "score", "amplitude (95 %)", "unit", "error (K)", "held out (K)", "decision"]
     title = f"Candidates: a score beyond {document['threshold']:.2f} is not chance"
     table(title, headers, rows, marked=["named", "group"])
+    if document["candidates"] and (alike := document["candidates"][0]["confused_with"]):
+        say(f"{document['candidates'][0]['effect']} looks like {', '.join(alike)} to these tests and sensors")
     show_ahead(document)
     hidden = [h["effect"] for h in document["cannot_see"]]
     if hidden:
@@ -50,12 +52,10 @@ def _searched(document: Mapping[str, Any]) -> None:
 
 
 def _row(c: Mapping[str, Any]) -> list[Any]:
-    size, alike = c["amplitude"], c["confused_with"]
-    low, high = size["ci95"]
-    more = f" + {len(alike) - 1}" if len(alike) > 1 else ""
+    size = c["amplitude"]
     return [
-        c["effect"], c["score"], f"{cell(size['value'])} {size['unit']}", f"{cell(low)} ... {cell(high)}",
-        _arrow(c["rmse_K"]), _arrow(c["holdout_rmse_K"]), f"{alike[0]}{more}" if alike else "", c["decision"],
+        c["effect"], c["score"], sized(size["value"], *size["ci95"]), "" if size["unit"] == "1" else size["unit"],
+        _arrow(c["rmse_K"]), _arrow(c["holdout_rmse_K"]), c["decision"],
     ]  # fmt: skip
 
 

@@ -13,7 +13,7 @@ from thermoscope.commands.revise import recorded
 from thermoscope.commands.saved import save_diagnosis
 from thermoscope.folder import Folder
 from thermoscope.history import History, load_history, save_history
-from thermoscope.terminal import cell, give, progress, say, table
+from thermoscope.terminal import cell, give, progress, say, sized, table
 from viz.ahead import deciding
 
 if TYPE_CHECKING:
@@ -64,8 +64,7 @@ def asked(found: Diagnosis, choice: Sequence[Candidate]) -> str | None:
 
 def offer(c: Candidate) -> str:
     """A candidate as the question shows it."""
-    low, high = c.ci95
-    size = f"{cell(c.value)} {c.unit} ({cell(low)} ... {cell(high)})"
+    size = f"{sized(c.value, *c.ci95)} {c.unit}".removesuffix(" 1")
     fell = f", error {c.rmse_K[0]:.2f} -> {c.rmse_K[1]:.2f} K" if c.rmse_K else ""
     return f"{c.effect}: {c.title}, {size}, score {cell(c.score)} over {cell(c.threshold)}{fell}"
 
