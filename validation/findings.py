@@ -106,7 +106,7 @@ class Diagnosis:
 
     kappa : the typical factor of the simulated null on formal standard deviations
     bases : every base that a test may have stood on, where the network knows several
-    usual_nats : evidence of missing heat that 95 % of simulated machines stay below that lack none
+    usual_nats : evidence of missing heat that simulated machines pass one time in twenty that lack none
     """
 
     verdict: Verdict
