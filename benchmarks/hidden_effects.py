@@ -17,6 +17,7 @@ from pathlib import Path
 from hidden import sizes
 from hidden.cases import SHARES, plan
 from hidden.kinds import KINDS
+from hidden.page import markdown
 from hidden.run import Wanted, answered, pairs, run
 from hidden.score import rows
 
@@ -37,6 +38,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--score", action="store_true", help="only score what OUT has")
     parser.add_argument("--sizes", action="store_true", help="measure the smallest detectable sizes anew and stop")
     parser.add_argument("--json", type=Path)
+    parser.add_argument("--page", type=Path, help="the tables of docs/hidden-effects.md, as Markdown")
     return parser.parse_args()
 
 
@@ -55,6 +57,8 @@ def main() -> None:
         )
         told += f"{r['peer_name']} {r['peer']:.3g}" if "peer" in r else ""
         print(f"{r['case']:32s} {r['measure']:30s} {r['ours']:8.3g} {r['unit']}{told}")
+    if a.page:
+        a.page.write_text(markdown(table) + "\n")
     if a.json:
         computer = f"{platform.machine()}, {platform.processor() or platform.system()}"
         document = {

@@ -9,6 +9,7 @@ from hidden import judge
 from hidden.answer import answer
 from hidden.cases import SHARES, Label, plan
 from hidden.kinds import KINDS
+from hidden.page import markdown
 from hidden.peers import peers
 from hidden.score import rows
 from hidden.sizes import detectable
@@ -37,6 +38,16 @@ def test_wilson_interval_is_the_published_one():
     """Newcombe 1998, table I: 81 of 263 gives 0.2553 to 0.3662; 0 of 20 gives 0 to 0.1611."""
     assert judge.wilson(81, 263) == pytest.approx((0.2553, 0.3662), abs=1e-4)
     assert judge.wilson(0, 20) == pytest.approx((0.0, 0.1611), abs=1e-4)
+
+
+def test_page_has_every_promise_and_every_method_once():
+    quiet = {"case": "nothing missing", "measure": "false alarm", "ours": 0.0125, "n": 80, "ci95": [0.0, 0.067]}
+    table = [{**quiet, "target": "<= 0.05"}, {**quiet, "peer": 0.5, "peer_name": "AIC refit"}]
+    assert markdown(table).splitlines() == [
+        "| | of | came out | 95 % | wanted |", "|---|---|---|---|---|",
+        "| nothing missing: false alarm | 80 | 1 % | 0 to 7 % | <= 5 % |", "",
+        "| method | false alarm (80) |", "|---|---|", "| this diagnosis | 1 % |", "| AIC after refits | 50 % |",
+    ]  # fmt: skip
 
 
 def test_plan_keeps_the_proportions_and_never_shares_seeds():

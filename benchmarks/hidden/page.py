@@ -1,0 +1,48 @@
+"""The score as docs/hidden-effects.md shows it: promises, then the first guess of every method."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+MEANING = {
+    "largest residual": "node of the largest residual", "correlation": "plain correlation",
+    "forward BIC": "forward selection by BIC", "forward LRT": "forward selection by likelihood ratio",
+    "AIC refit": "AIC after refits",
+}  # fmt: skip
+
+
+def markdown(table: Sequence[dict]) -> str:
+    """Rows of `score.rows` as two tables."""
+    lines = ["| | of | came out | 95 % | wanted |", "|---|---|---|---|---|"]
+    for r in [r for r in table if "target" in r]:
+        rate = f"{percent(r['ours'])} | {span(r['ci95'])} | {aim(r['target'])}".rstrip()
+        lines.append(f"| {r['case']}: {r['measure']} | {r['n']} | {rate} |")
+    against = [r for r in table if "peer" in r]
+    return "\n".join([*lines, "", *guesses(against)]) if against else "\n".join(lines)
+
+
+def guesses(against: Sequence[dict]) -> list[str]:
+    """One line per method, one column per measure, which names its number of cases."""
+    asked = {(r["case"], r["measure"]): r for r in against}
+    heads = [f"{measure.split(', ')[-1]} ({r['n']})" for (_, measure), r in asked.items()]
+    lines = [f"| method | {' | '.join(heads)} |", f"|---|{'---|' * len(asked)}"]
+    lines.append(f"| this diagnosis | {' | '.join(percent(r['ours']) for r in asked.values())} |")
+    for name in dict.fromkeys(r["peer_name"] for r in against):
+        theirs = {(r["case"], r["measure"]): r["peer"] for r in against if r["peer_name"] == name}
+        lines.append(f"| {MEANING[name]} | {' | '.join(percent(theirs[key]) for key in asked)} |")
+    return lines
+
+
+def aim(target: str) -> str:
+    """'>= 0.90' as '>= 90 %'."""
+    words = [percent(float(w)).removesuffix(" %") if w.replace(".", "").isdigit() else w for w in target.split()]
+    return f"{' '.join(words)} %" if words else ""
+
+
+def span(interval: Sequence[float]) -> str:
+    low, high = interval
+    return f"{percent(low).removesuffix(' %')} to {percent(high)}"
+
+
+def percent(rate: float) -> str:
+    return f"{100.0 * rate:.0f} %"
