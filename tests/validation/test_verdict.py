@@ -14,7 +14,7 @@ def rub(T, u, t):
 
 def bursts(T, u, t):
     """A heater on the yoke that nobody knows of, on at odd minutes."""
-    return {"yoke": 150.0 if (t // 60) % 17 in (3, 4, 5, 11) else 0.0}
+    return {"yoke": 300.0 if (t // 60) % 17 in (3, 4, 5, 11) else 0.0}
 
 
 def found(kinds, hidden, **machine):
