@@ -14,7 +14,7 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -26,7 +26,7 @@ from thermoscope.folder import find_case, load_case
 from thermoscope.history import History, save_history
 from validation import revise
 from validation.case import Case
-from validation.climb import Climbed, Guide, Stair, best, climb
+from validation.climb import Guide, Stair, best, climb
 from validation.compare import Comparison
 from validation.diagnose import diagnose
 from validation.fitting import with_model
@@ -37,15 +37,12 @@ EVIDENCE = (
 )  # fmt: skip
 
 
-def climbed(draws: int, most: int, tell: Callable[[str], None]) -> tuple[Climbed, History]:
-    """Diagnose and add what leads, at most `most` times; every step as model.toml keeps it."""
-    history = [History()]
-
-    def keep(step: revise.Revision, evidence: Mapping[str, float | str]) -> None:
-        history.append(history[-1].and_then(recorded(step, evidence)))
-
-    done = climb(load_case(find_case("hust-ipmsm"), tell).case, Guide(best, keep), draws, most, progress=tell)
-    return done, history[-1]
+def history(stairs: Sequence[Stair]) -> History:
+    """Every step as model.toml keeps it."""
+    out = History()
+    for s in stairs:
+        out = out.and_then(recorded(s.revision, s.evidence)) if s.revision else out
+    return out
 
 
 def name(stair: Stair) -> str:
@@ -141,7 +138,7 @@ def table(stairs: Sequence[Stair]) -> str:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--rounds", type=int, default=4)
+    parser.add_argument("--rounds", type=int, default=4, help="steps, the calibration among them")
     parser.add_argument("--draws", type=int, default=24)
     parser.add_argument("--ablation", action="store_true")
     parser.add_argument("--out", type=Path, default=Path("out/hust"))
@@ -150,8 +147,9 @@ def main() -> None:
     def tell(message: str) -> None:
         print(message, file=sys.stderr)
 
-    done, history = climbed(options.draws, options.rounds, tell)
-    save_history(options.out / "model.toml", history)
+    case = load_case(find_case("hust-ipmsm"), tell).case
+    done = climb(case, Guide(best), options.draws, options.rounds, progress=tell)
+    save_history(options.out / "model.toml", history(done.stairs))
     text = "\n".join([table(done.stairs), "", *EVIDENCE, *(evidence(s) for s in done.stairs if s.effect), ""])
     write_whole(options.out / "table.md", text + "\n")
     write_whole(options.out / "compare.json", json.dumps(done.stairs[-1].comparison.document(), indent=1))

@@ -35,14 +35,18 @@ def guesses(against: Sequence[dict]) -> list[str]:
 
 def aim(target: str) -> str:
     """'>= 0.90' as '>= 90 %'."""
-    words = [percent(float(w)).removesuffix(" %") if w.replace(".", "").isdigit() else w for w in target.split()]
+    words = [hundredths(float(w)) if w.replace(".", "").isdigit() else w for w in target.split()]
     return f"{' '.join(words)} %" if words else ""
 
 
 def span(interval: Sequence[float]) -> str:
     low, high = interval
-    return f"{percent(low).removesuffix(' %')} to {percent(high)}"
+    return f"{hundredths(low)} to {percent(high)}"
 
 
 def percent(rate: float) -> str:
-    return f"{100.0 * rate:.0f} %"
+    return f"{hundredths(rate)} %"
+
+
+def hundredths(rate: float) -> str:
+    return f"{100.0 * rate:.0f}"
