@@ -21,8 +21,11 @@ def kept_file(part: Part, folder: Path | str | None, kind: str, suffix: str) -> 
 
 @contextmanager
 def written_whole(path: Path) -> Iterator[Path]:
-    """A file to write to that takes its place only when it is complete."""
+    """A file to write to that takes its place only when it is complete; hidden until then, gone if writing fails."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    partial = path.with_name(f"{path.stem}.{os.getpid()}.part{path.suffix}")
-    yield partial
-    partial.replace(path)
+    partial = path.with_name(f".{path.stem}.{os.getpid()}.part{path.suffix}")
+    try:
+        yield partial
+        partial.replace(path)
+    finally:
+        partial.unlink(missing_ok=True)

@@ -9,19 +9,17 @@ from typing import Any
 import numpy as np
 
 from geom.errors import InputError
+from geom.kept import written_whole
 from geom.mesh import Contact, NamedMesh, Patch
 
 
 def write_npz(mesh: NamedMesh, path: Path | str) -> None:
     """Everything, exactly; written whole or not at all."""
-    path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
     arrays = {f"patch:{name}": patch.facets for name, patch in mesh.patches.items()}
     arrays |= {f"contact:{name}": contact.facets for name, contact in mesh.contacts.items()}
-    partial = path.with_suffix(".part.npz")
-    arrays |= {"tets": mesh.tets, "region": mesh.region}
-    np.savez(partial, points=mesh.points, names=np.array(json.dumps(_names(mesh))), **arrays)  # type: ignore[arg-type]
-    partial.replace(path)
+    arrays |= {"tets": mesh.tets, "region": mesh.region, "points": mesh.points}
+    with written_whole(Path(path)) as partial:
+        np.savez(partial, names=np.array(json.dumps(_names(mesh))), **arrays)  # type: ignore[arg-type]
 
 
 def read_npz(path: Path | str) -> NamedMesh:

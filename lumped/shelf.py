@@ -11,6 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.kept import written_whole
+
 Floats = NDArray[np.floating]
 Pairs = dict[str, tuple[Floats, Floats]]
 WEAKEST = 1e-7  # energy of the weakest field kept: tolerance 3e-4
@@ -54,15 +56,13 @@ class Shelf:
         pairs = {part: _worth(p.strength, p.fields, min(least, WEAKEST)) for part, p in found.items()}
         if self.folder is None:
             return pairs
-        self.folder.mkdir(parents=True, exist_ok=True)
         out: dict[str, Any] = {"centre": centre.values}
         out |= {f"{part}/strength": strength for part, (strength, _) in pairs.items()}
         out |= {f"{part}/fields": fields for part, (_, fields) in pairs.items()}
         point = hashlib.sha256(centre.values.round(9).tobytes()).hexdigest()[:8]
         file = self.folder / f"shapes-{self._key}-{point}.npz"
-        partial = file.with_suffix(".partial.npz")
-        np.savez(partial, **out)
-        partial.replace(file)
+        with written_whole(file) as partial:
+            np.savez(partial, **out)
         return pairs
 
     @property

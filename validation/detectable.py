@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.kept import written_whole
 from lumped.network import Network
 from validation.calibrate import minimise, silent, square_of
 from validation.case import Test
@@ -73,8 +74,8 @@ def smallest_sizes(
     found = side_by_side(smallest, search, len(evidence.effects), workers, progress, "smallest detectable sizes")
     sizes = np.array(found, float)
     if file:
-        file.parent.mkdir(parents=True, exist_ok=True)
-        np.savez(file, sizes=sizes)
+        with written_whole(file) as partial:
+            np.savez(partial, sizes=sizes)
     return sizes
 
 

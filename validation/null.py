@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.kept import written_whole
 from lumped.network import Network
 from validation.calibrate import Fit, bounded_step, normal, silent
 from validation.case import Test
@@ -121,8 +122,8 @@ def simulated_null(
     rows = side_by_side(draw, (setting, scan(fit, tests)), draws, workers, progress, "simulated null")
     z, pulls, rms, heat = (np.array(column) for column in zip(*rows, strict=True))
     if file:
-        file.parent.mkdir(parents=True, exist_ok=True)
-        np.savez(file, z=z, pulls=pulls, rms=rms, heat=heat)
+        with written_whole(file) as partial:
+            np.savez(partial, z=z, pulls=pulls, rms=rms, heat=heat)
     return Null(z, pulls, rms, heat)
 
 

@@ -124,14 +124,6 @@ class Effects:
         """Effects beyond the simultaneous limit."""
         return tuple(letters for letters, e in self.ranked if abs(e) > self.simultaneous)
 
-    def half_normal(self) -> tuple[tuple[str, ...], Array, Array]:
-        """Letters, half-normal quantiles and |effects|, smallest first (Daniel 1959)."""
-        from scipy.stats import norm
-
-        up = self.ranked[::-1]
-        quantile = norm.ppf(0.5 + 0.5 * (np.arange(len(up)) + 0.5) / len(up))
-        return tuple(letters for letters, _ in up), quantile, np.array([abs(e) for _, e in up])
-
     def document(self) -> dict[str, Any]:
         rows = [{"effect": e, "words": self.words(e), "value": v, "active": e in self.active} for e, v in self.ranked]
         return {"response": self.response, "PSE": self.PSE, "margin": self.margin, "simultaneous": self.simultaneous,

@@ -60,14 +60,6 @@ def test_fraction_and_its_aliases():
         fractional(TABLE_I, {"G": "ABG"})
 
 
-def test_half_normal_plot():
-    design = full(ABC)
-    letters, quantile, size = effects(design, design.signs @ [3.0, 2.0, 1.0]).half_normal()
-    assert letters[-1] == "A"
-    assert np.all(np.diff(size) >= 0)
-    assert np.all(np.diff(quantile) > 0)
-
-
 @pytest.fixture(scope="module")
 def published():
     return screen(load_machine("pmsm-m1"), full(TABLE_I))
