@@ -12,6 +12,7 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
+from geom.kept import written_whole
 from viz import candidates, curves, errors, heat, html, words
 from viz.ahead import deciding, undecided
 from viz.data import Comparison
@@ -49,9 +50,9 @@ class Report:
 
 def write_report(report: Report, path: str | Path) -> Path:
     """Write the page and return its path."""
-    path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(render(report), encoding="utf-8")
+    path, page = Path(path), render(report)
+    with written_whole(path) as partial:
+        partial.write_text(page, encoding="utf-8")
     return path
 
 
