@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import permutations
 from pathlib import Path
 
 import numpy as np
@@ -24,6 +25,7 @@ Array = NDArray[np.float64]
 TWIN = 0.9995
 WIDER = 3.0
 MATTERS_K = 1.0
+NEARLY, TRIED, CLEAR = 0.4, 3, 30.0  # linear amplitude, how many, deviance: of all-or-nothing effects
 
 
 @dataclass(frozen=True)
@@ -95,17 +97,46 @@ def scored(case: Case, effects: Sequence[Effect], fit: Fit) -> Evidence:
     parameters = tuple(by_name[e.name] for e in effects)
     tests, p = diagnosing(case), len(fit.unknowns.parameters)
     values = {**{q.name: case.model.values.get(q.name, q.value) for q in network.parameters}, **fit.values}
-    parts = tuple(segments(network, tests, values, (*fit.unknowns.parameters, *parameters)))
+    parts = exchanged(segments(network, tests, values, (*fit.unknowns.parameters, *parameters)), effects, p)
     grams = gram(parts, fit.noise, p)
     sign = np.array([q.sign for q in parameters], int)
     found = score(total(grams), fit.theta, fit.unknowns.sd, sign)
     return Evidence(tests, fit, network, tuple(effects), parameters, parts, grams, found)
 
 
+def exchanged(parts: Sequence[Segment], effects: Sequence[Effect], p: int) -> tuple[Segment, ...]:
+    """Columns of exchanged plugs from what was read (y_1 - y_2) instead of what is predicted (T_2 - T_1).
+
+    A model calibrated to exchanged readings has both places at nearly one temperature, so that exchanging its
+    predictions would change little; the readings themselves can be exchanged exactly.  p : columns before the effects'
+    """
+    other = {(a, k): b for k, e in enumerate(effects) if e.whole for a, b in permutations(e.place.split("|"), 2)}
+    known, out = {(s.test, s.channel): s for s in parts}, []
+    for s in parts:
+        J = s.J.copy()
+        for (a, k), b in other.items():
+            if a == s.channel and (t := known.get((s.test, b))):
+                J[:, p + k] = s.r - np.interp(s.time, t.time, t.r) - J[:, p + k]
+        out.append(replace(s, J=J))
+    return tuple(out)
+
+
 def possible(case: Case, evidence: Evidence) -> Evidence:
-    """Without the all-or-nothing effects of which the data want less than half."""
-    kept = [e for e, a in zip(evidence.effects, evidence.score.amplitude, strict=True) if not e.whole or a > 0.5]
+    """Without the all-or-nothing effects that do not clearly explain the readings whole.
+
+    Those that come nearest are tried: what is whole is too large for tangents.
+    """
+    score, whole = evidence.score, [k for k, e in enumerate(evidence.effects) if e.whole]
+    drop = 2.0 * score.u - np.diag(score.V)
+    near = sorted((k for k in whole if score.amplitude[k] > NEARLY), key=lambda k: -drop[k])[:TRIED]
+    kept = [e for k, e in enumerate(evidence.effects) if not e.whole or (k in near and explains(evidence, k))]
     return evidence if len(kept) == len(evidence.effects) else scored(case, kept, evidence.fit)
+
+
+def explains(evidence: Evidence, k: int) -> bool:
+    """Does an all-or-nothing effect, fitted, remove a clear deviance and come out whole rather than not?"""
+    found = polished(evidence, [k], refit(evidence, [k]))
+    return bool(found.theta[-1] > 0.5 and 2.0 * (evidence.fit.objective - found.objective) > CLEAR)
 
 
 def calibrated_case(
@@ -159,8 +190,9 @@ def with_members(evidence: Evidence, members: Sequence[int]) -> tuple[Network, U
 
 
 def first_amplitudes(evidence: Evidence, members: Sequence[int]) -> Array:
-    """Linear estimates, kept to the admissible side and within three prior deviations."""
-    a = evidence.score.amplitude[list(members)]
+    """Linear estimates, kept to the admissible side and within three prior deviations; what is whole at its end."""
+    whole = [evidence.effects[k].whole for k in members]
+    a = np.where(whole, 1.0, evidence.score.amplitude[list(members)])
     sd = np.array([evidence.parameters[k].prior_sd for k in members])
     low = np.array([evidence.parameters[k].low for k in members])
     high = np.array([evidence.parameters[k].high for k in members])

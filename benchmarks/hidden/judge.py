@@ -52,10 +52,11 @@ def seen(label: Answer, answer: Answer, size: float) -> bool | None:
 
 
 def confidently_wrong(label: Answer, answer: Answer) -> bool | None:
-    """One name alone, and it is none of what is hidden."""
-    if label["group"] == "nothing":
-        return answer["verdict"] == "named"
-    return answer["verdict"] == "named" and answer["groups"][0][0] not in label["truth"]
+    """One name alone, and it is none of what is hidden; a thermometer or input accused alone is a name as well."""
+    alone = [g[0] for g in answer["groups"][:1] if len(g) == 1]
+    if answer["verdict"] == "data":
+        return not fault_found(label, answer) and (bool(alone) or not answer["groups"])
+    return answer["verdict"] == "named" and alone[0] not in label["truth"]
 
 
 def pair_as_group(label: Answer, answer: Answer) -> bool | None:
@@ -98,8 +99,9 @@ def fault_found(label: Answer, answer: Answer) -> bool | None:
     if label["group"] != "fault":
         return None
     kind, place = label["truth"][0].split("@")
-    plain = kind in ("frozen", "clipped", "unit")
-    hit = place in answer["words"] if plain else any(place in e for e in reported(answer)[:3])
+    plain, channels = kind in ("frozen", "clipped", "unit"), set(place.split("|"))
+    said = [set(e.split("@")[1].split("|")) for e in reported(answer)[:3]]
+    hit = place in answer["words"] if plain else any(channels <= named for named in said)
     return answer["verdict"] == "data" and hit
 
 

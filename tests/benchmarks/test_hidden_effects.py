@@ -117,6 +117,8 @@ def test_judge_on_one_effect():
     assert judge.truth_inside(one, said("group", ["c@d", "a@b"]), 2.0)
     assert judge.confidently_wrong(one, said("named", ["c@d"]))
     assert not judge.confidently_wrong(one, said("group", ["c@d", "e@f"]))
+    assert judge.confidently_wrong(one, said("data", ["sensor.gain@b"]))
+    assert not judge.confidently_wrong(label("fault", "sensor.bias@b"), said("data", ["sensor.gain@b"]))
 
 
 def test_judge_on_first_guesses():
@@ -143,6 +145,7 @@ def test_judge_on_the_other_classes():
     assert not judge.both_found(label("two", "a@b", "c@d"), said("several", ["c@d"], ["x@y"]))
     assert judge.fault_found(label("fault", "sensor.bias@core"), said("data", ["sensor.bias@core"]))
     assert not judge.fault_found(label("fault", "sensor.bias@core"), said("named", ["sensor.bias@core"]))
+    assert judge.fault_found(label("fault", "sensor.swap@core|rotor"), said("data", ["sensor.swap@rotor|core"]))
     hot = label("foreign", "cable at rotor", place="rotor")
     assert judge.foreign_found(hot, said("outside", where=[["core", 30.0]]), {"rotor": {"core"}})
     assert not judge.foreign_found(hot, said("outside", where=[["housing", 30.0]]), {"rotor": {"core"}})

@@ -1,7 +1,7 @@
 """The verdicts on machines whose truth is known, made by formulas that the model does not share."""
 
 import sys
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
@@ -12,10 +12,27 @@ from validation import diagnose
 from validation.faults import broken_channels
 
 DRAWS = 40
+EXCHANGED = "sensor.swap@yoke|winding.field"
 
 
 def brush(T, u, t):
     return {"commutator": 3.0 * abs(u["current_A"])}
+
+
+@dataclass(frozen=True)
+class Exchanged:
+    """A machine with nothing missing whose plugs a and b were exchanged."""
+
+    a: str
+    b: str
+
+    def case(self):
+        case = Truth(10).case()
+        return replace(case, tests=tuple(self.test(t) for t in case.tests))
+
+    def test(self, test):
+        y, other = {c.name: c.y for c in test.channels}, {self.a: self.b, self.b: self.a}
+        return replace(test, channels=tuple(replace(c, y=y[other.get(c.name, c.name)]) for c in test.channels))
 
 
 TRUTHS = {
@@ -25,6 +42,7 @@ TRUTHS = {
     "brush": lambda: Truth(10, brush),
     "bias": lambda: Truth(10, bias={"yoke": 4.0}),
     "lag": lambda: Truth(10, lag={"winding.field": 60.0}),
+    "exchanged": lambda: Exchanged("winding.field", "yoke"),
     "loose joint": lambda: Truth(10, change={"joint": ("joints", ("poles", "winding.field"), 0.35)}),
 }
 
@@ -77,7 +95,10 @@ def test_group_gets_a_ranked_plan():
     assert found.verdict == "named" or (gains and gains == sorted(gains, reverse=True))
 
 
-@pytest.mark.parametrize(("name", "effect"), [("bias", "sensor.bias@yoke"), ("lag", "sensor.lag@winding.field")])
+@pytest.mark.parametrize(
+    ("name", "effect"),
+    [("bias", "sensor.bias@yoke"), ("lag", "sensor.lag@winding.field"), ("exchanged", EXCHANGED)],
+)
 def test_faults_of_sensors_are_data(name, effect):
     found = answer(name)
     assert found.verdict == "data"

@@ -6,7 +6,7 @@ from lumped.laws import Fixed
 from lumped.network import Network
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import conductance_scale, exchange
-from validation.effects.sites import like, solids, touches
+from validation.effects.sites import like, outside, solids, touches, turns
 
 
 def stands(network: Network) -> list[str]:
@@ -16,7 +16,7 @@ def stands(network: Network) -> list[str]:
 
 @dataclass(frozen=True)
 class BenchConduction(Effect):
-    """Conduction into the bench or base whose temperature is recorded: q = a (T - T_bench), a in W/K."""
+    """Conduction from an outer part into the bench or base whose temperature is recorded: q = a (T - T_bench), W/K."""
 
     kind = "conduction.bench"
     title = "conduction into the bench"
@@ -30,7 +30,8 @@ class BenchConduction(Effect):
     @classmethod
     def where(cls, scene: Scene) -> list[str]:
         network = scene.network
-        return [p.name for p in solids(network) for b in stands(network) if not touches(network, p.name, b)]
+        outer = [p for p in outside(network) or [p.name for p in solids(network)] if not turns(p)]
+        return [p for p in outer for b in stands(network) if not touches(network, p, b)]
 
     def extend(self, network: Network) -> Network:
         link = exchange(network, self.name, self.place, stands(network)[0], Fixed(1.0))

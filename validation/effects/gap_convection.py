@@ -6,7 +6,7 @@ from lumped.laws import InputPower
 from lumped.network import Network
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import conductance_scale, exchange
-from validation.effects.sites import faces, like, solids
+from validation.effects.sites import across_air, faces, solids
 
 LAW = InputPower(1.0, (("speed_rpm", 1000.0, 0.5),))
 
@@ -14,12 +14,9 @@ LAW = InputPower(1.0, (("speed_rpm", 1000.0, 0.5),))
 def gaps(network: Network) -> list[str]:
     """Names of fluids that are an air gap, or 'rotor|stator' pairs of a declared network that a link joins."""
     fluids = [p.name for p in network.places.values() if p.kind == "fluid" and "gap" in p.name]
-    return fluids or ["|".join(sorted(link.places)) for link in network.links if crosses(network, *link.places)]
-
-
-def crosses(network: Network, a: str, b: str) -> bool:
-    known = {p.name for p in solids(network) if not like(p.name, "bearing") and "shaft" not in p.name}
-    return {a, b} <= known and like(a, "rotor") != like(b, "rotor")
+    known = {p.name for p in solids(network)}
+    joined = [link.places for link in network.links if set(link.places) <= known]
+    return fluids or ["|".join(sorted(pair)) for pair in joined if across_air(*pair)]
 
 
 @dataclass(frozen=True)

@@ -59,6 +59,15 @@ def outside(network: Network) -> list[str]:
     return washed(network, air) or [p.name for p in solids(network) if p.kind == "node"]
 
 
+def turns(name: str) -> bool:
+    return like(name, "rotor")
+
+
+def across_air(a: str, b: str) -> bool:
+    """Does one part turn past the other, neither of them bearing or shaft?  They exchange heat through air alone."""
+    return turns(a) != turns(b) and not any(like(p, "bearing") or "shaft" in p for p in (a, b))
+
+
 def named(network: Network, word: str) -> list[str]:
     """Solids whose name speaks of `word`, e.g. bearings."""
     return [p.name for p in solids(network) if like(p.name, word)]
@@ -92,12 +101,12 @@ def neighbours(network: Network) -> dict[str, set[str]]:
 def near_pairs(network: Network) -> Iterable[tuple[str, str]]:
     """Pairs of solids that no link joins: where a bridge may have been forgotten.
 
-    They share a neighbour, or one of them has no solid neighbour at all.
+    They share a neighbour, or one of them has no solid neighbour at all; nothing solid bridges an air gap.
     """
     around, names = neighbours(network), [p.name for p in solids(network)]
     solid = {a: around.get(a, set()) & set(names) for a in names}
     for i, a in enumerate(names):
         for b in names[i + 1 :]:
             alone = not solid[a] or not solid[b]
-            if b not in solid[a] and (alone or solid[a] & solid[b]):
+            if b not in solid[a] and (alone or solid[a] & solid[b]) and not across_air(a, b):
                 yield a, b
