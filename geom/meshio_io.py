@@ -17,9 +17,10 @@ def write_npz(mesh: NamedMesh, path: Path | str) -> None:
     """Everything, exactly; written whole or not at all."""
     arrays = {f"patch:{name}": patch.facets for name, patch in mesh.patches.items()}
     arrays |= {f"contact:{name}": contact.facets for name, contact in mesh.contacts.items()}
-    arrays |= {"tets": mesh.tets, "region": mesh.region, "points": mesh.points}
+    arrays |= {"tets": mesh.tets, "region": mesh.region}
+    names = np.array(json.dumps(_names(mesh)))
     with written_whole(Path(path)) as partial:
-        np.savez(partial, names=np.array(json.dumps(_names(mesh))), **arrays)  # type: ignore[arg-type]
+        np.savez(partial, points=mesh.points, names=names, **arrays)  # type: ignore[arg-type]
 
 
 def read_npz(path: Path | str) -> NamedMesh:
