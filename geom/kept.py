@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import hashlib
-import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from uuid import uuid4
 
 from geom.part import Part
 
@@ -23,7 +23,7 @@ def kept_file(part: Part, folder: Path | str | None, kind: str, suffix: str) -> 
 def written_whole(path: Path) -> Iterator[Path]:
     """A file to write to that takes its place only when it is complete; hidden until then, gone if writing fails."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    partial = path.with_name(f".{path.stem}.{os.getpid()}.part{path.suffix}")
+    partial = path.with_name(f".{path.stem}.{uuid4().hex}.part{path.suffix}")
     try:
         yield partial
         partial.replace(path)

@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 TWIN = 0.9995
 WIDER = 3.0
 MATTERS_K = 1.0
-NEARLY, TRIED, CLEAR = 0.4, 3, 30.0  # linear amplitude, how many, deviance: of all-or-nothing effects
+NEARLY, TRIED, PLAIN = 0.4, 3, 30.0  # linear amplitude, how many, deviance: of all-or-nothing effects
 
 
 @dataclass(frozen=True)
@@ -97,28 +97,26 @@ def scored(case: Case, effects: Sequence[Effect], fit: Fit) -> Evidence:
     parameters = tuple(by_name[e.name] for e in effects)
     tests, p = diagnosing(case), len(fit.unknowns.parameters)
     values = {**{q.name: case.model.values.get(q.name, q.value) for q in network.parameters}, **fit.values}
-    parts = exchanged(segments(network, tests, values, (*fit.unknowns.parameters, *parameters)), effects, p)
+    parts = tuple(segments(network, tests, values, (*fit.unknowns.parameters, *parameters)))
+    exchange(parts, effects, p)
     grams = gram(parts, fit.noise, p)
     sign = np.array([q.sign for q in parameters], int)
     found = score(total(grams), fit.theta, fit.unknowns.sd, sign)
     return Evidence(tests, fit, network, tuple(effects), parameters, parts, grams, found)
 
 
-def exchanged(parts: Sequence[Segment], effects: Sequence[Effect], p: int) -> tuple[Segment, ...]:
-    """Columns of exchanged plugs from what was read (y_1 - y_2) instead of what is predicted (T_2 - T_1).
+def exchange(parts: Sequence[Segment], effects: Sequence[Effect], p: int) -> None:
+    """Set the columns of exchanged plugs to what was read (y_1 - y_2) instead of what is predicted (T_2 - T_1).
 
     A model calibrated to exchanged readings has both places at nearly one temperature, so that exchanging its
     predictions would change little; the readings themselves can be exchanged exactly.  p : columns before the effects'
     """
     other = {(a, k): b for k, e in enumerate(effects) if e.whole for a, b in permutations(e.place.split("|"), 2)}
-    known, out = {(s.test, s.channel): s for s in parts}, []
-    for s in parts:
-        J = s.J.copy()
-        for (a, k), b in other.items():
-            if a == s.channel and (t := known.get((s.test, b))):
-                J[:, p + k] = s.r - np.interp(s.time, t.time, t.r) - J[:, p + k]
-        out.append(replace(s, J=J))
-    return tuple(out)
+    known = {(s.test, s.channel): s for s in parts}
+    for (a, k), b in other.items():
+        for s in (s for s in parts if s.channel == a and (s.test, b) in known):
+            t = known[s.test, b]
+            s.J[:, p + k] = s.r - np.interp(s.time, t.time, t.r) - s.J[:, p + k]
 
 
 def possible(case: Case, evidence: Evidence) -> Evidence:
@@ -136,7 +134,7 @@ def possible(case: Case, evidence: Evidence) -> Evidence:
 def explains(evidence: Evidence, k: int) -> bool:
     """Does an all-or-nothing effect, fitted, remove a clear deviance and come out whole rather than not?"""
     found = polished(evidence, [k], refit(evidence, [k]))
-    return bool(found.theta[-1] > 0.5 and 2.0 * (evidence.fit.objective - found.objective) > CLEAR)
+    return bool(found.theta[-1] > 0.5 and 2.0 * (evidence.fit.objective - found.objective) > PLAIN)
 
 
 def calibrated_case(

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from lumped.network import Network, Place
 from validation.apart import separation, told_apart
 from validation.case import Channel, Test
-from validation.effects.sites import like, outside
+from validation.effects.sites import outside, turns
 from validation.evidence import Evidence
 from validation.findings import NextSensor
 from validation.foretell import Plan, proven
@@ -58,7 +58,7 @@ def access(network: Network, place: Place) -> str:
     """How one gets there."""
     if place.kind == "fluid":
         return "air"
-    if like(place.part, "rotor"):
+    if turns(place.part):
         return "turning"
     return "outside" if place.part in outside(network) and place.kind != "part" else "inside"
 

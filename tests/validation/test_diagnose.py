@@ -12,7 +12,6 @@ from validation import diagnose
 from validation.faults import broken_channels
 
 DRAWS = 40
-EXCHANGED = "sensor.swap@yoke|winding.field"
 
 
 def brush(T, u, t):
@@ -97,7 +96,11 @@ def test_group_gets_a_ranked_plan():
 
 @pytest.mark.parametrize(
     ("name", "effect"),
-    [("bias", "sensor.bias@yoke"), ("lag", "sensor.lag@winding.field"), ("exchanged", EXCHANGED)],
+    [
+        ("bias", "sensor.bias@yoke"),
+        ("lag", "sensor.lag@winding.field"),
+        ("exchanged", "sensor.swap@yoke|winding.field"),
+    ],
 )
 def test_faults_of_sensors_are_data(name, effect):
     found = answer(name)

@@ -6,7 +6,7 @@ from lumped.laws import Fixed
 from lumped.network import Network
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import conductance_scale, exchange
-from validation.effects.sites import ambient, like, named
+from validation.effects.sites import ambient, named, turns
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,7 @@ class CableConduction(Effect):
 
     @classmethod
     def where(cls, scene: Scene) -> list[str]:
-        still = [place for place in named(scene.network, "winding") if not like(place, "rotor")]
+        still = [place for place in named(scene.network, "winding") if not turns(place)]
         return still if ambient(scene.network) else []
 
     def extend(self, network: Network) -> Network:

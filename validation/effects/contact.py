@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from lumped.laws import CONSTANT
 from lumped.network import Link, Network
 from validation.effects.base import Effect, Scene, with_parameter
-from validation.effects.sites import across_air, like, solids
+from validation.effects.sites import across_air, axle, solids
 
 
 def joints(network: Network) -> list[Link]:
@@ -17,7 +17,7 @@ def joints(network: Network) -> list[Link]:
 def _solid(network: Network, link: Link) -> bool:
     """A shaft's link, bearing and all, is solid; what else lies between a turning part and one that stands is air."""
     follows = bool(link.law.reads) or link.law.temperature is not CONSTANT
-    through = "shaft" in link.name or like(link.name, "bearing") or not across_air(*link.places)
+    through = axle(link.name) or not across_air(*link.places)
     return not follows and through and set(link.places) <= {p.name for p in solids(network)}
 
 

@@ -6,7 +6,7 @@ from lumped.laws import InputPower
 from lumped.network import Network
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import heat, power_scale
-from validation.effects.sites import heated, like
+from validation.effects.sites import heated, like, turns
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class AcCopper(Effect):
     def where(cls, scene: Scene) -> list[str]:
         """Windings that carry a copper loss; a cage has no strands (its own is the load-dependent loss of a rotor)."""
         loaded = heated(scene.network, "copper", "winding")
-        return [p for p in loaded if like(p, "winding") or not like(p, "rotor")]
+        return [p for p in loaded if like(p, "winding") or not turns(p)]
 
     def extend(self, network: Network) -> Network:
         source = heat(

@@ -65,7 +65,12 @@ def turns(name: str) -> bool:
 
 def across_air(a: str, b: str) -> bool:
     """Does one part turn past the other, neither of them bearing or shaft?  They exchange heat through air alone."""
-    return turns(a) != turns(b) and not any(like(p, "bearing") or "shaft" in p for p in (a, b))
+    return turns(a) != turns(b) and not (axle(a) or axle(b))
+
+
+def axle(name: str) -> bool:
+    """A bearing or the shaft in it: what turns rests there on what stands."""
+    return like(name, "bearing") or "shaft" in name
 
 
 def named(network: Network, word: str) -> list[str]:
