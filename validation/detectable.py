@@ -21,7 +21,7 @@ from lumped.network import Network
 from validation.calibrate import minimise, silent, square_of
 from validation.case import Test
 from validation.effects import extended
-from validation.evidence import Evidence, with_members
+from validation.evidence import Evidence
 from validation.fitting import at_level
 from validation.predict import predict
 from validation.rivals import COMPENSATED, SILENT
@@ -155,18 +155,3 @@ def _reading(network: Network, test: Test, values: dict[str, float]) -> Test:
     y = predict(network, test, values).y
     own = (np.where(np.isfinite(c.y), y[:, j], np.nan) for j, c in enumerate(test.channels))
     return replace(test, channels=tuple(replace(c, y=seen) for c, seen in zip(test.channels, own, strict=True)))
-
-
-def mistaken(evidence: Evidence, true: int, amplitude: float, other: int) -> float:
-    """Deviance left when effect `other` and the calibration explain what effect `true` does; 20 and more decide.
-
-    amplitude : on the side physics allows
-    """
-    fit, p, V = evidence.fit, evidence.fit.theta.size, evidence.score.V
-    signed, rival = amplitude * (int(evidence.score.sign[true]) or 1), evidence.parameters[other]
-    network, unknowns, held = with_members(evidence, [other])
-    near = [replace(s, J=s.J[:, [*range(p), p + other]]) for s in evidence.parts]
-    start = float(np.clip(signed * V[true, other] / V[other, other], 0.9 * rival.low, 0.9 * rival.high))
-    found = minimise(network, readings_with(evidence, {true: signed}), unknowns, np.append(fit.theta, start), fit.noise,
-                     held, start=near, centre=np.append(fit.theta, 0.0), borrowed=False)  # fmt: skip
-    return 2.0 * found.objective

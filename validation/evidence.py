@@ -15,7 +15,7 @@ from lumped.network import Network, Parameter
 from validation.calibrate import Fit, calibrated, minimise, silent
 from validation.case import Case, Test
 from validation.effects import Effect, catalogue, extended
-from validation.fitting import Unknowns, at_level, scene_of, working
+from validation.fitting import Unknowns, at_level, scene_of, widened, working
 from validation.noise import Noise, fit_noise
 from validation.null import Null, simulated_null
 from validation.score import Gram, Score, gram, score, total
@@ -23,7 +23,6 @@ from validation.sheet import Segment, reach, segments
 
 Array = NDArray[np.float64]
 TWIN = 0.9995
-WIDER = 3.0
 MATTERS_K = 1.0
 NEARLY, TRIED, PLAIN = 0.4, 3, 30.0  # linear amplitude, how many, deviance: of all-or-nothing effects
 
@@ -158,11 +157,6 @@ def null_of(
     return simulated_null(
         e.fit, e.fit.network, e.tests, e.parts, e.score.sign, draws, seed, workers, cache, progress
     )  # fmt: skip
-
-
-def widened(parameter: Parameter) -> Parameter:
-    """A candidate's parameter with so wide a prior that the data decide."""
-    return replace(parameter, prior_sd=WIDER * parameter.prior_sd)
 
 
 def refit(evidence: Evidence, members: Sequence[int], noise: Noise | None = None, start: Fit | None = None) -> Fit:

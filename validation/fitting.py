@@ -122,9 +122,12 @@ def freed(network: Network, names: Collection[str]) -> Network:
     The prior of an effect speaks of machines at large. For one that is in the model because the readings ask for it, it
     would press the rest of the effect into whatever else may move.
     """
-    return replace(network, parameters=tuple(
-        replace(p, prior_sd=FREE * p.prior_sd) if p.name in names else p for p in network.parameters
-    ))  # fmt: skip
+    return replace(network, parameters=tuple(widened(p) if p.name in names else p for p in network.parameters))
+
+
+def widened(parameter: Parameter) -> Parameter:
+    """A parameter with so wide a prior that the data decide."""
+    return replace(parameter, prior_sd=FREE * parameter.prior_sd)
 
 
 def _mean_factor(laws: Sequence[Law], tests: Sequence[Test]) -> float:

@@ -7,7 +7,7 @@ import pytest
 from playground import Truth
 
 from validation.calibrate import minimise
-from validation.detectable import Left, Search, followed, mistaken, readings_with, smallest, smallest_sizes, told
+from validation.detectable import Left, Search, followed, readings_with, smallest, smallest_sizes, told
 from validation.evidence import calibrated_case, candidates, scored
 
 LEVEL = 4.0
@@ -70,18 +70,6 @@ def test_sizes_are_kept(evidence, tmp_path):
     np.testing.assert_array_equal(*sizes)
     assert len(first) == 3
     assert not again
-
-
-def test_the_true_effect_explains_itself_and_its_twin_almost(evidence):
-    wind, still, bias = (
-        evidence.names.index(n)
-        for n in ("convection@flange.right", "convection.constant@flange.right", "sensor.bias@yoke")
-    )
-    a = 5.0
-    own, near, far = (mistaken(evidence, wind, a, k) for k in (wind, still, bias))
-    whole = followed(evidence, wind, a, evidence.fit.theta)[0].deviance
-    assert own == pytest.approx(0.0, abs=0.1)
-    assert own < near < far < 1.05 * whole
 
 
 def test_what_only_strains_priors_is_not_told():

@@ -1,5 +1,6 @@
 """Which of two effects that explain the readings is the one: what each still adds beside the other."""
 
+from dataclasses import replace
 from functools import cache
 from types import SimpleNamespace
 
@@ -35,6 +36,15 @@ def test_neither_adds_less_than_nothing():
     evidence, found = raced()
     fits = dict(zip(found.index, found.fits, strict=True))
     assert min(each_beside(evidence, fits, 0, 1, found.noise, np.ones(2))) > -1.0  # what a fit leaves undone
+
+
+def test_a_small_prior_does_not_hold_a_large_effect_back():
+    """Fifteen of its own prior deviations: as large as with a prior as wide as the effect, and as far ahead."""
+    evidence, found = raced()
+    small = [replace(p, prior_sd=0.8) for p in evidence.parameters]
+    held = race(replace(evidence, parameters=tuple(small)), np.ones(2), 0.0)
+    assert held.fit(0).values[WIND] == pytest.approx(found.fit(0).values[WIND], rel=0.05)
+    assert held.gap[1] == pytest.approx(found.gap[1], rel=0.2)
 
 
 def told(monkeypatch, beside):

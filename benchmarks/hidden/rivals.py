@@ -1,0 +1,103 @@
+"""What a hidden effect could be taken for: what it does to the true machine, explained by every other candidate."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hidden.kinds import KINDS
+from hidden.truth.archetype import measured
+from hidden.truth.change import NOTHING, Change
+from hidden.user import case_of
+from validation.calibrate import Fit, minimise
+from validation.case import Test
+from validation.detectable import readings_with
+from validation.evidence import Evidence, with_members
+from validation.fitting import Unknowns, widened
+from validation.verdict import PULL
+
+Array = NDArray[np.float64]
+LIKE, MOST = 0.4, 12
+
+
+@dataclass(frozen=True)
+class Reference:
+    """A machine of a kind with nothing missing, calibrated by its user.
+
+    still : readings the calibrated model foretells;  true : those of the machine
+    """
+
+    kind: str
+    seed: int
+    evidence: Evidence
+    still: list[Test]
+    true: list[Test]
+
+    def moved(self, change: Change) -> list[Array]:
+        """What a change of the machine does to every reading (K), channel by channel."""
+        return differences(_logged(self.kind, self.seed, self.evidence, change), self.true)
+
+    def reading(self, moved: Sequence[Array]) -> list[Test]:
+        """The tests as the calibrated model foretells them, and so much more in each channel."""
+        more = iter(moved)
+        return [replace(t, channels=tuple(replace(c, y=c.y + next(more)) for c in t.channels)) for t in self.still]
+
+
+def reference(kind: str, seed: int, evidence: Evidence) -> Reference:
+    return Reference(kind, seed, evidence, readings_with(evidence, {}), _logged(kind, seed, evidence, NOTHING))
+
+
+def _logged(kind: str, seed: int, evidence: Evidence, change: Change) -> list[Test]:
+    names = {t.name for t in evidence.tests}
+    return [t for t in case_of("", kind, measured(KINDS[kind], seed, change)).tests if t.name in names]
+
+
+def differences(one: Sequence[Test], other: Sequence[Test]) -> list[Array]:
+    return [a.y - b.y for s, t in zip(one, other, strict=True) for a, b in zip(s.channels, t.channels, strict=True)]
+
+
+def gaps(on: Reference, k: int, amplitude: float, moved: Sequence[Array], kappa: float) -> dict[str, float]:
+    """Explanation -> deviance by which it explains a hidden effect worse than the effect's own name, over kappa^2.
+
+    k, amplitude : the effect in the catalogue's terms;  moved : what it does to the machine's readings
+    Explanations are candidates whose traces are alike, and the calibrated parameter that the effect drags further than
+    PULL deviations, were its prior wrong. Everything else is calibrated anew; one below zero follows the machine's law
+    better than the own name does.
+    """
+    e = on.evidence
+    tests, V, signed = on.reading(moved), e.score.V, amplitude * (int(e.score.sign[k]) or 1)
+    alike = np.abs(e.score.cosine[k])
+    near = [int(m) for m in np.argsort(-alike) if m != k and alike[m] > LIKE][:MOST]
+    own = _explained(e, tests, k, signed)
+    found = {e.names[m]: _explained(e, tests, m, signed * V[k, m] / V[m, m]) for m in near} | _dragged(e, tests)
+    return {name: round(2.0 * (fit.objective - own.objective) / kappa**2, 2) for name, fit in found.items()}
+
+
+def _explained(e: Evidence, tests: Sequence[Test], k: int, start: float) -> Fit:
+    """The tests explained by effect k and the calibration; priors centre on the state that stands for the truth."""
+    p, rival = e.fit.theta.size, e.parameters[k]
+    network, unknowns, held = with_members(e, [k])
+    near = [replace(s, J=s.J[:, [*range(p), p + k]]) for s in e.parts]
+    first = float(np.clip(start, 0.9 * rival.low, 0.9 * rival.high))
+    return minimise(network, tests, unknowns, np.append(e.fit.theta, first), e.fit.noise, held, start=near,
+                    centre=np.append(e.fit.theta, 0.0), borrowed=False)  # fmt: skip
+
+
+def _dragged(e: Evidence, tests: Sequence[Test]) -> dict[str, Fit]:
+    """The tests explained by the parameter that calibration without an effect drags furthest, its prior widened."""
+    bare = _calibrated(e, tests, e.fit.theta, None)
+    pull = np.abs(bare.theta - e.fit.theta) / bare.unknowns.sd
+    j = int(np.argmax(pull))
+    return {f"calibrated {bare.unknowns.names[j]}": _calibrated(e, tests, bare.theta, j)} if pull[j] > PULL else {}
+
+
+def _calibrated(e: Evidence, tests: Sequence[Test], theta: Array, free: int | None) -> Fit:
+    own = e.fit.unknowns.parameters
+    unknowns = Unknowns(tuple(widened(q) if i == free else q for i, q in enumerate(own)))
+    near = [replace(s, J=s.J[:, : e.fit.theta.size]) for s in e.parts]
+    held = {q.name: q.value for q in e.fit.network.parameters} | e.fit.values
+    return minimise(e.fit.network, tests, unknowns, theta, e.fit.noise, held, start=near, centre=e.fit.theta,
+                    borrowed=False)  # fmt: skip
