@@ -104,7 +104,7 @@ def sixty(now: Case) -> list:
 def without_null(now: Case) -> tuple[Evidence, Any]:
     """Calibrate, score 60 candidates, race, scan: with a null that is known already."""
     fit = calibrated_case(now)
-    evidence = possible(now, scored(now, sixty(now), fit))
+    evidence = possible(scored(now, sixty(now), fit))
     K, p, channels = len(evidence.effects), len(fit.unknowns.parameters), len({s.channel for s in fit.parts})
     z = np.abs(np.random.default_rng(0).standard_normal((40, K)))
     known = Null(z, np.ones((40, p)), np.full((40, channels), 0.2), np.zeros(40))

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -18,17 +16,11 @@ Gaps = dict[tuple[int, int], float]
 DECISIVE = 20.0  # deviance
 
 
-def seen(evidence: Evidence, chosen: Sequence[int]) -> Gram:
-    """The evidence's Gram matrix with some of its effects only."""
-    G, few = total(evidence.grams), list(chosen)
-    return replace(G, JZ=G.JZ[:, few], ZZ=G.ZZ[np.ix_(few, few)], Zr=G.Zr[few])
-
-
 def separation(evidence: Evidence, found: Race, more: Gram, kappa: Array) -> Gaps:
     """For every pair of a race's group the gap with more readings than the evidence has, the smaller way."""
     chosen = found.group
     fit, sign = evidence.fit, evidence.score.sign[list(chosen)]
-    s = score(seen(evidence, chosen) + more, fit.theta, fit.unknowns.sd, sign)
+    s = score(total(evidence.grams).of(chosen) + more, fit.theta, fit.unknowns.sd, sign)
     V, c = np.diag(s.V), s.cosine
     size = [found.fit(k).values[evidence.names[k]] for k in chosen]
     strength = [size[i] ** 2 * V[i] / kappa[k] ** 2 for i, k in enumerate(chosen)]

@@ -110,6 +110,7 @@ def minimise(
     centre: Array | None = None,
     borrowed: bool = True,
     worth: float = WORTH,
+    here: Sequence[Segment] | None = None,
 ) -> Fit:
     """Fit `unknowns` to the tests from `theta` under a given noise (by default that of uncalibrated sensors).
 
@@ -117,10 +118,10 @@ def minimise(
     end (unless `draft`); `start`: segments whose Jacobian at a state nearby is good enough, then it is never made anew
     while `borrowed`, and only where steps fail otherwise; `keep` is told the values after every step, so that an
     interrupted fit can go on from there; `centre`: prior mean (p,), 0 by default; `worth`: gain (nats) for which one
-    more step is made.
+    more step is made; `here`: segments of the very state `theta`, with its Jacobian.
     """
     fixed = dict(fixed or {})
-    climb = Climb(network, tests, unknowns, fixed, instants, theta, noise, start, draft, centre, borrowed, worth)
+    climb = Climb(network, tests, unknowns, fixed, instants, theta, noise, start, draft, centre, borrowed, worth, here)
     for iteration in range(iterations):
         progress(f"calibration step {iteration + 1}, objective {climb.objective:.4g}")
         done = climb.step()
@@ -136,7 +137,7 @@ class Climb:
     def __init__(
         self, network: Network, tests: Sequence[Test], unknowns: Unknowns, fixed: dict[str, float], instants: int,
         theta: Array, noise: Noise | None, start: Sequence[Segment] | None, draft: bool, centre: Array | None,
-        borrowed: bool, worth: float,
+        borrowed: bool, worth: float, here: Sequence[Segment] | None,
     ) -> None:  # fmt: skip
         self.network, self.tests, self.unknowns, self.fixed = network, tests, unknowns, fixed
         self.instants, self.draft, self.worth = instants, draft or start is not None, worth
@@ -144,7 +145,7 @@ class Climb:
         self.low, self.high = unknowns.bounds
         self.weight, self.damping, self.fresh, self.done = unknowns.sd**-2.0, 0.0, start is None, False
         self.theta = np.clip(theta, self.low, self.high)
-        self.parts = self.residuals(self.theta, start) if start else self.tangents(self.theta)
+        self.parts = list(here) if here else self.residuals(self.theta, start) if start else self.tangents(self.theta)
         self.noise = noise or first_noise(self.parts)
         self.weigh()
 
@@ -255,6 +256,7 @@ def calibrated(
     fit = minimise(network, tests, unknowns, unknowns.coordinates(values), noise, held, progress=progress, keep=keep)
     for _ in range(rounds):
         fit = minimise(
-            network, tests, unknowns, fit.theta, fit_noise(fit.parts), held, 10, progress=progress, keep=keep
-        )
+            network, tests, unknowns, fit.theta, fit_noise(fit.parts), held, 10, progress=progress, keep=keep,
+            here=fit.parts,
+        )  # fmt: skip
     return fit

@@ -52,7 +52,7 @@ def diagnose(
     """
     fit = calibrated_case(case, progress)
     progress("scoring the catalogue")
-    evidence = possible(case, scored(case, candidates(case, kinds), fit))
+    evidence = possible(scored(case, candidates(case, kinds), fit))
     bar = bar_of(case, evidence, Simulation(draws, seed, workers, cache), sizes, progress)
     stood = bases_tried(case, progress)
     steps = [Step(evidence, bar.null.kappa, None)] if wrong_bases(stood) else search(case, evidence, bar, progress)
@@ -105,7 +105,8 @@ def sharper(evidence: Evidence, fit: Fit) -> Fit:
     """The fit gone on under the noise of the residual that it leaves."""
     values = fit.values
     held = {p.name: values.get(p.name, p.value) for p in fit.network.parameters}
-    return minimise(fit.network, evidence.tests, fit.unknowns, fit.theta, sharpened(fit), held, 10)
+    return minimise(fit.network, evidence.tests, fit.unknowns, fit.theta, sharpened(fit), held, 10,
+                    here=fit.parts)  # fmt: skip
 
 
 def with_effect(case: Case, new: Effect, values: Mapping[str, float]) -> Case:

@@ -62,6 +62,17 @@ class Evidence:
         p, a = len(self.fit.unknowns.parameters), np.abs(self.score.amplitude)
         return np.asarray(a * reach(self.parts)[p:] >= cared_for(self.parts))
 
+    def of(self, few: Sequence[int]) -> Evidence:
+        """With some of its effects only; the network keeps the others, at zero."""
+        p, chosen = len(self.fit.unknowns.parameters), list(few)
+        columns = [*range(p), *(p + k for k in chosen)]
+        grams = {name: g.of(chosen) for name, g in self.grams.items()}
+        return replace(
+            self, effects=tuple(self.effects[k] for k in chosen), parameters=tuple(self.parameters[k] for k in chosen),
+            parts=tuple(replace(s, J=s.J[:, columns]) for s in self.parts), grams=grams,
+            score=score(total(grams), self.fit.theta, self.fit.unknowns.sd, self.score.sign[chosen]),
+        )  # fmt: skip
+
     def resharpened(self, noise: Noise) -> Score:
         """The score under another noise."""
         p = len(self.fit.unknowns.parameters)
@@ -118,7 +129,7 @@ def exchange(parts: Sequence[Segment], effects: Sequence[Effect], p: int) -> Non
             s.J[:, p + k] = s.r - np.interp(s.time, t.time, t.r) - s.J[:, p + k]
 
 
-def possible(case: Case, evidence: Evidence) -> Evidence:
+def possible(evidence: Evidence) -> Evidence:
     """Without the all-or-nothing effects that do not clearly explain the readings whole.
 
     Those that come nearest are tried: what is whole is too large for tangents.
@@ -126,8 +137,8 @@ def possible(case: Case, evidence: Evidence) -> Evidence:
     score, whole = evidence.score, [k for k, e in enumerate(evidence.effects) if e.whole]
     drop = 2.0 * score.u - np.diag(score.V)
     near = sorted((k for k in whole if score.amplitude[k] > NEARLY), key=lambda k: -drop[k])[:TRIED]
-    kept = [e for k, e in enumerate(evidence.effects) if not e.whole or (k in near and explains(evidence, k))]
-    return evidence if len(kept) == len(evidence.effects) else scored(case, kept, evidence.fit)
+    kept = [k for k, e in enumerate(evidence.effects) if not e.whole or (k in near and explains(evidence, k))]
+    return evidence if len(kept) == len(evidence.effects) else evidence.of(kept)
 
 
 def explains(evidence: Evidence, k: int) -> bool:

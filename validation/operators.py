@@ -12,12 +12,12 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import make_interp_spline
 
 from lumped.jit import entry
 from lumped.network import Network, Parameter
 from validation.case import Channel, Test
 from validation.effects.sites import ambient
+from validation.spline import through
 
 Array = NDArray[np.float64]
 OPERATORS = ("bias", "gain", "lag", "stem", "drift", "delay", "swap")
@@ -159,5 +159,4 @@ def shifted(
     at : when (s), by default `time`;  ends : beyond these nothing changes, by default those of `time`
     """
     low, high = ends or (time[0], time[-1])
-    spline = make_interp_spline(time, T, min(3, time.size - 1))
-    return np.asarray(spline(np.clip((time if at is None else at) - delay, low, high)))
+    return through(time, T, np.clip((time if at is None else at) - delay, low, high))

@@ -8,7 +8,7 @@ Source: Rao 1948 (score test); Sorbom 1989 (modification index); marginal form b
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,6 +35,11 @@ class Gram:
     def __add__(self, other: Gram) -> Gram:
         pairs = zip(vars(self).values(), vars(other).values(), strict=True)
         return Gram(*(a + b for a, b in pairs))
+
+    def of(self, few: Sequence[int]) -> Gram:
+        """With some of its effects only."""
+        chosen = list(few)
+        return replace(self, JZ=self.JZ[:, chosen], ZZ=self.ZZ[np.ix_(chosen, chosen)], Zr=self.Zr[chosen])
 
 
 def gram(parts: Sequence[Segment], noise: Noise, p: int) -> dict[str, Gram]:

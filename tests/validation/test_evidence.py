@@ -1,0 +1,48 @@
+"""What is known already is not computed again, and comes out the same."""
+
+import numpy as np
+import pytest
+from playground import Truth, wind
+
+from validation.calibrate import calibrated, minimise
+from validation.effects import effect
+from validation.evidence import calibrated_case, scored, sharpened
+from validation.fitting import working
+
+NAMES = ("convection@flange.right", "loss.constant@yoke", "sensor.bias@yoke", "mass@yoke")
+
+
+@pytest.fixture(scope="module")
+def evidence():
+    case = Truth(12, wind("flange.right", 12.0)).case()
+    return scored(case, [effect(n) for n in NAMES], calibrated_case(case))
+
+
+def test_some_of_the_effects_score_as_if_they_had_been_scored_alone(evidence):
+    few = evidence.of([0, 2])
+    again = scored(Truth(12, wind("flange.right", 12.0)).case(), few.effects, evidence.fit)
+    assert few.names == again.names == (NAMES[0], NAMES[2])
+    np.testing.assert_allclose(few.score.z, again.score.z, rtol=1e-8)
+    np.testing.assert_allclose(few.score.V, again.score.V, rtol=1e-8)
+    np.testing.assert_allclose(few.parts[0].J, again.parts[0].J, atol=1e-10)
+    assert [p.name for p in few.parameters] == list(few.names)
+
+
+def test_a_fit_goes_on_with_the_jacobian_it_has(evidence):
+    """Under another noise, from where it stands: the same optimum as with the Jacobian made again."""
+    fit = evidence.fit
+    held = {p.name: p.value for p in fit.network.parameters} | fit.values
+    setting = (fit.network, evidence.tests, fit.unknowns, fit.theta, sharpened(fit), held)
+    kept, made = minimise(*setting, here=fit.parts), minimise(*setting)
+    np.testing.assert_allclose(kept.theta, made.theta, rtol=1e-9, atol=1e-12)
+    assert kept.objective == pytest.approx(made.objective, rel=1e-12)
+
+
+def test_calibration_ends_with_the_jacobian_of_where_it_stands(evidence):
+    """What goes on from a calibration may rely on it."""
+    case = Truth(12, wind("flange.right", 12.0)).case()
+    network, unknowns = working(case)
+    fit = calibrated(network, evidence.tests, unknowns, case.model.values)
+    held = {p.name: p.value for p in network.parameters} | fit.values
+    fresh = minimise(network, evidence.tests, unknowns, fit.theta, fit.noise, held, 0)
+    np.testing.assert_allclose(fit.parts[0].J, fresh.parts[0].J, atol=1e-10)
