@@ -1,5 +1,7 @@
 """model.toml: what is written comes back, revisions are only added, and a broken file is refused."""
 
+import errno
+
 import pytest
 
 from geom.errors import InputError
@@ -57,10 +59,10 @@ def test_failed_write_leaves_the_old_file(tmp_path, monkeypatch):
     path = write_whole(tmp_path / "model.toml", "old")
 
     def broken(*_):
-        raise OSError("disk full")
+        raise OSError(errno.ENOSPC, "disk full")
 
     monkeypatch.setattr("os.replace", broken)
-    with pytest.raises(OSError, match="disk full"):
+    with pytest.raises(InputError, match="disk full"):
         write_whole(path, "new")
     assert path.read_text() == "old"
     assert [p.name for p in tmp_path.iterdir()] == ["model.toml"]
