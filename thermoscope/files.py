@@ -14,5 +14,6 @@ def write_whole(path: Path, text: str | bytes) -> Path:
         with written_whole(path) as partial:
             partial.write_bytes(text if isinstance(text, bytes) else text.encode("utf-8"))
     except OSError as fault:
-        raise InputError(f"cannot be written: {fault.strerror}", str(path), "a folder you may write to, with room in it") from None
+        right = "a folder you may write to, with room in it"
+        raise InputError(f"cannot be written: {fault.strerror}", str(path), right) from None
     return path
