@@ -9,7 +9,7 @@ the deviance left passes the threshold four times in five, and is not only a str
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -18,11 +18,11 @@ from numpy.typing import NDArray
 
 from geom.kept import written_whole
 from lumped.network import Network
-from validation.calibrate import minimise, silent, square_of
+from validation.calibrate import WORTH, Fit, minimise, silent, square_of
 from validation.case import Test
 from validation.effects import extended
 from validation.evidence import Evidence
-from validation.fitting import at_level
+from validation.fitting import Unknowns, at_level
 from validation.predict import predict
 from validation.rivals import COMPENSATED, SILENT
 from validation.score import POWER
@@ -132,14 +132,23 @@ def followed(evidence: Evidence, k: int, amplitude: float, theta: Array) -> tupl
     amplitude : on the side physics allows;  theta : where to start.  The prior is centred on the calibrated state,
     which stands for the truth.
     """
-    fit = evidence.fit
     hidden = readings_with(evidence, {k: amplitude * (int(evidence.score.sign[k]) or 1)})
-    bare = [replace(s, J=s.J[:, : fit.theta.size]) for s in evidence.parts]
-    held = {p.name: p.value for p in fit.network.parameters} | fit.values
-    found = minimise(fit.network, hidden, fit.unknowns, theta, fit.noise, held, start=bare, centre=fit.theta,
-                     borrowed=False, worth=ENOUGH)  # fmt: skip
+    found = recalibrated(evidence, hidden, theta, evidence.fit.unknowns, ENOUGH)
     own = square_of(found.parts, found.noise)
     return Left(max(2.0 * found.objective, 1e-12), max(own, 1e-12)), found.theta
+
+
+def recalibrated(
+    evidence: Evidence, tests: Sequence[Test], theta: Array, unknowns: Unknowns, worth: float = WORTH
+) -> Fit:  # fmt: skip
+    """The model without any effect calibrated to other readings of its tests, priors centred on where it stands.
+
+    theta : where to start;  unknowns : those of the calibration, with other priors at most;  worth : as in `minimise`
+    """
+    fit = evidence.fit
+    held = {p.name: p.value for p in fit.network.parameters} | fit.values
+    return minimise(fit.network, tests, unknowns, theta, fit.noise, held, start=evidence.parts_of([]),
+                    centre=fit.theta, borrowed=False, worth=worth)  # fmt: skip
 
 
 def readings_with(evidence: Evidence, amplitudes: dict[int, float]) -> list[Test]:

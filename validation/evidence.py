@@ -64,14 +64,19 @@ class Evidence:
 
     def of(self, few: Sequence[int]) -> Evidence:
         """With some of its effects only; the network keeps the others, at zero."""
-        p, chosen = len(self.fit.unknowns.parameters), list(few)
-        columns = [*range(p), *(p + k for k in chosen)]
+        chosen = list(few)
         grams = {name: g.of(chosen) for name, g in self.grams.items()}
         return replace(
             self, effects=tuple(self.effects[k] for k in chosen), parameters=tuple(self.parameters[k] for k in chosen),
-            parts=tuple(replace(s, J=s.J[:, columns]) for s in self.parts), grams=grams,
+            parts=self.parts_of(chosen), grams=grams,
             score=score(total(grams), self.fit.theta, self.fit.unknowns.sd, self.score.sign[chosen]),
         )  # fmt: skip
+
+    def parts_of(self, few: Sequence[int]) -> tuple[Segment, ...]:
+        """The segments with nuisance columns and those of some effects."""
+        p = len(self.fit.unknowns.parameters)
+        columns = [*range(p), *(p + k for k in few)]
+        return tuple(replace(s, J=s.J[:, columns]) for s in self.parts)
 
     def resharpened(self, noise: Noise) -> Score:
         """The score under another noise."""
@@ -173,10 +178,9 @@ def null_of(
 def refit(evidence: Evidence, members: Sequence[int], noise: Noise | None = None, start: Fit | None = None) -> Fit:
     """All free parameters and the amplitudes of some candidates, fitted anew with the evidence's Jacobian."""
     network, unknowns, held = with_members(evidence, members)
-    p = evidence.fit.theta.size
     theta = start.theta if start else np.concatenate([evidence.fit.theta, first_amplitudes(evidence, members)])
-    near = [replace(s, J=s.J[:, [*range(p), *(p + k for k in members)]]) for s in evidence.parts]
-    return minimise(network, evidence.tests, unknowns, theta, noise or evidence.fit.noise, held, 10, start=near)
+    return minimise(network, evidence.tests, unknowns, theta, noise or evidence.fit.noise, held, 10,
+                    start=evidence.parts_of(members))  # fmt: skip
 
 
 def polished(evidence: Evidence, members: Sequence[int], fit: Fit) -> Fit:

@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from hidden.kinds import KINDS
 from hidden.truth.archetype import measured
-from hidden.truth.change import NOTHING, Change
+from hidden.truth.change import Change
 from hidden.user import case_of
 from validation.calibrate import Fit, minimise
 from validation.case import Test
-from validation.detectable import readings_with
-from validation.evidence import Evidence, with_members
+from validation.detectable import readings_with, recalibrated
+from validation.evidence import Evidence, diagnosing, with_members
 from validation.fitting import Unknowns, widened
 from validation.verdict import PULL
 
@@ -27,18 +27,18 @@ LIKE, MOST = 0.4, 12
 class Reference:
     """A machine of a kind with nothing missing, calibrated by its user.
 
-    still : readings the calibrated model foretells;  true : those of the machine
+    evidence : from its tests;  still : readings the calibrated model foretells
     """
 
     kind: str
     seed: int
     evidence: Evidence
     still: list[Test]
-    true: list[Test]
 
     def moved(self, change: Change) -> list[Array]:
         """What a change of the machine does to every reading (K), channel by channel."""
-        return differences(_logged(self.kind, self.seed, self.evidence, change), self.true)
+        changed = case_of("", self.kind, measured(KINDS[self.kind], self.seed, change))
+        return differences(diagnosing(changed), self.evidence.tests)
 
     def reading(self, moved: Sequence[Array]) -> list[Test]:
         """The tests as the calibrated model foretells them, and so much more in each channel."""
@@ -47,12 +47,7 @@ class Reference:
 
 
 def reference(kind: str, seed: int, evidence: Evidence) -> Reference:
-    return Reference(kind, seed, evidence, readings_with(evidence, {}), _logged(kind, seed, evidence, NOTHING))
-
-
-def _logged(kind: str, seed: int, evidence: Evidence, change: Change) -> list[Test]:
-    names = {t.name for t in evidence.tests}
-    return [t for t in case_of("", kind, measured(KINDS[kind], seed, change)).tests if t.name in names]
+    return Reference(kind, seed, evidence, readings_with(evidence, {}))
 
 
 def differences(one: Sequence[Test], other: Sequence[Test]) -> list[Array]:
@@ -78,26 +73,19 @@ def gaps(on: Reference, k: int, amplitude: float, moved: Sequence[Array], kappa:
 
 def _explained(e: Evidence, tests: Sequence[Test], k: int, start: float) -> Fit:
     """The tests explained by effect k and the calibration; priors centre on the state that stands for the truth."""
-    p, rival = e.fit.theta.size, e.parameters[k]
+    rival = e.parameters[k]
     network, unknowns, held = with_members(e, [k])
-    near = [replace(s, J=s.J[:, [*range(p), p + k]]) for s in e.parts]
     first = float(np.clip(start, 0.9 * rival.low, 0.9 * rival.high))
-    return minimise(network, tests, unknowns, np.append(e.fit.theta, first), e.fit.noise, held, start=near,
-                    centre=np.append(e.fit.theta, 0.0), borrowed=False)  # fmt: skip
+    return minimise(network, tests, unknowns, np.append(e.fit.theta, first), e.fit.noise, held,
+                    start=e.parts_of([k]), centre=np.append(e.fit.theta, 0.0), borrowed=False)  # fmt: skip
 
 
 def _dragged(e: Evidence, tests: Sequence[Test]) -> dict[str, Fit]:
     """The tests explained by the parameter that calibration without an effect drags furthest, its prior widened."""
-    bare = _calibrated(e, tests, e.fit.theta, None)
-    pull = np.abs(bare.theta - e.fit.theta) / bare.unknowns.sd
+    bare = recalibrated(e, tests, e.fit.theta, e.fit.unknowns)
+    pull, own = np.abs(bare.theta - e.fit.theta) / bare.unknowns.sd, bare.unknowns.parameters
     j = int(np.argmax(pull))
-    return {f"calibrated {bare.unknowns.names[j]}": _calibrated(e, tests, bare.theta, j)} if pull[j] > PULL else {}
-
-
-def _calibrated(e: Evidence, tests: Sequence[Test], theta: Array, free: int | None) -> Fit:
-    own = e.fit.unknowns.parameters
-    unknowns = Unknowns(tuple(widened(q) if i == free else q for i, q in enumerate(own)))
-    near = [replace(s, J=s.J[:, : e.fit.theta.size]) for s in e.parts]
-    held = {q.name: q.value for q in e.fit.network.parameters} | e.fit.values
-    return minimise(e.fit.network, tests, unknowns, theta, e.fit.noise, held, start=near, centre=e.fit.theta,
-                    borrowed=False)  # fmt: skip
+    if pull[j] <= PULL:
+        return {}
+    loose = Unknowns(tuple(widened(q) if i == j else q for i, q in enumerate(own)))
+    return {f"calibrated {own[j].name}": recalibrated(e, tests, bare.theta, loose)}
