@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.network import Network
-from validation.blocks import INSTANTS
 from validation.case import Test
 from validation.fitting import Unknowns
 from validation.noise import Noise, first_noise, fit_noise
@@ -67,6 +66,23 @@ class Fit:
         return (self.theta <= low + 1e-9) | (self.theta >= high - 1e-9)
 
 
+@dataclass(frozen=True)
+class Known:
+    """Segments from before a fit, whose Jacobian serves as its first.
+
+    parts : of the very state where the fit begins, or else (`nearby`) of one close by, whose residuals are made anew
+    renewed : where steps fail, a Jacobian from nearby is made anew; if not, it is never
+    """
+
+    parts: Sequence[Segment]
+    nearby: bool = True
+    renewed: bool = False
+
+    @property
+    def borrowed(self) -> bool:
+        return self.nearby and not self.renewed
+
+
 def normal(parts: Sequence[Segment], noise: Noise) -> tuple[Array, Array, float]:
     """J'Sigma^-1 J, J'Sigma^-1 r and r'Sigma^-1 r, summed over segments."""
     p = parts[0].J.shape[1]
@@ -102,26 +118,21 @@ def minimise(
     noise: Noise | None = None,
     fixed: Mapping[str, float] | None = None,
     iterations: int = 12,
-    instants: int = INSTANTS,
-    progress: Progress = silent,
-    start: Sequence[Segment] | None = None,
+    known: Known | None = None,
     draft: bool = False,
-    keep: Keep = forgets,
     centre: Array | None = None,
-    borrowed: bool = True,
     worth: float = WORTH,
-    here: Sequence[Segment] | None = None,
+    progress: Progress = silent,
+    keep: Keep = forgets,
 ) -> Fit:
     """Fit `unknowns` to the tests from `theta` under a given noise (by default that of uncalibrated sensors).
 
     The Jacobian costs ten times a run, so it is held as long as steps do what it foretells, and made anew before the
-    end (unless `draft`); `start`: segments whose Jacobian at a state nearby is good enough, then it is never made anew
-    while `borrowed`, and only where steps fail otherwise; `keep` is told the values after every step, so that an
-    interrupted fit can go on from there; `centre`: prior mean (p,), 0 by default; `worth`: gain (nats) for which one
-    more step is made; `here`: segments of the very state `theta`, with its Jacobian.
+    end (unless `draft`); `known`: one to begin with; `centre`: prior mean (p,), 0 by default; `worth`: gain (nats) for
+    which one more step is made; `keep` is told the values after every step, so that an interrupted fit can go on.
     """
     fixed = dict(fixed or {})
-    climb = Climb(network, tests, unknowns, fixed, instants, theta, noise, start, draft, centre, borrowed, worth, here)
+    climb = Climb(network, tests, unknowns, fixed, theta, noise, known, draft, centre, worth)
     for iteration in range(iterations):
         progress(f"calibration step {iteration + 1}, objective {climb.objective:.4g}")
         done = climb.step()
@@ -135,27 +146,33 @@ class Climb:
     """State of a fit between its steps."""
 
     def __init__(
-        self, network: Network, tests: Sequence[Test], unknowns: Unknowns, fixed: dict[str, float], instants: int,
-        theta: Array, noise: Noise | None, start: Sequence[Segment] | None, draft: bool, centre: Array | None,
-        borrowed: bool, worth: float, here: Sequence[Segment] | None,
+        self, network: Network, tests: Sequence[Test], unknowns: Unknowns, fixed: dict[str, float], theta: Array,
+        noise: Noise | None, known: Known | None, draft: bool, centre: Array | None, worth: float,
     ) -> None:  # fmt: skip
+        near = known is not None and known.nearby
         self.network, self.tests, self.unknowns, self.fixed = network, tests, unknowns, fixed
-        self.instants, self.draft, self.worth = instants, draft or start is not None, worth
-        self.borrowed, self.centre = borrowed and start is not None, np.zeros_like(theta) if centre is None else centre
+        self.draft, self.borrowed, self.worth = draft or near, known is not None and known.borrowed, worth
+        self.centre = np.zeros_like(theta) if centre is None else centre
         self.low, self.high = unknowns.bounds
-        self.weight, self.damping, self.fresh, self.done = unknowns.sd**-2.0, 0.0, start is None, False
+        self.weight, self.damping, self.fresh, self.done = unknowns.sd**-2.0, 0.0, not near, False
         self.theta = np.clip(theta, self.low, self.high)
-        self.parts = list(here) if here else self.residuals(self.theta, start) if start else self.tangents(self.theta)
+        self.parts = self.begun(known)
         self.noise = noise or first_noise(self.parts)
         self.weigh()
 
+    def begun(self, known: Known | None) -> list[Segment]:
+        """Residuals and Jacobian where the fit begins."""
+        if known is None:
+            return self.tangents(self.theta)
+        return self.residuals(self.theta, known.parts) if known.nearby else list(known.parts)
+
     def tangents(self, x: Array) -> list[Segment]:
         now = {**self.fixed, **self.unknowns.values(x)}
-        return segments(self.network, self.tests, now, self.unknowns.parameters, self.instants)
+        return segments(self.network, self.tests, now, self.unknowns.parameters)
 
     def residuals(self, x: Array, like: Sequence[Segment]) -> list[Segment]:
         """Residuals at x with the Jacobian of other segments."""
-        plain = segments(self.network, self.tests, {**self.fixed, **self.unknowns.values(x)}, (), self.instants)
+        plain = segments(self.network, self.tests, {**self.fixed, **self.unknowns.values(x)}, ())
         return [replace(new, J=old.J) for new, old in zip(plain, like, strict=True)]
 
     @property
@@ -256,7 +273,7 @@ def calibrated(
     fit = minimise(network, tests, unknowns, unknowns.coordinates(values), noise, held, progress=progress, keep=keep)
     for _ in range(rounds):
         fit = minimise(
-            network, tests, unknowns, fit.theta, fit_noise(fit.parts), held, 10, progress=progress, keep=keep,
-            here=fit.parts,
+            network, tests, unknowns, fit.theta, fit_noise(fit.parts), held, 10, Known(fit.parts, nearby=False),
+            progress=progress, keep=keep,
         )  # fmt: skip
     return fit

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from geom.kept import written_whole
 from lumped.network import Network
-from validation.calibrate import WORTH, Fit, minimise, silent, square_of
+from validation.calibrate import WORTH, Fit, Known, minimise, silent, square_of
 from validation.case import Test
 from validation.effects import extended
 from validation.evidence import Evidence
@@ -147,8 +147,8 @@ def recalibrated(
     """
     fit = evidence.fit
     held = {p.name: p.value for p in fit.network.parameters} | fit.values
-    return minimise(fit.network, tests, unknowns, theta, fit.noise, held, start=evidence.parts_of([]),
-                    centre=fit.theta, borrowed=False, worth=worth)  # fmt: skip
+    return minimise(fit.network, tests, unknowns, theta, fit.noise, held,
+                    known=Known(evidence.parts_of([]), renewed=True), centre=fit.theta, worth=worth)  # fmt: skip
 
 
 def readings_with(evidence: Evidence, amplitudes: dict[int, float]) -> list[Test]:

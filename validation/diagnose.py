@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validation.bar import Bar, Simulation, bar_of
-from validation.calibrate import Fit, minimise, silent
+from validation.calibrate import Fit, Known, minimise, silent
 from validation.case import AddedEffect, Case
 from validation.effects import Effect
 from validation.evidence import Evidence, calibrated_case, candidates, possible, scored, sharpened
@@ -106,7 +106,7 @@ def sharper(evidence: Evidence, fit: Fit) -> Fit:
     values = fit.values
     held = {p.name: values.get(p.name, p.value) for p in fit.network.parameters}
     return minimise(fit.network, evidence.tests, fit.unknowns, fit.theta, sharpened(fit), held, 10,
-                    here=fit.parts)  # fmt: skip
+                    Known(fit.parts, nearby=False))  # fmt: skip
 
 
 def with_effect(case: Case, new: Effect, values: Mapping[str, float]) -> Case:

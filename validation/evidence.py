@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError
 from lumped.network import Network, Parameter
-from validation.calibrate import Fit, calibrated, minimise, silent
+from validation.calibrate import Fit, Known, calibrated, minimise, silent
 from validation.case import Case, Test
 from validation.effects import Effect, catalogue, extended
 from validation.fitting import Unknowns, at_level, scene_of, widened, working
@@ -180,7 +180,7 @@ def refit(evidence: Evidence, members: Sequence[int], noise: Noise | None = None
     network, unknowns, held = with_members(evidence, members)
     theta = start.theta if start else np.concatenate([evidence.fit.theta, first_amplitudes(evidence, members)])
     return minimise(network, evidence.tests, unknowns, theta, noise or evidence.fit.noise, held, 10,
-                    start=evidence.parts_of(members))  # fmt: skip
+                    Known(evidence.parts_of(members)))  # fmt: skip
 
 
 def polished(evidence: Evidence, members: Sequence[int], fit: Fit) -> Fit:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validation.apart import Gaps
-from validation.calibrate import Fit, minimise
+from validation.calibrate import Fit, Known, minimise
 from validation.case import Test
 from validation.evidence import Evidence, with_members
 from validation.fitting import Unknowns, nuisances
@@ -94,5 +94,5 @@ def _behind(evidence: Evidence, found: Race, new: Sequence[Test], right: int, wr
     near = [replace(s, J=np.pad(s.J, ((0, 0), (0, len(own))))) for s in rival.parts]
     near += segments(network, read, here, free)
     theta, tests = np.concatenate([rival.theta, np.zeros(len(own))]), (*evidence.tests, *read)
-    fit = minimise(network, tests, Unknowns(free), theta, found.noise, held, start=near)
+    fit = minimise(network, tests, Unknowns(free), theta, found.noise, held, known=Known(near))
     return behind(fit, found.fit(right), kappa)

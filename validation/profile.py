@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from validation.calibrate import Fit, Progress, minimise, silent
+from validation.calibrate import Fit, Known, Progress, minimise, silent
 from validation.case import Test
 from validation.fitting import Unknowns, to_value
 from validation.intervals import FORMAL, NORMAL_95, Profile, Widening
@@ -63,7 +63,7 @@ class Line:
         near = [replace(s, J=s.J[:, rest]) for s in fit.parts]
         values = {**self.held, **fit.values, p.name: to_value(p, at)}
         free = Unknowns(tuple(fit.unknowns.parameters[j] for j in rest))
-        best = minimise(fit.network, self.tests, free, start, fit.noise, values, start=near)
+        best = minimise(fit.network, self.tests, free, start, fit.noise, values, known=Known(near))
         objective = best.objective + 0.5 * (at / p.prior_sd) ** 2
         return float(np.sqrt(max(2.0 * (objective - fit.objective), 0.0)))
 

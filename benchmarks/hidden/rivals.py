@@ -12,7 +12,7 @@ from hidden.kinds import KINDS
 from hidden.truth.archetype import measured
 from hidden.truth.change import Change
 from hidden.user import case_of
-from validation.calibrate import Fit, minimise
+from validation.calibrate import Fit, Known, minimise
 from validation.case import Test
 from validation.detectable import readings_with, recalibrated
 from validation.evidence import Evidence, diagnosing, with_members
@@ -77,7 +77,7 @@ def _explained(e: Evidence, tests: Sequence[Test], k: int, start: float) -> Fit:
     network, unknowns, held = with_members(e, [k])
     first = float(np.clip(start, 0.9 * rival.low, 0.9 * rival.high))
     return minimise(network, tests, unknowns, np.append(e.fit.theta, first), e.fit.noise, held,
-                    start=e.parts_of([k]), centre=np.append(e.fit.theta, 0.0), borrowed=False)  # fmt: skip
+                    known=Known(e.parts_of([k]), renewed=True), centre=np.append(e.fit.theta, 0.0))  # fmt: skip
 
 
 def _dragged(e: Evidence, tests: Sequence[Test]) -> dict[str, Fit]:

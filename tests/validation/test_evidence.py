@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from playground import Truth, wind
 
-from validation.calibrate import calibrated, minimise
+from validation.calibrate import Known, calibrated, minimise
 from validation.effects import effect
 from validation.evidence import calibrated_case, scored, sharpened
 from validation.fitting import working
@@ -33,7 +33,7 @@ def test_a_fit_goes_on_with_the_jacobian_it_has(evidence):
     fit = evidence.fit
     held = {p.name: p.value for p in fit.network.parameters} | fit.values
     setting = (fit.network, evidence.tests, fit.unknowns, fit.theta, sharpened(fit), held)
-    kept, made = minimise(*setting, here=fit.parts), minimise(*setting)
+    kept, made = minimise(*setting, known=Known(fit.parts, nearby=False)), minimise(*setting)
     np.testing.assert_allclose(kept.theta, made.theta, rtol=1e-9, atol=1e-12)
     assert kept.objective == pytest.approx(made.objective, rel=1e-12)
 
