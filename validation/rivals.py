@@ -11,12 +11,14 @@ from numpy.typing import NDArray
 from scipy.stats import chi2
 
 from validation.calibrate import Fit, silent, square_of
+from validation.effects import Effect
 from validation.evidence import Evidence, polished, refit, sharpened
 from validation.noise import Noise
 from validation.score import per_test
 
 Array = NDArray[np.float64]
 GAP = 10.0
+FAR_FETCHED = 2.0  # times GAP
 COMPENSATED = 0.3
 SILENT = 6.0
 REFITS = 6
@@ -28,17 +30,19 @@ class Race:
 
     index : candidates;  fits : their refits under `noise`;  gap : deviance behind the best over the best's kappa^2,
         alone or, where that tells them apart, beside it
+    limit : gap from which each counts as told from the best
     group : the candidates that cannot be told from the best
     """
 
     index: tuple[int, ...]
     fits: tuple[Fit, ...]
     gap: tuple[float, ...]
+    limit: tuple[float, ...]
     noise: Noise
 
     @property
     def group(self) -> tuple[int, ...]:
-        return tuple(k for k, g in zip(self.index, self.gap, strict=True) if g < GAP)
+        return tuple(k for k, g, most in zip(self.index, self.gap, self.limit, strict=True) if g < most)
 
     @property
     def best(self) -> Fit:
@@ -86,7 +90,18 @@ def race(
     progress(f"setting {evidence.names[leader]} beside its rivals")
     leader, gap = sorted_out(evidence, fits, runners, leader, noise, kappa)
     runners.sort(key=lambda k: (k != leader, fits[k].objective))
-    return Race(tuple(runners), tuple(fits[k] for k in runners), tuple(gap[k] for k in runners), noise)
+    limit = tuple(needed(evidence.effects[leader], fits[leader], evidence.effects[k]) for k in runners)
+    return Race(tuple(runners), tuple(fits[k] for k in runners), tuple(gap[k] for k in runners), limit, noise)
+
+
+def needed(best: Effect, fit: Fit, rival: Effect) -> float:
+    """Gap from which a rival is told from the best.
+
+    A thermometer that would have to be further off than thermometers are has to explain clearly more than physics
+    before that is dismissed.
+    """
+    beyond = best.fault and not best.whole and abs(fit.values[best.name]) > max(abs(t) for t in best.typical)
+    return FAR_FETCHED * GAP if beyond and not rival.fault else GAP
 
 
 def sorted_out(

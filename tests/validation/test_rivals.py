@@ -11,7 +11,7 @@ from playground import Truth, wind
 from validation import rivals
 from validation.effects import effect
 from validation.evidence import calibrated_case, scored
-from validation.rivals import GAP, each_beside, race, sorted_out
+from validation.rivals import GAP, Race, each_beside, needed, race, sorted_out
 
 WIND, STILL = "convection@flange.right", "convection.constant@flange.right"
 FITS = {0: SimpleNamespace(objective=100.0), 1: SimpleNamespace(objective=103.0), 2: SimpleNamespace(objective=300.0)}
@@ -71,3 +71,19 @@ def test_who_leads_and_who_is_alike(monkeypatch, gains, leader, alike):
     found, gap = told(monkeypatch, {(0, 1): gains})
     assert found == leader
     assert {k for k, g in gap.items() if g < GAP} == alike
+
+
+@pytest.mark.parametrize(
+    ("leader", "size", "rival", "kept"),
+    [
+        ("sensor.gain@flange.right", -0.5, STILL, True),  # half the rise: no thermometer does that
+        ("sensor.gain@flange.right", -0.1, STILL, False),  # ten percent: some do
+        ("sensor.gain@flange.right", -0.5, "sensor.bias@flange.right", False),  # both are faults
+        (WIND, 500.0, STILL, False),  # physics
+    ],
+)
+def test_physics_is_not_dismissed_for_a_fault_that_would_be_unusual(leader, size, rival, kept):
+    """One that explains the readings worse by a deviance of 14."""
+    best, other = effect(leader), effect(rival)
+    limit = tuple(needed(best, SimpleNamespace(values={leader: size}), e) for e in (best, other))
+    assert (1 in Race((0, 1), (FITS[0], FITS[1]), (0.0, 14.0), limit, None).group) == kept
