@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.kept import written_whole
+from lumped.multipliers import values_of
 from lumped.network import Network
 from validation.calibrate import WORTH, Fit, Known, minimise, silent, square_of
 from validation.case import Test
@@ -146,7 +147,7 @@ def recalibrated(
     theta : where to start;  unknowns : those of the calibration, with other priors at most;  worth : as in `minimise`
     """
     fit = evidence.fit
-    held = {p.name: p.value for p in fit.network.parameters} | fit.values
+    held = values_of(fit.network, fit.values)
     return minimise(fit.network, tests, unknowns, theta, fit.noise, held,
                     known=Known(evidence.parts_of([]), renewed=True), centre=fit.theta, worth=worth)  # fmt: skip
 
@@ -155,8 +156,7 @@ def readings_with(evidence: Evidence, amplitudes: dict[int, float]) -> list[Test
     """The tests as the calibrated model with some effects reads them, where there are readings."""
     fit, effects = evidence.fit, [evidence.effects[k] for k in amplitudes]
     network = at_level(extended(fit.network, effects), {e.name for e in effects}, evidence.tests)
-    values = {p.name: p.value for p in network.parameters} | fit.values
-    values |= {evidence.names[k]: a for k, a in amplitudes.items()}
+    values = values_of(network, fit.values | {evidence.names[k]: a for k, a in amplitudes.items()})
     return [_reading(network, test, values) for test in evidence.tests]
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from lumped.multipliers import values_of
 from validation.bar import Bar, Simulation, bar_of
 from validation.calibrate import Fit, Known, minimise, silent
 from validation.case import AddedEffect, Case
@@ -103,10 +104,8 @@ def added(case: Case, evidence: Evidence, k: int, found: Race) -> Fit:
 
 def sharper(evidence: Evidence, fit: Fit) -> Fit:
     """The fit gone on under the noise of the residual that it leaves."""
-    values = fit.values
-    held = {p.name: values.get(p.name, p.value) for p in fit.network.parameters}
-    return minimise(fit.network, evidence.tests, fit.unknowns, fit.theta, sharpened(fit), held, 10,
-                    Known(fit.parts, nearby=False))  # fmt: skip
+    return minimise(fit.network, evidence.tests, fit.unknowns, fit.theta, sharpened(fit),
+                    values_of(fit.network, fit.values), 10, Known(fit.parts, nearby=False))  # fmt: skip
 
 
 def with_effect(case: Case, new: Effect, values: Mapping[str, float]) -> Case:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
+from lumped.multipliers import values_of
 from lumped.network import Network, Parameter
 from validation.calibrate import Fit, Known, calibrated, minimise, silent
 from validation.case import Case, Test
@@ -193,7 +194,7 @@ def with_members(evidence: Evidence, members: Sequence[int]) -> tuple[Network, U
     fit, chosen = evidence.fit, [evidence.parameters[k] for k in members]
     network = extended(fit.network, [evidence.effects[k] for k in members])
     unknowns = Unknowns((*fit.unknowns.parameters, *(widened(p) for p in chosen)))
-    return network, unknowns, {p.name: p.value for p in network.parameters} | fit.values
+    return network, unknowns, values_of(network, fit.values)
 
 
 def first_amplitudes(evidence: Evidence, members: Sequence[int]) -> Array:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from lumped.multipliers import values_of
 from validation.apart import Gaps
 from validation.calibrate import Fit, Known, minimise
 from validation.case import Test
@@ -44,8 +45,7 @@ class Plan:
 
 def read_by(fit: Fit, test: Test) -> Test:
     """The test with the readings that a fitted model foretells."""
-    standing = {p.name: p.value for p in fit.network.parameters}
-    y = predict(fit.network, test, {**standing, **fit.values}).y
+    y = predict(fit.network, test, values_of(fit.network, fit.values)).y
     return replace(test, channels=tuple(replace(c, y=y[:, j]) for j, c in enumerate(test.channels)))
 
 
