@@ -35,11 +35,15 @@ LOCATED = 10.0  # nats
 
 @dataclass(frozen=True)
 class Latent:
-    """Heat missing at one place: evidence (nats); per test its times (s), heat (W) and standard deviation (W)."""
+    """Heat missing at one place: evidence (nats); per test its times (s), heat (W) and standard deviation (W).
+
+    moves_K : the most by which it moves a reading, what is calibrated following
+    """
 
     place: str
     evidence_nats: float
     heat_W: dict[str, tuple[Array, Array, Array]]
+    moves_K: float
 
     def document(self) -> dict:
         series = {
@@ -107,7 +111,16 @@ class Scan:
         best, q, sd = max((_evidence(A, u, sizes, root) for root in self.roots), key=lambda x: x[0])
         cut = [slice(a, b) for a, b in pairwise(start)]
         heat_W = {name: (k, q[c], sd[c]) for (name, k), c in zip(self.knots.items(), cut, strict=True)}
-        return Latent(self.places[i], float(best), heat_W)
+        return Latent(self.places[i], float(best), heat_W, self._moves(i, heat_W, -cov @ JZ @ q))
+
+    def _moves(self, i: int, heat_W: Mapping[str, tuple[Array, Array, Array]], follow: Array) -> float:
+        """Largest change of a reading (K); follow : what the heat makes of the calibrated parameters."""
+        p, most = self.sd.size, 0.0
+        for s in self.parts:
+            _, q, _ = heat_W[s.test]
+            own = slice(p + i * q.size, p + (i + 1) * q.size)
+            most = max(most, float(np.max(np.abs(s.J[:, :p] @ follow + s.J[:, own] @ q), initial=0.0)))
+        return most
 
 
 def located(evidence_nats: float, usual_nats: float) -> bool:

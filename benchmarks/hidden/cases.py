@@ -106,7 +106,7 @@ def _absorbed(kind: Archetype, bare: Label, turn: int, rng: np.random.Generator)
 
 def _pair(kind: Archetype, bare: Label, turn: int, rng: np.random.Generator) -> Label:
     """One of two effects that the tests cannot tell apart, at the largest size at which that is so."""
-    usable = [(true, other, size) for twins in kind.twins for true, other in permutations(twins.names)
+    usable = [(true, other, size) for twins in kind.twins for true, other in permutations(twins)
               if (size := _confounded(kind, true, other)) > 0.0]  # fmt: skip
     true, other, size = usable[turn % len(usable)]
     amplitude = size * detectable()[kind.name][true]["size"]
@@ -114,9 +114,11 @@ def _pair(kind: Archetype, bare: Label, turn: int, rng: np.random.Generator) -> 
 
 
 def _confounded(kind: Archetype, true: str, other: str) -> float:
-    """The largest multiple of the detectable size at which the other explains the true one as well; 0 if none."""
+    """The largest multiple of the detectable size at which the other explains the true one as well, in what it does to
+    the machine and in what is logged; 0 if none."""
+    row = detectable()[kind.name].get(true, {})
     sizes = [s for s in MULTIPLES if true in {h.name for h in _possible(kind, s)}]
-    gaps = {s: detectable()[kind.name][true]["gaps"][f"{s:g}"].get(other, np.inf) for s in sizes}
+    gaps = {s: max(row[how][f"{s:g}"].get(other, np.inf) for how in ("gaps", "logged")) for s in sizes}
     return max((s for s, gap in gaps.items() if gap < ALIKE), default=0.0)
 
 
@@ -149,5 +151,4 @@ def _wrong_priors(kind: Archetype, seed: int) -> Change:
 
 def records_of(label: Label) -> tuple[Record, ...]:
     kind = KINDS[label.machine]
-    shortened = [t.plans for t in kind.twins if label.group == "pair" and label.truth[0] in t.names and t.plans]
-    return measured(kind, label.seed, hidden_in(kind, label), *shortened[:1])
+    return measured(kind, label.seed, hidden_in(kind, label))

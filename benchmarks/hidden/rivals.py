@@ -35,14 +35,17 @@ class Reference:
     evidence: Evidence
     still: list[Test]
 
+    def recorded(self, change: Change) -> Sequence[Test]:
+        """The tests of the machine with a change, as they are logged."""
+        return diagnosing(case_of("", self.kind, measured(KINDS[self.kind], self.seed, change)))
+
     def moved(self, change: Change) -> list[Array]:
         """What a change of the machine does to every reading (K), channel by channel."""
-        changed = case_of("", self.kind, measured(KINDS[self.kind], self.seed, change))
-        return differences(diagnosing(changed), self.evidence.tests)
+        return differences(self.recorded(change), self.evidence.tests)
 
-    def reading(self, moved: Sequence[Array]) -> list[Test]:
-        """The tests as the calibrated model foretells them, and so much more in each channel."""
-        more = iter(moved)
+    def foretold(self, change: Change) -> list[Test]:
+        """The tests as the calibrated model foretells them, and what a change of the machine does to every reading."""
+        more = iter(self.moved(change))
         return [replace(t, channels=tuple(replace(c, y=c.y + next(more)) for c in t.channels)) for t in self.still]
 
 
@@ -54,16 +57,15 @@ def differences(one: Sequence[Test], other: Sequence[Test]) -> list[Array]:
     return [a.y - b.y for s, t in zip(one, other, strict=True) for a, b in zip(s.channels, t.channels, strict=True)]
 
 
-def gaps(on: Reference, k: int, amplitude: float, moved: Sequence[Array], kappa: float) -> dict[str, float]:
+def gaps(e: Evidence, k: int, amplitude: float, tests: Sequence[Test], kappa: float) -> dict[str, float]:
     """Explanation -> deviance by which it explains a hidden effect worse than the effect's own name, over kappa^2.
 
-    k, amplitude : the effect in the catalogue's terms;  moved : what it does to the machine's readings
+    e : where nothing is missing;  k, amplitude : the effect in the catalogue's terms;  tests : with the effect
     Explanations are candidates whose traces are alike, and the calibrated parameter that the effect drags further than
     PULL deviations, were its prior wrong. Everything else is calibrated anew; one below zero follows the machine's law
     better than the own name does.
     """
-    e = on.evidence
-    tests, V, signed = on.reading(moved), e.score.V, amplitude * (int(e.score.sign[k]) or 1)
+    V, signed = e.score.V, amplitude * (int(e.score.sign[k]) or 1)
     alike = np.abs(e.score.cosine[k])
     near = [int(m) for m in np.argsort(-alike) if m != k and alike[m] > LIKE][:MOST]
     own = _explained(e, tests, k, signed)

@@ -12,7 +12,7 @@ from hidden.kinds import KINDS
 from hidden.page import markdown
 from hidden.peers import peers
 from hidden.score import rows
-from hidden.sizes import detectable
+from hidden.sizes import detectable, medians
 from hidden.truth.archetype import measured, truly
 from hidden.truth.change import NOTHING
 from hidden.truth.draw import Draw
@@ -100,6 +100,10 @@ def test_faults_happen_to_readings_only():
     np.testing.assert_allclose((bad.readings["core"] - good.readings["core"])[read], 4.0, atol=0.11)
     np.testing.assert_array_equal(bad.readings["housing"], good.readings["housing"])
     np.testing.assert_array_equal(cross.readings["core"], good.readings["housing"])
+
+
+def test_a_rival_is_what_comes_near_on_most_machines():
+    assert medians([{"a": 1.0, "b": 9.0}, {"a": 4.0}, {"a": -2.0, "b": 3.0, "c": 0.1}]) == {"a": 1.0, "b": 9.0}
 
 
 def test_judge_on_nothing_missing():

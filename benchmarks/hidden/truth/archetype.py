@@ -45,18 +45,10 @@ class Hidden:
 
 
 @dataclass(frozen=True)
-class Twins:
-    """Two effects that the tests (the usual ones when none are given) cannot tell apart."""
-
-    names: tuple[str, str]
-    plans: tuple[Plan, ...] = ()
-
-
-@dataclass(frozen=True)
 class Archetype:
     """thermometers : the user's name for the place -> where it really is;  baths : likewise for measured boundaries
 
-    missing : effects that can be hidden;  twins : pairs of which one is hidden
+    missing : effects that can be hidden;  twins : pairs of names that tests may not tell apart
     foreign, faults, absorbed : (label, change from a seed) of the other classes;  tense : priors that can be wrong
     """
 
@@ -70,7 +62,7 @@ class Archetype:
     foreign: Mapping[str, Callable[[int], Change]]
     absorbed: Mapping[str, Callable[[int], Change]]
     tense: Mapping[str, float]
-    twins: tuple[Twins, ...] = ()
+    twins: tuple[tuple[str, str], ...] = ()
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hidden.truth import faults, foreign
-from hidden.truth.archetype import Archetype, Hidden, Plan, Spot, Twins
+from hidden.truth.archetype import Archetype, Hidden, Plan, Spot
 from hidden.truth.brushed import machine
 from hidden.truth.change import Change
 from hidden.truth.effects import airflow, bridge, draught, fading, heating, stirred_gap
@@ -82,7 +82,7 @@ ABSORBED = {
 }  # fmt: skip
 TENSE = {"bolts": 0.25, "coil": 0.25, "fan": 0.12, "iron": 0.15, "hub": 0.25, "feet": 0.25, "spigot-de": 0.25,
          "rub": 0.2, "still": 0.15, "capacity.yoke": 0.08}  # fmt: skip
-TWINS = (Twins(("convection.constant@flange.nde", "convection.buoyant@flange.nde")),)
+TWINS = (("convection.constant@flange.nde", "convection.buoyant@flange.nde"),)
 BRUSHED = Archetype(
     "brushed", machine, PLANS,
     {"commutator": Spot("commutator", 0.5), "poles": Spot("poles", 0.5), "winding.field": Spot("field", 0.5),

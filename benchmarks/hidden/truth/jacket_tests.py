@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hidden.truth import faults, foreign
-from hidden.truth.archetype import Archetype, Hidden, Plan, Spot, Twins
+from hidden.truth.archetype import Archetype, Hidden, Plan, Spot
 from hidden.truth.change import Change
 from hidden.truth.effects import airflow, draught, heating, stirred_gap
 from hidden.truth.jacket import machine
@@ -87,9 +87,7 @@ ABSORBED = {
 }  # fmt: skip
 TENSE = {"fit": 0.25, "liner": 0.2, "jacket": 0.15, "iron": 0.15, "glue": 0.2, "mount": 0.25, "spigot-de": 0.25,
          "potting-de": 0.25, "gap": 0.15, "magnet": 0.2}  # fmt: skip
-TWINS = (
-    Twins(("convection.constant@shield.nde", "convection.buoyant@shield.nde")),
-)  # fmt: skip
+TWINS = (("convection.constant@shield.nde", "convection.buoyant@shield.nde"),)
 JACKET = Archetype(
     "jacket", machine, PLANS,
     {"winding.slot": Spot("slot", 0.5), "winding.de": Spot("winding.de", 0.5), "stator": Spot("yoke", 0.5),

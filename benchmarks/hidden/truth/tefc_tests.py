@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hidden.truth import faults, foreign
-from hidden.truth.archetype import Archetype, Hidden, Plan, Spot, Twins
+from hidden.truth.archetype import Archetype, Hidden, Plan, Spot
 from hidden.truth.change import Change
 from hidden.truth.effects import airflow, bridge, draught, fading, heating, spinning, stirred_gap
 from hidden.truth.profile import levels, steady, until
@@ -85,8 +85,8 @@ ABSORBED = {
 TENSE = {"fit": 0.25, "liner": 0.2, "fan": 0.15, "iron": 0.15, "seat-de": 0.25, "feet": 0.25, "capacity.housing": 0.1,
          "cage": 0.12, "spigot-de": 0.25, "still": 0.15}  # fmt: skip
 TWINS = (
-    Twins(("convection.constant@flange.nde", "convection.buoyant@flange.nde")),
-    Twins(("windage@rotor", "loss.rotor@rotor")),
+    ("convection.constant@flange.nde", "convection.buoyant@flange.nde"),
+    ("windage@rotor", "loss.rotor@rotor"),
 )  # fmt: skip
 TEFC = Archetype(
     "tefc", machine, PLANS,
