@@ -19,7 +19,7 @@ from hidden.cases import SHARES, plan
 from hidden.kinds import KINDS
 from hidden.page import markdown
 from hidden.run import Wanted, answered, pairs, run
-from hidden.score import rows
+from hidden.score import met, rows
 
 
 def arguments() -> argparse.Namespace:
@@ -52,9 +52,9 @@ def main() -> None:
         run(labels, out, Wanted(a.draws, a.plan, a.peers, a.after), a.jobs)
     table = rows(pairs(out))
     for r in table:
-        told = (
-            f"  n {r['n']:3d}  95 % {r['ci95'][0]:.2f} to {r['ci95'][1]:.2f}  {r.get('target', '')}" if "n" in r else ""
-        )
+        reached = {True: "met", False: "short", None: ""}[met(r)]
+        told = f"  n {r['n']:3d}  95 % {r['ci95'][0]:.2f} to {r['ci95'][1]:.2f}  " if "n" in r else ""
+        told += f"{r.get('target', '')} {reached}"
         told += f"{r['peer_name']} {r['peer']:.3g}" if "peer" in r else ""
         print(f"{r['case']:32s} {r['measure']:30s} {r['ours']:8.3g} {r['unit']}{told}")
     if a.page:

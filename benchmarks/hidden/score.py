@@ -89,6 +89,16 @@ def rows(pairs: Iterable[Pair]) -> list[dict]:
     return [*out, *fall(pairs), *contest(pairs), time]
 
 
+def met(row: dict) -> bool | None:
+    """Is what was wanted reached?  None where nothing was."""
+    words = row.get("target", "").split()
+    if not words:
+        return None
+    if words[0] in ("<=", ">="):
+        return bool(row["ours"] <= float(words[1]) if words[0] == "<=" else row["ours"] >= float(words[1]))
+    return bool(float(words[0]) <= row["ours"] <= float(words[2]))
+
+
 def fall(pairs: Iterable[Pair]) -> list[dict]:
     """Median share of the possible fall of the held-out error, its interval by the order statistics."""
     share = sorted(s for _, b in pairs if (s := judge.share_of_fall(b)) is not None)

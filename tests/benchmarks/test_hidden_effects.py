@@ -11,7 +11,7 @@ from hidden.cases import SHARES, Label, plan
 from hidden.kinds import KINDS
 from hidden.page import markdown
 from hidden.peers import peers
-from hidden.score import rows
+from hidden.score import met, rows
 from hidden.sizes import detectable, medians
 from hidden.truth.archetype import measured, truly
 from hidden.truth.change import NOTHING
@@ -48,6 +48,15 @@ def test_page_has_every_promise_and_every_method_once():
         "| nothing missing: false alarm | 80 | 1 % | 0 to 7 % | <= 5 % |", "",
         "| method | false alarm (80) |", "|---|---|", "| this diagnosis | 1 % |", "| AIC after refits | 50 % |",
     ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("target", "ours", "is_met"),
+    [("<= 0.05", 0.05, True), ("<= 0.05", 0.06, False), (">= 0.90", 0.9, True), (">= 0.90", 0.89, False),
+     ("0.85 to 0.95", 0.88, True), ("0.85 to 0.95", 0.96, False), ("", 0.5, None)],
+)  # fmt: skip
+def test_a_promise_is_met_or_short_or_none_was_made(target, ours, is_met):
+    assert met({"target": target, "ours": ours}) is is_met
 
 
 def test_plan_keeps_the_proportions_and_never_shares_seeds():
