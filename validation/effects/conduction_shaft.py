@@ -1,18 +1,28 @@
 """Heat that leaves along the shaft."""
 
+import math
 from dataclasses import dataclass
 
 from lumped.laws import Fixed
 from lumped.network import Network
 from validation.effects.base import Effect, Scene, with_parameter
-from validation.effects.build import conductance_scale, exchange
+from validation.effects.build import exchange
 from validation.effects.sites import ambient, solids
+
+STEEL_W_M_K, STEEL_J_M3_K = 50.0, 3.6e6
+THICK, SHORT = 0.4, 1.0  # most of a rotor's diameter that a shaft has, least length of it in its own diameters
 
 
 def shafts(network: Network) -> list[str]:
     """Nodes that are the shaft; where there is none, the rotor it belongs to."""
     names = [p.name for p in solids(network)]
     return [n for n in names if "shaft" in n.lower()] or [n for n in names if n.lower() == "rotor"]
+
+
+def stub(capacity: float) -> float:
+    """Conductance (W/K) of the stoutest shaft for a rotor of some heat capacity (J/K): all steel, as long as wide."""
+    rotor = (4.0 / math.pi * capacity / STEEL_J_M3_K) ** (1.0 / 3.0)
+    return STEEL_W_M_K * math.pi / 4.0 * THICK * rotor / SHORT
 
 
 @dataclass(frozen=True)
@@ -25,8 +35,8 @@ class ShaftConduction(Effect):
     source = "one-dimensional conduction k A / L; steel shaft of 30 mm, 100 mm long: 0.35 W/K"
     isolating_test = "uncouple, or put an insulating disc between the coupling's halves"
     typical = (0.1, 2.0)
-    prior_sd = 0.1
-    high = 10.0
+    prior_sd = 0.4
+    high = 1.0
     confused_with = ("convection.rotation", "bearing.friction")
 
     @classmethod
@@ -35,6 +45,5 @@ class ShaftConduction(Effect):
 
     def extend(self, network: Network) -> Network:
         link = exchange(network, self.name, self.place, str(ambient(network)), Fixed(1.0))
-        return with_parameter(
-            network.extended(links=[link]), self.parameter(link.name, scale=conductance_scale(network))
-        )
+        most = stub(float(network.C[network.places[self.place].states[0]]))
+        return with_parameter(network.extended(links=[link]), self.parameter(link.name, scale=most))
