@@ -23,7 +23,7 @@ BEYOND = 1.6
 CLEARLY = 3.0  # in nats; dev. seeds: up to 1.9 of the null's where no heat is missing, from 4.7 on where water splashes
 PULL = 3.0
 # Beside what is found, the misfit of its form stays, which the null does not know. Heat has to move a reading as well
-# there: a fouled housing leaves its rotor asking for up to 3.6 times the null's nats, for 0.2 to 0.8 K (dev. seeds).
+# there: a fouled housing leaves its rotor asking for up to 3.6 times the null's nats, for 0.2 to 0.3 K (dev. seeds).
 FURTHER = 1.25
 HIDES = "it may hide a missing effect"
 NOTHING = "nothing in the catalogue explains all of it"
