@@ -2,7 +2,7 @@
 
 from validation.case import AddedEffect, Case, Channel, Model, Test
 from validation.compare import Comparison, compare
-from validation.diagnose import diagnose
+from validation.inference.diagnose import diagnose
 from validation.effects import Effect, Scene, catalogue, effect, kinds
 from validation.findings import Diagnosis
 from validation.revise import Revision, add, calibrate, remove

@@ -62,6 +62,11 @@ class Effect(ABC):
     def name(self) -> str:
         return f"{self.kind}@{self.place}"
 
+    @property
+    def typical_loss(self) -> float | None:
+        """A share that something typically loses where it only can lose: large enough to leave its tangent behind."""
+        return self.typical[0] if self.mapping == "relative" and self.sign < 0 else None
+
     @classmethod
     def places(cls, scene: Scene) -> tuple[str, ...]:
         """Where it can sit on this network with these recordings."""
