@@ -1,7 +1,7 @@
 """What an added effect must stand up to: its bounds, and the prediction of each test from the others.
 
 Each test is left out in turn and predicted by the model with the effect and by the refitted model without it. Nothing
-is simulated again: the fit's own residuals and Jacobian say it, model error in account. Held-out tests are not looked at.
+is simulated again: the fit's own residuals and Jacobian say it, model error in account. Held-out tests have no say.
 """
 
 from __future__ import annotations

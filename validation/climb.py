@@ -8,10 +8,10 @@ from dataclasses import dataclass, field
 from validation.calibrate import silent
 from validation.case import Case
 from validation.compare import Comparison, compare
-from validation.inference.diagnose import diagnose
 from validation.effects import effect
 from validation.findings import Candidate, Diagnosis
 from validation.fitting import with_model
+from validation.inference.diagnose import diagnose
 from validation.revise import Revision, add, calibrate
 
 Progress = Callable[[str], None]
@@ -145,6 +145,7 @@ def leading(found: Diagnosis) -> tuple[Candidate, ...]:
 def evidence(found: Diagnosis, chosen: Candidate) -> dict[str, float | str]:
     """What speaks for an effect, as the history keeps it."""
     said: dict[str, float | str] = {
-        "probability": chosen.probability, "score": chosen.score, "threshold": chosen.threshold, "decision": chosen.decision, "verdict": found.verdict
+        "probability": chosen.probability, "score": chosen.score, "threshold": chosen.threshold,
+        "decision": chosen.decision, "verdict": found.verdict,
     }  # fmt: skip
     return said | ({"confused_with": ", ".join(chosen.confused_with)} if chosen.confused_with else {})

@@ -32,7 +32,7 @@ TABLE: Mapping[str, Line] = MappingProxyType({
     "lag": Line(10.0, "s", "diffusion in the part a sensor sits in, L^2 / 2a of some centimetres of metal"),
     "boundary": Line(0.5, "K", "a thermometer of room or inlet reads one spot"),
     "clock": Line(1.0, "s", "recorders are started by hand or by a trigger"),
-    "step in sample": Line(0.29, "sample", "an input that jumps between two samples does so anywhere in between: 1 / sqrt(12)"),
+    "step in sample": Line(0.29, "sample", "an input that jumps does so anywhere between two samples: 1 / sqrt(12)"),
     "input exponent": Line(0.15, "1", "scatter of published exponents of speed and flow"),
     "difference exponent": Line(0.1, "1", "scatter of published exponents of free convection"),
     "share": Line(0.15, "1", "scatter of published film sets over the bodies they are spread over"),

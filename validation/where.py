@@ -1,7 +1,6 @@
 """Where and when heat is missing: a free heat input at each node in turn, as hat functions of time.
 
-log evidence of a heat input q ~ N(0, s^2) per hat at node i, nuisances projected out; 10 nats locate it, or what the
-simulated null gives where that is more.
+log evidence of a heat input q ~ N(0, s^2) per hat at node i, nuisances projected out; 10 nats locate it.
 Source: Sarkka, Alvarez and Lawrence 2019 (latent force models); Rasmussen and Williams 2006, 5.4.
 """
 
@@ -81,7 +80,9 @@ class Scan:
     sd: Array
     scale: float
 
-    def read(self, residual: Sequence[Segment], noise: Noise, theta: Array, error: ModelError | None = None) -> list[Latent]:
+    def read(
+        self, residual: Sequence[Segment], noise: Noise, theta: Array, error: ModelError | None = None
+    ) -> list[Latent]:
         """All places, most evident first.
 
         theta : where the parameters stand, from the mean of their priors
@@ -132,9 +133,9 @@ class Scan:
         return most
 
 
-def located(evidence_nats: float, usual_nats: float) -> bool:
-    """Is there more evidence than it takes to place heat, and than machines give that lack none?"""
-    return evidence_nats > max(LOCATED, usual_nats)
+def located(evidence_nats: float) -> bool:
+    """Is there more evidence than it takes to place heat?"""
+    return evidence_nats > LOCATED
 
 
 def latent_heat(fit: Fit, tests: Sequence[Test], knot_s: float = KNOT_S) -> list[Latent]:

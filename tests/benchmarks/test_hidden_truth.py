@@ -18,9 +18,9 @@ from hidden.truth.profile import between, fine_times
 from hidden.truth.readings import lagged
 from hidden.user import network_of
 from scipy.integrate import solve_ivp
+from validation.menu import possible
 
 from validation.case import Test
-from validation.menu import possible
 
 TRUTH = Path(__file__).parents[2] / "benchmarks" / "hidden" / "truth"
 ALLOWED = {"__future__", "collections", "dataclasses", "typing", "numpy", "scipy", "hidden"}

@@ -1,4 +1,4 @@
-"""What a diagnosis rests on: the calibrated model, its model error, and the efficient score of every candidate effect."""
+"""What a diagnosis rests on: the calibrated model, its model error, the efficient score of every candidate effect."""
 
 from __future__ import annotations
 
@@ -14,7 +14,6 @@ from lumped.multipliers import values_of
 from lumped.network import Network, Parameter
 from validation.calibrate import Fit, Known, Measure, calibrated, minimise, silent
 from validation.case import Case, Test
-from validation.doubt import Doubt
 from validation.effects import Effect, catalogue, extended
 from validation.fitting import Unknowns, at_level, scene_of, widened, working
 from validation.noise import Noise, fit_noise
@@ -244,5 +243,3 @@ def deviance(evidence: Evidence, fit: Fit) -> dict[tuple[str, str], float]:
     measure = Measure(fit.parts, fit.noise, fit.error)
     left = measure.explained(fit.parts, fit.error)
     return {(s.test, s.channel): float(np.sum(fit.noise.whiten(s, s.r[:, None]) ** 2)) for s in left}
-
-

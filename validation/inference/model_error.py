@@ -17,16 +17,18 @@ from numpy.typing import NDArray
 from lumped.laws import CONSTANT, Constant, Fixed, Inputs, Law, TemperatureLaw
 from lumped.network import Network, Parameter, Place, Row
 from lumped.simulate import simulate
-from validation.bridges import stars
 from validation.case import Channel, Test
 from validation.doubt import USUAL, Doubt
 from validation.effects.build import Shaped, copy_link, exchange, heat
 from validation.forms import KNOTS, SETTLE_K, Table, is_film
-from validation.predict import record, thermal
 from validation.operators import setting
+from validation.predict import record, thermal
 from validation.sheet import Segment, segments
 
 Array = NDArray[np.float64]
+
+
+LOGARITHM = Table(KNOTS, tuple(np.log(np.clip(np.array(KNOTS) / SETTLE_K, 0.1, 10.0))))
 
 
 @dataclass(frozen=True)
@@ -35,7 +37,7 @@ class Bent(Law):
 
     base: Law
     reads: tuple[str, ...] = field(init=False, default=())
-    temperature: TemperatureLaw = Table(KNOTS, tuple(np.log(np.clip(np.array(KNOTS) / SETTLE_K, 0.1, 10.0))))
+    temperature: TemperatureLaw = LOGARITHM
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "reads", self.base.reads)
@@ -45,7 +47,7 @@ class Bent(Law):
 
 
 def with_doubts(network: Network, doubt: Doubt) -> tuple[Network, tuple[Parameter, ...]]:
-    """The network with a parameter for each doubt of its links, losses and capacities, all neutral, prior_sd = its sd."""
+    """The network with a neutral parameter for each doubt of its links, losses and capacities; prior_sd is its size."""
     before = len(network.parameters)
     new = [*_each_link(network, doubt), *_each_loss(network, doubt), *_each_capacity(network, doubt)]
     for link in network.links:
@@ -98,13 +100,29 @@ def _each_capacity(network: Network, doubt: Doubt) -> Iterator[Parameter]:
 
 
 def bridges(network: Network, share: float) -> list[tuple[str, str, float]]:
-    """Pairs of nodes and the conductance (W/K) that passes between them beside the nodes that join them, one sigma."""
+    """Pairs of nodes and the conductance (W/K) that passes between them beside the nodes that join them, one sigma.
+
+    A part that is not of one temperature joins its neighbours a little more, or less, than the star through its mean.
+    """
     square: dict[tuple[str, str], float] = {}
     for ends in stars(network).values():
         for (a, Ga), (b, Gb) in combinations(ends.items(), 2):
             pair = (a, b) if (b, a) not in square else (b, a)
             square[pair] = square.get(pair, 0.0) + (share * Ga * Gb / (Ga + Gb)) ** 2
     return [(a, b, float(np.sqrt(v))) for (a, b), v in square.items()]
+
+
+def stars(network: Network) -> dict[str, dict[str, float]]:
+    """For every node with mass its neighbours through conductances (W/K) that depend on nothing."""
+    heavy = {p.name for p in network.places.values() if p.kind == "node" and network.C[p.states[0]] > 0}
+    out: dict[str, dict[str, float]] = {}
+    for link in network.links:
+        if isinstance(link.law, Fixed) and link.law.temperature == CONSTANT and link.kind != "stream":
+            for node, other in (link.places, link.places[::-1]):
+                if node in heavy and other in heavy:
+                    ends = out.setdefault(node, {})
+                    ends[other] = ends.get(other, 0.0) + link.law.value
+    return out
 
 
 @dataclass(frozen=True)

@@ -42,19 +42,18 @@ def tabulate(
     verdict = final(choice.verdict, posterior, choice, pulls, broken)
     rows = candidates(case, posterior, choice, verdict, single)
     rivals = contenders(e, choice, single) if plan and verdict in ("group", "several") else None
+    groups = tuple(tuple(e.names[k] for k in g) for g in choice.groups)
+    tests, sensors = (next_tests(e, rivals), next_sensors(e, rivals)) if rivals else ((), ())
     return Diagnosis(
         verdict=verdict, words=sentence(verdict, posterior, choice, rows, pulls, broken),
-        named=tuple(e.names[g[0]] for g in choice.groups), groups=tuple(tuple(e.names[k] for k in g) for g in choice.groups),
-        candidates=rows, cannot_see=unseen(e), where=posterior.heat, next_tests=tuple(next_tests(e, rivals)) if rivals else (),
-        rmse_K=rmse(e.fit.parts), floor_K=floor(e), threshold=float(np.min(thresholds(e))), pulls=pulls,
-        cosine=confusion(e, [c.effect for c in rows[:12]]), next_sensors=tuple(next_sensors(e, rivals)) if rivals else (),
+        named=tuple(g[0] for g in groups), groups=groups, candidates=rows, cannot_see=unseen(e), where=posterior.heat,
+        next_tests=tuple(tests), next_sensors=tuple(sensors), rmse_K=rmse(e.fit.parts), floor_K=floor(e),
+        threshold=float(np.min(thresholds(e))), pulls=pulls, cosine=confusion(e, [c.effect for c in rows[:12]]),
         bases=bases, odds=odds(posterior), p_nothing=1.0 - choice.sure,
     )  # fmt: skip
 
 
-def final(
-    verdict: Verdict, posterior: Posterior, choice: Decision, pulls: Sequence, broken: Sequence[str]
-) -> Verdict:
+def final(verdict: Verdict, posterior: Posterior, choice: Decision, pulls: Sequence, broken: Sequence[str]) -> Verdict:
     """The decision with what the calibration says about itself: a machine that has to be bent is not adequate."""
     if broken:
         return "data"
@@ -113,7 +112,9 @@ def candidates(
     order = [*chosen, *(int(k) for k in np.argsort(-share, kind="stable") if k not in chosen)]
     size, limit = smallest(e), thresholds(e)
     lead = single[chosen[0]].fit if chosen else e.fit
-    rows = [_row(case, e, single[k], float(share[k]), float(limit[k]), float(size[k]), lead, chosen) for k in order[:ROWS]]
+    rows = [
+        _row(case, e, single[k], float(share[k]), float(limit[k]), float(size[k]), lead, chosen) for k in order[:ROWS]
+    ]
     return tuple(replace(r, decision=_decided(r, k, choice, verdict), confused_with=_others(e, k, choice))
                  for r, k in zip(rows, order, strict=False))  # fmt: skip
 
@@ -180,7 +181,9 @@ def unseen(e: Evidence) -> tuple[Hidden, ...]:
     unusual = size / np.array([p.prior_sd for p in e.parameters])
     names, twins = e.fit.unknowns.names, e.twins
     hit = [int(k) for k in np.argsort(-unusual) if unusual[k] > 2.0 or twins[k]]
-    return tuple(Hidden(e.names[k], float(size[k]), e.parameters[k].unit, twins[k] or _absorber(e, k, names)) for k in hit)
+    return tuple(
+        Hidden(e.names[k], float(size[k]), e.parameters[k].unit, twins[k] or _absorber(e, k, names)) for k in hit
+    )
 
 
 def _absorber(e: Evidence, k: int, names: Sequence[str]) -> str | None:

@@ -7,12 +7,12 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from validation.planning.apart import separation, told_apart
-from validation.inference.evidence import Evidence
 from validation.findings import NextTest
+from validation.inference.evidence import Evidence
+from validation.planning.apart import separation, told_apart
+from validation.planning.contenders import Contenders
 from validation.planning.foretell import Plan, proven, read_by, widened_error
 from validation.planning.menu import possible
-from validation.planning.contenders import Contenders
 from validation.score import gram
 from validation.sheet import segments
 

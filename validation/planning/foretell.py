@@ -9,14 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.multipliers import values_of
-from validation.planning.apart import GAP, Gaps
 from validation.calibrate import Fit, Known, minimise
 from validation.case import Test
+from validation.fitting import Unknowns, nuisances
 from validation.inference.evidence import Evidence, with_members
 from validation.inference.model_error import ModelError, model_error
-from validation.fitting import Unknowns, nuisances
-from validation.predict import predict
+from validation.planning.apart import GAP, Gaps
 from validation.planning.contenders import Contenders, behind
+from validation.predict import predict
 from validation.sheet import segments
 
 Array = NDArray[np.float64]
@@ -58,11 +58,7 @@ def proven(evidence: Evidence, found: Contenders, promised: Iterable[Plan]) -> l
     """
     plans = sorted(promised, key=lambda p: -p.worth)
     kept: list[Gaps] = [
-        {
-            pair: foretold(evidence, found, p.tests, pair)
-            for pair, g in p.gaps.items()
-            if g >= GAP
-        }
+        {pair: foretold(evidence, found, p.tests, pair) for pair, g in p.gaps.items() if g >= GAP}
         for p in plans[:CHECKED]
     ]
     kept += [{}] * (len(plans) - len(kept))

@@ -9,14 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.network import Network, Place
-from validation.planning.apart import separation, told_apart
 from validation.case import Channel, Test
 from validation.effects.sites import outside, turns
-from validation.inference.evidence import Evidence
 from validation.findings import NextSensor
-from validation.planning.foretell import Plan, proven, widened_error
+from validation.inference.evidence import Evidence
 from validation.noise import Noise
+from validation.planning.apart import separation, told_apart
 from validation.planning.contenders import Contenders
+from validation.planning.foretell import Plan, proven, widened_error
 from validation.score import Gram
 from validation.sheet import Segment, segments
 
