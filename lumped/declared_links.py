@@ -10,6 +10,7 @@ from lumped.declared_rotor import gap, rotating
 from lumped.laws import Fixed, InputPower, Law, Power, Radiation
 from lumped.laws import Table as TableLaw
 from lumped.reader import Table, powers
+from lumped.shaft_fan import shaft_fan
 
 Mechanism = tuple[str, Law, bool]
 
@@ -78,6 +79,11 @@ def _forced(table: Table, has_area: bool) -> tuple[Law, bool]:
     return InputPower(found[0], of), found[1]
 
 
+def _fan(table: Table, has_area: bool) -> tuple[Law, bool]:
+    _needs_area(table, has_area)
+    return shaft_fan(table), True
+
+
 def _power(table: Table, has_area: bool) -> tuple[Law, bool]:
     found, law = _coefficient(table, has_area), Power(table.number("exponent", 0.25))
     assert found is not None
@@ -97,7 +103,7 @@ def _tabled(table: Table, has_area: bool) -> tuple[Law, bool]:
 
 MECHANISMS = {
     "natural": _natural, "radiation": _radiation, "forced": _forced, "gap": _gap, "rotating": _rotating,
-    "contact": _contact, "power": _power, "table": _tabled,
+    "contact": _contact, "fan": _fan, "power": _power, "table": _tabled,
 }  # fmt: skip
 
 

@@ -12,8 +12,9 @@ from lumped.motor import operating_point
 from lumped.motor_coolant import channel_of, cooling_of, jacket_film
 from lumped.motor_films import surroundings
 from lumped.motor_losses import _declared, loss_watts
-from lumped.motor_outer import cowl_of, outer_of
+from lumped.motor_outer import cowl_of, outer_films, outer_of
 from lumped.motor_path import path_of
+from lumped.motor_settings import read_films
 from lumped.motor_shapes import fins_of, turning
 from lumped.motor_zones import motor_zones
 from lumped.multipliers import multipliers
@@ -221,3 +222,16 @@ def test_a_machine_without_losses_can_be_looked_at(ready):
     )
     assert sum(watts.values()) == pytest.approx(100.0)
     assert set(watts) == {"winding", "winding.left", "winding.right"}
+
+
+def test_a_part_may_have_its_own_film_of_the_shaft_fan():
+    """On the standing foot, which the cowl does not reach, and on the shield in the place of the cowl's film."""
+    machine = load_machine("tefc-industrial")
+    fan = {"h_W_m2K": 40.0, "at_rpm": 1460.0}
+    said = {"outer": {"foot": {"fan": fan}, "endcap.left": {"fan": fan}}}
+    machine = replace(machine, sections={**machine.sections, "films": said})
+    bare = outer_films(load_machine("tefc-industrial"), "foot", read_films(machine))
+    assert "blown" not in bare
+    for part in said["outer"]:
+        law = outer_films(machine, part, read_films(machine))["blown"]
+        assert law.factor({"speed_rpm": np.array([0.0, 730.0])}) == pytest.approx([0.0, 40.0 * 0.5**0.8])
