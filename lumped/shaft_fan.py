@@ -10,9 +10,7 @@ from __future__ import annotations
 from lumped.laws import InputPower
 from lumped.reader import Table
 
-EXPONENT = (
-    0.8  # turbulent along fins and end shields (Staton and Cavagnino 2008); 0.5 laminar, 1 where flow carries all
-)
+EXPONENT = 0.8  # turbulent along fins and end shields (Staton and Cavagnino 2008); 0.5 laminar
 
 
 def shaft_fan(table: Table) -> InputPower:

@@ -120,7 +120,7 @@ def test_a_coefficient_that_turns_heat_into_cooling_is_refused(alpha, says):
 
 
 def test_copper_does_not_conduct_better_hot():
-    with pytest.raises(InputError, match="alpha_1_K = -0.00393"):
+    with pytest.raises(InputError, match=r"alpha_1_K = -0\.00393"):
         heated(kind="copper", R20_ohm=0.1, currents=["current_A"], alpha_1_K=-0.00393)
 
 
@@ -130,5 +130,5 @@ def test_a_resistance_factor_below_zero_is_refused_with_the_speed():
     record = Record(
         np.arange(3.0), {"current_A": 10.0, "speed_rpm": np.array([0.0, 1000.0, 3000.0])}, {"ambient": 20.0}
     )
-    with pytest.raises(InputError, match="resistance factor is -0.5 at speed_rpm = 3000"):
+    with pytest.raises(InputError, match=r"resistance factor is -0\.5 at speed_rpm = 3000"):
         simulate(network, record)

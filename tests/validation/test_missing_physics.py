@@ -43,7 +43,7 @@ def test_heat_of_iron_is_no_copper():
 
 
 def measured(time, amps):
-    """A winding of 500 J/K on 2 W/K to air of 20 degC, its resistance of 0.5 ohm at 20 degC following its temperature."""
+    """500 J/K on 2 W/K to air of 20 degC; a resistance of 0.5 ohm at 20 degC that follows its temperature."""
 
     def slope(t, T):
         copper = 0.5 * np.interp(t, time, amps) ** 2 * (1.0 + ALPHA_CU * (T - 20.0))
