@@ -7,7 +7,7 @@ fan = { h_W_m2K = 40, at_rpm = 1460 } }; the part's own fan stands in the place 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -16,9 +16,8 @@ from lumped.correlations.fins import elenbaas, heiles, mean_of_decay
 from lumped.correlations.forced import flat_plate
 from lumped.correlations.info import Info
 from lumped.correlations.natural import churchill_chu_cylinder, churchill_chu_plate, mcadams_plate
-from lumped.correlations.tabulate import tabulated
-from lumped.laws import Fixed, Law, Radiation
-from lumped.laws import Table as TableLaw
+from lumped.correlations.tabulate import film_tabulated
+from lumped.laws import FILMS, FilmTable, Fixed, Law, Radiation
 from lumped.motor_laws import Interpolated
 from lumped.motor_settings import Films
 from lumped.motor_shapes import Extent, Fins, extent, fins_of
@@ -138,8 +137,8 @@ def _stands(e: Extent) -> tuple[str, float]:
     return "vertical plate", high
 
 
-def still_air(outer: Outer) -> TableLaw:
-    """Film of still air (W/m2/K) over the temperature difference, at 20 degC."""
+def still_air(outer: Outer) -> FilmTable:
+    """Film of still air (W/m2/K) over difference and film temperature; none without a difference."""
     size = outer.size
 
     def plate(surface: float, air: float) -> tuple[float, Info]:
@@ -152,8 +151,10 @@ def still_air(outer: Outer) -> TableLaw:
         SURFACES[2]: plate,
         SURFACES[3]: lambda s, a: elenbaas(outer.spacing, size, s, a),
     }
-    law = tabulated(of[outer.surface], STILL_AIR_K)
-    return TableLaw(law.difference, (0.0, *law.value[1:]))
+    law = film_tabulated(of[outer.surface], STILL_AIR_K)
+    each = np.reshape(law.value, (FILMS, -1))
+    each[:, 0] = 0.0
+    return replace(law, value=tuple(each.ravel()))
 
 
 def _blown(machine: Any, part: str, cowl: Cowl) -> Law | None:

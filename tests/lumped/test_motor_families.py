@@ -19,6 +19,7 @@ from lumped.motor_shapes import fins_of, turning
 from lumped.motor_zones import motor_zones
 from lumped.multipliers import multipliers
 from lumped.steady import steady
+from lumped.terms_value import temperature_value
 from thermoscope.pipeline import prepared
 
 FAMILIES = ("pmsm-m1", "ipmsm-48s8p-jacket", "tefc-industrial")
@@ -75,12 +76,7 @@ def test_direct_current_heating_at_standstill(networks, ready):
     for link in network.links:
         if "ambient" in link.places:
             hot = float(link.hot.weights @ found.z[link.hot.index])
-            law = link.law.temperature
-            h = (
-                np.interp(hot - 20.0, law.difference, law.value)
-                if hasattr(law, "difference")
-                else 5.670374419e-8 * ((hot + 273.15) ** 2 + 293.15**2) * (hot + 273.15 + 293.15)
-            )
+            h = temperature_value(link.law.temperature, hot, 20.0)
             left += float(link.law.factor({})) * h * network.place(link.places[0]).area * (hot - 20.0)
     assert left == pytest.approx(heat, rel=1e-6)
     assert max(found["winding"], found["winding.left"]) > found["magnets"] > found["base"] > 20.0

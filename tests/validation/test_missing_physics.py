@@ -31,6 +31,7 @@ def test_a_fan_blows_over_what_stands():
     """Housing and end shield of a closed machine, neither its rotor nor what is inside."""
     assert set(kinds()["convection.fan"].places(Scene(motor("copper"), SPEED))) == {"housing", "shield"}
     assert kinds()["convection.fan"].places(Scene(motor("copper"))) == ()
+    assert kinds()["convection.fan"].places(Scene(motor("copper"), SPEED | {"fan_flow_m3h"})) == ()
 
 
 @pytest.mark.parametrize(("loss", "missing"), [(name, k < 2) for k, name in enumerate(LOSS)])
