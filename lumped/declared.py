@@ -12,13 +12,14 @@ import numpy as np
 
 from geom.errors import InputError
 from lumped.build import bare_network, node_link, node_source, stream, surface_place
-from lumped.declared_links import flow_law, mechanisms
+from lumped.declared_links import flow_column, flow_law, mechanisms
 from lumped.declared_losses import loss_kinds, loss_laws, taken_off
 from lumped.declared_parameters import read_parameters
 from lumped.laws import Law
 from lumped.loss_measured import Negative
 from lumped.network import Link, Network, Place, Source
 from lumped.reader import Table, known
+from lumped.reversal import Direction, OneWay
 
 if TYPE_CHECKING:
     from lumped.circuit import Circuit
@@ -148,10 +149,25 @@ def _streams(network: Network, top: Table) -> list[Link]:
     out = []
     for name, table in top.tables("streams").items():
         path = [_end(network, table, node) for node in table.words("path")]
-        out.append(stream(network, f"stream:{name}", path, flow_law(table)))
+        out += _both_ways(network, name, path, table)
         table.raw("prior_sd")
         table.close()
     return out
+
+
+def _both_ways(network: Network, name: str, path: list[str], table: Table) -> list[Link]:
+    """A stream; where a column carries its flow and the file says what comes in from behind, backwards too."""
+    law, column, behind = flow_law(table), flow_column(table), table.word("backwards_from", "")
+    if column is None:
+        return [stream(network, f"stream:{name}", path, law)]
+    if not behind and path[0] != path[-1]:
+        right = f'backwards_from = "NODE": what comes in behind {path[-1]} when the flow turns round'
+        return [stream(network, f"stream:{name}", path, OneWay(law, column, table.where, right))]
+    back = [_end(network, table, behind), *path[:0:-1]] if behind else path[::-1]
+    return [
+        stream(network, f"stream:{name}", path, Direction(law, column, 1)),
+        stream(network, f"stream:{name}:back", back, Direction(law, column, -1)),
+    ]
 
 
 def _sources(network: Network, top: Table) -> list[Source]:

@@ -12,6 +12,22 @@ from lumped.loss_measured import MeasuredLoss
 from lumped.losses import ALPHA_CU, BrushLoss, CopperLoss, IronLoss, PowerLoss, RippleLoss
 from lumped.reader import Table, powers
 
+COLDEST, HOTTEST = -60.0, 300.0  # degC: from the coldest place a machine stands in to beyond what insulation bears
+
+
+def _coefficient(table: Table, reference: float, default: float | None = None) -> float:
+    """alpha (1/K) of 1 + alpha (T - reference), which must not turn a loss into cooling between COLDEST and HOTTEST."""
+    alpha = table.number("alpha_1_K", default, low=-1.0 if default is None else 0.0)
+    zero = reference - 1.0 / alpha if alpha else math.inf
+    if COLDEST <= zero <= HOTTEST:
+        side, end = ("above", HOTTEST) if alpha < 0 else ("below", COLDEST)
+        most = 1.0 / (reference - end)
+        raise table.error(
+            f"alpha_1_K = {alpha:g} makes heat negative {side} {zero:.4g} degC",
+            f"{'more' if alpha < 0 else 'less'} than {most:.4g} 1/K; copper has {ALPHA_CU}",
+        )
+    return alpha
+
 
 def _copper(table: Table) -> Law:
     given = [key for key in ("R20_ohm", "R_ohm") if key in table]
@@ -22,7 +38,7 @@ def _copper(table: Table) -> Law:
     speed, at, coefficients = _ac(Table(ac, f"{table.where} ac")) if ac is not None else (None, 1.0, (1.0,))
     return CopperLoss(
         table.number(given[0]), table.words("currents"), table.number("factor", 1.0),
-        table.number("alpha_1_K", ALPHA_CU), reference, coefficients, speed, at,
+        _coefficient(table, reference, ALPHA_CU), reference, coefficients, speed, at,
     )  # fmt: skip
 
 
@@ -35,7 +51,8 @@ def _ac(table: Table) -> tuple[str, float, tuple[float, ...]]:
 def _temperature(table: Table) -> TemperatureLaw:
     if "alpha_1_K" not in table:
         return CONSTANT
-    return Linear(table.number("alpha_1_K", low=-1.0), table.number("reference_degC", low=-273.15))
+    reference = table.number("reference_degC", low=-273.15)
+    return Linear(_coefficient(table, reference), reference)
 
 
 def _iron(table: Table) -> Law:
@@ -85,7 +102,7 @@ def _ripple(table: Table) -> Law:
     return RippleLoss(
         table.number("supply_V", low=1e-9), table.word("voltage", "voltage_V"), table.number("L_H", low=1e-12),
         table.number("switching_Hz", low=1e-9), table.number("R20_ohm"), table.number("factor", 1.0),
-        table.number("alpha_1_K", ALPHA_CU),
+        _coefficient(table, 20.0, ALPHA_CU),
     )  # fmt: skip
 
 

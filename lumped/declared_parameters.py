@@ -55,7 +55,8 @@ def _of_circuits(network: Network, top: Table) -> list[Parameter]:
     out = []
     for name, table in top.tables("circuits").items():
         films = tuple((x.name, 1.0) for x in network.links if x.name.startswith(f"film:{name}."))
-        acts = {"prior_sd": (f"circuit.{name}", ((f"stream:{name}", 1.0),)), "film_prior_sd": (f"film.{name}", films)}
+        streams = tuple((x.name, 1.0) for x in network.links if x.name in (f"stream:{name}", f"stream:{name}:back"))
+        acts = {"prior_sd": (f"circuit.{name}", streams), "film_prior_sd": (f"film.{name}", films)}
         out += [Parameter(*acts[key], prior_sd=table.number(key, low=1e-6)) for key in acts if key in table]
     return out
 

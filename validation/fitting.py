@@ -107,10 +107,11 @@ def at_level(network: Network, names: Collection[str], tests: Sequence[Test]) ->
     """The network with the priors and upper bounds of losses that effects bring in for the heat in these tests.
 
     Declared for the loss's reference (1000 rpm, 100 A), they would be a hundred times too narrow on a motor of 10 A.
+    What is no power, such as a temperature coefficient, has a prior that no test changes.
     """
     laws = {s.name: s.law for s in network.sources}
-    mean = {n: _mean_factor([laws[t] for p in network.parameters if p.name == n for t, _ in p.targets if t in laws],
-                            tests) for n in names}  # fmt: skip
+    watts = [p for p in network.parameters if p.name in names and p.unit.split(" at ")[0] == "W"]
+    mean = {p.name: _mean_factor([laws[t] for t, _ in p.targets if t in laws], tests) for p in watts}
     return replace(network, parameters=tuple(
         replace(p, prior_sd=p.prior_sd / f, high=p.high / f) if (f := mean.get(p.name, 0.0)) > 0 else p
         for p in network.parameters

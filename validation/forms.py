@@ -14,7 +14,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.laws import CONSTANT, Inputs, Law, Linear, Power, Table, TemperatureLaw
+from lumped.laws import CONSTANT, FilmTable, Inputs, Law, Linear, Power, Table, TemperatureLaw
 from lumped.network import Link, Network, Parameter, Source
 from validation.case import Test
 from validation.doubt import USUAL, Doubt
@@ -85,16 +85,22 @@ class BendOfDifference(Law):
         return self.base.factor(inputs)
 
 
-def bent(law: TemperatureLaw) -> Table:
+def bent(law: TemperatureLaw) -> Table | FilmTable:
     """law(dT) ln(dT / SETTLE_K) as a table."""
+    if isinstance(law, FilmTable):
+        films = np.reshape(law.value, (-1, len(law.difference)))
+        return replace(law, value=tuple((films * _turn(np.array(law.difference))).ravel()))
     if isinstance(law, Power):
         knots: Array = np.array(KNOTS)
         value = np.maximum(knots, 1.0) ** law.exponent
     else:
         assert isinstance(law, Table)
         knots, value = np.array(law.difference), np.array(law.value)
-    turn = np.log(np.clip(knots / SETTLE_K, 0.1, 10.0))
-    return Table(tuple(knots), tuple(value * turn))
+    return Table(tuple(knots), tuple(value * _turn(knots)))
+
+
+def _turn(difference: Array) -> Array:
+    return np.log(np.clip(difference / SETTLE_K, 0.1, 10.0))
 
 
 def levels(tests: Sequence[Test]) -> dict[str, float]:
@@ -178,7 +184,7 @@ def _with_input(
 
 def _with_difference(network: Network, parent: str, films: Sequence[Link], doubt: Doubt) -> Network:
     """The exponent of the temperature difference in the films of free convection."""
-    free = [x for x in films if isinstance(x.law.temperature, (Power, Table))]
+    free = [x for x in films if isinstance(x.law.temperature, (Power, Table, FilmTable))]
     for x in free:
         network = copy_link(network, x, f"{x.name}^dT", BendOfDifference(x.law))
     return _with_parameter(network, f"{parent}^dT", [f"{x.name}^dT" for x in free], doubt["difference exponent"])
