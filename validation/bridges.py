@@ -20,7 +20,7 @@ def bridges(network: Network, rng: np.random.Generator, spread: float) -> list[L
     """A link (W/K) for every two conductances that meet in a node: `spread` of the one through it, either sign."""
     out = []
     for node, ends in stars(network).items():
-        for (a, Ga), (b, Gb) in combinations(sorted(ends.items()), 2):
+        for (a, Ga), (b, Gb) in combinations(sorted(ends.items(), key=lambda end: network.column(end[0])), 2):
             G = spread * float(rng.standard_normal()) * Ga * Gb / (Ga + Gb)
             out.append(exchange(network, f"beside:{node}:{a}|{b}", a, b, Fixed(G)))
     return out

@@ -31,7 +31,7 @@ def next_tests(evidence: Evidence, found: Race, kappa: Array) -> list[NextTest]:
 def _planned(evidence: Evidence, found: Race, kappa: Array) -> Iterator[Plan]:
     fit = evidence.fit
     p, columns = fit.theta.size, (*fit.unknowns.parameters, *(evidence.parameters[k] for k in found.group))
-    for experiment, plan in possible(evidence.tests[-1]):
+    for experiment, plan in possible(evidence.tests[-1], evidence.network):
         test = read_by(found.best, plan)
         (more,) = gram(segments(evidence.network, [test], fit.values, columns), fit.noise, p).values()
         yield Plan(experiment.name, experiment.hours, [test], separation(evidence, found, more, kappa))

@@ -26,7 +26,7 @@ class CopperFeedback(Effect):
 
     @classmethod
     def where(cls, scene: Scene) -> list[str]:
-        copper = [s for s in scene.network.sources if s.kind == "copper" and "@" not in s.name]
+        copper = [s for s in scene.network.sources if s.kind == "copper" and not s.origin]
         return [s.name.split(":", 1)[-1] for s in copper if not isinstance(s.law.temperature, Linear)]
 
     def extend(self, network: Network) -> Network:
