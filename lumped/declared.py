@@ -15,6 +15,7 @@ from lumped.build import bare_network, node_link, node_source, stream, surface_p
 from lumped.declared_links import flow_column, flow_law, mechanisms
 from lumped.declared_losses import loss_kinds, loss_laws, taken_off
 from lumped.declared_parameters import read_parameters
+from lumped.declared_roles import read_identities, read_quantities
 from lumped.laws import Law
 from lumped.loss_measured import Negative
 from lumped.network import Link, Network, Place, Source
@@ -60,7 +61,9 @@ def read_network(data: Mapping[str, Any], where: str = "network.toml") -> Networ
     clash = set(nodes) & set(boundaries)
     if clash:
         raise head.error(f"'{min(clash)}' is a node and a boundary", "one or the other")
-    network = replace(network, places=_places(network, top, nodes, cells), settles_s=settles)
+    declared = read_identities(top, nodes, boundaries, cells)
+    network = replace(network, places=_places(network, top, nodes, cells), settles_s=settles, declared=declared,
+                      quantities=read_quantities(top))  # fmt: skip
     loops = [link for circuit in circuits.values() for link in circuit.links(network)]
     links = [*_links(network, top), *_streams(network, top), *loops]
     network = replace(network, links=tuple(links), sources=tuple(_sources(network, top)))
@@ -172,7 +175,7 @@ def _both_ways(network: Network, name: str, path: list[str], table: Table) -> li
 
 def _sources(network: Network, top: Table) -> list[Source]:
     tables = top.tables("losses")
-    kinds, laws = loss_kinds(tables), loss_laws(tables)
+    kinds, laws = loss_kinds(tables), loss_laws(tables, network.quantities)
     out = {name: _source(network, name, table, laws[name]) for name, table in tables.items()}
     taken = [
         _taken_off(out[name], out[other])

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Collection, Mapping
+from functools import partial
 from itertools import pairwise
 
 from lumped.laws import CONSTANT, Law, Linear, TemperatureLaw
 from lumped.loss_map import MapLoss
 from lumped.loss_measured import MeasuredLoss
 from lumped.losses import ALPHA_CU, BrushLoss, CopperLoss, IronLoss, PowerLoss, RippleLoss
+from lumped.quantities import USUAL
 from lumped.reader import Table, powers
 
 COLDEST, HOTTEST = -60.0, 300.0  # degC: from the coldest place a machine stands in to beyond what insulation bears
@@ -83,15 +85,15 @@ def _brush(table: Table) -> Law:
     return BrushLoss(table.number("drop_V"), table.word("current", "current_A"), friction, speed, at)
 
 
-def _measured(table: Table) -> Law:
+def _measured(table: Table, speeds: Collection[str]) -> Law:
     table.words("less", [])
-    return MeasuredLoss(_products(table, "electrical", 1.0) + _products(table, "mechanical", -1.0))
+    return MeasuredLoss(_electrical(table) + _mechanical(table, speeds))
 
 
 def taken_off(table: Table, kinds: Mapping[str, str]) -> tuple[str, ...]:
     """The losses that a measured one leaves to the model."""
     less = table.words("less", [])
-    others = [name for name, kind in kinds.items() if kind != "measured"]
+    others = [name for name, kind in kinds.items() if kind != MEASURED]
     for name in less:
         if name not in others:
             raise table.error(f"less = '{name}' is no loss", f"a loss that is not measured: {', '.join(others)}")
@@ -118,27 +120,46 @@ def _map(table: Table) -> Law:
                    _temperature(table))  # fmt: skip
 
 
-def _products(table: Table, key: str, sign: float) -> tuple[tuple[float, tuple[str, ...]], ...]:
+Products = tuple[tuple[float, tuple[str, ...]], ...]
+
+
+def _electrical(table: Table) -> Products:
     out = []
-    for item in table.listed(key):
+    for item in table.listed("electrical"):
+        out.append((item.number("factor", 1.0, low=-1e12), item.words("product")))
+        item.close()
+    return tuple(out)
+
+
+def _mechanical(table: Table, speeds: Collection[str]) -> Products:
+    """Taken off. speeds : inputs in 1/min, which come with pi/30; a product of several without one needs its factor."""
+    out = []
+    for item in table.listed("mechanical"):
         names = item.words("product")
-        default = math.pi / 30 if key == "mechanical" and any(name.endswith("_rpm") for name in names) else 1.0
-        out.append((sign * item.number("factor", default, low=-1e12), names))
+        turning = [name for name in names if name in speeds]
+        if "factor" not in item and not turning and len(names) > 1:
+            raise item.error(
+                "none of these inputs is known as a speed", 'factor = ..., or [inputs.NAME] quantity = "speed"'
+            )
+        out.append((-item.number("factor", math.pi / 30 if turning else 1.0, low=-1e12), names))
         item.close()
     return tuple(out)
 
 
 LOSSES = {
-    "copper": _copper, "iron": _iron, "brush": _brush, "ripple": _ripple, "map": _map, "measured": _measured,
+    "copper": _copper, "iron": _iron, "brush": _brush, "ripple": _ripple, "map": _map,
 }  # fmt: skip
+MEASURED = "measured"
 PLAIN = ("friction", "windage", "stray", "magnet", "switching", "bearing", "constant")
 
 
 def loss_kinds(tables: Mapping[str, Table]) -> dict[str, str]:
     """Name -> kind."""
-    return {name: table.word("kind", None, (*LOSSES, *PLAIN)) for name, table in tables.items()}
+    return {name: table.word("kind", None, (*LOSSES, MEASURED, *PLAIN)) for name, table in tables.items()}
 
 
-def loss_laws(tables: Mapping[str, Table]) -> dict[str, Law]:
-    """Name -> law."""
-    return {name: LOSSES.get(kind, _terms)(tables[name]) for name, kind in loss_kinds(tables).items()}
+def loss_laws(tables: Mapping[str, Table], quantities: Mapping[str, str] | None = None) -> dict[str, Law]:
+    """Name -> law.  quantities : input -> what it measures"""
+    speeds = [name for name, quantity in {**USUAL, **(quantities or {})}.items() if quantity == "speed"]
+    read: dict[str, Callable[[Table], Law]] = {**LOSSES, MEASURED: partial(_measured, speeds=speeds)}
+    return {name: read.get(kind, _terms)(tables[name]) for name, kind in loss_kinds(tables).items()}

@@ -42,7 +42,8 @@ def _inline(network: Network, top: Table, nodes: Mapping[str, Table]) -> list[Pa
                 own = f"{target}{name}"
                 mine = [i.name for i in items if i.name == own or i.name.startswith(f"{own}:")]
                 acts = tuple((n, 1.0) for n in mine if ":less:" not in n)
-                out.append(Parameter(f"{prefix}.{name}", acts, prior_sd=table.number("prior_sd", low=1e-6)))
+                sd, flow = table.number("prior_sd", low=1e-6), section == "streams"
+                out.append(Parameter(f"{prefix}.{name}", acts, prior_sd=sd, flow=flow))
     for name, table in nodes.items():
         if "prior_sd" in table:
             sd = table.number("prior_sd", low=1e-6)
@@ -57,7 +58,10 @@ def _of_circuits(network: Network, top: Table) -> list[Parameter]:
         films = tuple((x.name, 1.0) for x in network.links if x.name.startswith(f"film:{name}."))
         streams = tuple((x.name, 1.0) for x in network.links if x.name in (f"stream:{name}", f"stream:{name}:back"))
         acts = {"prior_sd": (f"circuit.{name}", streams), "film_prior_sd": (f"film.{name}", films)}
-        out += [Parameter(*acts[key], prior_sd=table.number(key, low=1e-6)) for key in acts if key in table]
+        out += [
+            Parameter(*acts[key], prior_sd=table.number(key, low=1e-6), flow=key == "prior_sd")
+            for key in acts if key in table
+        ]  # fmt: skip
     return out
 
 
@@ -81,6 +85,7 @@ def _parameters(top: Table) -> list[Parameter]:
                 neutral,
                 int(table.number("sign", 0, -1, 1)),
                 table.word("source", ""),
+                table.flag("flow") if "flow" in table else False,
             )
         )
         table.close()

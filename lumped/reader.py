@@ -75,6 +75,12 @@ class Table:
             raise self.error(f"{key} = {value!r} is not possible", f"{right}{meaning(key)}")
         return value
 
+    def flag(self, key: str) -> bool:
+        value = self._needed(key, None, "true or false")
+        if not isinstance(value, bool):
+            raise self.error(f"{key} = {value!r} is not possible", f"true or false{meaning(key)}")
+        return value
+
     def words(self, key: str, default: list[str] | None = None) -> tuple[str, ...]:
         value = self._needed(key, default, "[words]")
         if not isinstance(value, list) or not all(isinstance(v, str) for v in value):

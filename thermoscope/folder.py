@@ -11,6 +11,7 @@ from geom.errors import InputError
 from lumped.network import Network, Parameter
 from lumped.reader import Table, known
 from thermoscope.history import History, checked_values, load_history
+from thermoscope.quantities import with_quantities
 from thermoscope.readings import read_test
 from thermoscope.sheet import Sheet, load_sheet, read_toml
 from thermoscope.tables import Samples, load_table
@@ -136,6 +137,7 @@ def load_case(
     notes = tuple(dict.fromkeys(note for _, doubts in read for note in doubts))
     frees = {e.name: e.frees for e in settings.tests}
     tests = tuple(replace(_allowing(test, settings.model_K), frees=frees[test.name]) for test, _ in read)
+    network = with_quantities(network, sheets.values(), tests)
     case = Case(settings.name, _model(network, history), tests, _free(network, settings))
     return Folder(settings, _checked(case, history), history, notes, _positions(sheets.values()), built)
 

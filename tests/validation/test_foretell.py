@@ -32,7 +32,7 @@ def one_speed(time, rng):
 
 
 def planned(name, test):
-    return next(e for e in MENU if e.name == name).made_from(test)
+    return next(e for e in MENU if e.name == name).made_from(test, network())
 
 
 @cache

@@ -4,11 +4,10 @@ from dataclasses import dataclass
 
 from lumped.laws import InputPower
 from lumped.network import Network
+from lumped.quantities import AIR
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import film_unit, to_fluid
-from validation.effects.sites import ambient, axle, outside, turns
-
-OWN_DRIVE = "fan_flow_m3h"  # recorded where a motor of its own drives the fan: then none is on the shaft
+from validation.effects.sites import AXLE, ambient, outside, role, turns
 
 
 @dataclass(frozen=True)
@@ -28,17 +27,19 @@ class FanConvection(Effect):
     prior_sd = 30.0
     high = 300.0
     confused_with = ("convection", "convection.constant", "convection.rotation", "windage")
-    needs = ("speed_rpm",)
+    needs = ("speed",)
 
     @classmethod
     def where(cls, scene: Scene) -> list[str]:
-        if OWN_DRIVE in scene.inputs:
+        network = scene.network
+        if AIR in scene.recorded:  # a motor of its own drives the fan: then none is on the shaft
             return []
-        return [place for place in outside(scene.network) if not turns(place) and not axle(place)]
+        return [p for p in outside(network) if not turns(network, p) and role(network, p) not in AXLE]
 
     def extend(self, network: Network) -> Network:
         air = str(ambient(network))
         unit, scale = film_unit(network, self.place, air)
-        links = to_fluid(network, self.name, self.place, air, InputPower(1.0, (("speed_rpm", 1000.0, 0.8),)))
+        law = InputPower(1.0, ((network.signal("speed"), 1000.0, 0.8),))
+        links = to_fluid(network, self.name, self.place, air, law)
         parameter = self.parameter(*(link.name for link in links), scale=scale, unit=unit)
         return with_parameter(network.extended(links=links), parameter)

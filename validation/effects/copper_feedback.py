@@ -7,7 +7,7 @@ from lumped.losses import ALPHA_CU
 from lumped.network import Network, Source
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import Shaped, copy_source
-from validation.effects.sites import named
+from validation.effects.sites import windings
 
 REFERENCE = 20.0  # degC, of losses that name no temperature at which they hold
 UNSAID = ("constant", "stray")  # kinds that say nothing of how a loss comes about: in a winding it is copper's
@@ -32,8 +32,8 @@ class CopperFeedback(Effect):
 
     @classmethod
     def where(cls, scene: Scene) -> list[str]:
-        wound = set(named(scene.network, "winding"))
-        copper = [s for s in scene.network.sources if "@" not in s.name and _copper(s, wound)]
+        wound = set(windings(scene.network))
+        copper = [s for s in scene.network.sources if not s.origin and _copper(s, wound)]
         return [s.name.split(":", 1)[-1] for s in copper if _reference(s) is not None]
 
     def extend(self, network: Network) -> Network:

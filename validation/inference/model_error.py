@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.laws import CONSTANT, Constant, Fixed, Inputs, Law, TemperatureLaw
-from lumped.network import Network, Parameter, Place, Row
+from lumped.network import Link, Network, Parameter, Place, Row
 from lumped.simulate import simulate
 from validation.case import Channel, Test
 from validation.doubt import USUAL, Doubt
@@ -50,17 +50,21 @@ def with_doubts(network: Network, doubt: Doubt) -> tuple[Network, tuple[Paramete
     """The network with a neutral parameter for each doubt of its links, losses and capacities; prior_sd is its size."""
     before = len(network.parameters)
     new = [*_each_link(network, doubt), *_each_loss(network, doubt), *_each_capacity(network, doubt)]
-    for link in network.links:
-        if is_film(network, link) and isinstance(link.law.temperature, Constant) and link.kind != "stream":
-            name = f"{link.name}^dT?"
-            network = copy_link(network, link, name, Bent(link.law))
-            new.append(_amplitude(f"doubt:{name}", name, doubt["film exponent"], "1"))
+    for link in [x for x in network.links if _constant_film(network, x)]:
+        name = f"{link.name}^dT?"
+        network = copy_link(network, link, name, Bent(link.law))
+        new.append(_amplitude(f"doubt:{name}", name, doubt["film exponent"], "1"))
     for a, b, G in bridges(network, doubt["bridge"]):
         name = f"beside:{a}|{b}"
         network = network.extended(links=[exchange(network, name, a, b, Fixed(1.0))])
         new.append(_amplitude(f"doubt:{name}", name, G, "W/K"))
     network = replace(network, parameters=(*network.parameters, *new))
     return network, network.parameters[before:]
+
+
+def _constant_film(network: Network, link: Link) -> bool:
+    own = is_film(network, link) and link.kind != "stream" and not link.origin
+    return own and isinstance(link.law.temperature, Constant)
 
 
 def _amplitude(name: str, target: str, sd: float, unit: str) -> Parameter:
@@ -80,14 +84,14 @@ def _each_link(network: Network, doubt: Doubt) -> Iterator[Parameter]:
     """A link that shares its parameter with others, or has none, may differ from them."""
     single, shared = alone(network), {t for p in network.parameters for t, _ in p.targets}
     for x in network.links:
-        if x.name not in single and x.kind != "stream" and "^" not in x.name:
+        if x.name not in single and x.kind != "stream" and not x.origin:
             yield _log(x.name, doubt["group"] if x.name in shared or is_film(network, x) else doubt["conductivity"])
 
 
 def _each_loss(network: Network, doubt: Doubt) -> Iterator[Parameter]:
     single = alone(network)
     for s in network.sources:
-        if s.name not in single and "^" not in s.name:
+        if s.name not in single and not s.origin:
             yield _log(s.name, doubt["split"])
 
 

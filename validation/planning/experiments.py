@@ -31,7 +31,7 @@ def next_tests(evidence: Evidence, found: Contenders) -> list[NextTest]:
 def _planned(evidence: Evidence, found: Contenders) -> Iterator[Plan]:
     fit = evidence.fit
     p, columns = fit.theta.size, (*fit.unknowns.parameters, *(evidence.parameters[k] for k in found.group))
-    for experiment, plan in possible(evidence.tests[-1]):
+    for experiment, plan in possible(evidence.tests[-1], evidence.network):
         test = read_by(found.best, plan)
         parts, error = segments(evidence.network, [test], fit.values, columns), widened_error(evidence, [test])
         wide = [error.beside(s, p) for s in parts] if error else parts

@@ -58,7 +58,7 @@ def access(network: Network, place: Place) -> str:
     """How one gets there."""
     if place.kind == "fluid":
         return "air"
-    if turns(place.part):
+    if turns(network, place.name):
         return "turning"
     return "outside" if place.part in outside(network) and place.kind != "part" else "inside"
 
