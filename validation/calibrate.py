@@ -320,16 +320,28 @@ def calibrated(
     progress: Progress = silent,
     noise: Noise | None = None,
     keep: Keep = forgets,
-    doubt: Doubt = USUAL,
 ) -> Fit:
-    """Calibrate, estimate model error and noise where it ends, calibrate again under them; `rounds` times."""
+    """Calibrate, estimate the noise from the residual, calibrate again under it; `rounds` times."""
     held = {p.name: values.get(p.name, p.value) for p in network.parameters}
     fit = minimise(network, tests, unknowns, unknowns.coordinates(values), noise, held, progress=progress, keep=keep)
     for _ in range(rounds):
-        error = model_error(network, tests, {**held, **fit.values}, doubt)
-        noise = fit_noise(Measure(fit.parts, fit.noise, error).explained(fit.parts, error))
         fit = minimise(
-            network, tests, unknowns, fit.theta, noise, held, 10, Known(fit.parts, nearby=False),
-            progress=progress, keep=keep, error=error,
+            network, tests, unknowns, fit.theta, fit_noise(fit.parts), held, 10, Known(fit.parts, nearby=False),
+            progress=progress, keep=keep,
         )  # fmt: skip
     return fit
+
+
+def with_model_error(
+    fit: Fit, tests: Sequence[Test], values: Mapping[str, float], doubt: Doubt = USUAL, iterations: int = 0
+) -> Fit:
+    """The fit where it stands, or gone on, with what a model of this kind gets wrong added to the noise.
+
+    values : of what is not free.  Predictions are best by the parameters that follow the readings; how sure these are,
+    and what is missing beside them, depends on the model error.
+    """
+    held = {**values, **fit.values}
+    error = model_error(fit.network, tests, held, doubt)
+    noise = fit_noise(Measure(fit.parts, fit.noise, error).explained(fit.parts, error))
+    return minimise(fit.network, tests, fit.unknowns, fit.theta, noise, held, iterations,
+                    Known(fit.parts, nearby=False), error=error)  # fmt: skip

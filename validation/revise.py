@@ -10,7 +10,7 @@ import numpy as np
 from geom.errors import InputError
 from lumped.network import Parameter
 from validation.acceptance import Check, checks, failures
-from validation.calibrate import Fit, silent
+from validation.calibrate import Fit, silent, with_model_error
 from validation.case import AddedEffect, Case, Model, Test
 from validation.compare import Comparison, compare
 from validation.effects import effect
@@ -131,9 +131,10 @@ def _revised(
     new = replace(model, values=_values(model, fits), revision=case.model.revision + 1)
     after = compare(replace(case, model=new))
     changes = tuple(Change(b.name, b.role, b.rmse_K, a.rmse_K) for b, a in zip(before.tests, after.tests, strict=True))
-    made = checks(fits[-1], name) if action == "add" and name else ()
+    sure = [_sure(fit, tests, new, case) for fit in fits]
+    made = checks(sure[-1], name) if action == "add" and name else ()
     accepted, why = judge(action, changes, fits, made)
-    rows = merged(fits, lambda fit: estimates(fit, _profiled(fit, tests, new, profiled, progress)))
+    rows = merged(sure, lambda fit: estimates(fit, _profiled(fit, tests, new, profiled, progress)))
     converged = all(fit.converged for fit in fits)
     return Revision(action, name, new, accepted, why, changes, tuple(rows), before, after, converged, made)
 
@@ -149,6 +150,13 @@ def _values(model: Model, fits: Sequence[Fit]) -> dict[str, float]:
     for fit in fits:
         out |= fit.values
     return out
+
+
+def _sure(fit: Fit, tests: Sequence[Test], model: Model, case: Case) -> Fit:
+    """A stage's fit with the model error in its covariance."""
+    own = [t for t in tests if t.name in {s.test for s in fit.parts}]
+    held = {p.name: model.values.get(p.name, p.value) for p in fit.network.parameters}
+    return with_model_error(fit, own, held, case.doubt)
 
 
 def _profiled(

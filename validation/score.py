@@ -110,19 +110,3 @@ def score(G: Gram, theta: Array, prior_sd: Array, sign: NDArray[np.int64]) -> Sc
     V = G.ZZ - G.JZ.T @ take
     size = np.abs(take) * np.sqrt(np.maximum(np.diag(G.JJ), 0.0))[:, None]
     return Score(u, 0.5 * (V + V.T), np.diag(G.ZZ).copy(), sign, np.argmax(size, axis=0))
-
-
-def per_test(grams: Mapping[str, Gram], k: int, theta_step: Array) -> tuple[Array, Array]:
-    """Amplitude of effect k and its variance from each test alone, nuisances held where all tests put them.
-
-    theta_step : (p, K) response of the nuisances per unit of effect
-    """
-    a, var = [], []
-    for g in grams.values():
-        column = theta_step[:, k]
-        V = g.ZZ[k, k] - 2.0 * column @ g.JZ[:, k] + column @ g.JJ @ column
-        u = g.Zr[k] - column @ g.Jr
-        if 1e-9 * max(g.ZZ[k, k], 1e-300) < V:
-            a.append(u / V)
-            var.append(1.0 / V)
-    return np.array(a), np.array(var)

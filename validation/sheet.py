@@ -83,11 +83,11 @@ def stretch(channels: int, tangents: int) -> int:
 
 
 def allowed(c: Channel) -> float:
-    """Slow misfit (K) that a model of this kind may have at a channel: the sensor's own, or what the case says, and a
-    share of the rise."""
+    """Slow misfit (K) that a model of this kind may have at a channel: what the sensor wanders, or what the case says,
+    and a share of the rise."""
     first = c.y[np.argmax(np.isfinite(c.y))]
     rise = max(float(np.nanmax(c.y) - first), float(first - np.nanmin(c.y)))
-    return float(np.hypot(max(c.model_K, c.sigma_K), USUAL["slow"] * rise))
+    return float(np.hypot(max(c.model_K, USUAL["wander"] * c.sigma_K), USUAL["slow"] * rise))
 
 
 def stacked(parts: Sequence[Segment]) -> Array:

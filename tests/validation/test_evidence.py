@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 from playground import Truth, wind
-from validation.evidence import calibrated_case, scored, sharpened
 
-from validation.calibrate import Known, calibrated, minimise
+from validation.calibrate import Known, calibrated, minimise, residual_noise
 from validation.effects import effect
 from validation.fitting import working
+from validation.inference.evidence import calibrated_case, scored
 
 NAMES = ("convection@flange.right", "loss.constant@yoke", "sensor.bias@yoke", "mass@yoke")
 
@@ -18,21 +18,11 @@ def evidence():
     return scored(case, [effect(n) for n in NAMES], calibrated_case(case))
 
 
-def test_some_of_the_effects_score_as_if_they_had_been_scored_alone(evidence):
-    few = evidence.of([0, 2])
-    again = scored(Truth(12, wind("flange.right", 12.0)).case(), few.effects, evidence.fit)
-    assert few.names == again.names == (NAMES[0], NAMES[2])
-    np.testing.assert_allclose(few.score.z, again.score.z, rtol=1e-8)
-    np.testing.assert_allclose(few.score.V, again.score.V, rtol=1e-8)
-    np.testing.assert_allclose(few.parts[0].J, again.parts[0].J, atol=1e-10)
-    assert [p.name for p in few.parameters] == list(few.names)
-
-
 def test_a_fit_goes_on_with_the_jacobian_it_has(evidence):
     """Under another noise, from where it stands: the same optimum as with the Jacobian made again."""
     fit = evidence.fit
     held = {p.name: p.value for p in fit.network.parameters} | fit.values
-    setting = (fit.network, evidence.tests, fit.unknowns, fit.theta, sharpened(fit), held)
+    setting = (fit.network, evidence.tests, fit.unknowns, fit.theta, residual_noise(fit), held)
     kept, made = minimise(*setting, known=Known(fit.parts, nearby=False)), minimise(*setting)
     np.testing.assert_allclose(kept.theta, made.theta, rtol=1e-9, atol=1e-12)
     assert kept.objective == pytest.approx(made.objective, rel=1e-12)

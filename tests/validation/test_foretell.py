@@ -6,15 +6,15 @@ from functools import cache
 import numpy as np
 import pytest
 from playground import Truth, network, steps
-from validation.apart import DECISIVE
-from validation.evidence import calibrated_case, scored
-from validation.experiments import next_tests
-from validation.foretell import foretold, read_by
-from validation.menu import MENU
-from validation.rivals import GAP, race
 
 from validation.case import Case, Model
 from validation.effects import effect
+from validation.inference.evidence import calibrated_case, refit, scored, starts
+from validation.planning.apart import DECISIVE, GAP
+from validation.planning.contenders import Contenders, behind
+from validation.planning.experiments import next_tests
+from validation.planning.foretell import foretold, read_by
+from validation.planning.menu import MENU
 from validation.sheet import segments
 
 RIVALS = ("brush.friction@commutator", "loss.constant@commutator")
@@ -44,14 +44,15 @@ def driven():
 
 @cache
 def raced(more=None):
-    """Evidence and race of the rivals; more: the test of the menu that was driven besides."""
+    """Evidence and refits of the rivals; more: the test of the menu that was driven besides."""
     truth, tests = driven()
     if more:
         plan = planned(more, tests[-1])
         tests = (*tests, truth.test(more, "calibrate", lambda time, rng: plan.inputs, hours=4.0))
     case = Case("rubbing", Model(network()), tests)
     evidence = scored(case, [effect(name) for name in RIVALS], calibrated_case(case))
-    return evidence, race(evidence, np.ones(2), 0.0)
+    fits = tuple(refit(evidence, [k], starts(evidence, [k])[0]) for k in (0, 1))
+    return evidence, Contenders((0, 1), fits, evidence.fit.noise)
 
 
 def test_a_plan_is_as_long_as_it_says_and_repeats_what_it_does_not_change():
@@ -66,7 +67,8 @@ def test_a_plan_is_as_long_as_it_says_and_repeats_what_it_does_not_change():
 
 
 def test_tests_at_one_speed_cannot_tell():
-    assert len(raced()[1].group) == 2
+    first, second = raced()[1].fits
+    assert abs(behind(first, second)) < GAP
 
 
 def test_a_model_reads_what_it_foretells():
@@ -78,12 +80,12 @@ def test_a_model_reads_what_it_foretells():
 
 def test_the_same_again_decides_nothing():
     evidence, found = raced()
-    assert foretold(evidence, found, [replace(evidence.tests[-1], name="again")], (0, 1), 1.0) < GAP
+    assert foretold(evidence, found, [replace(evidence.tests[-1], name="again")], (0, 1)) < GAP
 
 
 def test_two_speeds_are_said_to_decide():
     evidence, found = raced()
-    said = {t.test: t for t in next_tests(evidence, found, np.ones(2))}
+    said = {t.test: t for t in next_tests(evidence, found)}
     assert said["same current at two speeds"].predicted_gain > DECISIVE
     assert said["same current at two speeds"].separates
     assert not said["spin without current"].separates  # at one speed again
@@ -91,4 +93,5 @@ def test_two_speeds_are_said_to_decide():
 
 def test_driven_it_decides():
     _, found = raced("same current at two speeds")
-    assert [RIVALS[k] for k in found.group] == ["brush.friction@commutator"]
+    right, wrong = found.fits
+    assert behind(wrong, right) > GAP

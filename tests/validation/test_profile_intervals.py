@@ -11,7 +11,7 @@ from lumped.network import Parameter
 from validation.calibrate import minimise
 from validation.case import Case, Model
 from validation.fitting import Unknowns, working
-from validation.intervals import Widening, estimates
+from validation.intervals import estimates
 from validation.profile import profiles
 from validation.revise import calibrate
 from validation.staged import Search, stages
@@ -32,12 +32,6 @@ def test_of_a_linear_model_the_profile_is_the_covariance():
     (row, _) = estimates(fit)
     assert found.open == (False, False)
     np.testing.assert_allclose((found.low, found.high), row.ci95, rtol=0.03)
-
-
-def test_widened_intervals_are_wider_by_kappa():
-    fit, _ = fitted(FILM, MASS)
-    narrow, wide = (estimates(fit, Widening(1.0, {"film": k}))[0].ci95 for k in (1.0, 2.0))
-    assert np.log(wide[1] / wide[0]) == pytest.approx(2.0 * np.log(narrow[1] / narrow[0]), rel=1e-6)
 
 
 def test_ends_of_a_curved_profile_are_where_the_deviance_says():

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from validation.calibrate import bounded_step
-from validation.score import Gram, per_test, score
+from validation.score import Gram, score
 
 
 @pytest.fixture
@@ -46,16 +46,6 @@ def test_amplitude_is_that_of_the_full_fit(data):
     assert S.amplitude[0] == pytest.approx(full[-1])
 
 
-def test_drop_of_a_pair_is_that_of_the_full_fit(data):
-    J, Z, r = data
-    S = score(block(J, Z, r), np.zeros(4), np.full(4, 1e6), np.zeros(3, int))
-
-    def left(X):
-        return np.linalg.lstsq(X, r, rcond=None)[1][0]
-
-    assert S.drop([0, 2]) == pytest.approx(left(J) - left(np.column_stack([J, Z[:, [0, 2]]])), rel=1e-6)
-
-
 def test_effect_in_the_span_of_the_calibration_is_invisible(data):
     J, _, r = data
     S = score(block(J, J[:, :1] * 3.0, r), np.zeros(4), np.full(4, 1e9), np.ones(1, int))
@@ -67,24 +57,6 @@ def test_wrong_sign_is_no_explanation(data):
     J, Z, _ = data
     S = score(block(J, Z, -5.0 * Z[:, 0]), np.zeros(4), np.ones(4), np.array([1, -1, 0]))
     assert S.z[0] < -10
-    assert S.drop([0]) == pytest.approx(0.0)
-
-
-def test_conditional_score_removes_the_shadow_of_the_truth(data):
-    """A second effect that resembles the true one has nothing left once the true one is in."""
-    J, Z, _ = data
-    twin = np.column_stack([Z[:, 0], Z[:, 0] + 0.5 * Z[:, 1]])
-    S = score(block(J, twin, 4.0 * Z[:, 0]), np.zeros(4), np.ones(4), np.ones(2, int))
-    assert S.z[1] > 10
-    assert abs(S.conditional(1, 0)) < 1e-6
-    assert S.conditional(0, 1) > 10
-
-
-def test_amplitudes_per_test_agree_for_a_true_effect(data):
-    J, Z, _ = data
-    grams = {n: block(J[s], Z[s], 2.0 * Z[s, 0]) for n, s in {"a": slice(40), "b": slice(40, 80)}.items()}
-    a, _ = per_test(grams, 0, np.zeros((4, 3)))
-    np.testing.assert_allclose(a, 2.0)
 
 
 def test_bounded_step_is_the_constrained_minimum():

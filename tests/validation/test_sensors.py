@@ -5,13 +5,13 @@ from functools import cache
 import numpy as np
 import pytest
 from playground import SENSORS, Truth, network
-from validation.apart import DECISIVE, separation
-from validation.evidence import calibrated_case, scored
-from validation.rivals import race
-from validation.sensors import access, free_places, next_sensors, with_sensors
 
 from validation.case import Case, Model
 from validation.effects import effect
+from validation.inference.evidence import calibrated_case, refit, scored, starts
+from validation.planning.apart import DECISIVE, GAP, separation
+from validation.planning.contenders import Contenders, behind
+from validation.planning.sensors import access, free_places, next_sensors, with_sensors
 
 PLACES = ("winding.armature", "rotor")
 RIVALS = tuple(f"loss.constant@{place}" for place in PLACES)
@@ -27,17 +27,19 @@ def raced(*more):
     tests = Truth(10, heated, sensors=(*SENSORS, *more)).case().tests[:2]
     case = Case("heated", Model(network()), tests)
     evidence = scored(case, [effect(name) for name in RIVALS], calibrated_case(case))
-    return evidence, race(evidence, np.ones(2), 0.0)
+    fits = tuple(refit(evidence, [k], starts(evidence, [k])[0]) for k in (0, 1))
+    return evidence, Contenders((0, 1), fits, evidence.fit.noise)
 
 
 @cache
-def said(kappa=1.0):
+def said():
     evidence, found = raced()
-    return {s.place: s for s in next_sensors(evidence, found, np.full(2, kappa))}
+    return {s.place: s for s in next_sensors(evidence, found)}
 
 
 def test_without_a_sensor_on_either_they_cannot_be_told_apart():
-    assert len(raced()[1].group) == 2
+    first, second = raced()[1].fits
+    assert abs(behind(first, second)) < GAP
 
 
 def test_every_free_place_is_ranked_by_gain_per_hour():
@@ -60,19 +62,16 @@ def test_a_further_sensor_never_takes_separation_away():
     now = min(size**2 * np.diag(evidence.score.V)) * (1.0 - evidence.score.cosine[0, 1] ** 2)
     places = free_places(network(), evidence.tests)
     more = [gram for _, gram in with_sensors(evidence, places, found.group)]
-    with_one = [separation(evidence, found, gram, np.ones(2)) for gram in more]
+    with_one = [separation(evidence, found, gram) for gram in more]
     assert len(with_one) == len(places)
     assert all(gap >= now * (1 - 1e-9) for gaps in with_one for gap in gaps.values())
 
 
 def test_mounted_it_decides():
     best = max(PLACES, key=lambda place: said()[place].predicted_gain)
-    evidence, found = raced(best)
-    assert [evidence.names[k] for k in found.group] == ["loss.constant@winding.armature"]
-
-
-def test_against_a_larger_error_of_the_model_a_sensor_promises_less():
-    assert all(said(4.0)[place].predicted_gain < s.predicted_gain for place, s in said().items() if s.predicted_gain)
+    _, found = raced(best)
+    right, wrong = found.fits
+    assert behind(wrong, right) > GAP
 
 
 @pytest.mark.parametrize("place", ["shaft", "rotor", "commutator"])

@@ -34,10 +34,11 @@ def diagnose(
     training = case.training()
     stood = bases_tried(training, progress)
     posterior = infer(training, kinds, progress)
-    broken = [*broken_channels(training.tests), *wrong_bases(stood)]
+    wrong = wrong_bases(stood)
     choice = decide(posterior.evidence, posterior.hypotheses)
-    if broken:
-        choice = Decision("data", choice.groups, choice.sure)
+    if wrong:  # nothing else is accused of what the base does
+        choice = Decision("data", (), choice.sure)
+    broken = [*broken_channels(training.tests), *wrong]
     progress("writing the tables")
     return tabulate(case, posterior, choice, broken, tuple(stood), plan)
 

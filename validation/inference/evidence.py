@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from geom.errors import InputError
 from lumped.multipliers import values_of
 from lumped.network import Network, Parameter
-from validation.calibrate import Fit, Known, Measure, calibrated, minimise, silent
+from validation.calibrate import Fit, Known, Measure, calibrated, minimise, silent, with_model_error
 from validation.case import Case, Test
 from validation.effects import Effect, catalogue, extended
 from validation.fitting import Unknowns, at_level, scene_of, widened, working
@@ -23,6 +23,7 @@ from validation.sheet import Segment, reach, segments
 Array = NDArray[np.float64]
 TWIN = 0.9995  # cosine from which a calibrated parameter does the same as an effect
 ENOUGH = 0.05  # nats: evidence is read to a tenth
+ROUNDS = 10  # steps of a calibration that goes on under the model error
 
 
 @dataclass(frozen=True)
@@ -91,10 +92,12 @@ def candidates(case: Case, kinds: Sequence[str] | None = None) -> tuple[Effect, 
 def calibrated_case(
     case: Case, progress: Callable[[str], None] = silent, start: Mapping[str, float] | None = None
 ) -> Fit:
-    """The model calibrated on every test but the held-out ones."""
+    """The model calibrated on every test but the held-out ones, model error in account."""
     network, unknowns = working(case)
-    values = {**case.model.values, **(start or {})}
-    return calibrated(network, diagnosing(case), unknowns, values, progress=progress, doubt=case.doubt)
+    values, tests = {**case.model.values, **(start or {})}, diagnosing(case)
+    held = {p.name: values.get(p.name, p.value) for p in network.parameters}
+    plain = calibrated(network, tests, unknowns, values, 1, progress)
+    return with_model_error(plain, tests, held, case.doubt, ROUNDS)
 
 
 def scored(case: Case, effects: Sequence[Effect], fit: Fit) -> Evidence:

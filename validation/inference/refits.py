@@ -17,6 +17,7 @@ from validation.inference.posterior import Hypothesis, probabilities, told
 Array = NDArray[np.float64]
 WEIGHT = 0.01  # posterior probability from which a hypothesis is refitted
 ROUNDS, MOST = 4, 8  # what a refit promotes is refitted too; so many at once
+NEARLY, TRIED = 0.4, 3  # linear amplitude, and how many, of effects that happen whole or not at all
 
 
 def refitted(
@@ -24,6 +25,9 @@ def refitted(
 ) -> list[Hypothesis]:
     """The hypotheses with those that carry weight refitted, until none does that is not."""
     out = list(hypotheses)
+    for i in exchanged(evidence, out):
+        progress(f"refitting {out[i].name(evidence)}")
+        out[i] = laplace(evidence, out[i])
     for _ in range(ROUNDS):
         P = probabilities(out)
         due = [i for i in np.argsort(-P) if P[i] > WEIGHT and out[i].members and out[i].fit is None][:MOST]
@@ -33,6 +37,16 @@ def refitted(
             progress(f"refitting {out[i].name(evidence)}")
             out[i] = laplace(evidence, out[i])
     return out
+
+
+def exchanged(evidence: Evidence, hypotheses: Sequence[Hypothesis]) -> list[int]:
+    """All-or-nothing effects that come near: they are too large for tangents, so they are refitted in any case."""
+    a = evidence.score.amplitude
+    whole = [
+        (i, h.log_bayes) for i, h in enumerate(hypotheses)
+        if len(h.members) == 1 and evidence.effects[h.members[0]].whole and a[h.members[0]] > NEARLY
+    ]  # fmt: skip
+    return [i for i, _ in sorted(whole, key=lambda x: -x[1])[:TRIED]]
 
 
 def laplace(evidence: Evidence, h: Hypothesis) -> Hypothesis:

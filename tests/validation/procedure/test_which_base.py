@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from validation.diagnose import diagnose
 
 from geom.errors import InputError
 from lumped.build import bare_network, node_link, node_row, node_source
@@ -12,6 +11,7 @@ from lumped.laws import Fixed, Radiation
 from lumped.motor_bases import Switched
 from lumped.network import Parameter
 from lumped.simulate import Record, simulate
+from validation import diagnose
 from validation.case import Case, Channel, Model, Test
 from validation.procedure.base_heat import base_heat
 from validation.procedure.which_base import (
@@ -137,7 +137,7 @@ def test_what_cannot_be_asked():
 @pytest.fixture(scope="module")
 def diagnosed():
     """The whole diagnosis of three tests, the one on the bench once with its base and once without."""
-    return {said: diagnose(case(b=said), 10, KINDS, workers=1, plan=False) for said in ("bench", "none")}
+    return {said: diagnose(case(b=said), KINDS, plan=False) for said in ("bench", "none")}
 
 
 def test_diagnosis_says_it_first(diagnosed):

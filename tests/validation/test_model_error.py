@@ -1,0 +1,71 @@
+"""The model error's columns against machines that really differ by one doubt."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from playground import Truth, network
+
+from validation.calibrate import Measure, minimise
+from validation.doubt import USUAL
+from validation.fitting import working
+from validation.inference.model_error import bridges, follow, model_error, with_doubts
+from validation.noise import first_noise
+from validation.sheet import segments
+
+
+@pytest.fixture(scope="module")
+def case():
+    whole = Truth(4).case()
+    return replace(whole, tests=whole.tests[:2])
+
+
+def test_a_network_with_neutral_doubts_reads_the_same(case):
+    plain = network()
+    grown, doubts = with_doubts(plain, USUAL)
+    assert doubts
+    for a, b in zip(segments(plain, case.tests, {}), segments(grown, case.tests, {}), strict=True):
+        np.testing.assert_allclose(a.r, b.r, atol=1e-9)
+
+
+def test_a_column_is_what_the_doubt_does(case):
+    """A bridge of one sigma: small against what it spans, so that the machine with it differs by the column."""
+    plain = network()
+    a, b, G = bridges(plain, USUAL["bridge"])[0]
+    grown, doubts = with_doubts(plain, USUAL)
+    k = [p.name for p in doubts].index(f"doubt:beside:{a}|{b}")
+    error = model_error(plain, case.tests, {}, USUAL)
+    with_it = segments(grown, case.tests, {doubts[k].name: 0.1 * G})
+    for s, t in zip(segments(plain, case.tests, {}), with_it, strict=True):
+        np.testing.assert_allclose(s.r - t.r, 0.1 * error.of(s)[:, k], atol=0.01 + 0.03 * np.abs(s.r - t.r).max())
+
+
+def test_a_core_follows_its_node():
+    time = np.arange(0.0, 600.0, 10.0)
+    rise = follow(time, np.where(time > 0, 1.0, 0.0), 60.0)
+    assert rise[-1] == pytest.approx(1.0, abs=1e-3)
+    assert np.all(np.diff(rise) >= 0)
+
+
+def test_model_error_widens_what_a_fit_is_sure_of_and_never_narrows_it(case):
+    net, unknowns = working(case)
+    noise = first_noise(segments(net, case.tests, {}))
+    error = model_error(net, case.tests, {})
+    start = np.zeros(len(unknowns.parameters))
+    bare, wide = (minimise(net, case.tests, unknowns, start, noise, iterations=3, error=e) for e in (None, error))
+    at = minimise(net, case.tests, unknowns, bare.theta, noise, iterations=0, error=error)
+    assert np.all(at.sd >= bare.sd * (1 - 1e-9))
+    assert wide.objective <= bare.objective + 1e-6
+
+
+def test_woodbury_is_the_inverse_of_noise_and_model_error(case):
+    parts, error = segments(network(), case.tests, {}), model_error(network(), case.tests, {})
+    few = [s for s in parts if s.test == parts[0].test][:2]
+    measure, noise = Measure(few, first_noise(few), error), first_noise(few)
+    root = [np.linalg.inv(noise.whiten(s, np.eye(s.r.size))) for s in few]
+    D = np.vstack([error.of(s) for s in few])
+    n = few[0].r.size
+    S = np.zeros((D.shape[0],) * 2)
+    S[:n, :n], S[n:, n:] = root[0] @ root[0].T, root[1] @ root[1].T
+    r = np.concatenate([s.r for s in few])
+    assert measure.square(few) == pytest.approx(r @ np.linalg.solve(S + D @ D.T, r), rel=1e-6)
