@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,6 +37,22 @@ class Pattern:
     @property
     def bends(self) -> bool:
         return not isinstance(self.law.temperature, laws.Constant)
+
+    @cached_property
+    def monotone(self) -> bool:
+        """Whether at a positive coefficient it only draws its nodes towards others: their maximum principle."""
+        P = np.zeros((self.row.size, int(self.cols.max(initial=0)) + 1))
+        np.add.at(P, (self.to, self.cols), self.vals)
+        own = (np.arange(self.row.size), self.row)
+        small = 1e-9 * float(np.abs(self.vals).max(initial=0.0))
+        if np.any(self.row >= P.shape[1]) or np.any(np.abs(P.sum(axis=1)) > small):
+            return False
+        P[own] = np.minimum(P[own], 0.0)
+        return bool(np.all(small >= P))
+
+    @property
+    def heats(self) -> bool:
+        return not self.touches
 
     @property
     def stiff(self) -> bool:
@@ -141,16 +158,15 @@ def _pack(patterns: Sequence[Pattern], steady: Mask) -> Terms:
         for e, p in enumerate(patterns)
     ]
     weight = [x for p, (hot, cold) in zip(patterns, seen, strict=True) for x in (p.vals, hot.weights, cold.weights)]
-    kind = [(c[0], not s, p.stiff, p.bends) for c, p, s in zip(codes, patterns, steady, strict=True)]
+    kind = [(c[0], not s, p.stiff, p.bends, p.heats) for c, p, s in zip(codes, patterns, steady, strict=True)]
     return Terms(
         start=np.column_stack([starts(at), rows, starts(tables)]),
         to=ints(to),
         at=ints(at),
         weight=floats(weight),
         row=ints(p.row for p in patterns),
-        kind=np.array(kind, np.int64).reshape(-1, 4),
+        kind=np.array(kind, np.int64).reshape(-1, 5),
         par=np.array([c[1:] for c in codes], float).reshape(-1, 2),
         point=np.concatenate([np.empty((0, 2)), *tables]),
         m=np.empty(0),
-        factor=np.empty((0, 0)),
     )

@@ -8,11 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.balance import Balance, balance
+from lumped.balance import Balance, Walk, counted, walk
+from lumped.compiled import compiled
 from lumped.laws import CONSTANT, TemperatureLaw
 from lumped.multipliers import multipliers
 from lumped.network import Network, Source
-from lumped.simulate import Record, simulate
+from lumped.record import Record
+from lumped.signals import Signals
+from lumped.simulate import march
 from lumped.terms_value import temperature_value
 
 Array = NDArray[np.float64]
@@ -39,27 +42,26 @@ class Audit:
 
 
 def audit(network: Network, record: Record, values: Mapping[str, float] | None = None) -> Audit:
-    """Declared: every loss law in NumPy at the temperatures of a run, its trapezium over the record.
+    """Declared: every loss law in NumPy, at the temperatures of a run and the inputs between its samples.
 
-    Injected: what the scheme put into the nodes, counted term by term. Where a loss follows temperature the two differ
-    by the trapezium's own error, which falls with the square of the step.
+    Injected: what the compiled terms put into the nodes. Both by the quadrature of `balance`.
     """
-    z = simulate(network, record, values, keep_states=True).z
-    assert z is not None
-    m, counted = multipliers(network, values), balance(network, record, values)
-    inputs = {k: np.broadcast_to(np.asarray(v, float), record.time.shape) for k, v in record.inputs.items()}
-    declared = {s.name: m.get(s.name, 1.0) * _heat(s, inputs, record.time, z) for s in network.sources}
-    injected = {name: float(heat[-1]) for name, heat in counted.injected.items()}
-    return Audit(declared, injected, counted)
+    core = compiled(network, record, values, all_terms=True)
+    run = march(network, record, core, keep_states=True)
+    way, m = walk(network, record, core, run), multipliers(network, values)
+    signals = Signals(record.inputs, run.time.size).finer(way.at)
+    declared = {s.name: m.get(s.name, 1.0) * _heat(s, signals, way) for s in network.sources}
+    heat = counted(network, core, run, way)
+    return Audit(declared, {name: float(x[-1]) for name, x in heat.injected.items()}, heat)
 
 
-def _heat(source: Source, inputs: Mapping[str, Array], time: Array, z: Array) -> float:
-    law, factor = source.law.temperature, np.asarray(source.law.factor(inputs), float)
-    return float(np.trapezoid(np.broadcast_to(factor, time.shape) * _over(law, source, z), time))
+def _heat(source: Source, signals: Signals, way: Walk) -> float:
+    factor = signals.factor(source.name, source.law)
+    return float(np.sum(way.weight * factor * _over(source.law.temperature, source, way.x)))
 
 
-def _over(law: TemperatureLaw, source: Source, z: Array) -> Array | float:
+def _over(law: TemperatureLaw, source: Source, x: Array) -> Array | float:
     if law == CONSTANT:
         return 1.0
-    probe = z[:, source.probe.index] @ source.probe.weights
+    probe = x[:, source.probe.index] @ source.probe.weights
     return np.array([temperature_value(law, float(T), 0.0) for T in probe])

@@ -1,30 +1,27 @@
-"""Heat through the terms of a run, counted after it by the scheme's own quadrature. Compiled on its own."""
+"""Heat through the terms at given states, weighted and summed. Compiled on its own."""
 
 from __future__ import annotations
 
 from lumped.jit import entry
-from lumped.stages import GAMMA, begin, directions, restored, taken
-from lumped.terms import ROWS
+from lumped.stages import forced
+from lumped.terms import ROWS, flow
 
 
 @entry
-def count(time, u, K0, T, through, z, k, a, q, heat):
-    """heat (nw, nt, ne): cumulated J through every term since the start, by each weighting; filled here, zero before.
+def count(Q, K0, T, through, steps, x, weight, row, a, q, heat):
+    """heat (nw, nt, ne) += weight of every instant (s) times the heat flow (W) through every term, by each weighting.
 
-    z (nt, n + nb), k (nt, 2, n): states and rates of a run;  a, q : from stages() and work()
+    steps : knot and share of the interval before it at which each instant lies;  x (ni, n) states there
+    row (ni,) : the first axis but one of heat that an instant belongs to;  a, q : from stages() and work()
     through : (nw, rows of all terms) weights that sum a term's rows to the heat through it
     """
-    for t in range(1, time.size):
-        h = time[t] - time[t - 1]
-        if h > 0.0:
-            begin(T, u, t, h, a.w, q.df)
-            restored(T, K0, z, k, t, h, a, q.F)
-            directions(T, a)
+    for k in range(weight.size):
+        forced(Q, steps.knot[k], 0.0, steps.share[k], a, q)
+        for i in range(x[k].size):
+            a.z[1, i] = x[k, i]
+        flow(T, K0, a.z[1], q.f[1], a.tau[1], a.v[1], q.F[1])
         for e in range(T.m.size):
-            for w in range(len(through)):
-                heat[w, t, e] = heat[w, t - 1, e]
+            c = weight[k] * T.m[e] * q.f[1, e] * a.tau[1, e, 0]
             for s in range(T.start[e, ROWS], T.start[e + 1, ROWS]):
-                for stage in range(2):
-                    out = 0.5 * h * T.m[e] * taken(T, e, s, stage, t, q.df[e], a, GAMMA * h)
-                    for w in range(len(through)):
-                        heat[w, t, e] += through[w, s] * out
+                for w in range(len(through)):
+                    heat[w, row[k], e] += c * through[w, s] * a.v[1, s]

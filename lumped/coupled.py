@@ -24,7 +24,7 @@ class Coupled:
     """The converged run, the inputs it ran on, and the largest change (K) of a watched temperature in every round."""
 
     run: Run
-    inputs: Mapping[str, Array]
+    inputs: Mapping[str, Array | float]
     residuals: tuple[float, ...]
 
 

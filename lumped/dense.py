@@ -94,8 +94,8 @@ def solve_many(A, pivot, B):
 
 
 @inner
-def subtract_product(A, X, out):
-    """out -= A X."""
+def subtract_product(A, X, c, out):
+    """out -= c A X."""
     for i in range(len(A)):
         for j in range(A[0].size):
-            axpy(-A[i, j], X[j], out[i])
+            axpy(-c * A[i, j], X[j], out[i])

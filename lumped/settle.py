@@ -18,21 +18,21 @@ def _newton(T, K0, C, f, a, q):
     """
     n = C.size
     for _ in range(MOST_ITERATIONS):
-        flow(T, K0, a.z[0], f, a.tau[0], a.v[0], q.F)
+        flow(T, K0, a.z[0], f, a.tau[0], a.v[0], q.F[0])
         jacobian(T, K0, f, a.tau[0], a.v[0], q.G)
         for i in range(n):
             copy(q.G[i], q.W[i])
             if C[i] > 0.0:
-                q.F[i] = 0.0
+                q.F[0, i] = 0.0
                 clear(q.W[i : i + 1])
                 q.W[i, i] = 1.0
         if not lu(q.W, q.pivot):
             return False
-        solve(q.W, q.pivot, q.F)
+        solve(q.W, q.pivot, q.F[0])
         largest = 0.0
         for i in range(n):
-            a.z[0, i] += q.F[i]
-            largest = max(largest, abs(q.F[i]))
+            a.z[0, i] += q.F[0, i]
+            largest = max(largest, abs(q.F[0, i]))
         if largest < CONVERGED_K:
             return finite(a.z[0])
     return False

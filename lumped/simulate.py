@@ -14,43 +14,40 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError, ThermoscopeError
 from lumped.compiled import Compiled, compiled
-from lumped.kernel import integrate
+from lumped.failure import failure
+from lumped.kernel import DONE, FACTORED, FULL, KNOT, LOW, NEXT, STATUS, Control, Position, Trace, integrate
 from lumped.network import Network, Parameter, Row
+from lumped.record import Record
 from lumped.settle import settle
-from lumped.stages import Stages, Work, stages, work
+from lumped.stages import EULER, GAMMA, Steps, stages, work
 from lumped.tangents import differentiate
-from lumped.terms import BENDS
+from lumped.terms import Forcing
 
 Array = NDArray[np.float64]
 PORTION = 4096  # steps whose states are kept for their tangents
 
 
 @dataclass(frozen=True)
-class Record:
-    """time (nt,) s; inputs and boundaries: name -> (nt,) or scalar; initial: degC everywhere or per place.
-
-    Inputs and boundaries are linear between the times; a time given twice is a jump.
-    """
-
-    time: Array
-    inputs: Mapping[str, Array]
-    boundaries: Mapping[str, Array]
-    initial: float | Mapping[str, float] = 20.0
-
-
-@dataclass(frozen=True)
 class Stand:
-    """Where a run stands at its end, and another may begin: x (n_states,) degC, D (n_states, n_tangents)."""
+    """Where a run stands at its end, and another may begin: x (n_states,) degC, D (n_states, n_tangents).
+
+    error : (n_states,) the estimated error of x;  step : the step wanted next (s);  coldest : of all so far (degC)
+    """
 
     x: Array
     D: Array
+    error: Array
+    step: float
+    coldest: float
 
 
 @dataclass(frozen=True)
 class Run:
     """time (nt,); z (nt, n_states + n_boundaries) degC if kept; y (nt, n_rows); dy (nt, n_rows, n_tangents).
 
-    k : (nt, 2, n_states) K/s at both stages of the step that ends there, if kept;  end : for a run that goes on
+    end : for a run that goes on;  steps : those it took;  path : (n_steps, n_states) where each ended, if kept
+    time_error_K : (n_rows,) estimate of the largest error of every output that the time steps leave (K). It adds up the
+        errors of the steps as far as they last; those are estimated from above.
     """
 
     time: Array
@@ -58,32 +55,9 @@ class Run:
     y: Array
     dy: Array | None
     end: Stand
-    k: Array | None = None
-
-
-def checked_time(time: Array) -> Array:
-    """Finite, never falling times (s)."""
-    out = np.ascontiguousarray(time, float)
-    if out.ndim != 1 or out.size == 0 or not np.all(np.isfinite(out)) or np.any(np.diff(out) < 0):
-        raise InputError("times are not finite and rising", "record", "seconds in rising order")
-    return out
-
-
-def boundary_table(network: Network, boundaries: Mapping[str, Array | float], nt: int) -> Array:
-    """(nt, n_boundaries) degC in the network's order."""
-    out = np.empty((nt, len(network.boundaries)))
-    for k, name in enumerate(network.boundaries):
-        if name not in boundaries:
-            raise InputError(
-                f"boundary '{name}' is missing", "record", f"the network needs {', '.join(network.boundaries)}"
-            )
-        value = np.asarray(boundaries[name], float)
-        if value.shape not in ((), (nt,)) or not np.all(np.isfinite(value)):
-            raise InputError(
-                f"boundary '{name}' is not finite or has shape {value.shape}", "record", f"a number or ({nt},)"
-            )
-        out[:, k] = value
-    return out
+    time_error_K: Array
+    steps: Steps
+    path: Array | None = None
 
 
 def initial_state(network: Network, initial: float | Mapping[str, float]) -> Array:
@@ -118,6 +92,7 @@ def simulate(
     tangents: Sequence[Parameter] = (),
     keep_states: bool = False,
     begin: Stand | None = None,
+    steps: Steps | None = None,
 ) -> Run:
     """Integrate the network over the record.
 
@@ -126,81 +101,130 @@ def simulate(
     tangents : parameters of the network with respect to which y is differentiated: d y / d value for
         mappings "amplitude", "relative" and "offset", d y / d log(value) for "log"
     begin : where another run of the same network, values and tangents ended, at this record's first time
+    steps : those of another run over the same record, to be taken here too whatever their errors are
+
+    Raises ThermoscopeError where a node runs away or no step keeps what physics allows.
     """
-    time = checked_time(record.time)
-    core = compiled(network, record.inputs, time.size, values, rows, tangents)
-    return march(network, record, core, keep_states, begin=begin)
+    return march(network, record, compiled(network, record, values, rows, tangents), keep_states, begin, steps)
 
 
 def march(
-    network: Network, record: Record, core: Compiled, keep_states: bool, keep_rates: bool = False,
-    begin: Stand | None = None,
+    network: Network, record: Record, core: Compiled, keep_states: bool = False, begin: Stand | None = None,
+    steps: Steps | None = None, keep_path: bool = False,
 ) -> Run:  # fmt: skip
     """Run the kernel, from rest of the states without capacity: at the start and wherever a time is given twice."""
-    time, u = checked_time(record.time), boundary_table(network, record.boundaries, len(record.time))
-    nt, n, nr, p = time.size, core.C.size, core.rows.start.size - 1, core.tangents.dC.shape[1]
-    z, k = np.zeros((nt if keep_states else 0, network.size)), np.zeros((nt if keep_rates else 0, 2, n))
-    y, dy, longest = np.zeros((nt, nr)), np.zeros((nt, nr, p)), min(nt, PORTION + 1)
-    Z, K, renew = np.zeros((longest, network.size)), np.zeros((longest, 2, n)), _renewals(time, core)
-    x0 = begin.x if begin else initial_state(network, record.initial)
-    both, scratch = stages(x0, u[0], core.terms), work(n, core.terms.m.size, p)
-    if begin:
-        scratch.D[:] = begin.D
-    for part in _parts(time, core.C):
-        if part.start > 0 or not begin:
-            _rest(network, core, time, u, part.start, both, scratch)
-        for some in _portions(part):
-            at, own = (time[some], u[some], core.C, core.K0), slice(0, some.stop - some.start)
-            terms = core.terms._replace(factor=core.terms.factor[some])
-            failed = integrate(*at, terms, core.rows, renew[some], both, scratch, Z[own], K[own], y[some])
-            if failed >= 0:
-                raise ThermoscopeError(_failure(network, core, time[some.start + failed]))
-            if p:
-                run = (renew[some], core.curved, Z[own], K[own])
-                differentiate(*at, terms, core.tangents, core.rows, *run, both, scratch, dy[some])
-            if keep_states:
-                z[some] = Z[own]
-            if keep_rates:
-                k[some.start + 1 : some.stop] = K[1 : own.stop]
-    end = Stand(both.z[0, :n].copy(), scratch.D.copy())
-    return Run(time, z if keep_states else None, y, dy if p else None, end, k if keep_rates else None)
+    course = _Course(network, record, core, keep_states, begin, steps)
+    course.path = [] if keep_path else None
+    for part in _parts(core.forcing.time, core.C):
+        course.over(part, part.start > 0 or begin is None)
+    return course.run()
 
 
-def _rest(network: Network, core: Compiled, time: Array, u: Array, at: int, both: Stages, scratch: Work) -> None:
-    """Before a part of the record that starts at index `at`: boundaries there, states without capacity at balance."""
-    both.z[0, core.C.size : -1] = u[at]
-    if np.any(core.C == 0.0):
-        factor = core.terms.factor[at]
-        if not settle(core.C, core.K0, core.terms, core.tangents, factor, both, scratch):
-            raise ThermoscopeError(_failure(network, core, time[at]))
+class _Course:
+    """A run in the making: the arrays that the kernel writes, portion after portion."""
+
+    def __init__(
+        self, network: Network, record: Record, core: Compiled, keep_states: bool, begin: Stand | None,
+        steps: Steps | None,
+    ) -> None:  # fmt: skip
+        self.network, self.core, self.given, self.taken = network, core, steps, 0
+        self.time = np.asarray(record.time, float)
+        nt, n, nb, nr = self.time.size, core.C.size, core.forcing.u.shape[1], core.rows.start.size - 1
+        ne, p = core.terms.m.size, core.tangents.dC.shape[1]
+        self.z, self.y = np.zeros((nt if keep_states else 0, n + nb)), np.zeros((nt, nr))
+        self.dy, self.late = np.zeros((nt, nr, p)), np.zeros(nr)
+        x0, u0 = begin.x if begin else initial_state(network, record.initial), core.forcing.u[0]
+        self.both, self.scratch = stages(x0, u0, core.terms), work(n, nb, ne, 0)
+        self.moved = (stages(x0, u0, core.terms), work(n, nb, ne, p)) if p else (self.both, self.scratch)
+        self.trace = _trace(min(core.forcing.time.size * 2 if steps is None else steps.knot.size, PORTION), n, nb)
+        self.position = Position(np.zeros(5, np.int64), np.array([0.0, -1.0, 1e300, 1e300]))
+        self.position.clock[LOW] = np.append(x0[core.control.node == 1], u0).min()
+        self.steps: list[Steps] = []
+        self.path: list[Array] | None = None
+        if begin:
+            self.moved[1].D[:], self.scratch.error[1] = begin.D, begin.error
+            self.position.clock[[NEXT, LOW]] = begin.step, min(begin.coldest, self.position.clock[LOW])
+
+    def over(self, part: slice, rests: bool) -> None:
+        """The knots of a part of the record, from a balance of the states without capacity if so asked."""
+        Q = self.core.forcing
+        forcing = Forcing(Q.time[part], Q.u[part], Q.factor[part], Q.bulge[part], Q.renew[part], Q.sample[part])
+        self.position.at[:] = 0
+        self.both.z[0, self.core.C.size : -1] = forcing.u[0]
+        self.position.clock[FACTORED] = -1.0
+        if rests and np.any(self.core.C == 0.0):
+            self._rest(forcing)
+        while self._portion(forcing, part.start):
+            pass
+
+    def _rest(self, forcing: Forcing) -> None:
+        core, own = self.core, self.moved[1]
+        scratch = self.scratch._replace(D=own.D, R=own.R)
+        if not settle(core.C, core.K0, core.terms, core.tangents, forcing.factor[0], self.both, scratch):
+            raise ThermoscopeError(failure(self.network, core, forcing, self.position))
+
+    def _portion(self, forcing: Forcing, first: int) -> bool:
+        """As many steps as the trace holds; whether there are more."""
+        core, at, knot = self.core, self.position.at, int(self.position.at[KNOT])
+        control = core.control if self.given is None else self._follow(first)
+        shared = (core.rows, control, self.trace, self.position, self.both, self.scratch)
+        integrate(forcing, core.C, core.K0, core.terms, *shared, self.z, self.y, self.late)
+        if at[STATUS] not in (0, FULL):
+            raise ThermoscopeError(failure(self.network, core, forcing, self.position))
+        done, X = int(at[DONE]), self.trace
+        self.taken += done
+        self.steps.append(Steps(X.knot[:done] + first, X.share[:done].copy(), X.kind[:done].copy()))
+        if self.path is not None:
+            self.path.append(ends(X, done))
+        if self.dy.shape[2]:
+            given = (core.rows, core.curved, X, done, knot, int(at[KNOT]), *self.moved, self.dy)
+            differentiate(forcing, core.C, core.K0, core.terms, core.tangents, *given)
+        return bool(at[STATUS] == FULL)
+
+    def _follow(self, first: int) -> Control:
+        """The next of the given steps into the trace."""
+        assert self.given is not None
+        some = slice(self.taken, self.taken + self.trace.h.size)
+        for name, values in self.given._asdict().items():
+            part = values[some] - (first if name == "knot" else 0)
+            getattr(self.trace, name)[: part.size] = part
+        return self.core.control._replace(follow=np.ones(1, np.int64))
+
+    def run(self) -> Run:
+        """What came of it."""
+        n, (_, own), clock = self.core.C.size, self.moved, self.position.clock
+        error = self.scratch.error[1].copy()
+        end = Stand(self.both.z[0, :n].copy(), own.D.copy(), error, float(clock[NEXT]), float(clock[LOW]))
+        steps = Steps(*(np.concatenate(x) for x in zip(*self.steps, strict=True)))
+        dy = self.dy if self.dy.shape[2] else None
+        return Run(
+            self.time,
+            self.z if len(self.z) else None,
+            self.y,
+            dy,
+            end,
+            self.late,
+            steps,
+            np.concatenate(self.path) if self.path else None,
+        )
 
 
-def _portions(part: slice) -> list[slice]:
-    """A part of the record in portions of so many steps, each from the end of the one before."""
-    starts = range(part.start, max(part.stop - 1, part.start + 1), PORTION)
-    return [slice(a, min(a + PORTION + 1, part.stop)) for a in starts]
+def ends(X: Trace, done: int) -> Array:
+    """(done, n) states at the ends of the steps in a trace."""
+    inner = np.where(X.kind[:done, None] == EULER, X.U[:done, 0], X.U[:done, 0] / GAMMA)
+    return np.asarray(X.x[:done, : inner.shape[1]] + inner + X.U[:done, 2])
 
 
-def _renewals(time: Array, core: Compiled) -> NDArray[np.bool_]:
-    """(nt,) whether the matrix of the step that ends there differs from that of the step before."""
-    terms, stiff = core.terms, core.stiff & (core.terms.m != 0.0)
-    if np.any(terms.kind[stiff, BENDS]):
-        return np.ones(time.size, bool)
-    steps = np.flatnonzero(np.diff(time) > 0.0)
-    out, used = np.zeros(time.size, bool), terms.factor[np.ix_(steps, stiff)]
-    out[steps[1:] + 1] = np.any(used[1:] != used[:-1], axis=1)
-    return out
+def _trace(ns: int, n: int, nb: int) -> Trace:
+    def whole() -> NDArray[np.int64]:
+        return np.zeros(ns, np.int64)
+
+    return Trace(
+        whole(), np.zeros(ns), np.zeros(ns), whole(), np.zeros((ns, n + nb)), np.zeros((ns, 3, n)), np.zeros(ns)
+    )
 
 
 def _parts(time: Array, C: Array) -> list[slice]:
     """The record between its jumps, if any state has no capacity: there such states start from a new balance."""
     jumps = np.flatnonzero(np.diff(time, prepend=-np.inf) == 0.0) if np.any(C == 0.0) else np.empty(0, int)
     return [slice(a, b) for a, b in pairwise([0, *jumps, time.size])]
-
-
-def _failure(network: Network, core: Compiled, t: float) -> str:
-    floating = [s for s, c, row in zip(network.states, core.C, core.K0, strict=True) if c == 0.0 and not np.any(row)]
-    hint = (
-        f"states without capacity and constant links: {', '.join(floating)}" if floating else "check the links' signs"
-    )
-    return f"network '{network.name}': no finite solution at t = {t:g} s; {hint}"

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from geom.errors import ThermoscopeError
 from lumped.compiled import compiled
 from lumped.network import Network, Parameter, Row
+from lumped.record import Record
 from lumped.settle import settle
-from lumped.simulate import boundary_table
 from lumped.stages import stages, work
 
 Array = NDArray[np.float64]
@@ -48,13 +48,12 @@ def steady(
     Raises ThermoscopeError where there is no rest: a node that nothing holds, or losses that grow faster with
     temperature than the cooling does (thermal runaway).
     """
-    core = compiled(network, inputs, 1, values, rows, tangents)
-    n, p = len(network.states), core.tangents.dC.shape[1]
-    u = boundary_table(network, boundaries, 1)[0]
+    core = compiled(network, Record(np.zeros(1), inputs, boundaries), values, rows, tangents)
+    n, p, u = len(network.states), core.tangents.dC.shape[1], core.forcing.u[0]
     hidden = np.array(["#" in s for s in network.states], bool)
     x0 = np.where(hidden, 0.0, ABOVE_K + (u.mean() if u.size else 20.0))
-    both, scratch = stages(x0, u, core.terms), work(n, core.terms.m.size, p)
-    rests = settle(np.zeros(n), core.K0, core.terms, core.tangents, core.terms.factor[0], both, scratch)
+    both, scratch = stages(x0, u, core.terms), work(n, u.size, core.terms.m.size, p)
+    rests = settle(np.zeros(n), core.K0, core.terms, core.tangents, core.forcing.factor[0], both, scratch)
     if not rests or np.linalg.eigvals(scratch.G).real.min() <= 0:
         why = "a node nothing holds, or thermal runaway"
         raise ThermoscopeError(f"network '{network.name}' does not come to rest: {why}")

