@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from lumped.laws import Constant, Fixed, Inputs, Law, Power, Table, TemperatureLaw
 from lumped.network import Link, Network, Place, Row, Source
+from lumped.quantities import AIR, LIQUID
 from validation.bridges import bridges
 from validation.case import Channel, Test
 from validation.forms import KNOTS, SETTLE_K
@@ -175,7 +176,8 @@ def disturbed_test(test: Test, network: Network, real: Network, rng: np.random.G
     """The test as the disturbed machine sees it: other inputs than recorded, sensors beside their place."""
     n, m = len(network.states), len(real.states) - len(network.states)
     boundaries = {b: u + wander(test.time, spread.wander_K, 600.0, rng) for b, u in test.boundaries.items()}
-    inputs = {k: v * (1.0 + spread.flow * rng.standard_normal()) if "flow" in k else v for k, v in test.inputs.items()}
+    flows = [name for name in test.inputs if network.measures(name) in (AIR, LIQUID)]
+    inputs = {**test.inputs, **{k: test.inputs[k] * (1.0 + spread.flow * rng.standard_normal()) for k in flows}}
     channels = tuple(_beside(c, network, n, m, rng, spread) for c in test.channels)
     initial = test.initial
     if isinstance(initial, Mapping):
@@ -200,7 +202,7 @@ def _near(network: Network, place: str) -> list[Place]:
     part = network.places[place].part if place in network.places else place
     joined = [link.places for link in network.links if part in link.places]
     names = {name for pair in joined for name in pair if name != part}
-    return [network.places[name] for name in sorted(names) if name in network.places]
+    return [place for name, place in network.places.items() if name in names]
 
 
 def wander(time: Array, sd: float, tau: float, rng: np.random.Generator) -> Array:
