@@ -25,6 +25,7 @@ Case = Annotated[str, typer.Argument(metavar="CASE", help="A case folder, or the
 Effect = Annotated[str, typer.Argument(metavar="EFFECT@PLACE", help="For example convection@flange.right.")]
 Json = Annotated[str | None, typer.Option("--json", metavar="FILE|-", help="Write the JSON document; - is stdout.")]
 Anyway = Annotated[bool, typer.Option("--anyway", help="Write it even if it is not accepted.")]
+Draws = Annotated[int | None, typer.Option("--draws", hidden=True, help="Of older versions; nothing is drawn now.")]
 Machine = Annotated[str, typer.Argument(metavar="MACHINE", help="A machine or STEP file, or a name that comes along.")]
 Accuracy = Annotated[float, typer.Option(min=0.01, help="Percent of a part's rise; means within half of it.")]
 Out = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder for the results.")]
@@ -83,14 +84,11 @@ def compare(
 
 
 @app.command()
-def diagnose(
-    case: Case,
-    json: Json = None,
-) -> None:
+def diagnose(case: Case, draws: Draws = None, json: Json = None) -> None:
     """Which effect is missing, how sure, what it is confused with, which test would decide. Exit code 1 if none."""
     from thermoscope.commands.diagnose import diagnose as run
 
-    raise typer.Exit(run(case, json))
+    raise typer.Exit(run(case, json, older=draws is not None))
 
 
 @app.command()

@@ -12,7 +12,7 @@ def test_the_wind_on_the_right_flange_is_named(root, tmp_path):
     shutil.copytree(root / "cases" / "road-test", folder, ignore=shutil.ignore_patterns("out", "model.toml"))
     case = load_case(folder).case
     stand = with_model(case, calibrate(case).model)
-    found = diagnose(stand, draws=10, workers=1, plan=False)
+    found = diagnose(stand, plan=False)
     assert found.verdict == "named"
     assert found.named == ("convection@flange.right",)
     before, after = found.candidates[0].holdout_rmse_K

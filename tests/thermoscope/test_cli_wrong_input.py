@@ -238,7 +238,7 @@ def test_result_that_cannot_be_written(case, monkeypatch, capsys):
 
 
 @pytest.mark.parametrize(
-    "arguments", [["compre"], ["compare"], ["compare", "x", "--jsn", "-"], ["diagnose", "x", "--draws", "1"]]
+    "arguments", [["compre"], ["compare"], ["compare", "x", "--jsn", "-"], ["improve", "x", "--most", "0"]]
 )
 def test_wrong_command_line(thermoscope, arguments):
     done = thermoscope(*arguments)

@@ -85,8 +85,6 @@ def test_the_whole_loop(root, page, served):
     assert page.get_attribute("#sensor-T_flange", "aria-pressed") == "true"
     kept(root, page, "2-sensor")
 
-    page.click("#draws", force=True)
-    page.click(".v-list-item >> text=20")
     page.click("#diagnose")
     page.wait_for_selector("#progress")
     page.click("#sensor-T_yoke")

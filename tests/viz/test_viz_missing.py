@@ -21,9 +21,9 @@ def place(name, nats, watts):
 WHERE = [place("flange.right", 60.0, -300.0), place("housing", 52.0, -250.0), place("yoke", 10.0, 400.0)]
 
 
-@pytest.mark.parametrize(("usual", "says"), [(0.0, True), (20.0, True), (80.0, False)])
-def test_heat_is_placed_only_beyond_what_machines_give_that_lack_none(usual, says):
-    assert placed({"where": WHERE, "usual_nats": usual}) is says
+@pytest.mark.parametrize(("few", "says"), [(WHERE, True), (WHERE[2:], False)])
+def test_heat_is_placed_only_by_clear_evidence(few, says):
+    assert placed({"where": few}) is says
 
 
 def test_nothing_was_looked_for():

@@ -9,16 +9,18 @@ from thermoscope.commands.ahead import show_ahead
 from thermoscope.commands.bases import show_bases
 from thermoscope.commands.opened import opened
 from thermoscope.commands.saved import save_diagnosis
-from thermoscope.terminal import give, progress, say, sized, table
+from thermoscope.terminal import give, notes, progress, say, sized, table
 
 ROWS = 10
 SHOWN = 0.005  # probabilities below half a per cent are in --json
 
 
-def diagnose(case: str, target: str | None) -> int:
-    """Exit code 1 when no effect is named."""
+def diagnose(case: str, target: str | None, older: bool = False) -> int:
+    """Exit code 1 when no effect is named.  older : an option of older versions was given"""
     from validation import diagnose as search
 
+    if older:
+        notes(["--draws is no longer needed: nothing is drawn"])
     with progress() as tell:
         folder = opened(case, tell)
         found = search(folder.case, progress=tell)
