@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from lumped.laws import CONSTANT, Constant, Fixed, Inputs, Law, TemperatureLaw
 from lumped.network import Link, Network, Parameter, Place, Row
+from lumped.quantities import AIR, LIQUID
 from lumped.simulate import simulate
 from validation.case import Channel, Test
 from validation.doubt import USUAL, Doubt
@@ -218,9 +219,22 @@ def model_error(
         cores = cored.parameters[len(grown.parameters) :]
         parts = segments(cored, [test], values, (*doubts, *cores))
         scale = np.array([p.prior_sd for p in (*doubts, *cores)])
-        beside = placements(network, test, values, doubt, sensed or tests)
-        out |= {(s.test, s.channel): np.column_stack([s.J * scale, beside[s.channel]]) for s in parts}
+        beside, flow = placements(network, test, values, doubt, sensed or tests), flows(network, test, values, doubt)
+        out |= {
+            (s.test, s.channel): np.column_stack([s.J * scale, beside[s.channel], flow[s.channel]]) for s in parts
+        }
     return ModelError(out)
+
+
+def flows(network: Network, test: Test, values: Mapping[str, float], doubt: Doubt) -> dict[str, Array]:
+    """Channel -> (n, k): each kind of flow, as its meter may be off in all tests alike."""
+    plain = segments(network, [test], values)
+    columns = []
+    for quantity in (AIR, LIQUID):
+        own = {n: u * (1.0 + doubt["flow"]) for n, u in test.inputs.items() if network.measures(n) == quantity}
+        more = segments(network, [replace(test, inputs={**test.inputs, **own})], values) if own else plain
+        columns.append([a.r - b.r for a, b in zip(plain, more, strict=True)])
+    return {s.channel: np.column_stack([c[i] for c in columns]) for i, s in enumerate(plain)}
 
 
 def placements(

@@ -68,11 +68,18 @@ def log_bayes(evidence: Evidence, fit: Fit, members: Sequence[int]) -> float:
     wide = fit.unknowns.sd[p:]
     a = fit.theta[p:]
     gain = evidence.fit.objective - (fit.objective - 0.5 * float(np.sum((a / wide) ** 2)))
-    bare = fit.H - np.diag(np.concatenate([np.zeros(p), wide**-2.0]))
-    v = np.linalg.inv(bare)[p:, p:]
+    v = spread(fit, p, wide)
     sd = np.array([evidence.parameters[k].prior_sd for k in free])
     sign = np.array([evidence.parameters[k].sign for k in free], int)
     return gain + float(logsumexp([_seen(a, v, f * sd, sign) for f in SIZES]) - np.log(len(SIZES)))
+
+
+def spread(fit: Fit, p: int, wide: Array) -> Array:
+    """Covariance of the amplitudes by the readings alone; what these do not feel is as wide as the fit's prior."""
+    H = fit.H
+    felt = H[p:, p:] - H[p:, :p] @ np.linalg.solve(H[:p, :p], H[:p, p:]) - np.diag(wide**-2.0)
+    values, vectors = np.linalg.eigh(felt * np.outer(wide, wide))
+    return np.asarray((vectors / np.maximum(values, 1.0)) @ vectors.T * np.outer(wide, wide))
 
 
 def _seen(a: Array, v: Array, sd: Array, sign: NDArray[np.int64]) -> float:
