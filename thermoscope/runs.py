@@ -39,7 +39,7 @@ def before_last(folder: Folder) -> Case | None:
 
 def readings(case: Case, test: Test) -> dict[str, Array]:
     """Channel -> (n_time,) degC, what its sensor would read; sensors' fitted biases are left out."""
-    y = predict(working(case)[0], test, physical(case.model.values)).y
+    y = predict(working(case)[0], test, physical(case)).y
     return {channel.name: y[:, j] for j, channel in enumerate(test.channels)}
 
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
+from lumped.identity import Identity
 from validation.case import Case, Channel, Test
-from validation.fitting import working
+from validation.fitting import nuisances, working
 from validation.predict import predict
 
 RULE_PERCENT = 4.0
@@ -60,12 +61,16 @@ class TestError:
 
 @dataclass(frozen=True)
 class Comparison:
-    """A model held against the tests of its case; floor_K is what the sensors alone would leave."""
+    """A model held against the tests of its case; floor_K is what the sensors alone would leave.
+
+    identities : what its parts, nodes, fluids and boundaries are, said or guessed
+    """
 
     case: str
     revision: int
     effects: tuple[str, ...]
     tests: tuple[TestError, ...]
+    identities: Mapping[str, Identity] = field(default_factory=dict)
 
     @property
     def rmse_K(self) -> float:
@@ -87,6 +92,16 @@ class Comparison:
             "tests": [t.document() for t in self.tests],
             "rmse_K": self.rmse_K,
             "floor_K": self.floor_K,
+            "roles": [
+                {
+                    "name": name,
+                    "role": i.role,
+                    "turns": i.turns,
+                    "known": "declared" if i.declared else "guessed",
+                    "evidence": i.why,
+                }
+                for name, i in self.identities.items()
+            ],
         }
 
 
@@ -100,14 +115,16 @@ def pooled(channels: list[ChannelError] | tuple[ChannelError, ...]) -> float:
 def compare(case: Case, values: Mapping[str, float] | None = None) -> Comparison:
     """Run the model as it stands on every test. Fitted sensor biases are not used: the raw reading counts."""
     network, _ = working(case)
-    now = physical(values if values is not None else case.model.values)
+    now = physical(case, values)
     tests = tuple(test_error(network, t, now) for t in case.tests)
-    return Comparison(case.name, case.model.revision, tuple(e.name for e in case.model.effects), tests)
+    effects = tuple(e.name for e in case.model.effects)
+    return Comparison(case.name, case.model.revision, effects, tests, case.model.network.identities)
 
 
-def physical(values: Mapping[str, float]) -> dict[str, float]:
-    """Values without the measurement's own nuisances ('bias of ...', 'slope of ...', 'lag of ...', 'start of ...')."""
-    return {k: v for k, v in values.items() if " of " not in k}
+def physical(case: Case, values: Mapping[str, float] | None = None) -> dict[str, float]:
+    """Values, the model's own if none are given, without the nuisances of its measurements: bias, slope, lag, start."""
+    measured = {p.name for p in nuisances(case.model.network, case.tests)}
+    return {k: v for k, v in (case.model.values if values is None else values).items() if k not in measured}
 
 
 def test_error(network, test: Test, values: Mapping[str, float]) -> TestError:

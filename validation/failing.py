@@ -37,7 +37,7 @@ class Failing:
 def failing(case: Case, progress: Callable[[str], None] = silent) -> Failing:
     """The model as it stands; the scan for heat is made after calibration, or it would find what calibration mends."""
     network, _ = working(case)
-    now = physical(case.model.values)
+    now = physical(case)
     progress("moving every input by its uncertainty")
     rows = tuple(u for test in case.tests for u in uncertainties(network, test, now))
     left = patterns(segments(network, case.tests, now), case.tests)

@@ -105,8 +105,8 @@ def _turn(difference: Array) -> Array:
 
 def levels(tests: Sequence[Test]) -> dict[str, float]:
     """Root mean square of every input over all tests that record it; inputs that are zero throughout are left out."""
-    names = {name for t in tests for name in t.inputs}
-    pooled = {n: np.concatenate([t.inputs[n] for t in tests if n in t.inputs]) for n in sorted(names)}
+    names = dict.fromkeys(name for t in tests for name in t.inputs)
+    pooled = {n: np.concatenate([t.inputs[n] for t in tests if n in t.inputs]) for n in names}
     level = {n: float(np.sqrt(np.nanmean(np.square(v)))) for n, v in pooled.items()}
     return {n: v for n, v in level.items() if v > 0}
 
@@ -133,7 +133,7 @@ def with_forms(
             films = [x for x in own if p.name in added or is_film(network, x)]
             losses = [x for x in network.sources if first.get(x.name) == p.name and x.kind not in KNOWN]
             laws = [x.law for x in films] + [x.law for x in losses]
-            for name in sorted({r for law in laws for r in law.reads} & moving):
+            for name in dict.fromkeys(r for law in laws for r in law.reads if r in moving):
                 network = _with_input(network, p.name, name, films, losses, level, doubt)
             network = _with_difference(network, p.name, films, doubt)
             network = _with_warming(network, p.name, losses, doubt)
@@ -195,14 +195,14 @@ def _with_warming(network: Network, parent: str, losses: Sequence[Source], doubt
     greased = [x for x in losses if x.kind == "friction" and x.law.temperature == CONSTANT]
     for x in greased:
         network = copy_source(network, x, f"{x.name}^T", BendOfTemperature(x.law))
-    return _with_parameter(network, f"{parent}^T", [f"{x.name}^T" for x in greased], doubt["warming"])
+    return _with_parameter(network, f"{parent}^T", [f"{x.name}^T" for x in greased], doubt["warming"], "1/K")
 
 
-def _with_parameter(network: Network, name: str, targets: Sequence[str], sd: float) -> Network:
+def _with_parameter(network: Network, name: str, targets: Sequence[str], sd: float, unit: str = "1") -> Network:
     if not targets:
         return network
     new = Parameter(
-        name, tuple((t, 1.0) for t in targets), value=0.0, unit="1/K" if name.endswith("^T") else "1", low=-2.5 * sd,
+        name, tuple((t, 1.0) for t in targets), value=0.0, unit=unit, low=-2.5 * sd,
         high=2.5 * sd, prior_sd=sd, mapping="amplitude", neutral=0.0, source="scatter of published exponents",
     )  # fmt: skip
     return replace(network, parameters=(*network.parameters, new))

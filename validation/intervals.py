@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from lumped.network import Parameter
 from validation.calibrate import Fit
 from validation.fitting import to_value
+from validation.operators import of_measurement
 
 Array = NDArray[np.float64]
 UNSEEN = 0.9
@@ -35,6 +36,7 @@ class Estimate:
     """A fitted parameter. prior : (median, low, high) of its central 95 %; identified: the data narrowed the prior.
 
     partner : the parameter it trades with, where their correlation exceeds 0.7;  at_bound : it sticks to a bound
+    of_measurement : a sensor's, a boundary's, a start's or a clock's, not the machine's
     """
 
     name: str
@@ -46,6 +48,7 @@ class Estimate:
     partner: str | None = None
     at_bound: bool = False
     profile: Profile | None = None
+    of_measurement: bool = False
 
     def document(self) -> dict:
         profile = self.profile.document() if self.profile else None
@@ -64,7 +67,7 @@ def estimates(fit: Fit, profiles: Mapping[str, Profile] | None = None) -> tuple[
             Estimate(
                 p.name, to_value(p, float(fit.theta[i])), p.unit, interval(fit, i), prior_of(p),
                 bool(fit.sd[i] <= UNSEEN * p.prior_sd), fit.unknowns.names[partner[i]] if trades else None,
-                bool(fit.at_bound[i]), known.get(p.name),
+                bool(fit.at_bound[i]), known.get(p.name), of_measurement(p),
             )
         )  # fmt: skip
     return tuple(out)

@@ -33,6 +33,11 @@ def head(parameter: Parameter) -> str:
     return first if first in OPERATORS + SHIFTS else "thermal"
 
 
+def of_measurement(parameter: Parameter) -> bool:
+    """Is it a sensor's, a boundary's, a start's or a clock's?"""
+    return head(parameter) != "thermal"
+
+
 def setting(parameters: Sequence[Parameter], values: Mapping[str, float]) -> dict[str, float]:
     """Total of what acts on each channel, boundary and start: 'bias:CHANNEL' -> K, ... (neutral ones left out)."""
     out: dict[str, float] = {}

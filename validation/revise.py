@@ -16,6 +16,7 @@ from validation.compare import Comparison, compare
 from validation.effects import effect
 from validation.fitting import FREE, scene_of, working
 from validation.intervals import Estimate, Profile, estimates
+from validation.operators import of_measurement
 from validation.profile import profiles
 from validation.staged import Search, belongs, fitted, merged
 from validation.threads import one_blas_thread
@@ -155,7 +156,9 @@ def _profiled(
     fit: Fit, tests: Sequence[Test], model: Model, globs: Sequence[str], progress: Progress
 ) -> dict[str, Profile]:  # fmt: skip
     """Profile intervals of a stage's own parameters that match a glob."""
-    names = [n for n in fit.unknowns.names if " of " not in n and any(belongs(n, g) for g in globs)]
+    names = [
+        p.name for p in fit.unknowns.parameters if not of_measurement(p) and any(belongs(p.name, g) for g in globs)
+    ]
     own = [t for t in tests if t.name in {s.test for s in fit.parts}]
     held = {p.name: model.values.get(p.name, p.value) for p in fit.network.parameters}
     return profiles(fit, own, held, names, progress)

@@ -13,6 +13,7 @@ from lumped.network import Network, Parameter
 from validation.calibrate import Fit, Keep, Progress, calibrated, forgets, minimise, silent
 from validation.case import Case, Test
 from validation.fitting import Unknowns, working
+from validation.operators import of_measurement
 
 SAME = 0.5  # nats: two starts that end this close have found the same optimum
 
@@ -59,11 +60,6 @@ def _known(case: Case, test: Test, left: set[str]) -> tuple[str, ...]:
     return test.frees
 
 
-def of_measurement(p: Parameter) -> bool:
-    """Is it a bias, slope, lag, start or clock, as fitting.nuisances names them?"""
-    return " of " in p.name
-
-
 def belongs(name: str, pattern: str) -> bool:
     """Does a parameter, or the one whose form or share it is ("h^speed", "h:flange"), match a glob?"""
     return any(fnmatchcase(n, pattern) for n in (name, name.split("^")[0], name.split(":")[0]))
@@ -90,7 +86,7 @@ def _measured_in(p: Parameter, tests: Sequence[Test]) -> bool:
     ends = (
         {t.name for t in tests} | {c.name for t in tests for c in t.channels} | {b for t in tests for b in t.boundaries}
     )
-    return of_measurement(p) and p.name.split(" of ", 1)[1] in ends
+    return of_measurement(p) and p.targets[0][0].split(":", 1)[1] in ends
 
 
 def _one(

@@ -51,7 +51,7 @@ def slots() -> tuple[float, float, float]:
     case = m1().case
     network, test = thermal(working(case)[0]), next(t for t in case.tests if t.name == "bench")
     known = {p.name for p in network.parameters}
-    values = {k: v for k, v in physical(case.model.values).items() if k in known}
+    values = {k: v for k, v in physical(case).items() if k in known}
     run = simulate(network, record(test, {}), values, keep_states=True)
     assert run.z is not None
     shapes = network.recovery.parts["winding"]  # type: ignore[union-attr]

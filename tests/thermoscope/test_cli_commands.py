@@ -44,7 +44,7 @@ def test_exit_codes(story, step, code):
 
 
 FIELDS = {
-    "wrong": {"case", "model", "tests", "rmse_K", "floor_K"},
+    "wrong": {"case", "model", "tests", "rmse_K", "floor_K", "roles"},
     "diagnose": {"verdict", "candidates", "cannot_see", "where", "next_tests"},
     "add": {"effect", "revision", "accepted", "why", "tests", "parameters"},
     "calibrate": {"effect", "revision", "accepted", "why", "tests", "parameters"},

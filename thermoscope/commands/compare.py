@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from thermoscope.commands.opened import opened
@@ -10,6 +10,7 @@ from thermoscope.terminal import give, progress, say, table
 
 EVIDENT = 10.0  # nats
 WHITE = 0.01
+TURNS = {True: "yes", False: "no", None: ""}
 
 
 def compare(case: str, target: str | None, why: bool = False) -> int:
@@ -36,11 +37,26 @@ def show(document: Mapping[str, Any]) -> None:
         table(title, headers, [[c[k] for k in keys] for c in test["channels"]], marked=["over"])
     if "patterns" in document:
         show_why(document)
+    show_roles(document["roles"])
     model, over = document["model"], [c for t in document["tests"] for c in t["channels"] if c["verdict"] == "over"]
     effects = f" with {', '.join(model['effects'])}" if model["effects"] else ""
     say(
         f"{document['case']}, revision {model['revision']}{effects}: rms {document['rmse_K']:.2f} K; the sensors' own "
         f"uncertainty explains {document['floor_K']:.2f} K; {len(over)} sensor records out of tolerance"
+    )
+
+
+def show_roles(roles: Sequence[Mapping[str, Any]]) -> None:
+    """What was guessed, with its evidence, and how to say it; nothing where all is declared."""
+    guessed = [r for r in roles if r["known"] == "guessed"]
+    if not guessed:
+        return
+    rows = [[r["name"], r["role"] or "?", TURNS[r["turns"]], r["evidence"]] for r in guessed]
+    table("Roles that nobody declares, guessed from topology and losses", ["name", "role", "turns", "evidence"], rows)
+    missing = sum(r["role"] is None for r in guessed)
+    say(
+        f"{len(guessed)} roles guessed, {missing} of them unknown: the diagnosis places effects by them. "
+        'Say role = "..." in [nodes.NAME] or [boundaries.NAME] of network.toml'
     )
 
 

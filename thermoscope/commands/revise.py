@@ -113,8 +113,8 @@ def show(document: Mapping[str, Any], folder: Folder) -> None:
     rows = [[t["name"], t["role"], t["rmse_K"]["before"], t["rmse_K"]["after"]] for t in document["tests"]]
     name = f"{document['action']} {document['effect'] or ''}".strip()
     table(f"{name}: error per test", ["test", "role", "before (K)", "after (K)"], rows, marked=["hold-out"])
-    seen = sorted((p for p in document["parameters"] if p["identified"] and " of " not in p["name"]), key=telling)
-    blind = [named(p) for p in document["parameters"] if not p["identified"] and " of " not in p["name"]]
+    seen = sorted((p for p in document["parameters"] if p["identified"] and not p["of_measurement"]), key=telling)
+    blind = [named(p) for p in document["parameters"] if not p["identified"] and not p["of_measurement"]]
     values = [
         [p["name"], p["value"], p["unit"], *p["ci95"], profiled(p), *p["prior"][1:], note(p)] for p in seen[:ROWS]
     ]

@@ -67,7 +67,7 @@ def carried(source: Case, target: Case) -> Carried:
     What a machine loses is its own: its resistance is measured cold, its magnetic loss given.
     """
     theirs = {p.name for p in target.model.network.parameters if not p.name.startswith("loss.")}
-    values = {k: v for k, v in physical(source.model.values).items() if k in theirs}
+    values = {k: v for k, v in physical(source).items() if k in theirs}
     case = with_model(target, replace(target.model, values={**target.model.values, **values}))
     return Carried(case, tuple(values), tuple(settled(case)))
 
@@ -77,7 +77,7 @@ def settled(case: Case) -> list[Row]:
     network, _ = working(case)
     out = []
     for test in case.tests:
-        y = predict(network, test, physical(case.model.values)).y
+        y = predict(network, test, physical(case)).y
         late = test.time >= test.time[-1] - LATE * (test.time[-1] - test.time[0])
         for j, c in enumerate(test.channels):
             seen = late & np.isfinite(c.y)

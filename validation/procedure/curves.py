@@ -70,7 +70,7 @@ class Curves:
 def curves(case: Case, resolution_K: float = 0.5) -> Curves:
     """All of it for the tests of a case; resolution_K : of the thermocouples (electrical readings by their sigma)."""
     network, _ = working(case)
-    values = physical(case.model.values)
+    values = physical(case)
     rules = {t.name: _rules(t, predict(network, t, values).y, resolution_K) for t in case.tests}
     own = {t.name: tuple(curve(t, c, resolution_K) for c in t.channels) for t in case.tests}
     return Curves(case, own, rules, dict(_pooled(case.tests)))

@@ -90,7 +90,7 @@ def of_test(case: Case, test: Test, winding: str = "winding.copper", machine: st
     """The case's model at the mean load of one of its tests."""
     network = thermal(working(case)[0])
     known = {p.name for p in network.parameters}
-    values = {k: v for k, v in physical(case.model.values).items() if k in known}
+    values = {k: v for k, v in physical(case).items() if k in known}
     load = {name: float(np.mean(v)) for name, v in test.inputs.items()}
     air = float(np.mean([np.mean(v) for v in test.boundaries.values()]))
     return two_paths(network, load, air, winding, machine, values=values)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from validation.case import Case, Test
 from validation.compare import physical
 from validation.fitting import working
+from validation.operators import of_measurement
 from validation.predict import predict
 from viz.colours import LIGHT, Theme
 from viz.data import short
@@ -29,8 +30,8 @@ def influence(case: Case, test: Test) -> tuple[Sequence[Parameter], NDArray[np.f
     """
     network, unknowns = working(case)
     known = {p.name for p in network.parameters}
-    chosen = [p for p in unknowns.parameters if p.name in known and " of " not in p.name]
-    J = predict(network, test, physical(case.model.values), chosen).J
+    chosen = [p for p in unknowns.parameters if p.name in known and not of_measurement(p)]
+    J = predict(network, test, physical(case), chosen).J
     return chosen, np.sqrt(np.mean(J**2, axis=0)).T * np.array([[p.prior_sd] for p in chosen])
 
 
