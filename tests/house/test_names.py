@@ -38,7 +38,7 @@ ALLOWED = {  # file -> what its strings are, none of them a user's name for a pa
     "geom/bases.py": "contacts, A|B",
     "geom/meshio_io.py": "keys of a file of meshes",
     "lumped/motor_roles.py": "contacts, A|B",
-    "validation/evidence.py": "places of an effect, A|B",
+    "validation/inference/evidence.py": "places of an effect, A|B",
     "viz/report.py": "effects by their own name, KIND@PLACE",
     "thermoscope/commands/crosscheck.py": "shapes that the network names itself, PART#1",
     "thermoscope/commands/revise.py": "effects by their own name, KIND@PLACE",

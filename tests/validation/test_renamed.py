@@ -8,12 +8,12 @@ from functools import cache
 import numpy as np
 import pytest
 from renamed import back, case_of, inputs_of, names_of, new_words, renamed, shuffled
+from validation.diagnose import diagnose
 
 from lumped.build import node_link
 from lumped.declared import read_network
 from lumped.laws import InputPower
 from lumped.simulate import Record, simulate
-from validation.diagnose import diagnose
 from validation.effects import Scene, catalogue
 
 NETWORK = """
