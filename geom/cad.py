@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from geom.carved import carved, prism
 from geom.errors import InputError
 from geom.glb import write_glb
+from geom.identity import Identity
 from geom.kept import kept_file, written_whole
 from geom.machine import Machine
 from geom.palette import colour
@@ -115,4 +116,10 @@ def _materials(machine: Machine) -> str:
     """What a STEP file cannot say, as TOML."""
     lines = [f"{json.dumps(part.name)} = {json.dumps(part.material)}" for part in machine.parts]
     head = ["[machine]", f"name = {json.dumps(machine.name)}", f"description = {json.dumps(machine.description)}"]
-    return "\n".join([*head, "", "[materials]", *lines, ""])
+    said = [f"{json.dumps(part.name)} = {_role(i)}" for part in machine.parts if (i := part.identity) is not None]
+    return "\n".join([*head, "", "[materials]", *lines, "", *(["[roles]", *said, ""] if said else [])])
+
+
+def _role(known: Identity) -> str:
+    words = [f"role = {json.dumps(known.role)}"] if known.role is not None else []
+    return f"{{ {', '.join([*words, f'turns = {json.dumps(bool(known.turns))}'])} }}"

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from geom.part import Part
+from geom.roles import Role
 
 if TYPE_CHECKING:
     from geom.machine import Machine
@@ -28,8 +29,9 @@ def diameters(machine: Machine) -> list[Diameter]:
 
 def lengths(machine: Machine) -> list[Length]:
     """Along the axis, shortest first: stack, over the end windings, over the end-caps, overall."""
-    words = {"stack": ("rotor.core",), "end windings": ("winding",), "end-caps": ("flange", "endcap"), "overall": ("",)}
-    spans = {word: _span([p for p in machine.parts if p.name.startswith(names)]) for word, names in words.items()}
+    words = {"stack": Role.ROTOR, "end windings": Role.WINDING, "end-caps": Role.END_SHIELD}
+    spans = {word: _span([p for p in machine.parts if p.role is role]) for word, role in words.items()}
+    spans["overall"] = _span(list(machine.parts))
     found = [(word, *span) for word, span in spans.items() if span is not None]
     return sorted(found, key=lambda length: length[2] - length[1])
 

@@ -9,6 +9,7 @@ from html import escape
 from typing import TYPE_CHECKING
 
 from geom.dimensions import counts, diameters, lengths
+from geom.roles import Role
 from geom.views import Views, fill
 
 if TYPE_CHECKING:
@@ -82,7 +83,7 @@ def drawing_of(machine: Machine, at_z: float | None = None) -> str:
 
 def _middle(machine: Machine) -> float:
     """In the middle of the rotor's stack, or of the machine."""
-    spans = [p.span for p in machine.parts if p.name == "rotor.core"] or [p.span for p in machine.parts]
+    spans = [p.span for p in machine.parts if p.role is Role.ROTOR] or [p.span for p in machine.parts]
     return (min(a for a, _ in spans) + max(b for _, b in spans)) / 2
 
 
@@ -115,7 +116,7 @@ def thumbnail_of(machine: Machine) -> str:
     Framed on the machine; a base plate that reaches further is cut off.
     """
     views = Views(machine, _middle(machine))
-    framed = Views(replace(machine, parts=tuple(part for part in machine.parts if part.name != "base")), views.z)
+    framed = Views(replace(machine, parts=tuple(part for part in machine.parts if part.role is not Role.BASE)), views.z)
     margin = 0.04 * framed.width
     low, high, z0, z1 = (end + side * margin for end, side in zip((*views.heights, *framed.span), (-1, 1, -1, 1)))
     wide = framed.width + 2 * margin

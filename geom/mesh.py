@@ -8,6 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.identity import Identity
+
 
 @dataclass(frozen=True)
 class Patch:
@@ -41,6 +43,7 @@ class NamedMesh:
     parts : names of the solid parts
     patches : name of face -> Patch, e.g. "flange.right.outer"
     contacts : "a|b" (names in alphabetical order) -> Contact
+    identities : what the parts are, where it is declared
     """
 
     points: NDArray[np.float64]
@@ -49,3 +52,4 @@ class NamedMesh:
     parts: tuple[str, ...]
     patches: Mapping[str, Patch] = field(default_factory=dict)
     contacts: Mapping[str, Contact] = field(default_factory=dict)
+    identities: Mapping[str, Identity] = field(default_factory=dict)

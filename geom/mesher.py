@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -42,14 +42,15 @@ def build_mesh(
     """
     axial = 1.5 * size_m if axial_m is None else axial_m
     kept = _kept(machine, (size_m, segments, across, axial), cache)
+    known = {part.name: said for part in machine.parts if (said := part.identity) is not None}
     if kept is not None and kept.exists():
-        return read_npz(kept)
+        return replace(read_npz(kept), identities=known)
     plan = _planned((*machine.parts, *machine.fluids), segments)
     flat = triangulate(plan.columns, size_m, across)
     mesh = extrude(plan.cut, plan.blocks, plan.columns, flat, axial, machine.face_name)
     if kept is not None:
         write_npz(mesh, kept)
-    return mesh
+    return replace(mesh, identities=known)
 
 
 @dataclass(frozen=True)

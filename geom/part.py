@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from geom.identity import Identity, identity
 from geom.profile import Profile
 from geom.roles import Role
 
@@ -81,6 +82,11 @@ class Part:
     made: Made | None = None
     role: Role | None = None
     turns: bool | None = None
+
+    @property
+    def identity(self) -> Identity | None:
+        """What it is, as its family or its file declares; None where neither does."""
+        return None if self.role is None and self.turns is None else identity(self.role, self.turns)
 
     @property
     def volume(self) -> float:

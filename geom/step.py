@@ -12,6 +12,9 @@ Beside `motor.step` may lie `motor.step.toml`:
     "winding*" = "winding"              # a solid's name, or a pattern; else what parts of that name are made of here
     [fluids]
     coolant = "glycol-50"               # solids that stand for fluids
+    [roles]
+    "winding*" = "winding"              # what a solid is, see geom.roles; else guessed from its material and place
+    "armature" = { role = "winding", turns = true }
 
 and the sections that machine files have besides (ratings, contacts, films, losses, fans, cooling, sensors ...).
 Closed voids between the solids become the fluid "air.inside".
@@ -20,22 +23,25 @@ Closed voids between the solids become the fluid "air.inside".
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from fnmatch import fnmatchcase
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from geom.errors import InputError
+from geom.identity import Identity
 from geom.machine import SECTIONS, Machine, machine_from
 from geom.materials import material
 from geom.part import Part, Prism
+from geom.roles import Role
 from geom.slicing import sliced
 
 if TYPE_CHECKING:
     import cadquery as cq
 
 INSIDE = "air.inside"
+NOTHING = Identity()
 _ROTATIONS = {"x": ((0, 1, 0), -90.0), "y": ((1, 0, 0), 90.0), "z": ((0, 0, 1), 0.0)}  # axis and angle (deg) onto z
 _ALLOWED = {"machine": ("name", "description"), "import": ("axis", "origin_mm", "leave_out")}
 
@@ -54,22 +60,62 @@ def import_step(path: str | Path) -> Machine:
     solids = _left_in(_solids(path, said.get("import", {}), str(beside)), said, str(beside))
     prisms = _all_sliced(solids, path)
     fluids = said.get("fluids", {})
-    _refuse_unused({**said.get("materials", {}), **fluids}, prisms, str(beside))
+    _refuse_unused({**said.get("materials", {}), **fluids, **said.get("roles", {})}, prisms, str(beside))
+    what = _said(said.get("roles", {}), prisms, f"{beside} [roles]")
     made_of = {name: _material(name, said.get("materials", {}), str(beside)) for name in prisms if name not in fluids}
     header = said.get("machine", {})
     return Machine(
         name=header.get("name", path.stem),
         family="step",
         description=header.get("description", f"imported from {path.name}"),
-        parts=tuple(Part(name, made_of[name], prisms[name]) for name in prisms if name not in fluids),
+        parts=tuple(
+            Part(
+                name,
+                made_of[name],
+                prisms[name],
+                role=what.get(name, NOTHING).role,
+                turns=what.get(name, NOTHING).turns,
+            )
+            for name in prisms
+            if name not in fluids
+        ),
         fluids=(
-            *(Part(name, kind, prisms[name], solid=False) for name, kind in fluids.items()),
-            Part(INSIDE, "air", (), solid=False),
+            *(
+                Part(name, kind, prisms[name], solid=False, role=what.get(name, NOTHING).role or _space(kind))
+                for name, kind in fluids.items()
+            ),
+            Part(INSIDE, "air", (), solid=False, role=Role.INNER_AIR),
         ),
         sections={name: table for name, table in said.items() if name in SECTIONS and name != "machine"},
         geometry=None,
         face_names={},
     )
+
+
+def _space(material_: str) -> Role:
+    """What a declared fluid is where nothing else is said: a liquid cools, air is inside."""
+    return Role.INNER_AIR if material_ == "air" else Role.COOLANT
+
+
+def _said(patterns: Mapping[str, Any], names: Iterable[str], where: str) -> dict[str, Identity]:
+    """Solid -> what [roles] says it is; a full name goes before a pattern."""
+    out = {}
+    for name in names:
+        fitting = [name] if name in patterns else [p for p in patterns if fnmatchcase(name, p)]
+        if fitting:
+            out[name] = _role(patterns[fitting[0]], f"{where} {fitting[0]!r}")
+    return out
+
+
+def _role(entry: Any, where: str) -> Identity:
+    table = {"role": entry} if isinstance(entry, str) else entry
+    words = [role.value for role in Role]
+    fine = isinstance(table, Mapping) and set(table) <= {"role", "turns"} and table.get("role", words[0]) in words
+    if not fine or not isinstance(table.get("turns", True), bool):
+        right = f"one of {', '.join(words)}; or {{ role = ..., turns = true }}"
+        raise InputError(f"{entry!r} is no role", where, right)
+    turns = table.get("turns")
+    return Identity(Role(table["role"]) if "role" in table else None, None if turns is None else bool(turns))
 
 
 def step_sidecar(path: Path | str) -> Path:
@@ -84,7 +130,7 @@ def _read_sidecar(path: Path) -> dict[str, Any]:
         said = tomllib.loads(path.read_text(encoding="utf-8"))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise InputError(f"not valid TOML: {error}", str(path)) from error
-    known = ("import", "fluids", *(section for section in SECTIONS if section != "geometry"))
+    known = ("import", "fluids", "roles", *(section for section in SECTIONS if section != "geometry"))
     for section, table in said.items():
         if section not in known or not isinstance(table, Mapping):
             raise InputError(f"unknown section [{section}]", str(path), f"known: {', '.join(known)}")

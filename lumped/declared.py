@@ -160,7 +160,7 @@ def _streams(network: Network, top: Table) -> list[Link]:
 
 def _both_ways(network: Network, name: str, path: list[str], table: Table) -> list[Link]:
     """A stream; where a column carries its flow and the file says what comes in from behind, backwards too."""
-    law, column, behind = flow_law(table), flow_column(table), table.word("backwards_from", "")
+    law, column, behind = flow_law(table), flow_column(table, network.measures), table.word("backwards_from", "")
     if column is None:
         return [stream(network, f"stream:{name}", path, law)]
     if not behind and path[0] != path[-1]:

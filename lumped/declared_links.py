@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from itertools import pairwise
 
 from lumped.declared_films import contact, natural, over
@@ -9,6 +10,7 @@ from lumped.declared_mixed import mixed
 from lumped.declared_rotor import gap, rotating
 from lumped.laws import Fixed, InputPower, Law, Power, Radiation
 from lumped.laws import Table as TableLaw
+from lumped.quantities import AIR, LIQUID
 from lumped.reader import Table, powers
 from lumped.shaft_fan import shaft_fan
 
@@ -136,9 +138,9 @@ def _mixed(table: Table, has_area: bool) -> list[Mechanism]:
 FLOW_INPUTS = {"flow_l_min_input": 1 / 60000.0, "flow_m3_h_input": 1 / 3600.0}
 
 
-def flow_column(table: Table) -> str | None:
+def flow_column(table: Table, measures: Callable[[str], str]) -> str | None:
     """The input that carries a stream's flow with its direction; a fan on a shaft blows one way however it turns."""
-    of = [name for name, _, exponent in powers(table) if exponent == 1.0 and "flow" in name]
+    of = [name for name, _, exponent in powers(table) if exponent == 1.0 and measures(name) in (AIR, LIQUID)]
     return next((table.word(key) for key in FLOW_INPUTS if key in table), of[0] if len(of) == 1 else None)
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
+from geom.identity import Identity, identity
 from geom.roles import Role
-from lumped.identity import Identity, identity
 from lumped.quantities import INPUTS
 from lumped.reader import Table, known
 

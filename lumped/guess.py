@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from geom.identity import Identity
 from geom.roles import Role
-from lumped.identity import Identity
 from lumped.network import Network
 from lumped.quantities import LIQUID
 from lumped.topology import Topology, conductance, fixed

@@ -95,7 +95,7 @@ def motor_network(machine: Any, condensed: Network) -> Network:
     around = surroundings(machine, (_contact(link) for link in condensed.links if link.kind == "contact"))
     ports = {} if around.cooling is None else outlets(machine, condensed, around.cooling)
     network = replace(condensed, places={**condensed.places, **ports, **means(machine, condensed)})
-    network = replace(with_channels(network), declared=declared(machine, network, around.turning))
+    network = replace(with_channels(network), declared=declared(machine, network, around.contacts))
     faces = [place for place in network.places.values() if place.kind == "surface" and place.fluid]
     films = [link for face in faces for link in _film_links(network, face, around)]
     streams = [] if around.fan is None else fan_streams(network, around.shares, around.fan.flow_m3_h)

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from geom.roles import Role
 from lumped.laws import Array, Inputs, Law, TemperatureLaw
 from lumped.network import Link, Network, Parameter, Place
 
@@ -53,7 +54,9 @@ def switched(machine: Any, network: Network) -> Network:
 
 
 def _coupled(network: Network, switch: str, foot: str) -> Network:
-    joint = next(x for x in network.links if x.kind == "contact" and foot in x.places and not _of_base(x.places))
+    joint = next(
+        x for x in network.links if x.kind == "contact" and foot in x.places and not _of_base(network, x.places)
+    )
     body = next(place for place in joint.places if place != foot)
     links = [replace(x, law=Switched(x.law, switch, True)) if x is joint else x for x in network.links]
     print_ = footprint(network, joint, body, foot)
@@ -65,8 +68,8 @@ def _coupled(network: Network, switch: str, foot: str) -> Network:
     return replace(grown.extended(bare), parameters=own)
 
 
-def _of_base(places: tuple[str, str]) -> bool:
-    return any(place.split(".")[0] == "base" for place in places)
+def _of_base(network: Network, places: tuple[str, str]) -> bool:
+    return any(network.declared[place].role is Role.BASE for place in places)
 
 
 def footprint(network: Network, joint: Link, body: str, foot: str) -> Place:

@@ -9,13 +9,15 @@ from typing import Any
 
 import numpy as np
 
+from geom.roles import Role
 from lumped.laws import Inputs, Law
 from lumped.motor_air import BETWEEN_POLES, IN_ROTOR, Duct, channel_film, ducts_of, fan_shares, gap_film, stirred
 from lumped.motor_coolant import Cooling, cooling_of, jacket_film
 from lumped.motor_outer import outer_films
 from lumped.motor_path import stem
+from lumped.motor_roles import turning
 from lumped.motor_settings import Fan, Films, read_fan, read_films
-from lumped.motor_shapes import Gap, gap_of, radius, turning
+from lumped.motor_shapes import Gap, gap_of, radius
 from lumped.terms_value import temperature_value
 
 TOP_RPM = 3000.0  # films of speed are tabulated at least this far
@@ -41,6 +43,11 @@ class Surroundings:
         return gap_of(self.machine)
 
     @cached_property
+    def gaps(self) -> frozenset[str]:
+        """Fluids that are the air gap."""
+        return frozenset(part.name for part in self.machine.fluids if part.role is Role.AIR_GAP)
+
+    @cached_property
     def ducts(self) -> dict[str, Duct]:
         return ducts_of(self.machine)
 
@@ -55,7 +62,7 @@ class Surroundings:
 
     @cached_property
     def turning(self) -> frozenset[str]:
-        return turning(self.contacts)
+        return turning(self.machine, self.contacts)
 
     @cached_property
     def tip_radius(self) -> float:
@@ -81,7 +88,7 @@ def face_films(part: str, fluid: str, around: Surroundings) -> dict[str, Law]:
         return outer_films(around.machine, part, films)
     if around.cooling is not None and stem(fluid) in around.cooling.feeds:
         return {"": jacket_film(around.machine, stem(fluid), around.cooling)}
-    if fluid == "airgap" and gap is not None:
+    if gap is not None and fluid in around.gaps:
         return {"": gap_film(gap, around.top_rpm)}
     if fluid == IN_ROTOR and fluid in around.shares:
         return {"axial": channel_film(around.ducts[fluid], around.shares[fluid])}

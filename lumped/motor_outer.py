@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from geom.roles import Role
 from lumped.correlations.fins import elenbaas, heiles, mean_of_decay
 from lumped.correlations.forced import flat_plate
 from lumped.correlations.info import Info
@@ -165,9 +166,15 @@ def _blown(machine: Any, part: str, cowl: Cowl) -> Law | None:
         length = fins.length if fins.axial else np.pi * (fins.root + fins.height)
         return _of_speed(cowl, share, lambda v: heiles(v, diameter, length, cowl.turbulence)[0])
     if e.turned and e.size[2] < END_SHIELD * e.size[1]:
-        share = cowl.rear_share if part.endswith(cowl.rear) else cowl.front_share
+        share = cowl.rear_share if _on_left(machine, e) is (cowl.rear == "left") else cowl.front_share
         return _of_speed(cowl, share, lambda v: flat_plate(v, e.size[1])[0])
     return None
+
+
+def _on_left(machine: Any, e: Extent) -> bool:
+    """Does it lie before the middle of the machine's body along the axis?"""
+    spans = [part.span for part in machine.parts if part.role in (Role.END_SHIELD, Role.HOUSING)] or [(e.z0, e.z1)]
+    return e.z0 + e.z1 < min(a for a, _ in spans) + max(b for _, b in spans)
 
 
 def _of_speed(cowl: Cowl, share: float, film: Callable[[float], float]) -> Law:

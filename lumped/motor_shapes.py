@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from geom.profile import ArcGrid
+from geom.roles import Role
 
 DIRECTED = 3.0  # a conductivity this many times the other one has a direction
 ROUND = 0.02  # a body is turned when its bounds are centred and square to this share
@@ -56,17 +57,6 @@ def laminated(machine: Any, part: str) -> bool:
     return bool(k_plane > DIRECTED * k_axial)
 
 
-def turning(contacts: Iterable[str], shaft: str = "shaft") -> frozenset[str]:
-    """Parts that turn: all that hang on the shaft through contacts "a|b" without a bearing between."""
-    pairs = [tuple(name.split("|")) for name in contacts]
-    held = [pair for pair in pairs if not any(part.startswith("bearing") for part in pair)]
-    found, reached = {shaft}, 0
-    while len(found) > reached:
-        reached = len(found)
-        found |= {part for pair in held if found & set(pair) for part in pair}
-    return frozenset(found)
-
-
 @dataclass(frozen=True)
 class Gap:
     """The air gap: radius of the rotor and radial width (m)."""
@@ -76,8 +66,8 @@ class Gap:
 
 
 def gap_of(machine: Any) -> Gap | None:
-    """From the fluid named "airgap"; its width is the family's where the space reaches into the slots."""
-    rings = [part for part in machine.fluids if part.name == "airgap"]
+    """From the fluid that is the gap; its width is the family's where the space reaches into the slots."""
+    rings = [part for part in machine.fluids if part.role is Role.AIR_GAP]
     if not rings:
         return None
     (profile, _, _), *_ = rings[0].prisms

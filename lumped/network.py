@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
-from lumped.identity import Identity
+from geom.identity import Identity
 from lumped.laws import Law
 from lumped.quantities import INPUTS, USUAL
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from lumped.identity import Identity
+from geom.identity import Identity
 from validation.case import Case, Channel, Test
 from validation.fitting import nuisances, working
 from validation.predict import predict

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
+
+from geom.identity import Identity
+from geom.roles import Role
 
 if TYPE_CHECKING:
     from matplotlib.colors import LinearSegmentedColormap
@@ -86,11 +90,15 @@ def _oklab_to_srgb(L: NDArray[np.float64], a: NDArray[np.float64], b: NDArray[np
     return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055).T
 
 
-def part_colours(names: tuple[str, ...]) -> dict[str, str]:
+_OF_ROLE = {
+    Role.WINDING: "#C77B4A", Role.INSULATION: "#E3C565", Role.COMMUTATOR: "#B08D57", Role.ROTOR: "#7C8FA6",
+    Role.CAGE: "#7C8FA6", Role.MAGNET: "#7C8FA6", Role.FAN: "#7C8FA6", Role.IRON: "#98A7B8", Role.SHAFT: "#5B6B7B",
+    Role.BEARING: "#5B6B7B", Role.HOUSING: "#B9C6C9", Role.END_SHIELD: "#A7B9AE", Role.FOOT: "#8B8F94",
+    Role.BASE: "#8B8F94",
+}  # fmt: skip
+
+
+def part_colours(parts: Iterable[str], identities: Mapping[str, Identity]) -> dict[str, str]:
     """A muted colour per part by what it is: copper for windings, steel for iron, aluminium for the shell."""
-    families = (
-        (("winding", "field"), "#C77B4A"), (("insulation", "liner"), "#E3C565"), (("commutator",), "#B08D57"),
-        (("rotor", "pole"), "#7C8FA6"), (("yoke", "stator"), "#98A7B8"), (("shaft", "bearing"), "#5B6B7B"),
-        (("housing",), "#B9C6C9"), (("flange",), "#A7B9AE"), (("feet", "base"), "#8B8F94"),
-    )  # fmt: skip
-    return {n: next((c for keys, c in families if any(k in n for k in keys)), "#A9A9B8") for n in names}
+    roles = {part: identities[part].role if part in identities else None for part in parts}
+    return {part: _OF_ROLE.get(role, "#A9A9B8") if role else "#A9A9B8" for part, role in roles.items()}

@@ -29,11 +29,15 @@ class Flow:
 
 @dataclass(frozen=True)
 class Heat:
-    """losses : source -> W;  flows : between nodes;  out : part or stream the heat leaves by -> W;  stored : W."""
+    """losses : source -> W;  flows : between nodes;  out : part or stream the heat leaves by -> W;  stored : W.
+
+    streams : those of `out` that are streams
+    """
 
     losses: dict[str, float]
     flows: tuple[Flow, ...]
     out: dict[str, float]
+    streams: frozenset[str] = frozenset()
 
     @property
     def stored(self) -> float:
@@ -63,7 +67,8 @@ def heat_flows(network: Network, balance: Balance, step: int = -1, z: Array | No
         for boundary, part, sign in ((end, start, 1.0), (start, end, -1.0)):
             if boundary in network.boundaries:
                 out[part] = out.get(part, 0.0) + sign * watts
-    return Heat(losses, tuple(Flow(*key, *both.tolist()) for key, both in pairs.items()), out)
+    streams = frozenset(link.name.removeprefix("stream:") for link in network.links if link.kind == "stream")
+    return Heat(losses, tuple(Flow(*key, *both.tolist()) for key, both in pairs.items()), out, streams)
 
 
 def conductance(network: Network, link: Link, ends: tuple[str, str], watts: float, z: Array) -> float:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
+from geom.identity import Identity
 from geom.mesh import NamedMesh
 
 Array = NDArray[np.float64]
@@ -21,6 +23,7 @@ class SplitMesh:
     points : (n_nodes, 3) m;  tets : (n_tets, 4);  region : (n_tets,);  parts : names
     original : (n_nodes,) point number in the conformal mesh
     owner : (n_nodes,) index of the part that owns the node
+    identities : what the parts are, where it is declared
     """
 
     points: Array
@@ -29,6 +32,7 @@ class SplitMesh:
     parts: tuple[str, ...]
     original: Index
     owner: Index
+    identities: Mapping[str, Identity] = field(default_factory=dict)
 
     @property
     def size(self) -> int:
@@ -69,7 +73,7 @@ def split(mesh: NamedMesh) -> SplitMesh:
         tets[mine] = starts[i] + np.searchsorted(part_ids, mesh.tets[mine])
     original = np.concatenate(ids)
     owner = np.repeat(np.arange(len(ids)), [len(part_ids) for part_ids in ids])
-    return SplitMesh(mesh.points[original], tets, mesh.region, mesh.parts, original, owner)
+    return SplitMesh(mesh.points[original], tets, mesh.region, mesh.parts, original, owner, mesh.identities)
 
 
 def on_nodes(nodes: SplitMesh, temperature: Array) -> Array:

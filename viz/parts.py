@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.identity import Identity
+from geom.roles import Role
 from viz import scene
 from viz.callouts import Label, callouts, text
 from viz.colours import LIGHT, Theme, heat, part_colours
@@ -64,10 +66,10 @@ def exploded(
 ) -> pyvista.Plotter:
     """The machine pulled apart along its axis, each group under its names; coloured by temperature (degC) if given.
 
-    groups : parts that stay together, from left to right; by their names if not given
+    groups : parts that stay together, from left to right; by what they are if not given
     """
     p = scene.plotter(theme)
-    view, groups = view or ASIDE, groups or assemblies(nodes.parts)
+    view, groups = view or ASIDE, groups or assemblies(nodes)
     shift = shifts(nodes, groups)
     surface = exposed(nodes, contacts=True)
     field = None if T is None else on_nodes(nodes, T)
@@ -92,15 +94,22 @@ def _title(p: pyvista.Plotter, points: Array, group: Sequence[str]) -> None:
     p.add_actor(names, reset_camera=False, pickable=False)
 
 
-def assemblies(parts: Sequence[str]) -> list[list[str]]:
-    """Left end, housing, stator, rotor, right end, from the names of the parts; empty groups are left out."""
-    keys = ("flange.left bearing.left", "housing feet base", "", "rotor shaft commutator armature liner magnet",
-            "flange.right bearing.right")  # fmt: skip
-    groups: list[list[str]] = [[] for _ in keys]
-    for part in parts:
-        mine = next((i for i, words in enumerate(keys) if any(w in part for w in words.split())), 2)
-        groups[mine].append(part)
+def assemblies(nodes: SplitMesh) -> list[list[str]]:
+    """Left end, housing, stator, rotor, right end, from what the parts are; empty groups are left out."""
+    groups: list[list[str]] = [[] for _ in range(5)]
+    for part in nodes.parts:
+        groups[_assembly(nodes, part)].append(part)
     return [group for group in groups if group]
+
+
+def _assembly(nodes: SplitMesh, part: str) -> int:
+    known = nodes.identities.get(part, Identity())
+    if known.role in (Role.END_SHIELD, Role.BEARING):
+        z = nodes.points[:, 2]
+        return 0 if z[nodes.of(part)].mean() < (z.min() + z.max()) / 2 else 4
+    if known.role in (Role.HOUSING, Role.FOOT, Role.BASE):
+        return 1
+    return 3 if known.turns else 2
 
 
 def shifts(nodes: SplitMesh, groups: Sequence[Sequence[str]]) -> Array:
@@ -123,7 +132,9 @@ def _paint(
     light = {"ambient": 0.55, "diffuse": 0.5, "specular": 0.0, "culling": "back"}
     light |= {"show_edges": mesh, "edge_color": theme.ink, "edge_opacity": 0.45, "line_width": 1.0}
     if T is None:
-        rgb = np.array([_rgb(colour) for colour in part_colours(surface.nodes.parts).values()], np.uint8)
+        rgb = np.array(
+            [_rgb(colour) for colour in part_colours(surface.nodes.parts, surface.nodes.identities).values()], np.uint8
+        )
         data.cell_data["colour"] = rgb[surface.part]
         p.add_mesh(data, scalars="colour", rgb=True, **light)  # type: ignore[arg-type]
     else:

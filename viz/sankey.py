@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 SMALL = 0.01  # of the total: smaller exits are drawn as one
+WARMS, ELSEWHERE = "warms the machine", "elsewhere"
 LOW, HIGH = 0.3, 1.3  # of the total: the drawing reaches below and above the trunk
 
 
@@ -29,7 +30,7 @@ def sankey_of_losses(heat: Heat, *, png: str | Path | None = None) -> Figure:
         raise InputError("no losses to draw", "sankey", "a machine that is running")
     figure, (ax,) = paper.subplots(8.4, 4.4)
     _side(ax, left, 0.0, 0.46, dict.fromkeys(left, VERMILION), total)
-    _side(ax, right, 1.0, 0.54, {k: colour_of(k) for k in right}, total)
+    _side(ax, right, 1.0, 0.54, {k: colour_of(k, heat) for k in right}, total)
     ax.fill_between([0.46, 0.54], 0, total, color=LIGHT.ink, lw=0)
     ax.text(0.5, total * 1.04, f"{total:.0f} W", ha="center", weight="bold", fontsize=10)
     ax.set(xlim=(-0.32, 1.32), ylim=(-LOW * total, HIGH * total))
@@ -46,12 +47,14 @@ def exits(heat: Heat) -> dict[str, float]:
     least = SMALL * sum(heat.losses.values())
     large = {k: v for k, v in sorted(out.items(), key=lambda kv: -kv[1]) if v >= least}
     rest = sum(v for k, v in out.items() if k not in large)
-    tail = {"elsewhere": rest, "warms the machine": heat.stored}
+    tail = {ELSEWHERE: rest, WARMS: heat.stored}
     return large | {k: v for k, v in tail.items() if v >= least}
 
 
-def colour_of(name: str) -> str:
-    return {"warms the machine": ORANGE, "elsewhere": LIGHT.faint}.get(name, BLUE if "fan" in name else SKY)
+def colour_of(name: str, heat: Heat) -> str:
+    """What a stream carries off is darker than what faces give up."""
+    streams = {stream.partition(":")[0] for stream in heat.streams}
+    return {WARMS: ORANGE, ELSEWHERE: LIGHT.faint}.get(name, BLUE if name in streams else SKY)
 
 
 def _side(ax: Axes, parts: dict[str, float], outer: float, inner: float, colours: dict[str, str], total: float) -> None:

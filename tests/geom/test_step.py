@@ -31,6 +31,7 @@ def test_shipped_machine_comes_back_with_names_materials_and_volumes(imported):
     assert [part.name for part in imported.parts] == [part.name for part in shipped.parts]
     for part in imported.parts:
         assert part.material == shipped.part(part.name).material
+        assert part.identity == shipped.part(part.name).identity
         assert part.volume == pytest.approx(shipped.part(part.name).volume, rel=1e-9), part.name
 
 
@@ -180,3 +181,17 @@ def test_machine_without_sidecar_takes_the_usual_materials(tmp_path):
     path = export_cad(small, tmp_path, ("step",))["step"]
     (tmp_path / "small.step.toml").unlink()
     assert import_step(path).part("shaft").material == "steel"
+
+
+@pytest.mark.parametrize(
+    ("said", "right"),
+    [('shaft = "axle"', "one of winding"), ("shaft = { turns = 1 }", "one of"), ('bolt = "shaft"', "the file has")],
+)
+def test_a_role_that_is_none_is_one_message(tmp_path, said, right):
+    """An unknown word, a turn that is no yes or no, and a solid that is not there."""
+    small = Machine("small", "none", "", (Part("shaft", "steel", ((shapes.disc(R), 0.0, L),)),), (), {}, None, {})
+    path = export_cad(small, tmp_path, ("step",))["step"]
+    beside = path.with_name(f"{path.name}.toml")
+    beside.write_text(beside.read_text() + f"[roles]\n{said}\n")
+    with pytest.raises(InputError, match=right):
+        import_step(path)

@@ -14,8 +14,9 @@ from lumped.motor_films import surroundings
 from lumped.motor_losses import _declared, loss_watts
 from lumped.motor_outer import cowl_of, outer_films, outer_of
 from lumped.motor_path import path_of
+from lumped.motor_roles import turning
 from lumped.motor_settings import read_films
-from lumped.motor_shapes import fins_of, turning
+from lumped.motor_shapes import fins_of
 from lumped.motor_zones import motor_zones
 from lumped.multipliers import multipliers
 from lumped.steady import steady
@@ -99,9 +100,10 @@ def test_emissivity_of_the_base_is_the_papers(networks):
 
 
 def test_what_turns_hangs_on_the_shaft(ready):
-    contacts = ready["pmsm-m1"].mesh.contacts
-    assert turning(contacts) == {"shaft", "rotor.core", "magnets"}
-    assert turning(ready["tefc-industrial"].mesh.contacts) == {"shaft", "rotor.core", "rotor.cage"}
+    for name, own in {"pmsm-m1": "magnets", "tefc-industrial": "rotor.cage"}.items():
+        machine, contacts = ready[name].machine, ready[name].mesh.contacts
+        bare = replace(machine, parts=tuple(replace(p, role=None) for p in machine.parts))
+        assert turning(machine, contacts) == turning(bare, contacts) == {"shaft", "rotor.core", own}
 
 
 def test_coolant_warms_by_the_exact_exponential_along_walls_of_one_temperature(networks):

@@ -4,11 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 
+from geom.identity import identity
 from geom.mesh import NamedMesh
+from geom.roles import Role
 
 RADII = np.array([0.0, 0.03, 0.09, 0.115, 0.12, 0.155, 0.20, 0.22])
 LEVELS = np.array([0.0, 0.05, 0.10, 0.14, 0.25, 0.38, 0.50, 0.54, 0.60, 0.65, 0.70])
 PARTS = ("shaft", "rotor.core", "winding.armature", "winding.field", "yoke", "housing", "flange.left", "flange.right")
+KNOWN = {
+    "shaft": identity(Role.SHAFT), "rotor.core": identity(Role.ROTOR), "yoke": identity(Role.IRON),
+    "winding.armature": identity(Role.WINDING, True), "winding.field": identity(Role.WINDING),
+    "housing": identity(Role.HOUSING), "flange.left": identity(Role.END_SHIELD),
+    "flange.right": identity(Role.END_SHIELD),
+}  # fmt: skip
 
 
 def _part(ring: int, level: int) -> int:
@@ -51,5 +59,5 @@ def motor(segments: int = 32) -> NamedMesh:
     swap = np.einsum("ij,ij->i", np.cross(e[:, 0], e[:, 1]), e[:, 2]) < 0
     tets[swap] = tets[swap][:, [0, 2, 1, 3]]
     used, tets = np.unique(tets, return_inverse=True)
-    mesh = NamedMesh(points[used], tets.reshape(-1, 4).astype(np.int64), np.repeat(region, 3), PARTS)
+    mesh = NamedMesh(points[used], tets.reshape(-1, 4).astype(np.int64), np.repeat(region, 3), PARTS, identities=KNOWN)
     return mesh

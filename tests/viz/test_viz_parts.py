@@ -36,7 +36,7 @@ def test_names_point_at_their_parts(seen):
 
 
 def test_assemblies_pulled_apart_do_not_overlap():
-    groups = assemblies(NODES.parts)
+    groups = assemblies(NODES)
     moved = NODES.points[:, 2] + shifts(NODES, groups)[NODES.owner, 2]
     spans = [(moved[np.concatenate([NODES.of(p) for p in g])]) for g in groups]
     assert len(groups) == 5

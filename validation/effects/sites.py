@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
 
+from geom.identity import Identity
 from geom.roles import Role
-from lumped.identity import Identity
 from lumped.network import Link, Network, Place
 
 AXLE = frozenset({Role.BEARING, Role.SHAFT})

@@ -8,12 +8,14 @@ from typing import Any
 
 import numpy as np
 
+from geom.roles import Role
 from lumped.balance import Balance, balance
 from lumped.laws import Radiation
 from lumped.motor_bases import Switched
 from lumped.network import Link, Network
 from lumped.simulate import simulate
 from validation.case import Test
+from validation.effects.sites import ambient, part_of, role
 from validation.predict import record, thermal
 
 BODY = "stator.core"
@@ -58,24 +60,25 @@ def base_heat(network: Network, test: Test, values: Mapping[str, float]) -> Base
     flows = balance(bare, run, heat)
     core = simulate(bare, run, heat, [bare.places[BODY].mean]).y[-1, 0]
     feet = [x for x in bare.links if isinstance(x.law, Switched) and x.law.closed]
-    outside = [x for x in bare.links if x.places[1] == "ambient"]
-    below = [x for x in outside if _of_base(x)]
+    air = str(ambient(bare))
+    outside = [x for x in bare.links if x.places[1] == air]
+    below = [x for x in outside if _of_base(bare, x)]
     return BaseHeat(
-        sum(_out_of_body(flows, x) for x in feet),
+        sum(_out_of_body(bare, flows, x) for x in feet),
         _sum(flows, [x for x in below if not isinstance(x.law.temperature, Radiation)]),
         _sum(flows, [x for x in below if isinstance(x.law.temperature, Radiation)]),
         _sum(flows, [x for x in outside if x not in below]),
-        float(core - np.ravel(test.boundaries["ambient"])[-1]),
+        float(core - np.ravel(test.boundaries[air])[-1]),
     )  # fmt: skip
 
 
-def _of_base(link: Link) -> bool:
+def _of_base(network: Network, link: Link) -> bool:
     """A face of foot or base; the footprint that a foot leaves bare is the machine's."""
-    return link.places[0].split(".")[0] in ("foot", "base") and not link.places[0].endswith(".print")
+    return role(network, part_of(network, link.places[0])) in (Role.FOOT, Role.BASE)
 
 
-def _out_of_body(flows: Balance, foot: Link) -> float:
-    sign = -1.0 if foot.places[0].split(".")[0] == "foot" else 1.0
+def _out_of_body(network: Network, flows: Balance, foot: Link) -> float:
+    sign = -1.0 if role(network, foot.places[0]) is Role.FOOT else 1.0
     return sign * float(flows.power(foot.name)[-1])
 
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from geom.errors import InputError
 from validation.case import Case, Channel, Test
 from validation.compare import physical
+from validation.effects.sites import ambient
 from validation.fitting import working
 from validation.predict import predict
 from validation.procedure.assemblies import Assembly, assemblies, worst
@@ -70,10 +71,10 @@ class Curves:
 def curves(case: Case, resolution_K: float = 0.5) -> Curves:
     """All of it for the tests of a case; resolution_K : of the thermocouples (electrical readings by their sigma)."""
     network, _ = working(case)
-    values = physical(case)
+    values, air = physical(case), ambient(network) or network.boundaries[0]
     rules = {t.name: _rules(t, predict(network, t, values).y, resolution_K) for t in case.tests}
     own = {t.name: tuple(curve(t, c, resolution_K) for c in t.channels) for t in case.tests}
-    return Curves(case, own, rules, dict(_pooled(case.tests)))
+    return Curves(case, own, rules, dict(_pooled(case.tests, air)))
 
 
 def curve(test: Test, channel: Channel, resolution_K: float = 0.5) -> Curve:
@@ -113,10 +114,10 @@ def _rules(test: Test, predicted: Array, resolution_K: float) -> tuple[Assembly,
     return tuple(found or ())
 
 
-def _pooled(tests: Sequence[Test]) -> Iterator[tuple[tuple[tuple[str, ...], str], Repeats]]:
+def _pooled(tests: Sequence[Test], air: str) -> Iterator[tuple[tuple[tuple[str, ...], str], Repeats]]:
     for group in alike(tests):
         for place in dict.fromkeys(c.place for c in group[0].channels):
-            ends = [end for end in (_end(test, place) for test in group) if end]
+            ends = [end for end in (_end(test, place, air) for test in group) if end]
             if len(ends) > 1:
                 names = tuple(test.name for test in group)
                 yield (names, place), repeats([rise for rise, _ in ends], max(u for _, u in ends))
@@ -141,17 +142,12 @@ def _same(a: Test, b: Test) -> bool:
     return all(abs(x - y) <= ALIKE * max(abs(x), abs(y)) for x, y in pairs)
 
 
-def _end(test: Test, place: str) -> tuple[float, float] | None:
+def _end(test: Test, place: str, boundary: str) -> tuple[float, float] | None:
     """Rise over ambient (K) of a place in the last quarter, and the sensor's uncertainty (K)."""
-    late = test.time >= LATE * test.time[-1]
+    late, air = test.time >= LATE * test.time[-1], np.broadcast_to(test.boundaries[boundary], test.time.shape)
     found = []
     for c in (c for c in test.channels if c.place == place):
         seen = late & np.isfinite(c.y)
         if seen.any():
-            found.append((float(np.mean(c.y[seen] - _air(test)[seen])), c.sigma_K))
+            found.append((float(np.mean(c.y[seen] - air[seen])), c.sigma_K))
     return (float(np.mean([r for r, _ in found])), max(u for _, u in found)) if found else None
-
-
-def _air(test: Test) -> Array:
-    name = "ambient" if "ambient" in test.boundaries else next(iter(test.boundaries))
-    return np.broadcast_to(test.boundaries[name], test.time.shape)

@@ -64,7 +64,7 @@ def two_paths(
 ) -> TwoPaths:
     """R_ext and R_w of a network at one load, and what they miss at others.
 
-    inputs : the load; `loads` are shares of its inputs that are currents (their name holds "_A")
+    inputs : the load; `loads` are shares of its inputs that are currents
     winding, machine : the places whose means T_w and T_m are
     """
     for place in (winding, machine):
@@ -76,7 +76,7 @@ def two_paths(
     found = TwoPaths((T_m - ambient) / P_all, (T_w - T_m) / P_w, T_w - ambient, T_m - ambient, P_w, P_all, {})
     residual = {}
     for share in loads:
-        level = {n: v * (share if "_A" in n else 1.0) for n, v in inputs.items()}
+        level = {n: v * (share if network.measures(n) == "current" else 1.0) for n, v in inputs.items()}
         try:
             T_w, T_m, P_w, P_all = _state(network, level, ambient, (winding, machine), values)
         except ThermoscopeError:  # at this load the machine runs away

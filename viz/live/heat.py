@@ -23,7 +23,7 @@ def sankey(heat: Heat, *, theme: Theme = LIGHT) -> go.Figure:
     watts = [*left.values(), *right.values()]
     source = [*range(middle), *[middle] * len(right)]
     target = [*[middle] * len(left), *range(middle + 1, len(names))]
-    colours = [VERMILION] * len(left) + [colour_of(k) for k in right]
+    colours = [VERMILION] * len(left) + [colour_of(k, heat) for k in right]
     out = figure(theme, title={"text": f"{sum(left.values()):.0f} W", "x": 0.02})
     out.add_sankey(
         node={"label": names, "color": theme.faint, "pad": 18, "line": {"width": 0}}, valueformat=".0f",

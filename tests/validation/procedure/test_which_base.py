@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from geom.errors import InputError
+from geom.identity import identity
+from geom.roles import Role
 from lumped.build import bare_network, node_link, node_row, node_source
 from lumped.laws import Fixed, Radiation
 from lumped.motor_bases import Switched
@@ -31,7 +33,9 @@ AREA = {"base": 0.6, "base.plate": 1.2}  # m2
 
 def machine():
     """Winding, laminations and two bases, W/K each; the plate's path is twice the bench's."""
-    net = bare_network("small", NODES, ["ambient"])
+    feet, plates = dict.fromkeys(("foot", "foot.plate"), Role.FOOT), dict.fromkeys(AREA, Role.BASE)
+    said = {name: identity(role) for name, role in (feet | plates).items()}
+    net = replace(bare_network("small", NODES, ["ambient"]), declared=said)
     links = [node_link(net, "slot", "link", "winding", "stator.core", Fixed(9.0)),
              node_link(net, "film:stator.core", "film", "stator.core", "ambient", Fixed(2.2))]  # fmt: skip
     for name, (foot, base, h) in {"bench": ("foot", "base", 1.0), "plate": ("foot.plate", "base.plate", 2.5)}.items():

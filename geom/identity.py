@@ -1,4 +1,4 @@
-"""What a named thing of a network is, and how that is known."""
+"""What a part, a node, a fluid or a boundary is, and how that is known."""
 
 from __future__ import annotations
 
