@@ -21,10 +21,8 @@ from hidden.truth.effects import (
     bridge,
     draught,
     heating,
-    joined,
     spinning,
-    warming,
-    worse,  # fmt: skip
+    warming,  # fmt: skip
 )
 from hidden.truth.films import air, plate_still, radiation
 from hidden.truth.losses import ALPHA
@@ -180,22 +178,20 @@ MISSING = (
     Hidden("road wind@ring", lambda a: airflow("ring", a), 20.0),
     Hidden("shaft fan@cover.right", lambda a: spinning("cover.right", a), 10.0),
     Hidden("draught@cover.left", lambda a: draught("cover.left", a), 10.0),
-    Hidden("coupling heat@shaft", lambda a: joined("shaft", a), 3.0),
     Hidden("windage@rotor.left", lambda a: heating("rotor.left", a, (3.0, 2.8)), 30.0),
     Hidden("ac copper@coils", lambda a: heating("coils", a, (2.0, 1.85), (2.0, 2.0), fade=0.002), 300.0),
     Hidden("load loss@magnets.left", lambda a: heating("magnets.left", a, (2.0, 1.8), (2.0, 2.0)), 60.0),
     Hidden("bridge@coils-ring", lambda a: bridge("leads", a, "coils", "ring", (0.9, 0.5)), 12.0),
-    Hidden("gap in clamp", lambda a: worse("rim-left", a), 0.85),
     Hidden("no tempco@coils", lambda a: warming("coils", 3.0 * R20, a), ALPHA, ((("losses", "joule", "alpha_1_K"),
         0.0),)),
 )  # fmt: skip
 WORDS = {
     "road wind@ring": ("convection@stator_ring",), "shaft fan@cover.right": ("convection.shaft@cover_R",
     "convection.rotation@cover_R"),
-    "draught@cover.left": ("convection.constant@cover_L",), "coupling heat@shaft": ("conduction.shaft@shaft",),
+    "draught@cover.left": ("convection.constant@cover_L",),
     "windage@rotor.left": ("windage@disc_L", "windage@pm_L"), "ac copper@coils": ("copper.ac@coils",),
     "load loss@magnets.left": ("loss.rotor.load@pm_L",), "bridge@coils-ring": ("coupling@coils|stator_ring",),
-    "gap in clamp": ("contact@cover_L-ring",), "no tempco@coils": ("copper.feedback@joule",),
+    "no tempco@coils": ("copper.feedback@joule",),
     "draught@ring": ("convection.constant@stator_ring",), "side blower@cover.right": ("convection.constant@cover_R",),
     "heat@cover.left": ("loss.constant@cover_L",),
 }  # fmt: skip

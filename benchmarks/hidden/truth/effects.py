@@ -96,11 +96,6 @@ def fading(films: str, a: float) -> Change:
     return Change(signals={f"fade.{films}": lambda time: np.minimum(a * 1.1 * (time / 3600.0) ** 0.9, 0.95)})
 
 
-def worse(joint: str, a: float) -> Change:
-    """A joint that has lost the share a of its conductance: a void in the impregnation, a gap in a fit."""
-    return Change({joint: 1.0 - a})
-
-
 def joined(body: str, a: float) -> Change:
     """A shaft of a W/K to a driven machine that warms up by 30 K in the course of a test, and faster when it turns."""
 

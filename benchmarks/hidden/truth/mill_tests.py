@@ -16,8 +16,7 @@ from hidden.truth.effects import (
     joined,
     spinning,
     switched,
-    warming,
-    worse,  # fmt: skip
+    warming,  # fmt: skip
 )
 from hidden.truth.losses import ALPHA
 from hidden.truth.mill import R20, machine
@@ -71,7 +70,6 @@ MISSING = (
     Hidden("friction@n9", lambda a: heating("bearing.de", a, (5 / 3, 1.3), fade=0.004), 150.0),
     Hidden("ac copper@n1", lambda a: heating("slot", a, (2.0, 1.85), (2.0, 2.0), fade=0.002), 900.0),
     Hidden("inverter iron@n4", lambda a: switched("teeth", a / 4000.0, "switching_Hz"), 500.0),
-    Hidden("void@n3", lambda a: worse("overhang-nde", a), 0.85),
     Hidden("no tempco@n1", lambda a: warming("slot", 3.0 * R20, a), ALPHA,
            ((("losses", "copper", "alpha_1_K"), 0.0),)),
 )  # fmt: skip
@@ -80,7 +78,7 @@ WORDS = {
     "coupling heat@n9": ("conduction.shaft@n7", "conduction.shaft@n9"), "bench@n15": ("conduction.bench@n15",),
     "draught@n13": ("convection.constant@n13", "convection.constant@n14"), "windage@n6": ("windage@n6",),
     "friction@n9": ("bearing.friction@n9",), "ac copper@n1": ("copper.ac@n1",), "inverter iron@n4": ("iron.pwm@n4",),
-    "void@n3": ("contact@n1-n3",), "no tempco@n1": ("copper.feedback@copper",),
+    "no tempco@n1": ("copper.feedback@copper",),
     "draught@n11": ("convection.constant@n11",),
     "heat@n12": ("loss.constant@n12",),
 }  # fmt: skip
