@@ -5,15 +5,15 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from validation.apart import DECISIVE
-
 from hidden.answer import answer
 from hidden.cases import Label, hidden_in
 from hidden.kinds import KINDS
 from hidden.truth.archetype import measured
 from hidden.truth.menu import MENU, carried_out
-from hidden.user import network_of, test_of
+from hidden.user import test_of
 from validation import Case, Revision, add, calibrate
+from validation.inference.evidence import candidates
+from validation.planning.apart import DECISIVE
 
 Answer = dict[str, Any]
 
@@ -27,13 +27,19 @@ def worth(case: Case, label: Label, found: Answer) -> dict[str, float] | None:
         return None
     base = calibrate(case, roles=("calibrate", "validate"))
     ready, before = replace(case, model=base.model), held_out(base)
-    best = held_out(add(ready, label.truth[0]))
+    true = next((n for n in label.right[0] if n in possible(case)), None)
+    best = held_out(add(ready, true)) if true else before
     claims = found["verdict"] in ("named", "group", "several") and found["groups"]
     if not claims:
         return {"before": before, "claimed": before, "best": best}
     first = found["groups"][0][0]
-    claimed = best if first == label.truth[0] else held_out(add(ready, first))
+    claimed = best if first == true else held_out(add(ready, first))
     return {"before": before, "claimed": claimed, "best": best}
+
+
+def possible(case: Case) -> set[str]:
+    """Every effect of the catalogue that can sit somewhere in a case."""
+    return {one.name for one in candidates(case)}
 
 
 def held_out(done: Revision) -> float:
@@ -41,7 +47,7 @@ def held_out(done: Revision) -> float:
     return next(t.after for t in done.tests if t.role == "hold-out")
 
 
-def followed(case: Case, label: Label, found: Answer, draws: int) -> Answer | None:
+def followed(case: Case, label: Label, found: Answer) -> Answer | None:
     """The best test that is said to decide, carried out on the true machine, and what the diagnosis says then."""
     kind = KINDS[label.machine]
     said = [name for name, gain, _ in found["next"] if gain >= DECISIVE and name in MENU]
@@ -50,5 +56,5 @@ def followed(case: Case, label: Label, found: Answer, draws: int) -> Answer | No
     name = said[0]
     plan = carried_out(name, kind.plans[3])
     (record,) = measured(kind, label.seed, hidden_in(kind, label), (plan,))
-    longer = replace(case, tests=(test_of(network_of(kind.name), record), *case.tests))
-    return {"test": name, **answer(longer, draws, plan=False)}
+    longer = replace(case, tests=(test_of(kind, case.model.network, record), *case.tests))
+    return {"test": name, **answer(longer, plan=False)}

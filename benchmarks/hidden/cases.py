@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
-from itertools import permutations
 
 import numpy as np
 
 from hidden.kinds import KINDS
-from hidden.sizes import MULTIPLES, detectable
-from hidden.truth.archetype import Archetype, Hidden, Record, measured
-from hidden.truth.change import NOTHING, Change
+from hidden.sizes import MULTIPLES, PART, ROLES, sizes
+from hidden.truth.archetype import Archetype, Edit, Hidden, Record, measured
+from hidden.truth.change import NOTHING, Change, for_a_while, only_in
+from hidden.truth.oracle import DEVIATION
 
-DECISIVE, ALIKE = 20.0, 5.0
-SHARES = {"nothing": 300, "one": 300, "two": 100, "pair": 100, "foreign": 60, "absorbed": 40, "fault": 60, "tense": 60}
+DECISIVE, ALIKE = 20.0, 5.0  # squared deviation by which an explanation must be worse; at which it is as good
+SHARES = {"nothing": 300, "one": 300, "two": 100, "pair": 100, "condition": 100, "foreign": 60, "absorbed": 40,
+          "fault": 60, "tense": 60}  # fmt: skip
 FIRST_SEED = {"dev": 0, "test": 500000}
 
 
@@ -22,8 +23,10 @@ FIRST_SEED = {"dev": 0, "test": 500000}
 class Label:
     """What is true of a case; written to its own file, never shown to the diagnosis.
 
-    truth : names of what is hidden;  size : in smallest detectable ones;  amplitude : in the names' units, as it shows
-    rivals : what could be taken for it;  place : node where a foreign effect acts
+    truth : what is hidden, in the generator's words;  right : for each, its names in the catalogue
+    twins : for each, the names of what an observer who knows the machine could not tell from it at this size
+    size : in units of size, 0 where it has none;  amplitude : in the catalogue's units, as it shows
+    place : node where a foreign effect acts;  test, span : where a condition holds, from and to (s) of it
     """
 
     case: str
@@ -31,10 +34,13 @@ class Label:
     group: str
     seed: int
     truth: tuple[str, ...] = ()
+    right: tuple[tuple[str, ...], ...] = ()
+    twins: tuple[tuple[str, ...], ...] = ()
     size: float = 0.0
     amplitude: tuple[float, ...] = ()
-    rivals: tuple[str, ...] = ()
     place: str = ""
+    test: str = ""
+    span: tuple[float, ...] = ()
 
     def document(self) -> dict:
         return asdict(self)
@@ -57,95 +63,134 @@ def _label(kind: Archetype, group: str, seed: int, turn: int) -> Label:
     return DRAWN[group](kind, bare, turn, np.random.default_rng([seed, 7]))
 
 
+def twins(kind: Archetype, name: str, size: float, within: float = DECISIVE) -> tuple[str, ...]:
+    """Explanations that come within some squared deviation of an effect of this size."""
+    row, most = sizes()[kind.name][name], (size * DEVIATION) ** 2
+    return tuple(n for n, share in row["unlike"].items() if share * most < within)
+
+
+def right(kind: Archetype, name: str) -> tuple[str, ...]:
+    return kind.words.get(name, (name,))
+
+
+def _room(kind: Archetype, hidden: Hidden, key: str) -> float:
+    """The largest size that nature allows."""
+    row = sizes()[kind.name][key]
+    return hidden.largest * row["shown"] / row["size"]
+
+
 def _possible(kind: Archetype, size: float) -> list[Hidden]:
-    """What can be hidden at `size` smallest detectable ones: as large as nature and the machine allow."""
-    table = detectable()[kind.name]
-    most = {h.name: min(h.largest * table[h.name]["shown"], table[h.name]["high"])
-            for h in kind.missing if h.name in table}  # fmt: skip
-    return [h for h in kind.missing if h.name in most and size * table[h.name]["size"] <= most[h.name]]
+    """What can be hidden at this size; what the user forgot to declare is as large as it is, one unit at least."""
+    return [h for h in kind.missing if _room(kind, h, h.name) >= (1.0 if h.declared else size)]
+
+
+def _hide(kind: Archetype, bare: Label, chosen: Sequence[Hidden], size: float) -> Label:
+    own = [_room(kind, h, h.name) if h.declared else size for h in chosen]
+    table = sizes()[kind.name]
+    return replace(
+        bare, truth=tuple(h.name for h in chosen), right=tuple(right(kind, h.name) for h in chosen),
+        twins=tuple(twins(kind, h.name, s) for h, s in zip(chosen, own, strict=True)),
+        size=0.0 if any(h.declared for h in chosen) else size,
+        amplitude=tuple(s * table[h.name]["size"] for h, s in zip(chosen, own, strict=True)),
+    )  # fmt: skip
 
 
 def _one(kind: Archetype, bare: Label, turn: int, rng: np.random.Generator) -> Label:
-    """One effect at 1, 2 or 4 times the smallest detectable size, whichever its nature allows."""
-    table, size = detectable()[kind.name], MULTIPLES[(turn + turn // len(MULTIPLES)) % len(MULTIPLES)]
+    """One effect at 1, 2 or 4 units of size, whichever its nature allows."""
+    size = MULTIPLES[(turn + turn // len(MULTIPLES)) % len(MULTIPLES)]
     fit = _possible(kind, size)
-    chosen = fit[int(rng.integers(len(fit)))]
-    return replace(bare, truth=(chosen.name,), size=size, amplitude=(size * table[chosen.name]["size"],),
-                   rivals=rivals(kind, chosen.name, size))  # fmt: skip
-
-
-def rivals(kind: Archetype, name: str, size: float) -> tuple[str, ...]:
-    """What would explain an effect of this size almost as well, on a machine with nothing else missing."""
-    return tuple(n for n, gap in detectable()[kind.name][name]["gaps"][f"{size:g}"].items() if gap < DECISIVE)
+    return _hide(kind, bare, [fit[int(rng.integers(len(fit)))]], size)
 
 
 def _two(kind: Archetype, bare: Label, turn: int, rng: np.random.Generator) -> Label:
-    """Two effects at 4 times the smallest detectable size, neither a rival of the other."""
-    table = detectable()[kind.name]
+    """Two effects at 4 units, neither a twin of the other."""
     fit = _possible(kind, 4.0)
     a = fit[int(rng.integers(len(fit)))]
-    others = [h for h in fit if h is not a and h.name not in rivals(kind, a.name, 4.0)
-              and a.name not in rivals(kind, h.name, 4.0)]  # fmt: skip
-    b = others[int(rng.integers(len(others)))]
-    sizes = tuple(4.0 * table[h.name]["size"] for h in (a, b))
-    return replace(bare, truth=(a.name, b.name), size=4.0, amplitude=sizes)
+    near = {*twins(kind, a.name, 4.0), *right(kind, a.name)}
+    others = [h for h in fit if not near & {*twins(kind, h.name, 4.0), *right(kind, h.name)}]
+    return _hide(kind, bare, [a, others[int(rng.integers(len(others)))]], 4.0)
+
+
+def _pair(kind: Archetype, bare: Label, turn: int, rng: np.random.Generator) -> Label:
+    """An effect with a twin that is as good at a size that would be plain otherwise."""
+    usable = [(h, s) for s in MULTIPLES[1:] for h in _possible(kind, s)
+              if not h.declared and twins(kind, h.name, s, ALIKE)]  # fmt: skip
+    usable = usable or [(h, 1.0) for h in _possible(kind, 1.0) if twins(kind, h.name, 1.0, ALIKE)]
+    chosen, size = usable[int(rng.integers(len(usable)))]
+    return _hide(kind, bare, [chosen], size)
+
+
+def _condition(kind: Archetype, bare: Label, turn: int, rng: np.random.Generator) -> Label:
+    """Something that holds in one test, or for part of it, at 2 or 4 units."""
+    size, tests = MULTIPLES[1 + turn % 2], [p for p in kind.plans if p.role in ROLES]
+    keys = [(h, p, f"{h.name} in {part}{p.name}") for h in kind.passing for p in tests for part in ("", "part of ")]
+    fit = [(h, p, key) for h, p, key in keys if key in sizes()[kind.name] and _room(kind, h, key) >= size]
+    h, p, key = fit[int(rng.integers(len(fit)))]
+    share = PART if "in part of" in key else (0.0, 1.0)
+    whole = f"{h.name} in {p.name}"
+    return replace(
+        bare, truth=(h.name,), right=(right(kind, h.name),), twins=(twins(kind, whole, size),), size=size, test=p.name,
+        amplitude=(size * sizes()[kind.name][key]["size"],), span=tuple(60.0 * p.minutes * s for s in share),
+    )  # fmt: skip
 
 
 def _fault(kind: Archetype, bare: Label, turn: int, rng: np.random.Generator) -> Label:
-    return replace(bare, truth=(list(kind.faults)[turn % len(kind.faults)],))
+    return _named(bare, list(kind.faults)[turn % len(kind.faults)])
 
 
 def _foreign(kind: Archetype, bare: Label, turn: int, rng: np.random.Generator) -> Label:
     name = list(kind.foreign)[turn % len(kind.foreign)]
-    return replace(bare, truth=(name,), place=name.split(" at ")[1])
+    return replace(_named(bare, name), place=name.split(" at ")[1])
 
 
 def _absorbed(kind: Archetype, bare: Label, turn: int, rng: np.random.Generator) -> Label:
-    return replace(bare, truth=(list(kind.absorbed)[turn % len(kind.absorbed)],))
+    return _named(bare, list(kind.absorbed)[turn % len(kind.absorbed)])
 
 
-def _pair(kind: Archetype, bare: Label, turn: int, rng: np.random.Generator) -> Label:
-    """One of two effects that the tests cannot tell apart, at the largest size at which that is so."""
-    usable = [(true, other, size) for twins in kind.twins for true, other in permutations(twins)
-              if (size := _confounded(kind, true, other)) > 0.0]  # fmt: skip
-    true, other, size = usable[turn % len(usable)]
-    amplitude = size * detectable()[kind.name][true]["size"]
-    return replace(bare, truth=(true,), rivals=(other,), size=size, amplitude=(amplitude,))
-
-
-def _confounded(kind: Archetype, true: str, other: str) -> float:
-    """The largest multiple of the detectable size at which the other explains the true one as well, in what it does to
-    the machine and in what is logged; 0 if none."""
-    row = detectable()[kind.name].get(true, {})
-    sizes = [s for s in MULTIPLES if true in {h.name for h in _possible(kind, s)}]
-    gaps = {s: max(row[how][f"{s:g}"].get(other, np.inf) for how in ("gaps", "logged")) for s in sizes}
-    return max((s for s, gap in gaps.items() if gap < ALIKE), default=0.0)
+def _named(bare: Label, name: str) -> Label:
+    return replace(bare, truth=(name,), right=((name,),), twins=((),))
 
 
 def _bare(kind: Archetype, bare: Label, turn: int, rng: np.random.Generator) -> Label:
     return bare
 
 
-DRAWN = {"nothing": _bare, "one": _one, "two": _two, "pair": _pair, "foreign": _foreign, "absorbed": _absorbed,
-         "fault": _fault, "tense": _bare}  # fmt: skip
+DRAWN = {"nothing": _bare, "one": _one, "two": _two, "pair": _pair, "condition": _condition, "foreign": _foreign,
+         "absorbed": _absorbed, "fault": _fault, "tense": _bare}  # fmt: skip
 
 
 def hidden_in(kind: Archetype, label: Label) -> Change:
     """The change of the true machine that a label speaks of."""
     if label.group in ("one", "two", "pair"):
-        table, shown = {h.name: h for h in kind.missing}, detectable()[kind.name]
-        changes = [table[n].make(a / shown[n]["shown"]) for n, a in zip(label.truth, label.amplitude, strict=True)]
-        return sum(changes[1:], changes[0])
+        table, shown = {h.name: h for h in kind.missing}, sizes()[kind.name]
+        found = [(table[n], a / shown[n]["shown"]) for n, a in zip(label.truth, label.amplitude, strict=True)]
+        return sum((NOTHING if h.declared else h.make(a) for h, a in found), NOTHING)
+    if label.group == "condition":
+        return _passing(kind, label)
     if label.group == "tense":
         return _wrong_priors(kind, label.seed)
     source = {"fault": kind.faults, "foreign": kind.foreign, "absorbed": kind.absorbed}.get(label.group)
     return source[label.truth[0]](label.seed) if source else NOTHING
 
 
+def _passing(kind: Archetype, label: Label) -> Change:
+    (name,), (amplitude,) = label.truth, label.amplitude
+    hidden = next(h for h in kind.passing if h.name == name)
+    if label.span[0] > 0.0:
+        return for_a_while(label.test, hidden.make(amplitude), *label.span)
+    return only_in(label.test, hidden.make(amplitude / sizes()[kind.name][f"{name} in {label.test}"]["shown"]))
+
+
+def edits_of(label: Label) -> tuple[Edit, ...]:
+    """What the user's network says instead, where he forgot something."""
+    table = {h.name: h for h in KINDS[label.machine].missing}
+    return tuple(e for name in label.truth if name in table for e in table[name].declared)
+
+
 def _wrong_priors(kind: Archetype, seed: int) -> Change:
     """Three drawn parameters two deviations from what the user believes."""
     rng = np.random.default_rng([seed, 8])
-    keys = rng.choice(list(kind.tense), 3, replace=False)
+    keys = rng.choice(list(kind.tense), min(3, len(kind.tense)), replace=False)
     return Change({str(k): float(np.exp(2.0 * kind.tense[str(k)] * rng.choice([-1, 1]))) for k in keys})
 
 

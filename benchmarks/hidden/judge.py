@@ -6,6 +6,8 @@ from collections.abc import Mapping, Sequence
 from math import sqrt
 from typing import Any
 
+from hidden.odds import fault_of
+
 CLAIMS = ("named", "group", "several", "outside")
 Answer = Mapping[str, Any]
 
@@ -31,17 +33,21 @@ def false_alarm(label: Answer, answer: Answer) -> bool | None:
 
 
 def right_name(label: Answer, answer: Answer, size: float, alone: bool) -> bool | None:
-    """One effect of this size; alone: only where the reference machine has no rival for it."""
-    if label["group"] != "one" or label["size"] != size or (alone and label["rivals"]):
+    """One effect of this size; alone: only where it has no twin."""
+    if label["group"] != "one" or label["size"] != size or (alone and label["twins"][0]):
         return None
-    return answer["verdict"] == "named" and answer["groups"][0] == label["truth"]
+    return answer["verdict"] == "named" and set(answer["groups"][0]) <= set(label["right"][0])
 
 
 def truth_inside(label: Answer, answer: Answer, size: float) -> bool | None:
     """Where something is claimed or a fault reported: is the truth in what is reported?"""
     if label["group"] != "one" or label["size"] != size or not answer["groups"]:
         return None
-    return label["truth"][0] in answer["groups"][0]
+    return meets(label["right"][0], answer["groups"][0])
+
+
+def meets(names: Sequence[str], group: Sequence[str]) -> bool:
+    return bool(set(names) & set(group))
 
 
 def seen(label: Answer, answer: Answer, size: float) -> bool | None:
@@ -56,13 +62,22 @@ def confidently_wrong(label: Answer, answer: Answer) -> bool | None:
     alone = [g[0] for g in answer["groups"][:1] if len(g) == 1]
     if answer["verdict"] == "data":
         return not fault_found(label, answer) and (bool(alone) or not answer["groups"])
-    return answer["verdict"] == "named" and alone[0] not in label["truth"]
+    return answer["verdict"] == "named" and not any(meets(names, alone) for names in label["right"])
 
 
 def pair_as_group(label: Answer, answer: Answer) -> bool | None:
+    """The truth and one of those that are as good, in one group."""
     if label["group"] != "pair":
         return None
-    return bool(answer["groups"]) and {*label["truth"], *label["rivals"]} <= set(answer["groups"][0])
+    return any(meets(label["right"][0], g) and meets(label["twins"][0], g) for g in answer["groups"][:1])
+
+
+def condition_seen(label: Answer, answer: Answer, size: float) -> bool | None:
+    """Something that held for a while, of this size: what and where are in the first group."""
+    if label["group"] != "condition" or label["size"] != size:
+        return None
+    names = [e.split(" in ")[0] for e in (answer["groups"][0] if answer["groups"] else [])]
+    return meets([*label["right"][0], *label["twins"][0]], names)
 
 
 def foreign_said(label: Answer, answer: Answer) -> bool | None:
@@ -82,8 +97,8 @@ def both_found(label: Answer, answer: Answer) -> bool | None:
     """Two effects: each leads or is in one of exactly two groups."""
     if label["group"] != "two":
         return None
-    groups, truth = answer["groups"], label["truth"]
-    crossed = any(truth[i] in groups[0] and truth[1 - i] in groups[1] for i in (0, 1)) if len(groups) == 2 else False
+    groups, true = answer["groups"], label["right"]
+    crossed = len(groups) == 2 and any(meets(true[i], groups[0]) and meets(true[1 - i], groups[1]) for i in (0, 1))
     return answer["verdict"] == "several" and crossed
 
 
@@ -99,9 +114,8 @@ def fault_found(label: Answer, answer: Answer) -> bool | None:
     if label["group"] != "fault":
         return None
     kind, place = label["truth"][0].split("@")
-    plain, channels = kind in ("frozen", "clipped", "unit"), set(place.split("|"))
-    said = [set(e.split("@")[1].split("|")) for e in reported(answer)[:3]]
-    hit = place in answer["words"] if plain else any(channels <= named for named in said)
+    plain = kind in ("frozen", "clipped", "unit")
+    hit = (plain and place in answer["words"]) or any(fault_of(label["truth"][0], e) for e in reported(answer)[:3])
     return answer["verdict"] == "data" and hit
 
 
@@ -114,7 +128,7 @@ def covered(label: Answer, answer: Answer) -> bool | None:
     """The true amplitude lies in the 90 % interval of the true effect, where it was refitted."""
     if label["group"] != "one" or answer["verdict"] not in ("named", "group"):
         return None
-    row = answer["candidates"].get(label["truth"][0])
+    row = next((answer["candidates"][n] for n in label["right"][0] if n in answer["candidates"]), None)
     if row is None or row["decision"] not in ("named", "group"):
         return None
     half = 0.5 * (row["ci95"][1] - row["ci95"][0]) * 1.645 / 1.96
@@ -125,8 +139,8 @@ def leads(label: Answer, name: str, size: float) -> bool | None:
     """Would `name`, claimed or not, be right? A node is right when the effect sits there."""
     if label["group"] != "one" or label["size"] != size:
         return None
-    (truth,) = label["truth"]
-    return name == truth or ("@" not in name and name in truth.split("@")[1].split("|"))
+    (names,) = label["right"]
+    return name in names or ("@" not in name and any(name in n.split("@")[1].split("|") for n in names))
 
 
 def share_of_fall(answer: Answer) -> float | None:
@@ -142,7 +156,7 @@ def resolved(label: Answer, answer: Answer) -> bool | None:
     after = answer.get("followed")
     if not after or label["group"] not in ("one", "pair"):
         return None
-    return after["verdict"] == "named" and after["groups"][0] == label["truth"]
+    return after["verdict"] == "named" and set(after["groups"][0]) <= set(label["right"][0])
 
 
 def rate(hits: Sequence[bool | None]) -> tuple[float, int, tuple[float, float]]:

@@ -17,8 +17,34 @@ def markdown(table: Sequence[dict]) -> str:
     for r in [r for r in table if "target" in r]:
         rate = f"{percent(r['ours'])} | {span(r['ci95'])} | {aim(r['target'])}".rstrip()
         lines.append(f"| {r['case']}: {r['measure']} | {r['n']} | {rate} |")
-    against = [r for r in table if "peer" in r]
-    return "\n".join([*lines, "", *guesses(against)]) if against else "\n".join(lines)
+    against, own = [r for r in table if "peer" in r], [r for r in table if r.get("fold")]
+    parts = [lines, guesses(against) if against else [], folds(own) if own else []]
+    return "\n\n".join("\n".join(p) for p in parts if p)
+
+
+def folds(own: Sequence[dict]) -> list[str]:
+    """One line per measure, one column per kind and one for all."""
+    kinds, found = list(dict.fromkeys(r["case"] for r in own)), {(r["measure"], r["case"]): r for r in own}
+    lines = [f"| | {' | '.join(kinds)} |", f"|---|{'---|' * len(kinds)}"]
+    for measure in dict.fromkeys(r["measure"] for r in own):
+        told = [entry(found.get((measure, kind))) for kind in kinds]
+        aims = {aim(r.get("fold_target", "")) for (m, _), r in found.items() if m == measure} - {""}
+        lines.append(f"| {' '.join([measure, *(f'({a})' for a in aims)])} | {' | '.join(told)} |")
+    return lines
+
+
+def entry(row: dict | None) -> str:
+    """A rate with its number of cases, or a plain number."""
+    if row is None:
+        return ""
+    return f"{percent(row['ours'])} of {row['n']}" if "ci95" in row else f"{row['ours']:.2f}"
+
+
+def diagram(table: Sequence[tuple[float, float, int, float, float]]) -> list[str]:
+    """A reliability diagram as a table: what was said, and how much of it was right."""
+    lines = ["| said with | statements | mean | right |", "|---|---|---|---|"]
+    return lines + [f"| {percent(a)} to {percent(b)} | {n} | {percent(p)} | {percent(right)} |"
+                    for a, b, n, p, right in table]  # fmt: skip
 
 
 def guesses(against: Sequence[dict]) -> list[str]:

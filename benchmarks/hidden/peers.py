@@ -10,13 +10,13 @@ Deviance drops of BIC and LRT are those of the linearised refit (Wald's form of 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from validation.evidence import Evidence, calibrated_case, candidates, refit, scored
 
 from validation import Case
+from validation.inference.evidence import Evidence, calibrated_case, candidates, refit, scored, starts
 from validation.sheet import Segment
 
 Array = NDArray[np.float64]
@@ -81,9 +81,9 @@ def deviance_drops(evidence: Evidence, w: White) -> Array:
 
 def aic(evidence: Evidence, w: White, drop: Array) -> tuple[str, bool]:
     """The best of five refits under white noise."""
-    noise = WhiteNoise(w.channels)
-    none = refit(evidence, [], noise)
-    fits = {k: refit(evidence, [int(k)], noise) for k in np.argsort(-drop)[:5]}
+    plain = replace(evidence, fit=replace(evidence.fit, noise=WhiteNoise(w.channels), error=None))
+    none = refit(plain, [], plain.fit.theta)
+    fits = {k: refit(plain, [int(k)], starts(plain, [int(k)])[0]) for k in np.argsort(-drop)[:5]}
     best = min(fits, key=lambda k: fits[k].objective)
     return evidence.names[int(best)], bool(2.0 * (none.objective - fits[best].objective) > AIC)
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import numpy as np
 from scipy.stats import binom
 
-from hidden import judge
+from hidden import judge, odds
+from hidden.kinds import KINDS
 from hidden.user import network_of
 
 Pair = tuple[dict, dict]
@@ -28,7 +29,7 @@ def links_of(kind: str) -> dict[str, set[str]]:
 def promises(pairs: Iterable[Pair]) -> list[tuple[str, str, str, list[bool | None]]]:
     """(measure, target, classes, hits)."""
     pairs = list(pairs)
-    near = {kind: links_of(kind) for kind in {label["machine"] for label, _ in pairs}}
+    near = {kind: links_of(kind) for kind in {label["machine"] for label, _ in pairs if label["machine"] in KINDS}}
 
     def over(test: Callable[..., bool | None], *extra: Any) -> list[bool | None]:
         return [test(label, answer, *extra) for label, answer in pairs]
@@ -37,16 +38,18 @@ def promises(pairs: Iterable[Pair]) -> list[tuple[str, str, str, list[bool | Non
     return [
         ("false alarm", "<= 0.05", "nothing missing", over(judge.false_alarm)),
         *((f"seen, {t}", "", "one effect", over(judge.seen, s)) for t, s in sizes),
-        *((f"right name, {t}", {2.0: ">= 0.90", 4.0: ">= 0.97"}.get(s, ""), "one effect without a rival",
+        *((f"right name, {t}", {2.0: ">= 0.90", 4.0: ">= 0.97"}.get(s, ""), "one effect without a twin",
            over(judge.right_name, s, True)) for t, s in sizes),
         *((f"right name, {t}", "", "one effect", over(judge.right_name, s, False)) for t, s in sizes),
         *((f"truth inside the group, {t}", ">= 0.97", "one effect, something reported",
            over(judge.truth_inside, s)) for t, s in sizes),
+        *((f"kind and place, {t}", {4.0: ">= 0.80"}.get(s, ""), "condition",
+           over(judge.condition_seen, s)) for t, s in sizes[1:]),
         ("confidently wrong", "<= 0.01", "all classes", over(judge.confidently_wrong)),
         ("group with both", ">= 0.90", "confounded pair", over(judge.pair_as_group)),
         ("said so or abstained", ">= 0.85", "outside the catalogue", over(judge.foreign_said)),
         ("place within one link", ">= 0.70", "outside the catalogue, seen",
-         [judge.foreign_found(a, b, near[a["machine"]]) for a, b in pairs]),
+         [judge.foreign_found(a, b, near.get(a["machine"], {})) for a, b in pairs]),
         ("both found, none false", ">= 0.85", "two effects", over(judge.both_found)),
         ("absorbed, parameter named", "", "absorbed by calibration", over(judge.absorbed_said)),
         ("fault found", "", "data faults", over(judge.fault_found)),
@@ -86,7 +89,55 @@ def rows(pairs: Iterable[Pair]) -> list[dict]:
                         "target": target})  # fmt: skip
     cost = [b["cpu_s"] for _, b in pairs]
     time = {"case": "diagnose", "measure": "time, median", "unit": "s", "ours": float(np.median(cost or [np.nan]))}
-    return [*out, *fall(pairs), *contest(pairs), time]
+    return [*out, *fall(pairs), *contest(pairs), *folds(pairs), time]
+
+
+def folds(pairs: Sequence[Pair]) -> list[dict]:
+    """Odds against truth, for every kind and for all."""
+    kinds = sorted({label["machine"] for label, _ in pairs})
+    groups = {**{kind: [(a, b) for a, b in pairs if a["machine"] == kind] for kind in kinds}, "all kinds": list(pairs)}
+    return [row for name, own in groups.items() if own for row in fold(name, own)]
+
+
+def fold(name: str, pairs: Sequence[Pair]) -> list[dict]:
+    """Means over the cases of a kind, then rates by class."""
+    means = [("log posterior of the truth", "nats", odds.nats), ("Brier score of something missing", "1", odds.brier)]
+    out = [_plain(name, m, unit, float(np.mean([of(a, b) for a, b in pairs])), len(pairs)) for m, unit, of in means]
+    out += [
+        _plain(name, "expected calibration error", "1", odds.calibration_error(pairs), len(pairs)),
+        _plain(name, "90 % set, median size", "1", float(np.median([len(odds.credible(b)) for _, b in pairs])),
+            len(pairs)),
+    ]  # fmt: skip
+    for measure, target, test in RATES:
+        value, n, interval = judge.rate([test(a, b) for a, b in pairs])
+        if n:
+            out.append({**_plain(name, measure, "1", value, n), "ci95": list(interval), "fold_target": target})
+    return out
+
+
+def _plain(name: str, measure: str, unit: str, value: float, n: int) -> dict:
+    return {"case": name, "measure": measure, "unit": unit, "ours": value, "n": n, "fold": True}
+
+
+def _in(test: Callable[[dict, dict], bool | None], *classes: str, size: float = 0.0) -> Callable[..., bool | None]:
+    """A test asked of some classes alone, and of one size."""
+    return lambda a, b: test(a, b) if a["group"] in classes and size in (0.0, a["size"]) else None
+
+
+RATES: tuple[tuple[str, str, Callable[..., bool | None]], ...] = (
+    ("false alarm", "<= 0.05", judge.false_alarm),
+    ("one: truth or twin first", "", _in(odds.first_right, "one")),
+    ("one: in the 90 % set", "", _in(odds.in_set, "one")),
+    ("one, 4x: in the 90 % set", ">= 0.95", _in(odds.in_set, "one", size=4.0)),
+    ("two: both first", "", _in(odds.first_right, "two")),
+    ("pair: in the 90 % set", "", _in(odds.in_set, "pair")),
+    ("condition: kind and place first", "", _in(odds.first_right, "condition")),
+    ("condition: when", "", odds.when_right),
+    ("fault: first", "", _in(odds.first_right, "fault")),
+    ("outside: unknown heat first", "", _in(odds.first_right, "foreign")),
+    ("sure of another", "<= 0.02", odds.surely_another),
+    ("sure of nothing", "", odds.surely_nothing),
+)
 
 
 def met(row: dict) -> bool | None:

@@ -1,100 +1,94 @@
-"""The smallest detectable size of every effect that can be hidden, and what it could be taken for.
+"""The unit of size of everything that can be hidden, and what it could be taken for.
 
-Made once on development seeds by `hidden_effects.py --sizes` and kept in detectable.json, so that a case stays the same
-case while the diagnosis improves.
+From an observer who knows the machine (truth/oracle.py), so that neither depends on what is judged. Made once on
+machines of their own by `hidden_effects.py --sizes` and kept in sizes.json: a case stays the same case.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from functools import cache
 from pathlib import Path
 
 import numpy as np
-from scipy.optimize import minimize_scalar
-from validation.detectable import Search, readings_with, smallest
-from validation.evidence import calibrated_case, candidates, null_of, scored
-from validation.side_by_side import side_by_side
+from numpy.typing import NDArray
 
 from hidden.kinds import KINDS
-from hidden.rivals import Reference, differences, gaps, reference
-from hidden.truth.archetype import Hidden, measured
-from hidden.truth.change import NOTHING, Change
-from hidden.user import case_of
-from validation.case import Test
-from validation.score import POWER
+from hidden.truth.archetype import Archetype, Hidden
+from hidden.truth.change import Change, for_a_while
+from hidden.truth.oracle import DEVIATION, Seen, seen, unlike
+from hidden.truth.textbook import bridges, hypotheses
 
-FILE = Path(__file__).parent / "detectable.json"
-SEEDS = (900001, 900002, 900003)  # of the machines with nothing missing that all is measured on
+Array = NDArray[np.float64]
+FILE = Path(__file__).parent / "sizes.json"
+SEEDS = (900001, 900002, 900003)  # of the machines that all is measured on
 MULTIPLES = (1.0, 2.0, 4.0)
+ROLES = ("calibrate", "validate")
+NEAR = 0.25  # of the squared deviation left: nothing further off can be a twin even at the unit of size
+PART = (0.35, 0.65)  # of a test: how long a condition lasts that does not last all of it
 
 
-def detectable() -> dict[str, dict[str, dict]]:
+@cache
+def sizes() -> dict[str, dict[str, dict]]:
     return json.loads(FILE.read_text()) if FILE.exists() else {}
 
 
-def measure(kind: str, draws: int) -> dict[str, dict]:
-    """Per effect, medians of three machines: smallest detectable amplitude; the physical bound; how much of the true
-    machine's amplitude its thermometers show in the catalogue's terms; and for each multiple of the size the deviance
-    by which other candidates would explain what it does to the true machine worse (see rivals.gaps): on top of what the
-    calibrated model foretells, and for one of a pair also in the readings as they are logged."""
-    searches = [_search(kind, seed, draws) for seed in SEEDS]
-    wanted = [h for h in KINDS[kind].missing if all(h.name in s.evidence.names for s in searches)]
-    on = [reference(kind, seed, s.evidence) for seed, s in zip(SEEDS, searches, strict=True)]
-    rows = side_by_side(_row, (on, searches, wanted), len(wanted), 2, lambda words: None, "effects")
-    return {h.name: row for h, row in zip(wanted, rows, strict=True) if row}
+def part_of(hidden: Hidden, test: str, seconds: float) -> Change:
+    """An effect at one unit that lasts part of a test."""
+    return for_a_while(test, hidden.make(1.0), PART[0] * seconds, PART[1] * seconds)
 
 
-def _search(kind: str, seed: int, draws: int) -> Search:
-    case = case_of("reference", kind, measured(KINDS[kind], seed, NOTHING))
-    evidence = scored(case, candidates(case), calibrated_case(case))
-    null = null_of(evidence, draws)
-    return Search(evidence, null.kappa, null.threshold() + POWER, small=0.0)
+def measure(kind: Archetype) -> dict[str, dict]:
+    """Medians of several machines. Per effect, and per effect in one test or part of one ("NAME in TEST", "NAME in part
+    of TEST"): size, the amplitude of deviation ten; shown, the catalogue's amplitude over the true law's; unlike, the
+    share of the squared deviation that other explanations leave."""
+    tests = {p.name: 60.0 * p.minutes for p in kind.plans if p.role in ROLES}
+    inside = {(f"{h.name} in part of {t}",): part_of(h, t, s) for h in kind.passing for t, s in tests.items()
+              if h.make(1.0).lasts}  # fmt: skip
+    changes = {(f"true {h.name}",): h.make(1.0) for h in (*kind.missing, *kind.passing)}
+    changes |= hypotheses(kind) | bridges(kind) | inside
+    found = [_table(kind, seen(kind, seed, changes, ROLES), tests) for seed in SEEDS]
+    return {name: _median([f[name] for f in found]) for name in found[0]}
 
 
-def _row(given: tuple[list[Reference], list[Search], list[Hidden]], i: int) -> dict:
-    on, searches, wanted = given
-    hidden, at = wanted[i], [s.evidence.names.index(wanted[i].name) for s in searches]
-    own = searches[0].evidence.parameters[at[0]]
-    size = float(np.median([smallest(s, k) for s, k in zip(searches, at, strict=True)]))
-    if not np.isfinite(size):
-        return {}
-    shown = float(np.median([_shown(r, k, hidden, 2.0 * size) for r, k in zip(on, at, strict=True)]))
-
-    def behind(read: Callable[[Reference, Change], Sequence[Test]]) -> dict[str, dict[str, float]]:
-        return {f"{m:g}": medians([gaps(s.evidence, k, m * size, read(r, hidden.make(m * size / shown)),
-                                        float(s.kappa[k]))
-                                   for r, s, k in zip(on, searches, at, strict=True)])
-                for m in MULTIPLES if m * size <= own.high}  # fmt: skip
-
-    row = {"size": size, "unit": own.unit, "high": own.high, "shown": shown, "gaps": behind(Reference.foretold)}
-    paired = any(hidden.name in pair for pair in KINDS[on[0].kind].twins)
-    return row | {"logged": behind(Reference.recorded)} if paired else row
+def _table(kind: Archetype, answers: Seen, tests: Sequence[str]) -> dict[str, dict]:
+    V, index = answers.left(), {n: i for i, names in enumerate(answers.names) for n in names}
+    out = {h.name: _row(kind, answers, V, h, index) for h in kind.missing}
+    for test in tests:
+        own = answers.left(test)
+        out |= {f"{h.name} in {test}": _row(kind, answers, own, h, index) for h in kind.passing}
+        out |= {name: {"size": _unit(V, index[name]), "shown": 1.0, "unlike": {}}
+                for h in kind.passing if (name := f"{h.name} in part of {test}") in index}  # fmt: skip
+    return out
 
 
-def medians(tables: Sequence[dict[str, float]]) -> dict[str, float]:
-    """Name by name the median of several tables, infinite where a table lacks the name; the infinite are left out."""
-    names = dict.fromkeys(name for table in tables for name in table)
-    found = {name: float(np.median([table.get(name, np.inf) for table in tables])) for name in names}
-    return {name: gap for name, gap in found.items() if np.isfinite(gap)}
+def _unit(V: Array, i: int) -> float:
+    return DEVIATION / float(np.sqrt(V[i, i])) if V[i, i] > 0.0 else float("inf")
 
 
-def _shown(on: Reference, k: int, hidden: Hidden, amplitude: float) -> float:
-    """The catalogue's amplitude over the true machine's: the one that moves the thermometers as much, least squares."""
-    wanted = np.concatenate(on.moved(hidden.make(amplitude)))
-
-    def miss(a: float) -> float:
-        moved = np.concatenate(differences(readings_with(on.evidence, {k: a}), on.still))
-        return float(np.nansum((wanted - moved) ** 2))
-
-    most = min(4.0 * amplitude, on.evidence.parameters[k].high)
-    return (
-        float(minimize_scalar(miss, bounds=(0.0, most), method="bounded", options={"xatol": 1e-3 * most}).x) / amplitude
-    )
+def _row(kind: Archetype, answers: Seen, V: Array, hidden: Hidden, index: dict[str, int]) -> dict:
+    """Of what is hidden against everything that a textbook would suspect."""
+    i = index[f"true {hidden.name}"]
+    names = kind.words.get(hidden.name, (hidden.name,))
+    same = next((index[n] for n in names if n in index), None)
+    shown = max(float(V[i, same] / V[same, same]), 0.05) if same is not None and V[same, same] > 0.0 else 1.0
+    others = {
+        n: unlike(V, i, j) for n, j in index.items() if n not in names and not n.startswith("true ") and " in " not in n
+    }
+    return {"size": shown * _unit(V, i), "shown": shown, "unlike": {n: u for n, u in others.items() if u < NEAR}}
 
 
-def write(draws: int, machines: Sequence[str]) -> None:
-    """Measure some machines anew and leave the others as they are."""
-    for kind in machines:
-        table = {**detectable(), kind: measure(kind, draws)}
+def _median(rows: Sequence[dict]) -> dict:
+    """Name by name; an explanation that some machines do not have counts as unlike there."""
+    names = dict.fromkeys(n for r in rows for n in r["unlike"])
+    near = {n: round(float(np.median([r["unlike"].get(n, 1.0) for r in rows])), 4) for n in names}
+    size, shown = (float(np.median([r[k] for r in rows])) for k in ("size", "shown"))
+    return {"size": round(size, 5), "shown": round(shown, 4), "unlike": {n: u for n, u in near.items() if u < NEAR}}
+
+
+def write(kinds: Sequence[str]) -> None:
+    """Measure some kinds anew and leave the others as they are."""
+    for name in kinds:
+        table = {**(json.loads(FILE.read_text()) if FILE.exists() else {}), name: measure(KINDS[name])}
         FILE.write_text(json.dumps(table, indent=1, sort_keys=True) + "\n")

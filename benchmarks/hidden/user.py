@@ -1,38 +1,56 @@
-"""What a user would hand in: the coarse network of the file, and the logged tests as a case."""
+"""What a user would hand in: the coarse network of the file in his words, and the logged tests as a case."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import tomllib
+from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
+from typing import Any
 
-from hidden.truth.archetype import Record
-from lumped.declared import load_network
+from hidden.kinds import KINDS
+from hidden.truth.archetype import Archetype, Edit, Record
+from lumped.declared import read_network
 from lumped.network import Network
 from validation.case import Case, Channel, Model, Test
 
 MACHINES = Path(__file__).parent / "machines"
-SIGMA_K, LAG_S = 0.5, 10.0
+SIGMA_K = 0.5
 
 
 @cache
-def network_of(kind: str) -> Network:
-    return load_network(MACHINES / f"{kind}.toml")
+def network_of(kind: str, edits: tuple[Edit, ...] = ()) -> Network:
+    """The user's network; edits : (keys of the file, another value)."""
+    data = tomllib.loads((MACHINES / f"{kind}.toml").read_text())
+    for keys, value in edits:
+        _set(data, keys, value)
+    return read_network(data, f"{kind}.toml")
 
 
-def test_of(network: Network, record: Record) -> Test:
+def _set(data: dict[str, Any], keys: Sequence[str], value: float) -> None:
+    for key in keys[:-1]:
+        data = data[key]
+    data[keys[-1]] = value
+
+
+def test_of(kind: Archetype, network: Network, record: Record) -> Test:
     """A logged test as the case sees it."""
+
+    def called(values: Mapping[str, Any]) -> dict[str, Any]:
+        return {kind.called.get(name, name): v for name, v in values.items()}
+
+    lag = 0.5 * sum(kind.logger.lag)
     channels = tuple(
-        Channel(name, name, network.places[name].mean, y, SIGMA_K, LAG_S) for name, y in record.readings.items()
+        Channel(name, name, network.places[name].mean, y, SIGMA_K, lag) for name, y in called(record.readings).items()
     )
     return Test(
-        record.name, record.role, record.time, record.inputs, record.boundaries, channels, record.start  # type: ignore[arg-type]
+        record.name, record.role, record.time, called(record.inputs), called(record.boundaries), channels, record.start  # type: ignore[arg-type]
     )  # fmt: skip
 
 
 test_of.__test__ = False  # type: ignore[attr-defined]
 
 
-def case_of(name: str, kind: str, records: Sequence[Record]) -> Case:
-    network = network_of(kind)
-    return Case(name, Model(network), tuple(test_of(network, r) for r in records))
+def case_of(name: str, kind: str, records: Sequence[Record], edits: tuple[Edit, ...] = ()) -> Case:
+    network = network_of(kind, edits)
+    return Case(name, Model(network), tuple(test_of(KINDS[kind], network, r) for r in records))

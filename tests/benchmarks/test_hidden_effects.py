@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from hidden import judge
 from hidden.answer import answer
-from hidden.cases import SHARES, Label, plan
+from hidden.cases import SHARES, Label, plan, right
 from hidden.kinds import KINDS
 from hidden.page import markdown
 from hidden.peers import peers
 from hidden.score import met, rows
-from hidden.sizes import detectable, medians
+from hidden.sizes import sizes
 from hidden.truth.archetype import measured, truly
 from hidden.truth.change import NOTHING
 from hidden.truth.draw import Draw
@@ -30,8 +30,9 @@ def said(verdict, *groups, **more):
 
 
 def label(group, *truth, **more):
-    return {"machine": "tefc", "group": group, "truth": list(truth), "size": 0.0, "rivals": [], "place": "",
-            "amplitude": [], **more}  # fmt: skip
+    own = {"right": [[t] for t in truth], "twins": [[] for _ in truth]}
+    return {"machine": "tefc", "group": group, "truth": list(truth), "size": 0.0, "place": "", "amplitude": [],
+            "test": "", "span": [], **own, **more}  # fmt: skip
 
 
 def test_wilson_interval_is_the_published_one():
@@ -70,12 +71,15 @@ def test_plan_keeps_the_proportions_and_never_shares_seeds():
 
 @pytest.mark.parametrize("kind", KINDS.values(), ids=lambda k: k.name)
 def test_hidden_effects_have_a_name_in_the_catalogue_and_a_size(kind):
-    known = kinds()
-    for hidden in kind.missing:
-        assert hidden.name.split("@")[0] in known
-        assert hidden.name in detectable()[kind.name]
+    known, network = kinds(), case_of("", kind.name, ()).model.network
+    sites = {*network.states, *(i.name.split(":", 1)[1] for i in (*network.links, *network.sources))}
+    for hidden in (*kind.missing, *kind.passing):
+        told = [name.split("@") for name in right(kind, hidden.name)]
+        assert any(effect in known for effect, _ in told), hidden.name
+        assert all(set(place.split("|")) <= sites for _, place in told), hidden.name
+    assert {h.name for h in kind.missing} <= set(sizes()[kind.name])
     for name in kind.foreign:
-        assert name.split(" at ")[1] in {p.name for p in solids(case_of("", kind.name, ()).model.network)}
+        assert name.split(" at ")[1] in {p.name for p in solids(network)}
 
 
 @pytest.mark.parametrize("kind", KINDS.values(), ids=lambda k: k.name)
@@ -86,8 +90,8 @@ def test_parameters_that_can_be_far_off_are_the_users(kind):
 
 @pytest.mark.parametrize("kind", KINDS.values(), ids=lambda k: k.name)
 def test_every_hidden_effect_moves_heat_where_its_name_says(kind):
-    """At one detectable size, on a machine at work: heat changes, in no more than two bodies."""
-    table, draw = detectable()[kind.name], Draw(1)
+    """At one unit of size, on a machine at work: heat changes, in no more than two bodies."""
+    table, draw = sizes()[kind.name], Draw(1)
     base = kind.build(draw, NOTHING)
     T = 60.0 + 10.0 * np.random.default_rng(0).standard_normal(base.skeleton.C.size)
     _, _, driving = truly(kind, kind.plans[3], 1, NOTHING)
@@ -96,7 +100,7 @@ def test_every_hidden_effect_moves_heat_where_its_name_says(kind):
         change = hidden.make(table[hidden.name]["size"])
         signals = {k: float(signal(np.array([1800.0]))[0]) for k, signal in change.signals.items()}
         moved = kind.build(draw, change).heat(T, {**u, **signals}) - base.heat(T, u)
-        assert np.abs(moved).sum() > 0.2, hidden.name
+        assert np.abs(moved).sum() > 0.02, hidden.name
         assert np.count_nonzero(np.abs(moved) > 1e-9) <= 22, hidden.name
 
 
@@ -111,10 +115,6 @@ def test_faults_happen_to_readings_only():
     np.testing.assert_array_equal(cross.readings["core"], good.readings["housing"])
 
 
-def test_a_rival_is_what_comes_near_on_most_machines():
-    assert medians([{"a": 1.0, "b": 9.0}, {"a": 4.0}, {"a": -2.0, "b": 3.0, "c": 0.1}]) == {"a": 1.0, "b": 9.0}
-
-
 def test_judge_on_nothing_missing():
     for verdict, alarm in (("adequate", False), ("absorbed", False), ("named", True), ("outside", True)):
         assert judge.false_alarm(label("nothing"), said(verdict, ["a@b"])) is alarm
@@ -126,7 +126,7 @@ def test_judge_on_one_effect():
     assert judge.right_name(one, said("named", ["a@b"]), 2.0, True)
     assert not judge.right_name(one, said("group", ["a@b", "c@d"]), 2.0, True)
     assert judge.right_name(one, said("named", ["a@b"]), 4.0, True) is None
-    assert judge.right_name({**one, "rivals": ["c@d"]}, said("named", ["a@b"]), 2.0, True) is None
+    assert judge.right_name({**one, "twins": [["c@d"]]}, said("named", ["a@b"]), 2.0, True) is None
     assert judge.truth_inside(one, said("group", ["c@d", "a@b"]), 2.0)
     assert judge.confidently_wrong(one, said("named", ["c@d"]))
     assert not judge.confidently_wrong(one, said("group", ["c@d", "e@f"]))
@@ -152,8 +152,8 @@ def test_judge_on_intervals():
 
 
 def test_judge_on_the_other_classes():
-    assert judge.pair_as_group(label("pair", "a@b", rivals=["c@d"]), said("group", ["c@d", "a@b", "e@f"]))
-    assert not judge.pair_as_group(label("pair", "a@b", rivals=["c@d"]), said("named", ["a@b"]))
+    assert judge.pair_as_group(label("pair", "a@b", twins=[["c@d"]]), said("group", ["c@d", "a@b", "e@f"]))
+    assert not judge.pair_as_group(label("pair", "a@b", twins=[["c@d"]]), said("named", ["a@b"]))
     assert judge.both_found(label("two", "a@b", "c@d"), said("several", ["c@d", "x@y"], ["a@b"]))
     assert not judge.both_found(label("two", "a@b", "c@d"), said("several", ["c@d"], ["x@y"]))
     assert judge.fault_found(label("fault", "sensor.bias@core"), said("data", ["sensor.bias@core"]))
@@ -173,7 +173,7 @@ def test_judge_on_what_an_addition_is_worth():
 
 
 def test_judge_on_the_proposed_test():
-    pair = label("pair", "a@b", rivals=["c@d"])
+    pair = label("pair", "a@b", twins=[["c@d"]])
     assert judge.resolved(pair, {"followed": {"verdict": "named", "groups": [["a@b"]]}})
     assert judge.resolved(pair, {"followed": {"verdict": "named", "groups": [["c@d"]]}}) is False
     assert judge.resolved(pair, {"followed": None}) is None
@@ -190,7 +190,11 @@ def test_table_leaves_out_what_no_case_tests():
 def test_labels_hold_everything_that_is_needed_to_make_the_case_again():
     for one in plan("dev", 30, list(SHARES), list(KINDS)):
         read = json.loads(json.dumps(one.document()))
-        assert Label(**{k: tuple(v) if isinstance(v, list) else v for k, v in read.items()}) == one
+        assert Label(**{k: _tuples(v) for k, v in read.items()}) == one
+
+
+def _tuples(value):
+    return tuple(_tuples(v) for v in value) if isinstance(value, list) else value
 
 
 def test_a_strong_road_wind_is_seen_by_us_and_by_a_plain_fit():
@@ -198,7 +202,7 @@ def test_a_strong_road_wind_is_seen_by_us_and_by_a_plain_fit():
     kind = KINDS["tefc"]
     hidden = next(h for h in kind.missing if h.name == "convection@flange.de")
     case = case_of("wind", "tefc", measured(kind, 3, hidden.make(6.0)))
-    found = answer(case, draws=8, plan=False)
+    found = answer(case, plan=False)
     assert peers(case, with_refits=False)["forward BIC"] == ["convection@flange.de", True]
     assert found["verdict"] != "adequate"
     assert "convection@flange.de" in found["groups"][0]

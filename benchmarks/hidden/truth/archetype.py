@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.machine import Machine
-from hidden.truth.profile import LOG_S, air, between, fine_times, log_times
-from hidden.truth.readings import BIAS_K, Sensor, read, recorded, with_gaps
+from hidden.truth.profile import air, between, fine_times, log_times
+from hidden.truth.readings import Logger, Sensor, read, recorded, with_gaps
 
 Array = NDArray[np.float64]
+Edit = tuple[tuple[str, ...], float]
 
 
 @dataclass(frozen=True)
@@ -37,19 +38,27 @@ class Spot:
 
 @dataclass(frozen=True)
 class Hidden:
-    """An effect that can be hidden: its name in a user's words, the machine's change at amplitude a, the largest a."""
+    """Something that can be hidden. name : in the generator's words;  make : the machine's change at amplitude a;
+    largest : amplitude that nature allows
+
+    declared : what the user's network has instead, (keys of the TOML file, value); then the machine is as it was drawn,
+    `make` says what the network lacks, and its amplitude is the largest
+    """
 
     name: str
     make: Callable[[float], Change]
     largest: float
+    declared: tuple[Edit, ...] = ()
 
 
 @dataclass(frozen=True)
 class Archetype:
-    """thermometers : the user's name for the place -> where it really is;  baths : likewise for measured boundaries
+    """A kind. thermometers : where they really are, by the internal name of the place;  baths : measured boundaries
 
-    missing : effects that can be hidden;  twins : pairs of names that tests may not tell apart
+    missing : effects that can be hidden;  passing : those that can hold in one test or for a while
     foreign, faults, absorbed : (label, change from a seed) of the other classes;  tense : priors that can be wrong
+    parts : the user's nodes and the bodies they stand for;  called : internal name of a place or input -> the user's
+    words : a hidden name of ours -> the names in the catalogue that are right
     """
 
     name: str
@@ -62,7 +71,11 @@ class Archetype:
     foreign: Mapping[str, Callable[[int], Change]]
     absorbed: Mapping[str, Callable[[int], Change]]
     tense: Mapping[str, float]
-    twins: tuple[tuple[str, str], ...] = ()
+    parts: Mapping[str, str]
+    passing: tuple[Hidden, ...] = ()
+    logger: Logger = field(default_factory=Logger)
+    called: Mapping[str, str] = field(default_factory=dict)
+    words: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -80,50 +93,49 @@ class Record:
 
 def measured(kind: Archetype, seed: int, change: Change, plans: tuple[Plan, ...] | None = None) -> tuple[Record, ...]:
     """All tests of one true machine."""
-    draw = Draw(seed, change.factors)
-    machine = kind.build(draw, change)
-    sensors = [_sensor(machine, name, spot, draw, change) for name, spot in kind.thermometers.items()]
-    return tuple(_logged(kind, machine, sensors, plan, seed, change) for plan in plans or kind.plans)
+    return tuple(_logged(kind, plan, seed, change.during(plan.name)) for plan in plans or kind.plans)
 
 
-def _sensor(machine: Machine, name: str, spot: Spot, draw: Draw, change: Change) -> Sensor:
+def sensors(kind: Archetype, machine: Machine, draw: Draw, change: Change) -> list[Sensor]:
+    return [_sensor(kind.logger, machine, name, spot, draw, change) for name, spot in kind.thermometers.items()]
+
+
+def _sensor(logger: Logger, machine: Machine, name: str, spot: Spot, draw: Draw, change: Change) -> Sensor:
     rng = draw.stream(f"sensor {name}")
-    position = float(np.clip(spot.position + 0.12 * rng.standard_normal(), 0.0, 0.999))
+    position = float(np.clip(spot.position + logger.placed * rng.standard_normal(), 0.0, 0.999))
     cell = machine.skeleton.cell(spot.body, position)
     happens = (change.readings[name],) if name in change.readings else ()
-    return Sensor(name, cell, BIAS_K * rng.uniform(-1, 1), float(rng.uniform(5.0, 15.0)), changes=happens)
+    return Sensor(name, cell, logger.bias_K * rng.uniform(-1, 1), float(rng.uniform(*logger.lag)), happens)
 
 
 def truly(kind: Archetype, plan: Plan, seed: int, change: Change) -> tuple[Array, dict[str, Array], dict[str, Array]]:
     """Logging times, inputs at them, and what drives the machine on the fine grid."""
     rng = np.random.default_rng([seed, *plan.name.encode()])
-    at = log_times(plan.minutes, LOG_S)
+    at = log_times(plan.minutes, kind.logger.step)
     inputs = {**plan.inputs(rng, at), "T_ambient": air(at, rng)}
-    fine = fine_times(at)
+    fine = fine_times(at, kind.logger.fine)
     driving = {k: between(fine, at, k, v) for k, v in inputs.items()}
     return at, inputs, {**driving, **{k: signal(fine) for k, signal in change.signals.items()}}
 
 
-def _logged(kind: Archetype, machine: Machine, sensors: list[Sensor], plan: Plan, seed: int, change: Change) -> Record:
-    rng = np.random.default_rng([seed, 1, *plan.name.encode()])
+def _logged(kind: Archetype, plan: Plan, seed: int, change: Change) -> Record:
+    draw = Draw(seed, change.factors)
+    machine, rng = kind.build(draw, change), np.random.default_rng([seed, 1, *plan.name.encode()])
     at, inputs, driving = truly(kind, plan, seed, change)
-    fine, room = fine_times(at), driving["T_ambient"]
+    fine, room = fine_times(at, kind.logger.fine), driving["T_ambient"]
     start = float(room[0] + rng.uniform(-0.5, 1.0))
     T = machine.run(fine, driving, start + 0.2 * rng.standard_normal(machine.skeleton.C.size))
-    readings = {s.name: read(s, fine, T[:, s.cell], room, at, rng) for s in sensors}
+    readings = {s.name: read(s, kind.logger, fine, T[:, s.cell], room, at, rng)
+                for s in sensors(kind, machine, draw, change)}  # fmt: skip
     readings |= {name: shows(readings[name]) for name, shows in change.shown.items()}
-    readings = with_gaps(readings, rng)
+    readings = with_gaps(readings, rng, kind.logger.missing)
     for a, b in change.swaps:
         readings[a], readings[b] = readings[b], readings[a]
-    shown = {k: v + change.offsets.get(k, 0.0) for k, v in inputs.items()}
-    for name, spot in kind.baths.items():
-        shown[f"T_{name}"] = np.interp(at, fine, T[:, machine.skeleton.cell(spot.body, spot.position)])
-    written = recorded(shown, rng)
+    baths = {f"T_{name}": np.interp(at, fine, T[:, machine.skeleton.cell(spot.body, spot.position)])
+             for name, spot in kind.baths.items()}  # fmt: skip
+    shown = {k: change.inputs[k](at, v) if k in change.inputs else v for k, v in {**inputs, **baths}.items()}
+    written = recorded(shown, kind.logger, rng)
     boundaries = {k[2:]: v for k, v in written.items() if k.startswith("T_")}
     first = float(np.median([y[np.isfinite(y)][0] for y in readings.values()]))
     return Record(plan.name, plan.role, at, {k: v for k, v in written.items() if not k.startswith("T_")}, boundaries,
                   readings, first)  # fmt: skip
-
-
-def with_role(record: Record, role: str) -> Record:
-    return replace(record, role=role)

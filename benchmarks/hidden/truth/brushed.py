@@ -100,16 +100,7 @@ def films(s: Skeleton, d: Draw) -> list[Film]:
 
 def _along(s: Skeleton, body: str, air: NDArray[np.int64], area: float, h) -> Film:
     """Eleven cells on ten of air: the middle two share one."""
-    return Shared(body, s.cells(body), air, np.full(11, area), h)
-
-
-class Shared(Film):
-    """A film on cells of which some share a cell of air."""
-
-    def into(self, q: Array, T: Array, u: Inputs) -> None:
-        flow = self.h(T[self.cells], T[self.fluid], u) * self.area * (T[self.cells] - T[self.fluid])
-        q[self.cells] -= flow
-        np.add.at(q, self.fluid, flow)
+    return Film(body, s.cells(body), air, np.full(11, area), h)
 
 
 def outside(s: Skeleton, d: Draw) -> list[Film]:

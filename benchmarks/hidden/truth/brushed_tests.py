@@ -66,7 +66,7 @@ FAULTS = {
     "sensor.delay@commutator": lambda seed: faults.late("commutator", 90.0),
     "sensor.drift@poles": lambda seed: faults.drift("poles", 4.0),
     "sensor.swap@flange.de|flange.nde": lambda seed: faults.swapped("flange.de", "flange.nde"),
-    "ambient.offset@ambient": lambda seed: faults.room(5.0),
+    "ambient.offset@ambient": lambda seed: faults.offset("T_ambient", 5.0),
     "frozen@flange.de": lambda seed: faults.frozen("flange.de", 0.5),
     "clipped@winding.field": lambda seed: faults.clipped("winding.field", 0.6),
 }
@@ -82,11 +82,17 @@ ABSORBED = {
 }  # fmt: skip
 TENSE = {"bolts": 0.25, "coil": 0.25, "fan": 0.12, "iron": 0.15, "hub": 0.25, "feet": 0.25, "spigot-de": 0.25,
          "rub": 0.2, "still": 0.15, "capacity.yoke": 0.08}  # fmt: skip
-TWINS = (("convection.constant@flange.nde", "convection.buoyant@flange.nde"),)
+PARTS = {"winding.armature": "armature", "rotor": "core", "commutator": "commutator", "poles": "poles",
+         "winding.field": "field", "yoke": "yoke", "flange.de": "flange.de", "flange.nde": "flange.nde"}  # fmt: skip
+PASSING = (
+    Hidden("convection.constant@yoke", lambda a: draught("yoke", a), 60.0),
+    Hidden("convection.constant@flange.nde", lambda a: draught("flange.nde", a), 15.0),
+    Hidden("loss.constant@flange.de", lambda a: heating("flange.de", a), 200.0),
+)
 BRUSHED = Archetype(
     "brushed", machine, PLANS,
     {"commutator": Spot("commutator", 0.5), "poles": Spot("poles", 0.5), "winding.field": Spot("field", 0.5),
      "yoke": Spot("yoke", 0.5), "flange.de": Spot("flange.de", 0.5), "flange.nde": Spot("flange.nde", 0.5),
      "air.de": Spot("air", 0.8)},
-    {"bench": Spot("bench", 0.1)}, MISSING, FAULTS, FOREIGN, ABSORBED, TENSE, TWINS,
+    {"bench": Spot("bench", 0.1)}, MISSING, FAULTS, FOREIGN, ABSORBED, TENSE, PARTS, PASSING,
 )  # fmt: skip

@@ -1,19 +1,20 @@
-"""What is different in a true machine from the one that was drawn: hidden effects, faults of the measurement."""
+"""What is different in a true machine from the one that was drawn: effects, conditions, faults of measurement."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hidden.truth.body import Body, Joint, Skeleton
-from hidden.truth.machine import Term
+from hidden.truth.machine import Inputs, Term
 
 Array = NDArray[np.float64]
 Terms = Callable[[Skeleton], tuple[Term, ...]]
 Reading = Callable[[Array, Array, Array], Array]
+Recorded = Callable[[Array, Array], Array]
 
 
 def no_terms(skeleton: Skeleton) -> tuple[Term, ...]:
@@ -26,7 +27,8 @@ class Change:
     signals : what else drives the machine and nobody records, name -> (time in s) -> value
     readings : sensor -> what happens to its readings (time, T, ambient);  swaps : pairs of exchanged plugs
     shown : sensor -> what the logger makes of the finished readings, noise and steps included
-    offsets : input -> how far (K) the recorded value lies above the true one
+    inputs : input -> what is written down of it (time, true value)
+    in_test : what is different in one test alone
     """
 
     factors: Mapping[str, float] = field(default_factory=dict)
@@ -36,17 +38,52 @@ class Change:
     signals: Mapping[str, Callable[[Array], Array]] = field(default_factory=dict)
     readings: Mapping[str, Reading] = field(default_factory=dict)
     swaps: tuple[tuple[str, str], ...] = ()
-    offsets: Mapping[str, float] = field(default_factory=dict)
+    inputs: Mapping[str, Recorded] = field(default_factory=dict)
     shown: Mapping[str, Callable[[Array], Array]] = field(default_factory=dict)
+    in_test: Mapping[str, Change] = field(default_factory=dict)
 
     def __add__(self, other: Change) -> Change:
         factors = {k: self.factors.get(k, 1.0) * other.factors.get(k, 1.0) for k in {**self.factors, **other.factors}}
         return Change(
             factors, self.bodies + other.bodies, self.joints + other.joints,
             lambda s: self.terms(s) + other.terms(s), {**self.signals, **other.signals},
-            {**self.readings, **other.readings}, self.swaps + other.swaps, {**self.offsets, **other.offsets},
-            {**self.shown, **other.shown},
+            {**self.readings, **other.readings}, self.swaps + other.swaps, {**self.inputs, **other.inputs},
+            {**self.shown, **other.shown}, {**self.in_test, **other.in_test},
         )  # fmt: skip
+
+    @property
+    def lasts(self) -> bool:
+        """Can it hold for a while?  Heat and films can, parts and their joints cannot."""
+        return self.terms is not no_terms and not (self.bodies or self.joints or self.factors)
+
+    def during(self, test: str) -> Change:
+        """What is different while a test runs."""
+        own = self.in_test.get(test)
+        return self if own is None else replace(self, in_test={}) + own
 
 
 NOTHING = Change()
+
+
+@dataclass(frozen=True)
+class Pulsed:
+    """A term that acts as far as the signal `event` says (0 to 1)."""
+
+    term: Term
+
+    def into(self, q: Array, T: Array, u: Inputs) -> None:
+        if u["event"]:
+            own = np.zeros_like(q)
+            self.term.into(own, T, u)
+            q += u["event"] * own
+
+
+def only_in(test: str, change: Change) -> Change:
+    return Change(in_test={test: change})
+
+
+def for_a_while(test: str, change: Change, begin: float, end: float) -> Change:
+    """Terms of a change that act from `begin` to `end` (s) of one test."""
+    terms = lambda s: tuple(Pulsed(term) for term in change.terms(s))  # noqa: E731
+    event = lambda time: ((time >= begin) & (time < end)).astype(float)  # noqa: E731
+    return only_in(test, Change(terms=terms, signals={**change.signals, "event": event}))

@@ -68,7 +68,8 @@ def heating(body: str, a: float, speed: tuple[float, float] = (0, 0), current: t
 
     def watts(T: Array, u: Mapping[str, float]) -> Array:
         n = 1.5 ** speed[0] * (abs(u["speed_rpm"]) / 1500.0) ** speed[1] if speed[0] else 1.0
-        return a * n * (abs(u[input_A]) / 100.0) ** current[1] * (1.0 - fade * (T - 60.0))
+        amps = (abs(u[input_A]) / 100.0) ** current[1] if current[1] else 1.0
+        return a * n * amps * (1.0 - fade * (T - 60.0))
 
     def terms(s: Skeleton) -> tuple[Loss, ...]:
         cells = s.cells(body)
@@ -93,3 +94,47 @@ def stirred_gap(a: float, rotor: str, stator: str) -> Change:
 def fading(films: str, a: float) -> Change:
     """Films of a body lose the share a within an hour, faster at first."""
     return Change(signals={f"fade.{films}": lambda time: np.minimum(a * 1.1 * (time / 3600.0) ** 0.9, 0.95)})
+
+
+def joined(body: str, a: float) -> Change:
+    """A shaft of a W/K to a driven machine that warms up by 30 K in the course of a test, and faster when it turns."""
+
+    def watts(T: Array, u: Mapping[str, float]) -> Array:
+        return a * (u["T_ambient"] + u["joined_K"] * (0.4 + 0.6 * min(abs(u["speed_rpm"]) / 1500.0, 1.0)) - T)
+
+    def terms(s: Skeleton) -> tuple[Loss, ...]:
+        cells = s.cells(body)
+        return (Loss("joined machine", cells[-1:], np.ones(1), watts),)
+
+    return Change(terms=terms, signals={"joined_K": lambda time: -30.0 * np.expm1(-time / 1500.0)})
+
+
+def warming(body: str, P20: float, a: float, input_A: str = "current_A") -> Change:
+    """What a copper loss of P20 (W) at 20 degC and 1 A gains with temperature, a per K."""
+
+    def terms(s: Skeleton) -> tuple[Loss, ...]:
+        cells = s.cells(body)
+        gained = lambda T, u: P20 * u[input_A] ** 2 * a * (T - 20.0)  # noqa: E731
+        return (Loss("resistance that follows", cells, np.full(cells.size, 1.0 / cells.size), gained),)
+
+    return Change(terms=terms)
+
+
+def switched(body: str, a: float, switch: str, power: float = 1.0) -> Change:
+    """Heat of a W while an input is on."""
+
+    def terms(s: Skeleton) -> tuple[Loss, ...]:
+        cells = s.cells(body)
+        return (Loss("while on", cells, tapered(cells.size), lambda T, u: a * u[switch] ** power),)
+
+    return Change(terms=terms)
+
+
+def blown(body: str, a: float, switch: str) -> Change:
+    """A film of a W/K on a body while an input is on."""
+    return to_room(body, lambda T, Ta, u: a * u[switch] * (1.0 + 0.001 * (T - 40.0)))
+
+
+def room_air(body: str, a: float) -> Change:
+    """A lid open: a W/K straight from a body of air to the room, more with the root of the difference."""
+    return to_room(body, lambda T, Ta, u: a * (((T - Ta) ** 2 + 4.0) / 100.0) ** 0.25)

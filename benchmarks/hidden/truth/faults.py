@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,6 +57,16 @@ def swapped(a: str, b: str) -> Change:
     return Change(swaps=((a, b),))
 
 
-def room(offset: float) -> Change:
-    """The room's thermometer hangs where it is warmer by `offset` K."""
-    return Change(offsets={"T_ambient": offset})
+def offset(name: str, kelvin: float) -> Change:
+    """An input is written down too high: the room's thermometer hangs where it is warmer."""
+    return Change(inputs={name: lambda time, u: u + kelvin})
+
+
+def factor(name: str, times: float) -> Change:
+    """An input is written down times a number: the range of the meter."""
+    return Change(inputs={name: lambda time, u: times * u})
+
+
+def clock(sensors: Iterable[str], seconds: float) -> Change:
+    """All thermometers are logged on a clock that is late."""
+    return Change(readings={s: late(s, seconds).readings[s] for s in sensors})

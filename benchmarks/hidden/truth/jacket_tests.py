@@ -71,7 +71,7 @@ FAULTS = {
     "sensor.delay@winding.slot": lambda seed: faults.late("winding.slot", 90.0),
     "sensor.drift@stator": lambda seed: faults.drift("stator", 4.0),
     "sensor.swap@stator|winding.slot": lambda seed: faults.swapped("winding.slot", "stator"),
-    "ambient.offset@coolant": lambda seed: Change(offsets={"T_coolant": 5.0}),
+    "ambient.offset@coolant": lambda seed: faults.offset("T_coolant", 5.0),
     "frozen@shield.de": lambda seed: faults.frozen("shield.de", 0.5),
     "clipped@winding.slot": lambda seed: faults.clipped("winding.slot", 0.6),
 }
@@ -87,11 +87,18 @@ ABSORBED = {
 }  # fmt: skip
 TENSE = {"fit": 0.25, "liner": 0.2, "jacket": 0.15, "iron": 0.15, "glue": 0.2, "mount": 0.25, "spigot-de": 0.25,
          "potting-de": 0.25, "gap": 0.15, "magnet": 0.2}  # fmt: skip
-TWINS = (("convection.constant@shield.nde", "convection.buoyant@shield.nde"),)
+PARTS = {"winding.slot": "slot", "winding.de": "winding.de", "winding.nde": "winding.nde", "stator": "yoke",
+         "magnets": "magnets", "rotor": "rotor", "housing": "housing", "shield.de": "shield.de",
+         "shield.nde": "shield.nde"}  # fmt: skip
+PASSING = (
+    Hidden("convection.constant@housing", lambda a: draught("housing", a), 60.0),
+    Hidden("convection.constant@shield.nde", lambda a: draught("shield.nde", a), 20.0),
+    Hidden("loss.constant@shield.nde", lambda a: heating("shield.nde", a), 200.0),
+)
 JACKET = Archetype(
     "jacket", machine, PLANS,
     {"winding.slot": Spot("slot", 0.5), "winding.de": Spot("winding.de", 0.5), "stator": Spot("yoke", 0.5),
      "magnets": Spot("magnets", 0.5), "housing": Spot("housing", 0.5), "shield.de": Spot("shield.de", 0.5),
      "shield.nde": Spot("shield.nde", 0.5)},
-    {"bench": Spot("bench", 0.1)}, MISSING, FAULTS, FOREIGN, ABSORBED, TENSE, TWINS,
+    {"bench": Spot("bench", 0.1)}, MISSING, FAULTS, FOREIGN, ABSORBED, TENSE, PARTS, PASSING,
 )  # fmt: skip

@@ -6,19 +6,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-LOG_S, FINE_S = 30.0, 5.0
 
 
-def log_times(minutes: float, log_s: float = LOG_S) -> Array:
+def log_times(minutes: float, log_s: float) -> Array:
     return np.arange(0.0, 60.0 * minutes + 1.0, log_s)
 
 
-def fine_times(at: Array, fine_s: float = FINE_S) -> Array:
+def fine_times(at: Array, fine_s: float) -> Array:
     return np.arange(0.0, at[-1] + 0.5 * fine_s, fine_s)
 
 
 def between(fine: Array, at: Array, name: str, value: Array) -> Array:
-    """A signal between its logging times: currents (`_A`) with even steps of their square, all others linear."""
+    """A signal between its logging times: currents (`_A`) with even steps of their square, switches (`_on`) thrown
+    half way, all others linear."""
+    if name.endswith("_on"):
+        return value[np.searchsorted(at - 0.5 * (at[1] - at[0]), fine, side="right") - 1]
     if name.endswith("_A"):
         return np.sqrt(np.interp(fine, at, value**2))
     return np.interp(fine, at, value)

@@ -68,7 +68,7 @@ FAULTS = {
     "sensor.delay@winding.slot": lambda seed: faults.late("winding.slot", 90.0),
     "sensor.drift@core": lambda seed: faults.drift("core", 4.0),
     "sensor.swap@flange.de|flange.nde": lambda seed: faults.swapped("flange.de", "flange.nde"),
-    "ambient.offset@ambient": lambda seed: faults.room(5.0),
+    "ambient.offset@ambient": lambda seed: faults.offset("T_ambient", 5.0),
     "frozen@flange.de": lambda seed: faults.frozen("flange.de", 0.5),
     "clipped@winding.slot": lambda seed: faults.clipped("winding.slot", 0.6),
 }
@@ -84,14 +84,19 @@ ABSORBED = {
 }  # fmt: skip
 TENSE = {"fit": 0.25, "liner": 0.2, "fan": 0.15, "iron": 0.15, "seat-de": 0.25, "feet": 0.25, "capacity.housing": 0.1,
          "cage": 0.12, "spigot-de": 0.25, "still": 0.15}  # fmt: skip
-TWINS = (
-    ("convection.constant@flange.nde", "convection.buoyant@flange.nde"),
-    ("windage@rotor", "loss.rotor@rotor"),
-)  # fmt: skip
+PARTS = {"winding.slot": "slot", "winding.de": "winding.de", "winding.nde": "winding.nde", "core": "yoke",
+         "rotor": "rotor",
+         "housing": "housing", "flange.de": "flange.de", "flange.nde": "flange.nde", "bearing.de": "bearing.de",
+         "bearing.nde": "bearing.nde"}  # fmt: skip
+PASSING = (
+    Hidden("convection.constant@housing", lambda a: draught("housing", a), 60.0),
+    Hidden("convection.constant@flange.de", lambda a: draught("flange.de", a), 15.0),
+    Hidden("loss.constant@flange.nde", lambda a: heating("flange.nde", a), 100.0),
+)
 TEFC = Archetype(
     "tefc", machine, PLANS,
     {"winding.slot": Spot("slot", 0.5), "winding.de": Spot("winding.de", 0.5), "core": Spot("yoke", 0.5),
      "housing": Spot("housing", 0.5), "flange.de": Spot("flange.de", 0.5), "flange.nde": Spot("flange.nde", 0.5),
      "bearing.de": Spot("bearing.de", 0.3)},
-    {"bench": Spot("bench", 0.1)}, MISSING, FAULTS, FOREIGN, ABSORBED, TENSE, TWINS,
+    {"bench": Spot("bench", 0.1)}, MISSING, FAULTS, FOREIGN, ABSORBED, TENSE, PARTS, PASSING,
 )  # fmt: skip

@@ -1,0 +1,142 @@
+"""The true fan-cooled motor of a mill, 45 kW, cast frame on feet, driven machine on its shaft: 73 cells.
+
+Position 0 is the drive end, 1 the fan's. The shaft is one body from coupling to fan.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hidden.truth.body import Body, Joint, Skeleton, skeleton
+from hidden.truth.change import Change
+from hidden.truth.draw import Draw
+from hidden.truth.films import gap, plate_still, radiation
+from hidden.truth.losses import ALPHA
+from hidden.truth.machine import Film, Inputs, Loss, Machine
+
+Array = NDArray[np.float64]
+RATED, R20 = 1480.0, 0.062
+COPPER, STEEL, CAST = -2e-4, -8e-4, -5e-4
+ENDS = (("de", 0.0, 0.12, 1.0), ("nde", 1.0, 0.88, 0.8))  # name, place on frame and rotor, on the shaft; openness
+
+
+def bodies(d: Draw) -> list[Body]:
+    def C(key: str, value: float) -> float:
+        return value * d.factor(f"capacity.{key}", 0.05)
+
+    side = [b for end, *_ in ENDS for b in (
+        Body(f"coil.{end}", C("coil", 2900.0), 4, 0.1, COPPER), Body(f"bearing.{end}", C("bearing", 600.0), 2, 0.1),
+        Body(f"shield.{end}", C("shield", 6200.0), 5, 0.16, CAST), Body(f"air.{end}", 60.0),
+    )]  # fmt: skip
+    return [
+        Body("slot", C("slot", 4600.0), 6, 0.1, COPPER), Body("teeth", C("teeth", 17000.0), 6, 3.0, STEEL),
+        Body("yoke", C("yoke", 36000.0), 6, 2.0, STEEL), Body("rotor", C("rotor", 31000.0), 6, 0.25, STEEL),
+        Body("shaft", C("shaft", 9000.0), 11, 4.5, STEEL), Body("frame", C("frame", 23000.0), 10, 0.35, CAST),
+        Body("feet", C("feet", 5000.0), 3, 0.4, CAST), *side, Body("slab", 40000.0, 4, 0.3),
+    ]  # fmt: skip
+
+
+def joints(d: Draw) -> list[Joint]:
+    def G(key: str, value: float, sd: float = 0.25) -> float:
+        return value * d.factor(key, sd)
+
+    side = [j for end, x, on, _ in ENDS for j in (
+        Joint(f"overhang-{end}", "slot", f"coil.{end}", G(f"overhang-{end}", 36.0, 0.15), (x, 0.0)),
+        Joint(f"journal-{end}", "shaft", f"bearing.{end}", G(f"journal-{end}", 9.0), (on, 0.0)),
+        Joint(f"seat-{end}", f"bearing.{end}", f"shield.{end}", G(f"seat-{end}", 20.0), (1.0, 1.0)),
+        Joint(f"spigot-{end}", f"shield.{end}", "frame", G(f"spigot-{end}", 28.0), (0.0, x)),
+    )]  # fmt: skip
+    return [
+        Joint("wall", "slot", "teeth", G("wall", 150.0, 0.2), slope=4e-4),
+        Joint("back", "teeth", "yoke", G("back", 420.0, 0.1), slope=STEEL),
+        Joint("press", "yoke", "frame", G("press", 330.0), slope=1e-3), *side,
+        Joint("core on shaft", "rotor", "shaft", G("core on shaft", 55.0), (0.5, 0.5)),
+        Joint("legs", "frame", "feet", G("legs", 9.0), (0.5, 0.0)),
+        Joint("bolts", "feet", "slab", G("bolts", 3.0), (1.0, 0.0)),
+    ]  # fmt: skip
+
+
+def outside(s: Skeleton, d: Draw) -> list[Film]:
+    """The fan's air fades along the ribs (its own loss of speed, Heiles' channel to the power of 0.75); at rest still
+    air and radiation of the envelope only."""
+    level, power = 24.0 * d.factor("fan", 0.12), d.between("fan.power", 0.7, 0.85)
+    still, cowl = d.factor("still", 0.15), 30.0 * d.factor("cowl", 0.2)
+    x = (np.arange(10) + 0.5) / 10
+    fade = 0.55 + 0.45 * x
+    fade = fade / fade.mean()
+
+    def ribs(T: Array, Ta: Array, u: Inputs) -> Array:
+        calm = 0.55 * still * plate_still(T, Ta, 0.35) + 0.3 * radiation(T, Ta, 0.9)
+        return (calm**4 + (level * fade * (abs(u["speed_rpm"]) / RATED) ** power) ** 4) ** 0.25
+
+    def face(T: Array, Ta: Array, u: Inputs) -> Array:
+        return still * plate_still(T, Ta, 0.4) + radiation(T, Ta, 0.9)
+
+    def hood(T: Array, Ta: Array, u: Inputs) -> Array:
+        calm = 0.5 * still * plate_still(T, Ta, 0.4)
+        return (calm**4 + (cowl * (abs(u["speed_rpm"]) / RATED) ** power) ** 4) ** 0.25
+
+    return [
+        Film("ribs", s.cells("frame"), "T_ambient", np.full(10, 0.14), ribs),
+        Film("face", s.cells("shield.de"), "T_ambient", np.full(5, 0.03), face),
+        Film("hood", s.cells("shield.nde"), "T_ambient", np.full(5, 0.026), hood),
+        Film("feet", s.cells("feet"), "T_ambient", np.full(3, 0.03), face),
+        Film("floor", s.cells("slab"), "T_ambient", np.full(4, 0.2), lambda T, Ta, u: 7.0),
+    ]
+
+
+def inside(s: Skeleton, d: Draw) -> list[Film]:
+    out, g = [], 0.7e-3 / d.factor("gap", 0.15)
+    for end, x, _, openness in ENDS:
+        k = 14.0 * d.factor(f"space-{end}", 0.2)
+
+        def h(T: Array, Ta: Array, u: Inputs, k: float = k * openness) -> float:
+            return k * (1.0 + 0.5 * (abs(u["speed_rpm"]) / 1000.0 * 9.4) ** 0.7)
+
+        walls = ((s.cells(f"coil.{end}"), 0.16), (s.cells(f"shield.{end}")[1:], 0.12),
+                 (np.array([s.cell("rotor", x)]), 0.07), (np.array([s.cell("frame", x)]), 0.06))  # fmt: skip
+        air = s.cells(f"air.{end}")
+        out += [Film(f"space.{end}.{k}", w, air, np.full(w.size, A / w.size), h) for k, (w, A) in enumerate(walls)]
+
+    def film(T: Array, Ta: Array, u: Inputs) -> Array:
+        return gap(0.5 * (T + Ta), u["speed_rpm"], 0.1, g)
+
+    return [*out, Film("gap", s.cells("rotor"), s.cells("teeth"), np.full(6, 0.14 / 6), film)]
+
+
+def losses(s: Skeleton, d: Draw) -> list[Loss]:
+    R, cage = R20 * d.factor("copper", 0.04), 640.0 * d.factor("cage", 0.15)
+    kh, ke = 330.0 * d.factor("iron", 0.15), 260.0 * d.factor("eddy", 0.2)
+
+    def winding(T: Array, u: Inputs) -> Array:
+        return 3.0 * R * u["current_A"] ** 2 * (1.0 + ALPHA * (T - 20.0))
+
+    def iron(T: Array, u: Inputs) -> Array:
+        f = abs(u["speed_rpm"]) / RATED
+        return (kh * f + ke * f**1.9) * (1.0 - 0.0004 * (T - 40.0))
+
+    def bars(T: Array, u: Inputs) -> Array:
+        slip = min(abs(u["speed_rpm"]) / 100.0, 1.0)  # direct current at standstill induces nothing
+        return slip * cage * np.maximum(u["current_A"] ** 2 - 900.0, 0.0) / 5500.0 * (1.0 + 0.004 * (T - 60.0))
+
+    out = [
+        Loss("slot", s.cells("slot"), np.full(6, 0.52 / 6), winding),
+        Loss("teeth", s.cells("teeth"), np.full(6, 0.55 / 6), iron), Loss("yoke", s.cells("yoke"), np.full(6,
+            0.45 / 6), iron),
+        Loss("bars", s.cells("rotor"), np.full(6, 1 / 6), bars),
+    ]  # fmt: skip
+    for end, *_ in ENDS:
+        P = 55.0 * d.factor(f"grease-{end}", 0.25)
+
+        def grease(T: Array, u: Inputs, P: float = P) -> Array:
+            return P * (abs(u["speed_rpm"]) / RATED) ** 1.2 * np.exp(-0.007 * (T - 50.0))
+
+        out.append(Loss(f"coil.{end}", s.cells(f"coil.{end}"), np.full(4, 0.24 / 4), winding))
+        out.append(Loss(f"grease.{end}", s.cells(f"bearing.{end}"), np.full(2, 0.5), grease))
+    return out
+
+
+def machine(d: Draw, change: Change) -> Machine:
+    s = skeleton([*bodies(d), *change.bodies], [*joints(d), *change.joints])
+    return Machine(s, (*outside(s, d), *inside(s, d), *losses(s, d), *change.terms(s)))

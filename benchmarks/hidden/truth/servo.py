@@ -1,0 +1,158 @@
+"""The true servo motor, 0.1 kW, brushless, on an aluminium bracket: 27 cells, two thermometers."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hidden.truth import faults, foreign
+from hidden.truth.archetype import Archetype, Hidden, Plan, Spot
+from hidden.truth.body import Body, Joint, Skeleton, skeleton
+from hidden.truth.change import Change
+from hidden.truth.draw import Draw
+from hidden.truth.effects import draught, heating, joined, spinning, switched, warming
+from hidden.truth.films import cylinder_still, gap, plate_still, radiation
+from hidden.truth.losses import ALPHA
+from hidden.truth.machine import Film, Loss, Machine
+from hidden.truth.profile import levels, steady, until
+from hidden.truth.readings import Logger
+
+Array = NDArray[np.float64]
+Rng = np.random.Generator
+R20, ALUMINIUM = 0.19, -1e-4  # ohm per phase, three of them
+
+
+def bodies(d: Draw) -> list[Body]:
+    def C(key: str, value: float) -> float:
+        return value * d.factor(f"capacity.{key}", 0.06)
+
+    return [
+        Body("copper", C("copper", 42.0), 5, 3.0, -2e-4), Body("teeth", C("iron", 120.0), 5, 9.0, -8e-4),
+        Body("case", C("case", 150.0), 6, 1.2, ALUMINIUM), Body("lid", C("lid", 45.0), 2, 0.6, ALUMINIUM),
+        Body("rotor", C("rotor", 75.0), 4, 6.0), Body("bracket", 45.0, 5, 0.8, ALUMINIUM),
+    ]  # fmt: skip
+
+
+def joints(d: Draw) -> list[Joint]:
+    return [
+        Joint("enamel", "copper", "teeth", 1.7 * d.factor("enamel", 0.2), slope=4e-4),
+        Joint("shrink", "teeth", "case", 12.0 * d.factor("shrink", 0.2), slope=1e-3),
+        Joint("screws", "case", "lid", 1.5 * d.factor("screws", 0.25), (1.0, 0.0)),
+        Joint("bearings", "rotor", "case", 0.16 * d.factor("bearings", 0.25), (0.0, 0.0)),
+        Joint("flange", "case", "bracket", 0.35 * d.factor("flange", 0.25), (0.0, 0.0)),
+    ]
+
+
+def films(s: Skeleton, d: Draw) -> list[Film]:
+    """Free air on a small black box and on its bracket; the rotor stirs its gap of half a millimetre."""
+    still, g = d.factor("still", 0.12), 0.45e-3 / d.factor("gap", 0.15)
+
+    def box(T: Array, Ta: Array, u) -> Array:
+        return still * cylinder_still(T, Ta, 0.055) + radiation(T, Ta, 0.85)
+
+    def plate(T: Array, Ta: Array, u) -> Array:
+        return still * plate_still(T, Ta, 0.12) + radiation(T, Ta, 0.1)
+
+    def air(T: Array, Ta: Array, u) -> Array:
+        return gap(0.5 * (T + Ta), u["speed_rpm"], 0.014, g)
+
+    return [
+        Film("box", s.cells("case"), "T_ambient", np.full(6, 0.013 / 6), box),
+        Film("lid", s.cells("lid"), "T_ambient", np.full(2, 0.0015), box),
+        Film("plate", s.cells("bracket"), "T_ambient", np.full(5, 0.012 / 5), plate),
+        Film("gap", s.cells("rotor"), s.cells("teeth")[:4], np.full(4, 0.0045 / 4), air),
+    ]
+
+
+def losses(s: Skeleton, d: Draw) -> list[Loss]:
+    R, iron, grease = R20 * d.factor("copper", 0.04), 2.4 * d.factor("iron", 0.2), 0.8 * d.factor("grease", 0.3)
+
+    def winding(T: Array, u) -> Array:
+        return 3.0 * R * u["current_A"] ** 2 * (1.0 + ALPHA * (T - 20.0))
+
+    def core(T: Array, u) -> float:
+        f = u["speed_rpm"] / 3000.0
+        return iron * (0.55 * f + 0.45 * f**2)
+
+    def bearings(T: Array, u) -> Array:
+        return grease * (u["speed_rpm"] / 3000.0) ** 1.3 * np.exp(-0.008 * (T - 40.0))
+
+    return [
+        Loss("winding", s.cells("copper"), np.full(5, 0.2), winding),
+        Loss("iron", s.cells("teeth"), np.full(5, 0.2), core),
+        Loss("grease", s.cells("rotor"), np.full(4, 0.25), bearings),
+    ]
+
+
+def machine(d: Draw, change: Change) -> Machine:
+    s = skeleton([*bodies(d), *change.bodies], [*joints(d), *change.joints])
+    return Machine(s, (*films(s, d), *losses(s, d), *change.terms(s)))
+
+
+def drive(current: Array, speed: Array) -> dict[str, Array]:
+    """The inverter switches at 16 kHz whenever the shaft turns; held by direct current it is off."""
+    return {"current_A": current, "speed_rpm": speed, "switching_Hz": 16000.0 * (speed > 0.0)}
+
+
+def held(rng: Rng, at: Array) -> dict[str, Array]:
+    return drive(levels(at, rng, 5.0, 7.0, 15.0) * until(at, 35.0, 1.0), steady(at, 0.0))
+
+
+def idle(rng: Rng, at: Array) -> dict[str, Array]:
+    return drive(steady(at, 0.4), levels(at, rng, 800.0, 4500.0, 12.0))
+
+
+def duty(rng: Rng, at: Array) -> dict[str, Array]:
+    return drive(levels(at, rng, 0.5, 7.5, 3.0), levels(at, rng, 300.0, 4000.0, 4.0))
+
+
+PLANS = (
+    Plan("Stillstand", "calibrate", 50.0, held), Plan("Leerlauf", "calibrate", 50.0, idle),
+    Plan("Takt 1", "calibrate", 50.0, duty), Plan("Takt 2", "validate", 50.0, duty),
+    Plan("Takt 3", "hold-out", 50.0, duty),
+)  # fmt: skip
+MISSING = (
+    Hidden("draught@case", lambda a: draught("case", a), 1.5),
+    Hidden("shaft fan@case", lambda a: spinning("case", a), 1.0),
+    Hidden("coupling heat@rotor", lambda a: joined("rotor", a), 0.6),
+    Hidden("windage@rotor", lambda a: heating("rotor", a, (3.0, 2.7)), 1.0),
+    Hidden("bearing friction@rotor", lambda a: heating("rotor", a, (5 / 3, 1.2), fade=0.004), 3.0),
+    Hidden("ac copper@copper", lambda a: heating("copper", a, (2.0, 1.85), (2.0, 2.0), fade=0.002), 400.0),
+    Hidden("inverter iron@case", lambda a: switched("teeth", a / 16000.0, "switching_Hz"), 15.0),
+    Hidden("no tempco@copper", lambda a: warming("copper", 3.0 * R20, a), ALPHA,
+           ((("losses", "Kupfer", "alpha_1_K"), 0.0),)),
+)  # fmt: skip
+FAULTS = {
+    "sensor.gain@Wicklung": lambda seed: faults.gain("copper", -0.1),
+    "sensor.lag@Wicklung": lambda seed: faults.slow("copper", 120.0),
+    "sensor.stem@Gehaeuse": lambda seed: faults.stem("case", 0.25),
+    "time.offset@Takt 1": lambda seed: Change(in_test={"Takt 1": faults.clock(("copper", "case"), 150.0)}),
+    "input.factor@current_A": lambda seed: faults.factor("current_A", 1.12),
+    "ambient.offset@Umgebung": lambda seed: faults.offset("T_ambient", 4.0),
+    "frozen@Gehaeuse": lambda seed: faults.frozen("case", 0.5),
+}
+FOREIGN = {
+    "cable at Wicklung": lambda seed: foreign.cable("copper", 0.25, 60.0),
+    "splash at Gehaeuse": lambda seed: foreign.gusts("case", 12.0, seed),
+    "heater at Gehaeuse": lambda seed: foreign.hot_spell("lid", 4.0, 900.0, 2100.0),
+}
+ABSORBED = {"loss.Eisen": lambda seed: Change({"iron": 2.2}), "link.Luftspalt": lambda seed: Change({"bearings": 3.5})}
+PASSING = (
+    Hidden("draught@case", lambda a: draught("case", a), 1.5),
+    Hidden("heat@case", lambda a: heating("case", a), 15.0),
+)
+WORDS = {
+    "draught@case": ("convection.constant@Gehaeuse",), "shaft fan@case": ("convection.shaft@Gehaeuse",
+    "convection.rotation@Gehaeuse"),
+    "coupling heat@rotor": ("conduction.shaft@Rotor",), "windage@rotor": ("windage@Rotor",),
+    "bearing friction@rotor": ("bearing.friction@Rotor", "bearing.friction@Gehaeuse"),
+    "ac copper@copper": ("copper.ac@Wicklung",),
+    "inverter iron@case": ("iron.pwm@Gehaeuse",),
+    "no tempco@copper": ("copper.feedback@Kupfer",), "heat@case": ("loss.constant@Gehaeuse",),
+}  # fmt: skip
+SERVO = Archetype(
+    "servo", machine, PLANS, {"copper": Spot("copper", 0.7), "case": Spot("case", 0.5)}, {}, MISSING, FAULTS, FOREIGN,
+    ABSORBED, {"enamel": 0.2, "shrink": 0.2, "flange": 0.25, "still": 0.12, "iron": 0.2, "grease": 0.3},
+    {"Wicklung": "copper", "Gehaeuse": "case", "Rotor": "rotor"}, PASSING, Logger(10.0, 5.0, 0.1, (2.0, 10.0)),
+    {"copper": "Wicklung", "case": "Gehaeuse", "ambient": "Umgebung"}, WORDS,
+)  # fmt: skip
