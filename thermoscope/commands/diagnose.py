@@ -18,6 +18,7 @@ SHOWN = 0.005  # probabilities below half a per cent are in --json
 
 def diagnose(case: str, target: str | None, older: bool = False) -> int:
     """Exit code 1 when no effect is named.  older : an option of older versions was given"""
+    from lumped.error_budget import ErrorBudget
     from thermoscope.error_budget import budgets_of_tests, documents
     from validation import diagnose as search
 
@@ -25,10 +26,10 @@ def diagnose(case: str, target: str | None, older: bool = False) -> int:
         notes(["--draws is no longer needed: nothing is drawn"])
     with progress() as tell:
         folder = opened(case, tell)
-        found = search(folder.case, progress=tell)
-        budgets = documents(budgets_of_tests(folder, tell))
+        budgets = budgets_of_tests(folder, tell)
+        found = search(folder.case, progress=tell, budget=ErrorBudget.worst(budgets.values()).total_K)
     named = {"case": folder.case.name, "revision": folder.case.model.revision}
-    document = {**named, **found.document(), "error_budget": budgets}
+    document = {**named, **found.document(), "error_budget": documents(budgets)}
     save_diagnosis(folder, document)
     give(document, target, lambda: show(document))
     return 0 if found.verdict in ("named", "group", "several") else 1

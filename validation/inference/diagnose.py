@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from types import MappingProxyType
 
 import numpy as np
 
@@ -10,9 +11,10 @@ from validation.calibrate import silent
 from validation.case import Case
 from validation.faults import broken_channels
 from validation.findings import Diagnosis
+from validation.imprint import imprint
 from validation.inference.decision import Decision, decide
 from validation.inference.evidence import Evidence, calibrated_case, candidates, noise_beside, scored, under
-from validation.inference.posterior import Posterior, pairs, probabilities, singles, unknown_heat
+from validation.inference.posterior import Hypothesis, Posterior, pairs, probabilities, singles, unknown_heat
 from validation.inference.refits import refitted
 from validation.inference.tables import tabulate
 from validation.procedure.which_base import bases_tried, wrong_bases
@@ -20,27 +22,51 @@ from validation.threads import one_blas_thread
 from validation.where import latent_heat
 
 Progress = Callable[[str], None]
+NO_BUDGET: Mapping[str, float] = MappingProxyType({})
 
 
 @one_blas_thread
 def diagnose(
-    case: Case, kinds: Sequence[str] | None = None, progress: Progress = silent, plan: bool = True
+    case: Case,
+    kinds: Sequence[str] | None = None,
+    progress: Progress = silent,
+    plan: bool = True,
+    budget: Mapping[str, float] = NO_BUDGET,
 ) -> Diagnosis:
     """Diagnose a case on its calibrate and validate tests; held-out tests are predicted once, after.
 
     kinds : restrict the catalogue;  plan : also rank the next tests and sensors
+    budget : channel -> error (K) of the model's own numbers there; what moves no reading by more is not named
     A test that stood on another base than its sheet says is told before anything else.
     """
     training = case.training()
     stood = bases_tried(training, progress)
     posterior = infer(training, kinds, progress)
     wrong = wrong_bases(stood)
-    choice = decide(posterior.evidence, posterior.hypotheses)
+    choice = above(posterior, decide(posterior.evidence, posterior.hypotheses), budget)
     if wrong:  # nothing else is accused of what the base does
         choice = Decision("data", (), choice.sure)
     broken = [*broken_channels(training.tests), *wrong]
     progress("writing the tables")
     return tabulate(case, posterior, choice, broken, tuple(stood), plan)
+
+
+def above(posterior: Posterior, choice: Decision, budget: Mapping[str, float]) -> Decision:
+    """The decision without what the error of the model's own numbers could pass for."""
+    e, single = posterior.evidence, {h.members[0]: h for h in posterior.hypotheses if len(h.members) == 1}
+    kept = tuple(g for g in choice.groups if imprint(moved(e, single[g[0]]), budget).above_budget)
+    if len(kept) == len(choice.groups):
+        return choice
+    return Decision(choice.verdict if kept else "adequate", kept, choice.sure)
+
+
+def moved(evidence: Evidence, h: Hypothesis) -> dict[str, float]:
+    """Channel -> largest change (K) that one effect makes there at its size, all else held."""
+    k, p, out = h.members[0], evidence.p, {}
+    size = 1.0 if evidence.effects[k].whole else float(evidence.score.amplitude[k] if h.fit is None else h.fit.theta[p])
+    for s in evidence.parts:
+        out[s.channel] = max(out.get(s.channel, 0.0), float(np.max(np.abs(size * s.J[:, p + k]))))
+    return out
 
 
 def infer(case: Case, kinds: Sequence[str] | None = None, progress: Progress = silent) -> Posterior:

@@ -220,9 +220,7 @@ def model_error(
         parts = segments(cored, [test], values, (*doubts, *cores))
         scale = np.array([p.prior_sd for p in (*doubts, *cores)])
         beside, flow = placements(network, test, values, doubt, sensed or tests), flows(network, test, values, doubt)
-        out |= {
-            (s.test, s.channel): np.column_stack([s.J * scale, beside[s.channel], flow[s.channel]]) for s in parts
-        }
+        out |= {(s.test, s.channel): np.column_stack([s.J * scale, beside[s.channel], flow[s.channel]]) for s in parts}
     return ModelError(out)
 
 
