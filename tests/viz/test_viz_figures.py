@@ -21,13 +21,19 @@ EFFECTS = {
                  ("E", "end-winding impregnation", 0.2), ("F", "speed", 0.4))],
 }  # fmt: skip
 RANKED = [{"factor": "base", "measure": 0.44, "conf95": 0.16}, {"factor": "speed", "measure": 0.01, "conf95": 0.01}]
+ODDS = [
+    {"hypothesis": "convection@flange.right", "effects": ["convection@flange.right"], "probability": 0.93},
+    {"hypothesis": "nothing", "effects": [], "probability": 0.05},
+    {"hypothesis": "heat@yoke", "effects": [], "probability": 0.015},
+    {"hypothesis": "others", "effects": [], "probability": 0.004},
+]
 DRAW = {
     "curves": lambda png: curves.measured_and_model(comparison(before=True), png=png),
     "residuals": lambda png: curves.residuals(comparison(), png=png),
     "before_after": lambda png: errors.before_after(HISTORY[-1]["tests"], floor_K=0.6, png=png),
     "staircase": lambda png: errors.staircase(HISTORY, floor_K=0.6, png=png),
     "scores": lambda png: scores.scores(candidates(), png=png),
-    "half_normal": lambda png: scores.half_normal(candidates(), png=png),
+    "posterior": lambda png: scores.posterior(ODDS, png=png),
     "screened": lambda png: screening.screened(EFFECTS, title="magnets", png=png),
     "ranking": lambda png: screening.ranking(RANKED, measure="Sobol ST", png=png),
     "confusion": lambda png: scores.confusion(["a@x", "b@y"], np.array([[1.0, 0.83], [0.83, 1.0]]), png=png),
@@ -37,8 +43,8 @@ SHOWS = {
     "residuals": ["flange.right", "measured − model (K)", "time (min)"],
     "before_after": ["4.85 K", "0.93 K", "road-2", "rms error (K)"],
     "staircase": ["road-2 (hold-out)", "convection", "rms error (K)"],
-    "scores": ["convection@flange.right", "12.3 W/m2/K", "threshold"],
-    "half_normal": ["convection@flange.right", "threshold (simulated nulls)"],
+    "scores": ["convection@flange.right", "12.3 W/m2/K", "as probable as nothing"],
+    "posterior": ["convection@flange.right", "93 %", "nothing", "probability (%)"],
     "screened": ["convection x emissivity", "AB", "half-normal quantile", "Lenth, all at once", "|high - low| (K)"],
     "ranking": ["base", "speed", "Sobol ST"],
     "confusion": ["a@x", "b@y", ".83"],

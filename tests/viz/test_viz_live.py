@@ -11,15 +11,14 @@ from PIL import Image
 
 import viz.live
 from geom.errors import InputError, MissingDependency
-from viz.candidates import DECISION
 from viz.colours import DARK
 from viz.flows import Heat
 from viz.live import (
     against_input,
     confusion,
-    half_normal,
     pareto,
     parity,
+    posterior,
     residuals,
     sankey,
     saved,
@@ -29,13 +28,19 @@ from viz.live import (
 from viz.pdf import BROWSERS
 
 HEAT = Heat({"copper": 300.0, "iron": 100.0}, (), {"fan": 250.0, "base": 90.0})
+ODDS = [
+    {"hypothesis": "convection@flange.right", "effects": ["convection@flange.right"], "probability": 0.93},
+    {"hypothesis": "nothing", "effects": [], "probability": 0.05},
+    {"hypothesis": "heat@yoke", "effects": [], "probability": 0.015},
+    {"hypothesis": "others", "effects": [], "probability": 0.004},
+]
 DRAW = {
     "sensor": lambda **o: sensor(comparison(before=True), "flange.right", **o),
     "residuals": lambda **o: residuals(comparison(), **o),
     "against_input": lambda **o: against_input(comparison(), "flange.right", "current_A", **o),
     "parity": lambda **o: parity(comparison(), **o),
     "staircase": lambda **o: staircase(HISTORY, **o),
-    "half_normal": lambda **o: half_normal(candidates(), **o),
+    "posterior": lambda **o: posterior(ODDS, **o),
     "confusion": lambda **o: confusion(["a@x", "b@y"], np.array([[1.0, -0.83], [-0.83, 1.0]]), **o),
     "pareto": lambda **o: pareto(candidates(), **o),
     "sankey": lambda **o: sankey(HEAT, **o),
@@ -75,11 +80,11 @@ def test_only_the_wrong_sensor_is_coloured():
     assert colours["flange.right"] != colours["yoke"]
 
 
-def test_half_normal_ranks_by_size_and_colours_by_decision():
-    trace = data(DRAW["half_normal"]())[0]
-    assert trace["y"] == sorted(trace["y"])
-    assert trace["y"][-1] == 31.4
-    assert trace["marker"]["color"][-1] == DECISION["named"]
+def test_posterior_has_the_most_probable_on_top():
+    trace = data(DRAW["posterior"]())[0]
+    assert trace["x"] == sorted(trace["x"])
+    assert trace["y"][-1] == "convection@flange.right"
+    assert "others" not in trace["y"]
 
 
 def test_confusion_shows_sizes():

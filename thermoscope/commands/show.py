@@ -87,7 +87,7 @@ def by_interest(folder: Folder) -> list[Test]:
 
 def _diagnosis(folder: Folder, tell: Progress, again: bool) -> tuple[Mapping[str, Any] | None, bool]:
     """What the page shows, and whether it is of the model before its last step."""
-    from validation.diagnose import diagnose
+    from validation import diagnose
 
     kept = saved_diagnosis(folder)
     if kept is not None:

@@ -13,7 +13,9 @@ from typing import Any
 from geom.errors import ThermoscopeError
 
 Tell = Callable[[str], None]
-PRELOAD = ["thermoscope.workbench.steps", "thermoscope.commands.revise", "validation.diagnose", "validation.revise"]
+PRELOAD = [
+    "thermoscope.workbench.steps", "thermoscope.commands.revise", "validation.inference.diagnose", "validation.revise",
+]  # fmt: skip
 
 
 class StoppedError(Exception):
