@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from geom.errors import InputError
+from geom.toml_file import read_toml
 from lumped.build import bare_network, node_link, node_source, stream, surface_place
 from lumped.declared_links import flow_law, mechanisms
 from lumped.declared_losses import loss_kinds, loss_laws, taken_off
@@ -23,25 +23,20 @@ from lumped.reader import Table, known
 if TYPE_CHECKING:
     from lumped.circuit import Circuit
 
+RIGHT = "a network.toml (docs/network-toml.md)"
+
 
 def load_network(path: str | Path) -> Network:
     """The network of a TOML file.
 
     Raises InputError that names the file, the table, the key and what would be right.
     """
-    file = Path(path)
-    try:
-        data = tomllib.loads(file.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        raise InputError("no such file", str(file), "a network.toml (docs/network-toml.md)") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as fault:
-        raise InputError(f"not readable as TOML: {fault}", str(file), "see docs/network-toml.md") from None
-    return read_network(data, file.name)
+    return read_network(read_toml(Path(path), RIGHT), Path(path).name)
 
 
 def load_circuits(path: str | Path) -> dict[str, Circuit]:
     """The coolant circuits of a network.toml, for pressure drop and pump power."""
-    top = Table(tomllib.loads(Path(path).read_text(encoding="utf-8")), Path(path).name)
+    top = Table(read_toml(Path(path), RIGHT), Path(path).name)
     return _circuits(top, top.tables("nodes"), top.table("network").words("boundaries"))
 
 
@@ -51,7 +46,7 @@ def read_network(data: Mapping[str, Any], where: str = "network.toml") -> Networ
     head, nodes = top.table("network"), top.tables("nodes")
     if not nodes:
         raise top.error("no nodes", "[nodes.NAME] with C_J_K = ...")
-    name, boundaries, settles = head.word("name"), head.words("boundaries"), head.number("settles_s", 3600.0, low=1.0)
+    name, boundaries, settles = head.word("name"), head.words("boundaries"), head.number("settles_s", 3600.0)
     head.close()
     circuits = _circuits(top, nodes, boundaries)
     cells = {n: C for c in circuits.values() for n, C in c.capacities().items()}

@@ -43,7 +43,7 @@ def _fixed(table: Table, has_area: bool) -> tuple[Law, bool] | None:
 
 def _radiation(table: Table, has_area: bool) -> tuple[Law, bool]:
     _needs_area(table, has_area)
-    return Fixed(table.number("emissivity", high=1.0) * table.number("view_factor", 1.0, high=1.0), Radiation()), True
+    return Fixed(table.number("emissivity") * table.number("view_factor", 1.0), Radiation()), True
 
 
 def _natural(table: Table, has_area: bool) -> tuple[Law, bool]:
@@ -79,7 +79,7 @@ def _forced(table: Table, has_area: bool) -> tuple[Law, bool]:
 
 
 def _power(table: Table, has_area: bool) -> tuple[Law, bool]:
-    found, law = _coefficient(table, has_area), Power(table.number("exponent", 0.25))
+    found, law = _coefficient(table, has_area), Power(table.number("exponent", 0.25, of="power.exponent"))
     assert found is not None
     return InputPower(found[0], powers(table), law), found[1]
 

@@ -42,10 +42,10 @@ def _inline(network: Network, top: Table, nodes: Mapping[str, Table]) -> list[Pa
                 own = f"{target}{name}"
                 mine = [i.name for i in items if i.name == own or i.name.startswith(f"{own}:")]
                 acts = tuple((n, 1.0) for n in mine if ":less:" not in n)
-                out.append(Parameter(f"{prefix}.{name}", acts, prior_sd=table.number("prior_sd", low=1e-6)))
+                out.append(Parameter(f"{prefix}.{name}", acts, prior_sd=table.number("prior_sd")))
     for name, table in nodes.items():
         if "prior_sd" in table:
-            sd = table.number("prior_sd", low=1e-6)
+            sd = table.number("prior_sd")
             out.append(Parameter(f"capacity.{name}", ((f"capacity:{name}", 1.0),), prior_sd=sd))
     return out
 
@@ -56,7 +56,7 @@ def _of_circuits(network: Network, top: Table) -> list[Parameter]:
     for name, table in top.tables("circuits").items():
         films = tuple((x.name, 1.0) for x in network.links if x.name.startswith(f"film:{name}."))
         acts = {"prior_sd": (f"circuit.{name}", ((f"stream:{name}", 1.0),)), "film_prior_sd": (f"film.{name}", films)}
-        out += [Parameter(*acts[key], prior_sd=table.number(key, low=1e-6)) for key in acts if key in table]
+        out += [Parameter(*acts[key], prior_sd=table.number(key)) for key in acts if key in table]
     return out
 
 
@@ -66,19 +66,19 @@ def _parameters(top: Table) -> list[Parameter]:
         mapping = table.word("mapping", "log", MAPPINGS)
         neutral, low, high = MAPPINGS[mapping]
         acts = table.raw("acts_on")
-        targets = {t: 1.0 for t in acts} if isinstance(acts, list) else table.shares("acts_on")
+        targets = {t: 1.0 for t in acts} if isinstance(acts, list) else table.shares("acts_on", of="acts_on")
         out.append(
             Parameter(
                 name,
                 tuple(targets.items()),
-                table.number("value", neutral, low=-1e12),
+                table.number("value", neutral),
                 table.word("unit", "1"),
-                table.number("low", low, low=-1e12),
-                table.number("high", high, low=-1e12),
-                table.number("prior_sd", 0.3, low=1e-9),
+                table.number("low", low),
+                table.number("high", high),
+                table.number("prior_sd", 0.3),
                 mapping,  # type: ignore[arg-type]
                 neutral,
-                int(table.number("sign", 0, -1, 1)),
+                int(table.number("sign", 0)),
                 table.word("source", ""),
             )
         )

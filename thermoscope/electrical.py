@@ -107,15 +107,15 @@ def read_electrical(quantity: str, name: str, table: Table, folder: Path) -> Ele
     cold = table.table("cold")
     if not cold.data:
         raise table.error("no cold reading", "cold = { reading = ..., at_degC = ... }, taken before the test")
-    reading, at = cold.number("reading", low=1e-9), cold.number("at_degC", low=-273.15)
+    reading, at = cold.number("reading"), cold.number("at_degC", of="cold.at_degC")
     rpm = cold.number("rpm", 1.0) if quantity == "back_emf" else 1.0
     cold.close()
     meter = meter_of(table, "meter", OHMMETER if quantity == "resistance" else VOLTMETER)
     coefficient = _coefficient(table, COPPER if quantity == "resistance" else NDFEB)
     if quantity == "back_emf":
         magnets = Magnets(reading, at, rpm, meter, coefficient, saturation_of(table))
-        return Electrical(magnets, table.number("speed_rpm", rpm, low=1e-6), None)
-    reference = table.number("reference_degC", low=-273.15) if "reference_degC" in table else None
+        return Electrical(magnets, table.number("speed_rpm", rpm), None)
+    reference = table.number("reference_degC") if "reference_degC" in table else None
     winding = Winding(reading, at, meter, coefficient, reference)
     return Electrical(winding, 0.0, _after(table, name, folder))
 
@@ -164,7 +164,7 @@ def _after(table: Table, name: str, folder: Path) -> After | None:
         return None
     after = After(
         folder / data.word("file"), data.word("time", "time_s"), data.word("column", name), data.word("worksheet", ""),
-        data.word("method", "exponentials", METHODS), data.number("ambient_degC", low=-273.15),
+        data.word("method", "exponentials", METHODS), data.number("ambient_degC"),
         data.number("rated_kW", 50.0), data.where,
     )  # fmt: skip
     data.close()

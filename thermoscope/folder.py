@@ -8,11 +8,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from geom.errors import InputError
+from geom.toml_file import read_toml
 from lumped.network import Network, Parameter
 from lumped.reader import Table, known
 from thermoscope.history import History, checked_values, load_history
 from thermoscope.readings import read_test
-from thermoscope.sheet import Sheet, load_sheet, read_toml
+from thermoscope.sheet import Sheet, load_sheet
 from thermoscope.tables import Samples, load_table
 from validation.case import AddedEffect, Case, Model, Role, Test
 from validation.fitting import matching
@@ -90,9 +91,9 @@ def read_settings(path: Path, untested: bool = False) -> Settings:
         raise head.error(
             "neither or both of machine and network given", 'machine = "NAME.toml" or network = "network.toml"'
         )
-    sample, free = head.number("sample_s", 10.0, low=1e-3), calibration.words("free", [])
-    model_K = head.number("model_error_K", 0.0, low=0.0)
-    axial_m = head.number("axial_mm", low=1.0) / 1e3 if "axial_mm" in head else None
+    sample, free = head.number("sample_s", 10.0), calibration.words("free", [])
+    model_K = head.number("model_error_K", 0.0)
+    axial_m = head.number("axial_mm") / 1e3 if "axial_mm" in head else None
     head.close()
     calibration.close()
     if not tests and not untested:

@@ -10,9 +10,9 @@ from typing import Any
 import tomlkit
 
 from geom.errors import InputError
+from geom.toml_file import read_toml
 from lumped.reader import Table, known
 from thermoscope.files import write_whole
-from thermoscope.sheet import read_toml
 
 ACTIONS = ("calibrate", "add", "remove", "step back")
 HEADER = "Written by thermoscope: one [[revision]] per step, the last one counts. Delete this file to start again."
@@ -103,8 +103,8 @@ def checked_values(revision: Revision, names: Iterable[str], where: str) -> None
 
 def _revision(table: Table) -> Revision:
     out = Revision(
-        int(table.number("number", low=1)), table.word("action", None, ACTIONS), table.words("effects", []),
-        table.word("effect", ""), _numbers(_inner(table, "values")), _pairs(_inner(table, "intervals")),
+        int(table.number("number")), table.word("action", None, ACTIONS), table.words("effects", []),
+        table.word("effect", ""), _inner(table, "values").constants("values"), _pairs(_inner(table, "intervals")),
         _before_after(_inner(table, "rmse_K")), table.word("why", ""), dict(table.raw("evidence", {})),
     )  # fmt: skip
     table.close()
@@ -115,14 +115,10 @@ def _inner(table: Table, key: str) -> Table:
     return Table(table.raw(key, {}), f"{table.where} {key}")
 
 
-def _numbers(table: Table) -> dict[str, float]:
-    return {name: table.number(name, low=-1e12) for name in table.data}
-
-
 def _pairs(table: Table) -> dict[str, Pair]:
     out = {}
     for name in table.data:
-        pair = table.numbers(name)
+        pair = table.numbers(name, of="intervals")
         if len(pair) != 2:
             raise table.error(f"{name} has {len(pair)} numbers", "[low, high]")
         out[name] = (pair[0], pair[1])

@@ -45,11 +45,12 @@ def build(machine: str, out: Path | None, target: str | None, accuracy: float | 
 
 
 def _built(described: Any, accuracy: float | None, tell: Any) -> tuple[Built, Sized | None]:
+    from lumped.motor_bases import on_all
     from thermoscope.pipeline import build as built_from
     from thermoscope.sized import sized
 
     if accuracy is None:
-        return built_from(described, progress=tell), None
+        return built_from(on_all(described), progress=tell), None
     found = sized(described, accuracy, progress=tell)
     return found.built, found
 

@@ -40,10 +40,10 @@ from pathlib import Path
 from typing import Any
 
 from geom.errors import InputError
+from geom.toml_file import read_toml
 from lumped.reader import Table
 from thermoscope.electrical import meter_of, saturation_of
 from thermoscope.formats import read_frame, recording
-from thermoscope.sheet import read_toml
 from thermoscope.terminal import give, progress, say, table
 from validation.procedure.meters import OHMMETER, VOLTMETER
 from validation.procedure.protocol import Cold, Hot, Protocol, Record
@@ -74,8 +74,8 @@ def read_record(file: Path) -> Record:
     coefficients, meters = top.table("coefficients"), top.table("meters")
     top.close()
     record = Record(
-        machine.number("rated_kW", low=1e-3), _cold(cold) if cold.data else None, _pairs(load, file, 60.0),
-        load.number("resolution_K", 0.5, low=1e-3), _hot(hot, file) if hot.data else None,
+        machine.number("rated_kW"), _cold(cold) if cold.data else None, _pairs(load, file, 60.0),
+        load.number("resolution_K", 0.5), _hot(hot, file) if hot.data else None,
         meter_of(meters, "resistance", OHMMETER), meter_of(meters, "emf", VOLTMETER),
         beta=_range(coefficients, "beta_percent_K", COPPER), alpha=_range(coefficients, "alpha_percent_K", NDFEB),
         curve=saturation_of(coefficients),
@@ -91,8 +91,8 @@ def _optional(table: Table, key: str) -> float | None:
 
 def _cold(table: Table) -> Cold:
     cold = Cold(
-        table.number("room_degC", low=-273.15), table.number("machine_degC", low=-273.15),
-        table.number("resistance_ohm", low=1e-9), _optional(table, "emf_V"), _optional(table, "speed_rpm"),
+        table.number("room_degC"), table.number("machine_degC"),
+        table.number("resistance_ohm"), _optional(table, "emf_V"), _optional(table, "speed_rpm"),
         _optional(table, "range_ohm"), _optional(table, "hours_since_run"),
     )  # fmt: skip
     table.close()
@@ -101,7 +101,7 @@ def _cold(table: Table) -> Cold:
 
 def _hot(table: Table, file: Path) -> Hot:
     hot = Hot(
-        table.number("ambient_degC", low=-273.15), _pairs(table, file, 1.0), _optional(table, "emf_V"),
+        table.number("ambient_degC"), _pairs(table, file, 1.0), _optional(table, "emf_V"),
         _optional(table, "speed_rpm"), _optional(table, "range_ohm"),
     )  # fmt: skip
     table.close()
