@@ -11,6 +11,7 @@ from geom.bases import based
 from geom.errors import InputError
 from geom.families import Family, families
 from geom.materials import Material, filled, material
+from geom.names import checked_name
 from geom.parameters import read_geometry
 from geom.part import Part, Port
 from geom.profile import ArcGrid
@@ -127,7 +128,7 @@ def machine_from(sections: Mapping[str, Any], where: str = "machine") -> Machine
         raise InputError(error.what, f"{where} {error.where}", error.right) from error
     built = _with_materials(built, sections.get("materials", {}), where)
     machine = Machine(
-        name=header.get("name", Path(where).stem),
+        name=checked_name(header.get("name", Path(where).stem), f"{where} [machine] name"),
         family=family.name,
         description=header.get("description", family.doc),
         parts=tuple(part for part in built if part.solid),

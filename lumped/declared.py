@@ -19,6 +19,7 @@ from lumped.laws import Law
 from lumped.loss_measured import Negative
 from lumped.network import Link, Network, Place, Source
 from lumped.reader import Table, known
+from lumped.soundness import checked_network, checked_path
 
 if TYPE_CHECKING:
     from lumped.circuit import Circuit
@@ -142,7 +143,7 @@ def _links(network: Network, top: Table) -> list[Link]:
 def _streams(network: Network, top: Table) -> list[Link]:
     out = []
     for name, table in top.tables("streams").items():
-        path = [_end(network, table, node) for node in table.words("path")]
+        path = [_end(network, table, node) for node in checked_path(table.words("path"), table.where)]
         out.append(stream(network, f"stream:{name}", path, flow_law(table)))
         table.raw("prior_sd")
         table.close()
@@ -178,16 +179,11 @@ def _taken_off(measured: Source, other: Source) -> Source:
 
 
 def _checked(network: Network, where: str) -> Network:
-    """Names that parameters act on exist, and every node is joined to something, or says what washes it."""
+    """Names that parameters act on exist, and the network can be a machine."""
     items: list[Link | Source] = [*network.links, *network.sources]
     names = {i.name for i in items} | {f"capacity:{s}" for s in network.states}
     for p in network.parameters:
         for target, _ in p.targets:
             if target not in names and not target.startswith(("bias:", "gain:", "lag:")):
                 raise InputError(f"acts on unknown '{target}'", f"{where} [parameters.{p.name}]", known(target, names))
-    joined = {int(i) for link in network.links for i in (*link.rows, *link.cols)}
-    joined |= {int(i) for place in network.places.values() if place.kind == "surface" for i in place.states}
-    for i, node in enumerate(network.states):
-        if i not in joined:
-            raise InputError(f"node '{node}' is joined to nothing", where, f"a link, stream or surface with '{node}'")
-    return network
+    return checked_network(network, where)

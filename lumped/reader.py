@@ -106,6 +106,13 @@ class Table:
             raise self.error(f"{key} = {shown(value)} is not possible", f"{right}{meaning(key)}")
         return value
 
+    def kind(self, key: str, default: str | None, allowed: Iterable[str]) -> str:
+        """One of our own words; capitals do not matter."""
+        value, choices = self._needed(key, default, "a word"), {word.lower(): word for word in allowed}
+        if isinstance(value, str) and value.lower() in choices:
+            return choices[value.lower()]
+        return self.word(key, default, choices.values())
+
     def words(self, key: str, default: list[str] | None = None) -> tuple[str, ...]:
         value = self._needed(key, default, "[words]")
         if not isinstance(value, list) or not all(isinstance(v, str) for v in value):

@@ -16,6 +16,7 @@ from geom.errors import InputError, ThermoscopeError
 from lumped.compiled import Compiled, compiled
 from lumped.kernel import integrate
 from lumped.network import Network, Parameter, Row
+from lumped.runaway import told
 from lumped.settle import settle
 from lumped.stages import Stages, Work, stages, work
 from lumped.tangents import differentiate
@@ -154,7 +155,7 @@ def march(
             terms = core.terms._replace(factor=core.terms.factor[some])
             failed = integrate(*at, terms, core.rows, renew[some], both, scratch, Z[own], K[own], y[some])
             if failed >= 0:
-                raise ThermoscopeError(_failure(network, core, time[some.start + failed]))
+                raise ThermoscopeError(_failure(network, core, time[some.start + failed], both.z[0]))
             if p:
                 run = (renew[some], core.curved, Z[own], K[own])
                 differentiate(*at, terms, core.tangents, core.rows, *run, both, scratch, dy[some])
@@ -172,7 +173,7 @@ def _rest(network: Network, core: Compiled, time: Array, u: Array, at: int, both
     if np.any(core.C == 0.0):
         factor = core.terms.factor[at]
         if not settle(core.C, core.K0, core.terms, core.tangents, factor, both, scratch):
-            raise ThermoscopeError(_failure(network, core, time[at]))
+            raise ThermoscopeError(_failure(network, core, time[at], both.z[0]))
 
 
 def _portions(part: slice) -> list[slice]:
@@ -198,9 +199,10 @@ def _parts(time: Array, C: Array) -> list[slice]:
     return [slice(a, b) for a, b in pairwise([0, *jumps, time.size])]
 
 
-def _failure(network: Network, core: Compiled, t: float) -> str:
+def _failure(network: Network, core: Compiled, t: float, z: Array) -> str:
     floating = [s for s, c, row in zip(network.states, core.C, core.K0, strict=True) if c == 0.0 and not np.any(row)]
-    hint = (
-        f"states without capacity and constant links: {', '.join(floating)}" if floating else "check the links' signs"
-    )
-    return f"network '{network.name}': no finite solution at t = {t:g} s; {hint}"
+    if floating:
+        hint = f"states without capacity and constant links: {', '.join(floating)}"
+        return f"network '{network.name}': no finite solution at t = {t:g} s; {hint}"
+    x = np.where(np.isfinite(z[: len(network.states)]), np.abs(z[: len(network.states)]), np.inf)
+    return told(network, network.states[int(np.argmax(x))], t)

@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 from geom.errors import ThermoscopeError
+from thermoscope.files import checked_out, checked_target
 
 app = typer.Typer(
     help="See where your motor's thermal model is wrong, and why.",
@@ -23,15 +24,21 @@ BLAS_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 Case = Annotated[str, typer.Argument(metavar="CASE", help="A case folder, or the name of a case that comes along.")]
 Effect = Annotated[str, typer.Argument(metavar="EFFECT@PLACE", help="For example convection@flange.right.")]
-Json = Annotated[str | None, typer.Option("--json", metavar="FILE|-", help="Write the JSON document; - is stdout.")]
+Json = Annotated[
+    str | None,
+    typer.Option("--json", metavar="FILE|-", callback=checked_target, help="Write the JSON document; - is stdout."),
+]
 Anyway = Annotated[bool, typer.Option("--anyway", help="Write it even if it is not accepted.")]
 Machine = Annotated[str, typer.Argument(metavar="MACHINE", help="A machine or STEP file, or a name that comes along.")]
 Accuracy = Annotated[float, typer.Option(min=0.01, help="Percent of a part's rise; means within half of it.")]
-Out = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder for the results.")]
+Out = Annotated[Path | None, typer.Option("--out", metavar="DIR", callback=checked_out, help="Folder for the results.")]
 
 
 @app.command()
-def demo(out: Annotated[Path, typer.Option("--out", metavar="DIR")] = Path("out/demo"), json: Json = None) -> None:
+def demo(
+    out: Annotated[Path, typer.Option("--out", metavar="DIR", callback=checked_out)] = Path("out/demo"),
+    json: Json = None,
+) -> None:
     """The whole loop on the shipped case with a hidden effect: the error before and after."""
     from thermoscope.demo import demo as run
 
@@ -143,7 +150,7 @@ def calibrate(
     anyway: Anyway = False,
     profile: Annotated[list[str] | None, typer.Option(metavar="GLOB", help="Profile these parameters too.")] = None,
     starts: Annotated[int, typer.Option(min=1, help="Fits from so many points of the prior.")] = 1,
-    seed: Annotated[int, typer.Option(help="Of the points.")] = 0,
+    seed: Annotated[int, typer.Option(min=0, help="Of the points.")] = 0,
     json: Json = None,
 ) -> None:
     """Fit the declared parameters to the calibration tests, with intervals and what the data cannot identify."""

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from geom.errors import InputError
+from geom.names import checked_name
 from geom.toml_file import read_toml
 from lumped.network import Network, Parameter
 from lumped.reader import Table, known
+from thermoscope.formats import stem_of
 from thermoscope.history import History, checked_values, load_history
 from thermoscope.readings import read_test
 from thermoscope.sheet import Sheet, load_sheet
@@ -86,7 +88,7 @@ def read_settings(path: Path, untested: bool = False) -> Settings:
     head, tests, calibration = top.table("case"), top.tables("tests"), top.table("calibration")
     top.close()
     name, description = head.word("name", path.name), head.word("description", "")
-    machine, network = head.raw("machine"), head.raw("network")
+    machine, network = (head.word(key) if key in head else None for key in ("machine", "network"))
     if (machine is None) == (network is None):
         raise head.error(
             "neither or both of machine and network given", 'machine = "NAME.toml" or network = "network.toml"'
@@ -105,15 +107,24 @@ def read_settings(path: Path, untested: bool = False) -> Settings:
     )  # fmt: skip
 
 
+def _once(settings: Settings, files: Mapping[str, Path]) -> None:
+    """A recording is one test: the same twice would count double, or hold out what was fitted."""
+    seen: dict[Path, Entry] = {}
+    for entry in settings.tests:
+        first = seen.setdefault(files[entry.name].resolve(), entry)
+        if first is not entry:
+            what = f"[tests.{first.name}] ({first.role}) and [tests.{entry.name}] ({entry.role}) are one recording"
+            raise InputError(what, str(settings.path / "case.toml"), "another file for one of them")
+
+
 def _entry(path: Path, name: str, table: Table) -> Entry:
-    file = path / table.word("file", f"tests/{name}.csv")
-    plain = file.with_suffix("") if file.suffix == ".gz" else file
-    role, beside = table.word("role", None, ROLES), plain.with_suffix(".toml")
+    file = path / table.word("file", f"tests/{checked_name(name, table.where)}")
+    role, beside = table.word("role", None, ROLES), file.with_name(f"{stem_of(file)}.toml")
     sheet, frees = path / table.word("sheet") if "sheet" in table else beside, table.words("frees", [])
     if frees and role != "calibrate":
         raise table.error(f"frees parameters though its role is {role}", 'role = "calibrate"')
     table.close()
-    return Entry(name, role, plain, sheet, tuple(frees))  # type: ignore[arg-type]
+    return Entry(name, role, file, sheet, tuple(frees))  # type: ignore[arg-type]
 
 
 def load_case(
@@ -130,6 +141,7 @@ def load_case(
     for entry in settings.tests:
         progress(f"reading {entry.name}")
         samples[entry.name] = load_table(entry.file, sheets[entry.name])
+    _once(settings, {name: one.file for name, one in samples.items()})
     network, built = _network(settings, progress)
     read = [
         read_test(e.name, e.role, samples[e.name], sheets[e.name], network, settings.sample_s) for e in settings.tests

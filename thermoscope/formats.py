@@ -5,6 +5,11 @@ Channels of several rates share one time column and are empty where they were no
 
 from __future__ import annotations
 
+import csv
+import gzip
+import io
+import zlib
+from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -21,25 +26,44 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 SUFFIXES = (".csv", ".csv.gz", ".xlsx", ".tdms", ".mf4", ".parquet")
 TIME = "time_s"  # of formats that carry their own time
+CHUNK, LARGEST = 2**24, 2**30  # bytes; a day of 100 channels at 1 Hz is a tenth of that
 GRAIN = 1e-6  # s, below which two instants are one
 Signal = tuple[str, Array, Array]
 
 
 def recording(path: Path) -> Path:
-    """The file itself, or one of the same name in another format."""
-    if path.exists():
+    """The file itself, or the one file of the same name in another format; two of them are one too many."""
+    if path.is_file():
         return path
-    stem = path.with_suffix("")
-    for suffix in SUFFIXES:
-        if (twin := stem.with_name(stem.name + suffix)).exists():
-            return twin
+    if path.exists():
+        raise InputError("is no file", str(path), "a recording")
+    twins = [twin for suffix in SUFFIXES if (twin := path.with_name(stem_of(path) + suffix)).exists()]
+    for twin in twins:
+        if not twin.is_file():
+            raise InputError("is no file", str(twin), "a recording")
+    if len(twins) > 1:
+        names = " and ".join(twin.name for twin in twins)
+        raise InputError(f"{names} are both there", str(path), f'one of them, or file = "tests/{twins[0].name}"')
+    if twins:
+        return twins[0]
     beside = sorted(p.name for p in path.parent.glob("*") if p.name.endswith(SUFFIXES)) if path.parent.exists() else []
-    raise InputError("no such file", str(path), f"found there: {', '.join(beside) or 'no recording at all'}")
+    asked = path if _suffix(path) else path.with_name(f"{path.name}.csv")
+    raise InputError("no such file", str(asked), f"found there: {', '.join(beside) or 'no recording at all'}")
+
+
+def _suffix(path: Path) -> str:
+    """The ending that says the format, the longest that fits; "" for none of those that are read."""
+    return max((s for s in SUFFIXES if path.name.lower().endswith(s)), key=len, default="")
+
+
+def stem_of(path: Path) -> str:
+    """The name of a recording without the ending that says its format."""
+    return path.name[: len(path.name) - len(_suffix(path))]
 
 
 def read_frame(file: Path, worksheet: str = "") -> pd.DataFrame:
     """The table of a recording, column names stripped. worksheet : of a workbook; of a TDMS file, the group."""
-    suffix = next((s for s in SUFFIXES if file.name.lower().endswith(s)), "")
+    suffix = _suffix(file)
     readers: dict[str, Callable[[], pd.DataFrame]] = {
         ".csv": lambda: _csv(file), ".csv.gz": lambda: _csv(file), ".xlsx": lambda: _xlsx(file, worksheet),
         ".tdms": lambda: _tdms(file, worksheet), ".mf4": lambda: _mf4(file), ".parquet": lambda: _parquet(file),
@@ -48,6 +72,9 @@ def read_frame(file: Path, worksheet: str = "") -> pd.DataFrame:
         raise InputError(f"files ending in '{file.suffix}' are not read", str(file), f"one of {', '.join(SUFFIXES)}")
     table = readers[suffix]()
     table.columns = [str(c).strip() for c in table.columns]
+    twice = [name for name, count in Counter(table.columns).items() if count > 1]
+    if twice:
+        raise InputError(f"column '{twice[0]}' stands twice in the header", str(file), "a name of its own for each")
     if len(table) < 3:
         raise InputError(f"the file holds {len(table)} rows", str(file), "at least 3 rows of numbers under the header")
     return table
@@ -56,17 +83,42 @@ def read_frame(file: Path, worksheet: str = "") -> pd.DataFrame:
 def _csv(file: Path) -> pd.DataFrame:
     import pandas as pd
 
+    text = _text(file)
     try:
-        table = pd.read_csv(file, skipinitialspace=True, low_memory=False)
+        header = next(csv.reader(io.StringIO(text[: text.find("\n") + 1 or None]), skipinitialspace=True), [])
+        table = pd.read_csv(io.StringIO(text), skipinitialspace=True, low_memory=False, index_col=False)
     except pd.errors.EmptyDataError:
         raise InputError("the file is empty", str(file), "a header line and rows of numbers") from None
-    except (pd.errors.ParserError, UnicodeDecodeError, OSError, EOFError) as fault:
+    except (pd.errors.ParserError, csv.Error, ValueError) as fault:
         raise InputError(
             f"not readable as CSV: {fault}", str(file), "commas between columns, one header line"
         ) from None
     if len(table.columns) == 1 and ";" in str(table.columns[0]):
         raise InputError("columns are separated by ';'", str(file), "commas between columns, points in numbers")
+    if len(header) == len(table.columns):
+        table.columns = header  # pandas would rename a second column of one name
     return table
+
+
+def _text(file: Path) -> str:
+    """The whole of a CSV file, unpacked; nothing that is no text, and nothing too large to be a test."""
+    packed = file.name.lower().endswith(".gz")
+    parts: list[bytes] = []
+    try:
+        with gzip.open(file) if packed else file.open("rb") as source:
+            while part := source.read(CHUNK):
+                parts.append(part)
+                if b"\0" in part:
+                    raise InputError("holds zero bytes, so it is no text", str(file), "CSV as UTF-8 text")
+                if len(parts) * CHUNK > LARGEST:
+                    raise InputError(f"holds more than {LARGEST / 2**20:.0f} MB", str(file), "a shorter recording")
+        return b"".join(parts).decode("utf-8-sig")
+    except UnicodeDecodeError as fault:
+        raise InputError(f"is no UTF-8 text: {fault.reason} at byte {fault.start}", str(file),
+                         "CSV saved as UTF-8") from None  # fmt: skip
+    except (OSError, EOFError, zlib.error) as fault:
+        kind = "gzip" if packed else "CSV"
+        raise InputError(f"not readable as {kind}: {fault}", str(file), "a whole file of that kind") from None
 
 
 def _opened(file: Path, kind: str, package: str, read: Callable[[], Any]) -> Any:

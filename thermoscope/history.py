@@ -12,7 +12,7 @@ import tomlkit
 from geom.errors import InputError
 from geom.toml_file import read_toml
 from lumped.reader import Table, known
-from thermoscope.files import write_whole
+from thermoscope.files import locked, write_whole
 
 ACTIONS = ("calibrate", "add", "remove", "step back")
 HEADER = "Written by thermoscope: one [[revision]] per step, the last one counts. Delete this file to start again."
@@ -84,13 +84,28 @@ def load_history(path: Path) -> History:
     return History(revisions)
 
 
-def save_history(path: Path, history: History) -> Path:
+def save_history(path: Path, history: History, known: History) -> History:
+    """Write `history` over `known`, and return it as the file has it.
+
+    Raises InputError when the file holds something else by now: another command or tab was quicker.
+    """
+    with locked(path.parent):
+        standing = load_history(path)
+        if standing != known:
+            what = f"the model was changed by another tab or command: it is at revision {standing.last.number}, this "
+            raise InputError(f"{what}step began at {known.last.number}", str(path),
+                             "the step again (in the workbench 'take over' first)")  # fmt: skip
+        write_whole(path, _text(history))
+        return load_history(path)
+
+
+def _text(history: History) -> str:
     document, revisions = tomlkit.document(), tomlkit.aot()
     document.add(tomlkit.comment(HEADER))
     for revision in history.revisions:
         revisions.append(tomlkit.item(revision.document()))
     document.add("revision", revisions)
-    return write_whole(path, tomlkit.dumps(document))
+    return tomlkit.dumps(document)
 
 
 def checked_values(revision: Revision, names: Iterable[str], where: str) -> None:

@@ -12,7 +12,8 @@ from geom.toml_file import read_toml
 from lumped.reader import Table
 from thermoscope.electrical import QUANTITIES as ELECTRICAL
 from thermoscope.electrical import Electrical, read_electrical
-from thermoscope.units import QUANTITIES, checked_unit
+from thermoscope.once import declared_once
+from thermoscope.units import QUANTITIES, checked_input, checked_unit, held_as
 
 FIRST = "first-readings"
 MAX_GAP_S = 120.0
@@ -135,7 +136,7 @@ def read_sheet(data: Mapping[str, Any], where: str, folder: Path = Path()) -> Sh
     test.close()
     if not sheet.columns:
         raise InputError("no columns", where, "[columns.NAME] with quantity, unit and place")
-    _fed_once(sheet)
+    declared_once(sheet)
     return sheet
 
 
@@ -147,13 +148,14 @@ def _initial(test: Table) -> float | Mapping[str, float] | str:
 
 
 def _column(name: str, table: Table, filtered: float, folder: Path) -> Column | None:
-    if table.raw("use", True) is False:
+    if not table.switch("use", True):
         return None
-    of = table.word("quantity", None, QUANTITIES)
+    of = table.kind("quantity", None, QUANTITIES)
     unit, hot = checked_unit(of, table.raw("unit"), table.where), of == "temperature" or of in ELECTRICAL
     electrical = read_electrical(of, name, table, folder) if of in ELECTRICAL else None
-    kind = table.word("sensor", "resistance" if electrical else "thermocouple", SENSORS)
+    kind = table.kind("sensor", "resistance" if electrical else "thermocouple", SENSORS)
     place, feeds = table.word("place", None if hot else ""), "" if hot else table.word("input", QUANTITIES[of].feeds)
+    of = of if hot else held_as(of, checked_input(of, feeds, table.where))
     usual = 0.0 if electrical else SENSORS[kind]
     sigma = table.number("sigma_K") if "sigma_K" in table else usual
     lag, written = table.number("lag_s", 0.0) + filtered, table.word("column", name)
@@ -186,12 +188,3 @@ def _mean(name: str, table: Table, filtered: float) -> Mean:
     if not of:
         raise table.error("of = [] averages nothing", "of = [two or more columns]")
     return Mean(name, of, place, sigma, lag, table.where)
-
-
-def _fed_once(sheet: Sheet) -> None:
-    fed = [c.feeds for c in sheet.columns if c.feeds] + [*sheet.inputs, *sheet.squares]
-    for name in fed:
-        if fed.count(name) > 1:
-            raise InputError(
-                f"input '{name}' is fed twice", sheet.where, "one column per input: use = false for the others"
-            )

@@ -11,8 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
+from lumped.bounds import COLDEST, HOTTEST
 from lumped.reader import known
 from thermoscope.alignment import clock_shift
+from thermoscope.codes import code_note, coded
 from thermoscope.formats import merged, read_frame, recording
 from thermoscope.sheet import Column, Recorder, Sheet
 from thermoscope.units import converted
@@ -24,6 +26,7 @@ Array = NDArray[np.float64]
 HEADER = 2  # line of the first row of numbers
 GAP = 3.5  # times the usual step
 FROZEN_SHARE, FROZEN_MOVE_K = 0.2, 2.0
+LARGEST = 1e9  # of anything that is no temperature, in the unit of memory
 
 
 @dataclass(frozen=True)
@@ -55,7 +58,11 @@ def load_table(path: Path, sheet: Sheet) -> Samples:
     gaps = _gaps(time)
     values, sigma, notes = {}, {}, [_gap_note(file, a, b) for a, b in gaps]
     for column in sheet.columns:
-        read = converted(_numbers(table, column.header, file), column.quantity, column.unit)
+        raw = _numbers(table, column.header, file)
+        if (codes := coded(raw)).any():
+            notes.append(code_note(f"{file.name} column '{column.header}'", raw, codes, HEADER))
+            raw = np.where(codes, np.nan, raw)
+        read = converted(raw, column.quantity, column.unit)
         values[column.name] = read if column.electrical is None else column.electrical.temperature(read)
         if column.electrical is not None and not column.sigma_K:
             sigma[column.name] = column.electrical.sigma(read)
@@ -148,11 +155,14 @@ def _look(column: Column, values: Array, file: Path) -> list[str]:
         raise InputError(
             "the column holds no number", f"{file} column '{column.name}'", "readings, or use = false in the sheet"
         )
-    if column.is_temperature and np.nanmin(values) < -273.15:
-        row = int(np.nanargmin(values))
-        raise InputError(
-            f"{values[row]:g} degC is below absolute zero", _cell(file, column.name, row), "check the unit in the sheet"
-        )
+    low, high = (COLDEST, HOTTEST) if column.is_temperature else (-LARGEST, LARGEST)
+    out = np.flatnonzero(~((values >= low) & (values <= high)) & ~np.isnan(values))
+    if out.size:
+        what, row = "is below absolute zero" if values[out[0]] < -273.15 else "cannot be", int(out[0])
+        unit = " degC" if column.is_temperature else ""
+        raise InputError(f"{values[row]:g}{unit} {what if column.is_temperature else 'cannot be'}",
+                         _cell(file, column.name, row), f"{low:g} to {high:g}{unit}: check the unit in the sheet, or "
+                         "leave the cell empty where nothing was read")  # fmt: skip
     if missing.size and column.electrical is None:
         return [
             f"{file.name} column '{column.name}': {missing.size} missing readings, first in line {missing[0] + HEADER}"

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from geom.errors import ThermoscopeError
+from lumped.runaway import checked_run
 from validation.case import Case, Channel, Test
 from validation.fitting import working
 from validation.predict import predict
@@ -111,7 +113,11 @@ def physical(values: Mapping[str, float]) -> dict[str, float]:
 
 
 def test_error(network, test: Test, values: Mapping[str, float]) -> TestError:
-    y = predict(network, test, values).y
+    names = tuple(c.name for c in test.channels)
+    try:
+        y = checked_run(predict(network, test, values).y, test.time, names, network)
+    except ThermoscopeError as fault:
+        raise type(fault)(f"test '{test.name}': {fault}") from None
     rows = [channel_error(c, y[:, j]) for j, c in enumerate(test.channels) if np.isfinite(c.y).any()]
     return TestError(test.name, test.role, tuple(rows))
 

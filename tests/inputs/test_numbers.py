@@ -1,4 +1,4 @@
-"""Every number of every file: what is no number, not finite or beyond its bounds is refused by key; the limits are not."""
+"""Every number of every file: no number, not finite or beyond its bounds is refused by key; the limits are not."""
 
 import math
 

@@ -30,6 +30,8 @@ def opened_to_write(name: str, progress: Progress) -> Folder:
         shutil.copytree(path, copy, ignore=shutil.ignore_patterns("out"))
         notes([f"copied the shipped case '{name}' to ./{copy}; from now on that folder is used"])
         path = copy
+    if (out := path / "out").exists() and not out.is_dir():
+        raise InputError("is no folder", str(out), "a folder for results: move the file away")
     folder = load_case(path, progress)
     notes(folder.notes)
     return folder
