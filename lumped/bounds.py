@@ -82,6 +82,7 @@ KEYS = {
     "speed_rpm": Bounds(1e-6, 1e6), "rated_kW": Bounds(1e-3, 1e6), "hours_since_run": Bounds(0.0, 1e6),
     "offset": Bounds(0.0, 1e9), "resolution": Bounds(0.0, 1e9),
     "initial": Bounds(COLDEST, HOTTEST), "boundaries": Bounds(COLDEST, HOTTEST), "inputs": ANY, "load": ANY,
+    "parameters.prior_sd": Bounds(1e-9, 1e12),
     "value": ANY, "low": ANY, "high": ANY, "values": ANY, "intervals": ANY, "acts_on": Bounds(-10.0, 10.0),
     "before": Bounds(0.0, 1e4), "after": Bounds(0.0, 1e4), "position_mm": Bounds(-1e6, 1e6),
     "coefficients": ANY, "at_speed": ANY, "at_torque": ANY,

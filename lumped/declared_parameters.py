@@ -61,26 +61,30 @@ def _of_circuits(network: Network, top: Table) -> list[Parameter]:
 
 
 def _parameters(top: Table) -> list[Parameter]:
-    out = []
-    for name, table in top.tables("parameters").items():
-        mapping = table.word("mapping", "log", MAPPINGS)
-        neutral, low, high = MAPPINGS[mapping]
-        acts = table.raw("acts_on")
-        targets = {t: 1.0 for t in acts} if isinstance(acts, list) else table.shares("acts_on", of="acts_on")
-        out.append(
-            Parameter(
-                name,
-                tuple(targets.items()),
-                table.number("value", neutral),
-                table.word("unit", "1"),
-                table.number("low", low),
-                table.number("high", high),
-                table.number("prior_sd", 0.3),
-                mapping,  # type: ignore[arg-type]
-                neutral,
-                int(table.number("sign", 0)),
-                table.word("source", ""),
-            )
-        )
-        table.close()
-    return out
+    return [_parameter(name, table) for name, table in top.tables("parameters").items()]
+
+
+def _parameter(name: str, table: Table) -> Parameter:
+    mapping = table.word("mapping", "log", MAPPINGS)
+    neutral, low, high = MAPPINGS[mapping]
+    listed = isinstance(table.raw("acts_on"), list)
+    targets = dict.fromkeys(table.words("acts_on"), 1.0) if listed else table.shares("acts_on", of="acts_on")
+    found = Parameter(
+        name, tuple(targets.items()), table.number("value", neutral), table.word("unit", "1"),
+        table.number("low", low), table.number("high", high), table.number("prior_sd", 0.3, of="parameters.prior_sd"),
+        mapping, neutral, int(table.number("sign", 0)), table.word("source", ""),  # type: ignore[arg-type]
+    )  # fmt: skip
+    table.close()
+    return _checked(found, table)
+
+
+def _checked(p: Parameter, table: Table) -> Parameter:
+    """low < high, both positive for a factor, with the declared and the neutral value between them."""
+    if p.mapping == "log" and p.low <= 0.0:
+        raise table.error(f"low = {p.low:g} of a factor is not possible", "a number above 0")
+    if not p.low < p.high:
+        raise table.error(f"low = {p.low:g} and high = {p.high:g} leave nothing between them", "low below high")
+    for key, value in (("value", p.value), ("the neutral value", p.neutral)):
+        if not p.low <= value <= p.high:
+            raise table.error(f"{key} = {value:g} is outside low = {p.low:g} to high = {p.high:g}", "bounds around it")
+    return p

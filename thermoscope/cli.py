@@ -275,6 +275,14 @@ def export(
 
 
 @app.command()
+def doctor(case: Case, json: Json = None) -> None:
+    """What looks wrong in a case's files before anything is fitted, with the cure. Exit code 1 if something does."""
+    from thermoscope.commands.doctor import doctor as run
+
+    raise typer.Exit(run(case, json))
+
+
+@app.command()
 def check(json: Json = None) -> None:
     """What this computer lacks (graphics), each with the command that fixes it."""
     from thermoscope.check import check as run

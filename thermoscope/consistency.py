@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
-from lumped.network import Network
+from lumped.network import Link, Network, Source
 from lumped.reader import known
 from thermoscope.once import twice
 from thermoscope.sheet import Column, Sheet
@@ -44,7 +44,8 @@ def _boundaries(sheet: Sheet, network: Network) -> None:
 
 def read_by(network: Network) -> set[str]:
     """Inputs that a law of the network reads."""
-    return {name for item in (*network.links, *network.sources) for name in item.law.reads}
+    items: list[Link | Source] = [*network.links, *network.sources]
+    return {name for item in items for name in item.law.reads}
 
 
 def _unread(sheet: Sheet, network: Network) -> Iterator[str]:

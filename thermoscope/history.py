@@ -11,12 +11,14 @@ import tomlkit
 
 from geom.errors import InputError
 from geom.toml_file import read_toml
+from lumped.network import Parameter
 from lumped.reader import Table, known
 from thermoscope.files import locked, write_whole
 
 ACTIONS = ("calibrate", "add", "remove", "step back")
 HEADER = "Written by thermoscope: one [[revision]] per step, the last one counts. Delete this file to start again."
 Pair = tuple[float, float]
+ROUNDED = 1e-6  # of a bound: values are written with eight digits
 
 
 @dataclass(frozen=True)
@@ -108,12 +110,17 @@ def _text(history: History) -> str:
     return tomlkit.dumps(document)
 
 
-def checked_values(revision: Revision, names: Iterable[str], where: str) -> None:
-    """Every value belongs to a parameter the model has."""
-    have = set(names)
-    for name in revision.values:
+def checked_values(revision: Revision, parameters: Iterable[Parameter], where: str) -> None:
+    """Every value belongs to a parameter the model has, and lies within that parameter's bounds."""
+    have, place = {p.name: p for p in parameters}, f"{where} revision {revision.number}"
+    for name, value in revision.values.items():
         if name not in have:
-            raise InputError(f"unknown parameter '{name}'", f"{where} revision {revision.number}", known(name, have))
+            raise InputError(f"unknown parameter '{name}'", place, known(name, have))
+        low, high = have[name].low, have[name].high
+        slack = ROUNDED * max(abs(low), abs(high))
+        if not low - slack <= value <= high + slack:
+            right = f"{low:g} to {high:g}; undo the step, or calibrate again"
+            raise InputError(f"values {name} = {value:g} is out of its bounds", place, right)
 
 
 def _revision(table: Table) -> Revision:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from thermoscope.commands.opened import opened
+from thermoscope.commands.opened import in_short, opened
 from thermoscope.terminal import give, progress, say, table
 
 EVIDENT = 10.0  # nats
@@ -19,6 +19,7 @@ def compare(case: str, target: str | None, why: bool = False) -> int:
 
     with progress() as tell:
         folder = opened(case, tell)
+        in_short(folder, case)
         tell("running the model")
         result = held_against(folder.case)
         more = failing(folder.case, tell).document() if why else {}
