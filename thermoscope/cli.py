@@ -300,5 +300,5 @@ def main() -> None:
     except (ThermoscopeError, OSError) as fault:
         if "--debug" in sys.argv:
             raise
-        print(f"error: {fault}", file=sys.stderr)
+        print(f"error: {' '.join(str(fault).splitlines())}", file=sys.stderr)
         raise SystemExit(2) from None

@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from geom.errors import InputError
 from lumped.network import Link, Network, Source
 from lumped.reader import known
+from thermoscope.formats import cell
 from thermoscope.once import twice
 from thermoscope.sheet import Column, Sheet
-from thermoscope.tables import HEADER, Samples
+from thermoscope.tables import Samples
 from thermoscope.units import QUANTITIES
 
 Array = NDArray[np.float64]
@@ -76,17 +77,19 @@ def checked_heat(
     """The inputs without negative powers: noise around nothing becomes 0 with a note, more than that is refused."""
     out, notes, columns = dict(inputs), [], {c.feeds: c for c in sheet.columns if c.feeds}
     for name, values in inputs.items():
-        if name.endswith(AMOUNTS) and np.min(values) < 0.0 and without_sign(network, name):
+        read = samples.values[columns[name].name] if name in columns else values
+        lowest = float(np.nanmin(read))
+        if name.endswith(AMOUNTS) and lowest < 0.0 and without_sign(network, name):
             where = _cell(columns[name], samples) if name in columns else f"{sheet.where} [inputs] {name}"
-            if np.min(values) < -NOISE * np.max(np.abs(values)):
-                raise InputError(f"{np.min(values):g} is negative, and the loss that reads '{name}' would heat by it",
+            if lowest < -NOISE * float(np.nanmax(np.abs(read))):
+                raise InputError(f"{lowest:g} is negative, and the loss that reads '{name}' would heat by it",
                                  where, "a power that is not negative: is a clamp reversed?")  # fmt: skip
             out[name] = np.maximum(values, 0.0)
-            notes.append(f"{where}: readings down to {np.min(values):.3g} are taken as 0")
+            notes.append(f"{where}: readings down to {lowest:.3g} are taken as 0")
     return out, notes
 
 
 def _cell(column: Column, samples: Samples) -> str:
     """Where a column is lowest."""
     row = int(np.nanargmin(samples.values[column.name]))
-    return f"{samples.file} column '{column.header}' line {row + HEADER}"
+    return cell(samples.file, column.header, row)

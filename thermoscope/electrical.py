@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError
 from lumped.reader import Table
-from thermoscope.formats import read_frame, recording
+from thermoscope.formats import pairs, read_frame, recording
 from validation.procedure.meters import OHMMETER, VOLTMETER, Meter, Range
 from validation.procedure.readings import COPPER, NDFEB, Magnets, Saturation, Winding
 from validation.procedure.spread import Reading, Spread
@@ -56,12 +56,13 @@ class After:
 
     def at_switch_off(self, winding: Winding) -> Extrapolated:
         """The winding's mean (degC) when the motor was switched off."""
-        table = read_frame(recording(self.file), self.worksheet)
+        file = recording(self.file)
+        table = read_frame(file, self.worksheet)
         for name in (self.time, self.column):
             if name not in table.columns:
                 raise InputError(f"column '{name}' is not in {self.file.name}", self.where,
                                  f"known: {', '.join(map(str, table.columns))}")  # fmt: skip
-        read = table[[self.time, self.column]].dropna().to_numpy(float)
+        read = pairs(table, self.time, self.column, file)
         sd = winding.reading_sd(float(np.median(read[:, 1])))
         cooling = Cooling(read[:, 0], winding.temperature(read[:, 1]), self.ambient, sd)
         return METHODS[self.method](cooling, self.rated_kW)

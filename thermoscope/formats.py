@@ -5,10 +5,6 @@ Channels of several rates share one time column and are empty where they were no
 
 from __future__ import annotations
 
-import csv
-import gzip
-import io
-import zlib
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
@@ -19,6 +15,7 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError, MissingDependency
 from lumped.reader import known
+from thermoscope.csv_file import read_csv
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -26,7 +23,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 SUFFIXES = (".csv", ".csv.gz", ".xlsx", ".tdms", ".mf4", ".parquet")
 TIME = "time_s"  # of formats that carry their own time
-CHUNK, LARGEST = 2**24, 2**30  # bytes; a day of 100 channels at 1 Hz is a tenth of that
+HEADER = 2  # line of the first row of numbers
 GRAIN = 1e-6  # s, below which two instants are one
 Signal = tuple[str, Array, Array]
 
@@ -65,7 +62,7 @@ def read_frame(file: Path, worksheet: str = "") -> pd.DataFrame:
     """The table of a recording, column names stripped. worksheet : of a workbook; of a TDMS file, the group."""
     suffix = _suffix(file)
     readers: dict[str, Callable[[], pd.DataFrame]] = {
-        ".csv": lambda: _csv(file), ".csv.gz": lambda: _csv(file), ".xlsx": lambda: _xlsx(file, worksheet),
+        ".csv": lambda: read_csv(file), ".csv.gz": lambda: read_csv(file), ".xlsx": lambda: _xlsx(file, worksheet),
         ".tdms": lambda: _tdms(file, worksheet), ".mf4": lambda: _mf4(file), ".parquet": lambda: _parquet(file),
     }  # fmt: skip
     if suffix not in readers:
@@ -78,47 +75,6 @@ def read_frame(file: Path, worksheet: str = "") -> pd.DataFrame:
     if len(table) < 3:
         raise InputError(f"the file holds {len(table)} rows", str(file), "at least 3 rows of numbers under the header")
     return table
-
-
-def _csv(file: Path) -> pd.DataFrame:
-    import pandas as pd
-
-    text = _text(file)
-    try:
-        header = next(csv.reader(io.StringIO(text[: text.find("\n") + 1 or None]), skipinitialspace=True), [])
-        table = pd.read_csv(io.StringIO(text), skipinitialspace=True, low_memory=False, index_col=False)
-    except pd.errors.EmptyDataError:
-        raise InputError("the file is empty", str(file), "a header line and rows of numbers") from None
-    except (pd.errors.ParserError, csv.Error, ValueError) as fault:
-        raise InputError(
-            f"not readable as CSV: {fault}", str(file), "commas between columns, one header line"
-        ) from None
-    if len(table.columns) == 1 and ";" in str(table.columns[0]):
-        raise InputError("columns are separated by ';'", str(file), "commas between columns, points in numbers")
-    if len(header) == len(table.columns):
-        table.columns = header  # pandas would rename a second column of one name
-    return table
-
-
-def _text(file: Path) -> str:
-    """The whole of a CSV file, unpacked; nothing that is no text, and nothing too large to be a test."""
-    packed = file.name.lower().endswith(".gz")
-    parts: list[bytes] = []
-    try:
-        with gzip.open(file) if packed else file.open("rb") as source:
-            while part := source.read(CHUNK):
-                parts.append(part)
-                if b"\0" in part:
-                    raise InputError("holds zero bytes, so it is no text", str(file), "CSV as UTF-8 text")
-                if len(parts) * CHUNK > LARGEST:
-                    raise InputError(f"holds more than {LARGEST / 2**20:.0f} MB", str(file), "a shorter recording")
-        return b"".join(parts).decode("utf-8-sig")
-    except UnicodeDecodeError as fault:
-        raise InputError(f"is no UTF-8 text: {fault.reason} at byte {fault.start}", str(file),
-                         "CSV saved as UTF-8") from None  # fmt: skip
-    except (OSError, EOFError, zlib.error) as fault:
-        kind = "gzip" if packed else "CSV"
-        raise InputError(f"not readable as {kind}: {fault}", str(file), "a whole file of that kind") from None
 
 
 def _opened(file: Path, kind: str, package: str, read: Callable[[], Any]) -> Any:
@@ -220,3 +176,30 @@ def merged(frame: pd.DataFrame, time: str, others: Mapping[str, tuple[pd.DataFra
             raise InputError(f"column '{twice[0]}' is recorded twice", f"[recorders.{name}]", "columns of other names")
         out = pd.merge(out, moved, on=time, how="outer", sort=True)
     return out
+
+
+def numbers(table: pd.DataFrame, name: str, file: Path) -> Array:
+    """A column as numbers, NaN where nothing was read; InputError with the line of what is no finite number."""
+    import pandas as pd
+
+    column = table[name]
+    found = np.array(pd.to_numeric(column, errors="coerce"), float)
+    bad = np.flatnonzero(np.isnan(found) & column.notna().to_numpy())
+    if bad.size:
+        raise InputError(f"'{column.iloc[bad[0]]}' is no number", cell(file, name, int(bad[0])),
+                         "a number with a decimal point, or nothing where nothing was read")  # fmt: skip
+    endless = np.flatnonzero(np.isinf(found))
+    if endless.size:
+        raise InputError("the value is infinite", cell(file, name, int(endless[0])), "a finite number")
+    return found
+
+
+def cell(file: Path, column: str, row: int) -> str:
+    """Where a reading stands."""
+    return f"{file} column '{column}' line {row + HEADER}"
+
+
+def pairs(table: pd.DataFrame, time: str, column: str, file: Path) -> Array:
+    """(n, 2) times and readings of two columns, where both are given."""
+    both = np.column_stack([numbers(table, time, file), numbers(table, column, file)])
+    return np.asarray(both[np.isfinite(both).all(axis=1)])

@@ -127,7 +127,7 @@ def _revision(table: Table) -> Revision:
     out = Revision(
         int(table.number("number")), table.word("action", None, ACTIONS), table.words("effects", []),
         table.word("effect", ""), _inner(table, "values").constants("values"), _pairs(_inner(table, "intervals")),
-        _before_after(_inner(table, "rmse_K")), table.word("why", ""), dict(table.raw("evidence", {})),
+        _before_after(_inner(table, "rmse_K")), table.word("why", ""), _evidence(_inner(table, "evidence")),
     )  # fmt: skip
     table.close()
     return out
@@ -135,6 +135,10 @@ def _revision(table: Table) -> Revision:
 
 def _inner(table: Table, key: str) -> Table:
     return Table(table.raw(key, {}), f"{table.where} {key}")
+
+
+def _evidence(table: Table) -> dict[str, float | str]:
+    return {k: table.word(k) if isinstance(v, str) else table.number(k, of="value") for k, v in table.data.items()}
 
 
 def _pairs(table: Table) -> dict[str, Pair]:

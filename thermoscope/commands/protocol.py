@@ -43,7 +43,7 @@ from geom.errors import InputError
 from geom.toml_file import read_toml
 from lumped.reader import Table
 from thermoscope.electrical import meter_of, saturation_of
-from thermoscope.formats import read_frame, recording
+from thermoscope.formats import pairs, read_frame, recording
 from thermoscope.terminal import give, progress, say, table
 from validation.procedure.meters import OHMMETER, VOLTMETER
 from validation.procedure.protocol import Cold, Hot, Protocol, Record
@@ -111,25 +111,28 @@ def _hot(table: Table, file: Path) -> Hot:
 def _pairs(source: Table, beside: Path, unit_s: float) -> Pairs:
     """(time, value) of a table's `readings`, or of its file; the file's times (s) are divided by `unit_s`."""
     if "readings" in source:
-        rows = source.raw("readings")
-        if not isinstance(rows, list) or not all(isinstance(r, list) and len(r) == 2 for r in rows):
+        rows = source.rows("readings", of="value")
+        if any(len(row) != 2 for row in rows):
             raise source.error("readings is no list of pairs", "readings = [[time, value], ...]")
-        return tuple((float(t), float(v)) for t, v in rows)
+        return tuple((row[0], row[1]) for row in rows)
     if "file" not in source:
         return ()
     path, time, column = beside.parent / source.word("file"), source.word("time", "time_s"), source.word("column")
-    frame = read_frame(recording(path), source.word("worksheet", ""))
+    file = recording(path)
+    frame = read_frame(file, source.word("worksheet", ""))
     for name in (time, column):
         if name not in frame.columns:
             raise source.error(f"column '{name}' is not in {path.name}", f"known: {', '.join(map(str, frame.columns))}")
-    return tuple((float(t) / unit_s, float(v)) for t, v in frame[[time, column]].dropna().to_numpy(float))
+    return tuple((float(t) / unit_s, float(v)) for t, v in pairs(frame, time, column, file))
 
 
 def _range(table: Table, key: str, usual: Reading) -> Reading:
     if key not in table:
         return usual
-    low, *more = table.numbers(key)
-    high = more[0] if more else low
+    given = table.numbers(key)
+    if len(given) not in (1, 2):
+        raise table.error(f"{key} = {list(given)} is not possible", "one number, or [lowest, highest]")
+    low, high = given[0], given[-1]
     return Reading(usual.name, (low + high) / 200.0, abs(high - low) / 200.0)
 
 
