@@ -178,7 +178,7 @@ def render(case: Case, out: Out = None, json: Json = None) -> None:
 @app.command()
 def serve(
     case: Case,
-    host: Annotated[str, typer.Option(help="Anything but this computer itself asks for a token.")] = "127.0.0.1",
+    host: Annotated[str, typer.Option(help="Where to listen; all browsers need the token.")] = "127.0.0.1",
     port: Annotated[int, typer.Option(min=0, max=65535, help="0 takes a free one.")] = 8710,
 ) -> None:
     """The workbench in the browser: the machine, its sensors, what is missing, add it and see the error fall."""
