@@ -22,16 +22,16 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from validation.bar import Bar
+from validation.diagnose import conclude, diagnose, search
+from validation.evidence import Evidence, calibrated_case, candidates, possible, scored
+from validation.null import Null
 
 from lumped.build import bare_network, node_link, node_source
 from lumped.laws import Fixed, InputPower, Linear, Power
 from lumped.network import Network, Parameter
 from lumped.simulate import Record, simulate
-from validation.bar import Bar
 from validation.case import Case, Channel, Model, Test
-from validation.diagnose import conclude, diagnose, search
-from validation.evidence import Evidence, calibrated_case, candidates, possible, scored
-from validation.null import Null
 from validation.score import gram
 from validation.sheet import segments
 

@@ -1,6 +1,6 @@
 """Measured traction motor: the starting network, what the tool names, and the error on four profiles never used.
 
-    python examples/hust.py [--rounds 4] [--draws 24] [--ablation] [--out out/hust]
+    python examples/hust.py [--rounds 4] [--ablation] [--out out/hust]
 
 What `thermoscope improve` does, the best-fitting of a group taken unasked: the effect that leads is added and what
 case.toml leaves free is calibrated again, until nothing is named. Profiles 5, 8, 11 and 15 are only ever predicted, and
@@ -24,16 +24,15 @@ from thermoscope.commands.revise import recorded
 from thermoscope.files import write_whole
 from thermoscope.folder import find_case, load_case
 from thermoscope.history import History, load_history, save_history
-from validation import revise
+from validation import diagnose, revise
 from validation.case import Case
 from validation.climb import Guide, Stair, best, climb
 from validation.compare import Comparison
-from validation.diagnose import diagnose
 from validation.fitting import with_model
 
 CHANNELS = ("winding", "stator", "rotor")
 EVIDENCE = (
-    "| added | size (95 % interval) | score | threshold | verdict | confused with |", "|---|---|---|---|---|---|",
+    "| added | size (95 % interval) | probability | verdict | confused with |", "|---|---|---|---|---|",
 )  # fmt: skip
 
 
@@ -57,7 +56,7 @@ def evidence(stair: Stair) -> str:
     size = f"{p.value:.3g} {p.unit} ({p.ci95[0]:.3g} to {p.ci95[1]:.3g})"
     e = stair.evidence
     alike = cell(str(e.get("confused_with", "nothing")))
-    return f"| {cell(p.name)} | {size} | {e['score']:.1f} | {e['threshold']:.1f} | {e['verdict']} | {alike} |"
+    return f"| {cell(p.name)} | {size} | {100 * float(e['probability']):.0f} % | {e['verdict']} | {alike} |"
 
 
 def cell(text: str) -> str:
@@ -69,42 +68,39 @@ def cell(text: str) -> str:
 class Found:
     """What the diagnosis says of a model from which one effect was taken.
 
-    group : the first group it names;  again : the deleted effect is in one of its groups;  score, threshold : its own
+    group : the first group it names;  again : the deleted effect is in one of its groups;  probability : its own
     """
 
     deleted: str
     verdict: str
     group: tuple[str, ...]
     again: bool
-    score: float
-    threshold: float
+    probability: float
 
     def row(self) -> str:
         words = "found" if self.again else "not found"
         group = cell(" or ".join(self.group) or "nothing")
-        return (
-            f"| {cell(self.deleted)} | {words} | {self.verdict} | {group} | {self.score:.1f} | {self.threshold:.1f} |"
-        )
+        return f"| {cell(self.deleted)} | {words} | {self.verdict} | {group} | {100 * self.probability:.0f} % |"
 
 
-def ablated(case: Case, draws: int, tell: Callable[[str], None]) -> list[Found]:
+def ablated(case: Case, tell: Callable[[str], None]) -> list[Found]:
     """Every effect of the model deleted in turn and looked for."""
     out = []
     for name in [e.name for e in case.model.effects]:
         tell(f"without {name}")
         less = with_model(case, revise.remove(case, name).model)
-        found = diagnose(less, draws=draws, plan=False, progress=tell)
-        score = next((c.score for c in found.candidates if c.effect == name), float("nan"))
+        found = diagnose(less, plan=False, progress=tell)
+        share = next((c.probability for c in found.candidates if c.effect == name), 0.0)
         group = found.groups[0] if found.groups else ()
         again = any(name in g for g in found.groups)
-        out.append(Found(name, found.verdict, group, again, score, found.threshold))
+        out.append(Found(name, found.verdict, group, again, share))
         tell(out[-1].row())
     return out
 
 
 def ablation(found: Sequence[Found]) -> str:
     """Markdown of the ablation."""
-    head = ["| deleted | again | verdict | leading | score | threshold |", "|---|---|---|---|---|---|"]
+    head = ["| deleted | again | verdict | leading | probability |", "|---|---|---|---|---|"]
     return "\n".join([*head, *(f.row() for f in found)])
 
 
@@ -139,7 +135,6 @@ def table(stairs: Sequence[Stair]) -> str:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--rounds", type=int, default=4, help="steps, the calibration among them")
-    parser.add_argument("--draws", type=int, default=24)
     parser.add_argument("--ablation", action="store_true")
     parser.add_argument("--out", type=Path, default=Path("out/hust"))
     options = parser.parse_args()
@@ -148,7 +143,7 @@ def main() -> None:
         print(message, file=sys.stderr)
 
     case = load_case(find_case("hust-ipmsm"), tell).case
-    done = climb(case, Guide(best), options.draws, options.rounds, progress=tell)
+    done = climb(case, Guide(best), options.rounds, progress=tell)
     file = options.out / "model.toml"
     save_history(file, history(done.stairs), load_history(file))
     text = "\n".join([table(done.stairs), "", *EVIDENCE, *(evidence(s) for s in done.stairs if s.effect), ""])
@@ -156,7 +151,7 @@ def main() -> None:
     write_whole(options.out / "compare.json", json.dumps(done.stairs[-1].comparison.document(), indent=1))
     print(text)
     if options.ablation:
-        rows = ablation(ablated(done.case, options.draws, tell))
+        rows = ablation(ablated(done.case, tell))
         write_whole(options.out / "ablation.md", rows + "\n")
         print(rows)
 

@@ -1,6 +1,6 @@
 """Two measured heaters: from two bare masses, the missing heat paths are named and added one after the other.
 
-    python examples/tclab.py [--draws 40] [--out out/tclab]
+    python examples/tclab.py [--out out/tclab]
 
 Each rung is one `diagnose` and one `add` of what leads; where several cannot be told apart the first is taken and the
 others are listed. Asked is which path of heat is missing, so the catalogue is restricted to paths and the sensors' lag.
@@ -21,10 +21,10 @@ from validation.climb import Climbed, Guide, Stair, best, climb, leading
 PATHS = ("convection.constant", "convection.buoyant", "radiation", "coupling", "sensor.lag")
 
 
-def ladder(draws: int, tell: Callable[[str], None], most: int = 8, cache: Path | None = None) -> Climbed:
+def ladder(tell: Callable[[str], None], most: int = 8) -> Climbed:
     """All rungs of the case."""
     case = load_case(find_case("tclab"), tell, bare=True).case
-    return climb(case, Guide(best, offer=leading), draws, most, cache, tell, PATHS)
+    return climb(case, Guide(best, offer=leading), most, tell, PATHS)
 
 
 def table(done: Climbed) -> str:
@@ -55,10 +55,9 @@ def ends(done: Climbed) -> str:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--draws", type=int, default=24)
     parser.add_argument("--out", type=Path, default=Path("out/tclab"))
     options = parser.parse_args()
-    done = ladder(options.draws, lambda message: print(message, file=sys.stderr))
+    done = ladder(lambda message: print(message, file=sys.stderr))
     text = f"{table(done)}\n{ends(done)}"
     write_whole(options.out / "table.md", text + "\n")
     print(text)

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from geom.profile import Profile
+from geom.roles import Role
 
 Prism = tuple[Profile, float, float]
 
@@ -68,6 +69,7 @@ class Part:
     prisms : (profile, z0 (m), z1 (m)); prisms of one part touch but do not overlap
     filling : of a winding, share of conductor in its cross-section and share of the rest filled with resin
     made : what CAD files show instead of the prisms: round ports, helical channels
+    role : what it is;  turns : whether it turns with the shaft, None as its role does
     Fluids may be drawn loosely: a solid wins where they overlap, and so does the fluid declared first.
     """
 
@@ -77,6 +79,8 @@ class Part:
     filling: tuple[float, float] | None = None
     solid: bool = True
     made: Made | None = None
+    role: Role | None = None
+    turns: bool | None = None
 
     @property
     def volume(self) -> float:
@@ -101,8 +105,8 @@ class Port:
     position: tuple[float, float, float]
 
 
-def fluid(name: str, *prisms: Prism, material: str = "air") -> Part:
-    return Part(name, material, prisms, solid=False)
+def fluid(name: str, *prisms: Prism, material: str = "air", role: Role = Role.INNER_AIR) -> Part:
+    return Part(name, material, prisms, solid=False, role=role)
 
 
 def extrude(profiles: Iterable[Profile], z0: float, z1: float) -> tuple[Prism, ...]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from lumped import laws
 from lumped.network import Link, Network, Row, Source
-from lumped.terms import CONSTANT, LINEAR, POWER, RADIATION, TABLE, Terms
+from lumped.terms import CONSTANT, FILM, LINEAR, POWER, RADIATION, TABLE, Terms
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -104,11 +104,17 @@ def _code(law: laws.TemperatureLaw) -> tuple[int, float, float]:
         return RADIATION, 0.0, 0.0
     if isinstance(law, laws.Linear):
         return LINEAR, law.alpha, law.reference
+    if isinstance(law, laws.FilmTable):
+        return FILM, float(len(law.difference)), 0.0
     return (TABLE if isinstance(law, laws.Table) else CONSTANT), 0.0, 0.0
 
 
 def _table(law: laws.TemperatureLaw) -> Array:
-    points = [law.difference, law.value] if isinstance(law, laws.Table) else [(), ()]
+    points: list[tuple[float, ...]] = [(), ()]
+    if isinstance(law, laws.Table):
+        points = [law.difference, law.value]
+    if isinstance(law, laws.FilmTable):
+        points = [law.difference * laws.FILMS, law.value]
     return np.ascontiguousarray(np.array(points, float).T)
 
 

@@ -18,15 +18,18 @@ from geom.errors import InputError
 from lumped.build import node_row
 from lumped.coolant import Coolant
 from lumped.correlations.ducts import duct_film, schmidt_helical, staton_rectangle
-from lumped.exchanger import CellFilm, Effectiveness, Exchanger, Flow, Rate
+from lumped.exchanger import BACKWARDS, CellFilm, Effectiveness, Exchanger, Flow, Rate
 from lumped.hydraulics import Duct, parallel_shares, pressure_drop, pumping_power
-from lumped.laws import Table
+from lumped.laws import Law, Table
 from lumped.network import Link, Network, Row
+from lumped.reversal import Direction, OneWay
 
 RANGE = (0.0, *(2.0**k for k in np.arange(-5, 2.01, 0.125)))  # films are tabulated at these times the declared flow
 PER_M3S = {"l_min": 1 / 60000.0, "m3_h": 1 / 3600.0}
 WARMTH = tuple(float(T) for T in range(0, 161, 5))  # degC, at which films are tabulated where they follow
 TANK_M3 = 5e-5  # of the pipe in which branches meet
+
+Edge = tuple[str, str, float]  # from, to, share of the flow
 
 
 @dataclass(frozen=True)
@@ -55,6 +58,7 @@ class Circuit:
     follows : whether films change with the coolant's temperature, else they hold at `at_degC`
     of, unit : input that carries the flow and its unit, or None for a flow that never changes
     inlet : a boundary for an open circuit; the node "NAME.reservoir" for a closed one
+    behind : of an open circuit, the boundary that flows in when the flow turns round; "" refuses that
     """
 
     name: str
@@ -69,6 +73,7 @@ class Circuit:
     cooler: Cooler | None = None
     pump_efficiency: float = 0.5
     follows: bool = True
+    behind: str = ""
 
     @property
     def heat(self) -> float:
@@ -108,14 +113,38 @@ class Circuit:
 
     def links(self, network: Network) -> list[Link]:
         """Streams, films and exchanger."""
-        out = [self._stream(network)]
+        out = self._streams(network)
         for branch, share in self.shares.items():
             for number, part in enumerate(self.branches[branch]):
                 out += self._films(network, branch, number, part, share)
         return [*out, *self._exchanger(network)]
 
-    def _edges(self) -> Iterator[tuple[str, str, float]]:
-        """(from, to, share of the flow)"""
+    def _streams(self, network: Network) -> list[Link]:
+        """In both directions, where it is known what flows in from behind and a column carries the flow."""
+        law, edges, end = Rate(self.stream()), list(self._edges()), {self.outlet: 1.0}
+        if self.of is None:
+            return [self._stream(network, "", self.inlet, end, edges, law)]
+        if not self._turns:
+            right = 'backwards_from = "BOUNDARY": what comes in at the outlet when the flow turns round'
+            one = OneWay(law, self.of, f"[circuits.{self.name}]", right, self.flow / PER_M3S[self.unit])
+            return [self._stream(network, "", self.inlet, end, edges, one)]
+        first, back = {self.cell(branch, 0): share for branch, share in self.shares.items()}, self._back()
+        return [
+            self._stream(network, "", self.inlet, end, edges, Direction(law, self.of, 1)),
+            self._stream(network, ":back", back[-1][0], first, back, Direction(law, self.of, -1)),
+        ]
+
+    @property
+    def _turns(self) -> bool:
+        """Whether its flow may turn round."""
+        return self.of is not None and (self.cooler is not None or bool(self.behind))
+
+    def _back(self) -> list[Edge]:
+        """The edges the other way round."""
+        inside = [(b, a, share) for a, b, share in self._edges() if self.cooler is not None or a != self.inlet]
+        return inside if self.cooler is not None else [*inside, (self.behind, self.outlet, 1.0)]
+
+    def _edges(self) -> Iterator[Edge]:
         for branch, share in self.shares.items():
             count = self.cells * len(self.branches[branch])
             path = [self.inlet, *(self.cell(branch, k) for k in range(count)), self.outlet]
@@ -123,15 +152,17 @@ class Circuit:
         if self.cooler is not None:
             yield from ((self.outlet, f"{self.name}.cooled", 1.0), (f"{self.name}.cooled", self.inlet, 1.0))
 
-    def _stream(self, network: Network) -> Link:
-        edges = list(self._edges())
+    def _stream(
+        self, network: Network, suffix: str, start: str, ends: Mapping[str, float], edges: list[Edge], law: Law
+    ) -> Link:
+        """One direction; ends : nodes that it leaves from, with their shares."""
         a, b = [network.column(x) for x, _, _ in edges], [network.column(x) for _, x, _ in edges]
         share = np.array([edge[2] for edge in edges])
         rows, cols, vals = np.array(b + b), np.array(b + a), np.concatenate([share, -share])
-        out, into = network.column(self.outlet), network.column(self.inlet)
+        out = Row(np.array([network.column(end) for end in ends]), np.array(list(ends.values())))
         return Link(
-            f"stream:{self.name}", "stream", (self.inlet, self.outlet), rows, cols, vals,
-            Rate(self.stream()), node_row(out), node_row(into),
+            f"stream:{self.name}{suffix}", "stream", (start, next(iter(ends))), rows, cols, vals, law, out,
+            node_row(network.column(start)),
         )  # fmt: skip
 
     def _films(self, network: Network, branch: str, number: int, part: Pass, share: float) -> list[Link]:
@@ -174,10 +205,21 @@ class Circuit:
         if self.cooler is None:
             return []
         law = Exchanger(self.cooler.UA, self.stream(), self.cooler.air_flow, self.cooler.effectiveness)
-        own, hot, air = (network.column(n) for n in (f"{self.name}.cooled", self.outlet, self.cooler.air))
+        if self.of is None:
+            return [self._exchanged(network, "", self.outlet, law)]
+        back = replace(law, effectiveness=BACKWARDS.get(law.effectiveness, law.effectiveness))
+        return [
+            self._exchanged(network, "", self.outlet, Direction(law, self.of, 1)),
+            self._exchanged(network, ":back", self.inlet, Direction(back, self.of, -1)),
+        ]
+
+    def _exchanged(self, network: Network, suffix: str, start: str, law: Law) -> Link:
+        """The exchanger with the node that flows into it."""
+        assert self.cooler is not None
+        own, hot, air = (network.column(n) for n in (f"{self.name}.cooled", start, self.cooler.air))
         rows, cols, vals = np.array([own, own]), np.array([hot, air]), np.array([1.0, -1.0])
-        places = (f"{self.name}.cooled", self.cooler.air)
-        return [Link(f"exchanger:{self.name}", "film", places, rows, cols, vals, law, node_row(hot), node_row(air))]
+        places, ends = (f"{self.name}.cooled", self.cooler.air), (node_row(hot), node_row(air))
+        return Link(f"exchanger:{self.name}{suffix}", "film", places, rows, cols, vals, law, *ends)
 
     def pressure_drop(self, flow: float | None = None) -> float:
         """Across the branches (Pa) at a flow (m3/s)."""

@@ -12,13 +12,15 @@ import numpy as np
 from geom.errors import InputError
 from geom.toml_file import read_toml
 from lumped.build import bare_network, node_link, node_source, stream, surface_place
-from lumped.declared_links import flow_law, mechanisms
+from lumped.declared_links import flow_column, flow_law, mechanisms
 from lumped.declared_losses import loss_kinds, loss_laws, taken_off
 from lumped.declared_parameters import read_parameters
+from lumped.declared_roles import read_identities, read_quantities
 from lumped.laws import Law
 from lumped.loss_measured import Negative
 from lumped.network import Link, Network, Place, Source
 from lumped.reader import Table, known
+from lumped.reversal import Direction, OneWay
 from lumped.soundness import checked_network, checked_path
 
 if TYPE_CHECKING:
@@ -55,7 +57,9 @@ def read_network(data: Mapping[str, Any], where: str = "network.toml") -> Networ
     clash = set(nodes) & set(boundaries)
     if clash:
         raise head.error(f"'{min(clash)}' is a node and a boundary", "one or the other")
-    network = replace(network, places=_places(network, top, nodes, cells), settles_s=settles)
+    declared = read_identities(top, nodes, boundaries, cells)
+    network = replace(network, places=_places(network, top, nodes, cells), settles_s=settles, declared=declared,
+                      quantities=read_quantities(top))  # fmt: skip
     loops = [link for circuit in circuits.values() for link in circuit.links(network)]
     links = [*_links(network, top), *_streams(network, top), *loops]
     network = replace(network, links=tuple(links), sources=tuple(_sources(network, top)))
@@ -144,15 +148,30 @@ def _streams(network: Network, top: Table) -> list[Link]:
     out = []
     for name, table in top.tables("streams").items():
         path = [_end(network, table, node) for node in checked_path(table.words("path"), table.where)]
-        out.append(stream(network, f"stream:{name}", path, flow_law(table)))
+        out += _both_ways(network, name, path, table)
         table.raw("prior_sd")
         table.close()
     return out
 
 
+def _both_ways(network: Network, name: str, path: list[str], table: Table) -> list[Link]:
+    """A stream; where a column carries its flow and the file says what comes in from behind, backwards too."""
+    law, column, behind = flow_law(table), flow_column(table), table.word("backwards_from", "")
+    if column is None:
+        return [stream(network, f"stream:{name}", path, law)]
+    if not behind and path[0] != path[-1]:
+        right = f'backwards_from = "NODE": what comes in behind {path[-1]} when the flow turns round'
+        return [stream(network, f"stream:{name}", path, OneWay(law, column, table.where, right))]
+    back = [_end(network, table, behind), *path[:0:-1]] if behind else path[::-1]
+    return [
+        stream(network, f"stream:{name}", path, Direction(law, column, 1)),
+        stream(network, f"stream:{name}:back", back, Direction(law, column, -1)),
+    ]
+
+
 def _sources(network: Network, top: Table) -> list[Source]:
     tables = top.tables("losses")
-    kinds, laws = loss_kinds(tables), loss_laws(tables)
+    kinds, laws = loss_kinds(tables), loss_laws(tables, network.quantities)
     out = {name: _source(network, name, table, laws[name]) for name, table in tables.items()}
     taken = [
         _taken_off(out[name], out[other])

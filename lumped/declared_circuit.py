@@ -36,6 +36,7 @@ def _circuit(name: str, table: Table, nodes: list[str], boundaries: list[str]) -
         name, read_coolant(table), table.number("at_degC", 40.0), flow, passes, inlet, of, unit,
         int(table.number("cells", 8)), cooler, table.number("pump_efficiency", 0.5),
         table.word("films", "follow", ("follow", "fixed")) == "follow",
+        "" if closed or "backwards_from" not in table else table.word("backwards_from", None, boundaries),
     )  # fmt: skip
     for key in ("prior_sd", "film_prior_sd"):
         table.raw(key)

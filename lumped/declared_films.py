@@ -9,8 +9,9 @@ from functools import partial
 
 import numpy as np
 
-from lumped.correlations import Info, RangeWarning, tabulated
-from lumped.laws import Array, Fixed, Inputs, Law
+from lumped.correlations import Info, RangeWarning, film_tabulated, tabulated
+from lumped.laws import Array, FilmTable, Fixed, Inputs, Law
+from lumped.laws import Table as TableLaw
 from lumped.properties import Fluid, air
 from lumped.reader import Table
 
@@ -49,15 +50,18 @@ class FilmOver(Law):
 
 
 def natural(table: Table) -> Law:
-    """Still air, tabulated over the temperature difference at one temperature of the air."""
-    at, film, factor = natural_film(table)
-    return Fixed(factor, tabulated(film, fluid_temperature=at))
+    """Still air, tabulated over the temperature difference."""
+    film, factor = natural_film(table)
+    return Fixed(factor, film)
 
 
-def natural_film(table: Table) -> tuple[float, Still, float]:
-    """(temperature of the air in degC, its film, the factor on it)"""
-    at, of = table.number("fluid_degC", 20.0), _air(table)
-    return at, NATURAL[table.word("surface", None, NATURAL)](table, of), table.number("factor", 1.0)
+def natural_film(table: Table) -> tuple[FilmTable | TableLaw, float]:
+    """The film of still air, and the factor on it. The air's properties follow its film temperature, or, where the
+    table says `fluid_degC`, are those of surfaces in air of that temperature."""
+    film, factor = NATURAL[table.word("surface", None, NATURAL)](table, _air(table)), table.number("factor", 1.0)
+    if "fluid_degC" not in table:
+        return film_tabulated(film), factor
+    return tabulated(film, fluid_temperature=table.number("fluid_degC")), factor
 
 
 def _air(table: Table) -> Callable[[float], Fluid]:

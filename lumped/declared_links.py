@@ -10,6 +10,7 @@ from lumped.declared_rotor import gap, rotating
 from lumped.laws import Fixed, InputPower, Law, Power, Radiation
 from lumped.laws import Table as TableLaw
 from lumped.reader import Table, powers
+from lumped.shaft_fan import shaft_fan
 
 Mechanism = tuple[str, Law, bool]
 
@@ -23,7 +24,7 @@ def _coefficient(table: Table, has_area: bool, needed: bool = True) -> tuple[flo
         if needed:
             raise table.error("no coefficient", "one of G_W_K, R_K_W, h_W_m2K")
         return None
-    value = table.number(given[0], low=1e-12 if given[0] == "R_K_W" else 0.0)
+    value = table.number(given[0])
     if given[0] == "h_W_m2K" and not has_area:
         raise table.error("h_W_m2K without an area", "area_m2 = ... in the link, or a surface as its first end")
     return (1.0 / value if given[0] == "R_K_W" else value), given[0] == "h_W_m2K"
@@ -78,6 +79,11 @@ def _forced(table: Table, has_area: bool) -> tuple[Law, bool]:
     return InputPower(found[0], of), found[1]
 
 
+def _fan(table: Table, has_area: bool) -> tuple[Law, bool]:
+    _needs_area(table, has_area)
+    return shaft_fan(table), True
+
+
 def _power(table: Table, has_area: bool) -> tuple[Law, bool]:
     found, law = _coefficient(table, has_area), Power(table.number("exponent", 0.25, of="power.exponent"))
     assert found is not None
@@ -97,7 +103,7 @@ def _tabled(table: Table, has_area: bool) -> tuple[Law, bool]:
 
 MECHANISMS = {
     "natural": _natural, "radiation": _radiation, "forced": _forced, "gap": _gap, "rotating": _rotating,
-    "contact": _contact, "power": _power, "table": _tabled,
+    "contact": _contact, "fan": _fan, "power": _power, "table": _tabled,
 }  # fmt: skip
 
 
@@ -127,6 +133,15 @@ def _mixed(table: Table, has_area: bool) -> list[Mechanism]:
     return [(f":mixed:{k + 1}", law, True) for k, law in enumerate(laws)]
 
 
+FLOW_INPUTS = {"flow_l_min_input": 1 / 60000.0, "flow_m3_h_input": 1 / 3600.0}
+
+
+def flow_column(table: Table) -> str | None:
+    """The input that carries a stream's flow with its direction; a fan on a shaft blows one way however it turns."""
+    of = [name for name, _, exponent in powers(table) if exponent == 1.0 and "flow" in name]
+    return next((table.word(key) for key in FLOW_INPUTS if key in table), of[0] if len(of) == 1 else None)
+
+
 def flow_law(table: Table) -> Law:
     """Heat capacity rate (W/K) of a stream: fixed, or proportional to a flow input."""
     if "mcp_W_K" in table:
@@ -134,8 +149,7 @@ def flow_law(table: Table) -> Law:
     rate = table.number("density_kg_m3") * table.number("cp_J_kgK")
     if "flow_l_min" in table:
         return Fixed(rate * table.number("flow_l_min") / 60000.0)
-    units = {"flow_l_min_input": 1 / 60000.0, "flow_m3_h_input": 1 / 3600.0}
-    for key, scale in units.items():
+    for key, scale in FLOW_INPUTS.items():
         if key in table:
             return InputPower(rate * scale, ((table.word(key), 1.0, 1.0),))
     raise table.error(

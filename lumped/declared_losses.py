@@ -3,14 +3,32 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Collection, Mapping
+from functools import partial
 from itertools import pairwise
 
 from lumped.laws import CONSTANT, Law, Linear, TemperatureLaw
 from lumped.loss_map import MapLoss
 from lumped.loss_measured import MeasuredLoss
 from lumped.losses import ALPHA_CU, BrushLoss, CopperLoss, IronLoss, PowerLoss, RippleLoss
+from lumped.quantities import USUAL
 from lumped.reader import Table, powers
+
+COLDEST, HOTTEST = -60.0, 300.0  # degC: from the coldest place a machine stands in to beyond what insulation bears
+
+
+def _coefficient(table: Table, reference: float, default: float | None = None) -> float:
+    """alpha (1/K) of 1 + alpha (T - reference), which must not turn a loss into cooling between COLDEST and HOTTEST."""
+    alpha = table.number("alpha_1_K", default, low=-1.0 if default is None else 0.0)
+    zero = reference - 1.0 / alpha if alpha else math.inf
+    if COLDEST <= zero <= HOTTEST:
+        side, end = ("above", HOTTEST) if alpha < 0 else ("below", COLDEST)
+        most = 1.0 / (reference - end)
+        raise table.error(
+            f"alpha_1_K = {alpha:g} makes heat negative {side} {zero:.4g} degC",
+            f"{'more' if alpha < 0 else 'less'} than {most:.4g} 1/K; copper has {ALPHA_CU}",
+        )
+    return alpha
 
 
 def _copper(table: Table) -> Law:
@@ -22,7 +40,7 @@ def _copper(table: Table) -> Law:
     speed, at, coefficients = _ac(Table(ac, f"{table.where} ac")) if ac is not None else (None, 1.0, (1.0,))
     return CopperLoss(
         table.number(given[0]), table.words("currents"), table.number("factor", 1.0),
-        table.number("alpha_1_K", ALPHA_CU), reference, coefficients, speed, at,
+        _coefficient(table, reference, ALPHA_CU), reference, coefficients, speed, at,
     )  # fmt: skip
 
 
@@ -35,7 +53,8 @@ def _ac(table: Table) -> tuple[str, float, tuple[float, ...]]:
 def _temperature(table: Table) -> TemperatureLaw:
     if "alpha_1_K" not in table:
         return CONSTANT
-    return Linear(table.number("alpha_1_K"), table.number("reference_degC"))
+    reference = table.number("reference_degC")
+    return Linear(_coefficient(table, reference), reference)
 
 
 def _iron(table: Table) -> Law:
@@ -66,15 +85,15 @@ def _brush(table: Table) -> Law:
     return BrushLoss(table.number("drop_V"), table.word("current", "current_A"), friction, speed, at)
 
 
-def _measured(table: Table) -> Law:
+def _measured(table: Table, speeds: Collection[str]) -> Law:
     table.words("less", [])
-    return MeasuredLoss(_products(table, "electrical", 1.0) + _products(table, "mechanical", -1.0))
+    return MeasuredLoss(_electrical(table) + _mechanical(table, speeds))
 
 
 def taken_off(table: Table, kinds: Mapping[str, str]) -> tuple[str, ...]:
     """The losses that a measured one leaves to the model."""
     less = table.words("less", [])
-    others = [name for name, kind in kinds.items() if kind != "measured"]
+    others = [name for name, kind in kinds.items() if kind != MEASURED]
     for name in less:
         if name not in others:
             raise table.error(f"less = '{name}' is no loss", f"a loss that is not measured: {', '.join(others)}")
@@ -85,7 +104,7 @@ def _ripple(table: Table) -> Law:
     return RippleLoss(
         table.number("supply_V"), table.word("voltage", "voltage_V"), table.number("L_H"),
         table.number("switching_Hz"), table.number("R20_ohm"), table.number("factor", 1.0),
-        table.number("alpha_1_K", ALPHA_CU),
+        _coefficient(table, 20.0, ALPHA_CU),
     )  # fmt: skip
 
 
@@ -101,27 +120,46 @@ def _map(table: Table) -> Law:
                    _temperature(table))  # fmt: skip
 
 
-def _products(table: Table, key: str, sign: float) -> tuple[tuple[float, tuple[str, ...]], ...]:
+Products = tuple[tuple[float, tuple[str, ...]], ...]
+
+
+def _electrical(table: Table) -> Products:
     out = []
-    for item in table.listed(key):
+    for item in table.listed("electrical"):
+        out.append((item.number("factor", 1.0, of="electrical.factor"), item.words("product")))
+        item.close()
+    return tuple(out)
+
+
+def _mechanical(table: Table, speeds: Collection[str]) -> Products:
+    """Taken off. speeds : inputs in 1/min, which come with pi/30; a product of several without one needs its factor."""
+    out = []
+    for item in table.listed("mechanical"):
         names = item.words("product")
-        default = math.pi / 30 if key == "mechanical" and any(name.endswith("_rpm") for name in names) else 1.0
-        out.append((sign * item.number("factor", default, of=f"{key}.factor"), names))
+        turning = [name for name in names if name in speeds]
+        if "factor" not in item and not turning and len(names) > 1:
+            raise item.error(
+                "none of these inputs is known as a speed", 'factor = ..., or [inputs.NAME] quantity = "speed"'
+            )
+        out.append((-item.number("factor", math.pi / 30 if turning else 1.0, of="mechanical.factor"), names))
         item.close()
     return tuple(out)
 
 
 LOSSES = {
-    "copper": _copper, "iron": _iron, "brush": _brush, "ripple": _ripple, "map": _map, "measured": _measured,
+    "copper": _copper, "iron": _iron, "brush": _brush, "ripple": _ripple, "map": _map,
 }  # fmt: skip
+MEASURED = "measured"
 PLAIN = ("friction", "windage", "stray", "magnet", "switching", "bearing", "constant")
 
 
 def loss_kinds(tables: Mapping[str, Table]) -> dict[str, str]:
     """Name -> kind."""
-    return {name: table.word("kind", None, (*LOSSES, *PLAIN)) for name, table in tables.items()}
+    return {name: table.word("kind", None, (*LOSSES, MEASURED, *PLAIN)) for name, table in tables.items()}
 
 
-def loss_laws(tables: Mapping[str, Table]) -> dict[str, Law]:
-    """Name -> law."""
-    return {name: LOSSES.get(kind, _terms)(tables[name]) for name, kind in loss_kinds(tables).items()}
+def loss_laws(tables: Mapping[str, Table], quantities: Mapping[str, str] | None = None) -> dict[str, Law]:
+    """Name -> law.  quantities : input -> what it measures"""
+    speeds = [name for name, quantity in {**USUAL, **(quantities or {})}.items() if quantity == "speed"]
+    read: dict[str, Callable[[Table], Law]] = {**LOSSES, MEASURED: partial(_measured, speeds=speeds)}
+    return {name: read.get(kind, _terms)(tables[name]) for name, kind in loss_kinds(tables).items()}

@@ -8,15 +8,13 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from lumped.correlations import RangeWarning
-from lumped.correlations.tabulate import STILL_AIR_K
-from lumped.declared_films import POINTS, Film, FilmOver, Still, natural_film, over
+from lumped.declared_films import POINTS, Film, FilmOver, natural_film, over
 from lumped.laws import CONSTANT, Array, Inputs, Law, TemperatureLaw
-from lumped.laws import Table as TableLaw
 from lumped.reader import Table
 
 TOLERANCE, SMALL = 3e-3, 1.0  # relative, of a film of at least SMALL (W/m2/K)
@@ -45,25 +43,24 @@ class Share(Law):
 def mixed(table: Table) -> list[Law]:
     """(h_forced^n + h_natural^n)^(1/n) of a `natural` and a `forced` table, as laws that act in parallel."""
     still, moving = (Table(table.raw(key, {}), f"{table.where} {key}") for key in ("natural", "forced"))
-    at, film, factor = natural_film(still)
+    film, factor = natural_film(still)
     forced, exponent = over(moving), table.number("exponent", 3.0, of="mixed.exponent")
     still.close()
     moving.close()
     speeds = forced.top * np.linspace(0.0, 1.0, POINTS) ** 2
-    h = _together(film, at, factor, forced.film, speeds, exponent)
+    h = _together(factor * np.array(film.value), forced.film, speeds, exponent)
     return [
-        Share(forced, tuple(speeds), tuple(u), TableLaw(STILL_AIR_K, tuple(w)), k == 0)
+        Share(forced, tuple(speeds), tuple(u), replace(film, value=tuple(w)), k == 0)
         for k, (u, w) in enumerate(_products(h))
     ]
 
 
-def _together(film: Still, at: float, factor: float, forced: Film, speeds: Array, n: float) -> Array:
-    """h (speeds, differences)"""
+def _together(still: Array, forced: Film, speeds: Array, n: float) -> Array:
+    """h (speeds, points of the still film's table)"""
     from lumped.correlations.forced import churchill_mixed
 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RangeWarning)
-        still = [factor * film(at + d, at)[0] for d in STILL_AIR_K]
         blown = [forced(float(v))[0] for v in speeds]
     return np.array([[churchill_mixed(f, s, exponent=n) for s in still] for f in blown])
 

@@ -42,7 +42,8 @@ def _inline(network: Network, top: Table, nodes: Mapping[str, Table]) -> list[Pa
                 own = f"{target}{name}"
                 mine = [i.name for i in items if i.name == own or i.name.startswith(f"{own}:")]
                 acts = tuple((n, 1.0) for n in mine if ":less:" not in n)
-                out.append(Parameter(f"{prefix}.{name}", acts, prior_sd=table.number("prior_sd")))
+                sd, flow = table.number("prior_sd"), section == "streams"
+                out.append(Parameter(f"{prefix}.{name}", acts, prior_sd=sd, flow=flow))
     for name, table in nodes.items():
         if "prior_sd" in table:
             sd = table.number("prior_sd")
@@ -55,8 +56,12 @@ def _of_circuits(network: Network, top: Table) -> list[Parameter]:
     out = []
     for name, table in top.tables("circuits").items():
         films = tuple((x.name, 1.0) for x in network.links if x.name.startswith(f"film:{name}."))
-        acts = {"prior_sd": (f"circuit.{name}", ((f"stream:{name}", 1.0),)), "film_prior_sd": (f"film.{name}", films)}
-        out += [Parameter(*acts[key], prior_sd=table.number(key)) for key in acts if key in table]
+        streams = tuple((x.name, 1.0) for x in network.links if x.name in (f"stream:{name}", f"stream:{name}:back"))
+        acts = {"prior_sd": (f"circuit.{name}", streams), "film_prior_sd": (f"film.{name}", films)}
+        out += [
+            Parameter(*acts[key], prior_sd=table.number(key), flow=key == "prior_sd")
+            for key in acts if key in table
+        ]  # fmt: skip
     return out
 
 
@@ -73,6 +78,7 @@ def _parameter(name: str, table: Table) -> Parameter:
         name, tuple(targets.items()), table.number("value", neutral), table.word("unit", "1"),
         table.number("low", low), table.number("high", high), table.number("prior_sd", 0.3, of="parameters.prior_sd"),
         mapping, neutral, int(table.number("sign", 0)), table.word("source", ""),  # type: ignore[arg-type]
+        table.flag("flow", False),
     )  # fmt: skip
     table.close()
     return _checked(found, table)

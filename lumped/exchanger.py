@@ -34,6 +34,7 @@ def crossflow(N: Array, ratio: Array) -> Array:
 ARRANGEMENTS: dict[str, Effectiveness] = {
     "crossflow": crossflow, "counterflow": counterflow, "parallel flow": parallel_flow,
 }  # fmt: skip
+BACKWARDS: dict[Effectiveness, Effectiveness] = {counterflow: parallel_flow, parallel_flow: counterflow}
 
 
 @dataclass(frozen=True)

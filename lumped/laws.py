@@ -56,6 +56,20 @@ class Table(TemperatureLaw):
     value: tuple[float, ...]
 
 
+FIRST_C, STEP_K, FILMS = -60.0, 20.0, 14  # film temperatures of a FilmTable: to 200 degC; h is within 0.1 % between
+
+
+@dataclass(frozen=True)
+class FilmTable(TemperatureLaw):
+    """Piecewise linear in |hot - cold| and in the film temperature (hot + cold) / 2, held flat outside.
+
+    difference : (nd,) K, increasing from 0;  value : (FILMS * nd,), one film temperature after the other
+    """
+
+    difference: tuple[float, ...]
+    value: tuple[float, ...]
+
+
 CONSTANT = Constant()
 CLOCK = "time_s"  # the input that is the record's time
 

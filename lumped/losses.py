@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from geom.errors import InputError
 from lumped.laws import CONSTANT, Array, Inputs, Law, Linear, TemperatureLaw
 
 ALPHA_CU = 0.00393  # 1/K at 20 degC, IEC 60028
@@ -60,7 +61,18 @@ class CopperLoss(Law):
         if self.speed is None:
             return self.ac[0]
         f = np.abs(np.asarray(inputs[self.speed], float) / self.speed_at)
-        return np.asarray(np.polynomial.polynomial.polyval(f, self.ac), float)
+        out = np.asarray(np.polynomial.polynomial.polyval(f, self.ac), float)
+        if np.any(out < 0.0):
+            raise self._negative(np.ravel(out), np.ravel(f))
+        return out
+
+    def _negative(self, factor: Array, f: Array) -> InputError:
+        worst = int(np.argmin(factor))
+        return InputError(
+            f"the resistance factor is {factor[worst]:.3g} at {self.speed} = {f[worst] * self.speed_at:.4g}",
+            f"copper loss of {', '.join(self.currents)}, ac coefficients {list(self.ac)}",
+            "coefficients that keep c0 + c1 f + c2 f^2 ... above 0: resistance makes heat",
+        )
 
 
 @dataclass(frozen=True)

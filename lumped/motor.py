@@ -34,6 +34,7 @@ from lumped.motor_losses import sources
 from lumped.motor_means import means
 from lumped.motor_parameters import parameters
 from lumped.motor_path import cells_of, stem
+from lumped.motor_roles import declared, with_channels
 from lumped.motor_settings import contact_coefficients
 from lumped.network import Link, Network, Place
 
@@ -94,9 +95,10 @@ def motor_network(machine: Any, condensed: Network) -> Network:
     around = surroundings(machine, (_contact(link) for link in condensed.links if link.kind == "contact"))
     ports = {} if around.cooling is None else outlets(machine, condensed, around.cooling)
     network = replace(condensed, places={**condensed.places, **ports, **means(machine, condensed)})
+    network = replace(with_channels(network), declared=declared(machine, network, around.turning))
     faces = [place for place in network.places.values() if place.kind == "surface" and place.fluid]
     films = [link for face in faces for link in _film_links(network, face, around)]
-    streams = [] if around.fan is None else fan_streams(network, around.shares)
+    streams = [] if around.fan is None else fan_streams(network, around.shares, around.fan.flow_m3_h)
     if around.cooling is not None:
         streams += coolant_streams(machine, network, around.cooling)
     losses = sources(machine, network)

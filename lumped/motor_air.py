@@ -25,6 +25,7 @@ from lumped.motor_settings import Fan, Films
 from lumped.motor_shapes import Gap
 from lumped.network import Link, Network, Row
 from lumped.properties import air
+from lumped.reversal import OneWay
 
 AIR_HEAT = 1.205 * 1006.0  # rho cp of the air the fan takes in at 20 degC, J/m3/K
 BETWEEN_POLES, IN_ROTOR, AT_FAN = "air.interpolar", "air.ducts", "air.fan"
@@ -102,8 +103,8 @@ def channel_film(duct: Duct, share: float = 1.0) -> Law:
     return Interpolated("fan_flow_m3h", tuple(flow), tuple(h))
 
 
-def fan_streams(network: Network, shares: Mapping[str, float]) -> list[Link]:
-    """The fan's air, cell by cell; shares : way along the axis -> its part of the flow."""
+def fan_streams(network: Network, shares: Mapping[str, float], usual: float) -> list[Link]:
+    """The fan's air, cell by cell; shares : way along the axis -> its part of the flow;  usual : flow (m3/h)."""
     inlet = {AT_FAN: {"ambient": 1.0}} if AT_FAN in network.states else {}
     feeds = {
         **inlet,
@@ -111,7 +112,8 @@ def fan_streams(network: Network, shares: Mapping[str, float]) -> list[Link]:
         **{way: {"air.left": share} for way, share in shares.items()},
         "air.right": dict(shares),
     }
-    law = InputPower(AIR_HEAT / 3600.0, (("fan_flow_m3h", 1.0, 1.0),))
+    right = "a flow from left to right: what comes in at the right is not known"
+    law = OneWay(InputPower(AIR_HEAT / 3600.0, (("fan_flow_m3h", 1.0, 1.0),)), "fan_flow_m3h", "[fans]", right, usual)
     return [_cell(network, cell, upstream, law) for cell, upstream in feeds.items()]
 
 

@@ -23,6 +23,7 @@ from lumped.motor_shapes import radius
 from lumped.network import Link, Network, Place, Row
 from lumped.properties import Fluid, ethylene_glycol, propylene_glycol, water
 from lumped.reader import Table
+from lumped.reversal import OneWay
 
 INLET, FLOW = "coolant", "flow_l_min"
 LIQUIDS = ("water", "glycol-50", "propylene-glycol-50")
@@ -153,10 +154,16 @@ def coolant_streams(machine: Any, network: Network, cooling: Cooling) -> list[Li
     cells = {jacket: cells_of(machine, jacket) for jacket in cooling.feeds}
     last = {jacket: own[-1] for jacket, own in cells.items()} | {INLET: INLET}
     return [
-        _stream(network, feed, cell, Interpolated(FLOW, _flows(cooling), tuple(_rate(jacket, cooling))))
+        _stream(network, feed, cell, _rate_law(machine, jacket, cooling))
         for jacket, own in cells.items()
         for feed, cell in zip((last[cooling.feeds[jacket]], *own), own)
     ]
+
+
+def _rate_law(machine: Any, jacket: str, cooling: Cooling) -> Law:
+    rate = Interpolated(FLOW, _flows(cooling), tuple(_rate(jacket, cooling)))
+    right = "a flow from inlet to outlet: what comes in at the outlet is not known"
+    return OneWay(rate, FLOW, f"{machine.name} [cooling]", right, cooling.flow_l_min)
 
 
 def _stream(network: Network, feed: str, cell: str, law: Law) -> Link:

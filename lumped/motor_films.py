@@ -9,13 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from lumped.laws import Inputs, Law, Radiation, Table
+from lumped.laws import Inputs, Law
 from lumped.motor_air import BETWEEN_POLES, IN_ROTOR, Duct, channel_film, ducts_of, fan_shares, gap_film, stirred
 from lumped.motor_coolant import Cooling, cooling_of, jacket_film
 from lumped.motor_outer import outer_films
 from lumped.motor_path import stem
 from lumped.motor_settings import Fan, Films, read_fan, read_films
 from lumped.motor_shapes import Gap, gap_of, radius, turning
+from lumped.terms_value import temperature_value
 
 TOP_RPM = 3000.0  # films of speed are tabulated at least this far
 
@@ -94,13 +95,7 @@ def face_films(part: str, fluid: str, around: Surroundings) -> dict[str, Law]:
 
 def nominal(laws: Mapping[str, Law], inputs: Inputs, difference: float = 30.0) -> float:
     """What all mechanisms add up to (W/m2/K) at an operating point, `difference` (K) above 20 degC."""
-    total = 0.0
-    for law in laws.values():
-        value = float(np.mean(law.factor(inputs)))
-        if isinstance(law.temperature, Table):
-            value *= float(np.interp(difference, law.temperature.difference, law.temperature.value))
-        elif isinstance(law.temperature, Radiation):
-            hot, cold = 293.15 + difference, 293.15
-            value *= 5.670374e-8 * (hot**2 + cold**2) * (hot + cold)
-        total += value
-    return total
+    return sum(
+        float(np.mean(law.factor(inputs))) * temperature_value(law.temperature, 20.0 + difference, 20.0)
+        for law in laws.values()
+    )

@@ -1,12 +1,13 @@
 """Outer faces: still air, radiation, and the air a shaft fan blows along the housing.
 
-[films.outer] in a machine file: PART = { surface = "vertical plate", size_mm = 480, emissivity = 0.03, factor = 0.8 }
+[films.outer] in a machine file: PART = { surface = "vertical plate", size_mm = 480, emissivity = 0.03, factor = 0.8,
+fan = { h_W_m2K = 40, at_rpm = 1460 } }; the part's own fan stands in the place of what [fans.cowl] gives it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -15,13 +16,13 @@ from lumped.correlations.fins import elenbaas, heiles, mean_of_decay
 from lumped.correlations.forced import flat_plate
 from lumped.correlations.info import Info
 from lumped.correlations.natural import churchill_chu_cylinder, churchill_chu_plate, mcadams_plate
-from lumped.correlations.tabulate import tabulated
-from lumped.laws import Fixed, Law, Radiation
-from lumped.laws import Table as TableLaw
+from lumped.correlations.tabulate import film_tabulated
+from lumped.laws import FILMS, FilmTable, Fixed, Law, Radiation
 from lumped.motor_laws import Interpolated
 from lumped.motor_settings import Films
 from lumped.motor_shapes import Extent, Fins, extent, fins_of
 from lumped.reader import Table
+from lumped.shaft_fan import shaft_fan
 
 SURFACES = ("horizontal cylinder", "vertical plate", "horizontal plate", "radial fins")
 STILL_AIR_K = tuple(np.concatenate([[0.0], [0.5], np.geomspace(1.0, 200.0, 30)]))
@@ -34,7 +35,7 @@ class Outer:
     """How a part meets the surroundings.
 
     surface : one of SURFACES;  size (m): diameter, height, or area over perimeter
-    emissivity times view radiates;  factor on the film of still air
+    emissivity times view radiates;  factor on the film of still air;  fan : film of a shaft fan's air, if any
     """
 
     surface: str
@@ -43,6 +44,7 @@ class Outer:
     view: float = 1.0
     factor: float = 1.0
     spacing: float = 0.0
+    fan: Law | None = None
 
 
 @dataclass(frozen=True)
@@ -84,7 +86,7 @@ def outer_films(machine: Any, part: str, films: Films) -> dict[str, Law]:
         "natural": Fixed(outer.factor, still_air(outer)),
         "radiation": Fixed(outer.emissivity * outer.view, Radiation()),
     }
-    blown = None if cowl is None else _blown(machine, part, cowl)
+    blown = _blown(machine, part, cowl) if outer.fan is None and cowl is not None else outer.fan
     return laws if blown is None else {**laws, "blown": blown}
 
 
@@ -99,10 +101,19 @@ def outer_of(machine: Any, part: str, films: Films) -> Outer:
     size = t.number("size_mm") / 1e3 if "size_mm" in t or surface != usual.surface else usual.size
     found = Outer(
         surface, size, t.number("emissivity", usual.emissivity), t.number("view", usual.view),
-        t.number("factor", usual.factor), usual.spacing,
+        t.number("factor", usual.factor), usual.spacing, _own_fan(t),
     )  # fmt: skip
     t.close()
     return found
+
+
+def _own_fan(table: Table) -> Law | None:
+    if "fan" not in table:
+        return None
+    inner = Table(table.raw("fan"), f"{table.where} fan")
+    law = shaft_fan(inner)
+    inner.close()
+    return law
 
 
 def _usual(machine: Any, part: str, films: Films) -> Outer:
@@ -126,8 +137,8 @@ def _stands(e: Extent) -> tuple[str, float]:
     return "vertical plate", high
 
 
-def still_air(outer: Outer) -> TableLaw:
-    """Film of still air (W/m2/K) over the temperature difference, at 20 degC."""
+def still_air(outer: Outer) -> FilmTable:
+    """Film of still air (W/m2/K) over difference and film temperature; none without a difference."""
     size = outer.size
 
     def plate(surface: float, air: float) -> tuple[float, Info]:
@@ -140,8 +151,10 @@ def still_air(outer: Outer) -> TableLaw:
         SURFACES[2]: plate,
         SURFACES[3]: lambda s, a: elenbaas(outer.spacing, size, s, a),
     }
-    law = tabulated(of[outer.surface], STILL_AIR_K)
-    return TableLaw(law.difference, (0.0, *law.value[1:]))
+    law = film_tabulated(of[outer.surface], STILL_AIR_K)
+    each = np.reshape(law.value, (FILMS, -1))
+    each[:, 0] = 0.0
+    return replace(law, value=tuple(each.ravel()))
 
 
 def _blown(machine: Any, part: str, cowl: Cowl) -> Law | None:

@@ -76,7 +76,7 @@ def _flows(films: Sequence[Link], streams: Sequence[Link]) -> list[Parameter]:
         washed = [(f.name, FLOW_EXPONENT) for f in films if f.places[1] in cells]
         acts = (*((s.name, 1.0) for s in moved), *washed)
         if moved:
-            out.append(Parameter(name, acts, prior_sd=0.04, low=0.2, high=5.0, source="flow meter, +-3 %"))
+            out.append(Parameter(name, acts, prior_sd=0.04, low=0.2, high=5.0, source="flow meter, +-3 %", flow=True))
     return out
 
 

@@ -15,13 +15,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
+from lumped.identity import Identity
 from lumped.laws import Law
+from lumped.quantities import INPUTS, USUAL
 
 Array = NDArray[np.float64]
 
@@ -51,6 +54,7 @@ class Place:
     b : (k,) Int N over the face (m2); for a part its mean row; [1] for a node
     area : m2, or None where unknown (then links carry W/K and films cannot be made from h)
     fluid : name of the state or boundary that washes it, if any
+    channel : of a cell that a stream passes with others, the channel they make up
     """
 
     name: str
@@ -61,6 +65,7 @@ class Place:
     b: Array
     area: float | None = None
     fluid: str | None = None
+    channel: str | None = None
 
     @property
     def mean(self) -> Row:
@@ -76,6 +81,7 @@ class Link:
     places : the two places it joins; a boundary or fluid goes by its own name
     law : coefficient (W/m2/K with areas in P, W/K with a bare P, or 1 for conduction)
     hot, cold : rows giving the two temperatures the law may depend on
+    origin : the effect, form or disturbance that brought it; empty for the network's own
     """
 
     name: str
@@ -87,6 +93,7 @@ class Link:
     law: Law
     hot: Row
     cold: Row
+    origin: str = ""
 
 
 @dataclass(frozen=True)
@@ -95,6 +102,7 @@ class Source:
 
     kind : the loss it is: "copper", "iron", "friction", "brush", "windage", "measured", ...
     probe : the temperature its law may depend on (copper: the winding's mean)
+    origin : as for a link
     """
 
     name: str
@@ -104,6 +112,7 @@ class Source:
     weights: Array
     law: Law
     probe: Row
+    origin: str = ""
 
 
 @dataclass(frozen=True)
@@ -119,6 +128,7 @@ class Parameter:
         "offset": channel operators in their own unit (neutral 0)
     low, high : hard physical bounds of `value`
     sign : +1 or -1 where physics allows only one, else 0
+    flow : whether it is the rate of a flow, which moves streams and the films along them
     """
 
     name: str
@@ -132,6 +142,7 @@ class Parameter:
     neutral: float = 1.0
     sign: int = 0
     source: str = ""
+    flow: bool = False
 
 
 class Recovery(Protocol):
@@ -155,6 +166,8 @@ class Network:
     parameters : what calibration may move
     inputs : names of the signals the laws read (e.g. "current_A"), with their units in the name
     settles_s : time constant (s) of the whole, roughly; with C it says how large a missing path usually is
+    declared : what parts, nodes, fluids and boundaries are said to be, by name
+    quantities : input -> what it measures ("speed");  signals : quantity -> the input of the machine's own
     """
 
     name: str
@@ -168,6 +181,24 @@ class Network:
     parameters: tuple[Parameter, ...] = ()
     recovery: Recovery | None = field(default=None, compare=False)
     settles_s: float = 3600.0
+    declared: Mapping[str, Identity] = field(default_factory=dict)
+    quantities: Mapping[str, str] = field(default_factory=dict)
+    signals: Mapping[str, str] = field(default_factory=dict)
+
+    @cached_property
+    def identities(self) -> Mapping[str, Identity]:
+        """What everything with a name is: as declared, and where nothing is, as guessed from the network alone."""
+        from lumped.guess import identities
+
+        return identities(self)
+
+    def measures(self, name: str) -> str:
+        """What an input measures; "" where nothing says."""
+        return self.quantities.get(name, USUAL.get(name, ""))
+
+    def signal(self, quantity: str) -> str:
+        """The input that carries a quantity of the machine, e.g. "speed"; the usual one where nothing says."""
+        return self.signals.get(quantity, INPUTS[quantity])
 
     @property
     def size(self) -> int:

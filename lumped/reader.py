@@ -127,9 +127,9 @@ class Table:
         table = Table(value, f"{self.where}.{key}")
         return {name: table.number(name, of=of) for name in value}
 
-    def switch(self, key: str, default: bool) -> bool:
+    def flag(self, key: str, default: bool | None = None) -> bool:
         """true or false; a word that says so is none."""
-        value = self.raw(key, default)
+        value = self._needed(key, default, "true or false")
         if not isinstance(value, bool):
             raise self.error(f"{key} = {shown(value)} is not possible", f"true or false, without quotes{meaning(key)}")
         return value

@@ -12,11 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.jit import inner, pasted
+from lumped.laws import FILMS, FIRST_C, STEP_K
 
 SIGMA = 5.670374419e-8
 ZERO_C = 273.15
 SMOOTH = 0.01  # K: |dT| ** p is smoothed below this difference, where its derivative would be unbounded
-CONSTANT, POWER, RADIATION, LINEAR, TABLE = range(5)
+CONSTANT, POWER, RADIATION, LINEAR, TABLE, FILM = range(6)
 ENTRIES, ROWS, POINTS = range(3)
 CODE, DYNAMIC, STIFF, BENDS = range(4)
 
@@ -78,6 +79,32 @@ def _tabulated(points, first, last, d, out):
 
 
 @pasted
+def _filmed(points, first, nd, hot, cold, out):
+    """Bilinear in |hot - cold| and the film temperature; nd differences at each of the film temperatures."""
+    side, at = (1.0 if hot >= cold else -1.0), 0.5 * (hot + cold)
+    d = min(abs(hot - cold), points[first + nd - 1, 0])
+    place = min(max((at - FIRST_C) / STEP_K, 0.0), FILMS - 1.0)
+    j = min(int(place), FILMS - 2)
+    k = _segment(points, first, first + nd - 1, d)
+    low, high = k + j * nd, k + (j + 1) * nd
+    wide = points[k + 1, 0] - points[k, 0]
+    cool = (points[low + 1, 1] - points[low, 1]) / wide
+    warm = (points[high + 1, 1] - points[high, 1]) / wide
+    one = points[low, 1] + cool * (d - points[k, 0])
+    two = points[high, 1] + warm * (d - points[k, 0])
+    share = place - j
+    by_film = (two - one) / STEP_K if 0.0 < place < FILMS - 1.0 else 0.0
+    by_d, both = cool + share * (warm - cool), (warm - cool) / STEP_K
+    if abs(hot - cold) >= points[first + nd - 1, 0]:
+        by_d, both = 0.0, 0.0
+    out[0] = one + share * (two - one)
+    out[1] = side * by_d + 0.5 * by_film
+    out[2] = -side * by_d + 0.5 * by_film
+    out[3] = side * both
+    out[5] = -out[3]
+
+
+@pasted
 def law(code, a, b, hot, cold, out):
     """Temperature law: value, its derivatives by hot and cold, and the second ones hh, hc, cc, into out (6,)."""
     if code == POWER:
@@ -126,6 +153,8 @@ def _evaluate(T, v, tau):
             hot, cold = v[T.row.size + 2 * e], v[T.row.size + 2 * e + 1]
             if T.kind[e, CODE] == TABLE:
                 _tabulated(T.point, T.start[e, POINTS], T.start[e + 1, POINTS] - 1, hot - cold, tau[e])
+            elif T.kind[e, CODE] == FILM:
+                _filmed(T.point, T.start[e, POINTS], int(T.par[e, 0]), hot, cold, tau[e])
             else:
                 law(T.kind[e, CODE], T.par[e, 0], T.par[e, 1], hot, cold, tau[e])
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from lumped.laws import Linear, Power, Radiation, Table, TemperatureLaw
+from lumped.laws import FILMS, FIRST_C, STEP_K, FilmTable, Linear, Power, Radiation, Table, TemperatureLaw
 
 SIGMA, ZERO_C = 5.670374419e-8, 273.15
 
@@ -20,4 +20,8 @@ def temperature_value(law: TemperatureLaw, hot: float, cold: float) -> float:
         return 1.0 + law.alpha * (hot - law.reference)
     if isinstance(law, Table):
         return float(np.interp(abs(hot - cold), law.difference, law.value))
+    if isinstance(law, FilmTable):
+        films = np.reshape(law.value, (FILMS, -1))
+        along = [np.interp(abs(hot - cold), law.difference, row) for row in films]
+        return float(np.interp(0.5 * (hot + cold), FIRST_C + STEP_K * np.arange(FILMS), along))
     return 1.0

@@ -92,14 +92,12 @@ def compare(
 @app.command()
 def diagnose(
     case: Case,
-    draws: Annotated[int, typer.Option(min=10, help="Data sets of the simulated null: 40 quick, 200 in earnest.")] = 60,
-    sizes: Annotated[bool, typer.Option("--sizes", help="Search the smallest detectable sizes (minutes).")] = False,
     json: Json = None,
 ) -> None:
     """Which effect is missing, how sure, what it is confused with, which test would decide. Exit code 1 if none."""
     from thermoscope.commands.diagnose import diagnose as run
 
-    raise typer.Exit(run(case, draws, sizes, json))
+    raise typer.Exit(run(case, json))
 
 
 @app.command()
@@ -134,14 +132,13 @@ def undo(
 def improve(
     case: Case,
     yes: Annotated[bool, typer.Option("--yes", help="Do not ask; add only effects that stand alone.")] = False,
-    draws: Annotated[int, typer.Option(min=10, help="Data sets of the simulated null.")] = 60,
     most: Annotated[int, typer.Option(min=1, help="Effects to add at most.")] = 6,
     json: Json = None,
 ) -> None:
     """Diagnose, ask, add, again, until the model is adequate. Exit code 1 if it stops before."""
     from thermoscope.commands.improve import improve as run
 
-    raise typer.Exit(run(case, yes, draws, most, json))
+    raise typer.Exit(run(case, yes, most, json))
 
 
 @app.command()

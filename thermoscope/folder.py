@@ -16,6 +16,7 @@ from lumped.reader import Table, known
 from thermoscope.doctor import Finding, Patient, examined
 from thermoscope.formats import stem_of
 from thermoscope.history import History, checked_values, load_history
+from thermoscope.quantities import with_quantities
 from thermoscope.readings import read_test
 from thermoscope.sheet import Sheet, load_sheet
 from thermoscope.tables import load_table
@@ -156,8 +157,9 @@ def load_case(
     notes = tuple(dict.fromkeys([*_assumed(built), *(note for _, doubts in read for note in doubts)]))
     frees = {e.name: e.frees for e in settings.tests}
     tests = tuple(replace(_allowing(test, settings.model_K), frees=frees[test.name]) for test, _ in read)
-    case = Case(settings.name, _model(network, history), tests, _free(network, settings))
     sheets = [one.sheet for one in patients.values()]
+    network = with_quantities(network, sheets, tests)
+    case = Case(settings.name, _model(network, history), tests, _free(network, settings))
     return Folder(settings, _checked(case, history), history, notes, _positions(sheets), built, findings)
 
 

@@ -148,7 +148,7 @@ def _initial(test: Table) -> float | Mapping[str, float] | str:
 
 
 def _column(name: str, table: Table, filtered: float, folder: Path) -> Column | None:
-    if not table.switch("use", True):
+    if not table.flag("use", True):
         return None
     of = table.kind("quantity", None, QUANTITIES)
     unit, hot = checked_unit(of, table.raw("unit"), table.where), of == "temperature" or of in ELECTRICAL

@@ -2,9 +2,9 @@
 
 from validation.case import AddedEffect, Case, Channel, Model, Test
 from validation.compare import Comparison, compare
-from validation.diagnose import diagnose
 from validation.effects import Effect, Scene, catalogue, effect, kinds
 from validation.findings import Diagnosis
+from validation.inference.diagnose import diagnose
 from validation.revise import Revision, add, calibrate, remove
 
 __all__ = [

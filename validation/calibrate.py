@@ -7,10 +7,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import cho_factor, cho_solve
 
 from lumped.network import Network
 from validation.case import Test
+from validation.doubt import USUAL, Doubt
 from validation.fitting import Unknowns
+from validation.inference.model_error import ModelError, model_error
 from validation.noise import Noise, first_noise, fit_noise
 from validation.sheet import Segment, segments
 
@@ -36,6 +39,7 @@ class Fit:
 
     theta : (p,) fitted coordinates;  H : (p, p) curvature of the posterior (J'Sigma^-1 J + prior);  parts : residual
     and Jacobian at theta;  gradient : largest |gradient| in units of the posterior sd (0 at the exact optimum)
+    error : the model error that the noise was widened by, marginalised in H and the objective
     """
 
     network: Network
@@ -47,6 +51,7 @@ class Fit:
     objective: float
     converged: bool
     gradient: float
+    error: ModelError | None = None
 
     @property
     def values(self) -> dict[str, float]:
@@ -124,15 +129,17 @@ def minimise(
     worth: float = WORTH,
     progress: Progress = silent,
     keep: Keep = forgets,
+    error: ModelError | None = None,
 ) -> Fit:
     """Fit `unknowns` to the tests from `theta` under a given noise (by default that of uncalibrated sensors).
 
     The Jacobian costs ten times a run, so it is held as long as steps do what it foretells, and made anew before the
     end (unless `draft`); `known`: one to begin with; `centre`: prior mean (p,), 0 by default; `worth`: gain (nats) for
-    which one more step is made; `keep` is told the values after every step, so that an interrupted fit can go on.
+    which one more step is made; `keep` is told the values after every step, so that an interrupted fit can go on;
+    `error`: the covariance of the model error, added to that of the noise.
     """
     fixed = dict(fixed or {})
-    climb = Climb(network, tests, unknowns, fixed, theta, noise, known, draft, centre, worth)
+    climb = Climb(network, tests, unknowns, fixed, theta, noise, known, draft, centre, worth, error)
     for iteration in range(iterations):
         progress(f"calibration step {iteration + 1}, objective {climb.objective:.4g}")
         done = climb.step()
@@ -148,6 +155,7 @@ class Climb:
     def __init__(
         self, network: Network, tests: Sequence[Test], unknowns: Unknowns, fixed: dict[str, float], theta: Array,
         noise: Noise | None, known: Known | None, draft: bool, centre: Array | None, worth: float,
+        error: ModelError | None,
     ) -> None:  # fmt: skip
         near = known is not None and known.nearby
         self.network, self.tests, self.unknowns, self.fixed = network, tests, unknowns, fixed
@@ -158,6 +166,7 @@ class Climb:
         self.theta = np.clip(theta, self.low, self.high)
         self.parts = self.begun(known)
         self.noise = noise or first_noise(self.parts)
+        self.error, self.measure = error, Measure(self.parts, self.noise, error)
         self.weigh()
 
     def begun(self, known: Known | None) -> list[Segment]:
@@ -182,15 +191,15 @@ class Climb:
 
     def weigh(self) -> None:
         """After a new Jacobian."""
-        self.white = [self.noise.whiten(s, s.J) for s in self.parts]
-        self.A = np.asarray(sum(W.T @ W for W in self.white))
+        self.white = self.measure.white([s.J for s in self.parts])
+        self.A = self.measure.product(self.white, self.white)
         self.read()
 
     def read(self) -> None:
         """After new residuals."""
-        r = [self.noise.whiten(s, s.r[:, None])[:, 0] for s in self.parts]
-        self.b = np.asarray(sum(W.T @ own for W, own in zip(self.white, r, strict=True)))
-        self.objective = 0.5 * (sum(float(own @ own) for own in r) + self.strain(self.theta))
+        r = self.measure.white([s.r[:, None] for s in self.parts])
+        self.b = self.measure.product(self.white, r)[:, 0]
+        self.objective = 0.5 * (float(self.measure.product(r, r)[0, 0]) + self.strain(self.theta))
 
     def strain(self, x: Array) -> float:
         """Squared distance from the prior mean, in prior deviations."""
@@ -213,7 +222,7 @@ class Climb:
         if predicted < self.enough:
             return self.stop()
         trial = self.residuals(new, self.parts)
-        value = 0.5 * (square_of(trial, self.noise) + self.strain(new))
+        value = 0.5 * (self.measure.square(trial) + self.strain(new))
         if not value < self.objective:
             return self.back()
         gained = self.objective - value
@@ -249,8 +258,52 @@ class Climb:
         slack = float(np.max(np.abs(g / np.sqrt(np.diag(H)))[inside], initial=0.0))
         return Fit(
             self.network, self.unknowns, self.theta, H, tuple(self.parts), self.noise, self.objective,
-            self.done or slack < STATIONARY, slack,
+            self.done or slack < STATIONARY, slack, self.error,
         )  # fmt: skip
+
+
+class Measure:
+    """x' S^-1 y over the instants of some segments, S = noise + model error.
+
+    With whitened columns D of the model error, S^-1 = 1 - D (1 + D'D)^-1 D' (Woodbury).
+    """
+
+    def __init__(self, parts: Sequence[Segment], noise: Noise, error: ModelError | None) -> None:
+        self.parts, self.noise = list(parts), noise
+        self.D = self.white([error.of(s) for s in parts]) if error else []
+        self.factor = cho_factor(np.eye(error.size) + sum(d.T @ d for d in self.D)) if error else None
+
+    def white(self, columns: Sequence[Array]) -> list[Array]:
+        """Columns (n, k) of each segment under its noise alone."""
+        return [self.noise.whiten(s, X) for s, X in zip(self.parts, columns, strict=True)]
+
+    def product(self, X: Sequence[Array], Y: Sequence[Array]) -> Array:
+        """X' S^-1 Y of whitened columns."""
+        plain = np.asarray(sum(x.T @ y for x, y in zip(X, Y, strict=True)))
+        if self.factor is None:
+            return plain
+        return plain - self.along(X).T @ cho_solve(self.factor, self.along(Y))
+
+    def along(self, X: Sequence[Array]) -> Array:
+        """D' X of whitened columns."""
+        return np.asarray(sum(d.T @ x for d, x in zip(self.D, X, strict=True)))
+
+    def square(self, parts: Sequence[Segment]) -> float:
+        """r' S^-1 r."""
+        r = self.white([s.r[:, None] for s in parts])
+        return float(self.product(r, r)[0, 0])
+
+    def explained(self, parts: Sequence[Segment], error: ModelError | None) -> list[Segment]:
+        """The segments without what the model error explains of their residuals."""
+        if self.factor is None or error is None:
+            return list(parts)
+        d = cho_solve(self.factor, self.along(self.white([s.r[:, None] for s in parts])))[:, 0]
+        return [replace(s, r=s.r - error.of(s) @ d) for s in parts]
+
+
+def residual_noise(fit: Fit) -> Noise:
+    """The noise of what a fit and its model error leave."""
+    return fit_noise(Measure(fit.parts, fit.noise, fit.error).explained(fit.parts, fit.error))
 
 
 def square_of(parts: Sequence[Segment], noise: Noise) -> float:
@@ -267,13 +320,16 @@ def calibrated(
     progress: Progress = silent,
     noise: Noise | None = None,
     keep: Keep = forgets,
+    doubt: Doubt = USUAL,
 ) -> Fit:
-    """Calibrate, estimate the noise from the residual, calibrate again under it; `rounds` times."""
+    """Calibrate, estimate model error and noise where it ends, calibrate again under them; `rounds` times."""
     held = {p.name: values.get(p.name, p.value) for p in network.parameters}
     fit = minimise(network, tests, unknowns, unknowns.coordinates(values), noise, held, progress=progress, keep=keep)
     for _ in range(rounds):
+        error = model_error(network, tests, {**held, **fit.values}, doubt)
+        noise = fit_noise(Measure(fit.parts, fit.noise, error).explained(fit.parts, error))
         fit = minimise(
-            network, tests, unknowns, fit.theta, fit_noise(fit.parts), held, 10, Known(fit.parts, nearby=False),
-            progress=progress, keep=keep,
+            network, tests, unknowns, fit.theta, noise, held, 10, Known(fit.parts, nearby=False),
+            progress=progress, keep=keep, error=error,
         )  # fmt: skip
     return fit

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import ClassVar, Literal
 
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from lumped.laws import CLOCK
 from lumped.network import Network, Parameter, Row
 from lumped.signals import Signals
+from validation.doubt import USUAL, Doubt
 
 Array = NDArray[np.float64]
 Role = Literal["calibrate", "validate", "hold-out"]
@@ -95,9 +96,17 @@ class Model:
 
 @dataclass(frozen=True)
 class Case:
-    """A model and the tests it is held against."""
+    """A model and the tests it is held against.
+
+    doubt : what models of this kind get wrong, the usual table or with lines that the case widens
+    """
 
     name: str
     model: Model
     tests: tuple[Test, ...]
     nuisances: tuple[Parameter, ...] = ()
+    doubt: Doubt = field(default_factory=lambda: USUAL)
+
+    def training(self) -> Case:
+        """The case without its held-out tests: all that may be fitted, chosen or accepted with."""
+        return replace(self, tests=tuple(t for t in self.tests if t.role != "hold-out"))

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
 
 from validation.calibrate import silent
 from validation.case import Case
 from validation.compare import Comparison, compare
-from validation.diagnose import diagnose
 from validation.effects import effect
 from validation.findings import Candidate, Diagnosis
 from validation.fitting import with_model
-from validation.intervals import Widening
+from validation.inference.diagnose import diagnose
 from validation.revise import Revision, add, calibrate
 
 Progress = Callable[[str], None]
@@ -95,8 +93,7 @@ def best(diagnosis: Diagnosis, choice: Sequence[Candidate]) -> str:
 
 
 def climb(
-    case: Case, guide: Guide, draws: int = 60, most: int = MOST, cache: Path | None = None, progress: Progress = silent,
-    kinds: Sequence[str] | None = None, workers: int = 2,
+    case: Case, guide: Guide, most: int = MOST, progress: Progress = silent, kinds: Sequence[str] | None = None,
 ) -> Climbed:  # fmt: skip
     """Diagnose and add until the model is adequate, the guide says no, or an addition is not accepted.
 
@@ -107,7 +104,7 @@ def climb(
         progress("calibrating")
         case = _kept(case, calibrate(case, progress=progress), guide, {}, stairs)
     while True:
-        found = diagnose(case, draws=draws, kinds=kinds, workers=workers, cache=cache, progress=progress)
+        found = diagnose(case, kinds=kinds, progress=progress)
         progress(f"{found.verdict}: {found.words}")
         choice = guide.offer(found)
         if not choice:
@@ -118,7 +115,7 @@ def climb(
         if name is None:
             return Climbed(case, tuple(stairs), found, f"{' or '.join(c.effect for c in choice)}: not added")
         chosen = next(c for c in choice if c.effect == name)
-        step = add(case, name, widening(found), progress)
+        step = add(case, name, progress)
         if not step.accepted:
             return Climbed(case, tuple(stairs), found, f"{name} was not accepted: {step.why}")
         case = _kept(case, step, guide, evidence(found, chosen), stairs)
@@ -148,11 +145,7 @@ def leading(found: Diagnosis) -> tuple[Candidate, ...]:
 def evidence(found: Diagnosis, chosen: Candidate) -> dict[str, float | str]:
     """What speaks for an effect, as the history keeps it."""
     said: dict[str, float | str] = {
-        "score": chosen.score, "threshold": chosen.threshold, "decision": chosen.decision, "verdict": found.verdict
+        "probability": chosen.probability, "score": chosen.score, "threshold": chosen.threshold,
+        "decision": chosen.decision, "verdict": found.verdict,
     }  # fmt: skip
     return said | ({"confused_with": ", ".join(chosen.confused_with)} if chosen.confused_with else {})
-
-
-def widening(found: Diagnosis) -> Widening:
-    """How much wider than formal the simulated null says that intervals are."""
-    return Widening(found.kappa, {c.effect: c.kappa for c in found.candidates})

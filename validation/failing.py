@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from validation.calibrate import silent
 from validation.case import Case
 from validation.compare import physical
-from validation.evidence import calibrated_case, diagnosing
 from validation.fitting import working
+from validation.inference.evidence import calibrated_case, diagnosing
 from validation.residuals import Pattern, patterns
 from validation.sheet import segments
 from validation.threads import one_blas_thread

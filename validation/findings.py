@@ -11,21 +11,20 @@ if TYPE_CHECKING:
     from validation.procedure.which_base import Hypothesis
 
 Verdict = Literal["adequate", "named", "group", "several", "outside", "absorbed", "data"]
-Decision = Literal["named", "group", "no", "cannot-tell"]
+Decided = Literal["named", "group", "no", "cannot-tell"]
 Pair = tuple[float, float]
 
 
 @dataclass(frozen=True)
 class Candidate:
-    """One effect in the race.
+    """One effect that may be missing.
 
-    score : signed significance over its own null scatter
-    threshold : what the best of all exceeds in 5 % of the cases with nothing missing
+    score : log evidence against nothing missing (nats);  threshold : from which it is more probable than nothing
+    probability : that it is among what is missing
     explained : share of the residual's sum of squares it removes
     rmse_K, holdout_rmse_K : (before, after) on the tests used and on the held-out ones, where it was refitted
     absorbed : share of its trace that the calibration takes;  twin : the calibrated parameter that does the same
-    same_over_tests : probability that one amplitude in all tests differs as much as seen
-    kappa : factor on its formal standard deviation, from the simulated null
+    note : the record that speaks against it
     """
 
     effect: str
@@ -34,19 +33,18 @@ class Candidate:
     value: float
     unit: str
     ci95: Pair
-    decision: Decision
+    decision: Decided
     explained: float | None = None
     rmse_K: Pair | None = None
     holdout_rmse_K: Pair | None = None
     confused_with: tuple[str, ...] = ()
     absorbed: float = 0.0
     smallest_detectable: float = float("inf")
-    same_over_tests: float | None = None
     twin: str | None = None
     title: str = ""
     isolating_test: str = ""
     note: str = ""
-    kappa: float = 1.0
+    probability: float = 0.0
 
     def document(self) -> dict:
         out = {k: v for k, v in vars(self).items() if k not in ("value", "unit", "ci95", "rmse_K", "holdout_rmse_K")}
@@ -101,12 +99,23 @@ class NextSensor:
 
 
 @dataclass(frozen=True)
+class Odds:
+    """The probability of one hypothesis: "nothing", "kind@place", "kind@place + kind@place", "heat@place"."""
+
+    hypothesis: str
+    effects: tuple[str, ...]
+    probability: float
+
+    def document(self) -> dict:
+        return {**vars(self), "effects": list(self.effects)}
+
+
+@dataclass(frozen=True)
 class Diagnosis:
     """The answer. named : the effects to add, best first (one per group); words : the verdict in a sentence.
 
-    kappa : the typical factor of the simulated null on formal standard deviations
     bases : every base that a test may have stood on, where the network knows several
-    usual_nats : evidence of missing heat that simulated machines pass one time in twenty that lack none
+    odds : every hypothesis that carries weight, most probable first, summing to one;  p_nothing : of nothing missing
     """
 
     verdict: Verdict
@@ -123,9 +132,9 @@ class Diagnosis:
     pulls: tuple[tuple[str, float, float], ...] = ()
     cosine: dict[str, dict[str, float]] = field(default_factory=dict)
     next_sensors: tuple[NextSensor, ...] = ()
-    kappa: float = 1.0
     bases: tuple[Hypothesis, ...] = ()
-    usual_nats: float = 0.0
+    odds: tuple[Odds, ...] = ()
+    p_nothing: float = 1.0
 
     def document(self) -> dict:
         return {
@@ -136,10 +145,10 @@ class Diagnosis:
             "candidates": [c.document() for c in self.candidates],
             "cannot_see": [h.document() for h in self.cannot_see],
             "where": [w.document() for w in self.where],
-            "usual_nats": self.usual_nats,
             "next_tests": [t.document() for t in self.next_tests],
             "next_sensors": [t.document() for t in self.next_sensors],
-            "kappa": self.kappa,
+            "odds": [o.document() for o in self.odds],
+            "p_nothing": self.p_nothing,
             "rmse_K": self.rmse_K,
             "floor_K": self.floor_K,
             "threshold": self.threshold,

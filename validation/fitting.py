@@ -12,17 +12,12 @@ from numpy.typing import NDArray
 from lumped.laws import Law
 from lumped.network import Network, Parameter
 from validation.case import Case, Channel, Model, Test
+from validation.doubt import USUAL, Doubt
 from validation.effects import Effect, Scene, effect, extended
 from validation.forms import with_forms
 
 Array = NDArray[np.float64]
-START_SD = 0.5
-GAIN_SD = 0.03
-GAIN_OF_STREAM_SD = 0.1  # a stream is not of one temperature: no thermometer reads its mean
-LAG_SD = 10.0  # diffusion in the part it sits in: L^2 / 2a of some centimetres of metal
-BOUNDARY_SD = 0.5
-CLOCK_SD = 1.0
-FREE = 30.0
+FREE = 30.0  # prior deviations of what the data alone shall say: wide enough to leave no trace
 
 
 @dataclass(frozen=True)
@@ -63,23 +58,29 @@ def to_value(p: Parameter, theta: float) -> float:
     return p.value * float(np.exp(theta)) if p.mapping == "log" else p.neutral + theta
 
 
-def nuisances(network: Network, tests: Sequence[Test]) -> list[Parameter]:
+def nuisances(network: Network, tests: Sequence[Test], doubt: Doubt = USUAL) -> list[Parameter]:
     """What no measurement is free of: bias, slope and lag of sensors, bias of boundary sensors, start, clock."""
     channels = {c.name: c for test in tests for c in test.channels}
     boundaries = dict.fromkeys(b for test in tests for b in test.boundaries)
-    sensors = [p for c in channels.values() for p in _sensor(network, c)]
-    air = [_offset(f"bias of {b}", f"boundary:{b}", BOUNDARY_SD, "sensor of the boundary") for b in boundaries]
-    start = [_offset(f"start of {t.name}", f"initial:{t.name}", START_SD, "uneven start") for t in tests]
-    clock = [_offset(f"clock of {t.name}", f"delay:{t.name}", CLOCK_SD, "logger's clock", "s") for t in tests]
-    return [*sensors, *air, *start, *clock]
+    sensors = [p for c in channels.values() for p in _sensor(network, c, doubt)]
+    air = [_offset(f"bias of {b}", f"boundary:{b}", doubt["boundary"], "sensor of the boundary") for b in boundaries]
+    start = [_offset(f"start of {t.name}", f"initial:{t.name}", doubt["start"], "uneven start") for t in tests]
+    clocks = [_offset(f"clock of {t.name}", f"delay:{t.name}", clock(t, doubt), "logger's clock", "s") for t in tests]
+    return [*sensors, *air, *start, *clocks]
 
 
-def _sensor(network: Network, c: Channel) -> list[Parameter]:
+def clock(test: Test, doubt: Doubt) -> float:
+    """Standard deviation (s) of a test's clock: the recorder's, and of steps that lie anywhere between two samples."""
+    sample = float(np.median(np.diff(test.time))) if test.time.size > 1 else 0.0
+    return float(np.hypot(doubt["clock"], doubt["step in sample"] * sample))
+
+
+def _sensor(network: Network, c: Channel, doubt: Doubt) -> list[Parameter]:
     bias = _offset(f"bias of {c.name}", f"bias:{c.name}", c.sigma_K, "calibration of the sensor")
     stream = c.place in network.places and network.places[c.place].kind == "fluid"
-    sd = GAIN_OF_STREAM_SD if stream else GAIN_SD
+    sd = doubt["gain of stream" if stream else "gain"]
     gain = _offset(f"slope of {c.name}", f"gain:{c.name}", sd, "placement of the sensor")
-    lag = _offset(f"lag of {c.name}", f"lag:{c.name}", max(LAG_SD, 0.3 * c.lag_s), "mounting of the sensor")
+    lag = _offset(f"lag of {c.name}", f"lag:{c.name}", max(doubt["lag"], 0.3 * c.lag_s), "mounting of the sensor")
     return [bias, replace(gain, unit="1"), replace(lag, unit="s", low=-c.lag_s)]
 
 
@@ -106,10 +107,11 @@ def at_level(network: Network, names: Collection[str], tests: Sequence[Test]) ->
     """The network with the priors and upper bounds of losses that effects bring in for the heat in these tests.
 
     Declared for the loss's reference (1000 rpm, 100 A), they would be a hundred times too narrow on a motor of 10 A.
+    What is no power, such as a temperature coefficient, has a prior that no test changes.
     """
     laws = {s.name: s.law for s in network.sources}
-    mean = {n: _mean_factor([laws[t] for p in network.parameters if p.name == n for t, _ in p.targets if t in laws],
-                            tests) for n in names}  # fmt: skip
+    watts = [p for p in network.parameters if p.name in names and p.unit.split(" at ")[0] == "W"]
+    mean = {p.name: _mean_factor([laws[t] for t, _ in p.targets if t in laws], tests) for p in watts}
     return replace(network, parameters=tuple(
         replace(p, prior_sd=p.prior_sd / f, high=p.high / f) if (f := mean.get(p.name, 0.0)) > 0 else p
         for p in network.parameters
@@ -141,11 +143,11 @@ def working(case: Case, more: Sequence[Effect] = ()) -> tuple[Network, Unknowns]
 
     Free are the case's nuisances (all declared parameters when it names none), the effects and the measurement's.
     """
-    inside, extra = effects_of(case), nuisances(case.model.network, case.tests)
+    inside, extra = effects_of(case), nuisances(case.model.network, case.tests, case.doubt)
     network = extended(case.model.network, (*inside, *more))
     network = at_level(network, {e.name for e in (*inside, *more)}, case.tests)
     network = freed(network, {e.name for e in inside})
-    network, forms = with_forms(network, case.tests, {e.name for e in inside})
+    network, forms = with_forms(network, case.tests, {e.name for e in inside}, case.doubt)
     network = replace(network, parameters=(*network.parameters, *extra))
     chosen = {p.name for p in (case.nuisances or case.model.network.parameters)}
     chosen |= {e.name for e in (*inside, *more)} | {p.name for p in extra} | set(forms)

@@ -14,18 +14,15 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.laws import CONSTANT, Inputs, Law, Linear, Power, Table, TemperatureLaw
+from lumped.laws import CONSTANT, FilmTable, Inputs, Law, Linear, Power, Table, TemperatureLaw
 from lumped.network import Link, Network, Parameter, Source
 from validation.case import Test
+from validation.doubt import USUAL, Doubt
 from validation.effects.build import copy_link, copy_source
 
 Array = NDArray[np.float64]
-INPUT_SD = 0.15
-DIFFERENCE_SD = 0.1
-SHARE_SD = 0.15
 SETTLE_K = 40.0
 SETTLE_C = 40.0
-WARMING_SD = 0.01
 KNOTS = (0.0, 1.0, 2.0, 5.0, 10.0, 20.0, 40.0, 80.0, 160.0, 320.0)
 FARTHEST = np.log(10.0)
 KNOWN = ("copper", "measured")  # losses whose law is not in doubt
@@ -88,16 +85,22 @@ class BendOfDifference(Law):
         return self.base.factor(inputs)
 
 
-def bent(law: TemperatureLaw) -> Table:
+def bent(law: TemperatureLaw) -> Table | FilmTable:
     """law(dT) ln(dT / SETTLE_K) as a table."""
+    if isinstance(law, FilmTable):
+        films = np.reshape(law.value, (-1, len(law.difference)))
+        return replace(law, value=tuple((films * _turn(np.array(law.difference))).ravel()))
     if isinstance(law, Power):
         knots: Array = np.array(KNOTS)
         value = np.maximum(knots, 1.0) ** law.exponent
     else:
         assert isinstance(law, Table)
         knots, value = np.array(law.difference), np.array(law.value)
-    turn = np.log(np.clip(knots / SETTLE_K, 0.1, 10.0))
-    return Table(tuple(knots), tuple(value * turn))
+    return Table(tuple(knots), tuple(value * _turn(knots)))
+
+
+def _turn(difference: Array) -> Array:
+    return np.log(np.clip(difference / SETTLE_K, 0.1, 10.0))
 
 
 def levels(tests: Sequence[Test]) -> dict[str, float]:
@@ -114,7 +117,9 @@ def varied(tests: Sequence[Test], name: str) -> bool:
     return bool(np.ptp(v) > 0.1 * np.mean(v))
 
 
-def with_forms(network: Network, tests: Sequence[Test], added: Collection[str] = ()) -> tuple[Network, tuple[str, ...]]:
+def with_forms(
+    network: Network, tests: Sequence[Test], added: Collection[str] = (), doubt: Doubt = USUAL
+) -> tuple[Network, tuple[str, ...]]:
     """The network with its form nuisances, and their names.
 
     added : effects that are in the model: their laws are no truer than the model's own
@@ -129,11 +134,11 @@ def with_forms(network: Network, tests: Sequence[Test], added: Collection[str] =
             losses = [x for x in network.sources if first.get(x.name) == p.name and x.kind not in KNOWN]
             laws = [x.law for x in films] + [x.law for x in losses]
             for name in sorted({r for law in laws for r in law.reads} & moving):
-                network = _with_input(network, p.name, name, films, losses, level)
-            network = _with_difference(network, p.name, films)
-            network = _with_warming(network, p.name, losses)
+                network = _with_input(network, p.name, name, films, losses, level, doubt)
+            network = _with_difference(network, p.name, films, doubt)
+            network = _with_warming(network, p.name, losses, doubt)
             if p.name not in added:
-                network = replace(network, parameters=(*network.parameters, *shares(p.name, films)))
+                network = replace(network, parameters=(*network.parameters, *shares(p.name, films, doubt)))
     return network, tuple(p.name for p in network.parameters if p.name not in before)
 
 
@@ -157,6 +162,7 @@ def _with_input(
     films: Sequence[Link],
     losses: Sequence[Source],
     level: Mapping[str, float],
+    doubt: Doubt,
 ) -> Network:
     """The exponent of one input in all laws of a parameter that follow it."""
     new = []
@@ -173,23 +179,23 @@ def _with_input(
         if law := bend(loss):
             new.append(f"{loss.name}^{name}")
             network = copy_source(network, loss, new[-1], law)
-    return _with_parameter(network, f"{parent}^{name}", new, INPUT_SD)
+    return _with_parameter(network, f"{parent}^{name}", new, doubt["input exponent"])
 
 
-def _with_difference(network: Network, parent: str, films: Sequence[Link]) -> Network:
+def _with_difference(network: Network, parent: str, films: Sequence[Link], doubt: Doubt) -> Network:
     """The exponent of the temperature difference in the films of free convection."""
-    free = [x for x in films if isinstance(x.law.temperature, (Power, Table))]
+    free = [x for x in films if isinstance(x.law.temperature, (Power, Table, FilmTable))]
     for x in free:
         network = copy_link(network, x, f"{x.name}^dT", BendOfDifference(x.law))
-    return _with_parameter(network, f"{parent}^dT", [f"{x.name}^dT" for x in free], DIFFERENCE_SD)
+    return _with_parameter(network, f"{parent}^dT", [f"{x.name}^dT" for x in free], doubt["difference exponent"])
 
 
-def _with_warming(network: Network, parent: str, losses: Sequence[Source]) -> Network:
+def _with_warming(network: Network, parent: str, losses: Sequence[Source], doubt: Doubt) -> Network:
     """The slope with temperature of friction."""
     greased = [x for x in losses if x.kind == "friction" and x.law.temperature == CONSTANT]
     for x in greased:
         network = copy_source(network, x, f"{x.name}^T", BendOfTemperature(x.law))
-    return _with_parameter(network, f"{parent}^T", [f"{x.name}^T" for x in greased], WARMING_SD)
+    return _with_parameter(network, f"{parent}^T", [f"{x.name}^T" for x in greased], doubt["warming"])
 
 
 def _with_parameter(network: Network, name: str, targets: Sequence[str], sd: float) -> Network:
@@ -202,7 +208,7 @@ def _with_parameter(network: Network, name: str, targets: Sequence[str], sd: flo
     return replace(network, parameters=(*network.parameters, new))
 
 
-def shares(parent: str, films: Sequence[Link]) -> Iterator[Parameter]:
+def shares(parent: str, films: Sequence[Link], doubt: Doubt = USUAL) -> Iterator[Parameter]:
     """The part of each body in a film that several share."""
     by_body: dict[str, list[str]] = {}
     for link in films:
@@ -211,6 +217,6 @@ def shares(parent: str, films: Sequence[Link]) -> Iterator[Parameter]:
         return
     for body, names in by_body.items():
         yield Parameter(
-            f"{parent}:{body}", tuple((n, 1.0) for n in names), low=0.5, high=2.0, prior_sd=SHARE_SD,
+            f"{parent}:{body}", tuple((n, 1.0) for n in names), low=0.5, high=2.0, prior_sd=doubt["share"],
             source="scatter of published film sets",
         )  # fmt: skip

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,20 +16,6 @@ Array = NDArray[np.float64]
 UNSEEN = 0.9
 TRADES = 0.7
 NORMAL_95 = 1.96
-
-
-@dataclass(frozen=True)
-class Widening:
-    """Factors on formal standard deviations from a simulated null: of effects by name, `typical` for the rest."""
-
-    typical: float = 1.0
-    own: Mapping[str, float] = field(default_factory=dict)
-
-    def of(self, name: str) -> float:
-        return self.own.get(name, self.typical)
-
-
-FORMAL = Widening()
 
 
 @dataclass(frozen=True)
@@ -66,8 +52,8 @@ class Estimate:
         return {**vars(self), "ci95": list(self.ci95), "prior": list(self.prior), "profile": profile}
 
 
-def estimates(fit: Fit, wide: Widening = FORMAL, profiles: Mapping[str, Profile] | None = None) -> tuple[Estimate, ...]:
-    """Values with intervals from the scaled covariance, never wider than the prior's."""
+def estimates(fit: Fit, profiles: Mapping[str, Profile] | None = None) -> tuple[Estimate, ...]:
+    """Values with intervals from the covariance, model error in it, never wider than the prior's."""
     correlation = correlations(fit)
     partner = np.argmax(np.abs(correlation), axis=1)
     known = profiles or {}
@@ -76,7 +62,7 @@ def estimates(fit: Fit, wide: Widening = FORMAL, profiles: Mapping[str, Profile]
         trades = abs(correlation[i, partner[i]]) > TRADES
         out.append(
             Estimate(
-                p.name, to_value(p, float(fit.theta[i])), p.unit, interval(fit, i, wide.of(p.name)), prior_of(p),
+                p.name, to_value(p, float(fit.theta[i])), p.unit, interval(fit, i), prior_of(p),
                 bool(fit.sd[i] <= UNSEEN * p.prior_sd), fit.unknowns.names[partner[i]] if trades else None,
                 bool(fit.at_bound[i]), known.get(p.name),
             )
@@ -92,10 +78,10 @@ def correlations(fit: Fit) -> Array:
     return np.asarray(out, float)
 
 
-def interval(fit: Fit, i: int, kappa: float) -> tuple[float, float]:
+def interval(fit: Fit, i: int) -> tuple[float, float]:
     """Central 95 % of a parameter inside its bounds."""
     p = fit.unknowns.parameters[i]
-    half = NORMAL_95 * min(kappa * float(fit.sd[i]), p.prior_sd)
+    half = NORMAL_95 * min(float(fit.sd[i]), p.prior_sd)
     low, high = (to_value(p, float(fit.theta[i] + s * half)) for s in (-1.0, 1.0))
     return max(low, p.low), min(high, p.high)
 

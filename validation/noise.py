@@ -24,12 +24,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dtrtri
 
+from validation.doubt import USUAL
 from validation.sheet import Segment
 
 Array = NDArray[np.float64]
 FLOOR_K = 0.03
 PRIOR_COUNT = 4.0
-FAST = 0.25
 TAU, ELL = 120.0, 1200.0
 
 
@@ -140,7 +140,7 @@ class Level:
         """In K at a segment: in proportion to its weight, and not below what a model may be wrong by there."""
         w, m = segment.weight, allow * segment.model_K
         white, slow = max(w * self.white, FLOOR_K), max(w * self.slow, m)
-        return Level(white, max(w * self.fast, FAST * m), self.tau, slow, self.ell)
+        return Level(white, max(w * self.fast, USUAL["fast"] * m), self.tau, slow, self.ell)
 
     def shape(self) -> Shape:
         """Relative to white, rounded so that equal ones are recognised."""

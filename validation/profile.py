@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from validation.calibrate import Fit, Known, Progress, minimise, silent
 from validation.case import Test
 from validation.fitting import Unknowns, to_value
-from validation.intervals import FORMAL, NORMAL_95, Profile, Widening
+from validation.intervals import NORMAL_95, Profile
 
 Array = NDArray[np.float64]
 CLOSE = 0.03
@@ -24,20 +24,20 @@ LOOKS = 8
 
 
 def profiles(
-    fit: Fit, tests: Sequence[Test], held: Mapping[str, float], names: Sequence[str], wide: Widening = FORMAL,
+    fit: Fit, tests: Sequence[Test], held: Mapping[str, float], names: Sequence[str],
     progress: Progress = silent,
 ) -> dict[str, Profile]:  # fmt: skip
     """Name -> profile interval at 95 %; `held` are the values of what is not free."""
     out = {}
     for name in names:
         progress(f"profile of {name}")
-        out[name] = _profile(fit, tests, held, fit.unknowns.names.index(name), wide.of(name))
+        out[name] = _profile(fit, tests, held, fit.unknowns.names.index(name))
     return out
 
 
-def _profile(fit: Fit, tests: Sequence[Test], held: Mapping[str, float], i: int, kappa: float) -> Profile:
+def _profile(fit: Fit, tests: Sequence[Test], held: Mapping[str, float], i: int) -> Profile:
     p, line = fit.unknowns.parameters[i], Line(fit, tests, held, i)
-    low, high = (end(line, side, kappa) for side in (-1.0, 1.0))
+    low, high = (end(line, side) for side in (-1.0, 1.0))
     return Profile(to_value(p, low[0]), to_value(p, high[0]), (low[1], high[1]))
 
 
@@ -63,16 +63,16 @@ class Line:
         near = [replace(s, J=s.J[:, rest]) for s in fit.parts]
         values = {**self.held, **fit.values, p.name: to_value(p, at)}
         free = Unknowns(tuple(fit.unknowns.parameters[j] for j in rest))
-        best = minimise(fit.network, self.tests, free, start, fit.noise, values, known=Known(near))
+        best = minimise(fit.network, self.tests, free, start, fit.noise, values, known=Known(near), error=fit.error)
         objective = best.objective + 0.5 * (at / p.prior_sd) ** 2
         return float(np.sqrt(max(2.0 * (objective - fit.objective), 0.0)))
 
 
-def end(line: Line, side: float, kappa: float) -> tuple[float, bool]:
+def end(line: Line, side: float) -> tuple[float, bool]:
     """Coordinate of one end, and whether it is only the bound. The root of the deviance is nearly straight: secants."""
     fit, i = line.fit, line.i
     bound = float(fit.unknowns.bounds[1 if side > 0 else 0][i])
-    start, target = float(fit.theta[i]), NORMAL_95 * kappa
+    start, target = float(fit.theta[i]), NORMAL_95
     inner, outer = (start, 0.0), (bound, np.inf)
     at = start + side * target * float(fit.sd[i])
     for _ in range(LOOKS):

@@ -9,19 +9,20 @@ import numpy as np
 
 from geom.errors import InputError
 from lumped.network import Parameter
+from validation.acceptance import Check, checks, failures
 from validation.calibrate import Fit, silent
 from validation.case import AddedEffect, Case, Model, Test
 from validation.compare import Comparison, compare
 from validation.effects import effect
 from validation.fitting import FREE, scene_of, working
-from validation.gates import Gate, doubts, gates
-from validation.intervals import FORMAL, Estimate, Profile, Widening, estimates
+from validation.intervals import Estimate, Profile, estimates
 from validation.profile import profiles
 from validation.staged import Search, belongs, fitted, merged
 from validation.threads import one_blas_thread
 
 Progress = Callable[[str], None]
-GETS_WORSE = 1.05
+GETS_WORSE = 1.05  # a fit under priors may lose so much on single tests
+TRAINING = ("calibrate", "validate")
 
 
 @dataclass(frozen=True)
@@ -51,7 +52,7 @@ class Revision:
     before: Comparison
     after: Comparison
     converged: bool
-    gates: tuple[Gate, ...] = ()
+    checks: tuple[Check, ...] = ()
 
     @property
     def revision(self) -> int:
@@ -67,37 +68,43 @@ class Revision:
             "converged": self.converged,
             "tests": [t.document() for t in self.tests],
             "parameters": [p.document() for p in self.parameters],
-            "gates": [g.document() for g in self.gates],
+            "checks": [c.document() for c in self.checks],
         }
 
 
 def calibrate(
     case: Case,
     roles: Sequence[str] = ("calibrate",),
-    wide: Widening = FORMAL,
     progress: Progress = silent,
     profiled: Sequence[str] = (),
     search: Search | None = None,
 ) -> Revision:
     """Fit the free parameters to the tests of the given roles, stage by stage where tests free their own.
 
-    wide : factors on the intervals from a simulated null;  profiled : globs of parameters to profile
+    profiled : globs of parameters to profile
     """
-    return _revised(case, case.model, "calibrate", None, roles, wide, progress, profiled, search)
+    return _revised(case, case.model, "calibrate", None, roles, progress, profiled, search)
 
 
-def add(case: Case, name: str, wide: Widening = FORMAL, progress: Progress = silent) -> Revision:
-    """Add effect 'kind@place' and calibrate on all tests but the held-out ones."""
+def add(case: Case, name: str, progress: Progress = silent) -> Revision:
+    """Add effect 'kind@place' and calibrate on all tests but the held-out ones.
+
+    What was never calibrated is calibrated first: an effect is compared with the best model without it.
+    """
     one = effect(name, scene_of(case))
     if name in {e.name for e in case.model.effects}:
         raise InputError(
             f"'{name}' is in the model already", f"case '{case.name}'", "another effect, or `remove` it first"
         )
+    if case.model.revision == 0:
+        progress("calibrating without the effect")
+        bare = calibrate(case, TRAINING, progress).model
+        case = replace(case, model=replace(bare, revision=0))
     model = replace(case.model, effects=(*case.model.effects, AddedEffect(one.kind, one.place)))
-    return _revised(case, model, "add", name, ("calibrate", "validate"), wide, progress)
+    return _revised(case, model, "add", name, TRAINING, progress)
 
 
-def remove(case: Case, name: str, wide: Widening = FORMAL, progress: Progress = silent) -> Revision:
+def remove(case: Case, name: str, progress: Progress = silent) -> Revision:
     """Take an effect out and calibrate on all tests but the held-out ones."""
     left = tuple(e for e in case.model.effects if e.name != name)
     if len(left) == len(case.model.effects):
@@ -105,12 +112,12 @@ def remove(case: Case, name: str, wide: Widening = FORMAL, progress: Progress = 
         raise InputError(f"'{name}' is not in the model", f"case '{case.name}'", f"its effects: {known}")
     values = {k: v for k, v in case.model.values.items() if k != name and not k.startswith(f"{name}^")}
     model = replace(case.model, effects=left, values=values)
-    return _revised(case, model, "remove", name, ("calibrate", "validate"), wide, progress)
+    return _revised(case, model, "remove", name, TRAINING, progress)
 
 
 @one_blas_thread
 def _revised(
-    case: Case, model: Model, action: str, name: str | None, roles: Sequence[str], wide: Widening, progress: Progress,
+    case: Case, model: Model, action: str, name: str | None, roles: Sequence[str], progress: Progress,
     profiled: Sequence[str] = (), search: Search | None = None,
 ) -> Revision:  # fmt: skip
     before = compare(case)
@@ -124,11 +131,11 @@ def _revised(
     new = replace(model, values=_values(model, fits), revision=case.model.revision + 1)
     after = compare(replace(case, model=new))
     changes = tuple(Change(b.name, b.role, b.rmse_K, a.rmse_K) for b, a in zip(before.tests, after.tests, strict=True))
-    checks = gates(fits[-1], name, wide.of(name)) if action == "add" and name else ()
-    accepted, why = judge(action, changes, fits, checks)
-    rows = merged(fits, lambda fit: estimates(fit, wide, _profiled(fit, tests, new, profiled, wide, progress)))
+    made = checks(fits[-1], name) if action == "add" and name else ()
+    accepted, why = judge(action, changes, fits, made)
+    rows = merged(fits, lambda fit: estimates(fit, _profiled(fit, tests, new, profiled, progress)))
     converged = all(fit.converged for fit in fits)
-    return Revision(action, name, new, accepted, why, changes, tuple(rows), before, after, converged, checks)
+    return Revision(action, name, new, accepted, why, changes, tuple(rows), before, after, converged, made)
 
 
 def _plain(tests: Sequence[Test]) -> list[Test]:
@@ -145,13 +152,13 @@ def _values(model: Model, fits: Sequence[Fit]) -> dict[str, float]:
 
 
 def _profiled(
-    fit: Fit, tests: Sequence[Test], model: Model, globs: Sequence[str], wide: Widening, progress: Progress
+    fit: Fit, tests: Sequence[Test], model: Model, globs: Sequence[str], progress: Progress
 ) -> dict[str, Profile]:  # fmt: skip
     """Profile intervals of a stage's own parameters that match a glob."""
     names = [n for n in fit.unknowns.names if " of " not in n and any(belongs(n, g) for g in globs)]
     own = [t for t in tests if t.name in {s.test for s in fit.parts}]
     held = {p.name: model.values.get(p.name, p.value) for p in fit.network.parameters}
-    return profiles(fit, own, held, names, wide, progress)
+    return profiles(fit, own, held, names, progress)
 
 
 def start(case: Case) -> dict[str, float]:
@@ -167,22 +174,28 @@ def nudge(p: Parameter) -> float:
     return float(np.clip(p.neutral + 0.3 * (p.sign or 1) * p.prior_sd / FREE, p.low, p.high))
 
 
-def judge(action: str, changes: Sequence[Change], fits: Sequence[Fit], checks: Sequence[Gate]) -> tuple[bool, str]:
-    """Accept what converges, passes its checks and lowers the error on tests that were not fitted."""
-    unseen = [c for c in changes if c.role == "hold-out"] or [c for c in changes if c.role == "validate"]
-    seen = [c for c in changes if c not in unseen]
-    was, now = mean_square(unseen, "before"), mean_square(unseen, "after")
-    told = f"error on tests not fitted {was:.3g} -> {now:.3g} K" if unseen else "no held-out test"
-    if not (converged := all(fit.converged for fit in fits)):
-        told = f"not converged; {told}"
-    if action == "calibrate":
-        fell = mean_square(seen or changes, "after") <= GETS_WORSE * mean_square(seen or changes, "before")
-        return fell and converged, told
-    if not converged or doubts(checks):
-        return False, "; ".join(filter(None, [doubts(checks), told]))
-    if unseen:
-        return now < was, told
-    return mean_square(seen, "after") < mean_square(seen, "before"), told
+def judge(action: str, changes: Sequence[Change], fits: Sequence[Fit], made: Sequence[Check]) -> tuple[bool, str]:
+    """Accept what converges, passes its checks and lowers the error of the tests it was fitted to.
+
+    The held-out tests have no say; what became of them is told after.
+    """
+    seen = [c for c in changes if c.role != "hold-out"]
+    was, now = mean_square(seen, "before"), mean_square(seen, "after")
+    converged = all(fit.converged for fit in fits)
+    fell = now <= (GETS_WORSE * was if action == "calibrate" else was)
+    told = [failures(made), "" if converged else "not converged", f"error {was:.3g} -> {now:.3g} K", *unseen(changes)]
+    return bool(fell and converged and not failures(made)), "; ".join(filter(None, told))
+
+
+def unseen(changes: Sequence[Change]) -> list[str]:
+    """What became of the tests that were not fitted, in words."""
+    own = [c for c in changes if c.role == "hold-out"]
+    if not own:
+        return ["no held-out test"]
+    was, now = mean_square(own, "before"), mean_square(own, "after")
+    told = f"held-out tests {was:.3g} -> {now:.3g} K"
+    worst = max(own, key=lambda c: c.after - c.before)
+    return [f"{told}: {worst.name} got worse, the fit follows what only the fitted tests show" if now > was else told]
 
 
 def mean_square(changes: Sequence[Change], side: str) -> float:

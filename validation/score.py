@@ -12,13 +12,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import nnls
 
 from validation.noise import Noise
 from validation.sheet import Segment
 
 Array = NDArray[np.float64]
-POWER = 0.842  # normal quantile of 80 %
 
 
 @dataclass(frozen=True)
@@ -101,43 +99,6 @@ class Score:
         """How alike two effects look after projection, (K, K) in [-1, 1]."""
         d = np.where(self.visible, np.sqrt(np.maximum(np.diag(self.V), 1e-300)), np.inf)
         return self.V / np.outer(d, d)
-
-    def detectable(self, kappa: Array, threshold: float) -> Array:
-        """Smallest amplitude whose score passes the threshold for the best of all effects four times in five."""
-        return (threshold + POWER) * self.sd * kappa
-
-    def conditional(self, k: int, other: int) -> float:
-        """Signed z of k once `other` is in the model."""
-        V, u = self.V, self.u
-        left = V[k, k] - V[k, other] ** 2 / V[other, other]
-        if left <= 1e-9 * V[k, k]:
-            return 0.0
-        z = float((u[k] - V[k, other] / V[other, other] * u[other]) / np.sqrt(left))
-        return abs(z) if self.sign[k] == 0 else float(self.sign[k]) * z
-
-    def drop(self, members: Sequence[int]) -> float:
-        """Deviance that a set of effects removes, each with the sign physics allows."""
-        index = [m for m in members if self.visible[m]]
-        if not index:
-            return 0.0
-        V, u = self.V[np.ix_(index, index)], self.u[index]
-        signs = [(1, -1) if self.sign[m] == 0 else (int(self.sign[m]),) for m in index]
-        return max(_admissible_drop(V, u, np.array(s)) for s in _choices(signs))
-
-
-def _choices(options: Sequence[tuple[int, ...]]) -> list[list[int]]:
-    out: list[list[int]] = [[]]
-    for option in options:
-        out = [[*head, value] for head in out for value in option]
-    return out
-
-
-def _admissible_drop(V: Array, u: Array, sign: Array) -> float:
-    """max over a with sign a >= 0 of 2 u'a - a'V a, by non-negative least squares on V's Cholesky factor."""
-    W = V * np.outer(sign, sign)
-    L = np.linalg.cholesky(W + 1e-12 * np.trace(W) * np.eye(len(u)))
-    a, _ = nnls(L.T, np.linalg.solve(L, sign * u))
-    return float(2.0 * (sign * u) @ a - a @ W @ a)
 
 
 def score(G: Gram, theta: Array, prior_sd: Array, sign: NDArray[np.int64]) -> Score:

@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 from lumped.network import Network, Parameter
 from validation.blocks import INSTANTS, Blocks, groups
 from validation.case import Channel, Test
+from validation.doubt import USUAL
 from validation.predict import Watch
 
 Array = NDArray[np.float64]
-MODEL_SHARE = 0.02  # a model within 4 % of the rise counts as good: that is two standard deviations
 NUMBERS = 2**22  # of a Jacobian looked at together: 34 MB, and some copies
 SHORTEST = 500  # samples of a stretch
 WORTH_A_THREAD = 3000  # states times instants below which starting threads costs more than it saves
@@ -87,7 +87,7 @@ def allowed(c: Channel) -> float:
     share of the rise."""
     first = c.y[np.argmax(np.isfinite(c.y))]
     rise = max(float(np.nanmax(c.y) - first), float(first - np.nanmin(c.y)))
-    return float(np.hypot(max(c.model_K, c.sigma_K), MODEL_SHARE * rise))
+    return float(np.hypot(max(c.model_K, c.sigma_K), USUAL["slow"] * rise))
 
 
 def stacked(parts: Sequence[Segment]) -> Array:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from lumped.network import Network
 from validation.case import Test
-from validation.fitting import BOUNDARY_SD
+from validation.doubt import USUAL
 from validation.predict import predict
 
 Array = NDArray[np.float64]
@@ -82,7 +82,7 @@ def shifted_inputs(test: Test) -> Iterator[tuple[str, Test]]:
         if np.any(u):
             yield name, replace(test, inputs={**test.inputs, name: (1.0 + INPUT_SHARE) * np.asarray(u, float)})
     for name, u in test.boundaries.items():
-        yield name, replace(test, boundaries={**test.boundaries, name: np.asarray(u, float) + BOUNDARY_SD})
+        yield name, replace(test, boundaries={**test.boundaries, name: np.asarray(u, float) + USUAL["boundary"]})
 
 
 def halved(test: Test) -> Test:

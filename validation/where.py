@@ -1,7 +1,6 @@
 """Where and when heat is missing: a free heat input at each node in turn, as hat functions of time.
 
-log evidence of a heat input q ~ N(0, s^2) per hat at node i, nuisances projected out; 10 nats locate it, or what the
-simulated null gives where that is more.
+log evidence of a heat input q ~ N(0, s^2) per hat at node i, nuisances projected out; 10 nats locate it.
 Source: Sarkka, Alvarez and Lawrence 2019 (latent force models); Rasmussen and Williams 2006, 5.4.
 """
 
@@ -15,6 +14,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import block_diag
+from scipy.special import logsumexp
 
 from lumped.laws import Fixed, Inputs
 from lumped.network import Network, Parameter
@@ -23,6 +23,7 @@ from validation.calibrate import Fit
 from validation.case import Test
 from validation.effects.build import Shaped, heat, power_scale
 from validation.effects.sites import solids
+from validation.inference.model_error import ModelError
 from validation.noise import Noise
 from validation.score import Gram, gram
 from validation.sheet import Segment, segments
@@ -37,11 +38,13 @@ LOCATED = 10.0  # nats
 class Latent:
     """Heat missing at one place: evidence (nats); per test its times (s), heat (W) and standard deviation (W).
 
+    log_bayes : the same averaged over how large and how lasting such heat may be
     moves_K : the most by which it moves a reading, what is calibrated following
     """
 
     place: str
     evidence_nats: float
+    log_bayes: float
     heat_W: dict[str, tuple[Array, Array, Array]]
     moves_K: float
 
@@ -77,15 +80,20 @@ class Scan:
     sd: Array
     scale: float
 
-    def read(self, residual: Sequence[Segment], noise: Noise, theta: Array) -> list[Latent]:
-        """All places, most evident first, by the residual's own noise: it places heat, it tests nothing.
+    def read(
+        self, residual: Sequence[Segment], noise: Noise, theta: Array, error: ModelError | None = None
+    ) -> list[Latent]:
+        """All places, most evident first.
 
         theta : where the parameters stand, from the mean of their priors
         """
         left = {(s.test, s.channel): s.r for s in residual}
         parts = [replace(s, r=left[s.test, s.channel]) for s in self.parts]
-        grams = gram(parts, replace(noise, allow=0.0), self.sd.size)
-        weight = self.sd**-2.0
+        if error:
+            parts = [error.beside(s, self.sd.size) for s in parts]
+        d = error.size if error else 0
+        grams = gram(parts, noise, self.sd.size + d)
+        theta, weight = np.concatenate([theta, np.zeros(d)]), np.concatenate([self.sd**-2.0, np.ones(d)])
         H = sum(g.JJ for g in grams.values()) + np.diag(weight)
         Jr = sum(g.Jr for g in grams.values()) - weight * theta
         cov = np.asarray(np.linalg.inv(H), float)
@@ -108,10 +116,12 @@ class Scan:
             A[block, block], u[block], JZ[:, block] = g.ZZ[own, own], g.Zr[own], g.JZ[:, own]
         A, u = A - JZ.T @ cov @ JZ, u - JZ.T @ cov @ Jr
         sizes = self.scale * 10.0 ** np.arange(-3.0, 1.5, 0.5)
-        best, q, sd = max((_evidence(A, u, sizes, root) for root in self.roots), key=lambda x: x[0])
+        tried = [_evidence(A, u, sizes, root) for root in self.roots]
+        nats, q, sd = max(tried, key=lambda x: x[0].max())
+        best, mean = nats.max(), logsumexp([x[0] for x in tried]) - np.log(len(tried) * sizes.size)
         cut = [slice(a, b) for a, b in pairwise(start)]
         heat_W = {name: (k, q[c], sd[c]) for (name, k), c in zip(self.knots.items(), cut, strict=True)}
-        return Latent(self.places[i], float(best), heat_W, self._moves(i, heat_W, -cov @ JZ @ q))
+        return Latent(self.places[i], float(best), float(mean), heat_W, self._moves(i, heat_W, -cov @ JZ @ q))
 
     def _moves(self, i: int, heat_W: Mapping[str, tuple[Array, Array, Array]], follow: Array) -> float:
         """Largest change of a reading (K); follow : what the heat makes of the calibrated parameters."""
@@ -119,18 +129,18 @@ class Scan:
         for s in self.parts:
             _, q, _ = heat_W[s.test]
             own = slice(p + i * q.size, p + (i + 1) * q.size)
-            most = max(most, float(np.max(np.abs(s.J[:, :p] @ follow + s.J[:, own] @ q), initial=0.0)))
+            most = max(most, float(np.max(np.abs(s.J[:, :p] @ follow[:p] + s.J[:, own] @ q), initial=0.0)))
         return most
 
 
-def located(evidence_nats: float, usual_nats: float) -> bool:
-    """Is there more evidence than it takes to place heat, and than machines give that lack none?"""
-    return evidence_nats > max(LOCATED, usual_nats)
+def located(evidence_nats: float) -> bool:
+    """Is there more evidence than it takes to place heat?"""
+    return evidence_nats > LOCATED
 
 
 def latent_heat(fit: Fit, tests: Sequence[Test], knot_s: float = KNOT_S) -> list[Latent]:
     """The scan of a calibrated model's residual."""
-    return scan(fit, tests, knot_s).read(fit.parts, fit.noise, fit.theta)
+    return scan(fit, tests, knot_s).read(fit.parts, fit.noise, fit.theta, fit.error)
 
 
 def scan(fit: Fit, tests: Sequence[Test], knot_s: float = KNOT_S) -> Scan:
@@ -164,8 +174,8 @@ def _correlation(knots: Sequence[Array], memory: float) -> Array:
     return block_diag(*(np.exp(-np.abs(k[:, None] - k[None, :]) / memory) for k in knots))
 
 
-def _evidence(A: Array, u: Array, sizes: Array, root: Array) -> tuple[float, Array, Array]:
-    """Log evidence of q ~ N(0, s^2 root root') for the best of the sizes s, posterior mean and standard deviation.
+def _evidence(A: Array, u: Array, sizes: Array, root: Array) -> tuple[Array, Array, Array]:
+    """Log evidence of q ~ N(0, s^2 root root') for each size s, posterior mean and standard deviation of the best.
 
     In the eigenvectors of root' A root every size is a sum: log ev = 1/2 sum(s^2 b^2 / (1 + s^2 l) - log(1 + s^2 l)).
     """
@@ -176,4 +186,4 @@ def _evidence(A: Array, u: Array, sizes: Array, root: Array) -> tuple[float, Arr
     evidence = 0.5 * np.sum(square * b**2 / grown - np.log(grown), axis=1)
     best = int(np.argmax(evidence))
     share = square[best] / grown[best]
-    return float(evidence[best]), basis @ (share * b), np.asarray(np.sqrt(basis**2 @ share))
+    return evidence, basis @ (share * b), np.asarray(np.sqrt(basis**2 @ share))

@@ -13,7 +13,7 @@ _HOME = {
     "flux_arrows": "arrows", "heat_flux": "arrows",
     "heat_flows": "flows", "sankey_of_losses": "sankey", "network_in_machine": "network", "animate": "animation",
     "measured_and_model": "curves", "residuals": "curves", "before_after": "errors", "staircase": "errors",
-    "scores": "candidates", "half_normal": "candidates", "confusion": "candidates",
+    "scores": "candidates", "posterior": "candidates", "confusion": "candidates",
     "write_recording": "recording", "verify": "recording", "Report": "report", "write_report": "report",
     "write_pdf": "pdf", "screened": "screening", "ranking": "screening",
 }  # fmt: skip

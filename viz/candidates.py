@@ -1,4 +1,4 @@
-"""What might be missing: scores of the candidate effects, and which of them cannot be told apart."""
+"""What might be missing: the odds, the evidence of the candidate effects, and which of them cannot be told apart."""
 
 from __future__ import annotations
 
@@ -8,21 +8,20 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import halfnorm
 
 from viz import paper
-from viz.colours import LIGHT, ORANGE, PURPLE, VERMILION
-from viz.labels import spread
+from viz.colours import BLUE, LIGHT, ORANGE, PURPLE, VERMILION
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+SHOWN = 0.005  # probabilities below half a per cent are not drawn
 DECISION = {"named": VERMILION, "group": ORANGE, "cannot-tell": PURPLE, "no": LIGHT.faint}
 
 
 @paper.styled
 def scores(candidates: Sequence[Mapping[str, Any]], *, most: int = 12, png: str | Path | None = None) -> Figure:
-    """The highest scores as bars with each candidate's threshold, coloured by decision."""
+    """The highest log evidence as bars with each candidate's threshold, coloured by decision."""
     best = sorted(candidates, key=lambda c: c["score"], reverse=True)[:most][::-1]
     figure, (ax,) = paper.subplots(8.4, 0.3 * len(best) + 1.2)
     for y, c in enumerate(best):
@@ -35,32 +34,22 @@ def scores(candidates: Sequence[Mapping[str, Any]], *, most: int = 12, png: str 
         label.set_fontweight("bold" if c["decision"] == "named" else "normal")
     ax.grid(False, axis="y")
     ax.margins(x=0.2, y=0.02)
-    ax.set(xlabel="score (signed, in units of its own noise); black mark: threshold from simulated nulls")
+    ax.set(xlabel="log evidence against nothing missing (nats); black mark: as probable as nothing")
     return paper.saved(figure, png)
 
 
 @paper.styled
-def half_normal(candidates: Sequence[Mapping[str, Any]], *, png: str | Path | None = None) -> Figure:
-    """Sorted |score| against half-normal quantiles: pure noise lies on a line, what is real leaves it."""
-    ranked = sorted(candidates, key=lambda c: abs(c["score"]))
-    x = halfnorm.ppf((np.arange(len(ranked)) + 0.5) / len(ranked))
-    y = np.array([abs(c["score"]) for c in ranked])
-    figure, (ax,) = paper.subplots(6.4, 4.6)
-    ax.scatter(
-        x, y, s=26, c=[DECISION[c["decision"]] for c in ranked], zorder=3, edgecolors=LIGHT.paper, linewidths=0.6
-    )
-    threshold = float(np.median([c["threshold"] for c in ranked]))
-    ax.axhline(threshold, color=LIGHT.ink, lw=1.0, ls=":")
-    ax.text(0, threshold, "threshold (simulated nulls)", va="bottom", fontsize=8)
-    quiet = max(1, int(0.7 * len(ranked)))
-    slope = float(x[:quiet] @ y[:quiet] / (x[:quiet] @ x[:quiet]))
-    ax.plot([0, x[-1]], [0, slope * x[-1]], color=LIGHT.faint, lw=1.0)
-    shown = [i for i in range(len(ranked)) if ranked[i]["decision"] != "no"][-8:]
-    top = max(float(y.max()), threshold) * 1.08
-    for i, at in zip(shown, spread([y[i] for i in shown], 0, top, 0.05 * top), strict=True):
-        ax.annotate(f"{ranked[i]['effect']}  ", (x[i], y[i]), (x[i] - 0.05, at), ha="right", va="center", fontsize=8.5)
-    ax.set_ylim(0, top)
-    ax.set(xlabel="half-normal quantile", ylabel="|score|")
+def posterior(odds: Sequence[Mapping[str, Any]], *, most: int = 10, png: str | Path | None = None) -> Figure:
+    """The probability of every hypothesis that carries weight as bars, most probable first.  odds : of a diagnosis"""
+    best = [o for o in odds if o["probability"] >= SHOWN][:most][::-1]
+    figure, (ax,) = paper.subplots(8.4, 0.3 * len(best) + 1.2)
+    colours = [BLUE if o["hypothesis"] == "nothing" else VERMILION if o["effects"] else PURPLE for o in best]
+    ax.barh(range(len(best)), [100.0 * o["probability"] for o in best], height=0.62, color=colours)
+    for y, o in enumerate(best):
+        ax.text(100.0 * o["probability"], y, f"\u00a0{100.0 * o['probability']:.0f} %", va="center", fontsize=8.5)
+    ax.set_yticks(range(len(best)), [o["hypothesis"] for o in best])
+    ax.grid(False, axis="y")
+    ax.set(xlabel="probability (%)", xlim=(0.0, 112.0))
     return paper.saved(figure, png)
 
 

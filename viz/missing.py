@@ -39,7 +39,7 @@ def mean_heat(where: Sequence[Mapping[str, Any]], test: str) -> dict[str, float]
 def placed(diagnosis: Mapping[str, Any]) -> bool:
     """Does the scan of a `diagnose` document put the missing heat somewhere, or could it be anywhere?"""
     best = max((w["evidence_nats"] for w in diagnosis.get("where", [])), default=0.0)
-    return located(best, diagnosis.get("usual_nats", 0.0))
+    return located(best)
 
 
 def missing_in_machine(
@@ -47,7 +47,6 @@ def missing_in_machine(
     where: Sequence[Mapping[str, Any]],
     test: str,
     *,
-    usual_nats: float = 0.0,
     wedge: Wedge | None = QUARTER,
     view: View | None = None,
     theme: Theme = LIGHT,
@@ -58,7 +57,7 @@ def missing_in_machine(
     Each place by itself, not together; its label says how much speaks for it (nats). The headline says when that is too
     little to locate the heat.
 
-    where, usual_nats : as in a `diagnose` document;  test : whose mean is drawn
+    where : as in a `diagnose` document;  test : whose mean is drawn
     """
     p, view, heat = scene.plotter(theme), view or View(), mean_heat(where, test)
     surface = cut_away(nodes, wedge)
@@ -71,7 +70,7 @@ def missing_in_machine(
         diffuse=0.28, culling="back",
     )  # fmt: skip
     scene.colour_bar(p, "W", theme)
-    unsure = "" if placed({"where": where, "usual_nats": usual_nats}) else " (too little evidence to locate it)"
+    unsure = "" if placed({"where": where}) else " (too little evidence to locate it)"
     scene.headline(p, f"Heat that the model misses, mean over {test}{unsure}", theme)
     scene.footnote(p, "at each place by itself; nats: evidence for it", theme)
     nats = {w["place"]: w["evidence_nats"] for w in where}

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
+from validation.apart import DECISIVE
+
 from hidden.answer import answer
 from hidden.cases import Label, hidden_in
 from hidden.kinds import KINDS
@@ -12,7 +14,6 @@ from hidden.truth.archetype import measured
 from hidden.truth.menu import MENU, carried_out
 from hidden.user import network_of, test_of
 from validation import Case, Revision, add, calibrate
-from validation.apart import DECISIVE
 
 Answer = dict[str, Any]
 

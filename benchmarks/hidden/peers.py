@@ -14,9 +14,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from validation.evidence import Evidence, calibrated_case, candidates, refit, scored
 
 from validation import Case
-from validation.evidence import Evidence, calibrated_case, candidates, refit, scored
 from validation.sheet import Segment
 
 Array = NDArray[np.float64]

@@ -7,6 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from validation.detectable import readings_with, recalibrated
+from validation.evidence import Evidence, diagnosing, with_members
+from validation.verdict import PULL
 
 from hidden.kinds import KINDS
 from hidden.truth.archetype import measured
@@ -14,10 +17,7 @@ from hidden.truth.change import Change
 from hidden.user import case_of
 from validation.calibrate import Fit, Known, minimise
 from validation.case import Test
-from validation.detectable import readings_with, recalibrated
-from validation.evidence import Evidence, diagnosing, with_members
 from validation.fitting import Unknowns, widened
-from validation.verdict import PULL
 
 Array = NDArray[np.float64]
 LIKE, MOST = 0.4, 12

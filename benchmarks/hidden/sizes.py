@@ -12,6 +12,9 @@ from pathlib import Path
 
 import numpy as np
 from scipy.optimize import minimize_scalar
+from validation.detectable import Search, readings_with, smallest
+from validation.evidence import calibrated_case, candidates, null_of, scored
+from validation.side_by_side import side_by_side
 
 from hidden.kinds import KINDS
 from hidden.rivals import Reference, differences, gaps, reference
@@ -19,10 +22,7 @@ from hidden.truth.archetype import Hidden, measured
 from hidden.truth.change import NOTHING, Change
 from hidden.user import case_of
 from validation.case import Test
-from validation.detectable import Search, readings_with, smallest
-from validation.evidence import calibrated_case, candidates, null_of, scored
 from validation.score import POWER
-from validation.side_by_side import side_by_side
 
 FILE = Path(__file__).parent / "detectable.json"
 SEEDS = (900001, 900002, 900003)  # of the machines with nothing missing that all is measured on

@@ -10,6 +10,7 @@ from itertools import pairwise
 from geom import shapes
 from geom.part import Made, Part, Port, Prism, Rod
 from geom.profile import Loop, Profile, Vertex
+from geom.roles import Role
 
 TUBE = 1.5  # outer diameter, and length, of a port over its bore
 CLEAR = 0.55  # of the bore: from its middle to the end of the channel
@@ -70,7 +71,7 @@ class Nozzle:
         sides = [Profile(shapes.strip_loop(self.wall, self.tip, *y)).rotated(self.angle)
                  for y in ((-out, -half), (half, out))]  # fmt: skip
         prisms = ((whole, self.z - out, low), *((side, low, high) for side in sides), (whole, high, self.z + out))
-        return Part(f"{self.name}.tube", material, prisms, made=self._tube())
+        return Part(f"{self.name}.tube", material, prisms, made=self._tube(), role=Role.HOUSING)
 
     def _tube(self) -> Made:
         inside = (shapes.disc(self.wall), self.z - self.bore, self.z + self.bore)

@@ -5,6 +5,6 @@ Outside a stated range it warns with a RangeWarning that carries the number and 
 """
 
 from lumped.correlations.info import Info, RangeWarning
-from lumped.correlations.tabulate import tabulated
+from lumped.correlations.tabulate import film_tabulated, tabulated
 
-__all__ = ["Info", "RangeWarning", "tabulated"]
+__all__ = ["Info", "RangeWarning", "film_tabulated", "tabulated"]

@@ -8,9 +8,23 @@ from collections.abc import Callable, Iterable
 import numpy as np
 
 from lumped.correlations.info import Info, RangeWarning
-from lumped.laws import Table
+from lumped.laws import FILMS, FIRST_C, STEP_K, FilmTable, Table
 
 STILL_AIR_K = tuple(float(d) for d in np.concatenate([[0.0], np.geomspace(0.1, 300.0, 48)]))
+
+
+def film_tabulated(
+    correlation: Callable[[float, float], tuple[float, Info]], differences: Iterable[float] = STILL_AIR_K
+) -> FilmTable:
+    """Temperature law from `correlation(surface degC, fluid degC) -> (h, info)`, whatever the fluid's temperature."""
+    grid = tuple(float(d) for d in differences)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RangeWarning)
+        h = (
+            float(correlation(FIRST_C + k * STEP_K + 0.5 * d, FIRST_C + k * STEP_K - 0.5 * d)[0])
+            for k in range(FILMS) for d in grid
+        )  # fmt: skip
+        return FilmTable(grid, tuple(h))
 
 
 def tabulated(

@@ -7,7 +7,6 @@ from hidden.rivals import differences, gaps, reference
 from hidden.truth.archetype import measured
 from hidden.truth.change import NOTHING
 from hidden.user import case_of
-
 from validation.detectable import readings_with
 from validation.evidence import calibrated_case, candidates, scored
 

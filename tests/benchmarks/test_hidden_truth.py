@@ -18,9 +18,9 @@ from hidden.truth.profile import between, fine_times
 from hidden.truth.readings import lagged
 from hidden.user import network_of
 from scipy.integrate import solve_ivp
+from validation.menu import possible
 
 from validation.case import Test
-from validation.menu import possible
 
 TRUTH = Path(__file__).parents[2] / "benchmarks" / "hidden" / "truth"
 ALLOWED = {"__future__", "collections", "dataclasses", "typing", "numpy", "scipy", "hidden"}
@@ -164,7 +164,7 @@ def test_what_is_carried_out_is_what_was_planned(kind):
     """The true machine's inputs are those with which the diagnosis foretold what the test would show."""
     at, four_hours, rng = np.arange(0.0, 4500.0, 30.0), np.arange(0.0, 14400.0, 30.0), np.random.default_rng
     base = Test("driven", "validate", at, kind.plans[3].inputs(rng(0), at), {}, (), 20.0)
-    for experiment, test in possible(base):
+    for experiment, test in possible(base, network_of(kind.name)):
         if experiment.name in MENU:
             asked = carried_out(experiment.name, kind.plans[3]).inputs(rng(0), four_hours)
             for key, planned in test.inputs.items():

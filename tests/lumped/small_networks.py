@@ -3,7 +3,7 @@
 import numpy as np
 
 from lumped.build import bare_network, node_link, node_source
-from lumped.laws import Fixed, InputPower, Linear, Power, Radiation, Table
+from lumped.laws import FILMS, FilmTable, Fixed, InputPower, Linear, Power, Radiation, Table
 from lumped.network import Parameter
 
 G12, G2A, C1, C2 = 10.0, 25.0, 2500.0, 25000.0
@@ -31,7 +31,9 @@ def every_law():
     """Four nodes, one of them without capacity, with every temperature law, time-varying inputs and every mapping."""
     net = bare_network("every law", {"a": 300.0, "b": 500.0, "c": 800.0, "skin": 0.0}, ("ambient", "bench"))
     table = Table((0.0, 2.0, 10.0, 60.0), (1.0, 1.5, 2.0, 2.6))
+    film = FilmTable((0.0, 5.0, 80.0), tuple(v - 0.05 * k for k in range(FILMS) for v in (1.0, 1.6, 2.4)))
     links = [
+        node_link(net, "film", "film", "c", "ambient", Fixed(0.3, film)),
         node_link(net, "constant", "link", "a", "b", Fixed(4.0)),
         node_link(net, "linear", "link", "b", "c", Fixed(3.0, Linear(0.002, 20.0))),
         node_link(net, "skin", "link", "c", "skin", Fixed(6.0)),
@@ -50,7 +52,20 @@ def every_law():
     return net.extended(links, sources, (*MULTIPLIERS, *SPECIAL))
 
 
-NAMES = ("constant", "linear", "skin", "power", "radiation", "table", "forced", "both", "copper", "iron", "capacity:a")
+NAMES = (
+    "constant",
+    "linear",
+    "skin",
+    "power",
+    "radiation",
+    "table",
+    "film",
+    "forced",
+    "both",
+    "copper",
+    "iron",
+    "capacity:a",
+)
 MULTIPLIERS = tuple(Parameter(f"log {n}", ((n, 1.0),)) for n in NAMES)
 SPECIAL = (
     Parameter("relative", (("power", 1.0), ("iron", 0.5)), 0.2, mapping="relative", neutral=0.0),

@@ -5,12 +5,13 @@ import pytest
 from numpy.testing import assert_allclose
 from small_networks import boundaries, every_law, inputs
 
+from geom.errors import InputError
 from lumped.audit import audit
 from lumped.correlations import RangeWarning
 from lumped.declared import read_network
 from lumped.loss_map import MapLoss
 from lumped.losses import BrushLoss, CopperLoss, IronLoss, PowerLoss, RippleLoss
-from lumped.simulate import Record
+from lumped.simulate import Record, simulate
 
 AT = {"speed_rpm": np.array([0.0, 1000.0, 2000.0]), "current_A": np.array([0.0, 100.0, 200.0])}
 
@@ -96,3 +97,38 @@ def test_what_a_network_declares_in_toml_is_what_it_injects():
     assert found.declared_J["loss:map"] == pytest.approx(32.5 * 100)
     assert found.declared_J["loss:teeth"] == pytest.approx(15.0 * 100)
     assert found.mismatch < 1e-6
+
+
+def heated(**loss):
+    return read_network({
+        "network": {"name": "n", "boundaries": ["ambient"]}, "nodes": {"a": {"C_J_K": 900.0}},
+        "links": {"out": {"between": ["a", "ambient"], "G_W_K": 1.0}}, "losses": {"heat": {"at": "a", **loss}},
+    })  # fmt: skip
+
+
+CONSTANT = {"kind": "constant", "P_W": 100.0, "reference_degC": 20.0}
+
+
+@pytest.mark.parametrize(
+    ("alpha", "says"), [(-0.01, "negative above 120 degC"), (-0.004, "above 270"), (0.02, "below -30")]
+)
+def test_a_coefficient_that_turns_heat_into_cooling_is_refused(alpha, says):
+    """1 + alpha (T - 20) = 0 at 20 - 1/alpha: within what a machine sees, one message; beyond, none."""
+    with pytest.raises(InputError, match=says):
+        heated(**CONSTANT, alpha_1_K=alpha)
+    assert heated(**CONSTANT, alpha_1_K=0.1 * alpha).sources[0].law.temperature.alpha == 0.1 * alpha
+
+
+def test_copper_does_not_conduct_better_hot():
+    with pytest.raises(InputError, match=r"alpha_1_K = -0\.00393"):
+        heated(kind="copper", R20_ohm=0.1, currents=["current_A"], alpha_1_K=-0.00393)
+
+
+def test_a_resistance_factor_below_zero_is_refused_with_the_speed():
+    ac = {"input": "speed_rpm", "at": 1000.0, "coefficients": [1.0, -0.5]}
+    network = heated(kind="copper", R20_ohm=0.1, currents=["current_A"], ac=ac)
+    record = Record(
+        np.arange(3.0), {"current_A": 10.0, "speed_rpm": np.array([0.0, 1000.0, 3000.0])}, {"ambient": 20.0}
+    )
+    with pytest.raises(InputError, match=r"resistance factor is -0\.5 at speed_rpm = 3000"):
+        simulate(network, record)

@@ -12,12 +12,14 @@ from lumped.motor import operating_point
 from lumped.motor_coolant import channel_of, cooling_of, jacket_film
 from lumped.motor_films import surroundings
 from lumped.motor_losses import _declared, loss_watts
-from lumped.motor_outer import cowl_of, outer_of
+from lumped.motor_outer import cowl_of, outer_films, outer_of
 from lumped.motor_path import path_of
+from lumped.motor_settings import read_films
 from lumped.motor_shapes import fins_of, turning
 from lumped.motor_zones import motor_zones
 from lumped.multipliers import multipliers
 from lumped.steady import steady
+from lumped.terms_value import temperature_value
 from thermoscope.pipeline import prepared
 
 FAMILIES = ("pmsm-m1", "ipmsm-48s8p-jacket", "tefc-industrial")
@@ -74,12 +76,7 @@ def test_direct_current_heating_at_standstill(networks, ready):
     for link in network.links:
         if "ambient" in link.places:
             hot = float(link.hot.weights @ found.z[link.hot.index])
-            law = link.law.temperature
-            h = (
-                np.interp(hot - 20.0, law.difference, law.value)
-                if hasattr(law, "difference")
-                else 5.670374419e-8 * ((hot + 273.15) ** 2 + 293.15**2) * (hot + 273.15 + 293.15)
-            )
+            h = temperature_value(link.law.temperature, hot, 20.0)
             left += float(link.law.factor({})) * h * network.place(link.places[0]).area * (hot - 20.0)
     assert left == pytest.approx(heat, rel=1e-6)
     assert max(found["winding"], found["winding.left"]) > found["magnets"] > found["base"] > 20.0
@@ -221,3 +218,16 @@ def test_a_machine_without_losses_can_be_looked_at(ready):
     )
     assert sum(watts.values()) == pytest.approx(100.0)
     assert set(watts) == {"winding", "winding.left", "winding.right"}
+
+
+def test_a_part_may_have_its_own_film_of_the_shaft_fan():
+    """On the standing foot, which the cowl does not reach, and on the shield in the place of the cowl's film."""
+    machine = load_machine("tefc-industrial")
+    fan = {"h_W_m2K": 40.0, "at_rpm": 1460.0}
+    said = {"outer": {"foot": {"fan": fan}, "endcap.left": {"fan": fan}}}
+    machine = replace(machine, sections={**machine.sections, "films": said})
+    bare = outer_films(load_machine("tefc-industrial"), "foot", read_films(machine))
+    assert "blown" not in bare
+    for part in said["outer"]:
+        law = outer_films(machine, part, read_films(machine))["blown"]
+        assert law.factor({"speed_rpm": np.array([0.0, 730.0])}) == pytest.approx([0.0, 40.0 * 0.5**0.8])

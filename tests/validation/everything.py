@@ -55,7 +55,7 @@ def moved(link, n):
 
 
 def scene(net):
-    inputs = frozenset({"current_A", "speed_rpm", "vehicle_speed_mps", "fan_flow_m3h", "switching_Hz", "time_s"})
+    inputs = frozenset({"current_A", "speed_rpm", "vehicle_speed_mps", "switching_Hz", "time_s"})
     return Scene(net, inputs, SENSORS, ("warm",))
 
 

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from playground import Truth, wind
-
 from validation.bar import SUSPECT, Simulation, bar_of, undisturbed
 from validation.evidence import calibrated_case, candidates, scored
 from validation.rivals import leading

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from validation.bridges import bridges, stars
 
 from lumped.declared import read_network
-from validation.bridges import bridges, stars
 
 
 def chain():

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from playground import Truth
-
-from validation.calibrate import minimise
 from validation.detectable import Left, Search, followed, readings_with, smallest, smallest_sizes, told
 from validation.evidence import calibrated_case, candidates, scored
+
+from validation.calibrate import minimise
 
 LEVEL = 4.0
 KINDS = ("convection", "loss.constant", "contact", "convection.constant", "sensor.bias")

@@ -16,6 +16,7 @@ KINDS = kinds()
 COOLING = [
     "convection",
     "convection.constant",
+    "convection.fan",
     "convection.buoyant",
     "radiation",
     "conduction.bench",

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 from playground import Truth, wind
+from validation.evidence import calibrated_case, scored, sharpened
 
 from validation.calibrate import Known, calibrated, minimise
 from validation.effects import effect
-from validation.evidence import calibrated_case, scored, sharpened
 from validation.fitting import working
 
 NAMES = ("convection@flange.right", "loss.constant@yoke", "sensor.bias@yoke", "mass@yoke")

@@ -6,15 +6,15 @@ from functools import cache
 import numpy as np
 import pytest
 from playground import Truth, network, steps
-
 from validation.apart import DECISIVE
-from validation.case import Case, Model
-from validation.effects import effect
 from validation.evidence import calibrated_case, scored
 from validation.experiments import next_tests
 from validation.foretell import foretold, read_by
 from validation.menu import MENU
 from validation.rivals import GAP, race
+
+from validation.case import Case, Model
+from validation.effects import effect
 from validation.sheet import segments
 
 RIVALS = ("brush.friction@commutator", "loss.constant@commutator")
@@ -32,7 +32,7 @@ def one_speed(time, rng):
 
 
 def planned(name, test):
-    return next(e for e in MENU if e.name == name).made_from(test)
+    return next(e for e in MENU if e.name == name).made_from(test, network())
 
 
 @cache

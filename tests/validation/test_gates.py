@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 from one_body import LOSS, measured, one_node
 from playground import Truth, wind
+from validation.evidence import calibrated_case, diagnosing, scored
+from validation.gates import gates, left_out
 
 from lumped.network import Parameter
 from validation.calibrate import minimise, square_of
 from validation.case import AddedEffect
 from validation.effects import effect
-from validation.evidence import calibrated_case, diagnosing, scored
 from validation.fitting import Unknowns
-from validation.gates import gates, left_out
 from validation.revise import fitted, start
 from validation.score import gram
 from validation.sheet import segments

@@ -8,6 +8,7 @@ from everything import machine, warm_test
 
 from lumped.laws import InputPower
 from lumped.network import Parameter
+from validation.effects import effect
 from validation.effects.build import heat
 from validation.fitting import at_level
 
@@ -17,7 +18,8 @@ def with_loss(reference: float):
     place = next(p.name for p in net.places.values() if p.kind == "node")
     law = InputPower(1.0, (("speed_rpm", reference, 2.0),))
     net = net.extended(sources=[heat(net, "extra", "iron", place, law)])
-    return replace(net, parameters=(*net.parameters, Parameter("extra", (("extra", 1.0),), prior_sd=5.0, high=200.0)))
+    extra = Parameter("extra", (("extra", 1.0),), unit=f"W at {reference:g} rpm", prior_sd=5.0, high=200.0)
+    return replace(net, parameters=(*net.parameters, extra))
 
 
 def heat_of_prior(reference: float) -> tuple[float, float]:
@@ -36,3 +38,10 @@ def test_the_reference_does_not_matter(reference):
 def test_others_are_left_alone():
     net = with_loss(100.0)
     assert at_level(net, set(), [warm_test(machine())]) == net
+
+
+def test_a_temperature_coefficient_has_one_prior_whatever_the_current():
+    """Copper's, 0.00393 1/K, at one deviation, in a winding of one watt as of a thousand."""
+    net = effect("copper.feedback@copper.winding.field").extend(machine())
+    p = at_level(net, {net.parameters[-1].name}, [warm_test(machine())]).parameters[-1]
+    assert (p.prior_sd, p.high) == pytest.approx((0.00393, 0.0125))

@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 from playground import Truth
-
-from validation import diagnose
 from validation.disturb import USUAL
 from validation.evidence import calibrated_case, scored
 from validation.null import Null, Setting, data
 from validation.verdict import CLEARLY
+
+from validation import diagnose
 
 
 def test_a_sensor_that_was_not_read_in_one_test_is_simulated_unread():

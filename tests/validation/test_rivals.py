@@ -7,11 +7,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from playground import Truth, wind
+from validation.evidence import calibrated_case, scored
+from validation.rivals import GAP, Race, each_beside, needed, race, sorted_out
 
 from validation import rivals
 from validation.effects import effect
-from validation.evidence import calibrated_case, scored
-from validation.rivals import GAP, Race, each_beside, needed, race, sorted_out
 
 WIND, STILL = "convection@flange.right", "convection.constant@flange.right"
 FITS = {0: SimpleNamespace(objective=100.0), 1: SimpleNamespace(objective=103.0), 2: SimpleNamespace(objective=300.0)}

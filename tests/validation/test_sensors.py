@@ -5,13 +5,13 @@ from functools import cache
 import numpy as np
 import pytest
 from playground import SENSORS, Truth, network
-
 from validation.apart import DECISIVE, separation
-from validation.case import Case, Model
-from validation.effects import effect
 from validation.evidence import calibrated_case, scored
 from validation.rivals import race
 from validation.sensors import access, free_places, next_sensors, with_sensors
+
+from validation.case import Case, Model
+from validation.effects import effect
 
 PLACES = ("winding.armature", "rotor")
 RIVALS = tuple(f"loss.constant@{place}" for place in PLACES)

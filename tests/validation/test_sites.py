@@ -11,15 +11,24 @@ MOTOR = """
 [network]
 name = "motor"
 boundaries = ["ambient", "bench"]
+[boundaries.ambient]
+role = "ambient"
+[boundaries.bench]
+role = "test bed"
 [nodes.winding]
+role = "winding"
 C_J_K = 500
 [nodes.stator]
+role = "iron"
 C_J_K = 4000
 [nodes.rotor]
+role = "rotor"
 C_J_K = 3000
 [nodes.shield]
+role = "end shield"
 C_J_K = 1000
 [nodes.housing]
+role = "housing"
 C_J_K = 2000
 [nodes.air]
 kind = "fluid"

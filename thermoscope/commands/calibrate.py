@@ -12,7 +12,6 @@ from thermoscope.folder import Folder
 from thermoscope.terminal import Progress
 
 if TYPE_CHECKING:
-    from validation.intervals import Widening
     from validation.revise import Revision
 
 NAME = "calibration.json"
@@ -25,10 +24,10 @@ def calibrate(
     from validation.revise import calibrate as fitted
     from validation.staged import Search
 
-    def step(folder: Folder, wide: Widening, tell: Progress) -> Revision:
+    def step(folder: Folder, tell: Progress) -> Revision:
         unfinished = Unfinished(folder)
         search = Search(starts, seed, unfinished.values(tell), unfinished.keep)
-        result = fitted(folder.case, wide=wide, progress=tell, profiled=profile, search=search)
+        result = fitted(folder.case, progress=tell, profiled=profile, search=search)
         unfinished.done()
         return result
 

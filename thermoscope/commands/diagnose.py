@@ -12,16 +12,16 @@ from thermoscope.commands.saved import save_diagnosis
 from thermoscope.terminal import give, progress, say, sized, table
 
 ROWS = 10
+SHOWN = 0.005  # probabilities below half a per cent are in --json
 
 
-def diagnose(case: str, draws: int, sizes: bool, target: str | None) -> int:
+def diagnose(case: str, target: str | None) -> int:
     """Exit code 1 when no effect is named."""
-    from thermoscope.pipeline import cache_folder
-    from validation.diagnose import diagnose as search
+    from validation import diagnose as search
 
     with progress() as tell:
         folder = opened(case, tell)
-        found = search(folder.case, draws=draws, cache=cache_folder() / "null", progress=tell, sizes=sizes)
+        found = search(folder.case, progress=tell)
     document = {"case": folder.case.name, "revision": folder.case.model.revision, **found.document()}
     save_diagnosis(folder, document)
     give(document, target, lambda: show(document))
@@ -40,9 +40,14 @@ def show(document: Mapping[str, Any]) -> None:
 
 def _searched(document: Mapping[str, Any]) -> None:
     rows = [_row(c) for c in document["candidates"][:ROWS]]
-    headers = ["effect", "score", "amplitude (95 %)", "unit", "error (K)", "held out (K)", "decision"]
-    title = f"Candidates: a score beyond {document['threshold']:.2f} is not chance"
-    table(title, headers, rows, marked=["named", "group"])
+    headers = ["hypothesis", "probability (%)"]
+    odds = [[o["hypothesis"], f"{100 * o['probability']:.1f}"] for o in document["odds"] if o["probability"] > SHOWN]
+    table("What the readings say", headers, odds[:ROWS])
+    headers = ["effect", "%", "amplitude (95 %)", "unit", "error (K)", "held out (K)", "decision"]
+    table("Candidates", headers, rows, marked=["named", "group"])
+    for c in document["candidates"][1:ROWS]:
+        if c["note"] and c["probability"] > SHOWN:
+            say(f"against {c['effect']}: it {c['note']} than {document['candidates'][0]['effect']}")
     if document["candidates"] and (alike := document["candidates"][0]["confused_with"]):
         say(f"{document['candidates'][0]['effect']} looks like {', '.join(alike)} to these tests and sensors")
     show_ahead(document)
@@ -52,9 +57,9 @@ def _searched(document: Mapping[str, Any]) -> None:
 
 
 def _row(c: Mapping[str, Any]) -> list[Any]:
-    size = c["amplitude"]
+    size, share = c["amplitude"], f"{100 * c['probability']:.1f}"
     return [
-        c["effect"], c["score"], sized(size["value"], *size["ci95"]), "" if size["unit"] == "1" else size["unit"],
+        c["effect"], share, sized(size["value"], *size["ci95"]), "" if size["unit"] == "1" else size["unit"],
         _arrow(c["rmse_K"]), _arrow(c["holdout_rmse_K"]), c["decision"],
     ]  # fmt: skip
 

@@ -13,7 +13,7 @@ from thermoscope.commands.revise import recorded
 from thermoscope.commands.saved import save_diagnosis
 from thermoscope.folder import Folder
 from thermoscope.history import History, save_history
-from thermoscope.terminal import cell, give, progress, say, sized, table
+from thermoscope.terminal import give, progress, say, sized, table
 from viz.ahead import deciding
 
 if TYPE_CHECKING:
@@ -21,16 +21,15 @@ if TYPE_CHECKING:
     from validation.revise import Revision
 
 
-def improve(case: str, yes: bool, draws: int, most: int, target: str | None) -> int:
+def improve(case: str, yes: bool, most: int, target: str | None) -> int:
     """Exit code 0 when the model ends adequate, 1 when it stops before. Every step is in model.toml at once."""
-    from thermoscope.pipeline import cache_folder
     from validation.climb import Guide, climb, singletons
 
     with progress() as tell:
         folder = opened_to_write(case, tell)
         ledger = Ledger(folder)
         guide = Guide(singletons if yes else asked, ledger.keep)
-        done = climb(folder.case, guide, draws, most, cache_folder() / "null", tell)
+        done = climb(folder.case, guide, most, tell)
     found = {"case": folder.case.name, "revision": ledger.history.last.number, **done.diagnosis.document()}
     save_diagnosis(folder, json.loads(json.dumps(found, default=float)))
     document = {"case": folder.case.name, **done.document(), "written": ledger.written}
@@ -65,16 +64,17 @@ def offer(c: Candidate) -> str:
     """A candidate as the question shows it."""
     size = f"{sized(c.value, *c.ci95)} {c.unit}".removesuffix(" 1")
     fell = f", error {c.rmse_K[0]:.2f} -> {c.rmse_K[1]:.2f} K" if c.rmse_K else ""
-    return f"{c.effect}: {c.title}, {size}, score {cell(c.score)} over {cell(c.threshold)}{fell}"
+    return f"{c.effect}: {c.title}, {size}, probability {100 * c.probability:.0f} %{fell}"
 
 
 def show(document: Mapping[str, Any], folder: Folder) -> None:
     """The error staircase, what would decide if it stopped, and why it ended."""
     stairs = document["stairs"]
-    headers = ["step", *(f"{t['name']} ({t['role']}, K)" for t in stairs[0]["tests"]), "all (K)", "score"]
+    headers = ["step", *(f"{t['name']} ({t['role']}, K)" for t in stairs[0]["tests"]), "all (K)", "probability"]
     rows = [
-        [s["effect"] or s["step"], *(t["rmse_K"] for t in s["tests"]), s["rmse_K"], s["evidence"].get("score", "")]
+        [s["effect"] or s["step"], *(t["rmse_K"] for t in s["tests"]), s["rmse_K"], sure]
         for s in stairs
+        for sure in [s["evidence"].get("probability", "")]
     ]
     table("Error, step by step (rms)", headers, rows)
     if not document["adequate"]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from geom.errors import InputError
 from thermoscope.commands.opened import opened_to_write
-from thermoscope.commands.saved import saved_diagnosis, widening_of
+from thermoscope.commands.saved import saved_diagnosis
 from thermoscope.folder import Folder
 from thermoscope.history import Revision, save_history
 from thermoscope.runs import at_revision
@@ -21,17 +21,17 @@ ROWS = 12
 
 
 def add(case: str, effect: str, anyway: bool, target: str | None) -> int:
-    """Exit code 1, and nothing written, when the error on tests that were not fitted does not fall."""
+    """Exit code 1, and nothing written, when a check fails: bounds, or tests left out in turn."""
     from validation.revise import add as added
 
-    return revised(case, lambda folder, wide, tell: added(folder.case, effect, wide, tell), anyway, target)
+    return revised(case, lambda folder, tell: added(folder.case, effect, tell), anyway, target)
 
 
 def remove(case: str, effect: str, target: str | None) -> int:
     """Whatever the error does: taking a step back is the user's right."""
     from validation.revise import remove as removed
 
-    return revised(case, lambda folder, wide, tell: removed(folder.case, effect, wide, tell), True, target)
+    return revised(case, lambda folder, tell: removed(folder.case, effect, tell), True, target)
 
 
 def undo(case: str, number: int | None, target: str | None) -> int:
@@ -57,16 +57,15 @@ def _told(errors: Mapping[str, float]) -> str:
 
 
 def revised(case: str, step: Callable[..., revise.Revision], anyway: bool, target: str | None) -> int:
-    """Open, take the step, keep it if it is accepted, show it. `step` is given folder, widening and progress."""
+    """Open, take the step, keep it if it is accepted, show it. `step` is given folder and progress."""
     with progress() as tell:
         folder = opened_to_write(case, tell)
-        wide = widening_of(folder)
-        result = step(folder, wide, tell)
+        result = step(folder, tell)
     keep = result.accepted or anyway
     if keep:
         longer = folder.history.and_then(recorded(result, evidence(folder, result)))
         save_history(folder.settings.model_file, longer, folder.history)
-    document = {**result.document(), "case": folder.case.name, "written": keep, "kappa": wide.typical}
+    document = {**result.document(), "case": folder.case.name, "written": keep}
     give(document, target, lambda: show(document, folder))
     return 0 if keep else 1
 
@@ -84,7 +83,7 @@ def evidence(folder: Folder, result: revise.Revision) -> dict[str, float | str]:
     """What the last diagnosis of this very model said about the effect; empty when there was none."""
     found = saved_diagnosis(folder) if result.action == "add" else None
     rows = [c for c in (found or {}).get("candidates", []) if c["effect"] == result.effect]
-    return {key: rows[0][key] for key in ("score", "threshold", "decision")} if rows else {}
+    return {key: rows[0][key] for key in ("probability", "score", "threshold", "decision")} if rows else {}
 
 
 def telling(p: Mapping[str, Any]) -> tuple[bool, float]:
@@ -125,10 +124,8 @@ def show(document: Mapping[str, Any], folder: Folder) -> None:
         table("What the data fixed (95 %)", headers, values)
     if blind:
         say(f"the data do not fix {len(blind)} parameters: {', '.join(blind[:6])}{', ...' if len(blind) > 6 else ''}")
-    if document["kappa"] > 1.0:
-        say(f"intervals are {document['kappa']:.1f} times as wide as formal: the simulated null of the last diagnosis")
-    for gate in document["gates"]:
-        say(f"{'passed' if gate['passed'] else 'FAILED'}  {gate['gate']}: {gate['words']}")
+    for check in document["checks"]:
+        say(f"{'passed' if check['passed'] else 'FAILED'}  {check['check']}: {check['words']}")
     verdict = "accepted" if document["accepted"] else "not accepted"
     where = f"written to {folder.settings.model_file} as revision {document['revision']}"
     say(f"{verdict}: {document['why']}; {where if document['written'] else 'nothing written (--anyway writes it)'}")

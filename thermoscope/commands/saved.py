@@ -12,7 +12,6 @@ from thermoscope.commands.opened import PACKAGE
 from thermoscope.files import write_whole
 from thermoscope.folder import Folder
 from thermoscope.terminal import notes, plain
-from validation.intervals import FORMAL, Widening
 
 NAME = "diagnosis.json"
 SEAL = "sha256"
@@ -82,11 +81,3 @@ def saved_diagnosis(folder: Folder) -> dict[str, Any] | None:
 def last_diagnosis(folder: Folder) -> dict[str, Any] | None:
     """The kept diagnosis, of whatever model it was."""
     return kept(folder.settings.out / NAME)
-
-
-def widening_of(folder: Folder) -> Widening:
-    """How much wider than formal intervals are, from the simulated null of the last diagnosis of these very tests."""
-    kept = last_diagnosis(folder)
-    if kept is None or kept.get("plan") != plan_of(folder.settings.path):
-        return FORMAL
-    return Widening(kept.get("kappa", 1.0), {c["effect"]: c.get("kappa", 1.0) for c in kept["candidates"]})

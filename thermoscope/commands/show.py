@@ -86,7 +86,6 @@ def by_interest(folder: Folder) -> list[Test]:
 
 def _diagnosis(folder: Folder, tell: Progress, again: bool) -> tuple[Mapping[str, Any] | None, bool]:
     """What the page shows, and whether it is of the model before its last step."""
-    from thermoscope.pipeline import cache_folder
     from validation.diagnose import diagnose
 
     kept = saved_diagnosis(folder)
@@ -95,7 +94,7 @@ def _diagnosis(folder: Folder, tell: Progress, again: bool) -> tuple[Mapping[str
     if not again:
         last = last_diagnosis(folder)
         return last, last is not None
-    document = diagnose(folder.case, cache=cache_folder() / "null", progress=tell).document()
+    document = diagnose(folder.case, progress=tell).document()
     save_diagnosis(folder, document)
     return document, False
 
@@ -151,9 +150,9 @@ def _missing_heat(diagnosis: Mapping[str, Any] | None, nodes: SplitMesh, into: P
 
     if diagnosis is None or not placed(diagnosis):
         return {}
-    where, usual = diagnosis["where"], diagnosis.get("usual_nats", 0.0)
+    where = diagnosis["where"]
     test, file = list(where[0]["heat"])[-1], into / "missing-heat.png"
-    missing_in_machine(nodes, where, test, usual_nats=usual, png=file).close()
+    missing_in_machine(nodes, where, test, png=file).close()
     return {f"Heat that would have to enter (or leave, below zero) during {test}; unlikely places are grey.": file}
 
 

@@ -11,7 +11,7 @@ from trame.widgets import trame as extra
 from trame.widgets import vtk as vtk_widgets
 from trame.widgets import vuetify3 as v3
 
-from thermoscope.workbench.session import DRAWS, Session, started
+from thermoscope.workbench.session import Session, started
 from thermoscope.workbench.shown import soon
 
 KEYS = (
@@ -194,10 +194,6 @@ def _missing(session: Session) -> None:
         with html.Div(classes="row"):
             v3.VBtn("Diagnose", id="diagnose", color="primary", variant="flat", prepend_icon="mdi-magnify",
                     click=lambda: started(session.diagnose()), disabled=("busy",))  # fmt: skip
-            v3.VSelect(
-                v_model=("draws",), items=(str(list(DRAWS)),), label="draws of chance", density="compact",
-                hide_details=True, variant="outlined", style="max-width: 10rem", id="draws",
-            )  # fmt: skip
         with html.Div(v_if=("verdict",)):
             html.P("{{ verdict.sentence }}", classes=("'verdict ' + verdict.tone",), id="verdict")
             html.P("{{ verdict.words }}", classes="faint")
@@ -214,7 +210,7 @@ def _missing(session: Session) -> None:
 def _candidates(session: Session) -> None:
     with html.Div(classes="scroll"), html.Table():
         with html.Thead(), html.Tr():
-            for name in ("effect", "", "evidence", "error without → with"):
+            for name in ("effect", "", "probability", "error without → with"):
                 html.Th(name)
         with html.Tbody(), html.Tr(v_for="c in candidates", key="c.effect", classes=("c.decision",)):
             with html.Td(title=("c.title + '. ' + c.test",)):
@@ -228,9 +224,8 @@ def _candidates(session: Session) -> None:
                     click=(lambda effect: started(session.step("add", str(effect))), "[c.effect]"),
                     id=("'add-' + c.effect",), **told(":aria-label", "'add ' + c.effect"),
                 )  # fmt: skip
-            with html.Td(), html.Span(classes="evidence", title=("'score ' + c.score",)):
+            with html.Td(), html.Span(classes="evidence", title=("'probability ' + c.score",)):
                 html.Span(classes="now", style=("{ width: c.width + '%' }",))
-                html.Span(classes="mark", style=("{ left: c.threshold + '%' }",))
             with html.Td():
                 html.Div("{{ c.error }}")
                 html.Div("held out {{ c.held }}", v_if=("c.held",), classes="faint")

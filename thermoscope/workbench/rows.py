@@ -72,11 +72,10 @@ def steps(history: History) -> list[Row]:
 
 def candidates(diagnosis: Mapping[str, Any], effects: tuple[str, ...]) -> list[Row]:
     """The table of a diagnosis, best first."""
-    top = max((abs(c["score"]) for c in diagnosis["candidates"]), default=1.0)
     return [
         {
-            "effect": c["effect"], "title": c.get("title", ""), "score": f"{c['score']:.1f}",
-            "width": percent(max(c["score"], 0.0), top), "threshold": percent(c["threshold"], top),
+            "effect": c["effect"], "title": c.get("title", ""), "score": f"{100 * c['probability']:.0f} %",
+            "width": percent(c["probability"], 1.0),
             "amplitude": amplitude(c), "error": arrow(c["rmse_K"]), "held": arrow(c["holdout_rmse_K"]),
             "alike": ", ".join(c["confused_with"][:3]), "decision": c["decision"],
             "test": c.get("isolating_test", ""), "inside": c["effect"] in effects,

@@ -19,7 +19,6 @@ from thermoscope.workbench.jobs import FailedError, Job, StoppedError
 from thermoscope.workbench.look import Look
 from thermoscope.workbench.shown import Shown
 
-DRAWS = (20, 40, 60, 200)
 REMEMBERED = 8
 TITLES = {"add": "Adding", "remove": "Taking out", "calibrate": "Calibrating"}
 
@@ -54,8 +53,7 @@ class Session:
 
     async def diagnose(self) -> None:
         """Look for what is missing."""
-        draws = self.state.draws if self.state.draws in DRAWS else DRAWS[1]
-        found = await self._calculate("Looking for what is missing", steps.searched, self.folder, draws)
+        found = await self._calculate("Looking for what is missing", steps.searched, self.folder)
         if found is not None:
             if load_history(self.file) == self.history:
                 save_diagnosis(self.folder, found)
@@ -182,7 +180,7 @@ class Session:
 
 
 def share(message: str) -> float | None:
-    """'simulated null 12/40' -> 30.0; None where the message counts nothing."""
+    """'test 12/40' -> 30.0; None where the message counts nothing."""
     found = re.search(r"(\d+)/(\d+)", message)
     return round(100.0 * int(found[1]) / int(found[2]), 1) if found and int(found[2]) else None
 

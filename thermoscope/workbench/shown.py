@@ -24,7 +24,7 @@ NOTHING: dict[str, Any] = {"data": [], "layout": {}}
 START: dict[str, Any] = {
     "busy": False, "job": {"title": "", "message": "", "percent": None}, "error": "", "outcome": None, "report": "",
     "tests": [], "test": "", "test_names": [], "sensors": [], "sensor": "", "curve": NOTHING, "dark": False,
-    "effects": [], "revision": 0, "steps": [], "can_undo": False, "frame": 0, "frames": 0, "minute": "", "draws": 40,
+    "effects": [], "revision": 0, "steps": [], "can_undo": False, "frame": 0, "frames": 0, "minute": "",
     "verdict": None, "candidates": [], "confusion": NOTHING, "has_confusion": False, "rms": "", "floor": "",
 }  # fmt: skip
 

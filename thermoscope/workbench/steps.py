@@ -22,12 +22,11 @@ def seen(folder: Folder, surface: Surface | None, tell: Progress) -> Look:
     return look(folder, surface)
 
 
-def searched(folder: Folder, draws: int, tell: Progress) -> Mapping[str, Any]:
+def searched(folder: Folder, tell: Progress) -> Mapping[str, Any]:
     """A `diagnose` document."""
-    from thermoscope.pipeline import cache_folder
-    from validation.diagnose import diagnose
+    from validation import diagnose
 
-    found = diagnose(folder.case, draws=draws, cache=cache_folder() / "null", progress=tell)
+    found = diagnose(folder.case, progress=tell)
     return {"case": folder.case.name, "revision": folder.case.model.revision, **found.document()}
 
 

@@ -4,10 +4,11 @@ from dataclasses import dataclass
 
 from lumped.network import Link, Network
 from validation.effects.base import Effect, Scene, with_parameter
+from validation.effects.sites import cell, own_links
 
 
 def streams(network: Network) -> list[Link]:
-    return [link for link in network.links if link.kind == "stream" and "@" not in link.name]
+    return [link for link in own_links(network) if link.kind == "stream" and not cell(network, link.places[1])]
 
 
 @dataclass(frozen=True)

@@ -7,14 +7,16 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import ClassVar, Literal
 
+from lumped.laws import CLOCK
 from lumped.network import Network, Parameter
+from lumped.quantities import INPUTS
 
 
 @dataclass(frozen=True)
 class Scene:
     """What the tests offer an effect: the network, the recorded inputs and the channels.
 
-    inputs : names of the recorded signals ("current_A", "time_s", ...)
+    inputs : names of the recorded signals
     channels : names of the measured temperatures
     """
 
@@ -22,6 +24,12 @@ class Scene:
     inputs: frozenset[str] = frozenset()
     channels: tuple[str, ...] = ()
     tests: tuple[str, ...] = ()
+
+    @property
+    def recorded(self) -> frozenset[str]:
+        """What of the machine is recorded: "speed", "current", ..., and "time"."""
+        known = frozenset(q for q in INPUTS if self.network.signal(q) in self.inputs)
+        return known | ({"time"} if CLOCK in self.inputs else set())
 
 
 @dataclass(frozen=True)
@@ -33,7 +41,7 @@ class Effect(ABC):
     at : speed, current, ... at which the parameter is what the effect amounts to ("" : everywhere)
     typical : usual magnitude in `unit`
     confused_with : kinds that leave a similar trace;  isolating_test : the test that sets it apart
-    needs : inputs that must be recorded for it to act
+    needs : quantities of the machine that must be recorded for it to act ("speed", "current", "time")
     fault : True when it is a fault of the measurement, not heat
     whole : True when it happens entirely or not at all, with parameter 1 (two plugs exchanged)
     """
@@ -62,15 +70,20 @@ class Effect(ABC):
     def name(self) -> str:
         return f"{self.kind}@{self.place}"
 
+    @property
+    def typical_loss(self) -> float | None:
+        """A share that something typically loses where it only can lose: large enough to leave its tangent behind."""
+        return self.typical[0] if self.mapping == "relative" and self.sign < 0 else None
+
     @classmethod
     def places(cls, scene: Scene) -> tuple[str, ...]:
         """Where it can sit on this network with these recordings."""
-        return tuple(cls.where(scene)) if set(cls.needs) <= scene.inputs else ()
+        return tuple(cls.where(scene)) if set(cls.needs) <= scene.recorded else ()
 
     @classmethod
     @abstractmethod
     def where(cls, scene: Scene) -> Iterable[str]:
-        """Places that suit it, supposing that the inputs it needs are recorded."""
+        """Places that suit it, supposing that what it needs is recorded."""
 
     @abstractmethod
     def extend(self, network: Network) -> Network:

@@ -6,7 +6,7 @@ from lumped.laws import InputPower
 from lumped.network import Network
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import heat, power_scale
-from validation.effects.sites import named
+from validation.effects.sites import bearings
 
 
 @dataclass(frozen=True)
@@ -23,13 +23,15 @@ class BearingFriction(Effect):
     prior_sd = 0.5
     high = 20.0
     confused_with = ("windage", "iron")
-    needs = ("speed_rpm",)
+    needs = ("speed",)
 
     @classmethod
     def where(cls, scene: Scene) -> list[str]:
-        return named(scene.network, "bearing")
+        return bearings(scene.network)
 
     def extend(self, network: Network) -> Network:
-        source = heat(network, self.name, "friction", self.place, InputPower(1.0, (("speed_rpm", 1000.0, 5.0 / 3.0),)))
+        source = heat(
+            network, self.name, "friction", self.place, InputPower(1.0, ((network.signal("speed"), 1000.0, 5.0 / 3.0),))
+        )
         network = network.extended(sources=[source])
         return with_parameter(network, self.parameter(source.name, scale=power_scale(network)))

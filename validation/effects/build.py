@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from lumped.laws import CONSTANT, Array, Inputs, Law, TemperatureLaw
-from lumped.network import Link, Network, Parameter, Row, Source
+from lumped.network import Link, Network, Parameter, Place, Row, Source
 from validation.effects.sites import faces
 
 HOUR = 3600.0
@@ -56,15 +56,19 @@ def exchange(network: Network, name: str, a: str, b: str, law: Law) -> Link:
     state = index < len(network.states)
     rows, cols = np.meshgrid(index[state], index, indexing="ij")
     vals = np.outer(weights[state], weights)
-    return Link(name, "link", (a, b), rows.ravel(), cols.ravel(), vals.ravel(), law, ra, rb)
+    return Link(name, "link", (a, b), rows.ravel(), cols.ravel(), vals.ravel(), law, ra, rb, name)
 
 
 def to_fluid(network: Network, name: str, part: str, fluid: str, law: Law) -> list[Link]:
     """Film links from every face of a part on a fluid (law in W/m2/K), or one from a bare node (law in W/K)."""
     wet = faces(network, part, fluid)
-    if not wet:
-        return [exchange(network, name, part, fluid, law)]
-    return [network.surface_link(f"{name}:{face.name}", "film", face.name, fluid, law) for face in wet]
+    return films(network, name, wet, fluid, law) if wet else [exchange(network, name, part, fluid, law)]
+
+
+def films(network: Network, name: str, wet: Iterable[Place], fluid: str, law: Law) -> list[Link]:
+    """Film links from some faces to a fluid (law in W/m2/K)."""
+    links = [network.surface_link(f"{name}:{face.name}", "film", face.name, fluid, law) for face in wet]
+    return [replace(link, origin=name) for link in links]
 
 
 def film_unit(network: Network, part: str, fluid: str) -> tuple[str, float]:
@@ -76,7 +80,7 @@ def film_unit(network: Network, part: str, fluid: str) -> tuple[str, float]:
 def heat(network: Network, name: str, kind: str, place: str, law: Law) -> Source:
     """Heat into the mean of a place."""
     row = row_of(network, place)
-    return Source(name, kind, place, row.index, row.weights, law, row)
+    return Source(name, kind, place, row.index, row.weights, law, row, name)
 
 
 def follow(parameters: tuple[Parameter, ...], original: str, copy: str) -> tuple[Parameter, ...]:
@@ -88,10 +92,14 @@ def follow(parameters: tuple[Parameter, ...], original: str, copy: str) -> tuple
 def copy_link(network: Network, link: Link, name: str, law: Law) -> Network:
     """The network with a second link of the same pattern that follows the original's multipliers."""
     parameters = follow(network.parameters, link.name, name)
-    return replace(network, links=(*network.links, replace(link, name=name, law=law)), parameters=parameters)
+    return replace(
+        network, links=(*network.links, replace(link, name=name, law=law, origin=name)), parameters=parameters
+    )
 
 
 def copy_source(network: Network, source: Source, name: str, law: Law) -> Network:
     """The network with a second source of the same pattern that follows the original's multipliers."""
     parameters = follow(network.parameters, source.name, name)
-    return replace(network, sources=(*network.sources, replace(source, name=name, law=law)), parameters=parameters)
+    return replace(
+        network, sources=(*network.sources, replace(source, name=name, law=law, origin=name)), parameters=parameters
+    )

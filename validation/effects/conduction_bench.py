@@ -2,16 +2,17 @@
 
 from dataclasses import dataclass
 
+from geom.roles import Role
 from lumped.laws import Fixed
 from lumped.network import Network
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import conductance_scale, exchange
-from validation.effects.sites import like, outside, solids, touches, turns
+from validation.effects.sites import boundaries, outside, solids, touches, turns
 
 
-def stands(network: Network) -> list[str]:
-    """Boundaries that are a bench, base or mount."""
-    return [b for b in network.boundaries if like(b, "bench")]
+def free(network: Network, part: str) -> list[str]:
+    """Test beds that the part does not stand on yet."""
+    return [b for b in boundaries(network, Role.TEST_BED) if not touches(network, part, b)]
 
 
 @dataclass(frozen=True)
@@ -30,11 +31,12 @@ class BenchConduction(Effect):
     @classmethod
     def where(cls, scene: Scene) -> list[str]:
         network = scene.network
-        outer = [p for p in outside(network) or [p.name for p in solids(network)] if not turns(p)]
-        return [p for p in outer for b in stands(network) if not touches(network, p, b)]
+        outer = [p for p in outside(network) or [p.name for p in solids(network)] if not turns(network, p)]
+        return [p for p in outer if free(network, p)]
 
     def extend(self, network: Network) -> Network:
-        link = exchange(network, self.name, self.place, stands(network)[0], Fixed(1.0))
-        return with_parameter(
-            network.extended(links=[link]), self.parameter(link.name, scale=conductance_scale(network))
-        )
+        beds = free(network, self.place)
+        names = [self.name] if len(beds) == 1 else [f"{self.name}:{bed}" for bed in beds]
+        links = [exchange(network, n, self.place, bed, Fixed(1.0)) for n, bed in zip(names, beds, strict=True)]
+        parameter = self.parameter(*names, scale=conductance_scale(network))
+        return with_parameter(network.extended(links=links), parameter)

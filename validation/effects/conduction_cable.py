@@ -6,7 +6,7 @@ from lumped.laws import Fixed
 from lumped.network import Network
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import conductance_scale, exchange
-from validation.effects.sites import ambient, named, turns
+from validation.effects.sites import ambient, turns, windings
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,7 @@ class CableConduction(Effect):
 
     @classmethod
     def where(cls, scene: Scene) -> list[str]:
-        still = [place for place in named(scene.network, "winding") if not turns(place)]
+        still = [place for place in windings(scene.network) if not turns(scene.network, place)]
         return still if ambient(scene.network) else []
 
     def extend(self, network: Network) -> Network:

@@ -3,20 +3,25 @@
 import math
 from dataclasses import dataclass
 
+from geom.roles import Role
 from lumped.laws import Fixed
 from lumped.network import Network
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import exchange
-from validation.effects.sites import ambient, solids
+from validation.effects.sites import ambient, boundaries, turning, with_role
 
 STEEL_W_M_K, STEEL_J_M3_K = 50.0, 3.6e6
 THICK, SHORT = 0.4, 1.0  # most of a rotor's diameter that a shaft has, least length of it in its own diameters
 
 
 def shafts(network: Network) -> list[str]:
-    """Nodes that are the shaft; where there is none, the rotor it belongs to."""
-    names = [p.name for p in solids(network)]
-    return [n for n in names if "shaft" in n.lower()] or [n for n in names if n.lower() == "rotor"]
+    """What is the shaft; without one the rotor's iron or what else turns, for the shaft belongs to it."""
+    return with_role(network, Role.SHAFT) or with_role(network, Role.ROTOR) or turning(network)
+
+
+def beyond(network: Network) -> str | None:
+    """Where the heat goes: the driven machine where its temperature is read, else the air."""
+    return next(iter(boundaries(network, Role.DRIVEN_MACHINE)), ambient(network))
 
 
 def stub(capacity: float) -> float:
@@ -27,7 +32,7 @@ def stub(capacity: float) -> float:
 
 @dataclass(frozen=True)
 class ShaftConduction(Effect):
-    """Conduction through shaft and coupling into a driven machine as cold as the air: q = a (T - T_ambient)."""
+    """Conduction through shaft and coupling into the driven machine, or one as cold as air: q = a (T - T_driven)."""
 
     kind = "conduction.shaft"
     title = "conduction through shaft and coupling"
@@ -41,9 +46,9 @@ class ShaftConduction(Effect):
 
     @classmethod
     def where(cls, scene: Scene) -> list[str]:
-        return shafts(scene.network) if ambient(scene.network) else []
+        return shafts(scene.network) if beyond(scene.network) else []
 
     def extend(self, network: Network) -> Network:
-        link = exchange(network, self.name, self.place, str(ambient(network)), Fixed(1.0))
+        link = exchange(network, self.name, self.place, str(beyond(network)), Fixed(1.0))
         most = stub(float(network.C[network.places[self.place].states[0]]))
         return with_parameter(network.extended(links=[link]), self.parameter(link.name, scale=most))

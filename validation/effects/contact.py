@@ -5,20 +5,21 @@ from dataclasses import dataclass
 from lumped.laws import CONSTANT
 from lumped.network import Link, Network
 from validation.effects.base import Effect, Scene, with_parameter
-from validation.effects.sites import across_air, axle, solids
+from validation.effects.sites import across_gap, own_links, solids
 
 
 def joints(network: Network) -> list[Link]:
     """Contacts, and hand-declared links between two solids whose conductance follows nothing: a film is no joint."""
-    inner = [link for link in network.links if not set(link.places) & set(network.boundaries) and "@" not in link.name]
+    inner = [link for link in own_links(network) if not set(link.places) & set(network.boundaries)]
     return [link for link in inner if link.kind == "contact" or (link.kind == "link" and _solid(network, link))]
 
 
 def _solid(network: Network, link: Link) -> bool:
-    """A shaft's link, bearing and all, is solid; what else lies between a turning part and one that stands is air."""
+    """A shaft's link, bearing and all, is solid; what lies between parts of the field, one of which turns, is air."""
     follows = bool(link.law.reads) or link.law.temperature is not CONSTANT
-    through = axle(link.name) or not across_air(*link.places)
-    return not follows and through and set(link.places) <= {p.name for p in solids(network)}
+    return (
+        not follows and not across_gap(network, *link.places) and set(link.places) <= {p.name for p in solids(network)}
+    )
 
 
 def label(link: Link) -> str:

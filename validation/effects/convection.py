@@ -26,7 +26,7 @@ class Convection(Effect):
     prior_sd = 30.0
     high = 300.0
     confused_with = ("convection.constant", "flow", "windage", "sensor.stem")
-    needs = ("vehicle_speed_mps",)
+    needs = ("vehicle_speed",)
 
     @classmethod
     def where(cls, scene: Scene) -> list[str]:
@@ -35,7 +35,7 @@ class Convection(Effect):
     def extend(self, network: Network) -> Network:
         air = str(ambient(network))
         unit, scale = film_unit(network, self.place, air)
-        law = InputPower(1.0, (("vehicle_speed_mps", 10.0, 0.8),))
+        law = InputPower(1.0, ((network.signal("vehicle_speed"), 10.0, 0.8),))
         links = to_fluid(network, self.name, self.place, air, law)
         parameter = self.parameter(*(link.name for link in links), scale=scale, unit=unit)
         return with_parameter(network.extended(links=links), parameter)

@@ -6,7 +6,7 @@ from lumped.laws import InputPower
 from lumped.network import Network
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import film_unit, to_fluid
-from validation.effects.sites import ambient, named
+from validation.effects.sites import ambient, turning
 
 
 @dataclass(frozen=True)
@@ -23,15 +23,17 @@ class RotationConvection(Effect):
     prior_sd = 30.0
     high = 300.0
     confused_with = ("gap.convection", "loss.rotor")
-    needs = ("speed_rpm",)
+    needs = ("speed",)
 
     @classmethod
     def where(cls, scene: Scene) -> list[str]:
-        return named(scene.network, "rotor") if ambient(scene.network) else []
+        return turning(scene.network) if ambient(scene.network) else []
 
     def extend(self, network: Network) -> Network:
         air = str(ambient(network))
         unit, scale = film_unit(network, self.place, air)
-        links = to_fluid(network, self.name, self.place, air, InputPower(1.0, (("speed_rpm", 1000.0, 0.7),)))
+        links = to_fluid(
+            network, self.name, self.place, air, InputPower(1.0, ((network.signal("speed"), 1000.0, 0.7),))
+        )
         parameter = self.parameter(*(link.name for link in links), scale=scale, unit=unit)
         return with_parameter(network.extended(links=links), parameter)

@@ -2,25 +2,26 @@
 
 from dataclasses import dataclass
 
+from geom.roles import Role
 from lumped.laws import Fixed
-from lumped.motor_path import stem
 from lumped.network import Network
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import film_unit, to_fluid
-from validation.effects.sites import like, neighbours, solids, washed
+from validation.effects.sites import boundaries, fluids, neighbours, solids, washed
 
 
 def coolants(network: Network) -> list[str]:
-    """Boundaries and fluid nodes that are a liquid coolant, those that wash a part first (an inlet washes none)."""
-    nodes = [p.name for p in network.places.values() if p.kind == "fluid"]
-    names = [n for n in (*network.boundaries, *nodes) if like(n, "coolant")]
-    return sorted(names, key=lambda n: not washed(network, n))
+    """Boundaries and fluid nodes that are a coolant and wash a part; where none washes any, the boundaries."""
+    inlets = boundaries(network, Role.COOLANT)
+    found = [n for n in (*inlets, *fluids(network, Role.COOLANT)) if n in network.states or n in inlets]
+    return [n for n in found if washed(network, n)] or inlets
 
 
-def cells(network: Network) -> list[str]:
-    """The first coolant, and where it is a jacket's cell all cells of that jacket."""
-    found = coolants(network)
-    return [fluid for fluid in found if fluid == found[0] or ("@" in fluid and stem(fluid) == stem(found[0]))]
+def reached(network: Network, place: str) -> list[str]:
+    """The coolants that wash a part, or its neighbours, or else all."""
+    near = neighbours(network).get(place, set())
+    beside = [fluid for fluid in coolants(network) if near & set(washed(network, fluid))]
+    return [fluid for fluid in coolants(network) if place in washed(network, fluid)] or beside or coolants(network)
 
 
 @dataclass(frozen=True)
@@ -40,14 +41,18 @@ class CoolantLink(Effect):
     @classmethod
     def where(cls, scene: Scene) -> list[str]:
         network = scene.network
-        wet = list(dict.fromkeys(part for fluid in cells(network) for part in washed(network, fluid)))
+        wet = list(dict.fromkeys(part for fluid in coolants(network) for part in washed(network, fluid)))
         near = {b for part in wet for b in neighbours(network).get(part, set())}
         return [*wet, *(p.name for p in solids(network) if p.name in near - set(wet))]
 
     def extend(self, network: Network) -> Network:
-        touching = [fluid for fluid in cells(network) if self.place in washed(network, fluid)] or cells(network)[:1]
+        touching = reached(network, self.place)
         unit, scale = film_unit(network, self.place, touching[0])
-        links = [x for fluid in touching for x in to_fluid(network, self.name, self.place, fluid, Fixed(1.0))]
+        names = [self.name] if len(touching) == 1 else [f"{self.name}:{fluid}" for fluid in touching]
+        links = [
+            x for name, fluid in zip(names, touching, strict=True)
+            for x in to_fluid(network, name, self.place, fluid, Fixed(1.0))
+        ]  # fmt: skip
         return with_parameter(
             network.extended(links=links), self.parameter(*(link.name for link in links), scale=scale, unit=unit)
         )

@@ -2,11 +2,12 @@
 
 from dataclasses import dataclass
 
+from geom.roles import Role
 from lumped.laws import InputPower
 from lumped.network import Network
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import heat, power_scale
-from validation.effects.sites import heated, like, turns
+from validation.effects.sites import heated, role, windings
 
 
 @dataclass(frozen=True)
@@ -23,13 +24,13 @@ class AcCopper(Effect):
     prior_sd = 0.5
     high = 20.0
     confused_with = ("copper.feedback", "iron")
-    needs = ("speed_rpm", "current_A")
+    needs = ("speed", "current")
 
     @classmethod
     def where(cls, scene: Scene) -> list[str]:
         """Windings that carry a copper loss; a cage has no strands (its own is the load-dependent loss of a rotor)."""
-        loaded = heated(scene.network, "copper", "winding")
-        return [p for p in loaded if like(p, "winding") or not turns(p)]
+        loaded = heated(scene.network, "copper", windings(scene.network))
+        return [p for p in loaded if role(scene.network, p) is not Role.CAGE]
 
     def extend(self, network: Network) -> Network:
         source = heat(
@@ -37,7 +38,7 @@ class AcCopper(Effect):
             self.name,
             "copper.ac",
             self.place,
-            InputPower(1.0, (("speed_rpm", 1000.0, 2.0), ("current_A", 100.0, 2.0))),
+            InputPower(1.0, ((network.signal("speed"), 1000.0, 2.0), (network.signal("current"), 100.0, 2.0))),
         )
         network = network.extended(sources=[source])
         return with_parameter(network, self.parameter(source.name, scale=power_scale(network)))

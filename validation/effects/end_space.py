@@ -2,10 +2,12 @@
 
 from dataclasses import dataclass
 
+from geom.roles import Role
 from lumped.laws import InputPower
 from lumped.network import Network
 from validation.effects.base import Effect, Scene, with_parameter
-from validation.effects.sites import faces
+from validation.effects.build import films
+from validation.effects.sites import faces, fluids
 
 
 @dataclass(frozen=True)
@@ -22,17 +24,16 @@ class EndSpaceMixing(Effect):
     prior_sd = 20.0
     high = 300.0
     confused_with = ("flow", "convection")
-    needs = ("speed_rpm",)
+    needs = ("speed",)
 
     @classmethod
     def where(cls, scene: Scene) -> list[str]:
-        places = scene.network.places.values()
-        fluids = {p.fluid for p in places if p.kind == "surface"} & {p.name for p in places if p.kind == "fluid"}
-        return sorted(str(f) for f in fluids if "gap" not in str(f))
+        wet = {p.fluid for p in scene.network.places.values() if p.kind == "surface"}
+        return [f for f in fluids(scene.network, Role.INNER_AIR) if f in wet]
 
     def extend(self, network: Network) -> Network:
-        law = InputPower(1.0, (("speed_rpm", 1000.0, 0.9),))
+        law = InputPower(1.0, ((network.signal("speed"), 1000.0, 0.9),))
         parts = dict.fromkeys(p.part for p in network.places.values() if p.fluid == self.place)
         wet = [face for part in parts for face in faces(network, part, self.place)]
-        links = [network.surface_link(f"{self.name}:{f.name}", "film", f.name, self.place, law) for f in wet]
+        links = films(network, self.name, wet, self.place, law)
         return with_parameter(network.extended(links=links), self.parameter(*(link.name for link in links)))

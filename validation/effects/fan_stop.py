@@ -10,6 +10,7 @@ from validation.case import RUNNING
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import Shaped, copy_link
 from validation.effects.flow import flows
+from validation.effects.sites import own_links
 
 PARTS = (25, 50, 75)  # percent of the test after which it may have stopped
 
@@ -40,7 +41,7 @@ class FanStop(Effect):
     prior_sd = 0.5
     high = 1.0
     confused_with = ("flow", "fouling")
-    needs = ("time_s",)
+    needs = ("time",)
 
     @classmethod
     def where(cls, scene: Scene) -> list[str]:
@@ -52,8 +53,8 @@ class FanStop(Effect):
         original = next(p for p in flows(network) if which.startswith(f"{p.name}:"))
         test = which.removeprefix(f"{original.name}:")
         new = []
-        own = {t for t, _ in original.targets if "@" not in t}  # not what other effects have copied
-        for link in [x for x in network.links if x.name in own]:
+        own = {t for t, _ in original.targets}
+        for link in [x for x in own_links(network) if x.name in own]:
             new.append(f"{self.name}:{link.name}")
             law = Shaped(link.law, Stopped(test, int(part)), link.law.temperature, ("time_s",))
             network = copy_link(network, link, new[-1], law)

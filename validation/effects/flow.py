@@ -1,14 +1,29 @@
 """More or less fan air or coolant than stated."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from lumped.network import Network, Parameter
+from lumped.network import Link, Network, Parameter
+from lumped.quantities import AIR, LIQUID
 from validation.effects.base import Effect, Scene, with_parameter
 
 
 def flows(network: Network) -> list[Parameter]:
-    """Parameters that stand for a flow, e.g. 'fan.flow'."""
-    return [p for p in network.parameters if p.name.endswith("flow") and p.mapping == "log"]
+    """Parameters that are said to be a flow, or act as one: on streams, and on films by an exponent."""
+    links = {link.name: link for link in network.links}
+    return [p for p in network.parameters if p.mapping == "log" and (p.flow or _acts_as_flow(network, links, p))]
+
+
+def _acts_as_flow(network: Network, links: Mapping[str, Link], p: Parameter) -> bool:
+    moved = [(links[t], e) for t, e in p.targets if t in links]
+    if len(moved) < len(p.targets) or not moved:
+        return False
+    streams = [e == 1.0 for link, e in moved if link.kind == "stream"]
+    films = [
+        e != 1.0 and any(network.measures(name) in (AIR, LIQUID) for name in link.law.reads)
+        for link, e in moved if link.kind != "stream"
+    ]  # fmt: skip
+    return all(streams) and all(films)
 
 
 @dataclass(frozen=True)

@@ -8,12 +8,13 @@ from lumped.laws import Inputs
 from lumped.network import Link, Network
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import HOUR, Shaped, copy_link
-from validation.effects.sites import part_of
+from validation.effects.sites import cell, own_links, part_of
 
 
 def films(network: Network, part: str) -> list[Link]:
     """Films of a part to any boundary."""
-    outer = [link for link in network.links if set(link.places) & set(network.boundaries) and "@" not in link.name]
+    outer = [link for link in own_links(network) if set(link.places) & set(network.boundaries)]
+    outer = [link for link in outer if not any(cell(network, place) for place in link.places)]
     return [link for link in outer if part in {part_of(network, p) for p in link.places} | set(link.places)]
 
 
@@ -34,7 +35,7 @@ class Fouling(Effect):
     prior_sd = 0.2
     high = 0.95
     confused_with = ("mass", "sensor.drift")
-    needs = ("time_s",)
+    needs = ("time",)
 
     @classmethod
     def where(cls, scene: Scene) -> list[str]:

@@ -2,21 +2,28 @@
 
 from dataclasses import dataclass
 
+from geom.roles import Role
 from lumped.laws import InputPower
 from lumped.network import Network
 from validation.effects.base import Effect, Scene, with_parameter
-from validation.effects.build import conductance_scale, exchange
-from validation.effects.sites import across_air, faces, solids
-
-LAW = InputPower(1.0, (("speed_rpm", 1000.0, 0.5),))
+from validation.effects.build import conductance_scale, exchange, films
+from validation.effects.sites import across_air, faces, fluids, solids, turns
 
 
 def gaps(network: Network) -> list[str]:
-    """Names of fluids that are an air gap, or 'rotor|stator' pairs of a declared network that a link joins."""
-    fluids = [p.name for p in network.places.values() if p.kind == "fluid" and "gap" in p.name]
+    """Fluids that are the air gap; else what turns and what stands beside it, joined by a link: 'rotor|stator'.
+
+    Where nothing is known to turn, any two solids that a link joins.
+    """
     known = {p.name for p in solids(network)}
-    joined = [link.places for link in network.links if set(link.places) <= known]
-    return fluids or ["|".join(sorted(pair)) for pair in joined if across_air(*pair)]
+    joined = [link.places for link in network.links if set(link.places) <= known and len(set(link.places)) == 2]
+    apart = [(a, b) if turns(network, a) else (b, a) for a, b in joined if across_air(network, a, b)]
+    untold = [] if any(turns(network, name) for name in known) else joined
+    return fluids(network, Role.AIR_GAP) or ["|".join(pair) for pair in apart or untold]
+
+
+def speed_law(network: Network) -> InputPower:
+    return InputPower(1.0, ((network.signal("speed"), 1000.0, 0.5),))
 
 
 @dataclass(frozen=True)
@@ -33,7 +40,7 @@ class GapConvection(Effect):
     prior_sd = 30.0
     high = 600.0
     confused_with = ("loss.rotor", "sensor.lag")
-    needs = ("speed_rpm",)
+    needs = ("speed",)
 
     @classmethod
     def where(cls, scene: Scene) -> list[str]:
@@ -42,10 +49,10 @@ class GapConvection(Effect):
     def extend(self, network: Network) -> Network:
         if "|" in self.place:
             a, b = self.place.split("|")
-            link = exchange(network, self.name, a, b, LAW)
+            link = exchange(network, self.name, a, b, speed_law(network))
             parameter = self.parameter(link.name, scale=conductance_scale(network) / 20.0, unit="W/K")
             return with_parameter(network.extended(links=[link]), parameter)
         parts = dict.fromkeys(p.part for p in network.places.values() if p.fluid == self.place)
         wet = [face for part in parts for face in faces(network, part, self.place)]
-        links = [network.surface_link(f"{self.name}:{f.name}", "film", f.name, self.place, LAW) for f in wet]
+        links = films(network, self.name, wet, self.place, speed_law(network))
         return with_parameter(network.extended(links=links), self.parameter(*(link.name for link in links)))

@@ -6,7 +6,7 @@ from lumped.laws import InputPower
 from lumped.network import Network
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import heat, power_scale
-from validation.effects.sites import heated
+from validation.effects.sites import cores, heated
 
 
 @dataclass(frozen=True)
@@ -23,13 +23,15 @@ class IronLoss(Effect):
     prior_sd = 0.5
     high = 20.0
     confused_with = ("bearing.friction", "windage", "copper.ac")
-    needs = ("speed_rpm",)
+    needs = ("speed",)
 
     @classmethod
     def where(cls, scene: Scene) -> list[str]:
-        return heated(scene.network, "iron", "iron")
+        return heated(scene.network, "iron", cores(scene.network))
 
     def extend(self, network: Network) -> Network:
-        source = heat(network, self.name, "iron", self.place, InputPower(1.0, (("speed_rpm", 1000.0, 1.5),)))
+        source = heat(
+            network, self.name, "iron", self.place, InputPower(1.0, ((network.signal("speed"), 1000.0, 1.5),))
+        )
         network = network.extended(sources=[source])
         return with_parameter(network, self.parameter(source.name, scale=power_scale(network)))

@@ -8,13 +8,18 @@ from lumped.laws import Fixed, Inputs
 from lumped.network import Network
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import Shaped, heat, power_scale
-from validation.effects.sites import heated
+from validation.effects.sites import cores, heated
 
 
-def ripple(inputs: Inputs) -> np.ndarray:
-    """(f / 8 kHz)^-0.5 where the inverter switches, 0 where it does not."""
-    f = np.asarray(inputs["switching_Hz"], float)
-    return np.where(f > 0.0, np.sqrt(8000.0 / np.maximum(f, 1.0)), 0.0)
+@dataclass(frozen=True)
+class Ripple:
+    """(f / 8 kHz)^-0.5 where the inverter switches, 0 where it does not.  of : the input with f (Hz)"""
+
+    of: str
+
+    def __call__(self, inputs: Inputs) -> np.ndarray:
+        f = np.asarray(inputs[self.of], float)
+        return np.where(f > 0.0, np.sqrt(8000.0 / np.maximum(f, 1.0)), 0.0)
 
 
 @dataclass(frozen=True)
@@ -34,13 +39,14 @@ class PwmIronLoss(Effect):
     prior_sd = 0.5
     high = 20.0
     confused_with = ("iron", "loss.constant")
-    needs = ("switching_Hz",)
+    needs = ("frequency",)
 
     @classmethod
     def where(cls, scene: Scene) -> list[str]:
-        return heated(scene.network, "iron", "iron")
+        return heated(scene.network, "iron", cores(scene.network))
 
     def extend(self, network: Network) -> Network:
-        law = Shaped(Fixed(1.0), ripple, also_reads=("switching_Hz",))
+        switching = network.signal("frequency")
+        law = Shaped(Fixed(1.0), Ripple(switching), also_reads=(switching,))
         network = network.extended(sources=[heat(network, self.name, "iron", self.place, law)])
         return with_parameter(network, self.parameter(self.name, scale=power_scale(network)))

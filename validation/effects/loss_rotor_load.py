@@ -7,7 +7,7 @@ from lumped.network import Network
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import heat, power_scale
 from validation.effects.copper_ac import AcCopper
-from validation.effects.sites import named
+from validation.effects.sites import turning
 
 
 @dataclass(frozen=True)
@@ -24,15 +24,15 @@ class RotorLoadLoss(Effect):
     prior_sd = 0.1
     high = 20.0
     confused_with = ("loss.rotor", "iron", "copper.ac")
-    needs = ("speed_rpm", "current_A")
+    needs = ("speed", "current")
 
     @classmethod
     def where(cls, scene: Scene) -> list[str]:
         """Rotors and magnets; a winding that turns has the same law as AC copper loss."""
-        return [p for p in named(scene.network, "rotor") if p not in AcCopper.where(scene)]
+        return [p for p in turning(scene.network) if p not in AcCopper.where(scene)]
 
     def extend(self, network: Network) -> Network:
-        law = InputPower(1.0, (("speed_rpm", 1000.0, 2.0), ("current_A", 100.0, 2.0)))
+        law = InputPower(1.0, ((network.signal("speed"), 1000.0, 2.0), (network.signal("current"), 100.0, 2.0)))
         source = heat(network, self.name, "iron", self.place, law)
         network = network.extended(sources=[source])
         return with_parameter(network, self.parameter(source.name, scale=power_scale(network)))

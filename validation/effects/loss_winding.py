@@ -6,7 +6,7 @@ from lumped.laws import InputPower
 from lumped.network import Network
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import heat, power_scale
-from validation.effects.sites import heated
+from validation.effects.sites import heated, windings
 
 
 @dataclass(frozen=True)
@@ -23,13 +23,15 @@ class WindingLoss(Effect):
     prior_sd = 0.5
     high = 20.0
     confused_with = ("copper.feedback", "copper.ac", "brush.drop")
-    needs = ("current_A",)
+    needs = ("current",)
 
     @classmethod
     def where(cls, scene: Scene) -> list[str]:
-        return heated(scene.network, "copper", "winding")
+        return heated(scene.network, "copper", windings(scene.network))
 
     def extend(self, network: Network) -> Network:
-        source = heat(network, self.name, "copper", self.place, InputPower(1.0, (("current_A", 100.0, 2.0),)))
+        source = heat(
+            network, self.name, "copper", self.place, InputPower(1.0, ((network.signal("current"), 100.0, 2.0),))
+        )
         network = network.extended(sources=[source])
         return with_parameter(network, self.parameter(source.name, scale=power_scale(network)))

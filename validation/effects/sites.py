@@ -1,37 +1,55 @@
-"""Where on a network things can sit: outer faces, windings, bearings, neighbours."""
+"""Where on a network things can sit, by what its parts, fluids and boundaries are: see `Network.identities`."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 
-from lumped.network import Network, Place
+from geom.roles import Role
+from lumped.identity import Identity
+from lumped.network import Link, Network, Place
 
-WORDS = {
-    "bearing": ("bearing",),
-    "commutator": ("commutator", "brush"),
-    "winding": ("winding", "armature", "copper", "coil"),
-    "iron": ("core", "yoke", "stator", "rotor", "iron", "teeth", "tooth", "poles", "lamination"),
-    "rotor": ("rotor", "armature", "shaft", "magnet", "commutator"),
-    "coolant": ("coolant", "water", "glycol", "oil", "jacket"),
-    "bench": ("bench", "base", "mount", "floor", "plate"),
-    "fluid": ("air", "gap", "coolant"),
-}
+AXLE = frozenset({Role.BEARING, Role.SHAFT})
+FIELD = frozenset({Role.IRON, Role.WINDING, Role.MAGNET, Role.ROTOR, Role.CAGE, Role.INSULATION, Role.COMMUTATOR})
+NOBODY = Identity(why="nothing tells")
+
+
+def identity(network: Network, place: str) -> Identity:
+    """What a place, or the part it belongs to, is."""
+    known = network.identities
+    return known.get(place) or known.get(part_of(network, place), NOBODY)
+
+
+def role(network: Network, place: str) -> Role | None:
+    return identity(network, place).role
+
+
+def turns(network: Network, place: str) -> bool:
+    """Is it known to turn?"""
+    return identity(network, place).turns is True
+
+
+def stands(network: Network, place: str) -> bool:
+    """Is it known to stand still?"""
+    return identity(network, place).turns is False
+
+
+def boundaries(network: Network, *roles: Role) -> list[str]:
+    return [b for b in network.boundaries if role(network, b) in roles]
 
 
 def ambient(network: Network) -> str | None:
-    """The boundary that stands for the surroundings."""
-    named = [b for b in network.boundaries if "ambient" in b or b in ("air", "room")]
-    return named[0] if named else None
-
-
-def like(name: str, word: str) -> bool:
-    """Does a name speak of this kind of part?  'winding.field' is a winding."""
-    return any(w in name.lower() for w in WORDS[word])
+    """The boundary that stands for the surroundings; of several the one that washes most."""
+    air = boundaries(network, Role.AMBIENT)
+    return max(air, key=lambda b: len(washed(network, b))) if air else None
 
 
 def solids(network: Network) -> list[Place]:
     """Parts of a condensed network, nodes of a declared one: what has a temperature and a mass of its own."""
     return [p for p in network.places.values() if p.kind in ("part", "node") and network.C[p.states[0]] > 0]
+
+
+def fluids(network: Network, *roles: Role) -> list[str]:
+    return [p.name for p in network.places.values() if p.kind == "fluid" and role(network, p.name) in roles]
 
 
 def faces(network: Network, part: str, fluid: str) -> list[Place]:
@@ -59,33 +77,76 @@ def outside(network: Network) -> list[str]:
     return washed(network, air) or [p.name for p in solids(network) if p.kind == "node"]
 
 
-def turns(name: str) -> bool:
-    return like(name, "rotor")
+def with_role(network: Network, *roles: Role) -> list[str]:
+    """Solids that are known, or guessed, to be one of these."""
+    return [p.name for p in solids(network) if role(network, p.name) in roles]
 
 
-def across_air(a: str, b: str) -> bool:
+def turning(network: Network) -> list[str]:
+    """Solids that turn, but for what insulates; where nothing is known to turn, all that are not known to stand."""
+    names = [p.name for p in solids(network) if role(network, p.name) is not Role.INSULATION]
+    return [n for n in names if turns(network, n)] or [n for n in names if not stands(network, n)]
+
+
+def cores(network: Network) -> list[str]:
+    """Solids that carry the field in iron; where none is known, all whose role is not known."""
+    iron = with_role(network, Role.IRON, Role.ROTOR)
+    return iron or [p.name for p in solids(network) if role(network, p.name) is None]
+
+
+def windings(network: Network) -> list[str]:
+    """Solids that are wound; where none is known, all whose role is not known."""
+    return with_role(network, Role.WINDING) or [p.name for p in solids(network) if role(network, p.name) is None]
+
+
+def bearings(network: Network) -> list[str]:
+    """Bearings; without any, what joins turning to standing parts, or the end shields, or all but the field's parts."""
+    found = with_role(network, Role.BEARING)
+    if found:
+        return found
+    names, near = [p.name for p in solids(network)], neighbours(network)
+    still = [n for n in names if stands(network, n)]
+    between = [n for n in still if any(turns(network, b) for b in near.get(n, set()) if b in names)]
+    held = [n for n in between if role(network, n) not in FIELD]
+    return held or with_role(network, Role.END_SHIELD) or [n for n in names if role(network, n) not in FIELD]
+
+
+def commutators(network: Network) -> list[str]:
+    """The commutator; without one, turning parts that a winding turns with, for only those can have brushes."""
+    found = with_role(network, Role.COMMUTATOR)
+    wound = any(turns(network, n) for n in with_role(network, Role.WINDING))
+    return found or ([n for n in turning(network) if role(network, n) not in AXLE] if wound else [])
+
+
+def heated(network: Network, kind: str, others: Collection[str]) -> list[str]:
+    """Places that carry a loss of this kind, else the others."""
+    own = {s.place: None for s in network.sources if s.kind == kind and not s.origin and s.place in network.places}
+    return list(own) or list(others)
+
+
+def across_air(network: Network, a: str, b: str) -> bool:
     """Does one part turn past the other, neither of them bearing or shaft?  They exchange heat through air alone."""
-    return turns(a) != turns(b) and not (axle(a) or axle(b))
+    past = (turns(network, a) and stands(network, b)) or (stands(network, a) and turns(network, b))
+    return past and not {role(network, a), role(network, b)} & AXLE
 
 
-def axle(name: str) -> bool:
-    """A bearing or the shaft in it: what turns rests there on what stands."""
-    return like(name, "bearing") or "shaft" in name
-
-
-def named(network: Network, word: str) -> list[str]:
-    """Solids whose name speaks of `word`, e.g. bearings."""
-    return [p.name for p in solids(network) if like(p.name, word)]
-
-
-def heated(network: Network, kind: str, word: str) -> list[str]:
-    """Places that carry a loss of this kind, else those named so."""
-    loaded = {s.place: None for s in network.sources if s.kind == kind and s.place in network.places}
-    return list(loaded) or named(network, word)
+def across_gap(network: Network, a: str, b: str) -> bool:
+    """Is that air the gap, with a part of the field on either side of it, as far as is known?"""
+    return across_air(network, a, b) and all(role(network, x) in FIELD or role(network, x) is None for x in (a, b))
 
 
 def part_of(network: Network, place: str) -> str:
     return network.places[place].part if place in network.places else place
+
+
+def own_links(network: Network) -> list[Link]:
+    """Links that no effect has added."""
+    return [link for link in network.links if not link.origin]
+
+
+def cell(network: Network, place: str) -> bool:
+    """Is it one of several cells that a channel is cut into?"""
+    return place in network.places and network.places[place].channel is not None
 
 
 def edges(network: Network) -> Iterator[tuple[str, str]]:
@@ -113,5 +174,5 @@ def near_pairs(network: Network) -> Iterable[tuple[str, str]]:
     for i, a in enumerate(names):
         for b in names[i + 1 :]:
             alone = not solid[a] or not solid[b]
-            if b not in solid[a] and (alone or solid[a] & solid[b]) and not across_air(a, b):
+            if b not in solid[a] and (alone or solid[a] & solid[b]) and not across_air(network, a, b):
                 yield a, b

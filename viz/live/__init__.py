@@ -11,7 +11,7 @@ from typing import Any
 
 _HOME = {
     "sensor": "curves", "residuals": "curves", "against_input": "curves", "parity": "curves",
-    "staircase": "errors", "half_normal": "candidates", "confusion": "candidates", "pareto": "candidates",
+    "staircase": "errors", "posterior": "candidates", "confusion": "candidates", "pareto": "candidates",
     "sensitivity": "influence", "sankey": "heat", "saved": "style",
 }  # fmt: skip
 __all__ = sorted(_HOME)

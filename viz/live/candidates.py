@@ -1,4 +1,4 @@
-"""What might be missing: half-normal plot, confusion matrix, Pareto of what each candidate explains."""
+"""What might be missing: odds, confusion matrix, Pareto of what each candidate explains."""
 
 from __future__ import annotations
 
@@ -7,34 +7,28 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import halfnorm
 
-from viz.candidates import DECISION, amplitude
-from viz.colours import BLUE, LIGHT, Theme
+from viz.candidates import DECISION, SHOWN
+from viz.colours import BLUE, LIGHT, PURPLE, VERMILION, Theme
 from viz.live.style import figure, plain
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
 
+MOST = 10  # hypotheses drawn
 
-def half_normal(candidates: Sequence[Mapping[str, Any]], *, theme: Theme = LIGHT) -> go.Figure:
-    """Sorted |score| against half-normal quantiles with the line of the simulated nulls."""
-    ranked = sorted(candidates, key=lambda c: abs(c["score"]))
-    x = halfnorm.ppf((np.arange(len(ranked)) + 0.5) / max(len(ranked), 1))
-    out = figure(theme, title={"text": "Scores against chance", "x": 0.02})
-    colours = [DECISION[c["decision"]] for c in ranked]
-    out.add_scatter(
-        x=plain(x), y=[abs(c["score"]) for c in ranked], mode="markers", showlegend=False,
-        marker={"color": colours, "size": 8}, text=[f"{c['effect']}<br>{amplitude(c)}" for c in ranked],
-        hovertemplate="%{text}<br>|score| %{y:.1f}<extra></extra>",
+
+def posterior(odds: Sequence[Mapping[str, Any]], *, theme: Theme = LIGHT) -> go.Figure:
+    """The probability of every hypothesis that carries weight as bars, most probable on top."""
+    best = [o for o in odds if o["probability"] >= SHOWN][:MOST][::-1]
+    out = figure(theme, title={"text": "What the readings say", "x": 0.02})
+    colours = [BLUE if o["hypothesis"] == "nothing" else VERMILION if o["effects"] else PURPLE for o in best]
+    out.add_bar(
+        x=[100.0 * o["probability"] for o in best], y=[o["hypothesis"] for o in best], orientation="h",
+        marker={"color": colours}, texttemplate="%{x:.0f} %", hovertemplate="%{y}<br>%{x:.1f} %<extra></extra>",
+        showlegend=False,
     )  # fmt: skip
-    if ranked:
-        threshold = float(np.median([c["threshold"] for c in ranked]))
-        out.add_hline(
-            threshold, line={"color": theme.ink, "dash": "dot"}, annotation_text="threshold (simulated nulls)"
-        )
-    out.update_xaxes(title="half-normal quantile")
-    out.update_yaxes(title="|score|", rangemode="tozero")
+    out.update_xaxes(title="probability (%)", range=[0, 112])
     return out
 
 

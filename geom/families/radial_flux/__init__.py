@@ -16,6 +16,7 @@ from geom.families.radial_flux.layout import Layout
 from geom.families.radial_flux.rotors import cage_rotor, magnet_rotor, shaft
 from geom.families.radial_flux.stator import stator
 from geom.part import Part, fluid
+from geom.roles import Role
 
 _FACES = {
     ("housing", "ambient"): "housing.fins",
@@ -44,7 +45,7 @@ def _fluids(g: Any, at: Layout) -> tuple[Part, ...]:
     inside = shapes.disc(at.core)
     return (
         fluid("air.left", (inside, at.cap0, at.core0)),
-        fluid("airgap", (shapes.ring(at.rotor, at.slot0), at.core0, at.core1)),
+        fluid("airgap", (shapes.ring(at.rotor, at.slot0), at.core0, at.core1), role=Role.AIR_GAP),
         fluid("air.right", (inside, at.core1, at.cap1)),
         *coolant(g, at),
     )

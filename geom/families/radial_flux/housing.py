@@ -11,6 +11,7 @@ from geom.families.radial_flux.layout import Layout
 from geom.families.turns import Turns
 from geom.part import Made, Part, Port, Prism, fluid
 from geom.profile import Profile
+from geom.roles import Role
 
 
 def enclosure(g: Any, at: Layout) -> tuple[Part, ...]:
@@ -21,10 +22,10 @@ def enclosure(g: Any, at: Layout) -> tuple[Part, ...]:
     skirts = _skirts(g, at)
     return (
         *_housing(g, at),
-        Part("endcap.left", "aluminium-cast", ((cap, *left), *skirts[:1])),
-        Part("endcap.right", "aluminium-cast", ((cap, *right), *skirts[1:])),
-        Part("bearing.left", "bearing", ((bearing, *left),)),
-        Part("bearing.right", "bearing", ((bearing, *right),)),
+        Part("endcap.left", "aluminium-cast", ((cap, *left), *skirts[:1]), role=Role.END_SHIELD),
+        Part("endcap.right", "aluminium-cast", ((cap, *right), *skirts[1:]), role=Role.END_SHIELD),
+        Part("bearing.left", "bearing", ((bearing, *left),), role=Role.BEARING),
+        Part("bearing.right", "bearing", ((bearing, *right),), role=Role.BEARING),
         *_base(g, at),
         *(nozzle.part() for nozzle in nozzles(g, at)),
     )
@@ -41,7 +42,7 @@ def _skirts(g: Any, at: Layout) -> tuple[Prism, ...]:
 def _housing(g: Any, at: Layout) -> tuple[Part, ...]:
     prisms = {"none": _none, "plain": _plain, "axial-fins": _axial_fins, "radial-fins": _radial_fins, "spiral": _spiral}
     walls = prisms[g.housing.kind](g, at)
-    return (Part("housing", "aluminium-cast", walls, made=_made(g, at)),) if walls else ()
+    return (Part("housing", "aluminium-cast", walls, made=_made(g, at), role=Role.HOUSING),) if walls else ()
 
 
 def _none(g: Any, at: Layout) -> tuple[Prism, ...]:
@@ -132,7 +133,9 @@ def coolant(g: Any, at: Layout) -> tuple[Part, ...]:
         return ()
     ring = shapes.ring(at.wall, at.channel)
     rings = ((ring, a, b) for a, b in turns_of(g, at).rings)
-    return (fluid("jacket", *rings, *(nozzle.neck for nozzle in nozzles(g, at)), material="glycol-50"),)
+    return (
+        fluid("jacket", *rings, *(nozzle.neck for nozzle in nozzles(g, at)), material="glycol-50", role=Role.COOLANT),
+    )
 
 
 def ports(g: Any) -> tuple[Port, ...]:
@@ -151,6 +154,6 @@ def _base(g: Any, at: Layout) -> tuple[Part, ...]:
     plate = shapes.rectangle(-g.base.width / 2, g.base.width / 2, at.ground - g.base.thickness, at.ground)
     reach = g.base.length / 2
     return (
-        Part("foot", "aluminium-cast", ((pad, at.foot0, at.foot1),)),
-        Part("base", "aluminium", ((plate, at.middle - reach, at.middle + reach),)),
+        Part("foot", "aluminium-cast", ((pad, at.foot0, at.foot1),), role=Role.FOOT),
+        Part("base", "aluminium", ((plate, at.middle - reach, at.middle + reach),), role=Role.BASE),
     )

@@ -9,10 +9,13 @@ from geom import shapes
 from geom.families.radial_flux.layout import Layout
 from geom.part import Part, extrude
 from geom.profile import Profile
+from geom.roles import Role
 
 
 def shaft(g: Any, at: Layout) -> Part:
-    return Part("shaft", "steel", ((shapes.disc(g.shaft.diameter / 2), 0.0, at.length + g.shaft.extension),))
+    return Part(
+        "shaft", "steel", ((shapes.disc(g.shaft.diameter / 2), 0.0, at.length + g.shaft.extension),), role=Role.SHAFT
+    )
 
 
 def magnet_rotor(g: Any, at: Layout) -> tuple[Part, ...]:
@@ -20,8 +23,8 @@ def magnet_rotor(g: Any, at: Layout) -> tuple[Part, ...]:
     holes = (shapes.circle_loop(g.shaft.diameter / 2), *(magnet.outer for magnet in magnets))
     core = Profile(shapes.circle_loop(at.rotor), holes)
     return (
-        Part("rotor.core", "electrical-steel", ((core, at.core0, at.core1),)),
-        Part("magnets", "magnet-ndfeb", extrude(magnets, at.core0, at.core1)),
+        Part("rotor.core", "electrical-steel", ((core, at.core0, at.core1),), role=Role.ROTOR),
+        Part("magnets", "magnet-ndfeb", extrude(magnets, at.core0, at.core1), role=Role.MAGNET),
     )
 
 
@@ -60,6 +63,6 @@ def cage_rotor(g: Any, at: Layout) -> tuple[Part, ...]:
     ring = shapes.ring(bottom, at.rotor)
     rings = ((ring, at.core0 - g.rotor.ring, at.core0), (ring, at.core1, at.core1 + g.rotor.ring))
     return (
-        Part("rotor.core", "electrical-steel", ((core, at.core0, at.core1),)),
-        Part("rotor.cage", "aluminium-cast", (*extrude(bars, at.core0, at.core1), *rings)),
+        Part("rotor.core", "electrical-steel", ((core, at.core0, at.core1),), role=Role.ROTOR),
+        Part("rotor.cage", "aluminium-cast", (*extrude(bars, at.core0, at.core1), *rings), role=Role.CAGE),
     )

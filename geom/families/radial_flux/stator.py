@@ -9,6 +9,7 @@ from geom import shapes
 from geom.families.radial_flux.layout import Layout
 from geom.part import Part, extrude
 from geom.profile import Loop, Profile
+from geom.roles import Role
 
 
 def stator(g: Any, at: Layout) -> tuple[Part, ...]:
@@ -23,13 +24,13 @@ def stator(g: Any, at: Layout) -> tuple[Part, ...]:
     left, right = extrude(ends, at.ring0, at.coil0), extrude(ends, at.coil1, at.ring1)
     core = Profile(shapes.circle_loop(at.core), (_bore(g, at, angles),))
     return (
-        Part("stator.core", "electrical-steel", ((core, at.core0, at.core1),)),
-        *([Part("slot.gap", "gap-resin", extrude(fillings, at.core0, at.core1))] if gap else []),
-        Part("slot.liner", "slot-liner", extrude(liners, at.core0, at.core1)),
+        Part("stator.core", "electrical-steel", ((core, at.core0, at.core1),), role=Role.IRON),
+        *([Part("slot.gap", "gap-resin", extrude(fillings, at.core0, at.core1), role=Role.INSULATION)] if gap else []),
+        Part("slot.liner", "slot-liner", extrude(liners, at.core0, at.core1), role=Role.INSULATION),
         *_wedges(g, at, angles),
-        Part("winding", "winding", extrude(wires, at.core0, at.core1), (w.fill, w.impregnation)),
-        Part("winding.left", "end-winding", (*extrude(wires, at.coil0, at.core0), *left), loose),
-        Part("winding.right", "end-winding", (*extrude(wires, at.core1, at.coil1), *right), loose),
+        Part("winding", "winding", extrude(wires, at.core0, at.core1), (w.fill, w.impregnation), role=Role.WINDING),
+        Part("winding.left", "end-winding", (*extrude(wires, at.coil0, at.core0), *left), loose, role=Role.WINDING),
+        Part("winding.right", "end-winding", (*extrude(wires, at.core1, at.coil1), *right), loose, role=Role.WINDING),
     )
 
 
@@ -47,7 +48,9 @@ def _wedges(g: Any, at: Layout, angles: list[float]) -> tuple[Part, ...]:
     if not g.stator.wedge:
         return ()
     bar = Profile(shapes.bar_loop(at.slot0 - g.stator.wedge, at.slot0, g.stator.opening))
-    return (Part("slot.wedge", "insulation", extrude(shapes.turned(bar, angles), at.core0, at.core1)),)
+    return (
+        Part("slot.wedge", "insulation", extrude(shapes.turned(bar, angles), at.core0, at.core1), role=Role.INSULATION),
+    )
 
 
 def slot_loop(at: Layout, inner: float, outer: float, lining: float) -> Loop:

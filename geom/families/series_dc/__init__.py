@@ -19,6 +19,7 @@ from geom.families.series_dc.parameters import PARAMETERS
 from geom.families.series_dc.rotor import rotor
 from geom.families.series_dc.stator import stator
 from geom.part import Part, fluid
+from geom.roles import Role
 
 
 def build(g: Any) -> tuple[Part, ...]:
@@ -35,7 +36,7 @@ def _fluids(g: Any, z: Axial) -> tuple[Part, ...]:
     return (
         fluid("air.left", (hollow, z.inner0, z.core0)),
         *ducts,
-        fluid("airgap", (shapes.ring(r.rotor, r.bore), z.core0, z.core1)),
+        fluid("airgap", (shapes.ring(r.rotor, r.bore), z.core0, z.core1), role=Role.AIR_GAP),
         fluid("air.interpolar", (shapes.ring(r.bore, r.yoke0), z.core0, z.core1)),
         fluid("air.right", (hollow, z.core1, z.inner1)),
         *coolant(g, z),

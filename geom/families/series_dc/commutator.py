@@ -8,6 +8,7 @@ from geom import shapes
 from geom.families.series_dc.layout import Axial, Radii
 from geom.part import Part, Prism, extrude
 from geom.profile import Profile
+from geom.roles import Role
 
 
 def commutator(g: Any, z: Axial, r: Radii) -> tuple[Part, ...]:
@@ -17,10 +18,28 @@ def commutator(g: Any, z: Axial, r: Radii) -> tuple[Part, ...]:
         ((r.wire_top, z.ring1, z.riser1), (g.commutator.diameter / 2, z.riser1, z.bars1)),
     )
     if not g.commutator.bars:
-        return (Part("commutator", "commutator", tuple((shapes.ring(hub, top), a, b) for top, a, b in zones)),)
+        return (
+            Part(
+                "commutator",
+                "commutator",
+                tuple((shapes.ring(hub, top), a, b) for top, a, b in zones),
+                role=Role.COMMUTATOR,
+            ),
+        )
     return (
-        Part("commutator", "copper", tuple(prism for zone in zones for prism in _bars(g, hub, *zone))),
-        Part("commutator.mica", "mica", tuple(prism for zone in zones for prism in _mica(g, hub, *zone))),
+        Part(
+            "commutator",
+            "copper",
+            tuple(prism for zone in zones for prism in _bars(g, hub, *zone)),
+            role=Role.COMMUTATOR,
+        ),
+        Part(
+            "commutator.mica",
+            "mica",
+            tuple(prism for zone in zones for prism in _mica(g, hub, *zone)),
+            role=Role.INSULATION,
+            turns=True,
+        ),
     )
 
 

@@ -8,6 +8,7 @@ from typing import Any
 from geom import shapes
 from geom.families.series_dc.layout import Axial
 from geom.part import Part, fluid
+from geom.roles import Role
 
 _BLADE = 0.35  # of the pitch, as seen along the axis
 _FREE = 0.02  # of the cowl's radius: blade tip to cowl
@@ -22,7 +23,12 @@ def fan(g: Any, z: Axial) -> tuple[Part, ...]:
     blades = [shapes.sector(hub, inside * (1 - _FREE), a - half, a + half) for a in shapes.evenly(g.fan.blades)]
     z0, z1 = z.fan0 + 0.2 * g.fan.depth, z.fan0 + 0.8 * g.fan.depth
     return (
-        Part("fan.cowl", "steel", ((shapes.ring(inside, inside + g.fan.cowl), z.fan0, z.flange0),)),
-        Part("fan.wheel", "polyamide-gf30", tuple((shape, z0, z1) for shape in (shapes.ring(shaft, hub), *blades))),
+        Part("fan.cowl", "steel", ((shapes.ring(inside, inside + g.fan.cowl), z.fan0, z.flange0),), role=Role.HOUSING),
+        Part(
+            "fan.wheel",
+            "polyamide-gf30",
+            tuple((shape, z0, z1) for shape in (shapes.ring(shaft, hub), *blades)),
+            role=Role.FAN,
+        ),
         fluid("air.fan", (shapes.disc(inside), z.fan0, z.flange0)),
     )

@@ -12,6 +12,7 @@ from geom.families.series_dc.jacket import jacket_ring, jacket_walls, nozzles, t
 from geom.families.series_dc.layout import Axial, Radii
 from geom.part import Made, Part, Prism
 from geom.profile import Profile
+from geom.roles import Role
 
 
 def enclosure(g: Any, z: Axial) -> tuple[Part, ...]:
@@ -21,11 +22,11 @@ def enclosure(g: Any, z: Axial) -> tuple[Part, ...]:
     left, right = (z.flange0, z.inner0), (z.inner1, z.flange1)
     return (
         _housing(g, z, r),
-        Part("flange.left", "aluminium-cast", ((flange, *left),)),
-        Part("flange.right", "aluminium-cast", ((flange, *right),)),
-        Part("bearing.left", "bearing", ((bearing, *left),)),
-        Part("bearing.right", "bearing", ((bearing, *right),)),
-        Part("feet", "aluminium-cast", _feet(g, z, r)),
+        Part("flange.left", "aluminium-cast", ((flange, *left),), role=Role.END_SHIELD),
+        Part("flange.right", "aluminium-cast", ((flange, *right),), role=Role.END_SHIELD),
+        Part("bearing.left", "bearing", ((bearing, *left),), role=Role.BEARING),
+        Part("bearing.right", "bearing", ((bearing, *right),), role=Role.BEARING),
+        Part("feet", "aluminium-cast", _feet(g, z, r), role=Role.FOOT),
         _base(g, z),
         *(nozzle.part() for nozzle in nozzles(g)),
     )
@@ -38,7 +39,7 @@ def _housing(g: Any, z: Axial, r: Radii) -> Part:
     if bored:
         helices = [turns_of(g, r, *span).helix(g.jacket.port) for span in z.jackets.values() if helical]
         made = Made(_walls(g, z, r, None if helical else ()), (*helices, *(nozzle.drill for nozzle in bored)))
-    return Part("housing", "aluminium-cast", _walls(g, z, r, bored), made=made)
+    return Part("housing", "aluminium-cast", _walls(g, z, r, bored), made=made, role=Role.HOUSING)
 
 
 def _walls(g: Any, z: Axial, r: Radii, bored: Sequence[Nozzle] | None) -> tuple[Prism, ...]:
@@ -85,4 +86,4 @@ def _feet(g: Any, z: Axial, r: Radii) -> tuple[Prism, ...]:
 def _base(g: Any, z: Axial) -> Part:
     top, middle = -g.feet.shaft_height, (z.inner0 + z.inner1) / 2
     plate = shapes.rectangle(-g.base.width / 2, g.base.width / 2, top - g.base.thickness, top)
-    return Part("base", "steel", ((plate, middle - g.base.length / 2, middle + g.base.length / 2),))
+    return Part("base", "steel", ((plate, middle - g.base.length / 2, middle + g.base.length / 2),), role=Role.BASE)

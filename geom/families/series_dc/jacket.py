@@ -12,6 +12,7 @@ from geom.families.series_dc.layout import Axial, Radii
 from geom.families.turns import Turns
 from geom.part import Part, Port, Prism, fluid
 from geom.profile import Profile
+from geom.roles import Role
 
 Sector = tuple[float, float]  # angles (rad) at which a channel begins and ends
 
@@ -90,7 +91,7 @@ def coolant(g: Any, z: Axial) -> tuple[Part, ...]:
     r = Radii(g)
     necks = {name: [nozzle.neck for nozzle in nozzles(g) if nozzle.jacket == name] for name in z.jackets}
     return tuple(
-        fluid(name, *_channel_prisms(g, r, *span), *necks[name], material="glycol-50")
+        fluid(name, *_channel_prisms(g, r, *span), *necks[name], material="glycol-50", role=Role.COOLANT)
         for name, span in z.jackets.items()
     )
 

@@ -9,6 +9,7 @@ from geom.families.series_dc.commutator import commutator
 from geom.families.series_dc.layout import Axial, Radii
 from geom.part import Part, extrude
 from geom.profile import Profile
+from geom.roles import Role
 
 
 def rotor(g: Any, z: Axial) -> tuple[Part, ...]:
@@ -21,17 +22,31 @@ def rotor(g: Any, z: Axial) -> tuple[Part, ...]:
     loose = (g.rotor.end_fill, g.rotor.end_impregnation)
     return (
         _shaft(g, z),
-        Part("rotor.core", "electrical-steel", ((_lamination(g, r, angles), z.core0, z.core1),)),
-        Part("slot.liner", "slot-liner", extrude(liners, z.core0, z.core1)),
-        Part("winding.armature", "winding", extrude(wires, z.core0, z.core1), (g.rotor.fill, g.rotor.impregnation)),
+        Part("rotor.core", "electrical-steel", ((_lamination(g, r, angles), z.core0, z.core1),), role=Role.ROTOR),
+        Part("slot.liner", "slot-liner", extrude(liners, z.core0, z.core1), role=Role.INSULATION, turns=True),
         Part(
-            "winding.armature.left", "end-winding", (*extrude(wires, z.coil0, z.core0), (ends, z.ring0, z.coil0)), loose
+            "winding.armature",
+            "winding",
+            extrude(wires, z.core0, z.core1),
+            (g.rotor.fill, g.rotor.impregnation),
+            role=Role.WINDING,
+            turns=True,
+        ),
+        Part(
+            "winding.armature.left",
+            "end-winding",
+            (*extrude(wires, z.coil0, z.core0), (ends, z.ring0, z.coil0)),
+            loose,
+            role=Role.WINDING,
+            turns=True,
         ),
         Part(
             "winding.armature.right",
             "end-winding",
             (*extrude(wires, z.core1, z.coil1), (ends, z.coil1, z.ring1)),
             loose,
+            role=Role.WINDING,
+            turns=True,
         ),
         *commutator(g, z, r),
     )
@@ -50,7 +65,7 @@ def _shaft(g: Any, z: Axial) -> Part:
         (g.shaft.hub_diameter, z.ring1, z.bars1),
         (g.shaft.bearing_diameter, z.bars1, z.end),
     )
-    return Part("shaft", "steel", tuple((shapes.disc(d / 2), z0, z1) for d, z0, z1 in steps))
+    return Part("shaft", "steel", tuple((shapes.disc(d / 2), z0, z1) for d, z0, z1 in steps), role=Role.SHAFT)
 
 
 def duct_circle(g: Any, r: Radii) -> float:

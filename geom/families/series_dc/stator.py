@@ -9,6 +9,7 @@ from geom import shapes
 from geom.families.series_dc.layout import Axial, Radii
 from geom.part import Part, Prism, extrude
 from geom.profile import Profile
+from geom.roles import Role
 
 
 def stator(g: Any, z: Axial) -> tuple[Part, ...]:
@@ -22,10 +23,18 @@ def stator(g: Any, z: Axial) -> tuple[Part, ...]:
     coil = (*extrude(sides, inner0, inner1), (across, z.field0, inner0), (across, inner1, z.field1))
     lining = (*extrude(plates, z.core0, z.core1), (cap, inner0, z.core0), (cap, z.core1, inner1))
     return (
-        Part("yoke", "steel", ((shapes.ring(r.yoke0, r.yoke1), z.yoke0, z.yoke1),)),
-        Part("poles", "electrical-steel", extrude(shapes.turned(_pole(g, r), angles), z.core0, z.core1)),
-        Part("winding.field", "field-winding", _around(coil, angles), (g.field.fill, g.field.impregnation)),
-        Part("field.insulation", "insulation", _around(lining, angles)),
+        Part("yoke", "steel", ((shapes.ring(r.yoke0, r.yoke1), z.yoke0, z.yoke1),), role=Role.IRON),
+        Part(
+            "poles", "electrical-steel", extrude(shapes.turned(_pole(g, r), angles), z.core0, z.core1), role=Role.IRON
+        ),
+        Part(
+            "winding.field",
+            "field-winding",
+            _around(coil, angles),
+            (g.field.fill, g.field.impregnation),
+            role=Role.WINDING,
+        ),
+        Part("field.insulation", "insulation", _around(lining, angles), role=Role.INSULATION),
     )
 
 

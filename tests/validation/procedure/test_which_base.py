@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from validation.diagnose import diagnose
 
 from geom.errors import InputError
 from lumped.build import bare_network, node_link, node_row, node_source
@@ -12,7 +13,6 @@ from lumped.motor_bases import Switched
 from lumped.network import Parameter
 from lumped.simulate import Record, simulate
 from validation.case import Case, Channel, Model, Test
-from validation.diagnose import diagnose
 from validation.procedure.base_heat import base_heat
 from validation.procedure.which_base import (
     bases_tried,

@@ -9,14 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.network import Network, Place
-from validation.apart import separation, told_apart
 from validation.case import Channel, Test
 from validation.effects.sites import outside, turns
-from validation.evidence import Evidence
 from validation.findings import NextSensor
-from validation.foretell import Plan, proven
+from validation.inference.evidence import Evidence
 from validation.noise import Noise
-from validation.rivals import Race
+from validation.planning.apart import separation, told_apart
+from validation.planning.contenders import Contenders
+from validation.planning.foretell import Plan, proven, widened_error
 from validation.score import Gram
 from validation.sheet import Segment, segments
 
@@ -30,20 +30,20 @@ WHY = {
 }  # fmt: skip
 
 
-def next_sensors(evidence: Evidence, found: Race, kappa: Array) -> list[NextSensor]:
+def next_sensors(evidence: Evidence, found: Contenders) -> list[NextSensor]:
     """Places without a sensor, by the deviance gap of the pair that stays closest, per hour of mounting."""
     network = evidence.fit.network
     places = {p.name: p for p in free_places(network, evidence.tests)}
     plans = [
         Plan(
             place.name, HOURS[access(network, place)], [watched(t, [place]) for t in evidence.tests],
-            separation(evidence, found, more, kappa),
+            separation(evidence, found, more),
         )
         for place, more in with_sensors(evidence, tuple(places.values()), found.group)
     ]  # fmt: skip
     return [
         NextSensor(p.what, told_apart(evidence, p.gaps), p.gain, p.hours, WHY[access(network, places[p.what])])
-        for p in proven(evidence, found, plans, kappa)
+        for p in proven(evidence, found, plans)
     ]
 
 
@@ -58,7 +58,7 @@ def access(network: Network, place: Place) -> str:
     """How one gets there."""
     if place.kind == "fluid":
         return "air"
-    if turns(place.part):
+    if turns(network, place.name):
         return "turning"
     return "outside" if place.part in outside(network) and place.kind != "part" else "inside"
 
@@ -68,10 +68,13 @@ def with_sensors(evidence: Evidence, places: Sequence[Place], chosen: Sequence[i
     fit = evidence.fit
     columns = (*fit.unknowns.parameters, *(evidence.parameters[k] for k in chosen))
     tests = [watched(t, places) for t in evidence.tests]
+    p, error = len(fit.unknowns.parameters), widened_error(evidence, tests)
     parts = segments(evidence.network, tests, fit.values, columns)
+    if error:
+        parts, p = [error.beside(s, p) for s in parts], p + error.size
     for place in places:
         own = [s for s in parts if s.channel == PREFIX + place.name]
-        yield place, _without_bias(own, fit.noise, len(fit.unknowns.parameters))
+        yield place, _without_bias(own, fit.noise, p)
 
 
 def watched(test: Test, places: Sequence[Place]) -> Test:

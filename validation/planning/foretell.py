@@ -9,13 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.multipliers import values_of
-from validation.apart import Gaps
 from validation.calibrate import Fit, Known, minimise
 from validation.case import Test
-from validation.evidence import Evidence, with_members
 from validation.fitting import Unknowns, nuisances
+from validation.inference.evidence import Evidence, with_members
+from validation.inference.model_error import ModelError, model_error
+from validation.planning.apart import GAP, Gaps
+from validation.planning.contenders import Contenders, behind
 from validation.predict import predict
-from validation.rivals import GAP, Race, behind
 from validation.sheet import segments
 
 Array = NDArray[np.float64]
@@ -49,7 +50,7 @@ def read_by(fit: Fit, test: Test) -> Test:
     return replace(test, channels=tuple(replace(c, y=y[:, j]) for j, c in enumerate(test.channels)))
 
 
-def proven(evidence: Evidence, found: Race, promised: Iterable[Plan], kappa: Array) -> list[Plan]:
+def proven(evidence: Evidence, found: Contenders, promised: Iterable[Plan]) -> list[Plan]:
     """The plans with what is left of the gaps that tangents promise, best gain per hour first.
 
     Tangents promise too much: they do not know how far the rivals can bend. Refits show how much for the first CHECKED
@@ -57,11 +58,7 @@ def proven(evidence: Evidence, found: Race, promised: Iterable[Plan], kappa: Arr
     """
     plans = sorted(promised, key=lambda p: -p.worth)
     kept: list[Gaps] = [
-        {
-            pair: foretold(evidence, found, p.tests, pair, float(kappa[pair[0]]))
-            for pair, g in p.gaps.items()
-            if g >= GAP
-        }
+        {pair: foretold(evidence, found, p.tests, pair) for pair, g in p.gaps.items() if g >= GAP}
         for p in plans[:CHECKED]
     ]
     kept += [{}] * (len(plans) - len(kept))
@@ -74,17 +71,17 @@ def proven(evidence: Evidence, found: Race, promised: Iterable[Plan], kappa: Arr
     return sorted(left, key=lambda p: -p.worth)
 
 
-def foretold(evidence: Evidence, found: Race, new: Sequence[Test], pair: tuple[int, int], kappa: float) -> float:
+def foretold(evidence: Evidence, found: Contenders, new: Sequence[Test], pair: tuple[int, int]) -> float:
     """Deviance by which the wrong one of a pair would be behind with further readings, the smaller way.
 
     Unlike a gap in the tangents it counts what the tests at hand say already, and all that the wrong one may still
     bend: its own refit, with start and clock of a new test or bias and lag of a new sensor, meets noiseless readings of
     the right one.
     """
-    return min(_behind(evidence, found, new, right, wrong, kappa) for right, wrong in (pair, pair[::-1]))
+    return min(_behind(evidence, found, new, right, wrong) for right, wrong in (pair, pair[::-1]))
 
 
-def _behind(evidence: Evidence, found: Race, new: Sequence[Test], right: int, wrong: int, kappa: float) -> float:
+def _behind(evidence: Evidence, found: Contenders, new: Sequence[Test], right: int, wrong: int) -> float:
     read, rival = [read_by(found.fit(right), t) for t in new], found.fit(wrong)
     network, unknowns, held = with_members(evidence, [wrong])
     known = {p.name for p in network.parameters}
@@ -94,5 +91,15 @@ def _behind(evidence: Evidence, found: Race, new: Sequence[Test], right: int, wr
     near = [replace(s, J=np.pad(s.J, ((0, 0), (0, len(own))))) for s in rival.parts]
     near += segments(network, read, here, free)
     theta, tests = np.concatenate([rival.theta, np.zeros(len(own))]), (*evidence.tests, *read)
-    fit = minimise(network, tests, Unknowns(free), theta, found.noise, held, known=Known(near))
-    return behind(fit, found.fit(right), kappa)
+    error = widened_error(evidence, read)
+    fit = minimise(network, tests, Unknowns(free), theta, found.noise, held, known=Known(near), error=error)
+    return behind(fit, found.fit(right))
+
+
+def widened_error(evidence: Evidence, more: Sequence[Test]) -> ModelError | None:
+    """The model error of the tests at hand and of further readings."""
+    fit = evidence.fit
+    if fit.error is None:
+        return None
+    new = model_error(fit.network, more, fit.values, sensed=evidence.tests)
+    return ModelError({**fit.error.columns, **new.columns})

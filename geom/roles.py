@@ -1,0 +1,42 @@
+"""What a part, a fluid or a boundary is: its role, said by whoever made the model, never read out of its name."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+
+
+class Role(StrEnum):
+    """What something does in the machine.
+
+    ROTOR is the turning iron or, in a coarse model, all that turns; IRON stands. AIR_GAP, INNER_AIR and COOLANT are
+    fluids. AMBIENT, TEST_BED and DRIVEN_MACHINE are what the machine meets outside.
+    """
+
+    WINDING = "winding"
+    IRON = "iron"
+    ROTOR = "rotor"
+    CAGE = "cage"
+    MAGNET = "magnet"
+    SHAFT = "shaft"
+    BEARING = "bearing"
+    COMMUTATOR = "commutator"
+    INSULATION = "insulation"
+    HOUSING = "housing"
+    END_SHIELD = "end shield"
+    FOOT = "foot"
+    BASE = "base"
+    FAN = "fan"
+    AIR_GAP = "air gap"
+    INNER_AIR = "inner air"
+    COOLANT = "coolant"
+    AMBIENT = "ambient"
+    TEST_BED = "test bed"
+    DRIVEN_MACHINE = "driven machine"
+
+    @property
+    def turns(self) -> bool:
+        """Does such a part turn with the shaft, if nothing else is said?  A winding may do either; it stands."""
+        return self in _TURNING
+
+
+_TURNING = frozenset({Role.ROTOR, Role.CAGE, Role.MAGNET, Role.SHAFT, Role.COMMUTATOR, Role.FAN})

@@ -1,0 +1,68 @@
+"""What a declared network lacks and can be told: copper without its coefficient, the air of a fan on the shaft."""
+
+import tomllib
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from test_sites import MOTOR
+
+from lumped.declared import read_network
+from lumped.losses import ALPHA_CU
+from validation.calibrate import calibrated
+from validation.case import Case, Channel, Model, Test
+from validation.effects import Scene, effect, kinds
+from validation.fitting import working
+
+SPEED = frozenset({"speed_rpm"})
+LOSS = {
+    "copper, no coefficient": 'kind = "copper"\ncurrents = ["current_A"]\nR20_ohm = 0.5\nalpha_1_K = 0',
+    "constant": 'kind = "constant"\nP_W = 50\nof = { input = "current_A", at = 10, exponent = 2 }',
+    "copper": 'kind = "copper"\ncurrents = ["current_A"]\nR20_ohm = 0.5',
+    "constant, with coefficient": 'kind = "constant"\nP_W = 50\nalpha_1_K = 0.0039\nreference_degC = 20',
+}
+
+
+def motor(loss, at="winding"):
+    return read_network(tomllib.loads(MOTOR + f'[losses.heat]\nat = "{at}"\n{LOSS[loss]}\n'))
+
+
+def test_a_fan_blows_over_what_stands():
+    """Housing and end shield of a closed machine, neither its rotor nor what is inside."""
+    assert set(kinds()["convection.fan"].places(Scene(motor("copper"), SPEED))) == {"housing", "shield"}
+    assert kinds()["convection.fan"].places(Scene(motor("copper"))) == ()
+    assert kinds()["convection.fan"].places(Scene(motor("copper"), SPEED | {"fan_flow_m3h"})) == ()
+
+
+@pytest.mark.parametrize(("loss", "missing"), [(name, k < 2) for k, name in enumerate(LOSS)])
+def test_a_winding_declared_without_coefficient_can_be_told_so(loss, missing):
+    assert kinds()["copper.feedback"].places(Scene(motor(loss))) == (("heat",) if missing else ())
+
+
+def test_heat_of_iron_is_no_copper():
+    assert kinds()["copper.feedback"].places(Scene(motor("constant", at="stator"))) == ()
+
+
+def measured(time, amps):
+    """500 J/K on 2 W/K to air of 20 degC; a resistance of 0.5 ohm at 20 degC that follows its temperature."""
+
+    def slope(t, T):
+        copper = 0.5 * np.interp(t, time, amps) ** 2 * (1.0 + ALPHA_CU * (T - 20.0))
+        return (copper - 2.0 * (T - 20.0)) / 500.0
+
+    return solve_ivp(slope, (time[0], time[-1]), [20.0], "Radau", time, rtol=1e-9, atol=1e-9, max_step=30.0).y[0]
+
+
+@pytest.mark.parametrize("loss", ["copper, no coefficient", "constant"])
+def test_its_calibrated_amplitude_is_coppers_coefficient(loss):
+    """Against the equation integrated by scipy; 2 % for what nuisances and prior take of it."""
+    text = '[network]\nname = "coil"\nboundaries = ["ambient"]\n[nodes.winding]\nC_J_K = 500\n'
+    text += '[links.out]\nbetween = ["winding", "ambient"]\nG_W_K = 2\n[losses.heat]\nat = "winding"\n' + LOSS[loss]
+    network, time = read_network(tomllib.loads(text)), np.arange(0.0, 3000.0, 5.0)
+    amps = np.where(time < 1500.0, 10.0, 16.0)
+    channel = Channel("winding", "winding", network.place("winding").mean, measured(time, amps), 0.05)
+    test = Test("coil", "calibrate", time, {"current_A": amps}, {"ambient": np.full_like(time, 20.0)}, (channel,), 20.0)
+    case = Case("coil", Model(network), (test,))
+    extended, unknowns = working(case, [effect("copper.feedback@heat", Scene(network))])
+    fit = calibrated(extended, case.tests, unknowns, {})
+    assert fit.values["copper.feedback@heat"] == pytest.approx(ALPHA_CU, rel=0.02)

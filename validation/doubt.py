@@ -1,0 +1,101 @@
+"""The table of doubt: everything a model and its measurement get wrong, with how much and why. One place for all of it.
+
+The priors of a fit, the covariance of the model error and the simulated machines are made from this one table. A case
+may widen a line ([doubt] in case.toml). Deviations are one standard deviation of a normal distribution.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+from geom.errors import InputError
+
+Doubt = Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class Line:
+    """One doubt.  sd : standard deviation in `unit`;  reason : where the number comes from"""
+
+    sd: float
+    unit: str
+    reason: str
+
+
+TABLE: Mapping[str, Line] = MappingProxyType({
+    # what a fit may move
+    "start": Line(0.5, "K", "a machine that stood overnight is uneven by half a kelvin"),
+    "gain": Line(0.03, "1", "a thermocouple's place has another share of the rise than the node's mean"),
+    "gain of stream": Line(0.1, "1", "a stream is not of one temperature: no thermometer reads its mean"),
+    "lag": Line(10.0, "s", "diffusion in the part a sensor sits in, L^2 / 2a of some centimetres of metal"),
+    "boundary": Line(0.5, "K", "a thermometer of room or inlet reads one spot"),
+    "clock": Line(1.0, "s", "recorders are started by hand or by a trigger"),
+    "step in sample": Line(0.29, "sample", "an input that jumps does so anywhere between two samples: 1 / sqrt(12)"),
+    "input exponent": Line(0.15, "1", "scatter of published exponents of speed and flow"),
+    "difference exponent": Line(0.1, "1", "scatter of published exponents of free convection"),
+    "share": Line(0.15, "1", "scatter of published film sets over the bodies they are spread over"),
+    "warming": Line(0.01, "1/K", "grease thins by about a per cent and kelvin"),
+    # what no parameter of a fit stands for: the covariance of the model error
+    "group": Line(0.1, "1", "links that share a parameter differ by what drawings and tolerances say"),
+    "split": Line(0.1, "1", "how one loss divides over the nodes that carry it"),
+    "conductivity": Line(0.15, "1", "catalogue values of laminated and wound parts"),
+    "capacity": Line(0.05, "1", "masses by drawing, heat capacities by catalogue"),
+    "film exponent": Line(0.08, "1", "a coefficient taken as constant follows the temperature difference a little"),
+    "bridge": Line(0.1, "1", "heat that passes beside a node's mean, of the conductance through it"),
+    "core": Line(0.5, "1", "share of a node's mass behind a resistance of its own"),
+    "core time": Line(30.0, "s", "time in which such a core follows: copper in a slot, iron behind teeth"),
+    "placement": Line(0.08, "1", "share of the neighbours' temperatures in a reading"),
+    "placement in stream": Line(0.1, "1", "a thermometer in a stream reads one streamline"),
+    "slow": Line(0.02, "1", "slow misfit as a share of the rise: 4 % at two deviations counts as a good model"),
+    "fast": Line(0.25, "1", "fast misfit as a share of the slow one"),
+    "flow": Line(0.03, "1", "flow meters of a bench"),
+})  # fmt: skip
+
+USUAL: Doubt = MappingProxyType({name: line.sd for name, line in TABLE.items()})
+
+
+def widened(lines: Mapping[str, float], where: str = "[doubt]") -> Doubt:
+    """The table with some lines replaced by wider ones."""
+    for name, sd in lines.items():
+        if name not in TABLE:
+            raise InputError(f"unknown line of doubt '{name}'", where, f"known: {', '.join(TABLE)}")
+        if not TABLE[name].sd <= sd < float("inf"):
+            raise InputError(f"'{name}' of {sd} is no wider than usual", where, f"{TABLE[name].sd} or more")
+    return MappingProxyType({**USUAL, **lines})
+
+
+@dataclass(frozen=True)
+class Odds:
+    """How often something is missing, before a look at the readings.  share : of all cases;  reason : why"""
+
+    share: float
+    reason: str
+
+
+PRIOR: Mapping[str, Odds] = MappingProxyType({
+    "nothing": Odds(0.5, "half of the models that are asked about are good enough"),
+    "effect": Odds(0.25, "one physical effect explains most disagreements"),
+    "fault": Odds(0.08, "a sensor or a clock is at fault in one bench of ten"),
+    "heat": Odds(0.07, "no catalogue is complete"),
+    "two": Odds(0.10, "where one thing was forgotten another often was"),
+})  # fmt: skip
+
+# How often a kind of effect is the one that is missing, relative to the others (1).
+RARE: Mapping[str, Odds] = MappingProxyType({
+    "sensor.swap": Odds(0.03, "plugs are marked"),
+    "sensor.gain": Odds(0.3, "a wrong thermocouple type is seen at once"),
+    "coupling": Odds(0.3, "two solids that touch are seldom forgotten"),
+    "mass": Odds(0.3, "masses are weighed"),
+})  # fmt: skip
+
+TEMPER = Odds(1.0, "log evidence counts as it is: machines with nothing missing are accused in less than 5 %")
+SIZES = (0.3, 1.0, 3.0)  # of an effect's usual size: nobody knows it better than within a decade
+
+# What a statement costs; a wrong name is one.
+COSTS: Mapping[str, Odds] = MappingProxyType({
+    "wrong": Odds(1.0, "the unit: a bench is changed for nothing"),
+    "miss": Odds(0.5, "what is missed stays in the model, and its error can be seen there"),
+    "abstain": Odds(0.1, "a further test for nine answers that are right at once"),
+})  # fmt: skip

@@ -1,0 +1,85 @@
+"""From probabilities to one of seven verdicts by three costs: of a wrong name, of a miss, of an abstention."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from validation.doubt import COSTS
+from validation.findings import Verdict
+from validation.inference.evidence import Evidence
+from validation.inference.posterior import Hypothesis, inclusion, probabilities
+
+Array = NDArray[np.float64]
+SURE = 1.0 - COSTS["abstain"].share / COSTS["wrong"].share  # probability from which a name costs less than a group
+SILENT = COSTS["miss"].share / (COSTS["wrong"].share + COSTS["miss"].share)  # P(nothing) from which silence costs less
+
+
+@dataclass(frozen=True)
+class Decision:
+    """groups : per thing that is missing the effects that may be it, most probable first;  sure : P(something)"""
+
+    verdict: Verdict
+    groups: tuple[tuple[int, ...], ...]
+    sure: float
+
+
+def decide(evidence: Evidence, hypotheses: Sequence[Hypothesis]) -> Decision:
+    """The statement of least expected cost."""
+    P = probabilities(hypotheses)
+    nothing = float(sum(p for p, h in zip(P, hypotheses, strict=True) if not h.members and not h.heat))
+    heat = float(sum(p for p, h in zip(P, hypotheses, strict=True) if h.heat))
+    if nothing > SILENT:
+        return Decision("adequate", (), 1.0 - nothing)
+    if heat > 0.5 * (1.0 - nothing):
+        return Decision("outside", (), 1.0 - nothing)
+    groups = (first := cover(evidence, hypotheses, P), *second(evidence, hypotheses, P, first))
+    return Decision(_verdict(evidence, groups, P, hypotheses), groups, 1.0 - nothing)
+
+
+def _verdict(
+    evidence: Evidence, groups: tuple[tuple[int, ...], ...], P: Array, hypotheses: Sequence[Hypothesis]
+) -> Verdict:
+    if len(groups) > 1:
+        return "several"
+    if all(evidence.effects[k].fault for k in groups[0]):
+        return "data"
+    alone = len(groups[0]) == 1 and inclusion(hypotheses, len(evidence.effects))[groups[0][0]] >= SURE
+    return "named" if alone else "group"
+
+
+def cover(
+    evidence: Evidence, hypotheses: Sequence[Hypothesis], P: Array, without: frozenset[int] = frozenset()
+) -> tuple[int, ...]:
+    """The fewest effects of which one is present with the probability SURE, given that any is; most probable first."""
+    rows = [(frozenset(h.members) - without, float(p)) for h, p in zip(hypotheses, P, strict=True)]
+    rows = [(m, p) for m, p in rows if m]
+    goal, out = SURE * sum(p for _, p in rows), []
+    while rows and goal > 0.0:
+        weight = np.zeros(len(evidence.effects))
+        for members, p in rows:
+            weight[list(members)] += p
+        best = int(np.argmax(weight))
+        out.append(best)
+        goal -= weight[best]
+        rows = [(m, p) for m, p in rows if best not in m]
+        if goal <= 1e-12:
+            break
+    return tuple(out)
+
+
+def second(
+    evidence: Evidence, hypotheses: Sequence[Hypothesis], P: Array, first: tuple[int, ...]
+) -> list[tuple[int, ...]]:
+    """What is missing beside the first, if two things are more probable than one."""
+    known = [(h, p) for h, p in zip(hypotheses, P, strict=True) if set(h.members) & set(first)]
+    both = [(h, p) for h, p in known if len(h.members) > 1]
+    if sum(p for _, p in both) <= 0.5 * sum(p for _, p in known):
+        return []
+    lead = frozenset(first[:1])
+    beside = [(h, p) for h, p in both if lead <= set(h.members)]
+    found = cover(evidence, [h for h, _ in beside], np.array([p for _, p in beside]), lead)
+    return [found] if found else []

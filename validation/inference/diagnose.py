@@ -1,0 +1,67 @@
+"""Which effect is missing, how probable, what it is confused with, and which test would decide."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from validation.calibrate import silent
+from validation.case import Case
+from validation.faults import broken_channels
+from validation.findings import Diagnosis
+from validation.inference.decision import Decision, decide
+from validation.inference.evidence import Evidence, calibrated_case, candidates, noise_beside, scored, under
+from validation.inference.posterior import Posterior, pairs, probabilities, singles, unknown_heat
+from validation.inference.refits import refitted
+from validation.inference.tables import tabulate
+from validation.procedure.which_base import bases_tried, wrong_bases
+from validation.threads import one_blas_thread
+from validation.where import latent_heat
+
+Progress = Callable[[str], None]
+
+
+@one_blas_thread
+def diagnose(
+    case: Case, kinds: Sequence[str] | None = None, progress: Progress = silent, plan: bool = True
+) -> Diagnosis:
+    """Diagnose a case on its calibrate and validate tests; held-out tests are predicted once, after.
+
+    kinds : restrict the catalogue;  plan : also rank the next tests and sensors
+    A test that stood on another base than its sheet says is told before anything else.
+    """
+    training = case.training()
+    stood = bases_tried(training, progress)
+    posterior = infer(training, kinds, progress)
+    broken = [*broken_channels(training.tests), *wrong_bases(stood)]
+    choice = decide(posterior.evidence, posterior.hypotheses)
+    if broken:
+        choice = Decision("data", choice.groups, choice.sure)
+    progress("writing the tables")
+    return tabulate(case, posterior, choice, broken, tuple(stood), plan)
+
+
+def infer(case: Case, kinds: Sequence[str] | None = None, progress: Progress = silent) -> Posterior:
+    """Calibrate, score, weigh every hypothesis, refit what carries weight."""
+    fit = calibrated_case(case, progress)
+    progress("scoring the catalogue")
+    evidence = sharpened(scored(case, candidates(case, kinds), fit))
+    progress("looking for where heat is missing")
+    heat = latent_heat(evidence.fit, evidence.tests)
+    ones = singles(evidence)
+    weighed = [*ones, *pairs(evidence, ones), *unknown_heat({w.place: w.log_bayes for w in heat})]
+    hypotheses = refitted(evidence, weighed, progress)
+    lead = hypotheses[int(np.argmax(probabilities(hypotheses)))]
+    beside = latent_heat(lead.fit, evidence.tests) if lead.fit else heat
+    return Posterior(evidence, tuple(hypotheses), tuple(heat), tuple(beside))
+
+
+def sharpened(evidence: Evidence, rounds: int = 2) -> Evidence:
+    """The evidence under the noise that is left beside the leading effect: what is missing is no noise."""
+    for _ in range(rounds):
+        lead = max(singles(evidence), key=lambda h: h.log_prior + h.log_bayes)
+        if not lead.members or evidence.effects[lead.members[0]].whole:
+            break
+        evidence = under(evidence, noise_beside(evidence, lead.members))
+    return evidence

@@ -1,0 +1,245 @@
+"""What a diagnosis rests on: the calibrated model, its model error, the efficient score of every candidate effect."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import permutations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geom.errors import InputError
+from lumped.multipliers import values_of
+from lumped.network import Network, Parameter
+from validation.calibrate import Fit, Known, Measure, calibrated, minimise, silent
+from validation.case import Case, Test
+from validation.effects import Effect, catalogue, extended
+from validation.fitting import Unknowns, at_level, scene_of, widened, working
+from validation.noise import Noise, fit_noise
+from validation.score import Gram, Score, gram, score, total
+from validation.sheet import Segment, reach, segments
+
+Array = NDArray[np.float64]
+TWIN = 0.9995  # cosine from which a calibrated parameter does the same as an effect
+ENOUGH = 0.05  # nats: evidence is read to a tenth
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """The score of candidates at one calibrated state; calibrated parameters and model error are projected out.
+
+    network : the model with all candidates at zero;  parts : segments with nuisance, then candidate columns
+    grams : per test, of [nuisances and model error, candidates, residual] under the fit's noise
+    whole : (K,) evidence (nats) of a finite amplitude where a tangent says too little, -inf elsewhere
+    """
+
+    tests: tuple[Test, ...]
+    fit: Fit
+    network: Network
+    effects: tuple[Effect, ...]
+    parameters: tuple[Parameter, ...]
+    parts: tuple[Segment, ...]
+    grams: Mapping[str, Gram]
+    score: Score
+    whole: Array
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return tuple(e.name for e in self.effects)
+
+    @property
+    def p(self) -> int:
+        """Number of calibrated parameters."""
+        return len(self.fit.unknowns.parameters)
+
+    @property
+    def twins(self) -> list[str | None]:
+        """For each effect the free parameter that does the same, if there is one."""
+        G, p = total(self.grams), self.p
+        scale = np.sqrt(np.outer(np.diag(G.JJ)[:p], np.diag(G.ZZ)))
+        alike = np.abs(G.JZ[:p]) / np.where(scale > 0, scale, np.inf)
+        best = np.argmax(alike, axis=0)
+        return [self.fit.unknowns.names[j] if alike[j, k] > TWIN else None for k, j in enumerate(best)]
+
+    @property
+    def reach(self) -> Array:
+        """(K,) largest change of any reading (K) by one unit of each effect."""
+        return reach(self.parts)[self.p :]
+
+    def parts_of(self, few: Sequence[int]) -> tuple[Segment, ...]:
+        """The segments with nuisance columns and those of some effects."""
+        columns = [*range(self.p), *(self.p + k for k in few)]
+        return tuple(replace(s, J=s.J[:, columns]) for s in self.parts)
+
+
+def diagnosing(case: Case) -> tuple[Test, ...]:
+    """The tests an effect may be chosen on: all but the held-out ones."""
+    return tuple(t for t in case.tests if t.role != "hold-out")
+
+
+def candidates(case: Case, kinds: Sequence[str] | None = None) -> tuple[Effect, ...]:
+    """The catalogue on this case, less what the model has already."""
+    inside = {e.name for e in case.model.effects}
+    found = tuple(e for e in catalogue(scene_of(case), kinds) if e.name not in inside)
+    if not found:
+        where = f"case '{case.name}', kinds {', '.join(kinds or ['of the catalogue'])}"
+        raise InputError("no effect can sit anywhere in this network", where, "other kinds, or inputs that they need")
+    return found
+
+
+def calibrated_case(
+    case: Case, progress: Callable[[str], None] = silent, start: Mapping[str, float] | None = None
+) -> Fit:
+    """The model calibrated on every test but the held-out ones."""
+    network, unknowns = working(case)
+    values = {**case.model.values, **(start or {})}
+    return calibrated(network, diagnosing(case), unknowns, values, progress=progress, doubt=case.doubt)
+
+
+def scored(case: Case, effects: Sequence[Effect], fit: Fit) -> Evidence:
+    """One run of every test with all candidates' tangents at a calibrated state."""
+    network = at_level(extended(fit.network, effects), {e.name for e in effects}, case.tests)
+    by_name = {p.name: p for p in network.parameters}
+    parameters = tuple(by_name[e.name] for e in effects)
+    tests, p = diagnosing(case), len(fit.unknowns.parameters)
+    values = {**{q.name: case.model.values.get(q.name, q.value) for q in network.parameters}, **fit.values}
+    parts = tuple(segments(network, tests, values, (*fit.unknowns.parameters, *parameters)))
+    exchange(parts, effects, p)
+    return weighed(tests, fit, network, tuple(effects), parameters, parts, values)
+
+
+def weighed(
+    tests: tuple[Test, ...], fit: Fit, network: Network, effects: tuple[Effect, ...],
+    parameters: tuple[Parameter, ...], parts: tuple[Segment, ...], values: Mapping[str, float],
+) -> Evidence:  # fmt: skip
+    """The score under the fit's noise and model error."""
+    sign = np.array([q.sign for q in parameters], int)
+    grams = projected(fit, parts)
+    theta, sd = extended_prior(fit)
+    found = score(total(grams), theta, sd, sign)
+    whole = np.where([e.whole for e in effects], found.u - 0.5 * np.diag(found.V), -np.inf)
+    far = [k for k, e in enumerate(effects) if e.typical_loss is not None]
+    whole[far] = finite(tests, fit, network, effects, parts, values, far)
+    return Evidence(tests, fit, network, effects, parameters, parts, grams, found, whole)
+
+
+def projected(fit: Fit, parts: Sequence[Segment]) -> dict[str, Gram]:
+    """Gram matrices whose nuisances are the calibrated parameters and the model error."""
+    p, error = len(fit.unknowns.parameters), fit.error
+    wide = parts if error is None else [error.beside(s, p) for s in parts]
+    return gram(wide, fit.noise, p + (error.size if error else 0))
+
+
+def extended_prior(fit: Fit) -> tuple[Array, Array]:
+    """Coordinates and prior deviations of the calibrated parameters, then of the model error."""
+    d = fit.error.size if fit.error else 0
+    return np.concatenate([fit.theta, np.zeros(d)]), np.concatenate([fit.unknowns.sd, np.ones(d)])
+
+
+def finite(
+    tests: Sequence[Test], fit: Fit, network: Network, effects: Sequence[Effect], parts: Sequence[Segment],
+    values: Mapping[str, float], far: Sequence[int],
+) -> Array:  # fmt: skip
+    """Evidence (nats) that some effects are there at their typical loss: a joint at a fifth of its conductance bends
+    the machine more than its tangent foretells."""
+    p, columns = len(fit.unknowns.parameters), []
+    for k in far:
+        there = {**values, effects[k].name: effects[k].typical_loss or 0.0}
+        columns.append([old.r - new.r for old, new in zip(parts, segments(network, tests, there), strict=True)])
+    if not far:
+        return np.zeros(0)
+    own = [replace(s, J=np.column_stack([s.J[:, :p], *(c[i] for c in columns)])) for i, s in enumerate(parts)]
+    theta, sd = extended_prior(fit)
+    found = score(total(projected(fit, own)), theta, sd, np.zeros(len(far), int))
+    return np.asarray(found.u - 0.5 * np.diag(found.V))
+
+
+def exchange(parts: Sequence[Segment], effects: Sequence[Effect], p: int) -> None:
+    """Set the columns of exchanged plugs to what was read (y_1 - y_2) instead of what is predicted (T_2 - T_1).
+
+    A model calibrated to exchanged readings has both places at nearly one temperature, so that exchanging its
+    predictions would change little; the readings themselves can be exchanged exactly.  p : columns before the effects'
+    """
+    other = {(a, k): b for k, e in enumerate(effects) if e.whole for a, b in permutations(e.place.split("|"), 2)}
+    known = {(s.test, s.channel): s for s in parts}
+    for (a, k), b in other.items():
+        for s in (s for s in parts if s.channel == a and (s.test, b) in known):
+            t = known[s.test, b]
+            s.J[:, p + k] = s.r - np.interp(s.time, t.time, t.r) - s.J[:, p + k]
+
+
+def under(evidence: Evidence, noise: Noise) -> Evidence:
+    """The evidence under another noise, the calibration gone on under it."""
+    e, fit = evidence, evidence.fit
+    values = values_of(e.network, {**fit.values})
+    held = values_of(fit.network, fit.values)
+    new = minimise(fit.network, e.tests, fit.unknowns, fit.theta, noise, held, 6, Known(e.parts_of([]), nearby=True),
+                   worth=ENOUGH, error=fit.error)  # fmt: skip
+    left = {(s.test, s.channel): s.r for s in new.parts}
+    parts = tuple(replace(s, r=left[s.test, s.channel]) for s in e.parts)
+    return weighed(e.tests, new, e.network, e.effects, e.parameters, parts, {**values, **new.values})
+
+
+def noise_beside(evidence: Evidence, members: Sequence[int]) -> Noise:
+    """The noise of what calibration, model error and some effects leave, by tangents."""
+    e, p = evidence, evidence.p
+    G, (theta, sd) = total(e.grams), extended_prior(e.fit)
+    chosen, q = list(members), theta.size
+    A = np.block([[G.JJ, G.JZ[:, chosen]], [G.JZ[:, chosen].T, G.ZZ[np.ix_(chosen, chosen)]]])
+    wide = np.array([widened(e.parameters[k]).prior_sd for k in chosen])
+    weight = np.concatenate([sd, wide]) ** -2.0
+    b = np.concatenate([G.Jr, G.Zr[chosen]]) - weight * np.concatenate([theta, np.zeros(len(chosen))])
+    x = np.linalg.solve(A + np.diag(weight), b)
+    error, left = e.fit.error, []
+    for s in e.parts:
+        moved = s.J[:, :p] @ x[:p] + s.J[:, [p + k for k in chosen]] @ x[q:]
+        left.append(replace(s, r=s.r - moved - (error.of(s) @ x[p:q] if error else 0.0)))
+    return fit_noise(left)
+
+
+def refit(evidence: Evidence, members: Sequence[int], theta: Array) -> Fit:
+    """All free parameters and the amplitudes of some candidates, fitted anew; those that are whole are held at one."""
+    network, unknowns, held = with_members(evidence, members)
+    free = [k for k in members if not evidence.effects[k].whole]
+    fit = evidence.fit
+    rough = minimise(network, evidence.tests, unknowns, theta, fit.noise, held, 8, Known(evidence.parts_of(free)),
+                     worth=ENOUGH, error=fit.error)  # fmt: skip
+    return minimise(network, evidence.tests, unknowns, rough.theta, fit.noise, held, 6, draft=True, worth=ENOUGH,
+                    error=fit.error)  # fmt: skip
+
+
+def with_members(evidence: Evidence, members: Sequence[int]) -> tuple[Network, Unknowns, dict[str, float]]:
+    fit = evidence.fit
+    network = extended(fit.network, [evidence.effects[k] for k in members])
+    free = [evidence.parameters[k] for k in members if not evidence.effects[k].whole]
+    unknowns = Unknowns((*fit.unknowns.parameters, *(widened(p) for p in free)))
+    whole = {evidence.names[k]: 1.0 for k in members if evidence.effects[k].whole}
+    return network, unknowns, values_of(network, {**fit.values, **whole})
+
+
+def starts(evidence: Evidence, members: Sequence[int]) -> list[Array]:
+    """Where a refit may begin: at the linear amplitudes, and where a tangent says too little at the typical loss."""
+    free = [k for k in members if not evidence.effects[k].whole]
+    first = first_amplitudes(evidence, free)
+    far = [evidence.effects[k].typical_loss for k in free]
+    points = [first]
+    if any(a is not None for a in far):
+        points.append(np.array([f if a is None else a for a, f in zip(far, first, strict=True)]))
+    return [np.concatenate([evidence.fit.theta, a]) for a in points]
+
+
+def first_amplitudes(evidence: Evidence, members: Sequence[int]) -> Array:
+    """Linear estimates, kept to the admissible side and within three prior deviations."""
+    few = list(members)
+    a, sd = evidence.score.amplitude[few], np.array([evidence.parameters[k].prior_sd for k in few])
+    low = np.array([evidence.parameters[k].low for k in few])
+    high = np.array([evidence.parameters[k].high for k in few])
+    return np.clip(np.clip(a, -3.0 * sd, 3.0 * sd), 0.9 * low, 0.9 * high)
+
+
+def deviance(evidence: Evidence, fit: Fit) -> dict[tuple[str, str], float]:
+    """(test, channel) -> r' noise^-1 r of what a fit and its model error leave."""
+    measure = Measure(fit.parts, fit.noise, fit.error)
+    left = measure.explained(fit.parts, fit.error)
+    return {(s.test, s.channel): float(np.sum(fit.noise.whiten(s, s.r[:, None]) ** 2)) for s in left}

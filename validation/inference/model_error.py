@@ -1,0 +1,261 @@
+"""What a network of this kind gets wrong, as columns: the change of every reading by one deviation of each doubt.
+
+The lines of `validation.doubt` that no calibrated parameter stands for are linear here: a machine that is not quite the
+model reads y + D d with d ~ N(0, 1). Marginalised, D D' is the covariance of the model error, correlations between
+sensors and tests included, without a draw: Bayesian approximation error (Kaipio and Somersalo 2005, chapter 5.8).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.laws import CONSTANT, Constant, Fixed, Inputs, Law, TemperatureLaw
+from lumped.network import Link, Network, Parameter, Place, Row
+from lumped.simulate import simulate
+from validation.case import Channel, Test
+from validation.doubt import USUAL, Doubt
+from validation.effects.build import Shaped, copy_link, exchange, heat
+from validation.forms import KNOTS, SETTLE_K, Table, is_film
+from validation.operators import setting
+from validation.predict import record, thermal
+from validation.sheet import Segment, segments
+
+Array = NDArray[np.float64]
+
+
+LOGARITHM = Table(KNOTS, tuple(np.log(np.clip(np.array(KNOTS) / SETTLE_K, 0.1, 10.0))))
+
+
+@dataclass(frozen=True)
+class Bent(Law):
+    """d law / d exponent of the temperature difference of a law without one, zero at SETTLE_K."""
+
+    base: Law
+    reads: tuple[str, ...] = field(init=False, default=())
+    temperature: TemperatureLaw = LOGARITHM
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "reads", self.base.reads)
+
+    def factor(self, inputs: Inputs) -> Array | float:
+        return self.base.factor(inputs)
+
+
+def with_doubts(network: Network, doubt: Doubt) -> tuple[Network, tuple[Parameter, ...]]:
+    """The network with a neutral parameter for each doubt of its links, losses and capacities; prior_sd is its size."""
+    before = len(network.parameters)
+    new = [*_each_link(network, doubt), *_each_loss(network, doubt), *_each_capacity(network, doubt)]
+    for link in [x for x in network.links if _constant_film(network, x)]:
+        name = f"{link.name}^dT?"
+        network = copy_link(network, link, name, Bent(link.law))
+        new.append(_amplitude(f"doubt:{name}", name, doubt["film exponent"], "1"))
+    for a, b, G in bridges(network, doubt["bridge"]):
+        name = f"beside:{a}|{b}"
+        network = network.extended(links=[exchange(network, name, a, b, Fixed(1.0))])
+        new.append(_amplitude(f"doubt:{name}", name, G, "W/K"))
+    network = replace(network, parameters=(*network.parameters, *new))
+    return network, network.parameters[before:]
+
+
+def _constant_film(network: Network, link: Link) -> bool:
+    own = is_film(network, link) and link.kind != "stream" and not link.origin
+    return own and isinstance(link.law.temperature, Constant)
+
+
+def _amplitude(name: str, target: str, sd: float, unit: str) -> Parameter:
+    return Parameter(name, ((target, 1.0),), 0.0, unit, -1e9, 1e9, sd, "amplitude", 0.0)
+
+
+def _log(target: str, sd: float) -> Parameter:
+    return Parameter(f"doubt:{target}", ((target, 1.0),), prior_sd=sd)
+
+
+def alone(network: Network) -> set[str]:
+    """Links, losses and capacities that a parameter moves by themselves."""
+    return {p.targets[0][0] for p in network.parameters if len(p.targets) == 1 and p.mapping == "log"}
+
+
+def _each_link(network: Network, doubt: Doubt) -> Iterator[Parameter]:
+    """A link that shares its parameter with others, or has none, may differ from them."""
+    single, shared = alone(network), {t for p in network.parameters for t, _ in p.targets}
+    for x in network.links:
+        if x.name not in single and x.kind != "stream" and not x.origin:
+            yield _log(x.name, doubt["group"] if x.name in shared or is_film(network, x) else doubt["conductivity"])
+
+
+def _each_loss(network: Network, doubt: Doubt) -> Iterator[Parameter]:
+    single = alone(network)
+    for s in network.sources:
+        if s.name not in single and not s.origin:
+            yield _log(s.name, doubt["split"])
+
+
+def _each_capacity(network: Network, doubt: Doubt) -> Iterator[Parameter]:
+    single, groups = alone(network), network.capacity_group or network.states
+    mass = {g: sum(C for C, own in zip(network.C, groups) if own == g) for g in groups}
+    for g in dict.fromkeys(groups):
+        if f"capacity:{g}" not in single and mass[g] > 0:
+            yield _log(f"capacity:{g}", doubt["capacity"])
+
+
+def bridges(network: Network, share: float) -> list[tuple[str, str, float]]:
+    """Pairs of nodes and the conductance (W/K) that passes between them beside the nodes that join them, one sigma.
+
+    A part that is not of one temperature joins its neighbours a little more, or less, than the star through its mean.
+    """
+    square: dict[tuple[str, str], float] = {}
+    for ends in stars(network).values():
+        for (a, Ga), (b, Gb) in combinations(ends.items(), 2):
+            pair = (a, b) if (b, a) not in square else (b, a)
+            square[pair] = square.get(pair, 0.0) + (share * Ga * Gb / (Ga + Gb)) ** 2
+    return [(a, b, float(np.sqrt(v))) for (a, b), v in square.items()]
+
+
+def stars(network: Network) -> dict[str, dict[str, float]]:
+    """For every node with mass its neighbours through conductances (W/K) that depend on nothing."""
+    heavy = {p.name for p in network.places.values() if p.kind == "node" and network.C[p.states[0]] > 0}
+    out: dict[str, dict[str, float]] = {}
+    for link in network.links:
+        if isinstance(link.law, Fixed) and link.law.temperature == CONSTANT and link.kind != "stream":
+            for node, other in (link.places, link.places[::-1]):
+                if node in heavy and other in heavy:
+                    ends = out.setdefault(node, {})
+                    ends[other] = ends.get(other, 0.0) + link.law.value
+    return out
+
+
+@dataclass(frozen=True)
+class Series:
+    """A recorded series as a function of time."""
+
+    time: Array
+    value: Array
+
+    def __call__(self, inputs: Inputs) -> Array:
+        return np.interp(np.asarray(inputs["time_s"], float), self.time, self.value)
+
+
+def with_cores(network: Network, test: Test, values: Mapping[str, float], doubt: Doubt) -> Network:
+    """The network with the heat (W) that a core in each node would give off in this test, amplitude zero.
+
+    A share of the node's capacity follows it with a time constant tau: its heat is C * share (dT/dt - dT_core/dt).
+    """
+    sources, parameters = [], []
+    T = nodes(network, test, values)
+    for place in solid(network):
+        C, tau = float(network.C[place.states[0]]), doubt["core time"]
+        x = T[place.name]
+        lag = x - follow(test.time, x, tau)
+        q = -doubt["core"] * C * np.gradient(lag, test.time)
+        name = f"core:{place.name}"
+        law = Shaped(Fixed(1.0), Series(test.time, -q), also_reads=("time_s",))
+        sources.append(heat(network, name, "core", place.name, law))
+        parameters.append(_amplitude(f"doubt:{name}", name, 1.0, "1"))
+    network = network.extended(sources=sources)
+    return replace(network, parameters=(*network.parameters, *parameters))
+
+
+def follow(time: Array, x: Array, tau: float) -> Array:
+    """First-order lag of x (n,), in equilibrium at first."""
+    out, h = np.empty_like(x), np.diff(time, prepend=time[0])
+    out[0] = x[0]
+    for i in range(1, x.size):
+        decay = np.exp(-h[i] / tau)
+        share = tau / h[i] * (1.0 - decay) if h[i] > 0 else 0.0
+        out[i] = x[i] + decay * (out[i - 1] - x[i - 1]) - share * (x[i] - x[i - 1])
+    return out
+
+
+def solid(network: Network) -> list[Place]:
+    """Nodes with mass."""
+    return [p for p in network.places.values() if p.kind == "node" and network.C[p.states[0]] > 0]
+
+
+def nodes(network: Network, test: Test, values: Mapping[str, float]) -> dict[str, Array]:
+    """Temperature (n_time,) of every node with mass in a test."""
+    bare, own = thermal(network), solid(network)
+    known = {p.name for p in bare.parameters}
+    now = {k: v for k, v in values.items() if k in known}
+    run = simulate(bare, record(test, setting(network.parameters, values)), now, [p.mean for p in own])
+    return {p.name: run.y[:, i] for i, p in enumerate(own)}
+
+
+@dataclass(frozen=True)
+class ModelError:
+    """columns : (test, channel) -> (n, d) change of the readings (K) by one deviation of each doubt."""
+
+    columns: Mapping[tuple[str, str], Array]
+
+    def of(self, segment: Segment) -> Array:
+        return self.columns[segment.test, segment.channel]
+
+    @property
+    def size(self) -> int:
+        return next(iter(self.columns.values())).shape[1]
+
+    def beside(self, segment: Segment, p: int) -> Segment:
+        """The segment with the model error's columns behind its first p."""
+        return replace(segment, J=np.column_stack([segment.J[:, :p], self.of(segment), segment.J[:, p:]]))
+
+
+def model_error(
+    network: Network, tests: Sequence[Test], values: Mapping[str, float], doubt: Doubt = USUAL,
+    sensed: Sequence[Test] = (),
+) -> ModelError:  # fmt: skip
+    """The model error of a network at some values of its parameters, over the instants of its tests' segments.
+
+    sensed : tests whose sensors' placement is in doubt, by default `tests`
+    """
+    grown, doubts = with_doubts(network, doubt)
+    out: dict[tuple[str, str], Array] = {}
+    for test in tests:
+        cored = with_cores(grown, test, values, doubt)
+        cores = cored.parameters[len(grown.parameters) :]
+        parts = segments(cored, [test], values, (*doubts, *cores))
+        scale = np.array([p.prior_sd for p in (*doubts, *cores)])
+        beside = placements(network, test, values, doubt, sensed or tests)
+        out |= {(s.test, s.channel): np.column_stack([s.J * scale, beside[s.channel]]) for s in parts}
+    return ModelError(out)
+
+
+def placements(
+    network: Network, test: Test, values: Mapping[str, float], doubt: Doubt, tests: Sequence[Test]
+) -> dict[str, Array]:
+    """Channel -> (n, c): a share of each neighbour's temperature in its reading, a column per sensor and neighbour."""
+    sensors = {c.name: c for t in tests for c in t.channels}
+    pairs = [(c.name, n, share) for c in sensors.values() for n, share in neighbours(network, c, doubt)]
+    here = {c.name: c for c in test.channels}
+    virtual = [_virtual(here[c], network.places[n].mean, f"{i}:{c}") for i, (c, n, _) in enumerate(pairs) if c in here]
+    own = [_virtual(c, c.row, c.name) for c in test.channels]
+    plain = replace(network, parameters=thermal(network).parameters)
+    known = {p.name for p in plain.parameters}
+    now = {k: v for k, v in values.items() if k in known}
+    parts = {s.channel: s for s in segments(plain, [replace(test, channels=(*own, *virtual))], now)}
+    return {c.name: _beside(c.name, pairs, parts) for c in test.channels if c.name in parts}
+
+
+def _beside(channel: str, pairs: Sequence[tuple[str, str, float]], parts: Mapping[str, Segment]) -> Array:
+    r = parts[channel].r
+    zero = np.zeros_like(r)
+    columns = [s * (r - parts[f"{i}:{c}"].r) if c == channel else zero for i, (c, _, s) in enumerate(pairs)]
+    return np.column_stack(columns) if columns else np.zeros((r.size, 0))
+
+
+def _virtual(c: Channel, row: Row, name: str) -> Channel:
+    """A sensor that reads a row of the network where the channel was read; its readings are zero."""
+    return replace(c, name=name, row=row, y=np.where(np.isfinite(c.y), 0.0, np.nan))
+
+
+def neighbours(network: Network, c: Channel, doubt: Doubt) -> list[tuple[str, float]]:
+    """Places beside a sensor's own, and the share (one sigma) of each in its reading."""
+    part = network.places[c.place].part if c.place in network.places else c.place
+    near = dict.fromkeys(n for x in network.links for n in x.places if part in x.places and n != part)
+    places = [n for n in near if n in network.places and network.places[n].kind != "surface"]
+    fluid = c.place in network.places and network.places[c.place].kind == "fluid"
+    share = doubt["placement in stream" if fluid else "placement"]
+    return [(n, share / np.sqrt(len(places))) for n in places]

@@ -1,0 +1,152 @@
+"""From evidence to probabilities: nothing, one effect, two, or heat of unknown cause.
+
+Under a linear model with Gaussian noise and model error the log Bayes factor of effects A against nothing is closed:
+with u, V the efficient score and its covariance, and amplitudes a ~ half-normal(s) where physics has a sign,
+
+    log BF = 1/2 u'(V + S^-1)^-1 u - 1/2 log det(1 + V S) + log P(sign a | readings) / P(sign a),  S = diag(s^2)
+
+averaged over a few s, since nobody knows the usual size well. What carries weight is refitted (refits.py).
+Source: Kass and Raftery 1995; Kaipio and Somersalo 2005 for the model error in V.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import log_ndtr, logsumexp
+
+from validation.calibrate import Fit
+from validation.doubt import PRIOR, RARE, SIZES, TEMPER
+from validation.inference.evidence import Evidence
+from validation.where import Latent
+
+Array = NDArray[np.float64]
+NOTHING = "nothing"
+LEADING = 60  # effects whose pairs are compared: beyond them neither of two carries weight
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """What may be missing.
+
+    members : indices of effects, none for nothing;  heat : place of heat of unknown cause, if that is it
+    log_prior : log prior probability;  log_bayes : log evidence over that of nothing (nats);  fit : once refitted
+    """
+
+    members: tuple[int, ...] = ()
+    heat: str = ""
+    log_prior: float = 0.0
+    log_bayes: float = 0.0
+    fit: Fit | None = field(default=None, compare=False)
+
+    def name(self, evidence: Evidence) -> str:
+        if self.heat:
+            return f"heat@{self.heat}"
+        return " + ".join(evidence.names[k] for k in self.members) or NOTHING
+
+
+def probabilities(hypotheses: Sequence[Hypothesis]) -> Array:
+    """(n,) that sum to one."""
+    x = np.array([h.log_prior + h.log_bayes / TEMPER.share for h in hypotheses])
+    return np.asarray(np.exp(x - logsumexp(x)))
+
+
+def prior_shares(evidence: Evidence) -> Array:
+    """(K,) prior probability of each effect alone: its class's share over kinds, its kind's over places."""
+    kinds = [e.kind for e in evidence.effects]
+    faults = {e.kind: e.fault for e in evidence.effects}
+    weight = {k: RARE[k].share if k in RARE else 1.0 for k in faults}
+    whole = {f: sum(w for k, w in weight.items() if faults[k] == f) for f in (False, True)}
+    share = {k: PRIOR["fault" if faults[k] else "effect"].share * w / whole[faults[k]] for k, w in weight.items()}
+    return np.array([share[k] / kinds.count(k) for k in kinds])
+
+
+def singles(evidence: Evidence) -> list[Hypothesis]:
+    """Nothing, and each effect by itself."""
+    prior, bayes = prior_shares(evidence), linear(evidence)
+    one = [Hypothesis((k,), "", float(np.log(prior[k])), float(bayes[k])) for k in range(len(prior))]
+    return [Hypothesis(log_prior=float(np.log(PRIOR["nothing"].share))), *one]
+
+
+def linear(evidence: Evidence) -> Array:
+    """(K,) log Bayes factor of each effect against nothing; of a joint also at its typical loss, of plugs exchanged."""
+    s, sd = evidence.score, np.array([q.prior_sd for q in evidence.parameters])
+    sizes = [one_size(s.u, np.diag(s.V), f * sd, s.sign) for f in SIZES]
+    tangent = np.where(s.visible, logsumexp(sizes, axis=0) - np.log(len(SIZES)), 0.0)
+    must = np.array([e.whole for e in evidence.effects])
+    both = np.logaddexp(tangent, evidence.whole) - np.where(np.isfinite(evidence.whole), np.log(2.0), 0.0)
+    return np.asarray(np.where(must, evidence.whole, both))
+
+
+def one_size(u: Array, V: Array, sd: Array, sign: NDArray[np.int64]) -> Array:
+    """Log Bayes factors of single effects with amplitudes of one usual size."""
+    q = V + sd**-2.0
+    told = np.where(sign == 0, 0.0, np.log(2.0) + log_ndtr(np.where(sign == 0, 1, sign) * u / np.sqrt(q)))
+    return np.asarray(0.5 * u**2 / q - 0.5 * np.log(sd**2 * q) + told)
+
+
+def pairs(evidence: Evidence, ones: Sequence[Hypothesis]) -> list[Hypothesis]:
+    """Every two of the leading effects, in proportion to the prior of each."""
+    e, prior = evidence, prior_shares(evidence)
+    usable = [h for h in ones if h.members and not e.effects[h.members[0]].whole and e.score.visible[h.members[0]]]
+    usable.sort(key=lambda h: -(h.log_prior + h.log_bayes))
+    few = np.array([h.members[0] for h in usable[:LEADING]], int)
+    if few.size < 2:
+        return []
+    i, j = np.triu_indices(few.size, 1)
+    a, b = few[i], few[j]
+    share = prior[a] * prior[b]
+    every = (np.sum(prior) ** 2 - np.sum(prior**2)) / 2.0
+    log_prior = np.log(PRIOR["two"].share * share / every)
+    bayes = two(e, a, b)
+    return [Hypothesis((int(k), int(m)), "", float(p), float(v)) for k, m, p, v in zip(a, b, log_prior, bayes)]
+
+
+def two(evidence: Evidence, a: NDArray[np.int64], b: NDArray[np.int64]) -> Array:
+    """Log Bayes factors of pairs (a_i, b_i) against nothing."""
+    s, sd = evidence.score, np.array([q.prior_sd for q in evidence.parameters])
+    out = []
+    for f in SIZES:
+        A, B = s.V[a, a] + (f * sd[a]) ** -2.0, s.V[b, b] + (f * sd[b]) ** -2.0
+        X, det = s.V[a, b], np.maximum(A * B - s.V[a, b] ** 2, 1e-300)
+        ma, mb = (B * s.u[a] - X * s.u[b]) / det, (A * s.u[b] - X * s.u[a]) / det
+        gain = 0.5 * (s.u[a] * ma + s.u[b] * mb) - 0.5 * np.log((f * sd[a]) ** 2 * (f * sd[b]) ** 2 * det)
+        out.append(gain + told(ma / np.sqrt(B / det), s.sign[a]) + told(mb / np.sqrt(A / det), s.sign[b]))
+    return np.asarray(logsumexp(out, axis=0) - np.log(len(SIZES)))
+
+
+def told(z: Array, sign: NDArray[np.int64]) -> Array:
+    """log P(sign | readings) - log P(sign) of amplitudes z deviations from zero."""
+    return np.where(sign == 0, 0.0, np.log(2.0) + log_ndtr(np.where(sign == 0, 1, sign) * z))
+
+
+def unknown_heat(evidence_nats: Mapping[str, float]) -> list[Hypothesis]:
+    """Heat of unknown cause at each place.  evidence_nats : place -> log Bayes factor against nothing"""
+    share = float(np.log(PRIOR["heat"].share / max(len(evidence_nats), 1)))
+    return [Hypothesis((), place, share, nats) for place, nats in evidence_nats.items()]
+
+
+def inclusion(hypotheses: Sequence[Hypothesis], count: int) -> Array:
+    """(K,) probability that each effect is among what is missing."""
+    out = np.zeros(count)
+    for h, p in zip(hypotheses, probabilities(hypotheses), strict=True):
+        out[list(h.members)] += p
+    return out
+
+
+@dataclass(frozen=True)
+class Posterior:
+    """What follows from the readings.  heat : of unknown cause at each place, most evident first;  beside : the same
+    with the leading hypothesis in the model"""
+
+    evidence: Evidence
+    hypotheses: tuple[Hypothesis, ...]
+    heat: tuple[Latent, ...]
+    beside: tuple[Latent, ...]
+
+    @property
+    def best(self) -> Hypothesis:
+        return self.hypotheses[int(np.argmax(probabilities(self.hypotheses)))]

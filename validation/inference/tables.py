@@ -1,0 +1,242 @@
+"""The tables and the sentence of a diagnosis, from its posterior and decision."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import norm
+
+from validation.calibrate import Fit, Measure
+from validation.case import Case
+from validation.findings import Candidate, Decided, Diagnosis, Hidden, Odds, Verdict
+from validation.inference.decision import Decision
+from validation.inference.detection import smallest, thresholds
+from validation.inference.evidence import Evidence, deviance
+from validation.inference.posterior import Hypothesis, Posterior, inclusion, probabilities
+from validation.inference.refits import laplace
+from validation.planning.contenders import Contenders
+from validation.planning.experiments import next_tests
+from validation.planning.sensors import next_sensors
+from validation.procedure.which_base import Hypothesis as Base
+from validation.sheet import rmse, segments
+
+Array = NDArray[np.float64]
+ROWS, SHOWN = 20, 1e-4  # candidates in the table; odds below one in ten thousand are not listed
+NORMAL_95 = 1.96
+RIVALS = 4  # of a group are compared with each other where a plan is wanted
+
+
+def tabulate(
+    case: Case, posterior: Posterior, choice: Decision, broken: Sequence[str], bases: tuple[Base, ...], plan: bool
+) -> Diagnosis:
+    """The whole answer; the held-out tests of `case` are predicted here, after everything is decided."""
+    e = posterior.evidence
+    single = {h.members[0]: h for h in posterior.hypotheses if len(h.members) == 1}
+    for k in [k for g in choice.groups for k in g][:ROWS]:
+        if single[k].fit is None:
+            single[k] = laplace(e, single[k])
+    pulls = strained(e.fit)
+    verdict = final(choice.verdict, posterior, choice, pulls, broken)
+    rows = candidates(case, posterior, choice, verdict, single)
+    rivals = contenders(e, choice, single) if plan and verdict in ("group", "several") else None
+    groups = tuple(tuple(e.names[k] for k in g) for g in choice.groups)
+    tests, sensors = (next_tests(e, rivals), next_sensors(e, rivals)) if rivals else ((), ())
+    return Diagnosis(
+        verdict=verdict, words=sentence(verdict, posterior, choice, rows, pulls, broken),
+        named=tuple(g[0] for g in groups), groups=groups, candidates=rows, cannot_see=unseen(e), where=posterior.heat,
+        next_tests=tuple(tests), next_sensors=tuple(sensors), rmse_K=rmse(e.fit.parts), floor_K=floor(e),
+        threshold=float(np.min(thresholds(e))), pulls=pulls, cosine=confusion(e, [c.effect for c in rows[:12]]),
+        bases=bases, odds=odds(posterior), p_nothing=1.0 - choice.sure,
+    )  # fmt: skip
+
+
+def final(verdict: Verdict, posterior: Posterior, choice: Decision, pulls: Sequence, broken: Sequence[str]) -> Verdict:
+    """The decision with what the calibration says about itself: a machine that has to be bent is not adequate."""
+    if broken:
+        return "data"
+    e = posterior.evidence
+    if verdict == "adequate":
+        return "outside" if beyond(e) else "absorbed" if pulls else "adequate"
+    if verdict == "named" and e.twins[choice.groups[0][0]] is not None:
+        return "absorbed"
+    return verdict
+
+
+def strained(fit: Fit) -> tuple[tuple[str, float, float], ...]:
+    """Parameters that calibration pulls further from their prior than one in twenty fits does any: name, value,
+    deviations; and those at a physical bound beyond two deviations."""
+    pull = fit.theta / fit.unknowns.sd
+    limit = float(norm.isf(0.025 / pull.size))
+    hit = (np.abs(pull) > limit) | (fit.at_bound & (np.abs(pull) > 2.0))
+    order = [int(j) for j in np.argsort(-np.abs(pull)) if hit[j]]
+    return tuple((fit.unknowns.names[j], fit.values[fit.unknowns.names[j]], float(pull[j])) for j in order)
+
+
+def beyond(evidence: Evidence) -> bool:
+    """Is more left than noise and model error allow: most records out of twice what a model may be wrong by?"""
+    left = Measure(evidence.fit.parts, evidence.fit.noise, evidence.fit.error).explained(
+        evidence.fit.parts, evidence.fit.error
+    )
+    out = [np.sqrt(np.mean(s.r**2)) > 2.0 * s.weight for s in left]
+    return bool(np.mean(out) > 0.5)
+
+
+def floor(evidence: Evidence) -> float:
+    """What a model of this kind may be wrong by (K), rms over all records."""
+    return float(np.sqrt(np.mean([s.weight**2 for s in evidence.fit.parts])))
+
+
+def odds(posterior: Posterior) -> tuple[Odds, ...]:
+    """Every hypothesis that carries weight, most probable first; the rest as one line."""
+    P = probabilities(posterior.hypotheses)
+    e = posterior.evidence
+    rows = [
+        Odds(h.name(e), tuple(e.names[k] for k in h.members), float(p))
+        for h, p in zip(posterior.hypotheses, P, strict=True) if p > SHOWN
+    ]  # fmt: skip
+    rows.sort(key=lambda o: -o.probability)
+    rest = 1.0 - sum(o.probability for o in rows)
+    return (*rows, Odds("others", (), max(rest, 0.0)))
+
+
+def candidates(
+    case: Case, posterior: Posterior, choice: Decision, verdict: Verdict, single: dict[int, Hypothesis]
+) -> tuple[Candidate, ...]:
+    """The groups' members, then the others by probability."""
+    e = posterior.evidence
+    share = inclusion(posterior.hypotheses, len(e.effects))
+    chosen = [k for g in choice.groups for k in g]
+    order = [*chosen, *(int(k) for k in np.argsort(-share, kind="stable") if k not in chosen)]
+    size, limit = smallest(e), thresholds(e)
+    lead = single[chosen[0]].fit if chosen else e.fit
+    rows = [
+        _row(case, e, single[k], float(share[k]), float(limit[k]), float(size[k]), lead, chosen) for k in order[:ROWS]
+    ]
+    return tuple(replace(r, decision=_decided(r, k, choice, verdict), confused_with=_others(e, k, choice))
+                 for r, k in zip(rows, order, strict=False))  # fmt: skip
+
+
+def _decided(row: Candidate, k: int, choice: Decision, verdict: Verdict) -> Decided:
+    own = next((g for g in choice.groups if k in g), ())
+    if not own:
+        return "cannot-tell" if row.absorbed > 0.995 else "no"
+    if verdict in ("outside", "absorbed"):
+        return "cannot-tell"
+    return "named" if len(own) == 1 else "group"
+
+
+def _others(e: Evidence, k: int, choice: Decision) -> tuple[str, ...]:
+    own = next((g for g in choice.groups if k in g), ())
+    if own:
+        return tuple(e.names[m] for m in own if m != k)
+    like = np.abs(e.score.cosine[k])
+    return tuple(e.names[m] for m in np.argsort(-like) if m != k and like[m] > 0.9)[:5]
+
+
+def _row(
+    case: Case, e: Evidence, h: Hypothesis, share: float, limit: float, size: float, lead: Fit | None,
+    chosen: Sequence[int],
+) -> Candidate:  # fmt: skip
+    k, s = h.members[0], e.score
+    a, sd = float(s.amplitude[k]), float(s.sd[k])
+    row = Candidate(
+        e.names[k], h.log_bayes, limit, a, e.parameters[k].unit, (a - NORMAL_95 * sd, a + NORMAL_95 * sd), "no",
+        absorbed=float(s.absorbed[k]), smallest_detectable=size, twin=e.twins[k], title=e.effects[k].title,
+        isolating_test=e.effects[k].isolating_test, probability=share,
+    )  # fmt: skip
+    if h.fit is None:
+        return row
+    before, after, p = rmse(e.fit.parts), rmse(h.fit.parts), e.p
+    if not e.effects[k].whole:
+        a, sd = float(h.fit.theta[p]), float(h.fit.sd[p])
+        row = replace(row, value=a, ci95=(a - NORMAL_95 * sd, a + NORMAL_95 * sd))
+    return replace(
+        row, rmse_K=(before, after), explained=1.0 - (after / before) ** 2, holdout_rmse_K=held_out(case, e.fit, h.fit),
+        note=against(e, h.fit, lead) if k not in chosen[:1] and lead is not None else "",
+    )  # fmt: skip
+
+
+def against(e: Evidence, fit: Fit, lead: Fit) -> str:
+    """The record in which a rival fits worst beside the leading one."""
+    own, best = deviance(e, fit), deviance(e, lead)
+    worse = {key: 0.5 * (own[key] - best[key]) for key in own}
+    (test, channel), nats = max(worse.items(), key=lambda x: x[1])
+    return f"fits {channel} in {test} worse by {nats:.1f} nats" if nats > 1.0 else ""
+
+
+def held_out(case: Case, before: Fit, after: Fit) -> tuple[float, float] | None:
+    """Error (K) on the held-out tests, with nothing fitted to them."""
+    tests = [t for t in case.tests if t.role == "hold-out"]
+    if not tests:
+        return None
+    return (rmse(segments(before.network, tests, before.values)), rmse(segments(after.network, tests, after.values)))
+
+
+def unseen(e: Evidence) -> tuple[Hidden, ...]:
+    """Effects that would have to be unusually large to show, most hidden first."""
+    size = smallest(e)
+    unusual = size / np.array([p.prior_sd for p in e.parameters])
+    names, twins = e.fit.unknowns.names, e.twins
+    hit = [int(k) for k in np.argsort(-unusual) if unusual[k] > 2.0 or twins[k]]
+    return tuple(
+        Hidden(e.names[k], float(size[k]), e.parameters[k].unit, twins[k] or _absorber(e, k, names)) for k in hit
+    )
+
+
+def _absorber(e: Evidence, k: int, names: Sequence[str]) -> str | None:
+    j = int(e.score.absorber[k])
+    return names[j] if j < len(names) else "model error"
+
+
+def contenders(e: Evidence, choice: Decision, single: dict[int, Hypothesis]) -> Contenders | None:
+    """The first group that could not be separated, with the refits of its leading members."""
+    group = next((g for g in choice.groups if len(g) > 1), ())
+    few = [k for k in group if not e.effects[k].whole][:RIVALS]
+    fits = {k: fit for k in few if (fit := single[k].fit) is not None}
+    return Contenders(tuple(fits), tuple(fits.values()), e.fit.noise) if len(fits) > 1 else None
+
+
+def confusion(e: Evidence, names: Sequence[str]) -> dict[str, dict[str, float]]:
+    """Cosines between the traces of some candidates."""
+    known = {n: k for k, n in enumerate(e.names)}
+    return {a: {b: float(e.score.cosine[known[a], known[b]]) for b in names} for a in names}
+
+
+def sentence(
+    verdict: Verdict, posterior: Posterior, choice: Decision, rows: Sequence[Candidate], pulls: Sequence,
+    broken: Sequence[str],
+) -> str:  # fmt: skip
+    """The verdict in words, with its odds."""
+    hides = "it may hide a missing effect"
+    if broken:
+        return f"check the measurement first: {'; '.join(broken)}"
+    if verdict == "adequate":
+        return f"no evidence of a missing effect (nothing missing: {percent(1.0 - choice.sure)})"
+    if verdict == "absorbed" and not choice.groups:
+        return f"calibration of {pulls[0][0]} is {abs(pulls[0][2]):.1f} deviations from its prior: {hides}"
+    if verdict == "absorbed":
+        return f"{rows[0].effect} would do what calibration of {rows[0].twin} has done: {hides}"
+    if verdict == "outside":
+        place = f" at {posterior.heat[0].place}" if posterior.heat and posterior.best.heat else ""
+        return f"heat is missing or in excess{place}; nothing in the catalogue explains it ({percent(choice.sure)})"
+    return "; ".join(_group(posterior, g, rows) for g in choice.groups) + (
+        "; check the measurement first" if verdict == "data" else ""
+    )
+
+
+def _group(posterior: Posterior, group: tuple[int, ...], rows: Sequence[Candidate]) -> str:
+    e, by_name = posterior.evidence, {r.effect: r for r in rows}
+    told = [f"{e.names[k]} {percent(by_name[e.names[k]].probability)}" for k in group if e.names[k] in by_name]
+    best = by_name.get(e.names[group[0]])
+    if len(group) == 1 and best:
+        place = best.effect.split("@", 1)[1]
+        return f"missing: {best.title} at {place}, {best.value:.3g} {best.unit} ({percent(best.probability)})"
+    return "one of " + ", ".join(told) + "; these tests and sensors cannot tell them apart"
+
+
+def percent(p: float) -> str:
+    """A probability in per cent, never rounded to certainty."""
+    return f"{100 * min(p, 0.999):.0f} %" if p < 0.995 else "> 99 %"

@@ -1,0 +1,39 @@
+"""How far the tests of the menu would set rivals apart."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from validation.findings import NextTest
+from validation.inference.evidence import Evidence
+from validation.planning.apart import separation, told_apart
+from validation.planning.contenders import Contenders
+from validation.planning.foretell import Plan, proven, read_by, widened_error
+from validation.planning.menu import possible
+from validation.score import gram
+from validation.sheet import segments
+
+Array = NDArray[np.float64]
+
+
+def next_tests(evidence: Evidence, found: Contenders) -> list[NextTest]:
+    """Tests that separate the group, best gain per hour first.
+
+    Gain: the smallest deviance, over all pairs, by which the wrong one would fit worse with the new test added.
+    """
+    left = proven(evidence, found, _planned(evidence, found))
+    return [NextTest(p.what, told_apart(evidence, p.gaps), p.gain, p.hours) for p in left]
+
+
+def _planned(evidence: Evidence, found: Contenders) -> Iterator[Plan]:
+    fit = evidence.fit
+    p, columns = fit.theta.size, (*fit.unknowns.parameters, *(evidence.parameters[k] for k in found.group))
+    for experiment, plan in possible(evidence.tests[-1], evidence.network):
+        test = read_by(found.best, plan)
+        parts, error = segments(evidence.network, [test], fit.values, columns), widened_error(evidence, [test])
+        wide = [error.beside(s, p) for s in parts] if error else parts
+        (more,) = gram(wide, fit.noise, p + (error.size if error else 0)).values()
+        yield Plan(experiment.name, experiment.hours, [test], separation(evidence, found, more))
