@@ -41,7 +41,7 @@ COMMANDS = {
     "calibrate": ("calibrate", "{case}", "--anyway"),
     "add": ("add", "{case}", "convection@flange", "--anyway"),
     "undo": ("undo", "{case}"),
-    "improve": ("improve", "{case}", "--yes", "--draws", "10", "--most", "1"),
+    "improve": ("improve", "{case}", "--yes", "--most", "1"),
 }
 SPACE = 2**23  # bytes of the disk that fills
 
