@@ -23,7 +23,7 @@ import numpy as np
 from thermoscope.commands.revise import recorded
 from thermoscope.files import write_whole
 from thermoscope.folder import find_case, load_case
-from thermoscope.history import History, save_history
+from thermoscope.history import History, load_history, save_history
 from validation import diagnose, revise
 from validation.case import Case
 from validation.climb import Guide, Stair, best, climb
@@ -144,7 +144,8 @@ def main() -> None:
 
     case = load_case(find_case("hust-ipmsm"), tell).case
     done = climb(case, Guide(best), options.rounds, progress=tell)
-    save_history(options.out / "model.toml", history(done.stairs))
+    file = options.out / "model.toml"
+    save_history(file, history(done.stairs), load_history(file))
     text = "\n".join([table(done.stairs), "", *EVIDENCE, *(evidence(s) for s in done.stairs if s.effect), ""])
     write_whole(options.out / "table.md", text + "\n")
     write_whole(options.out / "compare.json", json.dumps(done.stairs[-1].comparison.document(), indent=1))

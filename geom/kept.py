@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import errno
 import hashlib
+import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -21,11 +23,30 @@ def kept_file(part: Part, folder: Path | str | None, kind: str, suffix: str) -> 
 
 @contextmanager
 def written_whole(path: Path) -> Iterator[Path]:
-    """A file to write to that takes its place only when it is complete; hidden until then, gone if writing fails."""
+    """A file to write to that takes its place only when it is complete; hidden until then, gone if writing fails.
+
+    It is on the disk before it is renamed, and its new name is before this returns: a power cut leaves old or new.
+    """
     path.parent.mkdir(parents=True, exist_ok=True)
     partial = path.with_name(f".{path.stem}.{uuid4().hex}.part{path.suffix}")
     try:
         yield partial
+        _synced(partial, os.O_RDWR)
         partial.replace(path)
+        _synced(path.parent, os.O_RDONLY)
     finally:
         partial.unlink(missing_ok=True)
+
+
+def _synced(path: Path, mode: int) -> None:
+    """What was written there is on the disk. Some systems cannot open folders, or sync them: then they need not."""
+    if path.is_dir() and os.name == "nt":
+        return
+    file = os.open(path, mode)
+    try:
+        os.fsync(file)
+    except OSError as fault:
+        if fault.errno not in (errno.EINVAL, errno.ENOTSUP):
+            raise
+    finally:
+        os.close(file)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -12,9 +11,11 @@ from geom.bases import based
 from geom.errors import InputError
 from geom.families import Family, families
 from geom.materials import Material, filled, material
+from geom.names import checked_name
 from geom.parameters import read_geometry
 from geom.part import Part, Port
 from geom.profile import ArcGrid
+from geom.toml_file import read_toml
 
 LIBRARY = Path(__file__).parent / "machines"
 SECTIONS = (
@@ -108,11 +109,7 @@ def load_machine(source: str | Path) -> Machine:
         return import_step(path)
     if path.suffix != ".toml" or not path.is_file():
         raise InputError(f"no machine {str(source)!r}", "", f"a .toml or .step file, or one of: {', '.join(library())}")
-    try:
-        sections = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InputError(f"not valid TOML: {error}", str(path)) from error
-    return machine_from(sections, path.name)
+    return machine_from(read_toml(path, "a machine file with [machine] and [geometry]"), path.name)
 
 
 def machine_from(sections: Mapping[str, Any], where: str = "machine") -> Machine:
@@ -131,7 +128,7 @@ def machine_from(sections: Mapping[str, Any], where: str = "machine") -> Machine
         raise InputError(error.what, f"{where} {error.where}", error.right) from error
     built = _with_materials(built, sections.get("materials", {}), where)
     machine = Machine(
-        name=header.get("name", Path(where).stem),
+        name=checked_name(header.get("name", Path(where).stem), f"{where} [machine] name"),
         family=family.name,
         description=header.get("description", family.doc),
         parts=tuple(part for part in built if part.solid),

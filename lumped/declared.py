@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from geom.errors import InputError
+from geom.toml_file import read_toml
 from lumped.build import bare_network, node_link, node_source, stream, surface_place
 from lumped.declared_links import flow_column, flow_law, mechanisms
 from lumped.declared_losses import loss_kinds, loss_laws, taken_off
@@ -21,9 +21,12 @@ from lumped.loss_measured import Negative
 from lumped.network import Link, Network, Place, Source
 from lumped.reader import Table, known
 from lumped.reversal import Direction, OneWay
+from lumped.soundness import checked_network, checked_path
 
 if TYPE_CHECKING:
     from lumped.circuit import Circuit
+
+RIGHT = "a network.toml (docs/network-toml.md)"
 
 
 def load_network(path: str | Path) -> Network:
@@ -31,19 +34,12 @@ def load_network(path: str | Path) -> Network:
 
     Raises InputError that names the file, the table, the key and what would be right.
     """
-    file = Path(path)
-    try:
-        data = tomllib.loads(file.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        raise InputError("no such file", str(file), "a network.toml (docs/network-toml.md)") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as fault:
-        raise InputError(f"not readable as TOML: {fault}", str(file), "see docs/network-toml.md") from None
-    return read_network(data, file.name)
+    return read_network(read_toml(Path(path), RIGHT), Path(path).name)
 
 
 def load_circuits(path: str | Path) -> dict[str, Circuit]:
     """The coolant circuits of a network.toml, for pressure drop and pump power."""
-    top = Table(tomllib.loads(Path(path).read_text(encoding="utf-8")), Path(path).name)
+    top = Table(read_toml(Path(path), RIGHT), Path(path).name)
     return _circuits(top, top.tables("nodes"), top.table("network").words("boundaries"))
 
 
@@ -53,7 +49,7 @@ def read_network(data: Mapping[str, Any], where: str = "network.toml") -> Networ
     head, nodes = top.table("network"), top.tables("nodes")
     if not nodes:
         raise top.error("no nodes", "[nodes.NAME] with C_J_K = ...")
-    name, boundaries, settles = head.word("name"), head.words("boundaries"), head.number("settles_s", 3600.0, low=1.0)
+    name, boundaries, settles = head.word("name"), head.words("boundaries"), head.number("settles_s", 3600.0)
     head.close()
     circuits = _circuits(top, nodes, boundaries)
     cells = {n: C for c in circuits.values() for n, C in c.capacities().items()}
@@ -151,7 +147,7 @@ def _links(network: Network, top: Table) -> list[Link]:
 def _streams(network: Network, top: Table) -> list[Link]:
     out = []
     for name, table in top.tables("streams").items():
-        path = [_end(network, table, node) for node in table.words("path")]
+        path = [_end(network, table, node) for node in checked_path(table.words("path"), table.where)]
         out += _both_ways(network, name, path, table)
         table.raw("prior_sd")
         table.close()
@@ -202,16 +198,11 @@ def _taken_off(measured: Source, other: Source) -> Source:
 
 
 def _checked(network: Network, where: str) -> Network:
-    """Names that parameters act on exist, and every node is joined to something, or says what washes it."""
+    """Names that parameters act on exist, and the network can be a machine."""
     items: list[Link | Source] = [*network.links, *network.sources]
     names = {i.name for i in items} | {f"capacity:{s}" for s in network.states}
     for p in network.parameters:
         for target, _ in p.targets:
             if target not in names and not target.startswith(("bias:", "gain:", "lag:")):
                 raise InputError(f"acts on unknown '{target}'", f"{where} [parameters.{p.name}]", known(target, names))
-    joined = {int(i) for link in network.links for i in (*link.rows, *link.cols)}
-    joined |= {int(i) for place in network.places.values() if place.kind == "surface" for i in place.states}
-    for i, node in enumerate(network.states):
-        if i not in joined:
-            raise InputError(f"node '{node}' is joined to nothing", where, f"a link, stream or surface with '{node}'")
-    return network
+    return checked_network(network, where)

@@ -33,8 +33,8 @@ def _circuit(name: str, table: Table, nodes: list[str], boundaries: list[str]) -
     if not passes:
         raise table.error("no passes", "passes = [{ wall = ..., width_mm = ..., height_mm = ..., length_m = ... }]")
     out = Circuit(
-        name, read_coolant(table), table.number("at_degC", 40.0, low=-40.0), flow, passes, inlet, of, unit,
-        int(table.number("cells", 8, 1, 64)), cooler, table.number("pump_efficiency", 0.5, 0.01, 1.0),
+        name, read_coolant(table), table.number("at_degC", 40.0), flow, passes, inlet, of, unit,
+        int(table.number("cells", 8)), cooler, table.number("pump_efficiency", 0.5),
         table.word("films", "follow", ("follow", "fixed")) == "follow",
         "" if closed or "backwards_from" not in table else table.word("backwards_from", None, boundaries),
     )  # fmt: skip
@@ -49,7 +49,7 @@ def _flow(table: Table, stem: str) -> tuple[float, str | None, str]:
     for unit, scale in PER_M3S.items():
         if f"{stem}_{unit}" in table:
             of = table.word(f"{stem}_{unit}_input", "") or None
-            return table.number(f"{stem}_{unit}", low=1e-9) * scale, of, unit
+            return table.number(f"{stem}_{unit}") * scale, of, unit
     raise table.error(f"no {stem}", f"{stem}_l_min or {stem}_m3_h = usual flow; {stem}_l_min_input where it varies")
 
 
@@ -61,9 +61,9 @@ def _pass(table: Table, nodes: list[str]) -> Pass:
     if not 0.0 < sum(walls.values()) <= 1.0 + 1e-9 or min(walls.values()) <= 0.0:
         raise table.error(f"shares of 'wall' sum to {sum(walls.values()):g}", "positive shares, 1 at most together")
     duct = Duct(
-        1e-3 * table.number("width_mm", low=1e-3), 1e-3 * table.number("height_mm", low=1e-3),
-        table.number("length_m", low=1e-4), int(table.number("bends", 0)),
-        1e-3 * table.number("coil_diameter_mm", 0.0), int(table.number("parallel", 1, 1)),
+        1e-3 * table.number("width_mm"), 1e-3 * table.number("height_mm"),
+        table.number("length_m"), int(table.number("bends", 0)),
+        1e-3 * table.number("coil_diameter_mm", 0.0), int(table.number("parallel", 1)),
     )  # fmt: skip
     return Pass(duct, walls)
 
@@ -73,7 +73,7 @@ def _cooler(table: Table, boundaries: list[str]) -> Cooler:
     flow, of, unit = _flow(inner, "air_flow")
     carries = air(AIR_AT_C).rho * air(AIR_AT_C).cp
     out = Cooler(
-        1e-3 * inner.number("volume_l", low=1e-6), inner.number("UA_W_K"), inner.word("air", None, boundaries),
+        1e-3 * inner.number("volume_l"), inner.number("UA_W_K"), inner.word("air", None, boundaries),
         Flow(carries * (PER_M3S[unit] if of else flow), of),
         ARRANGEMENTS[inner.word("arrangement", "crossflow", ARRANGEMENTS)],
     )  # fmt: skip

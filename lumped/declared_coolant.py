@@ -12,6 +12,6 @@ def read_coolant(table: Table) -> Coolant:
         return coolant(table.word("coolant", None, NAMES))
     inner = Table(table.raw("coolant", {}), f"{table.where} coolant")
     name = inner.word("name", None, NAMES)
-    shares = {key: inner.number(key, high=100.0) for key in ("mass_percent", "volume_percent") if key in inner}
+    shares = {key: inner.number(key) for key in ("mass_percent", "volume_percent") if key in inner}
     inner.close()
     return coolant(name, **shares)

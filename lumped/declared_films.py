@@ -61,24 +61,24 @@ def natural_film(table: Table) -> tuple[FilmTable | TableLaw, float]:
     film, factor = NATURAL[table.word("surface", None, NATURAL)](table, _air(table)), table.number("factor", 1.0)
     if "fluid_degC" not in table:
         return film_tabulated(film), factor
-    return tabulated(film, fluid_temperature=table.number("fluid_degC", low=-60.0, high=200.0)), factor
+    return tabulated(film, fluid_temperature=table.number("fluid_degC")), factor
 
 
 def _air(table: Table) -> Callable[[float], Fluid]:
-    return partial(air, altitude_m=table.number("altitude_m", 0.0, high=9000.0))
+    return partial(air, altitude_m=table.number("altitude_m", 0.0))
 
 
 def film_air(table: Table, usual_degC: float) -> Fluid:
     """The air at `fluid_degC` and `altitude_m`."""
-    return _air(table)(table.number("fluid_degC", usual_degC, low=-60.0, high=200.0))
+    return _air(table)(table.number("fluid_degC", usual_degC))
 
 
 def _size(table: Table) -> float:
-    return table.number("size_m", low=1e-4, high=100)
+    return table.number("size_m")
 
 
 def millimetres(table: Table, key: str) -> float:
-    return 1e-3 * table.number(key, low=1e-3)
+    return 1e-3 * table.number(key)
 
 
 def _cylinder(table: Table, of: Of) -> Still:
@@ -140,7 +140,7 @@ def _duct(table: Table, fluid: Fluid) -> Film:
 def _fin_channel(table: Table, fluid: Fluid) -> Film:
     from lumped.correlations.fins import heiles_decaying
 
-    end, turbulence = table.number("speed_at_end", 1.0, high=1.0), table.number("turbulence", 1.7)
+    end, turbulence = table.number("speed_at_end", 1.0), table.number("turbulence", 1.7)
     return partial(
         heiles_decaying, diameter=millimetres(table, "diameter_mm"), length=_size(table), decay=partial(_line, end),
         turbulence=turbulence, fluid=fluid,
@@ -186,14 +186,14 @@ def over(table: Table) -> FilmOver:
     """Air, or a coolant, moving over a known surface; its speed is `m_s_per_unit` times an input."""
     fluid = _coolant(table) if "coolant" in table else film_air(table, 30.0)
     film = FORCED[table.word("surface", None, FORCED)](table, fluid)
-    scale = table.number("m_s_per_unit", 1.0, low=1e-12)
+    scale = table.number("m_s_per_unit", 1.0)
     return FilmOver(table.word("speed"), partial(_scaled, film, scale), table.number("up_to_m_s", 50.0) / scale)
 
 
 def _coolant(table: Table) -> Fluid:
     from lumped.declared_coolant import read_coolant
 
-    return read_coolant(table)(table.number("fluid_degC", 40.0, low=-60.0, high=200.0))
+    return read_coolant(table)(table.number("fluid_degC", 40.0))
 
 
 def _scaled(film: Film, scale: float, x: float) -> tuple[float, Info]:

@@ -26,7 +26,7 @@ def _coefficient(table: Table, has_area: bool, needed: bool = True) -> tuple[flo
         if needed:
             raise table.error("no coefficient", "one of G_W_K, R_K_W, h_W_m2K")
         return None
-    value = table.number(given[0], low=1e-12 if given[0] == "R_K_W" else 0.0)
+    value = table.number(given[0])
     if given[0] == "h_W_m2K" and not has_area:
         raise table.error("h_W_m2K without an area", "area_m2 = ... in the link, or a surface as its first end")
     return (1.0 / value if given[0] == "R_K_W" else value), given[0] == "h_W_m2K"
@@ -46,7 +46,7 @@ def _fixed(table: Table, has_area: bool) -> tuple[Law, bool] | None:
 
 def _radiation(table: Table, has_area: bool) -> tuple[Law, bool]:
     _needs_area(table, has_area)
-    return Fixed(table.number("emissivity", high=1.0) * table.number("view_factor", 1.0, high=1.0), Radiation()), True
+    return Fixed(table.number("emissivity") * table.number("view_factor", 1.0), Radiation()), True
 
 
 def _natural(table: Table, has_area: bool) -> tuple[Law, bool]:
@@ -87,7 +87,7 @@ def _fan(table: Table, has_area: bool) -> tuple[Law, bool]:
 
 
 def _power(table: Table, has_area: bool) -> tuple[Law, bool]:
-    found, law = _coefficient(table, has_area), Power(table.number("exponent", 0.25))
+    found, law = _coefficient(table, has_area), Power(table.number("exponent", 0.25, of="power.exponent"))
     assert found is not None
     return InputPower(found[0], powers(table), law), found[1]
 

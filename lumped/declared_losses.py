@@ -35,7 +35,7 @@ def _copper(table: Table) -> Law:
     given = [key for key in ("R20_ohm", "R_ohm") if key in table]
     if len(given) != 1:
         raise table.error("resistance is not given once", "R20_ohm, or R_ohm with reference_degC")
-    reference = 20.0 if given[0] == "R20_ohm" else table.number("reference_degC", low=-273.15)
+    reference = 20.0 if given[0] == "R20_ohm" else table.number("reference_degC")
     ac = table.raw("ac")
     speed, at, coefficients = _ac(Table(ac, f"{table.where} ac")) if ac is not None else (None, 1.0, (1.0,))
     return CopperLoss(
@@ -45,7 +45,7 @@ def _copper(table: Table) -> Law:
 
 
 def _ac(table: Table) -> tuple[str, float, tuple[float, ...]]:
-    out = table.word("input"), table.number("at", 1.0, low=1e-12), table.numbers("coefficients")
+    out = table.word("input"), table.number("at", 1.0), table.numbers("coefficients")
     table.close()
     return out
 
@@ -53,7 +53,7 @@ def _ac(table: Table) -> tuple[str, float, tuple[float, ...]]:
 def _temperature(table: Table) -> TemperatureLaw:
     if "alpha_1_K" not in table:
         return CONSTANT
-    reference = table.number("reference_degC", low=-273.15)
+    reference = table.number("reference_degC")
     return Linear(_coefficient(table, reference), reference)
 
 
@@ -61,7 +61,7 @@ def _iron(table: Table) -> Law:
     excitation = table.word("excitation", "") or None
     return IronLoss(
         table.number("hysteresis_W", 0.0), table.number("eddy_W", 0.0), table.word("speed", "speed_rpm"),
-        table.number("speed_at", low=1e-12), excitation, table.number("excitation_at", 1.0, low=1e-12),
+        table.number("speed_at"), excitation, table.number("excitation_at", 1.0),
         table.number("flux_exponent", 2.0), _temperature(table), table.number("excess_W", 0.0),
         table.number("frequency_exponent", 1.0),
     )  # fmt: skip
@@ -81,7 +81,7 @@ def _terms(table: Table) -> Law:
 def _brush(table: Table) -> Law:
     friction = table.number("friction_W", 0.0)
     speed = table.word("speed", "speed_rpm") if friction else None
-    at = table.number("speed_at", low=1e-12) if friction else 1.0
+    at = table.number("speed_at") if friction else 1.0
     return BrushLoss(table.number("drop_V"), table.word("current", "current_A"), friction, speed, at)
 
 
@@ -102,15 +102,15 @@ def taken_off(table: Table, kinds: Mapping[str, str]) -> tuple[str, ...]:
 
 def _ripple(table: Table) -> Law:
     return RippleLoss(
-        table.number("supply_V", low=1e-9), table.word("voltage", "voltage_V"), table.number("L_H", low=1e-12),
-        table.number("switching_Hz", low=1e-9), table.number("R20_ohm"), table.number("factor", 1.0),
+        table.number("supply_V"), table.word("voltage", "voltage_V"), table.number("L_H"),
+        table.number("switching_Hz"), table.number("R20_ohm"), table.number("factor", 1.0),
         _coefficient(table, 20.0, ALPHA_CU),
     )  # fmt: skip
 
 
 def _map(table: Table) -> Law:
     speed, torque = table.numbers("at_speed"), table.numbers("at_torque")
-    watts = tuple(tuple(float(p) for p in row) for row in table.raw("P_W", []))
+    watts = tuple(table.rows("P_W"))
     rising = all(b > a for at in (speed, torque) for a, b in pairwise(at))
     if not rising or min(len(speed), len(torque)) < 2 or {len(row) for row in watts} != {len(torque)}:
         raise table.error("the map is not a grid", "at_speed and at_torque rising, P_W = [[per torque], per speed]")
@@ -126,7 +126,7 @@ Products = tuple[tuple[float, tuple[str, ...]], ...]
 def _electrical(table: Table) -> Products:
     out = []
     for item in table.listed("electrical"):
-        out.append((item.number("factor", 1.0, low=-1e12), item.words("product")))
+        out.append((item.number("factor", 1.0, of="electrical.factor"), item.words("product")))
         item.close()
     return tuple(out)
 
@@ -141,7 +141,7 @@ def _mechanical(table: Table, speeds: Collection[str]) -> Products:
             raise item.error(
                 "none of these inputs is known as a speed", 'factor = ..., or [inputs.NAME] quantity = "speed"'
             )
-        out.append((-item.number("factor", math.pi / 30 if turning else 1.0, low=-1e12), names))
+        out.append((-item.number("factor", math.pi / 30 if turning else 1.0, of="mechanical.factor"), names))
         item.close()
     return tuple(out)
 

@@ -44,7 +44,7 @@ def mixed(table: Table) -> list[Law]:
     """(h_forced^n + h_natural^n)^(1/n) of a `natural` and a `forced` table, as laws that act in parallel."""
     still, moving = (Table(table.raw(key, {}), f"{table.where} {key}") for key in ("natural", "forced"))
     film, factor = natural_film(still)
-    forced, exponent = over(moving), table.number("exponent", 3.0, low=1.0, high=10.0)
+    forced, exponent = over(moving), table.number("exponent", 3.0, of="mixed.exponent")
     still.close()
     moving.close()
     speeds = forced.top * np.linspace(0.0, 1.0, POINTS) ** 2

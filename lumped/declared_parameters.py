@@ -42,11 +42,11 @@ def _inline(network: Network, top: Table, nodes: Mapping[str, Table]) -> list[Pa
                 own = f"{target}{name}"
                 mine = [i.name for i in items if i.name == own or i.name.startswith(f"{own}:")]
                 acts = tuple((n, 1.0) for n in mine if ":less:" not in n)
-                sd, flow = table.number("prior_sd", low=1e-6), section == "streams"
+                sd, flow = table.number("prior_sd"), section == "streams"
                 out.append(Parameter(f"{prefix}.{name}", acts, prior_sd=sd, flow=flow))
     for name, table in nodes.items():
         if "prior_sd" in table:
-            sd = table.number("prior_sd", low=1e-6)
+            sd = table.number("prior_sd")
             out.append(Parameter(f"capacity.{name}", ((f"capacity:{name}", 1.0),), prior_sd=sd))
     return out
 
@@ -59,34 +59,38 @@ def _of_circuits(network: Network, top: Table) -> list[Parameter]:
         streams = tuple((x.name, 1.0) for x in network.links if x.name in (f"stream:{name}", f"stream:{name}:back"))
         acts = {"prior_sd": (f"circuit.{name}", streams), "film_prior_sd": (f"film.{name}", films)}
         out += [
-            Parameter(*acts[key], prior_sd=table.number(key, low=1e-6), flow=key == "prior_sd")
+            Parameter(*acts[key], prior_sd=table.number(key), flow=key == "prior_sd")
             for key in acts if key in table
         ]  # fmt: skip
     return out
 
 
 def _parameters(top: Table) -> list[Parameter]:
-    out = []
-    for name, table in top.tables("parameters").items():
-        mapping = table.word("mapping", "log", MAPPINGS)
-        neutral, low, high = MAPPINGS[mapping]
-        acts = table.raw("acts_on")
-        targets = {t: 1.0 for t in acts} if isinstance(acts, list) else table.shares("acts_on")
-        out.append(
-            Parameter(
-                name,
-                tuple(targets.items()),
-                table.number("value", neutral, low=-1e12),
-                table.word("unit", "1"),
-                table.number("low", low, low=-1e12),
-                table.number("high", high, low=-1e12),
-                table.number("prior_sd", 0.3, low=1e-9),
-                mapping,  # type: ignore[arg-type]
-                neutral,
-                int(table.number("sign", 0, -1, 1)),
-                table.word("source", ""),
-                table.flag("flow") if "flow" in table else False,
-            )
-        )
-        table.close()
-    return out
+    return [_parameter(name, table) for name, table in top.tables("parameters").items()]
+
+
+def _parameter(name: str, table: Table) -> Parameter:
+    mapping = table.word("mapping", "log", MAPPINGS)
+    neutral, low, high = MAPPINGS[mapping]
+    listed = isinstance(table.raw("acts_on"), list)
+    targets = dict.fromkeys(table.words("acts_on"), 1.0) if listed else table.shares("acts_on", of="acts_on")
+    found = Parameter(
+        name, tuple(targets.items()), table.number("value", neutral), table.word("unit", "1"),
+        table.number("low", low), table.number("high", high), table.number("prior_sd", 0.3, of="parameters.prior_sd"),
+        mapping, neutral, int(table.number("sign", 0)), table.word("source", ""),  # type: ignore[arg-type]
+        table.flag("flow", False),
+    )  # fmt: skip
+    table.close()
+    return _checked(found, table)
+
+
+def _checked(p: Parameter, table: Table) -> Parameter:
+    """low < high, both positive for a factor, with the declared and the neutral value between them."""
+    if p.mapping == "log" and p.low <= 0.0:
+        raise table.error(f"low = {p.low:g} of a factor is not possible", "a number above 0")
+    if not p.low < p.high:
+        raise table.error(f"low = {p.low:g} and high = {p.high:g} leave nothing between them", "low below high")
+    for key, value in (("value", p.value), ("the neutral value", p.neutral)):
+        if not p.low <= value <= p.high:
+            raise table.error(f"{key} = {value:g} is outside low = {p.low:g} to high = {p.high:g}", "bounds around it")
+    return p

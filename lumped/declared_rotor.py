@@ -29,7 +29,7 @@ def rotating(table: Table) -> Law:
 
 
 def _over_speed(table: Table, film: Film) -> Law:
-    return FilmOver(table.word("speed", "speed_rpm"), film, table.number("up_to_rpm", 20000.0, low=1.0))
+    return FilmOver(table.word("speed", "speed_rpm"), film, table.number("up_to_rpm", 20000.0))
 
 
 def _gap_film(law: str, radius: float, width: float, fluid: Fluid, rpm: float) -> tuple[float, Info]:

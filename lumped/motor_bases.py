@@ -40,6 +40,11 @@ class Switched(Law):
         return np.asarray(self.base.factor(inputs) * (on if self.closed else 1.0 - on))
 
 
+def on_all(machine: Any) -> Any:
+    """The machine standing on all its bases at once, as its mesh has it: what its field is compared with."""
+    return replace(machine, sections={k: v for k, v in machine.sections.items() if k != "bases"})
+
+
 def switches(machine: Any) -> dict[str, str]:
     """Input -> the foot it couples."""
     said = machine.sections.get("bases", {})

@@ -73,10 +73,10 @@ def cooling_of(machine: Any) -> Cooling | None:
     t = Table(machine.sections.get("cooling", {}), f"{machine.name} [cooling]")
     ports = {name: Table(t.raw(name, {}), f"{t.where} {name}") for name in jackets}
     outlets = {port.word("outlet", f"{name}.outlet"): name for name, port in ports.items()}
-    inlet = t.number("inlet_C", 20.0, low=-40.0)
+    inlet = t.number("inlet_C", 20.0)
     found = Cooling(
-        t.word("coolant", "glycol-50", LIQUIDS), t.number("flow_L_per_min", low=1e-6),
-        t.number("property_C", inlet + 20.0, low=-40.0),
+        t.word("coolant", "glycol-50", LIQUIDS), t.number("flow_L_per_min"),
+        t.number("property_C", inlet + 20.0),
         {name: outlets.get(port.word("inlet", f"{name}.inlet"), INLET) for name, port in ports.items()},
     )  # fmt: skip
     t.number("pressure_bar", 1.0)

@@ -72,8 +72,8 @@ def cowl_of(machine: Any) -> Cowl | None:
         return None
     t = Table(data, f"{machine.name} [fans.cowl]")
     found = Cowl(
-        t.number("air_speed_m_s"), t.number("at_rpm", low=1e-9), t.number("end_share", 0.2, high=1.0),
-        t.number("rear_share", 0.774, high=1.0), t.number("front_share", 0.205, high=1.0),
+        t.number("air_speed_m_s"), t.number("at_rpm"), t.number("end_share", 0.2),
+        t.number("rear_share", 0.774), t.number("front_share", 0.205),
         t.number("turbulence", 1.7), t.word("rear", "left", ("left", "right")),
     )  # fmt: skip
     t.close()
@@ -99,9 +99,9 @@ def outer_of(machine: Any, part: str, films: Films) -> Outer:
         return usual
     t = Table(said.get(part, said.get("default")), f"{machine.name} [films.outer] {part}")
     surface = t.word("surface", usual.surface, SURFACES)
-    size = t.number("size_mm", low=1e-3) / 1e3 if "size_mm" in t or surface != usual.surface else usual.size
+    size = t.number("size_mm") / 1e3 if "size_mm" in t or surface != usual.surface else usual.size
     found = Outer(
-        surface, size, t.number("emissivity", usual.emissivity, high=1.0), t.number("view", usual.view, high=1.0),
+        surface, size, t.number("emissivity", usual.emissivity), t.number("view", usual.view),
         t.number("factor", usual.factor), usual.spacing, _own_fan(t),
     )  # fmt: skip
     t.close()

@@ -8,7 +8,8 @@ from dataclasses import dataclass, fields
 from typing import Any, TypeVar
 
 from geom.errors import InputError
-from lumped.reader import known
+from lumped.bounds import bounds
+from lumped.reader import Table, shown
 
 K_AIR = 0.026  # W/m/K, still air in a contact gap near 30 degC
 
@@ -70,10 +71,7 @@ class Fan:
 def read_fan(machine: Any) -> Fan | None:
     """The through-flow of [fans], if the machine is open to it."""
     table = {key: value for key, value in machine.sections.get("fans", {}).items() if key != "cowl"}
-    found = read(Fan, table, f"{machine.name} [fans]") if table else None
-    if found is not None and found.gap_share > 1.0:
-        raise InputError(f"gap_share = {found.gap_share:g} is not possible", f"{machine.name} [fans]", "from 0 to 1")
-    return found
+    return read(Fan, table, f"{machine.name} [fans]") if table else None
 
 
 def read_films(machine: Any) -> Films:
@@ -82,14 +80,12 @@ def read_films(machine: Any) -> Films:
 
 
 def read(kind: type[S], table: Mapping[str, Any], where: str) -> S:
-    """A settings object from a table of the machine file; unknown keys and values that are no numbers are refused."""
+    """A settings object from a table of the machine file; unknown keys and numbers out of bounds are refused."""
     names = [f.name for f in fields(kind)]  # type: ignore[arg-type]
-    for key, value in table.items():
-        if key not in names:
-            raise InputError(f"unknown key '{key}'", where, known(key, names))
-        if isinstance(value, bool) or not isinstance(value, int | float) or value < 0:
-            raise InputError(f"{key} = {value!r} is not possible", where, "a number that is not negative")
-    return kind(**{key: float(value) for key, value in table.items()})
+    source = Table(table, where)
+    found = {key: source.number(key) for key in names if key in source}
+    source.close()
+    return kind(**found)
 
 
 def contact_coefficients(table: Mapping[str, Any], names: list[str], where: str) -> dict[str, float]:
@@ -109,9 +105,7 @@ def contact_coefficients(table: Mapping[str, Any], names: list[str], where: str)
 def _coefficient(entry: Any, where: str) -> float:
     if isinstance(entry, Mapping) and len(entry) == 1:
         (key, value), *_ = entry.items()
-        if isinstance(value, int | float) and value > 0:
-            if key == "gap_mm":
-                return K_AIR / (value * 1e-3)
-            if key == "h_W_m2K":
-                return float(value)
-    raise InputError(f"{entry!r} is no contact", where, "write {gap_mm = 0.03} or {h_W_m2K = 900}, a positive number")
+        if key in ("gap_mm", "h_W_m2K") and value != 0 and bounds(key).hold(value):
+            return K_AIR / (value * 1e-3) if key == "gap_mm" else float(value)
+    right = "{gap_mm = 0.03} or {h_W_m2K = 900}, a positive number"
+    raise InputError(f"{shown(entry)} is no contact", where, right)

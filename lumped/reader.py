@@ -7,7 +7,10 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from geom.errors import InputError
+from lumped.bounds import Bounds, bounds
 from lumped.schema import meaning
+
+SHORT = 60  # characters of a wrong value that a message repeats
 
 
 def known(word: str, words: Iterable[str]) -> str:
@@ -19,12 +22,18 @@ def known(word: str, words: Iterable[str]) -> str:
     return f"{hint}known: {', '.join(names)}"
 
 
+def shown(value: Any) -> str:
+    """A value as a message repeats it: one line, not longer than SHORT."""
+    text = repr(value)
+    return text if len(text) <= SHORT else f"{text[: SHORT - 4]} ..."
+
+
 class Table:
     """One table of a TOML file. Every key asked for is known; `close` refuses the others."""
 
     def __init__(self, data: Any, where: str) -> None:
         if not isinstance(data, Mapping):
-            raise InputError(f"{data!r} is no table", where, "key = value pairs")
+            raise InputError(f"{shown(data)} is no table", where, "key = value pairs")
         self.data, self.where = data, where
         self.asked: set[str] = set()
 
@@ -52,48 +61,82 @@ class Table:
             raise self.error(f"key '{key}' is missing (given: {given})", f"{key} = {right}{meaning(key)}")
         return value
 
-    def number(self, key: str, default: float | None = None, low: float = 0.0, high: float = float("inf")) -> float:
-        """A finite number between low and high (default: not negative)."""
+    def number(
+        self, key: str, default: float | None = None, low: float | None = None, high: float | None = None, of: str = ""
+    ) -> float:
+        """A finite number within the bounds of its key (lumped.bounds), or of the key `of` where names are the user's.
+
+        low, high : narrower, where this place asks for more
+        """
         value = self._needed(key, default, "a number")
-        if isinstance(value, bool) or not isinstance(value, int | float) or not low <= value <= high:
-            raise self.error(f"{key} = {value!r} is not possible", f"a number from {low:g} to {high:g}{meaning(key)}")
+        return default if value is default and default is not None else self._bounded(key, value, of, low, high)
+
+    def _bounded(
+        self, key: str, value: Any, of: str, low: float | None = None, high: float | None = None
+    ) -> float:  # fmt: skip
+        table = bounds(of or key)
+        allowed = Bounds(table.low if low is None else max(low, table.low),
+                         table.high if high is None else min(high, table.high), table.whole)  # fmt: skip
+        if not allowed.hold(value):
+            raise self.error(f"{key} = {shown(value)} is not possible", f"{allowed.words}{meaning(key)}")
         return float(value)
 
-    def numbers(self, key: str, default: list[float] | None = None) -> tuple[float, ...]:
+    def numbers(self, key: str, default: list[float] | None = None, of: str = "") -> tuple[float, ...]:
+        """A list of numbers, each within the bounds of the key."""
         value = self._needed(key, default, "[numbers]")
-        if not isinstance(value, list) or not all(
-            isinstance(v, int | float) and not isinstance(v, bool) for v in value
-        ):
-            raise self.error(f"{key} = {value!r} is not possible", "a list of numbers")
-        return tuple(float(v) for v in value)
+        if not isinstance(value, list):
+            raise self.error(f"{key} = {shown(value)} is not possible", "a list of numbers")
+        return tuple(self._bounded(f"{key}[{i}]", v, of or key) for i, v in enumerate(value))
+
+    def rows(self, key: str, of: str = "") -> list[tuple[float, ...]]:
+        """A list of lists of numbers."""
+        value = self._needed(key, None, "[[numbers], ...]")
+        if not isinstance(value, list) or not all(isinstance(row, list) for row in value):
+            raise self.error(f"{key} = {shown(value)} is not possible", "a list of lists of numbers")
+        return [
+            tuple(self._bounded(f"{key}[{i}][{j}]", v, of or key) for j, v in enumerate(row))
+            for i, row in enumerate(value)
+        ]
 
     def word(self, key: str, default: str | None = None, allowed: Iterable[str] | None = None) -> str:
         value = self._needed(key, default, "a word")
         choices = None if allowed is None else list(allowed)
         if not isinstance(value, str) or (choices is not None and value not in choices):
             right = "a word" if choices is None else known(str(value), choices)
-            raise self.error(f"{key} = {value!r} is not possible", f"{right}{meaning(key)}")
+            raise self.error(f"{key} = {shown(value)} is not possible", f"{right}{meaning(key)}")
         return value
 
-    def flag(self, key: str) -> bool:
-        value = self._needed(key, None, "true or false")
-        if not isinstance(value, bool):
-            raise self.error(f"{key} = {value!r} is not possible", f"true or false{meaning(key)}")
-        return value
+    def kind(self, key: str, default: str | None, allowed: Iterable[str]) -> str:
+        """One of our own words; capitals do not matter."""
+        value, choices = self._needed(key, default, "a word"), {word.lower(): word for word in allowed}
+        if isinstance(value, str) and value.lower() in choices:
+            return choices[value.lower()]
+        return self.word(key, default, choices.values())
 
     def words(self, key: str, default: list[str] | None = None) -> tuple[str, ...]:
         value = self._needed(key, default, "[words]")
         if not isinstance(value, list) or not all(isinstance(v, str) for v in value):
-            raise self.error(f"{key} = {value!r} is not possible", "a list of words")
+            raise self.error(f"{key} = {shown(value)} is not possible", "a list of words")
         return tuple(value)
 
-    def shares(self, key: str) -> dict[str, float]:
-        """A name, or a table of name -> number."""
+    def shares(self, key: str, of: str = "shares") -> dict[str, float]:
+        """A name, or a table of name -> number, each within the bounds of `of`."""
         value = self._needed(key, None, '"node" or { node = share, ... }')
         if isinstance(value, str):
             return {value: 1.0}
         table = Table(value, f"{self.where}.{key}")
-        return {name: table.number(name, low=-1e12) for name in value}
+        return {name: table.number(name, of=of) for name in value}
+
+    def flag(self, key: str, default: bool | None = None) -> bool:
+        """true or false; a word that says so is none."""
+        value = self._needed(key, default, "true or false")
+        if not isinstance(value, bool):
+            raise self.error(f"{key} = {shown(value)} is not possible", f"true or false, without quotes{meaning(key)}")
+        return value
+
+    def constants(self, of: str) -> dict[str, float]:
+        """All of the table as name -> number, each within the bounds of `of`."""
+        return {name: self.number(name, of=of) for name in self.data}
 
     def table(self, key: str) -> Table:
         return Table(self.raw(key, {}), f"{self.where}.{key}" if self.where.endswith("]") else f"{self.where} [{key}]")
@@ -110,7 +153,7 @@ class Table:
         value = self.raw(key, [])
         items = [value] if isinstance(value, Mapping) else value
         if not isinstance(items, list):
-            raise self.error(f"{key} = {value!r} is not possible", f"{key} = [{{ ... }}, ...]")
+            raise self.error(f"{key} = {shown(value)} is not possible", f"{key} = [{{ ... }}, ...]")
         return [Table(item, f"{self.where} {key}[{i}]") for i, item in enumerate(items)]
 
 
@@ -118,6 +161,6 @@ def powers(table: Table, key: str = "of") -> tuple[tuple[str, float, float], ...
     """[{ input = ..., at = ..., exponent = ... }]: |input / at| ** exponent each."""
     out = []
     for item in table.listed(key):
-        out.append((item.word("input"), item.number("at", 1.0, low=1e-12), item.number("exponent", 1.0, low=-10)))
+        out.append((item.word("input"), item.number("at", 1.0), item.number("exponent", 1.0)))
         item.close()
     return tuple(out)

@@ -1,6 +1,7 @@
 """JSON Schemas of all TOML files: for editors, and for what error messages say a key means.
 
-python -m lumped.schema    writes schemas/machine.json from the machine families' own parameters
+python -m lumped.schema    writes the bounds of lumped.bounds into all of them, and schemas/machine.json from the
+                           machine families' own parameters
 """
 
 from __future__ import annotations
@@ -10,6 +11,8 @@ from collections.abc import Iterator, Mapping
 from functools import cache
 from pathlib import Path
 from typing import Any
+
+from lumped.bounds import bounds
 
 FOLDER = Path(__file__).parent / "schemas"
 FILES = ("network", "case", "sheet", "model", "cycle", "machine")
@@ -87,12 +90,42 @@ def _widest(a: Schema, b: Schema) -> Schema:
     return {**a, "minimum": min(a["minimum"], b["minimum"]), "maximum": max(a["maximum"], b["maximum"])}
 
 
-def write_machine_schema() -> Path:
-    """Write schemas/machine.json."""
-    path = FOLDER / "machine.json"
-    path.write_text(json.dumps(machine_schema(), indent=1) + "\n", encoding="utf-8")
-    return path
+def bounded(node: Any, key: str = "", table: str = "") -> Any:
+    """A schema with the bounds of lumped.bounds on every number; `key` is the property it describes, in `table`."""
+    if isinstance(node, list):
+        return [bounded(inner, key, table) for inner in node]
+    if not isinstance(node, Mapping):
+        return node
+    if node.get("type") in ("number", "integer"):
+        allowed = bounds(key, table)
+        kind = "integer" if allowed.whole else "number"
+        return {**node, "type": kind, "minimum": allowed.low, "maximum": allowed.high}
+    out = {name: bounded(inner, key, table) for name, inner in node.items() if name not in INNER}
+    if "properties" in node:
+        out["properties"] = {name: bounded(inner, name, key) for name, inner in node["properties"].items()}
+    if "additionalProperties" in node:  # under names of the user's own: shares, constants, values
+        out["additionalProperties"] = bounded(node["additionalProperties"], *_owned(key, table))
+    return {name: out[name] for name in node}
+
+
+INNER = ("properties", "additionalProperties")
+SHARED = ("at", "of", "wall", "winding", "magnet")  # tables of name -> share of one whole
+
+
+def _owned(key: str, table: str) -> tuple[str, str]:
+    return ("shares" if key in SHARED else key), table
+
+
+def wanted() -> Iterator[tuple[Path, Schema]]:
+    """Every schema file and what it should hold."""
+    for name in FILES:
+        yield FOLDER / f"{name}.json", machine_schema() if name == "machine" else bounded(schema(name))
+
+
+def write_schemas() -> None:
+    for path, document in wanted():
+        path.write_text(json.dumps(document, indent=1) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":
-    write_machine_schema()
+    write_schemas()

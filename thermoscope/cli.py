@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 from geom.errors import ThermoscopeError
+from thermoscope.files import checked_out, checked_target
 
 app = typer.Typer(
     help="See where your motor's thermal model is wrong, and why.",
@@ -23,16 +24,22 @@ BLAS_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 Case = Annotated[str, typer.Argument(metavar="CASE", help="A case folder, or the name of a case that comes along.")]
 Effect = Annotated[str, typer.Argument(metavar="EFFECT@PLACE", help="For example convection@flange.right.")]
-Json = Annotated[str | None, typer.Option("--json", metavar="FILE|-", help="Write the JSON document; - is stdout.")]
+Json = Annotated[
+    str | None,
+    typer.Option("--json", metavar="FILE|-", callback=checked_target, help="Write the JSON document; - is stdout."),
+]
 Anyway = Annotated[bool, typer.Option("--anyway", help="Write it even if it is not accepted.")]
 Draws = Annotated[int | None, typer.Option("--draws", hidden=True, help="Of older versions; nothing is drawn now.")]
 Machine = Annotated[str, typer.Argument(metavar="MACHINE", help="A machine or STEP file, or a name that comes along.")]
 Accuracy = Annotated[float, typer.Option(min=0.01, help="Percent of a part's rise; means within half of it.")]
-Out = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder for the results.")]
+Out = Annotated[Path | None, typer.Option("--out", metavar="DIR", callback=checked_out, help="Folder for the results.")]
 
 
 @app.command()
-def demo(out: Annotated[Path, typer.Option("--out", metavar="DIR")] = Path("out/demo"), json: Json = None) -> None:
+def demo(
+    out: Annotated[Path, typer.Option("--out", metavar="DIR", callback=checked_out)] = Path("out/demo"),
+    json: Json = None,
+) -> None:
     """The whole loop on the shipped case with a hidden effect: the error before and after."""
     from thermoscope.demo import demo as run
 
@@ -138,7 +145,7 @@ def calibrate(
     anyway: Anyway = False,
     profile: Annotated[list[str] | None, typer.Option(metavar="GLOB", help="Profile these parameters too.")] = None,
     starts: Annotated[int, typer.Option(min=1, help="Fits from so many points of the prior.")] = 1,
-    seed: Annotated[int, typer.Option(help="Of the points.")] = 0,
+    seed: Annotated[int, typer.Option(min=0, help="Of the points.")] = 0,
     json: Json = None,
 ) -> None:
     """Fit the declared parameters to the calibration tests, with intervals and what the data cannot identify."""
@@ -166,7 +173,7 @@ def render(case: Case, out: Out = None, json: Json = None) -> None:
 @app.command()
 def serve(
     case: Case,
-    host: Annotated[str, typer.Option(help="Anything but this computer itself asks for a token.")] = "127.0.0.1",
+    host: Annotated[str, typer.Option(help="Where to listen; all browsers need the token.")] = "127.0.0.1",
     port: Annotated[int, typer.Option(min=0, max=65535, help="0 takes a free one.")] = 8710,
 ) -> None:
     """The workbench in the browser: the machine, its sensors, what is missing, add it and see the error fall."""
@@ -263,6 +270,14 @@ def export(
 
 
 @app.command()
+def doctor(case: Case, json: Json = None) -> None:
+    """What looks wrong in a case's files before anything is fitted, with the cure. Exit code 1 if something does."""
+    from thermoscope.commands.doctor import doctor as run
+
+    raise typer.Exit(run(case, json))
+
+
+@app.command()
 def check(json: Json = None) -> None:
     """What this computer lacks (graphics), each with the command that fixes it."""
     from thermoscope.check import check as run
@@ -280,5 +295,5 @@ def main() -> None:
     except (ThermoscopeError, OSError) as fault:
         if "--debug" in sys.argv:
             raise
-        print(f"error: {fault}", file=sys.stderr)
+        print(f"error: {' '.join(str(fault).splitlines())}", file=sys.stderr)
         raise SystemExit(2) from None

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
+from geom.toml_file import read_toml
 from lumped.coupled import Drive, pm_drive, series_drive
 from lumped.drive import Controller, SeriesMachine, Vehicle
 from lumped.duty import s1, s2, s3, s6
@@ -18,7 +19,7 @@ from lumped.network import Network
 from lumped.permanent_magnet import PMMachine
 from lumped.reader import Table, known
 from lumped.simulate import Record
-from thermoscope.sheet import read_sheet, read_toml
+from thermoscope.sheet import read_sheet
 from thermoscope.tables import load_table
 
 Array = NDArray[np.float64]
@@ -50,11 +51,11 @@ def load_cycle(path: Path, network: Network, ratings: Mapping[str, float]) -> Cy
     top = Table(read_toml(path, "a cycle: [cycle], and [columns.NAME] or [duty]"), str(path))
     head = top.table("cycle")
     head.word("description", "")
-    step = head.number("step_s", 1.0, low=1e-3)
+    step = head.number("step_s", 1.0)
     time, inputs, boundaries = _duty(top) if "duty" in top else _columns(path, top, head, step)
-    inputs |= {n: np.full(time.size, top.table("inputs").number(n, low=-1e12)) for n in top.raw("inputs", {})}
-    boundaries |= {n: np.full(time.size, top.table("boundaries").number(n, -1e12)) for n in top.raw("boundaries", {})}
-    start = head.number("initial_degC", _usual(network, boundaries, str(path)), low=-273.15)
+    inputs |= {n: np.full(time.size, v) for n, v in top.table("inputs").constants("inputs").items()}
+    boundaries |= {n: np.full(time.size, v) for n, v in top.table("boundaries").constants("boundaries").items()}
+    start = head.number("initial_degC", _usual(network, boundaries, str(path)))
     drive, watched = _drive(top, network, ratings, time, inputs)
     head.close()
     top.close()
@@ -89,15 +90,15 @@ def _columns(path: Path, top: Table, head: Table, step: float) -> tuple[Array, d
 def _duty(top: Table) -> tuple[Array, dict[str, Array], dict[str, Array]]:
     """IEC 60034-1 duty types: every input of [load] times the load."""
     t, load = top.table("duty"), top.table("load")
-    kind, step = t.word("type", None, ("S1", "S2", "S3", "S6")), t.number("step_s", 10.0, low=1e-3)
+    kind, step = t.word("type", None, ("S1", "S2", "S3", "S6")), t.number("step_s", 10.0)
     if kind == "S1":
         time, share = s1(t.number("duration_s"), step)
     elif kind == "S2":
         time, share = s2(t.number("on_s"), t.number("rest_s"), step)
     else:
-        of = t.number("period_s", low=1e-6), t.number("duty_percent", high=100.0) / 100, int(t.number("cycles", low=1))
-        time, share = s3(*of, step) if kind == "S3" else s6(*of, t.number("no_load", high=1.0), step)
-    inputs = {name: share * load.number(name, low=-1e12) for name in load.data}
+        of = t.number("period_s"), t.number("duty_percent") / 100, int(t.number("cycles"))
+        time, share = s3(*of, step) if kind == "S3" else s6(*of, t.number("no_load"), step)
+    inputs = {name: share * full for name, full in load.constants("load").items()}
     if not inputs:
         raise load.error("no input follows the duty", "[load] current_A = ... at full load")
     t.close()
@@ -121,15 +122,15 @@ def _series(
         *rated, L=m.number("inductance_H", 2e-3), J=m.number("inertia_kg_m2", 2.0), B=m.number("friction_Nms", 0.0)
     )
     vehicle = Vehicle(
-        v.number("mass_kg"), v.number("wheel_radius_m"), v.number("gear"), v.number("efficiency", 0.95, 0.01, 1.0),
+        v.number("mass_kg"), v.number("wheel_radius_m"), v.number("gear"), v.number("efficiency", 0.95),
         v.number("rolling", 0.01), v.number("drag_area_m2", 3.0), v.number("air_density_kg_m3", 1.2),
     )  # fmt: skip
     control = Controller(
         c.number("Kp", 40.0), c.number("Ki", 4.0), c.number("current_limit_A", rated[3]),
-        c.number("voltage_limit_V", rated[2]), c.number("current_lag_s", 0.02, low=1e-6),
+        c.number("voltage_limit_V", rated[2]), c.number("current_lag_s", 0.02),
     )  # fmt: skip
     places = _places(m, network, "winding", WINDING)
-    reference = m.number("reference_degC", 20.0, low=-273.15)
+    reference = m.number("reference_degC", 20.0)
     for t in (m, v, c):
         t.close()
     for name in ("vehicle_speed_mps", "slope_percent"):
@@ -144,9 +145,9 @@ def _series(
 def _permanent(top: Table, network: Network, inputs: dict[str, Array]) -> tuple[Drive, dict[str, str]]:
     m = top.table("pm-machine")
     machine = PMMachine(
-        int(m.number("pole_pairs", low=1)), m.number("R20_ohm"), m.number("Ld_H", low=1e-12),
-        m.number("Lq_H", low=1e-12), m.number("psi_Vs", low=1e-12), m.number("current_limit_A"),
-        m.number("voltage_limit_V"), alpha_B=m.number("alpha_B_1_K", -1.1e-3, low=-1.0),
+        int(m.number("pole_pairs")), m.number("R20_ohm"), m.number("Ld_H"),
+        m.number("Lq_H"), m.number("psi_Vs"), m.number("current_limit_A"),
+        m.number("voltage_limit_V"), alpha_B=m.number("alpha_B_1_K", -1.1e-3),
     )  # fmt: skip
     places = {WINDING: _places(m, network, "winding", WINDING), MAGNET: _places(m, network, "magnet", "rotor")}
     m.close()

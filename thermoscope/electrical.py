@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError
 from lumped.reader import Table
-from thermoscope.formats import read_frame, recording
+from thermoscope.formats import pairs, read_frame, recording
 from validation.procedure.meters import OHMMETER, VOLTMETER, Meter, Range
 from validation.procedure.readings import COPPER, NDFEB, Magnets, Saturation, Winding
 from validation.procedure.spread import Reading, Spread
@@ -56,12 +56,13 @@ class After:
 
     def at_switch_off(self, winding: Winding) -> Extrapolated:
         """The winding's mean (degC) when the motor was switched off."""
-        table = read_frame(recording(self.file), self.worksheet)
+        file = recording(self.file)
+        table = read_frame(file, self.worksheet)
         for name in (self.time, self.column):
             if name not in table.columns:
                 raise InputError(f"column '{name}' is not in {self.file.name}", self.where,
                                  f"known: {', '.join(map(str, table.columns))}")  # fmt: skip
-        read = table[[self.time, self.column]].dropna().to_numpy(float)
+        read = pairs(table, self.time, self.column, file)
         sd = winding.reading_sd(float(np.median(read[:, 1])))
         cooling = Cooling(read[:, 0], winding.temperature(read[:, 1]), self.ambient, sd)
         return METHODS[self.method](cooling, self.rated_kW)
@@ -107,15 +108,15 @@ def read_electrical(quantity: str, name: str, table: Table, folder: Path) -> Ele
     cold = table.table("cold")
     if not cold.data:
         raise table.error("no cold reading", "cold = { reading = ..., at_degC = ... }, taken before the test")
-    reading, at = cold.number("reading", low=1e-9), cold.number("at_degC", low=-273.15)
+    reading, at = cold.number("reading"), cold.number("at_degC", of="cold.at_degC")
     rpm = cold.number("rpm", 1.0) if quantity == "back_emf" else 1.0
     cold.close()
     meter = meter_of(table, "meter", OHMMETER if quantity == "resistance" else VOLTMETER)
     coefficient = _coefficient(table, COPPER if quantity == "resistance" else NDFEB)
     if quantity == "back_emf":
         magnets = Magnets(reading, at, rpm, meter, coefficient, saturation_of(table))
-        return Electrical(magnets, table.number("speed_rpm", rpm, low=1e-6), None)
-    reference = table.number("reference_degC", low=-273.15) if "reference_degC" in table else None
+        return Electrical(magnets, table.number("speed_rpm", rpm), None)
+    reference = table.number("reference_degC") if "reference_degC" in table else None
     winding = Winding(reading, at, meter, coefficient, reference)
     return Electrical(winding, 0.0, _after(table, name, folder))
 
@@ -164,7 +165,7 @@ def _after(table: Table, name: str, folder: Path) -> After | None:
         return None
     after = After(
         folder / data.word("file"), data.word("time", "time_s"), data.word("column", name), data.word("worksheet", ""),
-        data.word("method", "exponentials", METHODS), data.number("ambient_degC", low=-273.15),
+        data.word("method", "exponentials", METHODS), data.number("ambient_degC"),
         data.number("rated_kW", 50.0), data.where,
     )  # fmt: skip
     data.close()

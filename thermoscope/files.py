@@ -1,11 +1,17 @@
-"""Files written whole or not at all."""
+"""Files written whole or not at all, one writer at a time, and never over what the user brought."""
 
 from __future__ import annotations
 
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from geom.errors import InputError
 from geom.kept import written_whole
+
+CASE = "case.toml"
+INPUTS = ("tests", "cycles")  # folders of a case
 
 
 def write_whole(path: Path, text: str | bytes) -> Path:
@@ -17,3 +23,52 @@ def write_whole(path: Path, text: str | bytes) -> Path:
         right = "a folder you may write to, with room in it"
         raise InputError(f"cannot be written: {fault.strerror}", str(path), right) from None
     return path
+
+
+@contextmanager
+def locked(folder: Path) -> Iterator[None]:
+    """Only one process at a time in here. The lock is on the folder: no file is left, and it ends with its owner.
+
+    Systems without such locks (Windows, some network drives) go without: a stale writer is still refused.
+    """
+    try:
+        import fcntl
+    except ImportError:
+        yield
+        return
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        with suppress(OSError):
+            fcntl.flock(handle, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(handle)
+
+
+def checked_target(target: str | None) -> str | None:
+    """Where a document is to go: a new file, or an earlier document; never a file of another kind, such as an input."""
+    if target in (None, "-"):
+        return target
+    path, right = Path(str(target)), "a new file NAME.json, or - for stdout"
+    if not target or path.is_dir():
+        raise InputError(f"{target!r} is no file to write to", "--json", right)
+    if path.exists() and (not path.is_file() or not _is_document(path)):
+        raise InputError("is there already and is no document of this tool: it stays", f"--json {path}", right)
+    return target
+
+
+def _is_document(path: Path) -> bool:
+    with path.open("rb") as file:
+        return file.read(64).lstrip()[:1] in (b"{", b"")
+
+
+def checked_out(out: Path | None) -> Path | None:
+    """Where files are to go: a folder, new or of results; never one where a case keeps its inputs."""
+    if out is None:
+        return None
+    right = "a folder for results, such as out/NAME"
+    if not str(out) or "\0" in str(out) or (out.exists() and not out.is_dir()):
+        raise InputError("is no folder", f"--out {out}", right)
+    if (out / CASE).exists() or (out.name in INPUTS and (out.parent / CASE).exists()):
+        raise InputError("a case keeps its inputs there: results would be mixed with them", f"--out {out}", right)
+    return out

@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from geom.errors import InputError
+from geom.names import checked_name
+from geom.toml_file import read_toml
+from lumped.motor_losses import ASSUMED_W
 from lumped.network import Network, Parameter
 from lumped.reader import Table, known
+from thermoscope.doctor import Finding, Patient, examined
+from thermoscope.formats import stem_of
 from thermoscope.history import History, checked_values, load_history
 from thermoscope.quantities import with_quantities
 from thermoscope.readings import read_test
-from thermoscope.sheet import Sheet, load_sheet, read_toml
-from thermoscope.tables import Samples, load_table
+from thermoscope.sheet import Sheet, load_sheet
+from thermoscope.tables import load_table
 from validation.case import AddedEffect, Case, Model, Role, Test
 from validation.fitting import matching
 
@@ -67,7 +72,10 @@ class Settings:
 
 @dataclass(frozen=True)
 class Folder:
-    """An open case.  positions : channel -> (x, y, z) m where the sheet gives them;  notes : doubts about the data"""
+    """An open case.  positions : channel -> (x, y, z) m where the sheet gives them;  notes : doubts about the data
+
+    findings : what looks wrong in the files, see `thermoscope doctor`
+    """
 
     settings: Settings
     case: Case
@@ -75,6 +83,7 @@ class Folder:
     notes: tuple[str, ...]
     positions: dict[str, tuple[float, ...]]
     built: Built | None = None
+    findings: tuple[Finding, ...] = ()
 
 
 def read_settings(path: Path, untested: bool = False) -> Settings:
@@ -86,34 +95,43 @@ def read_settings(path: Path, untested: bool = False) -> Settings:
     head, tests, calibration = top.table("case"), top.tables("tests"), top.table("calibration")
     top.close()
     name, description = head.word("name", path.name), head.word("description", "")
-    machine, network = head.raw("machine"), head.raw("network")
+    machine, network = (path / head.word(key) if key in head else None for key in ("machine", "network"))
     if (machine is None) == (network is None):
         raise head.error(
             "neither or both of machine and network given", 'machine = "NAME.toml" or network = "network.toml"'
         )
-    sample, free = head.number("sample_s", 10.0, low=1e-3), calibration.words("free", [])
-    model_K = head.number("model_error_K", 0.0, low=0.0)
-    axial_m = head.number("axial_mm", low=1.0) / 1e3 if "axial_mm" in head else None
+    sample, free = head.number("sample_s", 10.0), calibration.words("free", [])
+    model_K = head.number("model_error_K", 0.0)
+    axial_m = head.number("axial_mm") / 1e3 if "axial_mm" in head else None
     head.close()
     calibration.close()
     if not tests and not untested:
         raise InputError("no tests", str(file), '[tests.NAME] with role = "calibrate"')
     entries = tuple(_entry(path, n, t) for n, t in tests.items())
     return Settings(
-        path, name, description, machine and path / machine, network and path / network, sample, model_K, entries, free,
+        path, name, description, machine, network, sample, model_K, entries, free,
         axial_m,
     )  # fmt: skip
 
 
+def _once(settings: Settings, files: Mapping[str, Path]) -> None:
+    """A recording is one test: the same twice would count double, or hold out what was fitted."""
+    seen: dict[Path, Entry] = {}
+    for entry in settings.tests:
+        first = seen.setdefault(files[entry.name].resolve(), entry)
+        if first is not entry:
+            what = f"[tests.{first.name}] ({first.role}) and [tests.{entry.name}] ({entry.role}) are one recording"
+            raise InputError(what, str(settings.path / "case.toml"), "another file for one of them")
+
+
 def _entry(path: Path, name: str, table: Table) -> Entry:
-    file = path / table.word("file", f"tests/{name}.csv")
-    plain = file.with_suffix("") if file.suffix == ".gz" else file
-    role, beside = table.word("role", None, ROLES), plain.with_suffix(".toml")
+    file = path / table.word("file", f"tests/{checked_name(name, table.where)}")
+    role, beside = table.word("role", None, ROLES), file.with_name(f"{stem_of(file)}.toml")
     sheet, frees = path / table.word("sheet") if "sheet" in table else beside, table.words("frees", [])
     if frees and role != "calibrate":
         raise table.error(f"frees parameters though its role is {role}", 'role = "calibrate"')
     table.close()
-    return Entry(name, role, plain, sheet, tuple(frees))  # type: ignore[arg-type]
+    return Entry(name, role, file, sheet, tuple(frees))  # type: ignore[arg-type]
 
 
 def load_case(
@@ -125,21 +143,37 @@ def load_case(
     """
     settings = read_settings(Path(path), untested)
     history = History() if bare else load_history(settings.model_file)
-    sheets = {e.name: load_sheet(e.sheet) for e in settings.tests}
-    samples: dict[str, Samples] = {}
+    patients: dict[str, Patient] = {}
     for entry in settings.tests:
         progress(f"reading {entry.name}")
-        samples[entry.name] = load_table(entry.file, sheets[entry.name])
-    network, built = _network(settings, progress)
+        patients[entry.name] = patient_of(entry)
+    _once(settings, {name: one.samples.file for name, one in patients.items()})
+    network, built = network_of(settings, progress)
     read = [
-        read_test(e.name, e.role, samples[e.name], sheets[e.name], network, settings.sample_s) for e in settings.tests
+        read_test(e.name, e.role, patients[e.name].samples, patients[e.name].sheet, network, settings.sample_s)
+        for e in settings.tests
     ]
-    notes = tuple(dict.fromkeys(note for _, doubts in read for note in doubts))
+    findings = examined(list(patients.values()), network)
+    notes = tuple(dict.fromkeys([*_assumed(built), *(note for _, doubts in read for note in doubts)]))
     frees = {e.name: e.frees for e in settings.tests}
     tests = tuple(replace(_allowing(test, settings.model_K), frees=frees[test.name]) for test, _ in read)
-    network = with_quantities(network, sheets.values(), tests)
+    sheets = [one.sheet for one in patients.values()]
+    network = with_quantities(network, sheets, tests)
     case = Case(settings.name, _model(network, history), tests, _free(network, settings))
-    return Folder(settings, _checked(case, history), history, notes, _positions(sheets.values()), built)
+    return Folder(settings, _checked(case, history), history, notes, _positions(sheets), built, findings)
+
+
+def patient_of(entry: Entry) -> Patient:
+    """A test as its files have it."""
+    sheet = load_sheet(entry.sheet)
+    return Patient(entry.name, sheet, load_table(entry.file, sheet))
+
+
+def _assumed(built: Built | None) -> list[str]:
+    """Losses that nobody declared."""
+    if built is None or built.machine.sections.get("losses"):
+        return []
+    return [f"{built.machine.name} declares no losses: {ASSUMED_W:g} W in its windings are assumed ([losses.NAME])"]
 
 
 def _allowing(test: Test, model_K: float) -> Test:
@@ -182,7 +216,8 @@ def _free(network: Network, settings: Settings) -> tuple[Parameter, ...]:
     return matching(network, settings.free)
 
 
-def _network(settings: Settings, progress: Progress) -> tuple[Network, Built | None]:
+def network_of(settings: Settings, progress: Progress) -> tuple[Network, Built | None]:
+    """The network of a case, and how it was built where it comes from a machine."""
     if settings.network is not None:
         from lumped.declared import load_network
 
@@ -222,6 +257,5 @@ def _checked(case: Case, history: History) -> Case:
 
     for one in case.model.effects:
         effect(one.name, scene_of(case))
-    names = [p.name for p in working(case)[0].parameters]
-    checked_values(history.last, names, "model.toml")
+    checked_values(history.last, working(case)[0].parameters, "model.toml")
     return case

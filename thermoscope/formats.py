@@ -5,6 +5,7 @@ Channels of several rates share one time column and are empty where they were no
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,6 +15,7 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError, MissingDependency
 from lumped.reader import known
+from thermoscope.csv_file import read_csv
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -21,51 +23,57 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 SUFFIXES = (".csv", ".csv.gz", ".xlsx", ".tdms", ".mf4", ".parquet")
 TIME = "time_s"  # of formats that carry their own time
+HEADER = 2  # line of the first row of numbers
 GRAIN = 1e-6  # s, below which two instants are one
 Signal = tuple[str, Array, Array]
 
 
 def recording(path: Path) -> Path:
-    """The file itself, or one of the same name in another format."""
-    if path.exists():
+    """The file itself, or the one file of the same name in another format; two of them are one too many."""
+    if path.is_file():
         return path
-    stem = path.with_suffix("")
-    for suffix in SUFFIXES:
-        if (twin := stem.with_name(stem.name + suffix)).exists():
-            return twin
+    if path.exists():
+        raise InputError("is no file", str(path), "a recording")
+    twins = [twin for suffix in SUFFIXES if (twin := path.with_name(stem_of(path) + suffix)).exists()]
+    for twin in twins:
+        if not twin.is_file():
+            raise InputError("is no file", str(twin), "a recording")
+    if len(twins) > 1:
+        names = " and ".join(twin.name for twin in twins)
+        raise InputError(f"{names} are both there", str(path), f'one of them, or file = "tests/{twins[0].name}"')
+    if twins:
+        return twins[0]
     beside = sorted(p.name for p in path.parent.glob("*") if p.name.endswith(SUFFIXES)) if path.parent.exists() else []
-    raise InputError("no such file", str(path), f"found there: {', '.join(beside) or 'no recording at all'}")
+    asked = path if _suffix(path) else path.with_name(f"{path.name}.csv")
+    raise InputError("no such file", str(asked), f"found there: {', '.join(beside) or 'no recording at all'}")
+
+
+def _suffix(path: Path) -> str:
+    """The ending that says the format, the longest that fits; "" for none of those that are read."""
+    return max((s for s in SUFFIXES if path.name.lower().endswith(s)), key=len, default="")
+
+
+def stem_of(path: Path) -> str:
+    """The name of a recording without the ending that says its format."""
+    return path.name[: len(path.name) - len(_suffix(path))]
 
 
 def read_frame(file: Path, worksheet: str = "") -> pd.DataFrame:
     """The table of a recording, column names stripped. worksheet : of a workbook; of a TDMS file, the group."""
-    suffix = next((s for s in SUFFIXES if file.name.lower().endswith(s)), "")
+    suffix = _suffix(file)
     readers: dict[str, Callable[[], pd.DataFrame]] = {
-        ".csv": lambda: _csv(file), ".csv.gz": lambda: _csv(file), ".xlsx": lambda: _xlsx(file, worksheet),
+        ".csv": lambda: read_csv(file), ".csv.gz": lambda: read_csv(file), ".xlsx": lambda: _xlsx(file, worksheet),
         ".tdms": lambda: _tdms(file, worksheet), ".mf4": lambda: _mf4(file), ".parquet": lambda: _parquet(file),
     }  # fmt: skip
     if suffix not in readers:
         raise InputError(f"files ending in '{file.suffix}' are not read", str(file), f"one of {', '.join(SUFFIXES)}")
     table = readers[suffix]()
     table.columns = [str(c).strip() for c in table.columns]
+    twice = [name for name, count in Counter(table.columns).items() if count > 1]
+    if twice:
+        raise InputError(f"column '{twice[0]}' stands twice in the header", str(file), "a name of its own for each")
     if len(table) < 3:
         raise InputError(f"the file holds {len(table)} rows", str(file), "at least 3 rows of numbers under the header")
-    return table
-
-
-def _csv(file: Path) -> pd.DataFrame:
-    import pandas as pd
-
-    try:
-        table = pd.read_csv(file, skipinitialspace=True, low_memory=False)
-    except pd.errors.EmptyDataError:
-        raise InputError("the file is empty", str(file), "a header line and rows of numbers") from None
-    except (pd.errors.ParserError, UnicodeDecodeError, OSError, EOFError) as fault:
-        raise InputError(
-            f"not readable as CSV: {fault}", str(file), "commas between columns, one header line"
-        ) from None
-    if len(table.columns) == 1 and ";" in str(table.columns[0]):
-        raise InputError("columns are separated by ';'", str(file), "commas between columns, points in numbers")
     return table
 
 
@@ -168,3 +176,30 @@ def merged(frame: pd.DataFrame, time: str, others: Mapping[str, tuple[pd.DataFra
             raise InputError(f"column '{twice[0]}' is recorded twice", f"[recorders.{name}]", "columns of other names")
         out = pd.merge(out, moved, on=time, how="outer", sort=True)
     return out
+
+
+def numbers(table: pd.DataFrame, name: str, file: Path) -> Array:
+    """A column as numbers, NaN where nothing was read; InputError with the line of what is no finite number."""
+    import pandas as pd
+
+    column = table[name]
+    found = np.array(pd.to_numeric(column, errors="coerce"), float)
+    bad = np.flatnonzero(np.isnan(found) & column.notna().to_numpy())
+    if bad.size:
+        raise InputError(f"'{column.iloc[bad[0]]}' is no number", cell(file, name, int(bad[0])),
+                         "a number with a decimal point, or nothing where nothing was read")  # fmt: skip
+    endless = np.flatnonzero(np.isinf(found))
+    if endless.size:
+        raise InputError("the value is infinite", cell(file, name, int(endless[0])), "a finite number")
+    return found
+
+
+def cell(file: Path, column: str, row: int) -> str:
+    """Where a reading stands."""
+    return f"{file} column '{column}' line {row + HEADER}"
+
+
+def pairs(table: pd.DataFrame, time: str, column: str, file: Path) -> Array:
+    """(n, 2) times and readings of two columns, where both are given."""
+    both = np.column_stack([numbers(table, time, file), numbers(table, column, file)])
+    return np.asarray(both[np.isfinite(both).all(axis=1)])

@@ -9,12 +9,26 @@ from geom.errors import InputError
 from thermoscope.tables import Samples
 
 Array = NDArray[np.float64]
+LEAST, MOST = 3, 2_000_000  # instants; more would not fit into memory with their tangents
+LONGEST_S = 3.2e7  # a year
+COARSE = 10.0  # times sample_s
 
 
-def grid_of(samples: Samples, step: float) -> Array:
-    """Instants 0, step, 2 step, ... (s) that lie inside the record; never finer than the record itself."""
-    usual = float(np.median(np.diff(samples.time)))
-    return np.arange(0.0, samples.time[-1] + 1e-9, max(step, usual))
+def grid_of(samples: Samples, step: float, where: str) -> tuple[Array, list[str]]:
+    """Instants 0, step, 2 step, ... (s) that lie inside the record, never finer than the record itself; notes.
+
+    Raises InputError for a test too short to compare or too long to be one: mostly a wrong time unit.
+    """
+    usual, span = float(np.median(np.diff(samples.time))), float(samples.time[-1])
+    used = max(step, usual)
+    count = span / used + 1
+    if not LEAST <= count <= MOST or span > LONGEST_S:
+        raise InputError(f"the test lasts {span:.4g} s with a row every {usual:.4g} s: {count:.3g} instants of "
+                         f"{used:.4g} s", where, f"{LEAST} to {MOST:.0g} instants and at most a year: is time_unit "
+                         "right, and sample_s of case.toml?")  # fmt: skip
+    coarse = usual > COARSE * step
+    note = f"{samples.file.name}: rows are {usual:g} s apart, sample_s is {step:g} s; is time_unit in {where} right?"
+    return np.arange(0.0, span + 1e-9, used), [note] if coarse else []
 
 
 def averaged(time: Array, values: Array, grid: Array) -> Array:

@@ -10,13 +10,15 @@ from typing import Any
 import tomlkit
 
 from geom.errors import InputError
+from geom.toml_file import read_toml
+from lumped.network import Parameter
 from lumped.reader import Table, known
-from thermoscope.files import write_whole
-from thermoscope.sheet import read_toml
+from thermoscope.files import locked, write_whole
 
 ACTIONS = ("calibrate", "add", "remove", "step back")
 HEADER = "Written by thermoscope: one [[revision]] per step, the last one counts. Delete this file to start again."
 Pair = tuple[float, float]
+ROUNDED = 1e-6  # of a bound: values are written with eight digits
 
 
 @dataclass(frozen=True)
@@ -84,28 +86,48 @@ def load_history(path: Path) -> History:
     return History(revisions)
 
 
-def save_history(path: Path, history: History) -> Path:
+def save_history(path: Path, history: History, known: History) -> History:
+    """Write `history` over `known`, and return it as the file has it.
+
+    Raises InputError when the file holds something else by now: another command or tab was quicker.
+    """
+    with locked(path.parent):
+        standing = load_history(path)
+        if standing != known:
+            what = f"the model was changed by another tab or command: it is at revision {standing.last.number}, this "
+            raise InputError(f"{what}step began at {known.last.number}", str(path),
+                             "the step again (in the workbench 'take over' first)")  # fmt: skip
+        write_whole(path, _text(history))
+        return load_history(path)
+
+
+def _text(history: History) -> str:
     document, revisions = tomlkit.document(), tomlkit.aot()
     document.add(tomlkit.comment(HEADER))
     for revision in history.revisions:
         revisions.append(tomlkit.item(revision.document()))
     document.add("revision", revisions)
-    return write_whole(path, tomlkit.dumps(document))
+    return tomlkit.dumps(document)
 
 
-def checked_values(revision: Revision, names: Iterable[str], where: str) -> None:
-    """Every value belongs to a parameter the model has."""
-    have = set(names)
-    for name in revision.values:
+def checked_values(revision: Revision, parameters: Iterable[Parameter], where: str) -> None:
+    """Every value belongs to a parameter the model has, and lies within that parameter's bounds."""
+    have, place = {p.name: p for p in parameters}, f"{where} revision {revision.number}"
+    for name, value in revision.values.items():
         if name not in have:
-            raise InputError(f"unknown parameter '{name}'", f"{where} revision {revision.number}", known(name, have))
+            raise InputError(f"unknown parameter '{name}'", place, known(name, have))
+        low, high = have[name].low, have[name].high
+        slack = ROUNDED * max(abs(low), abs(high))
+        if not low - slack <= value <= high + slack:
+            right = f"{low:g} to {high:g}; undo the step, or calibrate again"
+            raise InputError(f"values {name} = {value:g} is out of its bounds", place, right)
 
 
 def _revision(table: Table) -> Revision:
     out = Revision(
-        int(table.number("number", low=1)), table.word("action", None, ACTIONS), table.words("effects", []),
-        table.word("effect", ""), _numbers(_inner(table, "values")), _pairs(_inner(table, "intervals")),
-        _before_after(_inner(table, "rmse_K")), table.word("why", ""), dict(table.raw("evidence", {})),
+        int(table.number("number")), table.word("action", None, ACTIONS), table.words("effects", []),
+        table.word("effect", ""), _inner(table, "values").constants("values"), _pairs(_inner(table, "intervals")),
+        _before_after(_inner(table, "rmse_K")), table.word("why", ""), _evidence(_inner(table, "evidence")),
     )  # fmt: skip
     table.close()
     return out
@@ -115,14 +137,14 @@ def _inner(table: Table, key: str) -> Table:
     return Table(table.raw(key, {}), f"{table.where} {key}")
 
 
-def _numbers(table: Table) -> dict[str, float]:
-    return {name: table.number(name, low=-1e12) for name in table.data}
+def _evidence(table: Table) -> dict[str, float | str]:
+    return {k: table.word(k) if isinstance(v, str) else table.number(k, of="value") for k, v in table.data.items()}
 
 
 def _pairs(table: Table) -> dict[str, Pair]:
     out = {}
     for name in table.data:
-        pair = table.numbers(name)
+        pair = table.numbers(name, of="intervals")
         if len(pair) != 2:
             raise table.error(f"{name} has {len(pair)} numbers", "[low, high]")
         out[name] = (pair[0], pair[1])

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from geom.errors import InputError
 from lumped.network import Link, Network, Row, Source
 from lumped.reader import known
+from thermoscope.consistency import checked_heat, checked_sheet
 from thermoscope.grid import averaged, bridged, grid_of, rms
 from thermoscope.sheet import Column, Mean, Sheet
 from thermoscope.tables import Samples
@@ -23,7 +24,9 @@ def read_test(
     name: str, role: Role, samples: Samples, sheet: Sheet, network: Network, step: float
 ) -> tuple[Test, list[str]]:
     """The test and the doubts about its data."""
-    grid, notes = grid_of(samples, step), list(samples.notes)
+    notes = [*samples.notes, *checked_sheet(sheet, network)]
+    grid, doubts = grid_of(samples, step, sheet.where)
+    notes += doubts
     inputs = {n: np.full(grid.size, v) for n, v in sheet.inputs.items()}
     boundaries = {n: np.full(grid.size, v) for n, v in sheet.boundaries.items()}
     for column in sheet.columns:
@@ -36,6 +39,8 @@ def read_test(
         (boundaries if column.is_temperature else inputs)[column.feeds or column.place] = whole
     inputs |= {name: _root_sum_square(name, of, sheet, inputs) for name, of in sheet.squares.items()}
     _complete(network, inputs, boundaries, sheet)
+    inputs, doubts = checked_heat(sheet, samples, inputs, network)
+    notes += doubts
     channels = (
         *_channels(sheet, samples, grid, network),
         *(_mean(m, sheet, samples, grid, network) for m in sheet.means),

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from geom.errors import InputError
+from geom.toml_file import read_toml
 from lumped.reader import Table
 from thermoscope.electrical import QUANTITIES as ELECTRICAL
 from thermoscope.electrical import Electrical, read_electrical
-from thermoscope.units import QUANTITIES, checked_unit
+from thermoscope.once import declared_once
+from thermoscope.units import QUANTITIES, checked_input, checked_unit, held_as
 
 FIRST = "first-readings"
 MAX_GAP_S = 120.0
@@ -103,16 +104,6 @@ class Sheet:
     recorders: Mapping[str, Recorder] = field(default_factory=dict)
 
 
-def read_toml(path: Path, right: str) -> dict[str, Any]:
-    """A TOML file as a dictionary, or one message that says what is wrong with it."""
-    try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        raise InputError("no such file", str(path), right) from None
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as fault:
-        raise InputError(f"not readable as TOML: {fault}", str(path), right) from None
-
-
 def load_sheet(path: Path) -> Sheet:
     """A sheet; with `columns_of` its columns and means are those of another sheet in the same folder."""
     data = read_toml(path, "a sheet with [test] and [columns.NAME]")
@@ -127,10 +118,10 @@ def read_sheet(data: Mapping[str, Any], where: str, folder: Path = Path()) -> Sh
     """A sheet; InputError for unknown keys, forgotten units and contradictions."""
     top = Table(data, where)
     test, columns, means = top.table("test"), top.tables("columns"), top.tables("means")
-    inputs, boundaries = _constants(top.table("inputs")), _constants(top.table("boundaries"))
+    inputs, boundaries = top.table("inputs").constants("inputs"), top.table("boundaries").constants("boundaries")
     squares, recorders = top.table("root_sum_square"), top.tables("recorders")
     top.close()
-    period = test.number("period_s", low=1e-6) if "period_s" in test else 0.0
+    period = test.number("period_s") if "period_s" in test else 0.0
     test.word("columns_of", "")
     filtered = test.number("filter_s", 0.0)
     time_unit = checked_unit("time", test.raw("time_unit", "s"), test.where)
@@ -145,31 +136,28 @@ def read_sheet(data: Mapping[str, Any], where: str, folder: Path = Path()) -> Sh
     test.close()
     if not sheet.columns:
         raise InputError("no columns", where, "[columns.NAME] with quantity, unit and place")
-    _fed_once(sheet)
+    declared_once(sheet)
     return sheet
-
-
-def _constants(table: Table) -> dict[str, float]:
-    return {name: table.number(name, low=-1e12) for name in table.data}
 
 
 def _initial(test: Table) -> float | Mapping[str, float] | str:
     given = test.raw("initial", FIRST)
     if isinstance(given, Mapping):
-        return test.shares("initial")
-    return test.word("initial", FIRST, [FIRST]) if isinstance(given, str) else test.number("initial", low=-273.15)
+        return test.shares("initial", of="initial")
+    return test.word("initial", FIRST, [FIRST]) if isinstance(given, str) else test.number("initial")
 
 
 def _column(name: str, table: Table, filtered: float, folder: Path) -> Column | None:
-    if table.raw("use", True) is False:
+    if not table.flag("use", True):
         return None
-    of = table.word("quantity", None, QUANTITIES)
+    of = table.kind("quantity", None, QUANTITIES)
     unit, hot = checked_unit(of, table.raw("unit"), table.where), of == "temperature" or of in ELECTRICAL
     electrical = read_electrical(of, name, table, folder) if of in ELECTRICAL else None
-    kind = table.word("sensor", "resistance" if electrical else "thermocouple", SENSORS)
+    kind = table.kind("sensor", "resistance" if electrical else "thermocouple", SENSORS)
     place, feeds = table.word("place", None if hot else ""), "" if hot else table.word("input", QUANTITIES[of].feeds)
+    of = of if hot else held_as(of, checked_input(of, feeds, table.where))
     usual = 0.0 if electrical else SENSORS[kind]
-    sigma = table.number("sigma_K", low=1e-3) if "sigma_K" in table else usual
+    sigma = table.number("sigma_K") if "sigma_K" in table else usual
     lag, written = table.number("lag_s", 0.0) + filtered, table.word("column", name)
     position = table.numbers("position_mm", [])
     if len(position) not in (0, 3):
@@ -187,7 +175,7 @@ def _recorder(table: Table, folder: Path) -> Recorder:
     recorder = Recorder(
         folder / table.word("file"), table.word("time", "time_s"),
         checked_unit("time", table.raw("time_unit", "s"), table.where), table.word("worksheet", ""),
-        table.number("shift_s", 0.0, low=-1e9), align, table.number("limit_s", 120.0, low=1e-3), table.where,
+        table.number("shift_s", 0.0), align, table.number("limit_s", 120.0), table.where,
     )  # fmt: skip
     table.close()
     return recorder
@@ -195,17 +183,8 @@ def _recorder(table: Table, folder: Path) -> Recorder:
 
 def _mean(name: str, table: Table, filtered: float) -> Mean:
     of, place = table.words("of"), table.word("place")
-    sigma, lag = table.number("sigma_K", 0.5, low=1e-3), table.number("lag_s", 0.0) + filtered
+    sigma, lag = table.number("sigma_K", 0.5), table.number("lag_s", 0.0) + filtered
     table.close()
     if not of:
         raise table.error("of = [] averages nothing", "of = [two or more columns]")
     return Mean(name, of, place, sigma, lag, table.where)
-
-
-def _fed_once(sheet: Sheet) -> None:
-    fed = [c.feeds for c in sheet.columns if c.feeds] + [*sheet.inputs, *sheet.squares]
-    for name in fed:
-        if fed.count(name) > 1:
-            raise InputError(
-                f"input '{name}' is fed twice", sheet.where, "one column per input: use = false for the others"
-            )

@@ -9,6 +9,7 @@ from geom import Machine
 from lumped.adapt import Adapted, Size, adapt
 from lumped.guard import Wish
 from lumped.motor import motor_network
+from lumped.motor_bases import on_all
 from lumped.motor_zones import motor_zones
 from lumped.reduction import Recipe, Reduction
 from thermoscope.load_cases import load_cases
@@ -56,6 +57,7 @@ def sized(
     progress: Progress = silent, rounds: int = ROUNDS, across: float = ACROSS, axial_m: float | None = None,
 ) -> Sized:  # fmt: skip
     """Build at several sizes and keep the smallest that meets the wish; if none does, learn from where it fails."""
+    machine = on_all(machine)
     ready = prepared(machine, size_m, segments, progress, axial_m, across)
     progress("what the parts can look like")
     reduction = reduced(ready, recipe, motor_zones(machine))

@@ -11,9 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
+from lumped.bounds import COLDEST, HOTTEST
 from lumped.reader import known
 from thermoscope.alignment import clock_shift
-from thermoscope.formats import merged, read_frame, recording
+from thermoscope.codes import code_note, coded
+from thermoscope.formats import HEADER, cell, merged, numbers, read_frame, recording
 from thermoscope.sheet import Column, Recorder, Sheet
 from thermoscope.units import converted
 
@@ -21,9 +23,9 @@ if TYPE_CHECKING:
     import pandas as pd
 
 Array = NDArray[np.float64]
-HEADER = 2  # line of the first row of numbers
 GAP = 3.5  # times the usual step
 FROZEN_SHARE, FROZEN_MOVE_K = 0.2, 2.0
+LARGEST = 1e9  # of anything that is no temperature, in the unit of memory
 
 
 @dataclass(frozen=True)
@@ -55,7 +57,11 @@ def load_table(path: Path, sheet: Sheet) -> Samples:
     gaps = _gaps(time)
     values, sigma, notes = {}, {}, [_gap_note(file, a, b) for a, b in gaps]
     for column in sheet.columns:
-        read = converted(_numbers(table, column.header, file), column.quantity, column.unit)
+        raw = numbers(table, column.header, file)
+        if (codes := coded(raw)).any():
+            notes.append(code_note(f"{file.name} column '{column.header}'", raw, codes, HEADER))
+            raw = np.where(codes, np.nan, raw)
+        read = converted(raw, column.quantity, column.unit)
         values[column.name] = read if column.electrical is None else column.electrical.temperature(read)
         if column.electrical is not None and not column.sigma_K:
             sigma[column.name] = column.electrical.sigma(read)
@@ -79,7 +85,7 @@ def _beside(main: pd.DataFrame, time: str, recorder: Recorder) -> tuple[pd.DataF
     table, shift = read_frame(file, recorder.worksheet), recorder.shift_s
     _has(table, [recorder.time, *recorder.align[1:]], recorder.where)
     _has(main, recorder.align[:1], recorder.where)
-    seconds = converted(_numbers(table, recorder.time, file), "time", recorder.time_unit)
+    seconds = converted(numbers(table, recorder.time, file), "time", recorder.time_unit)
     if recorder.align:
         here, there = recorder.align
         shift = clock_shift(main[time].to_numpy(float), main[here].to_numpy(float), seconds,
@@ -95,38 +101,19 @@ def _has(table: pd.DataFrame, names: Sequence[str], where: str) -> None:
             raise InputError(f"column '{name}' is not in the file", where, right)
 
 
-def _numbers(table: pd.DataFrame, name: str, file: Path) -> Array:
-    import pandas as pd
-
-    column = table[name]
-    numbers = np.array(pd.to_numeric(column, errors="coerce"), float)
-    bad = np.flatnonzero(np.isnan(numbers) & column.notna().to_numpy())
-    if bad.size:
-        raise InputError(f"'{column.iloc[bad[0]]}' is no number", _cell(file, name, int(bad[0])),
-                         "a number with a decimal point, or nothing where nothing was read")  # fmt: skip
-    endless = np.flatnonzero(np.isinf(numbers))
-    if endless.size:
-        raise InputError("the value is infinite", _cell(file, name, int(endless[0])), "a finite number")
-    return numbers
-
-
-def _cell(file: Path, column: str, row: int) -> str:
-    return f"{file} column '{column}' line {row + HEADER}"
-
-
 def _times(table: pd.DataFrame, sheet: Sheet, file: Path) -> Array:
     if not sheet.time:
         return np.asarray(np.arange(len(table)) * sheet.period_s, float)
-    t: Array = converted(_numbers(table, sheet.time, file), "time", sheet.time_unit)
+    t: Array = converted(numbers(table, sheet.time, file), "time", sheet.time_unit)
     missing = np.flatnonzero(np.isnan(t))
     if missing.size:
-        raise InputError("a time is missing", _cell(file, sheet.time, int(missing[0])), "a time in every row")
+        raise InputError("a time is missing", cell(file, sheet.time, int(missing[0])), "a time in every row")
     wrong = np.flatnonzero(np.diff(t) <= 0)
     if wrong.size:
         row, written = int(wrong[0]) + 1, table[sheet.time]
         what = "is given twice" if t[row] == t[row - 1] else f"comes after {written.iloc[row - 1]}"
         count = f" ({wrong.size} such rows)" if wrong.size > 1 else ""
-        raise InputError(f"time {written.iloc[row]} {what}{count}", _cell(file, sheet.time, row),
+        raise InputError(f"time {written.iloc[row]} {what}{count}", cell(file, sheet.time, row),
                          "times that rise from row to row: sort the file by time and delete repeated rows")  # fmt: skip
     return np.asarray(t - t[0], float)
 
@@ -148,11 +135,14 @@ def _look(column: Column, values: Array, file: Path) -> list[str]:
         raise InputError(
             "the column holds no number", f"{file} column '{column.name}'", "readings, or use = false in the sheet"
         )
-    if column.is_temperature and np.nanmin(values) < -273.15:
-        row = int(np.nanargmin(values))
-        raise InputError(
-            f"{values[row]:g} degC is below absolute zero", _cell(file, column.name, row), "check the unit in the sheet"
-        )
+    low, high = (COLDEST, HOTTEST) if column.is_temperature else (-LARGEST, LARGEST)
+    out = np.flatnonzero(~((values >= low) & (values <= high)) & ~np.isnan(values))
+    if out.size:
+        what, row = "is below absolute zero" if values[out[0]] < -273.15 else "cannot be", int(out[0])
+        unit = " degC" if column.is_temperature else ""
+        raise InputError(f"{values[row]:g}{unit} {what if column.is_temperature else 'cannot be'}",
+                         cell(file, column.name, row), f"{low:g} to {high:g}{unit}: check the unit in the sheet, or "
+                         "leave the cell empty where nothing was read")  # fmt: skip
     if missing.size and column.electrical is None:
         return [
             f"{file.name} column '{column.name}': {missing.size} missing readings, first in line {missing[0] + HEADER}"

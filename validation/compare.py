@@ -7,7 +7,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from geom.errors import ThermoscopeError
 from geom.identity import Identity
+from lumped.runaway import checked_run
 from validation.case import Case, Channel, Test
 from validation.fitting import nuisances, working
 from validation.predict import predict
@@ -128,7 +130,11 @@ def physical(case: Case, values: Mapping[str, float] | None = None) -> dict[str,
 
 
 def test_error(network, test: Test, values: Mapping[str, float]) -> TestError:
-    y = predict(network, test, values).y
+    names = tuple(c.name for c in test.channels)
+    try:
+        y = checked_run(predict(network, test, values).y, test.time, names, network)
+    except ThermoscopeError as fault:
+        raise type(fault)(f"test '{test.name}': {fault}") from None
     rows = [channel_error(c, y[:, j]) for j, c in enumerate(test.channels) if np.isfinite(c.y).any()]
     return TestError(test.name, test.role, tuple(rows))
 

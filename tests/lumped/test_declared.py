@@ -102,7 +102,7 @@ SLIPS = {
     "shares": (lambda d: d["losses"]["copper"].update(at={"winding": 0.5}), "losses.copper.*sum to 0.5"),
     "loss class": (lambda d: d["losses"]["copper"].update(kind="coper"), "'coper'.*did you mean 'copper'"),
     "no currents": (lambda d: d["losses"]["copper"].pop("currents"), "losses.copper.*'currents' is missing"),
-    "lonely node": (lambda d: d["nodes"].update(lost={"C_J_K": 1.0}), "'lost' is joined to nothing"),
+    "lonely node": (lambda d: d["nodes"].update(lost={"C_J_K": 1.0}), "no heat can leave 'lost'"),
     "parameter": (lambda d: d["parameters"]["iron and friction"].update(acts_on=["loss:irn"]), "loss:irn.*loss:iron"),
     "flow": (lambda d: d["streams"]["water"].pop("flow_l_min_input"), "streams.water.*no flow"),
     "heated boundary": (lambda d: d["losses"]["bearing"].update(at="ambient"), "bearing.*boundary"),

@@ -11,7 +11,8 @@ from jsonschema import Draft202012Validator
 
 from geom.errors import InputError
 from lumped.declared import read_network
-from lumped.schema import FILES, FOLDER, machine_schema, meanings, schema
+from lumped.keys_page import PAGE, page
+from lumped.schema import FILES, FOLDER, bounded, machine_schema, meanings, schema
 
 ROOT = Path(__file__).resolve().parents[2]
 PATTERNS = {
@@ -110,3 +111,14 @@ def walked(node):
     extra = node.get("additionalProperties")
     if isinstance(extra, dict):
         yield from walked(extra)
+
+
+@pytest.mark.parametrize("kind", [kind for kind in FILES if kind != "machine"])
+def test_schemas_on_disk_have_the_bounds_of_the_table(kind):
+    """After a change of lumped.bounds: python -m lumped.schema"""
+    assert json.loads((FOLDER / f"{kind}.json").read_text()) == bounded(schema(kind))
+
+
+def test_the_page_of_keys_is_the_schemas():
+    """After a change of keys or bounds: python -m lumped.keys_page"""
+    assert PAGE.read_text(encoding="utf-8") == page()

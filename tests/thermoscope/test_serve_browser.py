@@ -58,6 +58,7 @@ def opened(browser, address):
     tab.context.set_default_timeout(LONG)
     # a call that is under way while the page is left (reload) ends in a bare object: no error of the page
     tab.on("pageerror", lambda fault: str(fault) == "Object" or faults.append(str(fault)))
+    tab.on("console", lambda said: "Content Security Policy" in said.text and faults.append(said.text))
     tab.goto(address)
     tab.wait_for_selector("#sensors .sensor")
     tab.wait_for_selector("#machine img[src^=blob], #machine canvas", state="attached")

@@ -1,6 +1,9 @@
 """Who gets in and what can be fetched: asked over a real socket."""
 
 import asyncio
+import base64
+import hashlib
+import re
 import socket
 from contextlib import asynccontextmanager
 
@@ -12,6 +15,7 @@ from small_case import small_case
 from geom.errors import InputError
 from thermoscope.workbench.gate import Gate, loopback, served
 from thermoscope.workbench.serve import application, token_for
+from thermoscope.workbench.tabs import MOST
 
 TOKEN = "a-token-of-enough-characters"
 
@@ -54,17 +58,16 @@ def test_loopback_is_this_computer_only(host, local):
     assert loopback(host) is local
 
 
-def test_a_token_is_made_for_anything_but_loopback():
-    assert token_for("127.0.0.1", None) == ""
-    assert len(token_for("0.0.0.0", None)) >= 32
-    assert token_for("0.0.0.0", None) != token_for("0.0.0.0", None)
-    assert token_for("127.0.0.1", TOKEN) == TOKEN
+def test_a_token_is_made_where_none_is_given():
+    assert len(token_for(None)) >= 32
+    assert token_for(None) != token_for(None)
+    assert token_for(TOKEN) == TOKEN
 
 
 @pytest.mark.parametrize("given", ["", "short"])
 def test_a_short_token_is_refused(given):
     with pytest.raises(InputError, match="at least 16"):
-        token_for("0.0.0.0", given)
+        token_for(given)
 
 
 def test_files_outside_the_served_folders_do_not_exist(tmp_path):
@@ -120,7 +123,8 @@ def test_paths_do_not_lead_out(folder):
         seen = {}
         secret = folder.settings.path / "case.toml"
         for name in ("index.html", "%2e%2e/%2e%2e/case.toml", "..%2f..%2fcase.toml", "%2fetc%2fpasswd", f"/{secret}",
-                     "report.html", "model.toml", "case.toml"):  # fmt: skip
+                     "report.html", "model.toml", "case.toml", "%00", "a%00b",
+                     "x" * 5000, "%ff%fe", "a" * 300):  # fmt: skip
             async with session.get(f"{address}{tab}{name}", allow_redirects=False) as answer:
                 seen[name] = answer.status
         async with session.get(address + "/tab/unknown/index.html", allow_redirects=False) as answer:
@@ -155,3 +159,59 @@ def test_a_duplicated_tab_gets_a_session_of_its_own(folder):
     assert first == again
     assert tab in first
     assert tab not in copy
+
+
+def test_pages_run_their_own_scripts_only(folder):
+    """The one script inside the page is named by its hash; nothing comes from another server."""
+    (folder.settings.out).mkdir(exist_ok=True)
+    (folder.settings.out / "report.html").write_text("<title>report</title>")
+
+    async def questions(address, session):
+        async with session.get(address + "/") as answer:
+            tab, page, policy = str(answer.url), await answer.text(), answer.headers["Content-Security-Policy"]
+        async with session.get(tab.replace("index.html", "report.html")) as answer:
+            return page, policy, answer.headers["Content-Security-Policy"]
+
+    page, policy, report = asked(folder, Gate("127.0.0.1", ""), questions)
+    rules = {rule.split()[0]: rule.split()[1:] for rule in policy.split("; ")}
+    (script,) = re.findall(r"<script>(.*?)</script>", page, re.S)
+    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
+    assert rules["default-src"] == ["'none'"]
+    assert rules["script-src"] == ["'self'", "'unsafe-eval'", f"'sha256-{digest}'"]
+    assert rules["object-src"] == rules["frame-ancestors"] == ["'none'"]
+    assert "script-src" not in report
+    assert report.startswith("default-src 'none'")
+
+
+def test_a_ninth_tab_has_to_wait(folder):
+    """Eight tabs that are looked at stay; the ninth is told, and gets in once one of them is closed."""
+
+    async def questions(address, session):
+        async def tab():
+            async with session.get(address + "/", allow_redirects=False) as answer:
+                return answer.status, answer.headers.get("Location", "").removesuffix("index.html")
+
+        sockets = []
+        for _ in range(MOST):
+            _, where = await tab()
+            sockets.append(await session.ws_connect(f"{address}{where}ws"))
+        full, _ = await tab()
+        await sockets.pop().close()
+        await asyncio.sleep(1.0)
+        free, _ = await tab()
+        for socket_ in sockets:
+            await socket_.close()
+        return full, free
+
+    assert asked(folder, Gate("127.0.0.1", ""), questions) == (503, 302)
+
+
+def test_addresses_that_are_none(folder):
+    async def questions(address, session):
+        seen = []
+        for headers in ({"Host": "[::1"}, {"Origin": "http://[::1"}, {"Cookie": "thermoscope=\udcff"}):
+            async with session.get(address + "/", headers=headers, allow_redirects=False) as answer:
+                seen.append((answer.status, answer.headers.get("X-Frame-Options")))
+        return seen
+
+    assert asked(folder, Gate("127.0.0.1", TOKEN), questions) == [(403, "DENY"), (403, "DENY"), (401, "DENY")]

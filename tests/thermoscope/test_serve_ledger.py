@@ -3,8 +3,8 @@
 import pytest
 
 from geom.errors import InputError
-from thermoscope.history import History, Revision, load_history
-from thermoscope.workbench.ledger import effective, undone, written
+from thermoscope.history import History, Revision, load_history, save_history
+from thermoscope.workbench.ledger import effective, undone
 
 ONE = Revision(0, "calibrate", values={"a": 1.0}, rmse_K={"t": (3.0, 2.0)})
 TWO = Revision(0, "add", ("x@y",), "x@y", {"a": 1.1, "x@y": 5.0}, rmse_K={"t": (2.0, 0.5)})
@@ -33,15 +33,15 @@ def test_undo_says_what_the_error_does():
 
 def test_a_step_is_written_and_read_back(tmp_path):
     file = tmp_path / "model.toml"
-    kept = written(file, History(), History().and_then(ONE))
+    kept = save_history(file, History().and_then(ONE), History())
     assert kept == load_history(file)
-    assert written(file, kept, kept.and_then(TWO)).last.effects == ("x@y",)
+    assert save_history(file, kept.and_then(TWO), kept).last.effects == ("x@y",)
 
 
 def test_somebody_elses_step_is_not_written_over(tmp_path):
     file = tmp_path / "model.toml"
-    mine = written(file, History(), History().and_then(ONE))
-    theirs = written(file, mine, mine.and_then(TWO))
+    mine = save_history(file, History().and_then(ONE), History())
+    theirs = save_history(file, mine.and_then(TWO), mine)
     with pytest.raises(InputError, match="another tab"):
-        written(file, mine, mine.and_then(TWO))
+        save_history(file, mine.and_then(TWO), mine)
     assert load_history(file) == theirs

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from geom.errors import InputError
 from thermoscope.commands import crosscheck
 from thermoscope.folder import load_machine_file
 from thermoscope.terminal import give, progress, say, table
@@ -30,6 +31,8 @@ def build(machine: str, out: Path | None, target: str | None, accuracy: float | 
 
     described = load_machine_file(Path(machine))
     folder = out or Path("out") / described.name
+    if Path(machine).is_file() and folder.resolve() == Path(machine).resolve().parent:
+        raise InputError("the machine file lies there: a result could take its name", f"--out {folder}", "out/NAME")
     with progress() as tell:
         built, found = _built(described, accuracy, tell)
         checked = crosscheck.checked(built, found, tell)
@@ -45,11 +48,12 @@ def build(machine: str, out: Path | None, target: str | None, accuracy: float | 
 
 
 def _built(described: Any, accuracy: float | None, tell: Any) -> tuple[Built, Sized | None]:
+    from lumped.motor_bases import on_all
     from thermoscope.pipeline import build as built_from
     from thermoscope.sized import sized
 
     if accuracy is None:
-        return built_from(described, progress=tell), None
+        return built_from(on_all(described), progress=tell), None
     found = sized(described, accuracy, progress=tell)
     return found.built, found
 

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from thermoscope.commands.revise import revised
-from thermoscope.commands.saved import fingerprint
-from thermoscope.files import write_whole
+from thermoscope.commands.saved import fingerprint, keep, kept
 from thermoscope.folder import Folder
 from thermoscope.terminal import Progress
 
@@ -46,16 +44,16 @@ class Unfinished:
 
     def values(self, tell: Progress) -> dict[str, float]:
         """Those of an interrupted calibration of this very case, else none."""
-        kept = json.loads(self.path.read_text(encoding="utf-8")) if self.path.is_file() else {}
-        if kept.get("fingerprint") != self.of:
+        found = kept(self.path)
+        if found is None or found.get("fingerprint") != self.of:
             return {}
         tell("going on with the calibration that was interrupted")
-        self.reached = kept["values"]
+        self.reached = found["values"]
         return dict(self.reached)
 
     def keep(self, values: Mapping[str, float]) -> None:
         self.reached |= values
-        write_whole(self.path, json.dumps({"fingerprint": self.of, "values": self.reached}))
+        keep(self.path, {"fingerprint": self.of, "values": self.reached})
 
     def done(self) -> None:
         self.path.unlink(missing_ok=True)

@@ -12,7 +12,7 @@ from thermoscope.commands.opened import opened_to_write
 from thermoscope.commands.revise import recorded
 from thermoscope.commands.saved import save_diagnosis
 from thermoscope.folder import Folder
-from thermoscope.history import History, load_history, save_history
+from thermoscope.history import History, save_history
 from thermoscope.terminal import give, progress, say, sized, table
 from viz.ahead import deciding
 
@@ -41,12 +41,11 @@ class Ledger:
     """model.toml, one revision longer after every step; none of the earlier ones is touched."""
 
     def __init__(self, folder: Folder) -> None:
-        self.file, self.history, self.written = folder.settings.model_file, folder.history, 0
+        self.file, self.written = folder.settings.model_file, 0
+        self.history: History = folder.history
 
     def keep(self, step: Revision, evidence: Mapping[str, float | str]) -> None:
-        standing: History = load_history(self.file)
-        self.history = standing.and_then(recorded(step, evidence))
-        save_history(self.file, self.history)
+        self.history = save_history(self.file, self.history.and_then(recorded(step, evidence)), self.history)
         self.written += 1
 
 

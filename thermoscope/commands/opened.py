@@ -19,6 +19,12 @@ def opened(name: str, progress: Progress, untested: bool = False) -> Folder:
     return folder
 
 
+def in_short(folder: Folder, name: str) -> None:
+    """How much looks wrong in the files, and what says more."""
+    if count := sum(not finding.remark for finding in folder.findings):
+        notes([f"{count} {'thing looks' if count == 1 else 'things look'} wrong: thermoscope doctor {name}"])
+
+
 def opened_to_write(name: str, progress: Progress) -> Folder:
     """The case for writing: one that lies inside the installed package is copied to the working folder first."""
     path = find_case(name)
@@ -30,6 +36,8 @@ def opened_to_write(name: str, progress: Progress) -> Folder:
         shutil.copytree(path, copy, ignore=shutil.ignore_patterns("out"))
         notes([f"copied the shipped case '{name}' to ./{copy}; from now on that folder is used"])
         path = copy
+    if (out := path / "out").exists() and not out.is_dir():
+        raise InputError("is no folder", str(out), "a folder for results: move the file away")
     folder = load_case(path, progress)
     notes(folder.notes)
     return folder

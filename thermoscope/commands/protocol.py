@@ -40,10 +40,10 @@ from pathlib import Path
 from typing import Any
 
 from geom.errors import InputError
+from geom.toml_file import read_toml
 from lumped.reader import Table
 from thermoscope.electrical import meter_of, saturation_of
-from thermoscope.formats import read_frame, recording
-from thermoscope.sheet import read_toml
+from thermoscope.formats import pairs, read_frame, recording
 from thermoscope.terminal import give, progress, say, table
 from validation.procedure.meters import OHMMETER, VOLTMETER
 from validation.procedure.protocol import Cold, Hot, Protocol, Record
@@ -74,8 +74,8 @@ def read_record(file: Path) -> Record:
     coefficients, meters = top.table("coefficients"), top.table("meters")
     top.close()
     record = Record(
-        machine.number("rated_kW", low=1e-3), _cold(cold) if cold.data else None, _pairs(load, file, 60.0),
-        load.number("resolution_K", 0.5, low=1e-3), _hot(hot, file) if hot.data else None,
+        machine.number("rated_kW"), _cold(cold) if cold.data else None, _pairs(load, file, 60.0),
+        load.number("resolution_K", 0.5), _hot(hot, file) if hot.data else None,
         meter_of(meters, "resistance", OHMMETER), meter_of(meters, "emf", VOLTMETER),
         beta=_range(coefficients, "beta_percent_K", COPPER), alpha=_range(coefficients, "alpha_percent_K", NDFEB),
         curve=saturation_of(coefficients),
@@ -91,8 +91,8 @@ def _optional(table: Table, key: str) -> float | None:
 
 def _cold(table: Table) -> Cold:
     cold = Cold(
-        table.number("room_degC", low=-273.15), table.number("machine_degC", low=-273.15),
-        table.number("resistance_ohm", low=1e-9), _optional(table, "emf_V"), _optional(table, "speed_rpm"),
+        table.number("room_degC"), table.number("machine_degC"),
+        table.number("resistance_ohm"), _optional(table, "emf_V"), _optional(table, "speed_rpm"),
         _optional(table, "range_ohm"), _optional(table, "hours_since_run"),
     )  # fmt: skip
     table.close()
@@ -101,7 +101,7 @@ def _cold(table: Table) -> Cold:
 
 def _hot(table: Table, file: Path) -> Hot:
     hot = Hot(
-        table.number("ambient_degC", low=-273.15), _pairs(table, file, 1.0), _optional(table, "emf_V"),
+        table.number("ambient_degC"), _pairs(table, file, 1.0), _optional(table, "emf_V"),
         _optional(table, "speed_rpm"), _optional(table, "range_ohm"),
     )  # fmt: skip
     table.close()
@@ -111,25 +111,28 @@ def _hot(table: Table, file: Path) -> Hot:
 def _pairs(source: Table, beside: Path, unit_s: float) -> Pairs:
     """(time, value) of a table's `readings`, or of its file; the file's times (s) are divided by `unit_s`."""
     if "readings" in source:
-        rows = source.raw("readings")
-        if not isinstance(rows, list) or not all(isinstance(r, list) and len(r) == 2 for r in rows):
+        rows = source.rows("readings", of="value")
+        if any(len(row) != 2 for row in rows):
             raise source.error("readings is no list of pairs", "readings = [[time, value], ...]")
-        return tuple((float(t), float(v)) for t, v in rows)
+        return tuple((row[0], row[1]) for row in rows)
     if "file" not in source:
         return ()
     path, time, column = beside.parent / source.word("file"), source.word("time", "time_s"), source.word("column")
-    frame = read_frame(recording(path), source.word("worksheet", ""))
+    file = recording(path)
+    frame = read_frame(file, source.word("worksheet", ""))
     for name in (time, column):
         if name not in frame.columns:
             raise source.error(f"column '{name}' is not in {path.name}", f"known: {', '.join(map(str, frame.columns))}")
-    return tuple((float(t) / unit_s, float(v)) for t, v in frame[[time, column]].dropna().to_numpy(float))
+    return tuple((float(t) / unit_s, float(v)) for t, v in pairs(frame, time, column, file))
 
 
 def _range(table: Table, key: str, usual: Reading) -> Reading:
     if key not in table:
         return usual
-    low, *more = table.numbers(key)
-    high = more[0] if more else low
+    given = table.numbers(key)
+    if len(given) not in (1, 2):
+        raise table.error(f"{key} = {list(given)} is not possible", "one number, or [lowest, highest]")
+    low, high = given[0], given[-1]
     return Reading(usual.name, (low + high) / 200.0, abs(high - low) / 200.0)
 
 

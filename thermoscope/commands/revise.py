@@ -45,7 +45,7 @@ def undo(case: str, number: int | None, target: str | None) -> int:
         after = at_revision(folder, history.last)
         tell("running the model")
         errors = {t.name: t.rmse_K for t in compare(after).tests}
-    save_history(folder.settings.model_file, history)
+    save_history(folder.settings.model_file, history, folder.history)
     model = {"case": folder.case.name, "revision": history.last.number, "why": history.last.why}
     document = {**model, "effects": list(history.last.effects), "rmse_K": errors}
     give(document, target, lambda: say(f"revision {history.last.number}: {history.last.why}; {_told(errors)}"))
@@ -63,7 +63,8 @@ def revised(case: str, step: Callable[..., revise.Revision], anyway: bool, targe
         result = step(folder, tell)
     keep = result.accepted or anyway
     if keep:
-        save_history(folder.settings.model_file, folder.history.and_then(recorded(result, evidence(folder, result))))
+        longer = folder.history.and_then(recorded(result, evidence(folder, result)))
+        save_history(folder.settings.model_file, longer, folder.history)
     document = {**result.document(), "case": folder.case.name, "written": keep}
     give(document, target, lambda: show(document, folder))
     return 0 if keep else 1

@@ -11,16 +11,17 @@ from typing import Any
 from thermoscope.commands.opened import PACKAGE
 from thermoscope.files import write_whole
 from thermoscope.folder import Folder
-from thermoscope.terminal import plain
+from thermoscope.terminal import notes, plain
 
 NAME = "diagnosis.json"
+SEAL = "sha256"
 
 
 def fingerprint(case: Path, but: str = "") -> str:
     """Of everything a result depends on: all files of the case outside out/, but one."""
     digest = hashlib.sha256()
     for path in sorted(p for p in case.rglob("*") if p.is_file() and "out" not in p.relative_to(case).parts):
-        if path.name != but:
+        if path.name != but and not path.name.startswith("."):  # a hidden file is what a killed process left
             digest.update(str(path.relative_to(case)).encode() + b"\0" + path.read_bytes())
     return digest.hexdigest()
 
@@ -36,13 +37,38 @@ def model_of(folder: Folder) -> str:
     return hashlib.sha256(repr((last.effects, sorted(last.values.items()))).encode()).hexdigest()
 
 
+def keep(path: Path, document: Mapping[str, Any]) -> None:
+    """Write a document that `kept` can tell from a damaged one."""
+    content = plain(document)
+    write_whole(path, json.dumps({**content, SEAL: _sealed(content)}, indent=1))
+
+
+def kept(path: Path) -> dict[str, Any] | None:
+    """A document as it was written; None, with a note, where the file is not what was written."""
+    if not path.is_file():
+        return None
+    try:
+        found = json.loads(path.read_text(encoding="utf-8"))
+        seal = found.pop(SEAL)
+        whole = bool(seal == _sealed(found))
+    except (OSError, ValueError, RecursionError, AttributeError, KeyError, TypeError):
+        whole = False
+    if not whole:
+        notes([f"{path} is damaged and is not used; the next result replaces it"])
+        return None
+    return dict(found)
+
+
+def _sealed(content: Mapping[str, Any]) -> str:
+    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+
 def save_diagnosis(folder: Folder, document: Mapping[str, Any]) -> None:
     """Keep it, unless the case lies inside the installed package."""
     if PACKAGE in folder.settings.path.resolve().parents:
         return
     path = folder.settings.path
-    kept = {**document, "model": model_of(folder), "plan": plan_of(path)}
-    write_whole(folder.settings.out / NAME, json.dumps(plain(kept), indent=1))
+    keep(folder.settings.out / NAME, {**document, "model": model_of(folder), "plan": plan_of(path)})
 
 
 def saved_diagnosis(folder: Folder) -> dict[str, Any] | None:
@@ -54,5 +80,4 @@ def saved_diagnosis(folder: Folder) -> dict[str, Any] | None:
 
 def last_diagnosis(folder: Folder) -> dict[str, Any] | None:
     """The kept diagnosis, of whatever model it was."""
-    path = folder.settings.out / NAME
-    return json.loads(path.read_text(encoding="utf-8")) if path.is_file() else None
+    return kept(folder.settings.out / NAME)

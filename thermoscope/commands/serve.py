@@ -14,7 +14,7 @@ def serve(case: str, host: str, port: int) -> int:
     from thermoscope.workbench.serve import application, token_for
     from thermoscope.workbench.serve import serve as run
 
-    gate = Gate(host, token_for(host, os.environ.get("THERMOSCOPE_TOKEN")))
+    gate = Gate(host, token_for(os.environ.get("THERMOSCOPE_TOKEN")))
     with progress() as tell:
         app = application(opened_to_write(case, tell), gate, tell)
     run(app, gate, port, lambda url: say(f"open {url}  (Ctrl-C ends)"))

@@ -14,6 +14,7 @@ from geom.errors import InputError, ThermoscopeError
 from lumped.audit import Audit, audit
 from lumped.coupled import coupled
 from lumped.network import Network, Row
+from lumped.runaway import checked_run
 from lumped.simulate import Record
 from lumped.simulate import simulate as integrated
 from thermoscope.commands.error_budget import show_budget
@@ -86,6 +87,7 @@ def _ran(
         run, record, residuals = found.run, replace(record, inputs=found.inputs), found.residuals
     inside = len(rows) - len(sensors(folder))
     y = np.column_stack([run.y[:, :inside], readings(whole, folder, cycle.name, record, run.y[:, inside:])])
+    checked_run(y, record.time, tuple(rows), network)
     heat = audit(network, record, values)
     if heat.mismatch > MISMATCH:
         raise ThermoscopeError(f"{cycle.name}: injected and declared losses differ by {100 * heat.mismatch:.3g} %")

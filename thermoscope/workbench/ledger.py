@@ -1,11 +1,8 @@
-"""The model's history as one tab sees it: written step by step, never over somebody else's step."""
+"""The model's history as one tab sees it: the steps that still count."""
 
 from __future__ import annotations
 
-from pathlib import Path
-
-from geom.errors import InputError
-from thermoscope.history import History, Revision, load_history, save_history
+from thermoscope.history import History, Revision
 
 
 def same(a: Revision, b: Revision) -> bool:
@@ -29,13 +26,3 @@ def undone(history: History) -> History | None:
     """One revision more, equal to the model before the last step that still counts; None at the declared model."""
     steps = effective(history)
     return history.back_to(steps[-2].number) if len(steps) > 1 else None
-
-
-def written(file: Path, known: History, new: History) -> History:
-    """Write `new` over `known`; InputError when the file holds something else by now."""
-    if load_history(file) != known:
-        raise InputError(
-            "the model was changed by another tab or command", str(file), "'take over' first, then repeat the step"
-        )
-    save_history(file, new)
-    return load_history(file)

@@ -14,7 +14,7 @@ from geom.errors import InputError
 from thermoscope.folder import Folder
 from thermoscope.terminal import Progress
 from thermoscope.workbench.bench import bench
-from thermoscope.workbench.gate import Gate, loopback
+from thermoscope.workbench.gate import Gate
 from thermoscope.workbench.jobs import prepare
 from thermoscope.workbench.tabs import Tabs
 
@@ -22,11 +22,11 @@ SWEEP_S = 30.0
 SHORTEST = 16
 
 
-def token_for(host: str, given: str | None) -> str:
-    """What a browser must show: nothing on this computer only, else the given token or a new one."""
+def token_for(given: str | None) -> str:
+    """What a browser must show: the given token or a new one. Other users and programs share this computer's ports."""
     if given is not None and len(given) < SHORTEST:
         raise InputError(f"the token has {len(given)} characters", "THERMOSCOPE_TOKEN", f"at least {SHORTEST}")
-    return given or ("" if loopback(host) else secrets.token_urlsafe(24))
+    return given or secrets.token_urlsafe(24)
 
 
 def application(folder: Folder, gate: Gate, tell: Progress) -> web.Application:

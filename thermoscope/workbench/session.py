@@ -12,7 +12,7 @@ from typing import Any
 from geom.errors import ThermoscopeError
 from thermoscope.commands.saved import save_diagnosis, saved_diagnosis
 from thermoscope.folder import Folder
-from thermoscope.history import History, Revision, load_history
+from thermoscope.history import History, Revision, load_history, save_history
 from thermoscope.workbench import ledger, steps
 from thermoscope.workbench.bench import Bench, at
 from thermoscope.workbench.jobs import FailedError, Job, StoppedError
@@ -125,7 +125,7 @@ class Session:
     def _write(self, new: History, look: Look | None = None) -> bool:
         """To model.toml, unless somebody else has written there; then show it."""
         try:
-            self.history = ledger.written(self.file, self.history, new)
+            self.history = save_history(self.file, new, self.history)
         except (ThermoscopeError, OSError) as fault:
             self._complain(str(fault))
             return False

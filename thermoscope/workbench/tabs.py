@@ -13,6 +13,7 @@ from aiohttp import WSMsgType, web
 
 from thermoscope.workbench.bench import Bench
 from thermoscope.workbench.gate import served
+from thermoscope.workbench.policy import REPORT, policy
 from thermoscope.workbench.session import Session
 
 MOST = 8
@@ -110,7 +111,10 @@ class Tabs:
             path = served(tab.folders, name)
         if path is None or not path.is_file():
             raise web.HTTPNotFound()
-        return web.FileResponse(path)
+        headers = {}
+        if path.suffix == ".html":
+            headers["Content-Security-Policy"] = REPORT if name == "report.html" else policy(path, request.host)
+        return web.FileResponse(path, headers=headers)
 
     async def address(self, request: web.Request) -> web.Response:
         """Where the page finds its session, which trame's browser side asks for first.

@@ -1,0 +1,222 @@
+"""A process killed, and a disk that fills, at random moments of commands that write: does the case still open?
+
+    python benchmarks/robustness.py [--trials 20] [--seed 0] [--json FILE]
+
+Every trial runs one command on a fresh copy of a small case in a process of its own. It is killed (SIGKILL) at a random
+moment, or as soon as a file is half written (aimed), or its disk (a small tmpfs, in a mount namespace of its own) is
+filled up at a random moment. A trial hits when the command was still at work. After it the case has to open, all inputs
+be what they were, all earlier revisions be there, and nothing that counts lie about.
+"""
+
+from __future__ import annotations
+
+import argparse
+import datetime
+import json
+import os
+import platform
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "thermoscope")]
+
+from small_case import small_case  # noqa: E402
+
+from thermoscope.cli import main as command_line  # noqa: E402
+from thermoscope.commands.saved import fingerprint  # noqa: E402
+from thermoscope.folder import load_case  # noqa: E402
+
+COMMANDS = {
+    "calibrate": ("calibrate", "{case}", "--anyway"),
+    "add": ("add", "{case}", "convection@flange", "--anyway"),
+    "undo": ("undo", "{case}"),
+    "improve": ("improve", "{case}", "--yes", "--most", "1"),
+}
+SPACE = 2**23  # bytes of the disk that fills
+
+
+@dataclass(frozen=True)
+class Trial:
+    """hit : the command was still at work when it was struck;  faults : what was wrong with the case afterwards"""
+
+    command: str
+    strike: str
+    hit: bool
+    written: bool
+    faults: tuple[str, ...]
+
+
+def started(arguments: list[str], log: Path) -> int:
+    """A child that runs a command with everything loaded already; its process id."""
+    child = os.fork()
+    if child:
+        return child
+    code = 3
+    try:
+        with log.open("w") as stderr, Path(os.devnull).open("w") as stdout:
+            os.dup2(stdout.fileno(), 1)
+            os.dup2(stderr.fileno(), 2)
+            sys.argv = ["thermoscope", *arguments]
+            command_line()
+    except SystemExit as end:
+        code = int(end.code or 0)
+    finally:
+        os._exit(code)
+
+
+def ended(child: int) -> int | None:
+    """Exit status (os.waitstatus_to_exitcode) of a child that has ended, else None."""
+    done, status = os.waitpid(child, os.WNOHANG)
+    return os.waitstatus_to_exitcode(status) if done else None
+
+
+def killed(child: int, case: Path, wait: Callable[[Path], bool], limit: float) -> bool:
+    """Kill when `wait` says so or time is up; whether it was still running."""
+    end = time.monotonic() + limit
+    while time.monotonic() < end and not wait(case):
+        if ended(child) is not None:
+            return False
+    os.kill(child, signal.SIGKILL)
+    os.waitpid(child, 0)
+    return True
+
+
+def half_written(case: Path) -> bool:
+    return any(".part" in p.name for folder in (case, case / "out") if folder.is_dir() for p in folder.iterdir())
+
+
+def filled(child: int, case: Path, limit: float) -> bool:
+    """Fill the disk after `limit` s and wait for the end; whether the command failed by it."""
+    time.sleep(limit)
+    with suppress(OSError), (case.parent / "ballast").open("wb", buffering=0) as ballast:
+        while True:
+            ballast.write(b"\0" * 4096)
+    _, status = os.waitpid(child, 0)
+    return os.waitstatus_to_exitcode(status) == 2
+
+
+def state(case: Path) -> dict[str, bytes]:
+    """All that the user brought."""
+    files = [p for p in case.rglob("*") if p.is_file() and "out" not in p.parts and not p.name.startswith(".")]
+    return {str(p.relative_to(case)): p.read_bytes() for p in files if p.name != "model.toml"}
+
+
+def faults(case: Path, before: dict[str, bytes], revisions: int, print_: str) -> Iterator[str]:
+    """What is wrong with a case after a strike."""
+    if state(case) != before:
+        yield "inputs differ"
+    if fingerprint(case, "model.toml") != print_:
+        yield "something lies about that counts as input"
+    try:
+        if len(load_case(case).history.revisions) < revisions:
+            yield "revisions are lost"
+    except Exception as fault:
+        yield f"does not open: {fault}"
+
+
+def trial(name: str, strike: str, home: Path, original: Path, rng: random.Random, usual: float) -> Trial:
+    """One command on one copy, struck once."""
+    case = Path(shutil.copytree(original, home / "case"))
+    try:
+        before, revisions, print_ = state(case), len(load_case(case).history.revisions), fingerprint(case, "model.toml")
+        child = started([word.format(case=case) for word in COMMANDS[name]], Path(os.devnull))
+        at = rng.uniform(0.0, usual)
+        if strike == "full disk":
+            hit = filled(child, case, at)
+        elif strike == "aimed":
+            hit = killed(child, case, half_written, 20.0 * usual)
+        else:
+            hit = killed(child, case, lambda _: False, at)
+        (home / "ballast").unlink(missing_ok=True)
+        wrong = tuple(faults(case, before, revisions, print_))
+        return Trial(
+            name, strike, hit, len(load_case(case).history.revisions) > revisions if not wrong else False, wrong
+        )
+    finally:
+        shutil.rmtree(case)
+
+
+def usual_time(name: str, home: Path, original: Path) -> float:
+    """Seconds that a command takes when nothing strikes it."""
+    case = Path(shutil.copytree(original, home / "case"))
+    begin = time.monotonic()
+    child = started([word.format(case=case) for word in COMMANDS[name]], Path(os.devnull))
+    _, status = os.waitpid(child, 0)
+    shutil.rmtree(case)
+    if os.waitstatus_to_exitcode(status) not in (0, 1):
+        raise SystemExit(f"{name} fails when nothing strikes it")
+    return time.monotonic() - begin
+
+
+@contextmanager
+def disk(folder: Path) -> Iterator[bool]:
+    """A small disk mounted there, where this process may mount one."""
+    folder.mkdir()
+    options = ["-t", "tmpfs", "-o", f"size={SPACE}", "none", str(folder)]
+    mounted = subprocess.run(["mount", *options], capture_output=True).returncode == 0
+    try:
+        yield mounted
+    finally:
+        if mounted:
+            subprocess.run(["umount", "-l", str(folder)], check=True)
+
+
+def prepared(folder: Path) -> Path:
+    """A small case with one revision to lose."""
+    case = small_case(folder)
+    os.waitpid(started([word.format(case=case) for word in COMMANDS["calibrate"]], Path(os.devnull)), 0)
+    if not load_case(case).history.revisions:
+        raise SystemExit("the case could not be prepared")
+    return case
+
+
+def measured(trials: int, seed: int) -> list[Trial]:
+    """All trials: every command, killed at random and aimed, and on a disk that fills."""
+    rng, out = random.Random(seed), []
+    with tempfile.TemporaryDirectory() as work, disk(Path(work) / "disk") as mounted:
+        home, original = Path(work), prepared(Path(work))
+        for name in COMMANDS:
+            usual = usual_time(name, home, original)
+            strikes = {"killed": home, "aimed": home, **({"full disk": home / "disk"} if mounted else {})}
+            for strike, place in strikes.items():
+                done = [trial(name, strike, place, original, rng, usual) for _ in range(trials)]
+                hits, wrong = sum(t.hit for t in done), sum(bool(t.faults) for t in done)
+                print(f"{name:10s} {strike:10s} {trials} trials, {hits} hit, {wrong} left a fault", flush=True)
+                out += done
+        if not mounted:
+            print("no disk could be mounted: run as root, or under unshare -rm")
+    return out
+
+
+def main() -> None:
+    """Print the table; exit code 1 if any trial left a fault."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--trials", type=int, default=20)
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--json", type=Path)
+    options = parser.parse_args()
+    print(f"{platform.machine()}, Python {platform.python_version()}, {datetime.date.today()}", flush=True)
+    done = measured(options.trials, options.seed)
+    hits, wrong = [t for t in done if t.hit], [t for t in done if t.faults]
+    print(f"{len(done)} trials, {len(hits)} hit, {len(wrong)} left a fault")
+    for t in wrong:
+        print(t)
+    if options.json:
+        rows: list[Any] = [vars(t) for t in done]
+        options.json.write_text(json.dumps({"trials": rows}, indent=1))
+    raise SystemExit(1 if wrong else 0)
+
+
+if __name__ == "__main__":
+    main()

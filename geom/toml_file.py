@@ -1,0 +1,25 @@
+"""TOML files as dictionaries, or one message that says what is wrong with the file."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from geom.errors import InputError
+
+LARGEST = 16 * 2**20  # bytes; a file of this kind is written by hand, or by us, and is far smaller
+
+
+def read_toml(path: Path, right: str) -> dict[str, Any]:
+    """The tables of a TOML file; a byte-order mark at its start is no fault. right : what the file should be."""
+    if not path.exists():
+        raise InputError("no such file", str(path), right)
+    if not path.is_file():
+        raise InputError("is no file", str(path), right)
+    if path.stat().st_size > LARGEST:
+        raise InputError(f"has {path.stat().st_size} bytes, too many for TOML", str(path), right)
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
+    except (OSError, ValueError, RecursionError) as fault:
+        raise InputError(f"not readable as TOML: {fault or type(fault).__name__}", str(path), right) from None

@@ -1,0 +1,126 @@
+"""The doctor: every illness that is put into a sound case is found, by test and column, and a sound case has none."""
+
+import json
+
+import numpy as np
+import pytest
+from recordings import case_of, changed, edited
+
+from thermoscope.cli import main
+
+
+def asked(monkeypatch, capsys, case):
+    monkeypatch.setattr("sys.argv", ["thermoscope", "doctor", str(case), "--json", "-"])
+    with pytest.raises(SystemExit) as end:
+        main()
+    return end.value.code, json.loads(capsys.readouterr().out)
+
+
+def kelvin(table):
+    table["T_flange"] += 273.15
+
+
+def fahrenheit(table):
+    table["T_flange"] = 1.8 * table["T_flange"] + 32.0
+
+
+def frozen(table):
+    table["T_flange"] = 20.0
+
+
+def spike(table):
+    table.loc[40, "T_flange"] += 60.0
+
+
+def code(table):
+    table.loc[40, "T_flange"] = 1370.0
+
+
+def twins(table):
+    table["T_flange"] = table["T_winding"]
+
+
+def uneven(table):
+    table["time_s"] += np.where(np.arange(len(table)) % 2, 9.0, 0.0)
+
+
+def hole(table):
+    table.drop(index=range(60, 69), inplace=True)
+
+
+ILL = {
+    kelvin: "kelvin", fahrenheit: "Fahrenheit", frozen: "frozen", spike: "leap", code: "code for no reading",
+    twins: "same readings", uneven: "unevenly", hole: "no rows from",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("ill", ILL, ids=lambda ill: ill.__name__)
+def test_an_illness_is_found_with_its_test_and_a_cure(tmp_path, monkeypatch, capsys, ill):
+    case = case_of(tmp_path)
+    changed(case, "stand", ill)
+    answer, found = asked(monkeypatch, capsys, case)
+    mine = [f for f in found["doubts"] if ILL[ill] in f["what"]]
+    assert answer == 1
+    assert mine
+    assert {f["test"] for f in mine} == {"stand"}
+    assert all(f["cure"] for f in mine)
+
+
+def test_a_sound_case_has_only_the_input_that_no_law_reads(tmp_path, monkeypatch, capsys):
+    _, found = asked(monkeypatch, capsys, case_of(tmp_path))
+    assert found["wrong"] == []
+    assert [(f["where"], f["remark"]) for f in found["doubts"]] == [("vehicle_speed_mps", True)]
+
+
+def test_milliseconds_in_one_test_are_found_by_its_rows(tmp_path, monkeypatch, capsys):
+    case = case_of(tmp_path)
+    changed(case, "stand", lambda table: table.__setitem__("time_s", 60.0 * table["time_s"]))
+    _, found = asked(monkeypatch, capsys, case)
+    assert [f["test"] for f in found["doubts"] if "in the other tests" in f["what"]] == ["stand"]
+
+
+def test_two_names_for_one_recording(tmp_path, monkeypatch, capsys):
+    case = case_of(tmp_path)
+    (case / "tests/town.csv").write_bytes((case / "tests/road.csv").read_bytes())
+    _, found = asked(monkeypatch, capsys, case)
+    assert [f["test"] for f in found["doubts"] if "two names" in f["what"]] == ["road, town"]
+
+
+def test_an_input_that_no_test_moves(tmp_path, monkeypatch, capsys):
+    case = case_of(tmp_path)
+    for test in ("stand", "road", "town"):
+        changed(case, test, lambda table: table.__setitem__("current", 100.0))
+    _, found = asked(monkeypatch, capsys, case)
+    assert "current_A" in [f["where"] for f in found["doubts"] if "moves" in f["what"]]
+
+
+def test_watts_that_are_kilowatts(tmp_path, monkeypatch, capsys):
+    """0.2 read as W where 200 W were meant cannot have warmed 11 kJ/K by tens of kelvin."""
+    case = case_of(tmp_path)
+    old = 'kind = "copper"\nR20_ohm = 0.02\ncurrents = ["current_A"]'
+    new = 'kind = "constant"\nP_W = 1.0\nof = { input = "power_W", at = 1.0 }'
+    edited(case / "network.toml", old, new)
+    for test in ("stand", "road", "town"):
+        sheet = case / "tests" / f"{test}.toml"
+        edited(sheet, 'quantity = "current"\nunit = "A"', 'quantity = "power"\nunit = "W"')
+        changed(case, test, lambda table: table.__setitem__("current", 2e-5 * table["current"] ** 2))
+    _, found = asked(monkeypatch, capsys, case)
+    assert {f["test"] for f in found["doubts"] if "kW?" in f["what"]} == {"stand", "road", "town"}
+
+
+def test_what_would_be_refused_is_told_for_every_test(tmp_path, monkeypatch, capsys):
+    case = case_of(tmp_path)
+    for test in ("stand", "road"):
+        changed(case, test, lambda table: table.drop(columns="T_yoke", inplace=True))
+    answer, found = asked(monkeypatch, capsys, case)
+    assert answer == 2
+    assert [f["test"] for f in found["wrong"]] == ["stand", "road"]
+
+
+def test_compare_says_in_short_how_much_looks_wrong(tmp_path, monkeypatch, capsys):
+    case = case_of(tmp_path)
+    changed(case, "stand", spike)
+    monkeypatch.setattr("sys.argv", ["thermoscope", "compare", str(case), "--json", "-"])
+    with pytest.raises(SystemExit):
+        main()
+    assert f"1 thing looks wrong: thermoscope doctor {case}" in capsys.readouterr().err

@@ -1,0 +1,93 @@
+"""Every number of every file: no number, not finite or beyond its bounds is refused by key; the limits are not."""
+
+import math
+
+import pytest
+from documents import ROOT, documented, key_of, numbers, put, shipped
+
+from geom.errors import InputError
+from geom.machine import machine_from
+from lumped.bounds import KEYS, UNITS, Bounds, bounds
+from lumped.declared import read_network
+from thermoscope.sheet import read_sheet
+
+NO_NUMBER = {
+    "nan": math.nan, "inf": math.inf, "huge": 10**400, "-1e300": -1e300, "word": "12", "true": True, "list": [[1.0]],
+}  # fmt: skip
+NETWORKS = {"documented": documented(), "tclab": shipped("cases/tclab/network.toml")}
+NETWORKS |= {p.stem: shipped(str(p.relative_to(ROOT))) for p in sorted(ROOT.glob("benchmarks/hidden/machines/*.toml"))}
+SHEET = {
+    "test": {"time": "time_s", "filter_s": 9.0, "max_gap_s": 30.0, "initial": 21.0},
+    "columns": {"T": {"quantity": "temperature", "unit": "degC", "place": "x", "sigma_K": 0.3, "lag_s": 9.0,
+                      "position_mm": [1.0, 2.0, 3.0]},
+                "R": {"quantity": "resistance", "unit": "ohm", "place": "x", "coefficient_percent_K": [0.39, 0.4],
+                      "reference_degC": 20.0, "cold": {"reading": 2.0, "at_degC": 20.0},
+                      "meter": {"percent": 0.2, "offset": 0.1, "resolution": 0.1, "range": [0.1, 4.0]}}},
+    "means": {"M": {"of": ["T"], "place": "x", "sigma_K": 0.3, "lag_s": 9.0}},
+    "inputs": {"current_A": 8.0}, "boundaries": {"ambient": 21.0},
+    "recorders": {"daq": {"file": "daq.csv", "shift_s": 3.0, "limit_s": 60.0}},
+}  # fmt: skip
+MACHINE = shipped("cases/pmsm-bases/machine.toml")
+
+
+def distinct():
+    """One way to every key of every section of the networks."""
+    seen = set()
+    for name, document in NETWORKS.items():
+        for way in numbers(document):
+            mark = (way[0], *(key for key in way[2:] if isinstance(key, str)))
+            if mark not in seen and way[0] not in ("parameters",):
+                seen.add(mark)
+                yield name, way
+
+
+WAYS = list(distinct())
+
+
+def test_the_documents_are_right():
+    for document in NETWORKS.values():
+        read_network(document)
+    read_sheet(SHEET, "sheet.toml")
+
+
+@pytest.mark.parametrize("value", NO_NUMBER.values(), ids=NO_NUMBER)
+@pytest.mark.parametrize(("name", "way"), WAYS, ids=[f"{n}:{'.'.join(map(str, w))}" for n, w in WAYS])
+def test_no_number_of_a_network_is_refused_by_key(name, way, value):
+    with pytest.raises(InputError, match=key_of(way)) as refused:
+        read_network(put(NETWORKS[name], way, value))
+    assert len(str(refused.value)) < 1000
+    assert refused.value.right
+
+
+@pytest.mark.parametrize("value", NO_NUMBER.values(), ids=NO_NUMBER)
+@pytest.mark.parametrize("way", list(numbers(SHEET)), ids=lambda way: ".".join(map(str, way)))
+def test_no_number_of_a_sheet_is_refused_by_key(way, value):
+    with pytest.raises(InputError, match=key_of(way)):
+        read_sheet(put(SHEET, way, value), "sheet.toml")
+
+
+@pytest.mark.parametrize("value", NO_NUMBER.values(), ids=NO_NUMBER)
+@pytest.mark.parametrize("way", list(numbers(MACHINE["geometry"])), ids=lambda way: ".".join(map(str, way)))
+def test_no_number_of_a_geometry_is_refused_by_key(way, value):
+    with pytest.raises(InputError, match=key_of(way)):
+        machine_from(put(MACHINE, ("geometry", *way), value))
+
+
+@pytest.mark.parametrize("key", [*KEYS, *UNITS])
+def test_limits_are_allowed_and_what_is_beyond_is_not(key):
+    allowed = bounds(key)
+    for value in (allowed.low, allowed.high):
+        assert allowed.hold(value)
+    for value in (math.nextafter(allowed.low, -math.inf), math.nextafter(allowed.high, math.inf), math.nan):
+        assert not allowed.hold(value)
+
+
+def test_a_key_has_the_bounds_of_its_unit():
+    assert bounds("stator_C_J_K") == UNITS["J_K"]
+    assert bounds("h_W_m2K") == UNITS["W_m2K"]
+    assert bounds("anything_degC").low == -100.0
+
+
+def test_a_count_has_no_fraction():
+    assert Bounds(1, 9, whole=True).hold(8.0)
+    assert not Bounds(1, 9, whole=True).hold(2.5)

@@ -1,0 +1,251 @@
+"""What a file may not be or say: refused in one line with place and cure, exit 2, all files as before."""
+
+import gzip
+import io
+import os
+import tarfile
+
+import pytest
+from recordings import case_of, changed, edited
+
+from thermoscope.cli import main
+
+STAND = "tests/stand.toml"
+
+
+def answered(monkeypatch, capsys, *arguments):
+    """Exit code, stdout and the errors of a command in this process."""
+    monkeypatch.setattr("sys.argv", ["thermoscope", *map(str, arguments)])
+    with pytest.raises(SystemExit) as end:
+        main()
+    captured = capsys.readouterr()
+    return end.value.code, captured.out, [line for line in captured.err.splitlines() if line.startswith("error")]
+
+
+def contents(folder):
+    return {p: p.read_bytes() for p in sorted(folder.rglob("*")) if p.is_file()}
+
+
+def swap(file, old, new):
+    return lambda case: edited(case / file, old, new)
+
+
+def column(name, row, value):
+    """One cell of stand.csv."""
+
+    def change(table):
+        table[name] = table[name].astype(object)
+        table.loc[row, name] = value
+
+    return lambda case: changed(case, "stand", change)
+
+
+def whole(name, make):
+    """A whole column of stand.csv."""
+    return lambda case: changed(case, "stand", lambda table: table.__setitem__(name, make(table)))
+
+
+def bytes_of(name, make):
+    def write(case):
+        file = case / name
+        content = file.read_bytes()
+        file.unlink()
+        (case / make(content)[0]).write_bytes(make(content)[1])
+
+    return write
+
+
+def packed(content):
+    return gzip.compress(content)
+
+
+def damaged(content):
+    out = bytearray(packed(content))
+    out[50:60] = b"x" * 10
+    return bytes(out)
+
+
+def archive(content):
+    memory = io.BytesIO()
+    with tarfile.open(fileobj=memory, mode="w:gz") as tar:
+        info = tarfile.TarInfo("stand.csv")
+        info.size = len(content)
+        tar.addfile(info, io.BytesIO(content))
+    return memory.getvalue()
+
+
+def beside(case):
+    (case / "tests/stand.csv.gz").write_bytes(packed((case / "tests/stand.csv").read_bytes()))
+
+
+def power(case, value):
+    """The current column read as a power that a loss takes the amount of."""
+    edited(case / "network.toml", 'kind = "copper"\nR20_ohm = 0.02\ncurrents = ["current_A"]',
+           'kind = "constant"\nP_W = 1.0\nof = { input = "power_W", at = 1.0 }')  # fmt: skip
+    for test in ("stand", "road", "town"):
+        edited(case / f"tests/{test}.toml", 'quantity = "current"\nunit = "A"', 'quantity = "power"\nunit = "W"')
+    changed(case, "stand", lambda table: table.__setitem__("current", value(table["current"])))
+
+
+def pipe(name):
+    def make(case):
+        (case / name).unlink()
+        os.mkfifo(case / name)
+
+    return make
+
+
+def model(values):
+    text = f'[[revision]]\nnumber = 1\naction = "calibrate"\neffects = []\nvalues = {{ {values} }}\n'
+    return lambda case: (case / "model.toml").write_text(text)
+
+
+def named(name):
+    return swap("case.toml", "[tests.stand]", f'[tests."{name}"]\nfile = "tests/stand.csv"\nsheet = "{STAND}"')
+
+
+def parameter(keys):
+    extra = f'[parameters.x]\nacts_on = ["link:yoke-air"]\n{keys}\n[losses.copper]'
+    return swap("network.toml", "[losses.copper]", extra)
+
+
+AIR = "[columns.air]"
+FLANGE = 'between = ["flange", "ambient"]'
+REFUSED = {
+    "name that leads outside": (named("/../../../ESCAPED"), ["case.toml", "ESCAPED", "characters without"]),
+    "name with a backslash": (named("a\\\\b"), ["case.toml", "characters without"]),
+    "name of dots": (named(".."), ["case.toml", "characters without"]),
+    "empty name": (named(""), ["case.toml", "characters without"]),
+    "name with a line break": (named("a\\nb"), ["case.toml", "characters without"]),
+    "name without end": (named("x" * 200), ["case.toml", "up to 100"]),
+    "two recordings of one name": (beside, ["stand.csv and stand.csv.gz", 'file = "tests/stand.csv"']),
+    "one recording in two roles": (
+        swap("case.toml", 'role = "hold-out"', f'role = "hold-out"\nfile = "tests/stand.csv"\nsheet = "{STAND}"'),
+        ["tests.stand", "tests.town", "one recording"]),
+    "network of a wrong type": (swap("case.toml", '"network.toml"', "3"), ["case.toml", "network = 3"]),
+    "network that is a folder": (swap("case.toml", '"network.toml"', '"tests"'), ["tests", "is no file"]),
+    "network without a name": (swap("case.toml", '"network.toml"', '""'), ["is no file"]),
+    "recording that is a pipe": (pipe("tests/stand.csv"), ["stand.csv", "is no file"]),
+    "sheet that is a pipe": (pipe(STAND), ["stand.toml", "is no file"]),
+    "case that is a pipe": (pipe("case.toml"), ["case.toml", "is no file"]),
+    "damaged gzip": (bytes_of("tests/stand.csv", lambda c: ("tests/stand.csv.gz", damaged(c))), ["as gzip"]),
+    "half a gzip": (bytes_of("tests/stand.csv", lambda c: ("tests/stand.csv.gz", packed(c)[:900])), ["gzip"]),
+    "no gzip": (bytes_of("tests/stand.csv", lambda c: ("tests/stand.csv.gz", c)), ["not readable as gzip"]),
+    "archive": (bytes_of("tests/stand.csv", lambda c: ("tests/stand.csv.gz", archive(c))), ["zero bytes"]),
+    "binary": (bytes_of("tests/stand.csv", lambda c: ("tests/stand.csv", bytes(range(256)) * 9)), ["zero bytes"]),
+    "UTF-16": (bytes_of("tests/stand.csv", lambda c: ("tests/stand.csv", c.decode().encode("utf-16"))), ["stand.csv"]),
+    "Latin-1": (bytes_of("tests/stand.csv", lambda c: ("tests/stand.csv", c.replace(b"air", b"\xb0C"))), ["UTF-8"]),
+    "no workbook": (bytes_of("tests/stand.csv", lambda c: ("tests/stand.xlsx", c)), ["stand.xlsx", "Excel"]),
+    "no Parquet": (bytes_of("tests/stand.csv", lambda c: ("tests/stand.parquet", c)), ["stand.parquet"]),
+    "decimal commas": (
+        bytes_of("tests/stand.csv", lambda c: ("tests/stand.csv", c.replace(b".", b","))), ["decimal commas"]),
+    "semicolons": (bytes_of("tests/stand.csv", lambda c: ("tests/stand.csv", c.replace(b",", b";"))), ["';'"]),
+    "a header twice": (
+        lambda case: changed(case, "stand", lambda table: table.insert(7, " T_yoke", table["T_yoke"])),
+        ["'T_yoke' stands twice"]),
+    "last time of 1e12": (column("time_s", 299, 1e12), ["1e+12 s", "time_unit"]),
+    "time unit that leaves one sample": (
+        swap(STAND, 'time = "time_s"', 'time = "time_s"\ntime_unit = "ms"'), ["2.99 s", "time_unit"]),
+    "time unit that makes decades": (
+        swap(STAND, 'time = "time_s"', 'time = "time_s"\ntime_unit = "year"'), ["time_unit"]),
+    "time unit to a huge power": (
+        swap(STAND, 'time = "time_s"', 'time = "time_s"\ntime_unit = "s**999999999"'), ["s**999999999", "known: h"]),
+    "unit of powers of powers": (swap(STAND, '"km/h"', '"km/h**9**9**9**9"'), ["km/h**9", "known"]),
+    "unit that is a number": (swap(STAND, '"km/h"', "3"), ["unit = 3"]),
+    "unit that is a list": (swap(STAND, '"km/h"', '["km/h"]'), ["no unit"]),
+    "time unit that is a number": (
+        swap(STAND, 'time = "time_s"', 'time = "time_s"\ntime_unit = 3'), ["unit = 3"]),
+    "m/s of a shaft": (swap(STAND, '"vehicle_speed"\nunit = "km/h"', '"speed"\nunit = "m/s"'), ["vehicle_speed"]),
+    "input named in another unit": (
+        swap(STAND, '"current"\nunit = "A"', '"current"\nunit = "A"\ninput = "current_mA"'), ["held in A"]),
+    "use in quotes": (swap(STAND, '"km/h"', '"km/h"\nuse = "false"'), ["use = 'false'", "without quotes"]),
+    "boundary by column and constant": (
+        swap(STAND, AIR, f"[boundaries]\nambient = 20\n{AIR}"), ["ambient", "[columns.air]", "[boundaries]"]),
+    "boundary by two columns": (swap(STAND, 'place = "yoke"', 'place = "ambient"'), ["[columns.air]", "T_yoke"]),
+    "misspelt boundary": (swap(STAND, AIR, f"[boundaries]\nambeint = 20\n{AIR}"), ["did you mean 'ambient'"]),
+    "misspelt input": (
+        swap(STAND, '[columns.current]', '[inputs]\ncurent_A = 20\n[columns.current]\nuse = false'),
+        ["curent_A", "did you mean 'current_A'"]),
+    "input by column and constant": (swap(STAND, AIR, f"[inputs]\ncurrent_A = 20\n{AIR}"), ["current_A", "twice"]),
+    "one column as two sensors": (
+        swap(STAND, "[columns.T_flange]", '[columns.T_flange]\ncolumn = "T_yoke"'), ["T_flange", "one column"]),
+    "boundary below all weather": (
+        swap(STAND, '"ambient"', '"ambient"\nuse = false\n[boundaries]\nambient = -150'), ["-150", "-100"]),
+    "sensor without end": (swap(STAND, "sigma_K = 0.4", "sigma_K = inf"), ["T_flange", "sigma_K = inf"]),
+    "sensor of no width": (swap(STAND, "sigma_K = 0.4", "sigma_K = 0"), ["T_flange", "sigma_K = 0"]),
+    "reading below all cold": (column("T_flange", 10, -150), ["line 12", "-150"]),
+    "reading above all metal": (column("T_flange", 10, 5000), ["line 12", "5000"]),
+    "reading of 1e300": (column("current", 10, 1e29), ["line 12", "1e+29"]),
+    "degC read as K": (swap(STAND, 'unit = "degC"\nplace = "winding"', 'unit = "K"\nplace = "winding"'), ["unit"]),
+    "reversed clamp": (lambda case: power(case, lambda amps: -amps), ["negative", "clamp", "line"]),
+    "one reading of a reversed clamp": (
+        lambda case: power(case, lambda amps: amps.where(amps.index != 40, -50.0)), ["negative", "line 42"]),
+    "nodes alone": (
+        lambda case: [edited(case / "network.toml", FLANGE, 'between = ["flange", "winding"]'),
+                      edited(case / "network.toml", 'between = ["yoke", "ambient"]', 'between = ["yoke", "winding"]')],
+        ["no heat can leave", "'winding', 'yoke', 'flange'", "ambient"]),
+    "no capacity": (
+        lambda case: [edited(case / "network.toml", f"C_J_K = {C}", "C_J_K = 0") for C in (2000, 6000, 3000)],
+        ["no node has a heat capacity"]),
+    "stream in a loop": (
+        swap("network.toml", "[losses.copper]", '[streams.x]\npath = ["ambient", "yoke", "flange", "yoke"]\nmcp_W_K = 5'
+             "\n[losses.copper]"), ["streams.x", "'yoke' 2 times", "circuits"]),
+    "stream to nowhere": (
+        swap("network.toml", "[losses.copper]", '[streams.x]\npath = ["yoke"]\nmcp_W_K = 5\n[losses.copper]'),
+        ["leads nowhere"]),
+    "shares that make more than a whole": (
+        swap("network.toml", 'at = "winding"', "at = { winding = 0.7, yoke = 0.7 }"), ["sum to 1.4"]),
+    "negative share": (swap("network.toml", 'at = "winding"', "at = { winding = 1.5, yoke = -0.5 }"), ["= 1.5"]),
+    "capacity of 400 digits": (swap("network.toml", "C_J_K = 2000", f"C_J_K = {'9' * 400}"), ["C_J_K"]),
+    "capacity of 5000 digits": (swap("network.toml", "C_J_K = 2000", f"C_J_K = {'9' * 5000}"), ["network.toml"]),
+    "malformed loss map": (
+        swap("network.toml", 'kind = "copper"\nR20_ohm = 0.02\ncurrents = ["current_A"]',
+             'kind = "map"\nat_speed = [0, 1]\nat_torque = [0, 1]\nP_W = [1, 2]'), ["losses.copper", "P_W"]),
+    "runaway": (swap("network.toml", "R20_ohm = 0.02", "R20_ohm = 2"), ["T_winding", "thermal runaway", "copper"]),
+    "bounds that cross": (parameter("low = 2\nhigh = 0.5"), ["parameters.x", "low = 2", "high = 0.5"]),
+    "bounds without 1": (parameter("value = 3\nlow = 2\nhigh = 5"), ["parameters.x", "neutral value = 1"]),
+    "value outside its bounds": (parameter("value = 9\nlow = 0.5\nhigh = 5"), ["parameters.x", "value = 9"]),
+    "factor from below zero": (parameter("low = -1\nhigh = 5"), ["parameters.x", "low = -1"]),
+    "model beyond its bounds": (model('"link.yoke-air" = 5000'), ["revision 1", "link.yoke-air", "0.001 to 1000"]),
+    "model with a negative factor": (model('"link.yoke-air" = -1'), ["revision 1", "link.yoke-air"]),
+    "model that is not finite": (model('"link.yoke-air" = nan'), ["link.yoke-air", "nan"]),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("spoil", "words"), REFUSED.values(), ids=REFUSED)
+def test_one_line_exit_2_files_as_before(tmp_path, monkeypatch, capsys, spoil, words):
+    case = case_of(tmp_path)
+    spoil(case)
+    before = contents(tmp_path)
+    code, out, told = answered(monkeypatch, capsys, "compare", case)
+    assert (code, out, len(told)) == (2, "", 1)
+    assert [word for word in words if word not in told[0]] == []
+    assert contents(tmp_path) == before
+
+
+@pytest.mark.parametrize(
+    ("option", "name", "words"),
+    [("--json", "case.toml", "stays"), ("--json", "network.toml", "stays"), ("--json", "tests/stand.csv", "stays"),
+     ("--json", "tests/stand.toml", "stays"), ("--json", "tests", "no file"), ("--json", "", "no file"),
+     ("--out", ".", "inputs"), ("--out", "tests", "inputs"), ("--out", "case.toml", "no folder")],
+)  # fmt: skip
+def test_results_never_go_over_inputs(tmp_path, monkeypatch, capsys, option, name, words):
+    case = case_of(tmp_path)
+    before = contents(tmp_path)
+    target = case / name if name else ""
+    command = "compare" if option == "--json" else "simulate"
+    code, out, told = answered(monkeypatch, capsys, command, case, option, target)
+    assert (code, out, len(told)) == (2, "", 1)
+    assert words in told[0]
+    assert contents(tmp_path) == before
+
+
+def test_a_document_may_be_written_again(tmp_path, monkeypatch, capsys):
+    case = case_of(tmp_path)
+    for _ in range(2):
+        assert answered(monkeypatch, capsys, "compare", case, "--json", tmp_path / "result.json")[0] == 1
+    assert (tmp_path / "result.json").read_text().startswith("{")
+
+
+def test_a_seed_below_zero(tmp_path, monkeypatch, capsys):
+    assert answered(monkeypatch, capsys, "calibrate", case_of(tmp_path), "--seed", "-1")[0] == 2

@@ -1,0 +1,150 @@
+"""Whatever stands at any place of a file, or is left out: it is accepted, or refused in one message, never more."""
+
+import copy
+import datetime
+import tomllib
+
+import pytest
+import tomlkit
+from documents import documented, put
+from recordings import case_of, original
+from test_numbers import SHEET
+
+from geom.errors import ThermoscopeError
+from lumped.declared import load_network, read_network
+from thermoscope.commands.protocol import read_record
+from thermoscope.cycle import load_cycle
+from thermoscope.folder import load_case
+from thermoscope.history import History, Revision, load_history, save_history
+from thermoscope.sheet import read_sheet
+from validation.procedure.protocol import protocol
+
+OTHER = [3, "word", True, [], {"x": "y"}, [[1, 2], [3]], datetime.date(2020, 1, 1), ""]
+DUTY = {
+    "cycle": {"description": "x"}, "load": {"current_A": 100}, "boundaries": {"ambient": 20}, "inputs": {"x": 1.0},
+    "duty": {"type": "S3", "period_s": 600, "duty_percent": 40, "cycles": 3, "step_s": 10},
+}  # fmt: skip
+RECORD = {
+    "machine": {"rated_kW": 7.0},
+    "cold": {"room_degC": 21.0, "machine_degC": 21.0, "resistance_ohm": 2.0, "emf_V": 100.0, "speed_rpm": 383.0,
+             "range_ohm": 4.0, "hours_since_run": 20.0},
+    "load": {"readings": [[0, 20.0], [10, 30.0], [20, 35.0]], "resolution_K": 0.5},
+    "hot": {"ambient_degC": 21.0, "readings": [[10, 2.5], [20, 2.4], [30, 2.35]]},
+    "coefficients": {"beta_percent_K": [0.39, 0.4]}, "meters": {"resistance": {"percent": 0.2}},
+}  # fmt: skip
+STEP = Revision(0, "add", (), "", {"link.yoke-air": 1.1}, {"link.yoke-air": (1.0, 1.2)}, {"stand": (1.0, 0.5)}, "why",
+                {"score": 1.0})  # fmt: skip
+
+
+def ways(document, way=()):
+    """To everything in a document."""
+    for key, value in document.items() if isinstance(document, dict) else enumerate(document):
+        yield (*way, key)
+        if isinstance(value, dict | list):
+            yield from ways(value, (*way, key))
+
+
+def without(document, way):
+    out = copy.deepcopy(document)
+    place = out
+    for key in way[:-1]:
+        place = place[key]
+    del place[way[-1]]
+    return out
+
+
+def wrong(document, way):
+    yield from (put(document, way, value) for value in OTHER)
+    yield without(document, way)
+
+
+def accepted_or_refused(read, document, way):
+    for spoilt in wrong(document, way):
+        message = ""
+        try:
+            read(spoilt)
+        except ThermoscopeError as fault:
+            message = str(fault)
+        assert len(message) < 1500
+        assert "\n" not in message
+
+
+def through_file(read, file):
+    """Read what a document looks like as a file; what TOML cannot write is no case."""
+
+    def written(document):
+        try:
+            file.write_text(tomlkit.dumps(document))
+        except (TypeError, ValueError, AttributeError):
+            return
+        read(file)
+
+    return written
+
+
+def named(document):
+    return {"argvalues": list(ways(document)), "ids": [".".join(map(str, way)) for way in ways(document)]}
+
+
+NETWORK = documented()
+
+
+@pytest.mark.parametrize("way", **named(NETWORK))
+def test_network(way):
+    accepted_or_refused(read_network, NETWORK, way)
+
+
+@pytest.mark.parametrize("way", **named(SHEET))
+def test_sheet(way):
+    accepted_or_refused(lambda document: read_sheet(document, "sheet.toml"), SHEET, way)
+
+
+CASE = {
+    "case": {"name": "x", "description": "x", "network": "network.toml", "sample_s": 20, "model_error_K": 0.1},
+    "calibration": {"free": ["link.*"]},
+    "tests": {"stand": {"role": "calibrate", "file": "tests/stand.csv", "sheet": "tests/stand.toml",
+                        "frees": ["link.*"]}},
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def case(tmp_path_factory):
+    return case_of(tmp_path_factory.mktemp("case"))
+
+
+@pytest.mark.parametrize("way", **named(CASE))
+def test_case(case, way):
+    accepted_or_refused(through_file(lambda file: load_case(case), case / "case.toml"), CASE, way)
+
+
+MODEL = tomllib.loads(
+    tomlkit.dumps({"revision": [{"number": 1, **{k: v for k, v in STEP.document().items() if k != "number"}}]})
+)
+
+
+@pytest.mark.parametrize("way", **named(MODEL))
+def test_model(tmp_path, way):
+    accepted_or_refused(through_file(load_history, tmp_path / "model.toml"), MODEL, way)
+
+
+@pytest.mark.parametrize("way", **named(DUTY))
+def test_cycle(tmp_path, way):
+    network = load_network(original() / "network.toml")
+    read = through_file(lambda file: load_cycle(file, network, {}), tmp_path / "cycle.toml")
+    accepted_or_refused(read, DUTY, way)
+
+
+@pytest.mark.parametrize("way", **named(RECORD))
+def test_record(tmp_path, way):
+    read = through_file(lambda file: protocol(read_record(file)), tmp_path / "record.toml")
+    accepted_or_refused(read, RECORD, way)
+
+
+def test_the_documents_are_right(tmp_path, case):
+    (case / "case.toml").write_text(tomlkit.dumps(CASE))
+    load_case(case)
+    assert save_history(tmp_path / "model.toml", History().and_then(STEP), History()).last.number == 1
+    (tmp_path / "cycle.toml").write_text(tomlkit.dumps(DUTY))
+    load_cycle(tmp_path / "cycle.toml", load_network(case / "network.toml"), {})
+    (tmp_path / "record.toml").write_text(tomlkit.dumps(RECORD))
+    assert protocol(read_record(tmp_path / "record.toml")).steps

@@ -1,0 +1,5 @@
+"""python -m thermoscope: the command line."""
+
+from thermoscope.cli import main
+
+main()

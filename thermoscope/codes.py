@@ -1,0 +1,37 @@
+"""What a logger writes where it read nothing: found, left out, and said."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+# Open or broken sensor, overrange, no answer: thermocouple cards (1370, 1372, 1820), DS18B20 (-127), meters (9.9e37),
+# 16-bit registers (32767, 65535 and their tenths), and the nines of loggers.
+CODES = np.array([
+    9999.0, 9999.9, 99999.0, 999.9, 999.0, -999.0, -999.9, -9999.0, 1370.0, 1372.0, 1820.0, -127.0, -200.0, -270.0,
+    32767.0, -32768.0, 65535.0, 3276.7, -3276.8, 6553.5,
+])  # fmt: skip
+ENDLESS = 1e30  # and beyond: 9.9e37 and its kin
+FAR = 5.0  # times the spread of the other readings, from their median: nearer, a reading may be what it says
+LEAST = 50.0  # in the unit of the file, of that distance
+
+
+def coded(values: Array) -> NDArray[np.bool_]:
+    """Which readings (as the file has them) are a logger's codes: of that very value, and far from all others."""
+    exact = np.isin(values, CODES) | (np.abs(values) >= ENDLESS)
+    others = values[~exact & np.isfinite(values)]
+    if not exact.any() or not others.size:
+        return np.zeros(values.size, bool)
+    middle = float(np.median(others))
+    far = max(LEAST, FAR * float(np.percentile(np.abs(others - middle), 99)))
+    return exact & (np.abs(values - middle) > far)
+
+
+def code_note(column: str, values: Array, found: NDArray[np.bool_], first_line: int) -> str:
+    """What was left out of a column, and where it begins."""
+    which = ", ".join(f"{v:g}" for v in np.unique(values[found]))
+    line = int(np.flatnonzero(found)[0]) + first_line
+    code = "are a logger's code for no reading and are left out"
+    return f"{column}: {int(found.sum())} readings of {which} {code}, first in line {line}"

@@ -1,0 +1,54 @@
+"""thermoscope doctor CASE"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from geom.errors import InputError
+from thermoscope.doctor import Finding, examined
+from thermoscope.folder import Entry, Settings, find_case, network_of, patient_of, read_settings
+from thermoscope.history import load_history
+from thermoscope.readings import read_test
+from thermoscope.terminal import Progress, give, progress, say, table
+
+
+def doctor(case: str, target: str | None) -> int:
+    """Exit code 1 when something looks wrong, 2 when a file would be refused."""
+    with progress() as tell:
+        path = find_case(case)
+        wrong, doubts = looked(path, tell)
+    document = {"case": path.resolve().name, "wrong": [f.document() for f in wrong],
+                "doubts": [f.document() for f in doubts]}  # fmt: skip
+    give(document, target, lambda: show(wrong, doubts))
+    return 2 if wrong else 1 if doubts else 0
+
+
+def looked(path: Path, tell: Progress) -> tuple[list[Finding], tuple[Finding, ...]]:
+    """What would be refused, test by test, and what is only doubtful."""
+    settings = read_settings(path)
+    load_history(settings.model_file)
+    network, _ = network_of(settings, tell)
+    wrong, good = [], []
+    for entry in settings.tests:
+        tell(f"looking at {entry.name}")
+        try:
+            one = patient_of(entry)
+            read_test(entry.name, entry.role, one.samples, one.sheet, network, settings.sample_s)
+            good.append(one)
+        except InputError as fault:
+            wrong.append(_fault(settings, entry, fault))
+    return wrong, examined(good, network)
+
+
+def _fault(settings: Settings, entry: Entry, fault: InputError) -> Finding:
+    return Finding(entry.name, fault.where.removeprefix(f"{settings.path}/"), fault.what, fault.right)
+
+
+def show(wrong: Sequence[Finding], doubts: Sequence[Finding]) -> None:
+    """One line a finding: test, where, what, cure; what would be refused first."""
+    for title, rows in (("Would be refused", wrong), ("Looks wrong", doubts)):
+        if rows:
+            table(title, ["test", "where", "what", "cure"], [[f.test or "all", f.where, f.what, f.cure] for f in rows])
+    found = len(wrong) + len(doubts)
+    say(f"{len(wrong)} things would be refused, {len(doubts)} look wrong" if found else "nothing looks wrong")
