@@ -54,12 +54,17 @@ def coupled(
         residuals.append(max((float(np.abs(new[n] - T[n]).max()) for n in watched), default=0.0))
         T = new
         if residuals[-1] < tolerance:
-            return Coupled(replace(run, y=run.y[:, len(looks) :]), inputs, tuple(residuals))
+            return Coupled(_without(run, len(looks)), inputs, tuple(residuals))
     shown = ", ".join(f"{r:.3g}" for r in residuals[-4:])
     raise ThermoscopeError(
         f"drive and network '{network.name}' do not agree after {most} rounds (last changes {shown} K): thermal "
         "runaway, or a drive at its limit that jumps with temperature"
     )
+
+
+def _without(run: Run, first: int) -> Run:
+    """The run without its first rows."""
+    return replace(run, y=run.y[:, first:], time_error_K=run.time_error_K[first:])
 
 
 def series_drive(

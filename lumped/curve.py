@@ -70,9 +70,14 @@ def curve(factor: Callable[[Array], Array], nt: int, turns: Array = NONE) -> Cur
     bulge[1:] = middle - 0.5 * (value[:-1] + value[1:])
     bulge[np.abs(bulge) <= 1e-12 * scale] = 0.0  # rounding
     wrong = _missed(five, SMALL * scale) > CURVED
+
+    def again(at: Array) -> Array:
+        """Beside the samples, for laws that look for the largest of what they are given."""
+        return factor(np.concatenate([samples, at]))[nt:]
+
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # what is out of range was said of the samples
-        inserted = _inserted(factor, steps[wrong], turns, SMALL * scale) if np.any(wrong) else NONE
+        inserted = _inserted(again, steps[wrong], turns, SMALL * scale) if np.any(wrong) else NONE
     return Curve(value, bulge, inserted)
 
 

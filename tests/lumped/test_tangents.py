@@ -20,19 +20,18 @@ RECORD = Record(TIME, inputs(TIME), boundaries(TIME), 35.0)
 ROWS = [NETWORK.place(node).mean for node in NETWORK.states]
 
 
-def moved(parameter, step):
+def moved(parameter, step, steps):
+    """On given steps: which ones are chosen is not differentiated."""
     value = parameter.value * np.exp(step) if parameter.mapping == "log" else parameter.value + step
-    return simulate(NETWORK, RECORD, {parameter.name: value}, ROWS).y
+    return simulate(NETWORK, RECORD, {parameter.name: value}, ROWS, steps=steps).y
 
 
 @pytest.mark.parametrize("parameter", NETWORK.parameters, ids=lambda p: p.name)
 def test_tangent_is_the_finite_difference(parameter):
     """Fourth-order central difference: truncation and rounding both near 1e-9 of the largest tangent."""
-    h = 1e-3
-    difference = (
-        8 * (moved(parameter, h) - moved(parameter, -h)) - moved(parameter, 2 * h) + moved(parameter, -2 * h)
-    ) / (12 * h)
-    dy = simulate(NETWORK, RECORD, None, ROWS, [parameter]).dy[:, :, 0]
+    h, run = 1e-3, simulate(NETWORK, RECORD, None, ROWS, [parameter])
+    up, down, far, near = (moved(parameter, k * h, run.steps) for k in (1, -1, 2, -2))
+    difference, dy = (8 * (up - down) - far + near) / (12 * h), run.dy[:, :, 0]
     assert np.abs(dy).max() > 1e-3
     assert_allclose(dy, difference, atol=1e-6 * np.abs(dy).max())
 
@@ -85,9 +84,9 @@ def test_a_neutral_link_changes_nothing_to_the_bit(law, tangent):
 def test_the_tangent_of_a_neutral_link_is_its_finite_difference(law):
     amplitude = Parameter("new", (("new", 1.0),), 0.0, mapping="amplitude", neutral=0.0)
     more = NETWORK.extended([node_link(NETWORK, "new", "film", "a", "ambient", law)], parameters=[amplitude])
-    dy = simulate(more, RECORD, None, ROWS, [amplitude]).dy[:, :, 0]
-    h = 1e-5
-    difference = (simulate(more, RECORD, {"new": h}, ROWS).y - simulate(more, RECORD, {"new": -h}, ROWS).y) / (2 * h)
+    run, h = simulate(more, RECORD, None, ROWS, [amplitude]), 1e-5
+    up, down = (simulate(more, RECORD, {"new": x}, ROWS, steps=run.steps).y for x in (h, -h))
+    difference, dy = (up - down) / (2 * h), run.dy[:, :, 0]
     assert_allclose(dy, difference, atol=1e-5 * np.abs(dy).max())
 
 

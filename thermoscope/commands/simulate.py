@@ -26,7 +26,7 @@ from thermoscope.folder import Folder
 from thermoscope.terminal import Progress, give, progress, say, table
 
 Array = NDArray[np.float64]
-MISMATCH = 0.01  # of all losses: the trapezium's own error at coarse steps; more means that heat went astray
+MISMATCH = 0.01  # of all losses: parabolas miss a hundredth of that; more means that heat went astray
 
 
 def simulate(case: str, cycle: str | None, out: Path | None, target: str | None) -> int:
