@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 from geom.drawing import drawing_of
 from geom.families import families
 from geom.families.family import Family
 from geom.machine import library, load_machine, machine_from
+from geom.parameters import Parameter
+from geom.reading import usual_geometry
 
 _JACKETS = (
     "Jackets in the mesh and in CAD files: channels around the axis are rings in the mesh, in the table of "
@@ -17,12 +20,19 @@ _JACKETS = (
     "same cross-section. `NAME-prisms.step` holds what is meshed; `build` reads it back.",
     "",
 )
+_MEASURED = (
+    "These lengths are measured in others. A file gives the ratio, or the length itself with `_mm`, or neither: then "
+    "it has the default machine's proportion, so that what is not given follows what is. Any ratios within their "
+    "bounds, with any of the parameters above, make a machine that fits; a length that does not fit is refused with "
+    "its key and what it must be. `geom.draws.random_geometry` draws machines, `benchmarks/families.py` checks them.",
+    "",
+)
 
 
 def family_page(family: Family, picture: str) -> str:
     """Markdown; `picture` is the path of the drawing as seen from the page."""
     shipped = [name for name in library() if load_machine(name).family == family.name]
-    rows = [f"| `{p.key}` | {p.default} | {p.allowed} | {p.doc} |" for p in family.parameters]
+    free, measured = (_rows(family, scaled) for scaled in (False, True))
     return "\n".join([
         f"# Family `{family.name}`",
         "",
@@ -31,13 +41,31 @@ def family_page(family: Family, picture: str) -> str:
         f"![Sections across and along the axis of the default machine, mm]({picture})",
         "",
         *(_JACKETS if any(p.name == "port_mm" for p in family.parameters) else ()),
-        "A key ending in `_mm` or `_deg` carries that unit; one without is a count, a ratio or a word.",
+        "A key ending in `_mm` or `_deg` carries that unit; one without is a count, a share or a word.",
         "",
         "| parameter | default | allowed | meaning |",
         "|---|---|---|---|",
-        *rows,
+        *free,
+        "",
+        *_MEASURED,
+        "| ratio | default | allowed | or | default | allowed | meaning |",
+        "|---|---|---|---|---|---|---|",
+        *measured,
         "",
     ])  # fmt: skip
+
+
+def _rows(family: Family, measured: bool) -> list[str]:
+    usual = usual_geometry(family.parameters)
+    chosen = [p for p in family.parameters if (p.of is not None) == measured]
+    return [_measured(p, usual) if measured else f"| `{p.key}` | {p.default} | {p.allowed} | {p.doc} |" for p in chosen]
+
+
+def _measured(p: Parameter, usual: Any) -> str:
+    assert p.of is not None
+    ratio = (p.usual - p.of.start(usual)) / p.of.span(usual) if p.default else 0.0
+    return (f"| `{p.group}.{p.ratio_name}` | {ratio:.3g} | {p.allowed_ratio} | `{p.name}` | {p.default} | {p.allowed} "
+            f"| {p.doc} |")  # fmt: skip
 
 
 def write_pages(folder: Path | str) -> list[Path]:

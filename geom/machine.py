@@ -12,9 +12,9 @@ from geom.errors import InputError
 from geom.families import Family, families
 from geom.materials import Material, filled, material
 from geom.names import checked_name
-from geom.parameters import read_geometry
 from geom.part import Part, Port
 from geom.profile import ArcGrid
+from geom.reading import read_geometry
 from geom.toml_file import read_toml
 
 LIBRARY = Path(__file__).parent / "machines"

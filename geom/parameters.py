@@ -1,17 +1,33 @@
-"""Declared parameters of a machine family: unit, default, range and meaning, each written once."""
+"""Declared parameters of a machine family: unit, default, range and meaning, each written once.
+
+Most lengths are measured in others (`Scale`): a file gives the length itself (tooth_mm), or its ratio to its scale
+(tooth_ratio), or neither; then it has the proportion of the default machine. Any ratios within their bounds fit.
+"""
 
 from __future__ import annotations
 
-import difflib
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
-from types import SimpleNamespace
 from typing import Any
 
 from geom.errors import InputError
 
 UNITS = {"mm": 1e-3, "deg": math.pi / 180}
+
+
+@dataclass(frozen=True)
+class Scale:
+    """What a length is measured in: it is start + ratio * span, both in m, of the geometry so far.
+
+    name : in words, after "of";  low, high : any ratio between makes a machine that fits
+    """
+
+    name: str
+    low: float
+    high: float
+    span: Callable[[Any], float]
+    start: Callable[[Any], float] = lambda g: 0.0
 
 
 @dataclass(frozen=True)
@@ -21,6 +37,8 @@ class Parameter:
     key : "group.name_unit" as written in the machine file; no suffix means a count or a ratio
     default, low, high : in the unit of the key
     choices : allowed words, for a parameter that is a choice; then low and high play no role
+    off : whether 0 stands for none, beside what low and high, or the scale, allow
+    of : of a length, what it is measured in;  like : of one without, the key it follows in proportion if that is given
     """
 
     key: str
@@ -29,6 +47,9 @@ class Parameter:
     high: float = 0.0
     doc: str = ""
     choices: tuple[str, ...] = ()
+    off: bool = False
+    of: Scale | None = None
+    like: str = ""
 
     @property
     def group(self) -> str:
@@ -49,11 +70,26 @@ class Parameter:
         return self.name.removesuffix(f"_{self.unit}") if self.unit else self.name
 
     @property
+    def ratio_name(self) -> str:
+        return f"{self.attribute}_ratio"
+
+    @property
+    def usual(self) -> float:
+        """The default in SI."""
+        assert not isinstance(self.default, str)
+        return self.default * UNITS[self.unit] if self.unit else self.default
+
+    @property
     def allowed(self) -> str:
         if self.choices:
             return "one of " + ", ".join(self.choices)
         kind = "an integer from" if isinstance(self.default, int) else "from"
-        return f"{kind} {self.low:g} to {self.high:g} {self.unit}".rstrip()
+        return f"{'0, or ' * self.off}{kind} {self.low:g} to {self.high:g} {self.unit}".rstrip()
+
+    @property
+    def allowed_ratio(self) -> str:
+        assert self.of is not None
+        return f"{'0, or ' * self.off}from {self.of.low:g} to {self.of.high:g} of {self.of.name}"
 
     def checked(self, value: Any, where: str) -> float | int | str:
         """The value in SI, or an InputError that names key, value and range."""
@@ -62,53 +98,27 @@ class Parameter:
             raise InputError(f"{value!r} is not possible", place, f"allowed: {self.allowed}")
         return value * UNITS[self.unit] if self.unit else value
 
+    def checked_ratio(self, value: Any, where: str) -> float:
+        """The ratio, or an InputError that names key, value and range."""
+        assert self.of is not None
+        if not _number(value) or not (self.of.low <= value <= self.of.high or (self.off and value == 0)):
+            place = f"{where} [geometry.{self.group}] {self.ratio_name}"
+            raise InputError(f"{value!r} is not possible", place, f"allowed: {self.allowed_ratio}")
+        return float(value)
+
     def _valid(self, value: Any) -> bool:
         if self.choices:
             return value in self.choices
         kinds = int if isinstance(self.default, int) else (int, float)
-        return isinstance(value, kinds) and not isinstance(value, bool) and self.low <= value <= self.high
+        return (
+            isinstance(value, kinds)
+            and _number(value)
+            and (self.low <= value <= self.high or (self.off and value == 0))
+        )
 
 
-def read_geometry(parameters: Iterable[Parameter], table: Mapping[str, Any], where: str) -> Any:
-    """Values in SI as `groups.attribute` (e.g. g.rotor.radius), defaults filled in.
-
-    Raises InputError for an unknown group or key, a missing unit, or a value out of range.
-    """
-    groups: dict[str, SimpleNamespace] = {}
-    declared = {parameter.key: parameter for parameter in parameters}
-    _refuse_unknown(declared, table, where)
-    for parameter in declared.values():
-        given = table.get(parameter.group, {}).get(parameter.name, parameter.default)
-        group = groups.setdefault(parameter.group, SimpleNamespace())
-        setattr(group, parameter.attribute, parameter.checked(given, where))
-    return SimpleNamespace(**groups)
-
-
-def _refuse_unknown(declared: Mapping[str, Parameter], table: Mapping[str, Any], where: str) -> None:
-    groups = {parameter.group for parameter in declared.values()}
-    for group, keys in table.items():
-        if group not in groups or not isinstance(keys, Mapping):
-            raise InputError(f"unknown section [geometry.{group}]", where, _known(group, groups))
-        for name in keys:
-            if f"{group}.{name}" not in declared:
-                _refuse_key(declared, group, name, where)
-
-
-def _refuse_key(declared: Mapping[str, Parameter], group: str, name: str, where: str) -> None:
-    siblings = {p.name: p for p in declared.values() if p.group == group}
-    place = f"{where} [geometry.{group}]"
-    with_unit = [
-        p.name for p in siblings.values() if (p.unit and name.rsplit("_", 1)[0] == p.attribute) or name == p.attribute
-    ]
-    if with_unit:
-        raise InputError(f"{name!r} lacks its unit", place, f"write {with_unit[0]}")
-    raise InputError(f"unknown key {name!r}", place, _known(name, siblings))
-
-
-def _known(word: str, words: Iterable[str]) -> str:
-    near = difflib.get_close_matches(word, sorted(words), n=1)
-    hint = f"did you mean {near[0]!r}? " if near else ""
-    return f"{hint}known: {', '.join(sorted(words))}"
+def _number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
 
 
 def impossible(what: str, key: str, right: str) -> InputError:

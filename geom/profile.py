@@ -8,6 +8,8 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 if TYPE_CHECKING:
     from shapely import Polygon
 
@@ -122,8 +124,10 @@ class ArcGrid:
         if not arc.concentric:
             pieces = max(2, math.ceil(abs(arc.sweep) / self.step - 1e-6))
             return [arc.start + arc.sweep * i / pieces for i in range(1, pieces)]
-        sign = math.copysign(1.0, arc.sweep)
-        offsets = (_wrap(sign * (cut - arc.start)) for cut in self._cuts[_radius_key(arc.radius)])
+        sign, cuts = math.copysign(1.0, arc.sweep), self._cuts[_radius_key(arc.radius)]
+        away = (sign * (np.array(cuts) - arc.start)) % (2 * math.pi)
+        near = np.flatnonzero(away < abs(arc.sweep) + 1e-9)  # of hundreds of cuts only those on the arc are looked at
+        offsets = (_wrap(sign * (cuts[k] - arc.start)) for k in near)
         inside = sorted(offset for offset in offsets if 1e-7 < offset < abs(arc.sweep) - 1e-7)
         return [arc.start + sign * offset for offset in inside]
 

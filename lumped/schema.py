@@ -62,7 +62,8 @@ def machine_schema() -> Schema:
     for family in families().values():
         for p in family.parameters:
             known = groups.setdefault(p.group, {})
-            known[p.name] = _widest(known[p.name], _parameter(p)) if p.name in known else _parameter(p)
+            for name, own in _keys(p).items():
+                known[name] = _widest(known[name], own) if name in known else own
     geometry = {g: {"type": "object", "properties": keys, "additionalProperties": False} for g, keys in groups.items()}
     tables: dict[str, Schema] = {s: {"type": "object"} for s in SECTIONS}
     header = {"family": {"description": "family of machines", "enum": list(families())}}
@@ -80,7 +81,16 @@ def _parameter(p: Any) -> Schema:
     if p.choices:
         return {"description": p.doc, "enum": list(p.choices)}
     kind = "integer" if isinstance(p.default, int) else "number"
-    return {"description": f"{p.doc}{unit}", "type": kind, "minimum": p.low, "maximum": p.high}
+    return {"description": f"{p.doc}{unit}", "type": kind, "minimum": 0 if p.off else p.low, "maximum": p.high}
+
+
+def _keys(p: Any) -> dict[str, Schema]:
+    """Of a length also its ratio."""
+    if p.of is None:
+        return {p.name: _parameter(p)}
+    low = 0 if p.off else p.of.low
+    ratio = {"description": f"{p.doc}, over {p.of.name}", "type": "number", "minimum": low, "maximum": p.of.high}
+    return {p.name: _parameter(p), p.ratio_name: ratio}
 
 
 def _widest(a: Schema, b: Schema) -> Schema:

@@ -60,7 +60,11 @@ def pages(tmp_path_factory):
 def test_page_lists_every_parameter_with_its_range(pages, family):
     (page,) = [page.read_text() for page in pages if page.stem == family.name]
     for parameter in family.parameters:
-        assert f"| `{parameter.key}` | {parameter.default} | {parameter.allowed} | {parameter.doc} |" in page
+        name = parameter.key if parameter.of is None else parameter.name
+        assert f"| `{name}` | {parameter.default} | {parameter.allowed} | {parameter.doc} |" in page
+        if parameter.of is not None:
+            assert f"| `{parameter.group}.{parameter.ratio_name}` | " in page
+            assert f"| {parameter.allowed_ratio} | " in page
 
 
 def test_pages_in_the_docs_are_those_the_code_writes(pages, root):

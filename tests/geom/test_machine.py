@@ -32,7 +32,9 @@ WRONG = {
     "a liner thicker than the slot": (
         series(rotor={"slot_width_mm": 4.0, "liner_mm": 2.5}), ["liner_mm", "2.5", "less than 1.6"]),
     "a slot that reaches the shaft": (series(rotor={"slot_depth_mm": 110.0}), ["slot_depth_mm", "110"]),
-    "coils in the yoke": (series(field={"coil_height_mm": 40.0}), ["yoke_inner_diameter_mm", "field coils"]),
+    "coils in the yoke": (
+        series(field={"coil_height_mm": 40.0}, stator={"yoke_inner_diameter_mm": 408.0}),
+        ["yoke_inner_diameter_mm", "field coils"]),
     "coils that meet": (series(field={"coil_width_mm": 200.0}), ["coil_width_mm"]),
     "a machine too short": (series(shaft={"length_mm": 400.0}), ["length_mm", "400"]),
     "a base narrower than the feet": (series(base={"width_mm": 200.0}), ["base", "width_mm"]),

@@ -59,7 +59,9 @@ def _parallel_slot(s: Any, widest: float, lining: float) -> tuple[Rule, ...]:
 
 
 def _frame_rules(g: Any, at: Layout) -> tuple[Rule, ...]:
-    needed = g.stator.stack_length + 2 * (g.winding.straight + g.winding.end + g.frame.cap + 0.001)
+    needed = g.stator.stack_length + 2 * (
+        g.winding.straight + g.winding.end + g.frame.cap + min(0.001, 0.005 * at.core)
+    )
     rules = (
         (g.shaft.diameter < g.bearing.outer_diameter, "bearing.outer_diameter_mm", g.bearing.outer_diameter * mm,
          f"more than the shaft, {g.shaft.diameter * mm:.4g} mm"),
@@ -108,14 +110,16 @@ def check_magnets(g: Any, at: Layout) -> None:
     import shapely
 
     r = g.rotor
-    span = r.magnet_width * (1 if r.magnet_shape == "flat" else 2)
+    span = r.magnet_width * (1 if r.magnet_shape == "flat" else 2 * math.cos(r.v))
     refuse(((span < 2 * at.rotor * math.sin(math.pi / r.poles), "rotor.magnet_width_mm", r.magnet_width * mm,
              "less than the pole pitch"),))  # fmt: skip
     magnets = shapely.polygons([[(x, y) for x, y, _ in magnet.outer] for magnet in shapes_of_magnets(g, at)])
     corners = shapely.get_coordinates(magnets)
-    inside = bool((corners**2).sum(axis=1).max() < (at.rotor * 0.998) ** 2)
+    limit = max(0.998 * at.rotor, at.rotor - 0.9 * r.bridge)
+    inside = bool((corners**2).sum(axis=1).max() < limit**2)
     clear = shapely.distance(magnets, shapely.Point(0, 0)).min() > 1.02 * g.shaft.diameter / 2
-    near, far = shapely.STRtree(magnets).query(magnets, predicate="dwithin", distance=5e-4)
+    apart = 0.004 * 2 * at.rotor * math.sin(math.pi / r.poles)
+    near, far = shapely.STRtree(magnets).query(magnets, predicate="dwithin", distance=min(5e-4, apart))
     refuse((
         (inside, "rotor.bridge_mm", r.bridge * mm, "more, to keep the magnets under the surface"),
         (bool(clear), "rotor.magnet_thickness_mm", r.magnet_thickness * mm, "less, to clear the shaft"),

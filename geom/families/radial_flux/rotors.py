@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 from geom import shapes
 from geom.families.radial_flux.layout import Layout
+from geom.families.radial_flux.magnets import corners
 from geom.part import Part, extrude
 from geom.profile import Profile
 from geom.roles import Role
@@ -35,23 +35,9 @@ def shapes_of_magnets(g: Any, at: Layout) -> list[Profile]:
 
 def _pole(g: Any, at: Layout) -> list[Profile]:
     """Magnets of the pole at angle 0, their outermost corners a bridge below the surface."""
-    width, thickness, reach = g.rotor.magnet_width, g.rotor.magnet_thickness, at.rotor - g.rotor.bridge
-    if g.rotor.magnet_shape == "flat":
-        far = shapes.on_circle(reach, width / 2)
-        return [shapes.rectangle(far - thickness, far, -width / 2, width / 2)]
-    tilt, start = g.rotor.v, g.rotor.bridge
-    c, s = math.cos(tilt), math.sin(tilt)
-    # the upper magnet begins half a bridge above the middle line and rises towards the rotor surface
-    y = start / 2 + width * c
-    x = shapes.on_circle(reach, y)
-    corner = (x - width * s, start / 2)
-    along, across = (width * s, width * c), (-thickness * c, thickness * s)
-    upper = [corner, (corner[0] + along[0], corner[1] + along[1])]
-    upper += [(px + across[0], py + across[1]) for px, py in reversed(upper)]
-    return [
-        Profile(tuple((px, py, 0.0) for px, py in upper)),
-        Profile(tuple((px, -py, 0.0) for px, py in reversed(upper))),
-    ]
+    found = corners(g, at.rotor, g.rotor.magnet_width)
+    one = Profile(tuple((x, y, 0.0) for x, y in found))
+    return [one] if g.rotor.magnet_shape == "flat" else [one, Profile(tuple((x, -y, 0.0) for x, y in reversed(found)))]
 
 
 def cage_rotor(g: Any, at: Layout) -> tuple[Part, ...]:

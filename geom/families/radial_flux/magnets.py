@@ -1,0 +1,61 @@
+"""Magnets inside a rotor: their corners in the plane, and how wide they may be."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from geom import shapes
+
+Corners = list[tuple[float, float]]
+_STEPS = 200  # widths tried; the widest is known to half a percent of the pole
+_SHAFT, _PITCH = 1.06, 0.98  # shares of shaft radius and half a pole that stay free
+
+
+def corners(g: Any, radius: float, width: float) -> Corners:
+    """Of one magnet of the pole at angle 0 (m), of a V the upper one; its outermost corner a bridge below `radius`."""
+    thickness, reach = g.rotor.magnet_thickness, radius - g.rotor.bridge
+    if g.rotor.magnet_shape == "flat":
+        far = shapes.on_circle(reach, width / 2)
+        return [(x, y) for x, y in ((far - thickness, -width / 2), (far, -width / 2), (far, width / 2),
+                                    (far - thickness, width / 2))]  # fmt: skip
+    c, s, start = math.cos(g.rotor.v), math.sin(g.rotor.v), g.rotor.bridge
+    # it begins half a bridge above the middle line and rises towards the rotor surface
+    x = shapes.on_circle(reach, start / 2 + width * c)
+    upper = [(x - width * s, start / 2), (x, start / 2 + width * c)]
+    return upper + [(px - thickness * c, py + thickness * s) for px, py in reversed(upper)]
+
+
+def widest(g: Any) -> float:
+    """The widest magnet (m) that stays under the surface, off the shaft and in its half of the pole."""
+    radius = g.stator.bore_diameter / 2 - g.stator.air_gap
+    most = 2 * radius * math.sin(math.pi / g.rotor.poles)
+    fits = 0.0
+    for step in range(1, _STEPS + 1):
+        if not _fits(g, radius, most * step / _STEPS):
+            return fits
+        fits = most * step / _STEPS
+    return fits
+
+
+def _fits(g: Any, radius: float, width: float) -> bool:
+    rise = width / 2 if g.rotor.magnet_shape == "flat" else g.rotor.bridge / 2 + width * math.cos(g.rotor.v)
+    if rise >= 0.98 * (radius - g.rotor.bridge):
+        return False
+    found = corners(g, radius, width)
+    half = math.pi / g.rotor.poles
+    inside = max(math.hypot(x, y) for x, y in found) <= radius - 0.95 * g.rotor.bridge
+    apart = all(abs(math.atan2(y, x)) <= _PITCH * half for x, y in found)
+    return inside and apart and _distance(found) >= _SHAFT * g.shaft.diameter / 2
+
+
+def _distance(found: Corners) -> float:
+    """Of a polygon's edges to the axis (m)."""
+    return min(_to_axis(a, b) for a, b in zip(found, [*found[1:], found[0]], strict=True))
+
+
+def _to_axis(a: tuple[float, float], b: tuple[float, float]) -> float:
+    dx, dy = b[0] - a[0], b[1] - a[1]
+    along = -(a[0] * dx + a[1] * dy) / (dx * dx + dy * dy)
+    share = min(max(along, 0.0), 1.0)
+    return math.hypot(a[0] + share * dx, a[1] + share * dy)
