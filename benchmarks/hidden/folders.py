@@ -25,7 +25,7 @@ SIZES = {"small": 1.0, "medium": 2.0, "large": 4.0}
 JOINT = "joint at the place"
 WORDS: Mapping[str, tuple[str, ...]] = {
     "bench_conduction": ("conduction.bench",), "road_wind": ("convection",),
-    "shaft_fan": ("convection.shaft", "convection.rotation"), "convection": ("convection.constant",
+    "shaft_fan": ("convection.fan", "convection.rotation"), "convection": ("convection.constant",
     "convection.buoyant"),
     "radiation": ("radiation",), "coupling_heat": ("conduction.shaft", "loss.constant"), "windage": ("windage",),
     "bearing_friction": ("bearing.friction",), "friction": ("bearing.friction",), "ac_copper": ("copper.ac",),

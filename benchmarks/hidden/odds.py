@@ -18,7 +18,7 @@ import numpy as np
 
 Answer = Mapping[str, Any]
 FLOOR, CREDIBLE, SURE, CLAIMED = 1e-4, 0.9, 0.9, 0.9
-NOTHING, UNKNOWN = "nothing", ("heat@", "unknown heat", "outside")
+NOTHING, UNKNOWN, HEAT = "nothing", ("heat@", "unknown heat", "outside"), "heat@"
 QUIET = ("nothing", "tense", "absorbed")  # classes in which no effect is missing and no reading false
 DATA = ("sensor.", "time.", "ambient.", "input.", "frozen", "clipped", "clock")
 EDGES = (0.0, 0.2, 0.4, 0.6, 0.8, 1.0)
@@ -44,6 +44,7 @@ def said(answer: Answer) -> list[Said]:
 def _read(row: Answer) -> Said:
     name = str(row["hypothesis"])
     effects = tuple(e.split(" in ")[0] for e in row.get("effects") or () if e != NOTHING)
+    effects = effects or ((name,) if name.startswith(HEAT) else ())
     tests = tuple(row.get("tests") or [e.split(" in ")[1] for e in row.get("effects") or () if " in " in e])
     span = tuple(row[k] for k in ("begin_s", "end_s") if row.get(k) is not None)
     return Said(name, effects, float(row["probability"]), tests, span)

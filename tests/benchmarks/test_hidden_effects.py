@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from hidden import judge
+from hidden.after import held_out
 from hidden.answer import answer
 from hidden.cases import SHARES, Label, plan, right
 from hidden.kinds import KINDS
@@ -19,6 +20,7 @@ from hidden.truth.draw import Draw
 from hidden.truth.faults import bias, swapped
 from hidden.user import case_of
 
+from validation import add, calibrate
 from validation.effects import kinds
 from validation.effects.sites import solids
 
@@ -206,3 +208,15 @@ def test_a_strong_road_wind_is_seen_by_us_and_by_a_plain_fit():
     assert peers(case, with_refits=False)["forward BIC"] == ["convection@flange.de", True]
     assert found["verdict"] != "adequate"
     assert "convection@flange.de" in found["groups"][0]
+
+
+def test_the_true_effect_in_the_users_network_restores_the_fit():
+    """Hidden by a law other than the catalogue's, in a machine finer than the network: still at least half of the
+    squared error on the held-out test goes with the effect's name."""
+    name, word, amplitude = "servo", "ac copper@copper", 300.0
+    kind = KINDS[name]
+    hidden = next(h for h in kind.missing if h.name == word)
+    case = case_of(word, name, measured(kind, 21, hidden.make(amplitude)))
+    base = calibrate(case, roles=("calibrate", "validate"))
+    restored = add(replace(case, model=base.model), right(kind, word)[0])
+    assert held_out(restored) ** 2 < 0.5 * held_out(base) ** 2

@@ -1,4 +1,4 @@
-"""The true axial-flux motor, 12 kW: a stator disc between two rotor discs, an external blower with a switch. 60 cells.
+"""The true axial-flux motor, 12 kW: a stator disc between two rotor discs, an external blower with a switch. 57 cells.
 
 Bodies run from the hub (0) to the rim (1). Air enters at the hub and is thrown out between the discs.
 """
@@ -186,7 +186,7 @@ MISSING = (
         0.0),)),
 )  # fmt: skip
 WORDS = {
-    "road wind@ring": ("convection@stator_ring",), "shaft fan@cover.right": ("convection.shaft@cover_R",
+    "road wind@ring": ("convection@stator_ring",), "shaft fan@cover.right": ("convection.fan@cover_R",
     "convection.rotation@cover_R"),
     "draught@cover.left": ("convection.constant@cover_L",),
     "windage@rotor.left": ("windage@disc_L", "windage@pm_L"), "ac copper@coils": ("copper.ac@coils",),

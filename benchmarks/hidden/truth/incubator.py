@@ -1,4 +1,4 @@
-"""The true incubator, 0.1 kW: a heated plate and a rack in a stirred, insulated chamber; nothing turns. 23 cells."""
+"""The true incubator, 0.1 kW: a heated plate and a rack in a stirred, insulated chamber; nothing turns. 30 cells."""
 
 from __future__ import annotations
 
@@ -154,12 +154,12 @@ PASSING = (
 )
 WORDS = {
     "draught@outer": ("convection.constant@shell",), "leak@air": ("convection.constant@chamber",
-    "convection.buoyant@chamber"),
-    "lid open@air": ("convection.constant@chamber", "convection.buoyant@chamber"),
+    "convection.buoyant@chamber", "heat@chamber"),
+    "lid open@air": ("convection.constant@chamber", "convection.buoyant@chamber", "heat@chamber"),
     "lamp@outer": ("loss.constant@shell",),
     "bridge@plate-outer": ("coupling@plate|shell",), "sleeve@lid": ("convection.buoyant@lid",
     "convection.constant@lid"),
-    "bridge@plate-rack": ("coupling@plate|rack",), "second heater@rack": ("loss.constant@rack",),
+    "bridge@plate-rack": ("coupling@plate|rack",), "second heater@rack": ("loss.constant@rack", "heat@rack"),
 }  # fmt: skip
 INCUBATOR = Archetype(
     "incubator", machine, PLANS,

@@ -1,4 +1,4 @@
-"""The true fan-cooled motor of a mill, 45 kW, cast frame on feet, driven machine on its shaft: 73 cells.
+"""The true fan-cooled motor of a mill, 45 kW, cast frame on feet, driven machine on its shaft: 76 cells.
 
 Position 0 is the drive end, 1 the fan's. The shaft is one body from coupling to fan.
 """

@@ -10,7 +10,6 @@ from hidden.truth.archetype import Archetype, Hidden, Plan, Spot
 from hidden.truth.change import Change
 from hidden.truth.effects import (
     airflow,
-    bridge,
     draught,
     heating,
     joined,
@@ -64,7 +63,6 @@ MISSING = (
     Hidden("road wind@n11", lambda a: airflow("shield.de", a, 0.35), 30.0),
     Hidden("shaft fan@n11", lambda a: spinning("shield.de", a), 20.0),
     Hidden("coupling heat@n9", lambda a: joined("bearing.de", a), 8.0),
-    Hidden("bench@n15", lambda a: bridge("plate", a, "feet", "slab", (0.7, 0.3)), 30.0),
     Hidden("draught@n13", lambda a: draught("frame", a), 30.0),
     Hidden("windage@n6", lambda a: heating("rotor", a, (3.0, 2.75)), 200.0),
     Hidden("friction@n9", lambda a: heating("bearing.de", a, (5 / 3, 1.3), fade=0.004), 150.0),
@@ -74,8 +72,8 @@ MISSING = (
            ((("losses", "copper", "alpha_1_K"), 0.0),)),
 )  # fmt: skip
 WORDS = {
-    "road wind@n11": ("convection@n11",), "shaft fan@n11": ("convection.shaft@n11", "convection.rotation@n11"),
-    "coupling heat@n9": ("conduction.shaft@n7", "conduction.shaft@n9"), "bench@n15": ("conduction.bench@n15",),
+    "road wind@n11": ("convection@n11",), "shaft fan@n11": ("convection.fan@n11", "convection.rotation@n11"),
+    "coupling heat@n9": ("conduction.shaft@n7", "conduction.shaft@n9"),
     "draught@n13": ("convection.constant@n13", "convection.constant@n14"), "windage@n6": ("windage@n6",),
     "friction@n9": ("bearing.friction@n9",), "ac copper@n1": ("copper.ac@n1",), "inverter iron@n4": ("iron.pwm@n4",),
     "no tempco@n1": ("copper.feedback@copper",),

@@ -142,7 +142,7 @@ PASSING = (
     Hidden("heat@case", lambda a: heating("case", a), 15.0),
 )
 WORDS = {
-    "draught@case": ("convection.constant@Gehaeuse",), "shaft fan@case": ("convection.shaft@Gehaeuse",
+    "draught@case": ("convection.constant@Gehaeuse",), "shaft fan@case": ("convection.fan@Gehaeuse",
     "convection.rotation@Gehaeuse"),
     "coupling heat@rotor": ("conduction.shaft@Rotor",), "windage@rotor": ("windage@Rotor",),
     "bearing friction@rotor": ("bearing.friction@Rotor", "bearing.friction@Gehaeuse"),

@@ -64,7 +64,7 @@ FILMS: Mapping[tuple[str, ...], Callable[[float, float, Inputs], float]] = {
     ("convection.buoyant",): lambda T, Ta, u: (abs(T - Ta) / 40.0) ** 0.25,
     ("radiation",): lambda T, Ta, u: 5.67e-8 * ((T + 273.15) ** 2 + (Ta + 273.15) ** 2) * (T + Ta + 546.3),
     ("convection",): lambda T, Ta, u: (abs(u.get("vehicle_speed_mps", 0.0)) / 10.0) ** 0.8,
-    ("convection.rotation", "convection.shaft"): lambda T, Ta, u: speed(u) ** 0.7,
+    ("convection.rotation", "convection.fan"): lambda T, Ta, u: speed(u) ** 0.7,
 }
 
 
