@@ -8,7 +8,7 @@ contact and film, enters linearly:
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -16,8 +16,9 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from fem.block import Block, HasTensor, block_of, nodal
-from fem.surface import Film, Touch, Trace, trace_of
+from fem.block import Block, block_of
+from fem.elements import HasTensor
+from fem.surface import Film, Touch, Trace, touch_of, trace_of
 from geom.errors import InputError
 from geom.mesh import NamedMesh
 
@@ -37,7 +38,7 @@ class FieldModel:
 
     @property
     def n(self) -> int:
-        return sum(len(b.points) for b in self.blocks.values())
+        return sum(b.n for b in self.blocks.values())
 
     @property
     def xyz(self) -> Floats:
@@ -60,8 +61,9 @@ class FieldModel:
         factor = conductivity or {}
         parts = [_spread(f.trace.mass, f.trace.dofs, f.trace.dofs, films[p]) for p, f in self.films.items()]
         for name, t in self.contacts.items():
-            for i, j, sign in ((t.a, t.a, 1), (t.b, t.b, 1), (t.a, t.b, -1), (t.b, t.a, -1)):
-                parts.append(_spread(t.a.mass, i.dofs, j.dofs, sign * contacts[name]))
+            g, across = contacts[name], _spread(t.cross, t.a.dofs, t.b.dofs, -contacts[name])
+            parts += [_spread(side.mass, side.dofs, side.dofs, g) for side in (t.a, t.b)]
+            parts += [across, (across[1], across[0], across[2])]
         K = _side_by_side([b.K for b in self.blocks.values()], [factor.get(p, 1.0) for p in self.blocks])
         return sp.csr_array(K + _summed(parts, self.n)) if parts else K
 
@@ -81,7 +83,7 @@ class FieldModel:
         if not watts.sum() > 0:
             raise InputError("a loss zone without volume", f"part '{part}'", "a density above 0 somewhere in the part")
         out = np.zeros(self.n)
-        out[block.dofs] = nodal(block.tets, watts, len(block.points))
+        out[block.dofs] = block.elements.nodal(watts)
         return out / out.sum()
 
     def losses(self, watts: Mapping[str, float]) -> Floats:
@@ -113,10 +115,16 @@ class FieldModel:
         return self.blocks[part]
 
 
-def assemble(mesh: NamedMesh, conductivity: Mapping[str, HasTensor], capacity: Mapping[str, float]) -> FieldModel:
+def assemble(
+    mesh: NamedMesh,
+    conductivity: Mapping[str, HasTensor],
+    capacity: Mapping[str, float],
+    quadratic: Collection[str] = (),
+) -> FieldModel:
     """Matrices of every part, contact and film.
 
     conductivity : part -> tensor field (W/m/K);  capacity : part -> rho cp (J/m3/K)
+    quadratic : parts on quadratic elements
     """
     for what, given in (("conductivity", conductivity), ("heat capacity", capacity)):
         if missing := [p for p in mesh.parts if p not in given]:
@@ -124,11 +132,11 @@ def assemble(mesh: NamedMesh, conductivity: Mapping[str, HasTensor], capacity: M
     blocks: dict[str, Block] = {}
     start = 0
     for i, part in enumerate(mesh.parts):
-        blocks[part] = block_of(mesh, i, start, conductivity[part], capacity[part])
+        blocks[part] = block_of(mesh, i, start, conductivity[part], capacity[part], part in quadratic)
         start = blocks[part].dofs.stop
     films = {name: Film(trace_of(mesh, blocks[p.part], p.facets), p.fluid) for name, p in mesh.patches.items()}
     contacts = {
-        name: Touch(trace_of(mesh, blocks[c.a], c.facets), trace_of(mesh, blocks[c.b], c.facets))
+        name: touch_of(trace_of(mesh, blocks[c.a], c.facets), trace_of(mesh, blocks[c.b], c.facets))
         for name, c in mesh.contacts.items()
     }
     return FieldModel(blocks, contacts, films)

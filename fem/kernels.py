@@ -65,6 +65,15 @@ def _add(indptr, indices, data, i, j, value):  # type: ignore[no-untyped-def]
 
 
 @njit(**_OPTIONS)
+def spread(cells, local, indptr, indices, data):  # type: ignore[no-untyped-def]
+    """Adds the matrices local (m, k, k) of cells (m, k)."""
+    for e in range(len(cells)):
+        for a in range(cells.shape[1]):
+            for b in range(cells.shape[1]):
+                _add(indptr, indices, data, cells[e, a], cells[e, b], local[e, a, b])
+
+
+@njit(**_OPTIONS)
 def volumes(xyz, tets):  # type: ignore[no-untyped-def]
     """(m,) m3"""
     out, grad = np.empty(len(tets)), np.empty((4, 3))

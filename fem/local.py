@@ -28,7 +28,7 @@ def local_solutions(
     loads (n, n_zone) : 1 W in every zone; those of the part join, and 1 W through each of its faces
     points : matrices (n, n) of the machine at other coefficients
     """
-    found = {part: [np.zeros((len(block.points), 0))] for part, block in field.blocks.items()}
+    found = {part: [np.zeros((block.n, 0))] for part, block in field.blocks.items()}
     own = {part: _own(field, loads, part) for part in field.blocks}
     order: dict[str, Symbolic] = {}
     for K in points:

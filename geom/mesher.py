@@ -26,7 +26,7 @@ def build_mesh(
     machine: Machine,
     size_m: float = 0.03,
     segments: int = 48,
-    across: int = 2,
+    across: float = 2,
     axial_m: float | None = None,
     cache: Path | str | None = None,
 ) -> NamedMesh:

@@ -34,7 +34,7 @@ class Triangulation:
     triangles: tuple[Ints, ...]
 
 
-def triangulate(columns: Sequence[Column], size: float, across: int = 2) -> Triangulation:
+def triangulate(columns: Sequence[Column], size: float, across: float = 2) -> Triangulation:
     """Mesh the base of every column with triangles of about `size` (m) or smaller.
 
     across : wanted number of elements over the width of a compact face, such as the winding in a slot
@@ -53,7 +53,7 @@ def triangulate(columns: Sequence[Column], size: float, across: int = 2) -> Tria
     return Triangulation(points, tuple(blocks))
 
 
-def _sizes(faces: NDArray[np.object_], size: float, across: int) -> Floats:
+def _sizes(faces: NDArray[np.object_], size: float, across: float) -> Floats:
     area, perimeter = shapely.area(faces), shapely.length(faces)
     width = 1.3 * 2 * area / perimeter
     return np.where(perimeter**2 / (4 * area) < _SLENDER, np.minimum(size, width / across), size)

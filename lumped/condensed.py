@@ -42,8 +42,8 @@ def network_in(
         states += [part, *(f"{part}#{k + 1}" for k in range(len(basis.capacity)))]
         C += [block.capacity, *basis.capacity]
         groups += [part] * len(own)
-        V = np.column_stack([np.ones(len(block.points)), basis.Phi])
-        shapes[part] = PartShape(block.points, block.xyz, block.tets, V, own)
+        V = np.column_stack([np.ones(block.n), basis.Phi])
+        shapes[part] = PartShape(block.points, block.elements, V, block.w / block.volume, own)
     states, C, groups = [*states, *fluids], [*C, *fluids.values()], [*groups, *fluids]
     links = [_conduction(part, shape, found[part]) for part, shape in shapes.items() if len(shape.states) > 1]
     links += [_contact(field, shapes, key, touch, contacts[key]) for key, touch in field.contacts.items()]
@@ -99,9 +99,9 @@ def _surface(field: Any, shapes: Mapping[str, PartShape], key: str) -> Place:
 def _contact(field: Any, shapes: Mapping[str, PartShape], key: str, touch: Any, g: float) -> Link:
     a, b = shapes[touch.a.part], shapes[touch.b.part]
     Xa, Xb = _restricted(field, a, touch.a), _restricted(field, b, touch.b)
-    X = np.hstack([Xa, -Xb])
-    both = np.concatenate([a.states, b.states])
-    P = sp.coo_array(X.T @ (touch.a.mass @ X))
-    hot, cold = (Row(s.states, Y.T @ touch.a.b / touch.area) for s, Y in ((a, Xa), (b, Xb)))
+    both, across = np.concatenate([a.states, b.states]), Xa.T @ (touch.cross @ Xb)
+    P = sp.coo_array(np.block([[Xa.T @ (touch.a.mass @ Xa), -across], [-across.T, Xb.T @ (touch.b.mass @ Xb)]]))
+    sides = ((a, Xa, touch.a), (b, Xb, touch.b))
+    hot, cold = (Row(s.states, Y.T @ t.b / touch.area) for s, Y, t in sides)
     pair = (touch.a.part, touch.b.part)
     return Link(f"contact:{key}", "contact", pair, both[P.row], both[P.col], P.data, Fixed(g), hot, cold)

@@ -87,7 +87,7 @@ def errors(network: Network, full: Array, x: Array, largest: float | None = None
     least = floor * (float(np.abs(full).max()) if largest is None else largest)
     parts: dict[str, PartError] = {}
     for part, shape in shapes.parts.items():
-        T = full[start : start + len(shape.points)]
+        T = full[start : start + len(shape.V)]
         start += len(T)
         parts[part] = _part(T, shape.V @ x[shape.states], shape, least, rng)
     return worst(parts)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,21 +20,26 @@ SNAP_M = 3e-3  # a thermocouple this far outside its part is taken to sit on the
 
 @dataclass(frozen=True)
 class PartShape:
-    """One part: points (n,) of the mesh, xyz (n, 3) m, tets (nt, 4) of own numbers, V (n, k) fields of its states."""
+    """One part: points (m,) its corners' numbers in the mesh, V (n, k) fields of its states on all its unknowns.
+
+    elements : fem.elements.Elements, the corners' unknowns first;  weights (n,) : row of the part's mean temperature
+    """
 
     points: Ints
-    xyz: Array
-    tets: Ints
+    elements: Any
     V: Array
+    weights: Array
     states: Ints
 
-    @cached_property
-    def weights(self) -> Array:
-        """(n,) row of the part's mean temperature."""
-        corners = self.xyz[self.tets]
-        volume = np.abs(np.linalg.det(corners[:, 1:] - corners[:, :1]))
-        w = np.bincount(self.tets.ravel(), np.repeat(volume, 4), len(self.xyz))
-        return np.asarray(w / w.sum())
+    @property
+    def xyz(self) -> Array:
+        """(n, 3) points of the unknowns (m)."""
+        return np.asarray(self.elements.xyz)
+
+    @property
+    def tets(self) -> Ints:
+        """(nt, 4) corners, in the part's own numbers."""
+        return np.asarray(self.elements.tets)
 
     @cached_property
     def tree(self) -> cKDTree:
@@ -53,19 +59,20 @@ class Shapes:
         return Row(shape.states, weights @ shape.V[nodes])
 
     def field(self, x: Array) -> Array:
-        """(n,) temperature at every point of every part, parts one after the other."""
+        """(n,) temperature at every unknown of every part, parts one after the other."""
         return np.concatenate([shape.V @ x[shape.states] for shape in self.parts.values()])
 
     def of_part(self, part: str, x: Array) -> Array:
-        """(n_points,) temperature (degC) at a part's own points."""
+        """(m,) temperature (degC) at a part's corners of tetrahedra, its points in the mesh."""
         shape = self._part(part)
-        return np.asarray(shape.V @ x[shape.states])
+        return np.asarray(shape.V[: len(shape.points)] @ x[shape.states])
 
     def hot_spot(self, part: str, x: Array) -> tuple[float, Array]:
         """Largest temperature (degC) of a part and where it is (m)."""
-        T = self.of_part(part, x)
+        shape = self._part(part)
+        T = shape.V @ x[shape.states]
         k = int(np.argmax(T))
-        return float(T[k]), self._part(part).xyz[k]
+        return float(T[k]), shape.xyz[k]
 
     def _part(self, name: str) -> PartShape:
         if name not in self.parts:
@@ -74,15 +81,15 @@ class Shapes:
 
 
 def locate(shape: PartShape, xyz: Array, part: str) -> tuple[Ints, Array]:
-    """Four nodes and their barycentric weights at a point, or the nearest node within 3 mm of the part."""
-    near = shape.tree.query(xyz, k=min(200, len(shape.tets)))[1]
-    corners = shape.xyz[shape.tets[np.atleast_1d(near)]]
+    """Unknowns and their weights at a point, or the nearest unknown within 3 mm of the part."""
+    near = np.atleast_1d(shape.tree.query(xyz, k=min(200, len(shape.tets)))[1])
+    corners = shape.xyz[shape.tets[near]]
     edges = np.moveaxis(corners[:, 1:] - corners[:, :1], 1, 2)
     inner = np.linalg.solve(edges, (xyz - corners[:, 0])[:, :, None])[:, :, 0]
     weights = np.column_stack([1 - inner.sum(1), inner])
     best = int(np.argmax(weights.min(1)))
     if weights[best].min() > -1e-6:
-        return shape.tets[np.atleast_1d(near)[best]], np.clip(weights[best], 0.0, 1.0)
+        return shape.elements.row(near[best], np.clip(weights[best], 0.0, 1.0))
     distance = np.linalg.norm(shape.xyz - xyz, axis=1)
     k = int(np.argmin(distance))
     # Long thin elements hide from the search by centres: take the best of all before giving up.
@@ -94,11 +101,11 @@ def locate(shape: PartShape, xyz: Array, part: str) -> tuple[Ints, Array]:
 def _anywhere(shape: PartShape, xyz: Array, part: str, distance: float, nearest: Array) -> tuple[Ints, Array]:
     corners = shape.xyz[shape.tets]
     inside = ((corners.min(1) <= xyz + 1e-9) & (corners.max(1) >= xyz - 1e-9)).all(1)
-    for tet in shape.tets[inside]:
-        p = shape.xyz[tet]
+    for tet in np.flatnonzero(inside):
+        p = corners[tet]
         inner = np.linalg.solve((p[1:] - p[0]).T, xyz - p[0])
         if min(inner.min(), 1 - inner.sum()) > -1e-6:
-            return tet, np.array([1 - inner.sum(), *inner])
+            return shape.elements.row(tet, np.array([1 - inner.sum(), *inner]))
     spot, mm = np.round(1e3 * xyz, 1), np.round(1e3 * nearest, 1)
     raise InputError(
         f"the point {spot.tolist()} mm is not in part '{part}'",

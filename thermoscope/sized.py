@@ -12,7 +12,7 @@ from lumped.motor import motor_network
 from lumped.motor_zones import motor_zones
 from lumped.reduction import Recipe, Reduction
 from thermoscope.load_cases import load_cases
-from thermoscope.pipeline import Built, Progress, prepared, reduced, silent
+from thermoscope.pipeline import ACROSS, Built, Progress, prepared, reduced, silent
 
 FINE = Recipe(tolerance=0.01, random_points=8, local_points=12, local_states=16)
 ROUNDS = 3
@@ -53,7 +53,7 @@ def wish_of(accuracy: float) -> Wish:
 
 def sized(
     machine: Machine, accuracy: float, size_m: float = 0.06, segments: int = 48, recipe: Recipe = FINE,
-    progress: Progress = silent, rounds: int = ROUNDS, across: int = 2, axial_m: float | None = None,
+    progress: Progress = silent, rounds: int = ROUNDS, across: float = ACROSS, axial_m: float | None = None,
 ) -> Sized:  # fmt: skip
     """Build at several sizes and keep the smallest that meets the wish; if none does, learn from where it fails."""
     ready = prepared(machine, size_m, segments, progress, axial_m, across)

@@ -31,7 +31,8 @@ def draw(built: Built) -> None:
     z = simulate(network, record(), keep_states=True).z
     assert z is not None
     assert network.recovery is not None
-    T = network.recovery.field(z[-1, : len(network.states)])
+    x = z[-1, : len(network.states)]
+    T = np.concatenate([network.recovery.of_part(part, x) for part in nodes.parts])
     viz.cutaway(nodes, T, title="100 kW traction motor after an hour at 130 A", png=HERE / "field.png").close()
     exploded(nodes, title="The motor pulled apart", png=HERE / "exploded.png").close()
     regions(nodes, title="The parts and their names", png=HERE / "parts.png").close()

@@ -33,7 +33,7 @@ def machine():
 @pytest.fixture(scope="module")
 def field():
     k = {"core": laminated(28.0, 3.0), "coil": wound(250.0, 1.2), "yoke": isotropic(40.0)}
-    return assemble(machine(), k, {"core": 3.6e6, "coil": 2.5e6, "yoke": 3.7e6})
+    return assemble(machine(), k, {"core": 3.6e6, "coil": 2.5e6, "yoke": 3.7e6}, ["coil"])
 
 
 @pytest.fixture(scope="module")
