@@ -15,7 +15,7 @@ from fem.solve import Solver
 from geom import build_mesh, load_machine
 from lumped.motor import nominal_coefficients
 from lumped.motor_zones import motor_zones
-from thermoscope.pipeline import Prepared, field_of, reduced
+from thermoscope.pipeline import Meshing, Prepared, field_of, reduced
 from thermoscope.sized import FINE
 
 Row = dict[str, Any]
@@ -27,7 +27,8 @@ def offline_rows() -> Iterator[Row]:
     mesh = build_mesh(machine, **MOTOR)
     faces = {name: (p.part, p.fluid) for name, p in mesh.patches.items()}
     films, contacts = nominal_coefficients(machine, faces, mesh.contacts)
-    ready = Prepared(machine, mesh, field_of(machine, mesh), films, contacts)
+    how = Meshing(**MOTOR, axial_m=1.5 * MOTOR["size_m"])
+    ready = Prepared(machine, mesh, field_of(machine, mesh), films, contacts, how)
     case = f"motor, {len(mesh.points)} nodes, {ready.field.n} unknowns"
     changed = replace(ready, films={**films, "housing.fins": 2 * films["housing.fins"]},
                       contacts={**contacts, "housing|yoke": 0.5 * contacts["housing|yoke"]})  # fmt: skip

@@ -185,8 +185,8 @@ def refuse_unknown_fluid(field: FieldModel, fluids: Fluids) -> None:
 
 def _refuse_floating(field: FieldModel, K: sp.csr_array) -> None:
     """A piece that no film or contact holds has no steady temperature."""
-    linked = sp.csr_array(K != 0)
-    count, label = sp.csgraph.connected_components(linked, directed=False)
+    # In a symmetric pattern strongly connected is connected, and found in half the time.
+    count, label = sp.csgraph.connected_components(sp.csr_array(K != 0), connection="strong")
     held = np.bincount(label, K @ np.ones(field.n), count) > 1e-12 * np.bincount(label, K.diagonal(), count)
     if not held.all():
         loose = [part for part, block in field.blocks.items() if not held[label[block.dofs]].all()]

@@ -34,13 +34,29 @@ def silent(message: str) -> None:
 
 
 @dataclass(frozen=True)
+class Meshing:
+    """How fine a mesh is, as for geom.build_mesh."""
+
+    size_m: float
+    segments: int
+    across: float
+    axial_m: float
+
+    @property
+    def coarser(self) -> Meshing:
+        """Elements twice as large every way; arcs keep their chords, so that both meshes have the same volume."""
+        return Meshing(2 * self.size_m, self.segments, self.across / 2, 2 * self.axial_m)
+
+
+@dataclass(frozen=True)
 class Built:
-    """A machine at every stage."""
+    """A machine at every stage;  meshing : how its mesh was made."""
 
     machine: Machine
     mesh: NamedMesh
     field: FieldModel
     network: Network
+    meshing: Meshing
 
 
 def cache_folder() -> Path:
@@ -85,6 +101,7 @@ class Prepared:
     field: FieldModel
     films: Mapping[str, float]
     contacts: Mapping[str, float]
+    meshing: Meshing
 
 
 def prepared(
@@ -92,13 +109,23 @@ def prepared(
     across: float = ACROSS,
 ) -> Prepared:  # fmt: skip
     """Mesh and conduction; axial_m : thickest layer along the axis (m), None for 0.75 size_m; all as for build_mesh."""
-    progress("mesh")
     axial = AXIAL * size_m if axial_m is None else axial_m
-    found = build_mesh(machine, size_m, segments, across, axial, cache_folder())
+    return meshed(machine, Meshing(size_m, segments, across, axial), progress)
+
+
+def meshed(machine: Machine, how: Meshing, progress: Progress = silent) -> Prepared:
+    """Mesh and conduction on a mesh of given fineness."""
+    progress("mesh")
+    found = build_mesh(machine, how.size_m, how.segments, how.across, how.axial_m, cache_folder())
     mesh = with_cells(machine, found)
     progress(f"conduction on {len(mesh.points)} points")
+    return Prepared(machine, mesh, field_of(machine, mesh), *coefficients_on(machine, mesh), how)
+
+
+def coefficients_on(machine: Machine, mesh: NamedMesh) -> tuple[dict[str, float], dict[str, float]]:
+    """Nominal films and contacts (W/m2/K) of the faces and contacts of a mesh."""
     faces = {name: (patch.part, patch.fluid) for name, patch in mesh.patches.items()}
-    return Prepared(machine, mesh, field_of(machine, mesh), *nominal_coefficients(machine, faces, mesh.contacts))
+    return nominal_coefficients(machine, faces, mesh.contacts)
 
 
 def with_cells(machine: Machine, mesh: NamedMesh) -> NamedMesh:
@@ -125,7 +152,7 @@ def build(
     ready = prepared(machine, size_m, segments, progress, axial_m)
     progress("network from the field")
     condensed = reduced(ready, recipe).network(max_states=recipe.max_states)
-    return Built(machine, ready.mesh, ready.field, motor_network(machine, condensed))
+    return Built(machine, ready.mesh, ready.field, motor_network(machine, condensed), ready.meshing)
 
 
 def motor_model(machine: Machine, progress: Progress = silent) -> Network:

@@ -69,7 +69,8 @@ def sized(
     found = None if good else adapt(reduction, cases, wish, rounds, points, guides, tell=progress)
     condensed = good[0].network if good else found.network  # type: ignore[union-attr]
     kept = reduction if found is None else found.reduction
-    return Sized(Built(machine, ready.mesh, ready.field, motor_network(machine, condensed)), kept, wish, table, found)
+    built = Built(machine, ready.mesh, ready.field, motor_network(machine, condensed), ready.meshing)
+    return Sized(built, kept, wish, table, found)
 
 
 SIZES = (0, 50, 100, 200, 400)  # 0: the means only

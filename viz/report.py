@@ -31,6 +31,7 @@ class Report:
     parameters : as in `add` and `calibrate`
     curves : one Comparison per test, the most telling first
     pictures : caption -> PNG (path or bytes)
+    error_budget : test -> places, as in `compare`
     assumptions : one sentence each;  commands : what repeats the result;  made : date, versions, computer
     """
 
@@ -46,6 +47,7 @@ class Report:
     commands: Sequence[str] = ()
     made: str = ""
     earlier: bool = False
+    error_budget: Mapping[str, Sequence[Document]] = field(default_factory=dict)
 
 
 def write_report(report: Report, path: str | Path) -> Path:
@@ -59,7 +61,7 @@ def write_report(report: Report, path: str | Path) -> Path:
 def render(report: Report) -> str:
     """The page as text."""
     parts = [_top(report), _error(report), _pictures(report), _curves(report), _missing(report), _hidden(report)]
-    parts += [_values(report), _sensors(report), _assumed(report), _repeat(report)]
+    parts += [_values(report), _sensors(report), _numerical(report), _assumed(report), _repeat(report)]
     return html.page(f"thermoscope: {report.case}", parts)
 
 
@@ -209,6 +211,15 @@ def _sensors(r: Report) -> str:
         name = f"{test['name']} ({test['role']}), rms {test['rmse_K']:.2f} K"
         parts.append(html.more(name, html.table(headers, rows), opened=test["role"] == "hold-out"))
     return html.section("Every sensor", *parts)
+
+
+def _numerical(r: Report) -> str:
+    """What mesh, condensation and time steps leave in every temperature, test by test."""
+    keys = ("mesh_K", "condensation_K", "time_K", "total_K")
+    headers = ["place", "mesh (K)", "condensation (K)", "time steps (K)", "sum (K)"]
+    tests = {name: [(p["place"], *(_number(p[k]) for k in keys)) for p in at] for name, at in r.error_budget.items()}
+    parts = [html.more(name, html.table(headers, rows)) for name, rows in tests.items()]
+    return html.section("Error budget: what the model's own numbers may be wrong by", *parts)
 
 
 def _assumed(r: Report) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from thermoscope.commands.error_budget import show_budget
 from thermoscope.commands.opened import opened
 from thermoscope.terminal import give, progress, say, table
 
@@ -14,6 +15,7 @@ WHITE = 0.01
 
 def compare(case: str, target: str | None, why: bool = False) -> int:
     """Exit code 1 when a sensor is outside its uncertainty and outside the 4 % rule."""
+    from thermoscope.error_budget import budgets_of_tests, documents
     from validation.compare import compare as held_against
     from validation.failing import failing
 
@@ -22,7 +24,8 @@ def compare(case: str, target: str | None, why: bool = False) -> int:
         tell("running the model")
         result = held_against(folder.case)
         more = failing(folder.case, tell).document() if why else {}
-    document = {**result.document(), **more}
+        budgets = budgets_of_tests(folder, tell)
+    document = {**result.document(), **more, "error_budget": documents(budgets)}
     give(document, target, lambda: show(document))
     return 0 if result.agrees else 1
 
@@ -36,6 +39,7 @@ def show(document: Mapping[str, Any]) -> None:
         table(title, headers, [[c[k] for k in keys] for c in test["channels"]], marked=["over"])
     if "patterns" in document:
         show_why(document)
+    show_budget(document["error_budget"])
     model, over = document["model"], [c for t in document["tests"] for c in t["channels"] if c["verdict"] == "over"]
     effects = f" with {', '.join(model['effects'])}" if model["effects"] else ""
     say(

@@ -7,6 +7,7 @@ from typing import Any
 
 from thermoscope.commands.ahead import show_ahead
 from thermoscope.commands.bases import show_bases
+from thermoscope.commands.error_budget import show_budget
 from thermoscope.commands.opened import opened
 from thermoscope.commands.saved import save_diagnosis
 from thermoscope.terminal import give, progress, say, sized, table
@@ -17,12 +18,15 @@ SHOWN = 0.005  # probabilities below half a per cent are in --json
 
 def diagnose(case: str, target: str | None) -> int:
     """Exit code 1 when no effect is named."""
+    from thermoscope.error_budget import budgets_of_tests, documents
     from validation import diagnose as search
 
     with progress() as tell:
         folder = opened(case, tell)
         found = search(folder.case, progress=tell)
-    document = {"case": folder.case.name, "revision": folder.case.model.revision, **found.document()}
+        budgets = documents(budgets_of_tests(folder, tell))
+    named = {"case": folder.case.name, "revision": folder.case.model.revision}
+    document = {**named, **found.document(), "error_budget": budgets}
     save_diagnosis(folder, document)
     give(document, target, lambda: show(document))
     return 0 if found.verdict in ("named", "group", "several") else 1
@@ -35,6 +39,7 @@ def show(document: Mapping[str, Any]) -> None:
         show_bases(bases)
     else:
         _searched(document)
+        show_budget(document.get("error_budget", {}))
     say(f"{document['verdict']}: {document['words']}")
 
 

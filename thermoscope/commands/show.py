@@ -46,17 +46,18 @@ def report(case: str, out: Path | None, target: str | None, again: bool = True) 
 
 def write_page(folder: Folder, case: str, into: Path, tell: Progress, again: bool = True) -> Path:
     """Write into/report.html with its pictures; `case` is what the commands on it call the case."""
+    from thermoscope.error_budget import budgets_of_tests, documents
     from validation.compare import compare
     from viz.report import Report, write_report
 
     tell("running the model")
     result, (diagnosis, earlier) = compare(folder.case), _diagnosis(folder, tell, again)
-    curves = [held(folder, test) for test in by_interest(folder)]
+    curves, budgets = [held(folder, test) for test in by_interest(folder)], budgets_of_tests(folder, tell)
     tell("drawing")
     page = Report(
         folder.case.name, folder.settings.description, result.document(), diagnosis, steps(folder),
         parameters(folder), curves, _pictures(folder, into, None if earlier else diagnosis), assumptions(folder),
-        commands(folder, case), made(), earlier,
+        commands(folder, case), made(), earlier, documents(budgets),
     )  # fmt: skip
     return write_report(page, into / "report.html")
 

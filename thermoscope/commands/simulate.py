@@ -16,6 +16,7 @@ from lumped.coupled import coupled
 from lumped.network import Network, Row
 from lumped.simulate import Record
 from lumped.simulate import simulate as integrated
+from thermoscope.commands.error_budget import show_budget
 from thermoscope.commands.opened import PACKAGE, opened
 from thermoscope.commands.simulate_readings import readings, sensors, short_of
 from thermoscope.cycle import Cycle, find_cycle, load_cycle
@@ -72,6 +73,7 @@ def _ran(
     network: Network, values: Mapping[str, float], cycle: Cycle, folder: Folder, into: Path, tell: Progress
 ) -> dict[str, Any]:
     tell(f"running {cycle.name}")
+    from thermoscope.error_budget import error_budgets
     from validation.predict import thermal
 
     rows, record, whole = _looks(network, folder), cycle.record, network
@@ -88,7 +90,8 @@ def _ran(
     if heat.mismatch > MISMATCH:
         raise ThermoscopeError(f"{cycle.name}: injected and declared losses differ by {100 * heat.mismatch:.3g} %")
     file = write_whole(into / f"simulate-{cycle.name}.csv", _csv(record, rows, y))
-    return _document(cycle, record, rows, y, heat, residuals, file)
+    budget = error_budgets(folder, {cycle.name: record}, tell)[cycle.name]
+    return {**_document(cycle, record, rows, y, heat, residuals, file), "error_budget": budget.document()}
 
 
 def _looks(network: Network, folder: Folder) -> dict[str, Row]:
@@ -156,6 +159,7 @@ def show(document: Mapping[str, Any]) -> None:
             say(f"drive and temperatures agree after {len(rounds)} rounds; largest change per round (K): {shown}")
         say(f"heat in - out - stored: {run['energy_balance']:.1e} of the heat; losses injected against declared: "
             f"{run['loss_mismatch']:.1e}; written to {run['file']}")  # fmt: skip
+    show_budget({run["name"]: run["error_budget"] for run in document["runs"]})
     for c in document["circuits"]:
         say(f"circuit {c['circuit']}: {c['flow_m3_s'] * 6e4:.3g} l/min, {c['pressure_drop_Pa'] / 1e3:.3g} kPa, "
             f"pump {c['pump_W']:.3g} W")  # fmt: skip

@@ -1,0 +1,53 @@
+"""One error budget: what the mesh, the condensation and the time steps leave in a temperature, in K per place."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+
+@dataclass(frozen=True)
+class PlaceError:
+    """Estimated errors (K) of the temperature at one place.
+
+    mesh, condensation : None for a network that was not condensed from a field;  time : None where nothing estimates it
+    """
+
+    place: str
+    mesh_K: float | None
+    condensation_K: float | None
+    time_K: float | None
+
+    @property
+    def total_K(self) -> float:
+        """Their sum: errors of discretisation are no chance, so they need not cancel. 0 where nothing is estimated."""
+        return sum(e for e in (self.mesh_K, self.condensation_K, self.time_K) if e is not None)
+
+    def document(self) -> dict[str, Any]:
+        known = any(e is not None for e in (self.mesh_K, self.condensation_K, self.time_K))
+        return {**vars(self), "total_K": self.total_K if known else None}
+
+
+@dataclass(frozen=True)
+class ErrorBudget:
+    """Of one run: every sensor, and the hot spot of every part that is heated."""
+
+    places: tuple[PlaceError, ...]
+
+    @property
+    def total_K(self) -> Mapping[str, float]:
+        """place -> K"""
+        return {p.place: p.total_K for p in self.places}
+
+    @classmethod
+    def worst(cls, budgets: Iterable[ErrorBudget]) -> ErrorBudget:
+        """Place by place the run in which most is left."""
+        found: dict[str, PlaceError] = {}
+        for place in (p for budget in budgets for p in budget.places):
+            if place.place not in found or place.total_K > found[place.place].total_K:
+                found[place.place] = place
+        return cls(tuple(found.values()))
+
+    def document(self) -> list[dict[str, Any]]:
+        return [p.document() for p in self.places]

@@ -1,0 +1,42 @@
+"""The error budget as a table: place by place the run in which most is left."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from thermoscope.terminal import say, table
+
+Places = Sequence[Mapping[str, Any]]
+KEYS = ("place", "mesh_K", "condensation_K", "time_K", "total_K")
+HEADERS = ["place", "mesh (K)", "condensation (K)", "time steps (K)", "sum (K)"]
+
+
+def show_budget(budgets: Mapping[str, Places]) -> None:
+    """budgets : run -> places, as in the documents"""
+    if rows := worst(budgets):
+        shown = [["-" if row[key] is None else row[key] for key in KEYS] for row in rows]
+        table("Error budget: what the model's own numbers may be wrong by", HEADERS, shown)
+        say(words(rows))
+
+
+def worst(budgets: Mapping[str, Places]) -> list[Mapping[str, Any]]:
+    """Of every place the run with the largest sum."""
+    found: dict[str, Mapping[str, Any]] = {}
+    for row in (row for places in budgets.values() for row in places):
+        if row["place"] not in found or _total(row) > _total(found[row["place"]]):
+            found[row["place"]] = row
+    return list(found.values())
+
+
+def _total(row: Mapping[str, Any]) -> float:
+    return float(row["total_K"] or 0.0)
+
+
+def words(rows: Places) -> str:
+    """What a missing number means."""
+    declared = all(row["mesh_K"] is None for row in rows)
+    field = "a declared network has no mesh and nothing is condensed; " if declared else ""
+    timed = any(row["time_K"] is not None for row in rows)
+    time = "time steps as the integrator estimates them" if timed else "nothing estimates the time steps here"
+    return f"error budget: {field}{time}; an effect that changes no sensor by more cannot be told from it"
