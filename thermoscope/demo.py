@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from validation.compare import Comparison
     from validation.tuned import Tuned
 
-CASE, KNOB, DRAWS = "road-test", "fan.flow", 40
+CASE, KNOB = "road-test", "fan.flow"
 MARKER = ".made-by-thermoscope-demo"
 
 
@@ -53,7 +53,7 @@ def demo(out: Path, target: str | None) -> int:
     turned = old_way(case)
     stages.append(Stage(f"{KNOB} x {turned.factor:.2f} instead", turned.comparison))
     headline("5  What is missing?")
-    diagnose(str(case), DRAWS, False, str(out / "diagnose.json"))
+    diagnose(str(case), str(out / "diagnose.json"))
     named = (saved_diagnosis(opened(str(case), lambda _: None)) or {}).get("named", [])
     done = False
     if named:

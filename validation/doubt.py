@@ -100,3 +100,14 @@ COSTS: Mapping[str, Odds] = MappingProxyType({
     "miss": Odds(0.5, "what is missed stays in the model, and its error can be seen there"),
     "abstain": Odds(0.1, "a further test for nine answers that are right at once"),
 })  # fmt: skip
+
+
+def markdown() -> str:
+    """The table as docs/diagnosis.md shows it."""
+    rows = [f"| {name} | {line.sd:g} {line.unit} | {line.reason} |" for name, line in TABLE.items()]
+    odds = [f"| {name} | {100.0 * o.share:g} % | {o.reason} |" for name, o in PRIOR.items()]
+    rare = [f"| {name} | x {o.share:g} | {o.reason} |" for name, o in RARE.items()]
+    costs = [f"| {name} | {o.share:g} | {o.reason} |" for name, o in COSTS.items()]
+    head = ["| doubt | one sigma | reason |", "|---|---|---|", *rows, ""]
+    prior = ["| before the readings | share | reason |", "|---|---|---|", *odds, *rare, ""]
+    return "\n".join([*head, *prior, "| statement | cost | reason |", "|---|---|---|", *costs])

@@ -62,7 +62,8 @@ def above(posterior: Posterior, choice: Decision, budget: Mapping[str, float]) -
 
 def moved(evidence: Evidence, h: Hypothesis) -> dict[str, float]:
     """Channel -> largest change (K) that one effect makes there at its size, all else held."""
-    k, p, out = h.members[0], evidence.p, {}
+    k, p = h.members[0], evidence.p
+    out: dict[str, float] = {}
     size = 1.0 if evidence.effects[k].whole else float(evidence.score.amplitude[k] if h.fit is None else h.fit.theta[p])
     for s in evidence.parts:
         out[s.channel] = max(out.get(s.channel, 0.0), float(np.max(np.abs(size * s.J[:, p + k]))))
