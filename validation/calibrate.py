@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 Progress = Callable[[str], None]
 Keep = Callable[[Mapping[str, float]], None]
 STATIONARY = 0.1  # of a posterior standard deviation
-WORTH = 0.005  # nats: one tenth of a posterior standard deviation
+WORTH = 0.1  # nats: the error of time steps moves an objective by about as much, so that no fit can settle closer
 FORETOLD = 0.7  # of the predicted gain: a Jacobian that delivers less is made anew
 
 

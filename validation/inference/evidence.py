@@ -22,8 +22,8 @@ from validation.sheet import Segment, reach, segments
 
 Array = NDArray[np.float64]
 TWIN = 0.9995  # cosine from which a calibrated parameter does the same as an effect
-ENOUGH = 0.05  # nats: evidence is read to a tenth
-ROUNDS = 10  # steps of a calibration that goes on under the model error
+ENOUGH = 0.1  # nats: evidence is read to a few tenths
+ROUNDS = 4  # steps of a calibration that goes on under the model error
 
 
 @dataclass(frozen=True)
