@@ -20,7 +20,7 @@ from lumped.terms import BENDS, DYNAMIC, STIFF, Forcing, Terms
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
-ERROR_K, ERROR_SHARE = 3e-2, 3e-4  # of a step: K, and of the range of temperatures
+ERROR_K, ERROR_SHARE = 1e-2, 1e-4  # of a step: K, and of the range of temperatures
 HOTTEST = 3000.0  # degC: beyond, no part of a machine exists
 
 

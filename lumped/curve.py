@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-CURVED = 1e-3  # of the largest factor of an interval: what a parabola may miss, times its share of the interval
+CURVED = 3e-4  # of the largest factor of an interval: what a parabola may miss, times its share of the interval
 SMALL = 1e-2  # of the largest factor of a record: less than that counts as that
 FINEST = 1e-3  # of an interval
 QUARTERS = np.array([0.0, 0.25, 0.5, 0.75, 1.0])

@@ -14,8 +14,9 @@ def failure(network: Network, core: Compiled, forcing: Forcing, at: Position) ->
     """What to say of where the run stands."""
     status, t, hottest = int(at.at[STATUS]), _instant(forcing, at), core.control.hottest[0]
     node, where = network.states[int(at.at[NODE])], f"network '{network.name}': "
-    if status == HOT and _heats_itself(network):
-        why = "its losses grow faster with temperature than its cooling"
+    if status == HOT and (growing := _growing(network)):
+        tables = ", ".join(f"[losses.{name}]" for name in growing)
+        why = f"{tables} grow faster with temperature than its cooling"
         return f"{where}thermal runaway at t = {t:g} s: '{node}' passes {hottest:g} degC; {why}"
     if status == HOT:
         return f"{where}'{node}' passes {hottest:g} degC at t = {t:g} s: more heat than its links carry away"
@@ -31,10 +32,10 @@ def _instant(forcing: Forcing, at: Position) -> float:
     return float(before + at.clock[SHARE] * (forcing.time[j] - before))
 
 
-def _heats_itself(network: Network) -> bool:
-    """Whether a loss that grows with temperature is among the sources."""
-    slopes = [getattr(s.law.temperature, "alpha", 0.0) for s in network.sources]
-    return any(alpha > 0.0 for alpha in slopes)
+def _growing(network: Network) -> list[str]:
+    """Losses that grow with temperature."""
+    own = [s for s in network.sources if not s.origin and getattr(s.law.temperature, "alpha", 0.0) > 0.0]
+    return list(dict.fromkeys(s.name.removeprefix("loss:") for s in own))
 
 
 def _moving(network: Network, core: Compiled, forcing: Forcing, at: Position) -> str:

@@ -201,7 +201,7 @@ REFUSED = {
     "malformed loss map": (
         swap("network.toml", 'kind = "copper"\nR20_ohm = 0.02\ncurrents = ["current_A"]',
              'kind = "map"\nat_speed = [0, 1]\nat_torque = [0, 1]\nP_W = [1, 2]'), ["losses.copper", "P_W"]),
-    "runaway": (swap("network.toml", "R20_ohm = 0.02", "R20_ohm = 2"), ["T_winding", "thermal runaway", "copper"]),
+    "runaway": (swap("network.toml", "R20_ohm = 0.02", "R20_ohm = 2"), ["winding", "thermal runaway", "copper"]),
     "bounds that cross": (parameter("low = 2\nhigh = 0.5"), ["parameters.x", "low = 2", "high = 0.5"]),
     "bounds without 1": (parameter("value = 3\nlow = 2\nhigh = 5"), ["parameters.x", "neutral value = 1"]),
     "value outside its bounds": (parameter("value = 9\nlow = 0.5\nhigh = 5"), ["parameters.x", "value = 9"]),

@@ -11,6 +11,9 @@ from validation.effects.build import Shaped, heat, power_scale
 from validation.effects.sites import cores, heated
 
 
+SLOWEST_HZ = 500.0  # no inverter switches more slowly; on its way from 0 a recorded frequency passes below
+
+
 @dataclass(frozen=True)
 class Ripple:
     """(f / 8 kHz)^-0.5 where the inverter switches, 0 where it does not.  of : the input with f (Hz)"""
@@ -19,7 +22,7 @@ class Ripple:
 
     def __call__(self, inputs: Inputs) -> np.ndarray:
         f = np.asarray(inputs[self.of], float)
-        return np.where(f > 0.0, np.sqrt(8000.0 / np.maximum(f, 1.0)), 0.0)
+        return np.where(f > 0.0, np.sqrt(8000.0 / np.maximum(f, SLOWEST_HZ)), 0.0)
 
 
 @dataclass(frozen=True)

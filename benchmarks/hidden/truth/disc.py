@@ -230,6 +230,6 @@ DISC = Archetype(
     {"coils": "coils", "teeth": "teeth", "stator_ring": "ring", "shaft": "shaft", "disc_L": "rotor.left",
     "disc_R": "rotor.right",
      "pm_L": "magnets.left", "pm_R": "magnets.right", "cover_L": "cover.left", "cover_R": "cover.right"}, PASSING,
-    Logger(20.0, 10.0, 0.1, (3.0, 12.0), 0.08), {"ring": "stator_ring", "cover.left": "cover_L",
+    Logger(20.0, 5.0, 0.1, (3.0, 12.0), 0.08), {"ring": "stator_ring", "cover.left": "cover_L",
     "cover.right": "cover_R"}, WORDS,
 )  # fmt: skip
