@@ -10,7 +10,6 @@ from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import Shaped, heat, power_scale
 from validation.effects.sites import cores, heated
 
-
 SLOWEST_HZ = 500.0  # no inverter switches more slowly; on its way from 0 a recorded frequency passes below
 
 

@@ -208,7 +208,7 @@ def refit(evidence: Evidence, members: Sequence[int], theta: Array) -> Fit:
     fit = evidence.fit
     rough = minimise(network, evidence.tests, unknowns, theta, fit.noise, held, 8, Known(evidence.parts_of(free)),
                      worth=ENOUGH, error=fit.error)  # fmt: skip
-    return minimise(network, evidence.tests, unknowns, rough.theta, fit.noise, held, 6, draft=True, worth=ENOUGH,
+    return minimise(network, evidence.tests, unknowns, rough.theta, fit.noise, held, 3, draft=True, worth=ENOUGH,
                     error=fit.error)  # fmt: skip
 
 
