@@ -8,7 +8,6 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from geom.errors import InputError
-from geom.kept import written_whole
 
 CASE = "case.toml"
 INPUTS = ("tests", "cycles")  # folders of a case
@@ -16,6 +15,8 @@ INPUTS = ("tests", "cycles")  # folders of a case
 
 def write_whole(path: Path, text: str | bytes) -> Path:
     """Write beside the target, then rename: a reader sees the old file or the new one, never half of it."""
+    from geom.kept import written_whole  # loads NumPy, which help does without
+
     try:
         with written_whole(path) as partial:
             partial.write_bytes(text if isinstance(text, bytes) else text.encode("utf-8"))

@@ -137,7 +137,8 @@ def test_point_in_lies_in_the_part(motor, motor_mesh):
 def test_machine_without_fins_or_with_ducts_meshes_too():
     from geom.machine import machine_from
 
-    table = {"machine": {"family": "series-dc"}, "geometry": {"housing": {"fins": 0}, "rotor": {"ducts": 8}}}
+    geometry = {"housing": {"fins": 0}, "rotor": {"ducts": 8, "duct_diameter_mm": 16.0}}
+    table = {"machine": {"family": "series-dc"}, "geometry": geometry}
     mesh = build_mesh(machine_from(table), size_m=0.08, segments=36, across=1)
     ducts = area(mesh, mesh.patches["rotor.core.air.ducts"].facets)
     assert ducts == pytest.approx(8 * math.pi * 0.016 * 0.2, rel=0.01)

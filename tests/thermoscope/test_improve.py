@@ -20,7 +20,7 @@ def improved(tmp_path_factory):
     case, target = small_case(folder), folder / "improve.json"
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("THERMOSCOPE_CACHE", str(folder / "cache"))
-        code = command.improve(str(case), True, 12, 3, str(target))
+        code = command.improve(str(case), True, 3, str(target))
     return code, json.loads(target.read_text()), case
 
 

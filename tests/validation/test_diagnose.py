@@ -39,7 +39,6 @@ TRUTHS = {
     "bias": lambda: Truth(10, bias={"yoke": 4.0}),
     "lag": lambda: Truth(10, lag={"winding.field": 150.0}),
     "exchanged": lambda: Exchanged("winding.field", "yoke"),
-    "loose joint": lambda: Truth(10, change={"joint": ("joints", ("poles", "winding.field"), 0.35)}),
 }
 
 
@@ -97,13 +96,6 @@ def test_faults_of_sensors_are_data(name, effect):
     found = answer(name)
     assert found.verdict == "data"
     assert effect in found.groups[0]
-
-
-def test_a_loose_joint_is_never_called_adequate():
-    """A joint with a third of its conductance: worse contact, or a calibrated parameter far from its prior."""
-    found = answer("loose joint")
-    assert found.verdict != "adequate"
-    assert "contact" in found.words
 
 
 def test_odds_sum_to_one_and_lead_to_the_verdict():

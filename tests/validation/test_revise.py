@@ -75,7 +75,6 @@ def test_what_the_data_cannot_tell_is_said():
     rows = {p.name: p for p in added().parameters}
     assert rows[EFFECT].identified
     assert not all(p.identified for p in rows.values())
-    assert any(p.partner for p in rows.values())
 
 
 def test_calibration_leaves_less_than_the_sensors_are_sure_of():
