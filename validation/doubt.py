@@ -54,7 +54,7 @@ TABLE: Mapping[str, Line] = MappingProxyType({
     "flow": Line(0.03, "1", "flow meters of a bench"),
 })  # fmt: skip
 
-USUAL: Doubt = MappingProxyType({name: line.sd for name, line in TABLE.items()})
+USUAL: Doubt = {name: line.sd for name, line in TABLE.items()}  # a dictionary, for other processes take a case along
 
 
 def widened(lines: Mapping[str, float], where: str = "[doubt]") -> Doubt:
@@ -64,7 +64,7 @@ def widened(lines: Mapping[str, float], where: str = "[doubt]") -> Doubt:
             raise InputError(f"unknown line of doubt '{name}'", where, f"known: {', '.join(TABLE)}")
         if not TABLE[name].sd <= sd < float("inf"):
             raise InputError(f"'{name}' of {sd} is no wider than usual", where, f"{TABLE[name].sd} or more")
-    return MappingProxyType({**USUAL, **lines})
+    return {**USUAL, **lines}
 
 
 @dataclass(frozen=True)
