@@ -1,7 +1,7 @@
 """The table of doubt: everything a model and its measurement get wrong, with how much and why. One place for all of it.
 
-The priors of a fit, the covariance of the model error and the simulated machines are made from this one table. A case
-may widen a line ([doubt] in case.toml). Deviations are one standard deviation of a normal distribution.
+The priors of a fit and the covariance of the model error are made from this one table. A case may carry a wider one
+(`Case.doubt`, `widened`). Deviations are one standard deviation of a normal distribution.
 """
 
 from __future__ import annotations
@@ -91,7 +91,7 @@ RARE: Mapping[str, Odds] = MappingProxyType({
     "mass": Odds(0.3, "masses are weighed"),
 })  # fmt: skip
 
-TEMPER = Odds(1.0, "log evidence counts as it is: machines with nothing missing are accused in less than 5 %")
+TEMPER = Odds(1.0, "log evidence counts as it is; not yet set on machine kinds of their own")
 SIZES = (0.3, 1.0, 3.0)  # of an effect's usual size: nobody knows it better than within a decade
 
 # What a statement costs; a wrong name is one.

@@ -127,7 +127,7 @@ def _revised(
         raise InputError(
             f"no test has the role {' or '.join(roles)}", f"case '{case.name}'", "give at least one that role"
         )
-    grown = replace(case, model=model)
+    grown = replace(case.training(), model=model)
     fits = fitted(grown, tests if action == "calibrate" else _plain(tests), start(grown), search, progress)
     new = replace(model, values=_values(model, fits), revision=case.model.revision + 1)
     after = compare(replace(case, model=new))

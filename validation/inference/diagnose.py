@@ -14,7 +14,7 @@ from validation.findings import Diagnosis
 from validation.imprint import imprint
 from validation.inference.decision import Decision, decide
 from validation.inference.evidence import Evidence, calibrated_case, candidates, noise_beside, scored, under
-from validation.inference.posterior import Hypothesis, Posterior, pairs, probabilities, singles, unknown_heat
+from validation.inference.posterior import Hypothesis, Posterior, pairs, singles, unknown_heat
 from validation.inference.refits import refitted
 from validation.inference.tables import tabulate
 from validation.procedure.which_base import bases_tried, wrong_bases
@@ -79,10 +79,7 @@ def infer(case: Case, kinds: Sequence[str] | None = None, progress: Progress = s
     heat = latent_heat(evidence.fit, evidence.tests)
     ones = singles(evidence)
     weighed = [*ones, *pairs(evidence, ones), *unknown_heat({w.place: w.log_bayes for w in heat})]
-    hypotheses = refitted(evidence, weighed, progress)
-    lead = hypotheses[int(np.argmax(probabilities(hypotheses)))]
-    beside = latent_heat(lead.fit, evidence.tests) if lead.fit else heat
-    return Posterior(evidence, tuple(hypotheses), tuple(heat), tuple(beside))
+    return Posterior(evidence, tuple(refitted(evidence, weighed, progress)), tuple(heat))
 
 
 def sharpened(evidence: Evidence, rounds: int = 2) -> Evidence:

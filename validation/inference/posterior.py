@@ -84,8 +84,7 @@ def linear(evidence: Evidence) -> Array:
 def one_size(u: Array, V: Array, sd: Array, sign: NDArray[np.int64]) -> Array:
     """Log Bayes factors of single effects with amplitudes of one usual size."""
     q = V + sd**-2.0
-    told = np.where(sign == 0, 0.0, np.log(2.0) + log_ndtr(np.where(sign == 0, 1, sign) * u / np.sqrt(q)))
-    return np.asarray(0.5 * u**2 / q - 0.5 * np.log(sd**2 * q) + told)
+    return np.asarray(0.5 * u**2 / q - 0.5 * np.log(sd**2 * q) + told(u / np.sqrt(q), sign))
 
 
 def pairs(evidence: Evidence, ones: Sequence[Hypothesis]) -> list[Hypothesis]:
@@ -139,13 +138,11 @@ def inclusion(hypotheses: Sequence[Hypothesis], count: int) -> Array:
 
 @dataclass(frozen=True)
 class Posterior:
-    """What follows from the readings.  heat : of unknown cause at each place, most evident first;  beside : the same
-    with the leading hypothesis in the model"""
+    """What follows from the readings.  heat : of unknown cause at each place, most evident first"""
 
     evidence: Evidence
     hypotheses: tuple[Hypothesis, ...]
     heat: tuple[Latent, ...]
-    beside: tuple[Latent, ...]
 
     @property
     def best(self) -> Hypothesis:
