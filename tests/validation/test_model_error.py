@@ -9,8 +9,9 @@ from playground import Truth, network
 from validation.calibrate import Measure, minimise
 from validation.doubt import USUAL
 from validation.fitting import working
-from validation.inference.model_error import bridges, follow, model_error, with_doubts
+from validation.inference.model_error import bridges, model_error, with_doubts
 from validation.noise import first_noise
+from validation.operators import behind
 from validation.sheet import segments
 
 
@@ -42,9 +43,10 @@ def test_a_column_is_what_the_doubt_does(case):
 
 def test_a_core_follows_its_node():
     time = np.arange(0.0, 600.0, 10.0)
-    rise = follow(time, np.where(time > 0, 1.0, 0.0), 60.0)
-    assert rise[-1] == pytest.approx(1.0, abs=1e-3)
-    assert np.all(np.diff(rise) >= 0)
+    rise = np.where(time > 0, 1.0, 0.0)[:, None]
+    behind(time, rise, np.array([60.0]))
+    assert rise[-1, 0] == pytest.approx(1.0, abs=1e-3)
+    assert np.all(np.diff(rise[:, 0]) >= 0)
 
 
 def test_model_error_widens_what_a_fit_is_sure_of_and_never_narrows_it(case):

@@ -53,7 +53,7 @@ def diagnose(
 
 def above(posterior: Posterior, choice: Decision, budget: Mapping[str, float]) -> Decision:
     """The decision without what the error of the model's own numbers could pass for."""
-    e, single = posterior.evidence, {h.members[0]: h for h in posterior.hypotheses if len(h.members) == 1}
+    e, single = posterior.evidence, posterior.single
     kept = tuple(g for g in choice.groups if imprint(moved(e, single[g[0]]), budget).above_budget)
     if len(kept) == len(choice.groups):
         return choice

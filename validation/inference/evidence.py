@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import permutations
 
 import numpy as np
@@ -54,7 +55,7 @@ class Evidence:
         """Number of calibrated parameters."""
         return len(self.fit.unknowns.parameters)
 
-    @property
+    @cached_property
     def twins(self) -> list[str | None]:
         """For each effect the free parameter that does the same, if there is one."""
         G, p = total(self.grams), self.p

@@ -22,7 +22,7 @@ from validation.case import Channel, Test
 from validation.doubt import USUAL, Doubt
 from validation.effects.build import Shaped, copy_link, exchange, heat
 from validation.forms import KNOTS, SETTLE_K, Table, is_film
-from validation.operators import setting
+from validation.operators import behind, setting
 from validation.predict import record, thermal
 from validation.sheet import Segment, segments
 
@@ -147,29 +147,19 @@ def with_cores(network: Network, test: Test, values: Mapping[str, float], doubt:
     A share of the node's capacity follows it with a time constant tau: its heat is C * share (dT/dt - dT_core/dt).
     """
     sources, parameters = [], []
-    T = nodes(network, test, values)
-    for place in solid(network):
-        C, tau = float(network.C[place.states[0]]), doubt["core time"]
-        x = T[place.name]
-        lag = x - follow(test.time, x, tau)
-        q = -doubt["core"] * C * np.gradient(lag, test.time)
+    own = solid(network)
+    T = nodes(network, test, values, own)
+    core = T.copy()
+    behind(test.time, core, np.full(len(own), doubt["core time"]))
+    for i, place in enumerate(own):
+        C = float(network.C[place.states[0]])
+        q = doubt["core"] * C * np.gradient(T[:, i] - core[:, i], test.time)
         name = f"core:{place.name}"
-        law = Shaped(Fixed(1.0), Series(test.time, -q), also_reads=("time_s",))
+        law = Shaped(Fixed(1.0), Series(test.time, q), also_reads=("time_s",))
         sources.append(heat(network, name, "core", place.name, law))
         parameters.append(_amplitude(f"doubt:{name}", name, 1.0, "1"))
     network = network.extended(sources=sources)
     return replace(network, parameters=(*network.parameters, *parameters))
-
-
-def follow(time: Array, x: Array, tau: float) -> Array:
-    """First-order lag of x (n,), in equilibrium at first."""
-    out, h = np.empty_like(x), np.diff(time, prepend=time[0])
-    out[0] = x[0]
-    for i in range(1, x.size):
-        decay = np.exp(-h[i] / tau)
-        share = tau / h[i] * (1.0 - decay) if h[i] > 0 else 0.0
-        out[i] = x[i] + decay * (out[i - 1] - x[i - 1]) - share * (x[i] - x[i - 1])
-    return out
 
 
 def solid(network: Network) -> list[Place]:
@@ -177,13 +167,12 @@ def solid(network: Network) -> list[Place]:
     return [p for p in network.places.values() if p.kind == "node" and network.C[p.states[0]] > 0]
 
 
-def nodes(network: Network, test: Test, values: Mapping[str, float]) -> dict[str, Array]:
-    """Temperature (n_time,) of every node with mass in a test."""
-    bare, own = thermal(network), solid(network)
+def nodes(network: Network, test: Test, values: Mapping[str, float], own: Sequence[Place]) -> Array:
+    """Temperatures (n_time, n) of some nodes in a test."""
+    bare = thermal(network)
     known = {p.name for p in bare.parameters}
     now = {k: v for k, v in values.items() if k in known}
-    run = simulate(bare, record(test, setting(network.parameters, values)), now, [p.mean for p in own])
-    return {p.name: run.y[:, i] for i, p in enumerate(own)}
+    return simulate(bare, record(test, setting(network.parameters, values)), now, [p.mean for p in own]).y
 
 
 @dataclass(frozen=True)
@@ -219,14 +208,16 @@ def model_error(
         cores = cored.parameters[len(grown.parameters) :]
         parts = segments(cored, [test], values, (*doubts, *cores))
         scale = np.array([p.prior_sd for p in (*doubts, *cores)])
-        beside, flow = placements(network, test, values, doubt, sensed or tests), flows(network, test, values, doubt)
+        beside = placements(network, test, values, doubt, sensed or tests)
+        flow = flows(network, test, values, doubt, parts)
         out |= {(s.test, s.channel): np.column_stack([s.J * scale, beside[s.channel], flow[s.channel]]) for s in parts}
     return ModelError(out)
 
 
-def flows(network: Network, test: Test, values: Mapping[str, float], doubt: Doubt) -> dict[str, Array]:
-    """Channel -> (n, k): each kind of flow, as its meter may be off in all tests alike."""
-    plain = segments(network, [test], values)
+def flows(
+    network: Network, test: Test, values: Mapping[str, float], doubt: Doubt, plain: Sequence[Segment]
+) -> dict[str, Array]:
+    """Channel -> (n, k): each kind of flow, as its meter may be off in all tests.  plain : the test as recorded"""
     columns = []
     for quantity in (AIR, LIQUID):
         own = {n: u * (1.0 + doubt["flow"]) for n, u in test.inputs.items() if network.measures(n) == quantity}

@@ -145,5 +145,10 @@ class Posterior:
     heat: tuple[Latent, ...]
 
     @property
+    def single(self) -> dict[int, Hypothesis]:
+        """Each effect by itself."""
+        return {h.members[0]: h for h in self.hypotheses if len(h.members) == 1}
+
+    @property
     def best(self) -> Hypothesis:
         return self.hypotheses[int(np.argmax(probabilities(self.hypotheses)))]

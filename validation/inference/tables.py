@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import norm
 
 from validation.calibrate import Fit, Measure
-from validation.case import Case
+from validation.case import Case, Test
 from validation.findings import Candidate, Decided, Diagnosis, Hidden, Odds, Verdict
 from validation.inference.decision import Decision
 from validation.inference.detection import smallest, thresholds
@@ -34,7 +34,7 @@ def tabulate(
 ) -> Diagnosis:
     """The whole answer; the held-out tests of `case` are predicted here, after everything is decided."""
     e = posterior.evidence
-    single = {h.members[0]: h for h in posterior.hypotheses if len(h.members) == 1}
+    single = posterior.single
     for k in [k for g in choice.groups for k in g][:ROWS]:
         if single[k].fit is None:
             single[k] = laplace(e, single[k])
@@ -112,11 +112,11 @@ def candidates(
     order = [*chosen, *(int(k) for k in np.argsort(-share, kind="stable") if k not in chosen)]
     size, limit = smallest(e), thresholds(e)
     lead = single[chosen[0]].fit if chosen else e.fit
-    rows = [
-        _row(case, e, single[k], float(share[k]), float(limit[k]), float(size[k]), lead, chosen) for k in order[:ROWS]
-    ]
+    beside = Beside.of(case, e, lead)
+    few = order[:ROWS]
+    rows = [_row(e, single[k], float(share[k]), float(limit[k]), float(size[k]), beside, k in chosen[:1]) for k in few]
     return tuple(replace(r, decision=_decided(r, k, choice, verdict), confused_with=_others(e, k, choice))
-                 for r, k in zip(rows, order, strict=False))  # fmt: skip
+                 for r, k in zip(rows, few, strict=True))  # fmt: skip
 
 
 def _decided(row: Candidate, k: int, choice: Decision, verdict: Verdict) -> Decided:
@@ -136,10 +136,22 @@ def _others(e: Evidence, k: int, choice: Decision) -> tuple[str, ...]:
     return tuple(e.names[m] for m in np.argsort(-like) if m != k and like[m] > 0.9)[:5]
 
 
-def _row(
-    case: Case, e: Evidence, h: Hypothesis, share: float, limit: float, size: float, lead: Fit | None,
-    chosen: Sequence[int],
-) -> Candidate:  # fmt: skip
+@dataclass(frozen=True)
+class Beside:
+    """What every refit is set beside.  lead : deviance of each record with the leading effect, empty without one
+    tests, error_K : the held-out tests and the model's error on them, None without any"""
+
+    lead: Mapping[tuple[str, str], float]
+    tests: tuple[Test, ...]
+    error_K: float | None
+
+    @classmethod
+    def of(cls, case: Case, e: Evidence, lead: Fit | None) -> Beside:
+        tests = tuple(t for t in case.tests if t.role == "hold-out")
+        return cls(deviance(e, lead) if lead else {}, tests, error_on(tests, e.fit) if tests else None)
+
+
+def _row(e: Evidence, h: Hypothesis, share: float, limit: float, size: float, beside: Beside, leads: bool) -> Candidate:
     k, s = h.members[0], e.score
     a, sd = float(s.amplitude[k]), float(s.sd[k])
     row = Candidate(
@@ -153,26 +165,24 @@ def _row(
     if not e.effects[k].whole:
         a, sd = float(h.fit.theta[p]), float(h.fit.sd[p])
         row = replace(row, value=a, ci95=(a - NORMAL_95 * sd, a + NORMAL_95 * sd))
+    held = None if beside.error_K is None else (beside.error_K, error_on(beside.tests, h.fit))
     return replace(
-        row, rmse_K=(before, after), explained=1.0 - (after / before) ** 2, holdout_rmse_K=held_out(case, e.fit, h.fit),
-        note=against(e, h.fit, lead) if k not in chosen[:1] and lead is not None else "",
+        row, rmse_K=(before, after), explained=1.0 - (after / before) ** 2, holdout_rmse_K=held,
+        note=against(e, h.fit, beside) if beside.lead and not leads else "",
     )  # fmt: skip
 
 
-def against(e: Evidence, fit: Fit, lead: Fit) -> str:
+def against(e: Evidence, fit: Fit, beside: Beside) -> str:
     """The record in which a rival fits worst beside the leading one."""
-    own, best = deviance(e, fit), deviance(e, lead)
-    worse = {key: 0.5 * (own[key] - best[key]) for key in own}
+    own = deviance(e, fit)
+    worse = {key: 0.5 * (own[key] - beside.lead[key]) for key in own}
     (test, channel), nats = max(worse.items(), key=lambda x: x[1])
     return f"fits {channel} in {test} worse by {nats:.1f} nats" if nats > 1.0 else ""
 
 
-def held_out(case: Case, before: Fit, after: Fit) -> tuple[float, float] | None:
-    """Error (K) on the held-out tests, with nothing fitted to them."""
-    tests = [t for t in case.tests if t.role == "hold-out"]
-    if not tests:
-        return None
-    return (rmse(segments(before.network, tests, before.values)), rmse(segments(after.network, tests, after.values)))
+def error_on(tests: Sequence[Test], fit: Fit) -> float:
+    """Error (K) on tests that nothing was fitted to."""
+    return rmse(segments(fit.network, tests, fit.values))
 
 
 def unseen(e: Evidence) -> tuple[Hidden, ...]:
