@@ -148,6 +148,8 @@ def with_cores(network: Network, test: Test, values: Mapping[str, float], doubt:
     """
     sources, parameters = [], []
     own = solid(network)
+    if not own:  # parts from a field have their inner temperatures as states
+        return network
     T = nodes(network, test, values, own)
     core = T.copy()
     behind(test.time, core, np.full(len(own), doubt["core time"]))
