@@ -3,8 +3,18 @@
 from __future__ import annotations
 
 import numpy as np
+from numba import types
 
 from lumped.jit import inner, inner_reordered
+
+# numba's own way to BLAS, which it registers for compiled code: products of many columns are worth the call
+_POINTERS = (types.voidptr, types.intp)
+_GEMM = types.ExternalFunction("numba_xxgemm", types.intc(
+    types.char, types.char, types.char, types.intp, types.intp, types.intp, types.voidptr, *_POINTERS, *_POINTERS,
+    types.voidptr, *_POINTERS,
+))  # fmt: skip
+_DOUBLE, _AS_IS = (int(np.frombuffer(c, np.int8)[0]) for c in (b"d", b"n"))
+FACTORS = np.array([0.0, 1.0])  # of what a product is put on: it replaces that, or is added
 
 
 @inner
@@ -94,8 +104,18 @@ def solve_many(A, pivot, B):
 
 
 @inner
-def subtract_product(A, X, c, out):
-    """out -= c A X."""
-    for i in range(len(A)):
-        for j in range(A[0].size):
-            axpy(-c * A[i, j], X[j], out[i])
+def inverse(A, pivot, out):
+    """out = A^-1 from its LU."""
+    n = len(A)
+    for i in range(n):
+        for j in range(n):
+            out[i, j] = 1.0 if i == j else 0.0
+    solve_many(A, pivot, out)
+
+
+@inner
+def product(A, X, factors, keep, out):
+    """out = A X, or out += A X to keep what is there.  A (n, m), X (m, p), out (n, p), all row by row"""
+    n, m, p = len(A), len(X), X[0].size
+    _GEMM(_DOUBLE, _AS_IS, _AS_IS, p, n, m, factors[1:].ctypes, X.ctypes, p, A.ctypes, m, factors[keep:].ctypes,
+          out.ctypes, p)  # fmt: skip

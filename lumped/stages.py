@@ -18,6 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from lumped.dense import FACTORS
 from lumped.jit import inner, pasted
 from lumped.terms import Floats, Ints, Terms, directional, flow, patterns
 
@@ -68,6 +69,9 @@ class Work(NamedTuple):
     heat: Floats
     D: Floats
     R: Floats
+    X: Floats
+    M: Floats
+    factors: Floats
 
 
 class Steps(NamedTuple):
@@ -90,9 +94,9 @@ def stages(x0: Floats, u0: Floats, T: Terms) -> Stages:
 
 def work(n: int, nb: int, ne: int, p: int) -> Work:
     """Scratch for n states, nb boundaries, ne terms and p tangents."""
-    W, G, H = np.zeros((3, n, n))
+    W, G, H, X, M = np.zeros((5, n, n))
     return Work(np.zeros((2, ne)), np.zeros(ne), np.zeros(nb), np.zeros((3, n)), W, G, H, np.zeros(n, np.int64),
-                np.zeros((2, n)), np.zeros((2, n)), np.zeros((n, p)), np.zeros((4, n, p)))  # fmt: skip
+                np.zeros((2, n)), np.zeros((2, n)), np.zeros((n, p)), np.zeros((4, n, p)), X, M, FACTORS)  # fmt: skip
 
 
 @pasted

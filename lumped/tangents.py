@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from lumped.dense import axpy, lu, shifted, solve_many, subtract_product
+from lumped.dense import axpy, copy, inverse, lu, product, shifted, solve_many
 from lumped.jit import entry, inner, pasted
 from lumped.stages import C21, C31, C32, EULER, GAMMA, forced, restored, slope_of, taken
 from lumped.terms import (
@@ -55,32 +55,49 @@ def _earlier(C, S, c, U, dU, out):
 
 
 @inner
+def _solved(q, out):
+    """out = W^-1 out."""
+    if 3 * out[0].size < len(out):  # an inverse would cost more than it saves
+        solve_many(q.W, q.pivot, out)
+        return
+    product(q.X, out, q.factors, 0, q.R[3])
+    for i in range(len(out)):
+        copy(q.R[3, i], out[i])
+
+
+@inner
 def _rosenbrock(T, S, K0, C, h, curved, a, q):
     """Move the tangents q.D over a step whose stages are restored and whose matrix is factored."""
     n, gh = C.size, GAMMA * h
-    for stage in range(4):
-        clear(q.R[stage])
     for stage in range(3):
+        clear(q.R[stage])
         if curved:
-            bend(T, q.f[0], q.df, slope_of(stage) * h, a.tau[0], a.v[0], a.vw[stage], gh, q.H)
-            subtract_product(q.H, q.D, 1.0, q.R[stage])
+            bend(T, q.f[0], q.df, slope_of(stage) * h, a.tau[0], a.v[0], a.vw[stage], gh, q.M)
+        if stage == 0 or curved:
+            for i in range(n):
+                for j in range(n):
+                    q.M[i, j] = -(q.M[i, j] if curved else 0.0) - (gh * q.G[i, j] if stage == 0 else 0.0)
+            product(q.M, q.D, q.factors, 1, q.R[stage])
         _moved(T, S, stage, a, q, h, q.R[stage])
         for i in range(n):
             axpy(-a.w[stage, i], S.dC[i], q.R[stage, i])
-    subtract_product(q.G, q.D, gh, q.R[0])
-    solve_many(q.W, q.pivot, q.R[0])
+    _solved(q, q.R[0])
     for i in range(n):
         axpy(1.0 / GAMMA, q.R[0, i], q.D[i])
     if curved:
         jacobian(T, K0, q.f[1], a.tau[1], a.v[1], q.G)
-    subtract_product(q.G, q.D, gh, q.R[3])
+    for i in range(n):
+        for j in range(n):
+            q.M[i, j] = -gh * q.G[i, j]
+    product(q.M, q.D, q.factors, 0, q.R[3])
     for stage in range(1, 3):
         for i in range(n):
             axpy(1.0, q.R[3, i], q.R[stage, i])
+    for stage in range(1, 3):
         _earlier(C, S, GAMMA * (C21 if stage == 1 else C31), a.w[0], q.R[0], q.R[stage])
         if stage == 2:
             _earlier(C, S, GAMMA * C32, a.w[1], q.R[1], q.R[stage])
-        solve_many(q.W, q.pivot, q.R[stage])
+        _solved(q, q.R[stage])
     for i in range(n):
         axpy(1.0, q.R[2, i], q.D[i])
 
@@ -104,9 +121,10 @@ def _euler(T, S, K0, C, h, x0, U, a, q):
         if T.kind[e, DYNAMIC] and T.kind[e, STIFF] and T.kind[e, BENDS] and T.m[e] != 0.0:
             c = T.m[e] * q.f[1, e]
             spread(T, e, 0.0, a.vw[0], c * a.tau[1, e, 1], c * a.tau[1, e, 2], q.H)
-    clear(q.R[0])
-    subtract_product(q.G, q.D, h, q.R[0])
-    subtract_product(q.H, q.D, h, q.R[0])
+    for i in range(n):
+        for j in range(n):
+            q.M[i, j] = -h * (q.G[i, j] + q.H[i, j])
+    product(q.M, q.D, q.factors, 0, q.R[0])
     for i in range(S.term.size):
         e, j, c = S.term[i], S.tangent[i], h * S.slope[i]
         c *= q.f[1, e] * a.tau[1, e, 0]
@@ -162,6 +180,8 @@ def differentiate(Q, C, K0, T, S, R, curved, X, steps, knot, until, a, q, dy):
                 jacobian(T, K0, q.f[0], a.tau[0], a.v[0], q.G)
                 shifted(q.G, GAMMA * h, C, q.W)
                 lu(q.W, q.pivot)
+                if 3 * q.D[0].size >= C.size:
+                    inverse(q.W, q.pivot, q.X)
             last = h
             _rosenbrock(T, S, K0, C, h, curved, a, q)
         if X.share[k] == 1.0:

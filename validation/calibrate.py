@@ -22,7 +22,8 @@ Progress = Callable[[str], None]
 Keep = Callable[[Mapping[str, float]], None]
 STATIONARY = 0.1  # of a posterior standard deviation
 WORTH = 0.1  # nats: the error of time steps moves an objective by about as much, so that no fit can settle closer
-FORETOLD = 0.7  # of the predicted gain: a Jacobian that delivers less is made anew
+ROUGH = 1.0  # nats: a fit under a noise that is only guessed
+FORETOLD = 0.5  # of the predicted gain: a Jacobian that delivers less is made anew
 
 
 def silent(message: str) -> None:
@@ -40,6 +41,7 @@ class Fit:
     theta : (p,) fitted coordinates;  H : (p, p) curvature of the posterior (J'Sigma^-1 J + prior);  parts : residual
     and Jacobian at theta;  gradient : largest |gradient| in units of the posterior sd (0 at the exact optimum)
     error : the model error that the noise was widened by, marginalised in H and the objective
+    foretold : least share of its foretold gain that a step of weight brought; 1 where the model is linear
     """
 
     network: Network
@@ -52,6 +54,7 @@ class Fit:
     converged: bool
     gradient: float
     error: ModelError | None = None
+    foretold: float = 1.0
 
     @property
     def values(self) -> dict[str, float]:
@@ -77,11 +80,13 @@ class Known:
 
     parts : of the very state where the fit begins, or else (`nearby`) of one close by, whose residuals are made anew
     renewed : where steps fail, a Jacobian from nearby is made anew; if not, it is never
+    stale : residuals are of the very state, the Jacobian may be from before the last steps
     """
 
     parts: Sequence[Segment]
     nearby: bool = True
     renewed: bool = False
+    stale: bool = False
 
     @property
     def borrowed(self) -> bool:
@@ -162,7 +167,13 @@ class Climb:
         self.draft, self.borrowed, self.worth = draft or near, known is not None and known.borrowed, worth
         self.centre = np.zeros_like(theta) if centre is None else centre
         self.low, self.high = unknowns.bounds
-        self.weight, self.damping, self.fresh, self.done = unknowns.sd**-2.0, 0.0, not near, False
+        self.weight, self.damping, self.fresh, self.done = (
+            unknowns.sd**-2.0,
+            0.0,
+            not (near or (known is not None and known.stale)),
+            False,
+        )
+        self.foretold = 1.0
         self.theta = np.clip(theta, self.low, self.high)
         self.parts = self.begun(known)
         self.noise = noise or first_noise(self.parts)
@@ -223,9 +234,11 @@ class Climb:
             return self.stop()
         trial = self.residuals(new, self.parts)
         value = 0.5 * (self.measure.square(trial) + self.strain(new))
-        if not value < self.objective:
-            return self.back()
         gained = self.objective - value
+        if predicted > ROUGH:
+            self.foretold = min(self.foretold, gained / predicted)
+        if not gained > 0.0:
+            return self.back()
         self.theta, self.parts, self.fresh = new, trial, False
         self.damping = self.damping / 10.0 if self.damping > 1e-3 else 0.0
         if gained < FORETOLD * predicted and not self.borrowed:
@@ -258,7 +271,7 @@ class Climb:
         slack = float(np.max(np.abs(g / np.sqrt(np.diag(H)))[inside], initial=0.0))
         return Fit(
             self.network, self.unknowns, self.theta, H, tuple(self.parts), self.noise, self.objective,
-            self.done or slack < STATIONARY, slack, self.error,
+            self.done or slack < STATIONARY, slack, self.error, self.foretold,
         )  # fmt: skip
 
 
@@ -320,21 +333,27 @@ def calibrated(
     progress: Progress = silent,
     noise: Noise | None = None,
     keep: Keep = forgets,
+    rough: bool = False,
 ) -> Fit:
-    """Calibrate, estimate the noise from the residual, calibrate again under it; `rounds` times."""
+    """Calibrate, estimate the noise from the residual, calibrate again under it; `rounds` times.
+
+    Only the last needs a Jacobian of its own end; `rough`: nor does that, since another fit goes on from there.
+    """
     held = {p.name: values.get(p.name, p.value) for p in network.parameters}
-    fit = minimise(network, tests, unknowns, unknowns.coordinates(values), noise, held, progress=progress, keep=keep)
-    for _ in range(rounds):
+    fit = minimise(network, tests, unknowns, unknowns.coordinates(values), noise, held, progress=progress, keep=keep,
+                   draft=rough or rounds > 0, worth=ROUGH if rounds else WORTH)  # fmt: skip
+    for i in range(rounds):
         fit = minimise(
-            network, tests, unknowns, fit.theta, fit_noise(fit.parts), held, 10, Known(fit.parts, nearby=False),
-            progress=progress, keep=keep,
+            network, tests, unknowns, fit.theta, fit_noise(fit.parts), held, 10,
+            Known(fit.parts, nearby=False, stale=True), draft=rough or i + 1 < rounds, progress=progress, keep=keep,
         )  # fmt: skip
     return fit
 
 
 def with_model_error(
-    fit: Fit, tests: Sequence[Test], values: Mapping[str, float], doubt: Doubt = USUAL, iterations: int = 0
-) -> Fit:
+    fit: Fit, tests: Sequence[Test], values: Mapping[str, float], doubt: Doubt = USUAL, iterations: int = 0,
+    draft: bool = False,
+) -> Fit:  # fmt: skip
     """The fit where it stands, or gone on, with what a model of this kind gets wrong added to the noise.
 
     values : of what is not free.  Predictions are best by the parameters that follow the readings; how sure these are,
@@ -344,4 +363,4 @@ def with_model_error(
     error = model_error(fit.network, tests, held, doubt)
     noise = fit_noise(Measure(fit.parts, fit.noise, error).explained(fit.parts, error))
     return minimise(fit.network, tests, fit.unknowns, fit.theta, noise, held, iterations,
-                    Known(fit.parts, nearby=False), error=error)  # fmt: skip
+                    Known(fit.parts, nearby=False, stale=iterations > 0), draft, error=error)  # fmt: skip

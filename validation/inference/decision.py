@@ -74,10 +74,10 @@ def cover(
 def second(
     evidence: Evidence, hypotheses: Sequence[Hypothesis], P: Array, first: tuple[int, ...]
 ) -> list[tuple[int, ...]]:
-    """What is missing beside the first, if two things are more probable than one."""
+    """What is missing beside the first, if to keep silent about it costs more than to say it."""
     known = [(h, p) for h, p in zip(hypotheses, P, strict=True) if set(h.members) & set(first)]
     both = [(h, p) for h, p in known if len(h.members) > 1]
-    if sum(p for _, p in both) <= 0.5 * sum(p for _, p in known):
+    if sum(p for _, p in both) < (1.0 - SILENT) * sum(p for _, p in known):
         return []
     lead = frozenset(first[:1])
     beside = [(h, p) for h, p in both if lead <= set(h.members)]

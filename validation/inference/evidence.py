@@ -24,6 +24,8 @@ from validation.sheet import Segment, reach, segments
 Array = NDArray[np.float64]
 TWIN = 0.9995  # cosine from which a calibrated parameter does the same as an effect
 ENOUGH = 0.1  # nats: evidence is read to a few tenths
+STRAIGHT = 0.9  # of the gain that tangents foretold: a refit that got it needs none of its own
+LEAN = 0.5  # nats that a tangent gains at an effect's typical loss before it pays for its own size
 ROUNDS = 4  # steps of a calibration that goes on under the model error
 
 
@@ -33,6 +35,7 @@ class Evidence:
 
     network : the model with all candidates at zero;  parts : segments with nuisance, then candidate columns
     grams : per test, of [nuisances and model error, candidates, residual] under the fit's noise
+    jumps : effect -> what it does to every segment (K) at its typical loss, where a tangent says too little
     whole : (K,) evidence (nats) of a finite amplitude where a tangent says too little, -inf elsewhere
     """
 
@@ -44,6 +47,7 @@ class Evidence:
     parts: tuple[Segment, ...]
     grams: Mapping[str, Gram]
     score: Score
+    jumps: Mapping[int, Sequence[Array]]
     whole: Array
 
     @property
@@ -97,8 +101,8 @@ def calibrated_case(
     network, unknowns = working(case)
     values, tests = {**case.model.values, **(start or {})}, diagnosing(case)
     held = {p.name: values.get(p.name, p.value) for p in network.parameters}
-    plain = calibrated(network, tests, unknowns, values, 1, progress)
-    return with_model_error(plain, tests, held, case.doubt, ROUNDS)
+    plain = calibrated(network, tests, unknowns, values, 1, progress, rough=True)
+    return with_model_error(plain, tests, held, case.doubt, ROUNDS, draft=True)
 
 
 def scored(case: Case, effects: Sequence[Effect], fit: Fit) -> Evidence:
@@ -110,12 +114,25 @@ def scored(case: Case, effects: Sequence[Effect], fit: Fit) -> Evidence:
     values = {**{q.name: case.model.values.get(q.name, q.value) for q in network.parameters}, **fit.values}
     parts = tuple(segments(network, tests, values, (*fit.unknowns.parameters, *parameters)))
     exchange(parts, effects, p)
-    return weighed(tests, fit, network, tuple(effects), parameters, parts, values)
+    own = [replace(s, J=s.J[:, :p]) for s in parts]
+    fit = minimise(fit.network, tests, fit.unknowns, fit.theta, fit.noise, values_of(fit.network, fit.values), 0,
+                   Known(own, nearby=False), error=fit.error)  # fmt: skip
+    evidence = weighed(tests, fit, network, tuple(effects), parameters, parts, {})
+    there = {k: segments(network, tests, {**values, effects[k].name: effects[k].typical_loss or 0.0})
+             for k in likely(evidence)}  # fmt: skip
+    jumps = {k: [old.r - new.r for old, new in zip(parts, moved, strict=True)] for k, moved in there.items()}
+    return weighed(tests, fit, network, tuple(effects), parameters, parts, jumps)
+
+
+def likely(evidence: Evidence) -> list[int]:
+    """The effects with a typical loss that the readings lean to, by their tangents: others need no run at that loss."""
+    far = [(k, e.typical_loss) for k, e in enumerate(evidence.effects) if e.typical_loss is not None]
+    return [k for k, a in far if a * evidence.score.u[k] > LEAN]
 
 
 def weighed(
     tests: tuple[Test, ...], fit: Fit, network: Network, effects: tuple[Effect, ...],
-    parameters: tuple[Parameter, ...], parts: tuple[Segment, ...], values: Mapping[str, float],
+    parameters: tuple[Parameter, ...], parts: tuple[Segment, ...], jumps: Mapping[int, Sequence[Array]],
 ) -> Evidence:  # fmt: skip
     """The score under the fit's noise and model error."""
     sign = np.array([q.sign for q in parameters], int)
@@ -123,9 +140,8 @@ def weighed(
     theta, sd = extended_prior(fit)
     found = score(total(grams), theta, sd, sign)
     whole = np.where([e.whole for e in effects], found.u - 0.5 * np.diag(found.V), -np.inf)
-    far = [k for k, e in enumerate(effects) if e.typical_loss is not None]
-    whole[far] = finite(tests, fit, network, effects, parts, values, far)
-    return Evidence(tests, fit, network, effects, parameters, parts, grams, found, whole)
+    whole[list(jumps)] = finite(fit, parts, jumps)
+    return Evidence(tests, fit, network, effects, parameters, parts, grams, found, jumps, whole)
 
 
 def projected(fit: Fit, parts: Sequence[Segment]) -> dict[str, Gram]:
@@ -141,21 +157,15 @@ def extended_prior(fit: Fit) -> tuple[Array, Array]:
     return np.concatenate([fit.theta, np.zeros(d)]), np.concatenate([fit.unknowns.sd, np.ones(d)])
 
 
-def finite(
-    tests: Sequence[Test], fit: Fit, network: Network, effects: Sequence[Effect], parts: Sequence[Segment],
-    values: Mapping[str, float], far: Sequence[int],
-) -> Array:  # fmt: skip
+def finite(fit: Fit, parts: Sequence[Segment], jumps: Mapping[int, Sequence[Array]]) -> Array:
     """Evidence (nats) that some effects are there at their typical loss: a joint at a fifth of its conductance bends
     the machine more than its tangent foretells."""
-    p, columns = len(fit.unknowns.parameters), []
-    for k in far:
-        there = {**values, effects[k].name: effects[k].typical_loss or 0.0}
-        columns.append([old.r - new.r for old, new in zip(parts, segments(network, tests, there), strict=True)])
-    if not far:
+    if not jumps:
         return np.zeros(0)
-    own = [replace(s, J=np.column_stack([s.J[:, :p], *(c[i] for c in columns)])) for i, s in enumerate(parts)]
+    p = len(fit.unknowns.parameters)
+    own = [replace(s, J=np.column_stack([s.J[:, :p], *(c[i] for c in jumps.values())])) for i, s in enumerate(parts)]
     theta, sd = extended_prior(fit)
-    found = score(total(projected(fit, own)), theta, sd, np.zeros(len(far), int))
+    found = score(total(projected(fit, own)), theta, sd, np.zeros(len(jumps), int))
     return np.asarray(found.u - 0.5 * np.diag(found.V))
 
 
@@ -176,13 +186,12 @@ def exchange(parts: Sequence[Segment], effects: Sequence[Effect], p: int) -> Non
 def under(evidence: Evidence, noise: Noise) -> Evidence:
     """The evidence under another noise, the calibration gone on under it."""
     e, fit = evidence, evidence.fit
-    values = values_of(e.network, {**fit.values})
     held = values_of(fit.network, fit.values)
     new = minimise(fit.network, e.tests, fit.unknowns, fit.theta, noise, held, 6, Known(e.parts_of([]), nearby=True),
                    worth=ENOUGH, error=fit.error)  # fmt: skip
     left = {(s.test, s.channel): s.r for s in new.parts}
     parts = tuple(replace(s, r=left[s.test, s.channel]) for s in e.parts)
-    return weighed(e.tests, new, e.network, e.effects, e.parameters, parts, {**values, **new.values})
+    return weighed(e.tests, new, e.network, e.effects, e.parameters, parts, e.jumps)
 
 
 def noise_beside(evidence: Evidence, members: Sequence[int]) -> Noise:
@@ -202,21 +211,42 @@ def noise_beside(evidence: Evidence, members: Sequence[int]) -> Noise:
     return fit_noise(left)
 
 
-def refit(evidence: Evidence, members: Sequence[int], theta: Array) -> Fit:
-    """All free parameters and the amplitudes of some candidates, fitted anew; those that are whole are held at one."""
+def refit(evidence: Evidence, members: Sequence[int], theta: Array, tangents: Sequence[Segment] = ()) -> Fit:
+    """All free parameters and the amplitudes of some candidates, fitted anew; those that are whole are held at one.
+
+    tangents : of all these where the fit begins, by default those without the candidates
+    """
     network, unknowns, held = with_members(evidence, members)
-    free = [k for k in members if not evidence.effects[k].whole]
-    fit = evidence.fit
-    rough = minimise(network, evidence.tests, unknowns, theta, fit.noise, held, 8, Known(evidence.parts_of(free)),
-                     worth=ENOUGH, error=fit.error)  # fmt: skip
+    free, fit = free_of(evidence, members), evidence.fit
+    rough = minimise(network, evidence.tests, unknowns, theta, fit.noise, held, 8,
+                     Known(tangents or evidence.parts_of(free)), worth=ENOUGH, error=fit.error)  # fmt: skip
+    if rough.foretold > STRAIGHT:
+        return rough
     return minimise(network, evidence.tests, unknowns, rough.theta, fit.noise, held, 3, draft=True, worth=ENOUGH,
                     error=fit.error)  # fmt: skip
+
+
+def refit_beside(evidence: Evidence, members: Sequence[int], one: int, alone: Fit) -> Fit:
+    """Two candidates fitted from where one of them was fitted alone, with its tangents and those of the other."""
+    free, p = free_of(evidence, members), evidence.p
+    own = {k: evidence.parts_of([k]) for k in free if k != one}
+    theta = np.concatenate([alone.theta[:p], [alone.theta[p] if k == one else 0.0 for k in free]])
+    tangents = [
+        replace(s, J=np.column_stack([s.J[:, :p], *(s.J[:, p] if k == one else own[k][i].J[:, p] for k in free)]))
+        for i, s in enumerate(alone.parts)
+    ]
+    return refit(evidence, members, theta, tangents)
+
+
+def free_of(evidence: Evidence, members: Sequence[int]) -> list[int]:
+    """Those whose amplitude is fitted."""
+    return [k for k in members if not evidence.effects[k].whole]
 
 
 def with_members(evidence: Evidence, members: Sequence[int]) -> tuple[Network, Unknowns, dict[str, float]]:
     fit = evidence.fit
     network = extended(fit.network, [evidence.effects[k] for k in members])
-    free = [evidence.parameters[k] for k in members if not evidence.effects[k].whole]
+    free = [evidence.parameters[k] for k in free_of(evidence, members)]
     unknowns = Unknowns((*fit.unknowns.parameters, *(widened(p) for p in free)))
     whole = {evidence.names[k]: 1.0 for k in members if evidence.effects[k].whole}
     return network, unknowns, values_of(network, {**fit.values, **whole})
@@ -224,7 +254,7 @@ def with_members(evidence: Evidence, members: Sequence[int]) -> tuple[Network, U
 
 def starts(evidence: Evidence, members: Sequence[int]) -> list[Array]:
     """Where a refit may begin: at the linear amplitudes, and where a tangent says too little at the typical loss."""
-    free = [k for k in members if not evidence.effects[k].whole]
+    free = free_of(evidence, members)
     first = first_amplitudes(evidence, free)
     far = [evidence.effects[k].typical_loss for k in free]
     points = [first]

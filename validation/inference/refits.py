@@ -11,7 +11,7 @@ from scipy.special import logsumexp
 
 from validation.calibrate import Fit, silent
 from validation.doubt import SIZES
-from validation.inference.evidence import Evidence, refit, starts
+from validation.inference.evidence import Evidence, free_of, refit, refit_beside, starts
 from validation.inference.posterior import Hypothesis, probabilities, told
 
 Array = NDArray[np.float64]
@@ -33,10 +33,16 @@ def refitted(
         due = [i for i in np.argsort(-P) if P[i] > WEIGHT and out[i].members and out[i].fit is None][:MOST]
         if not due:
             break
-        for i in due:
+        for i in sorted(due, key=lambda i: len(out[i].members)):
             progress(f"refitting {out[i].name(evidence)}")
-            out[i] = laplace(evidence, out[i])
+            out[i] = laplace(evidence, out[i], fitted_alone(out, out[i].members))
     return out
+
+
+def fitted_alone(hypotheses: Sequence[Hypothesis], members: Sequence[int]) -> tuple[int, Fit] | None:
+    """The better fitted of two effects that were fitted each by itself, as far as they were."""
+    found = [(h.members[0], h.fit) for h in hypotheses if h.fit and len(h.members) == 1 and h.members[0] in members]
+    return min(found, key=lambda x: x[1].objective) if found and len(members) > 1 else None
 
 
 def exchanged(evidence: Evidence, hypotheses: Sequence[Hypothesis]) -> list[int]:
@@ -49,9 +55,14 @@ def exchanged(evidence: Evidence, hypotheses: Sequence[Hypothesis]) -> list[int]
     return [i for i, _ in sorted(whole, key=lambda x: -x[1])[:TRIED]]
 
 
-def laplace(evidence: Evidence, h: Hypothesis) -> Hypothesis:
-    """The hypothesis with the best of its refits and the evidence that follows."""
-    fits = [refit(evidence, h.members, theta) for theta in starts(evidence, h.members)]
+def laplace(evidence: Evidence, h: Hypothesis, near: tuple[int, Fit] | None = None) -> Hypothesis:
+    """The hypothesis with the best of its refits and the evidence that follows.
+
+    near : one of two effects and its fit without the other
+    """
+    points = starts(evidence, h.members)
+    fits = [refit_beside(evidence, h.members, *near)] if near else [refit(evidence, h.members, points[0])]
+    fits += [refit(evidence, h.members, theta) for theta in points[1:]]
     best = min(fits, key=lambda fit: fit.objective)
     return replace(h, fit=best, log_bayes=log_bayes(evidence, best, h.members))
 
@@ -61,7 +72,7 @@ def log_bayes(evidence: Evidence, fit: Fit, members: Sequence[int]) -> float:
 
     The curvature of what calibration moves is taken to be the same for all.
     """
-    free = [k for k in members if not evidence.effects[k].whole]
+    free = free_of(evidence, members)
     p, m = evidence.p, len(free)
     if not m:
         return evidence.fit.objective - fit.objective

@@ -21,6 +21,7 @@ from validation.sheet import segments
 
 Array = NDArray[np.float64]
 CHECKED = 3
+STEPS, ENOUGH = 4, 1.0  # of a rival's refit, and the gain (nats) of one: gaps are told in tens
 
 
 @dataclass(frozen=True)
@@ -92,7 +93,8 @@ def _behind(evidence: Evidence, found: Contenders, new: Sequence[Test], right: i
     near += segments(network, read, here, free)
     theta, tests = np.concatenate([rival.theta, np.zeros(len(own))]), (*evidence.tests, *read)
     error = widened_error(evidence, read)
-    fit = minimise(network, tests, Unknowns(free), theta, found.noise, held, known=Known(near), error=error)
+    fit = minimise(network, tests, Unknowns(free), theta, found.noise, held, STEPS, Known(near),
+                   worth=ENOUGH, error=error)  # fmt: skip
     return behind(fit, found.fit(right))
 
 
