@@ -100,11 +100,15 @@ class NextSensor:
 
 @dataclass(frozen=True)
 class Odds:
-    """The probability of one hypothesis: "nothing", "kind@place", "kind@place + kind@place", "heat@place"."""
+    """The probability of one hypothesis: "nothing", "kind@place", "kind@place + kind@place", "heat@place".
+
+    log_evidence : over that of nothing (nats), None for "others"
+    """
 
     hypothesis: str
     effects: tuple[str, ...]
     probability: float
+    log_evidence: float | None = None
 
     def document(self) -> dict:
         return {**vars(self), "effects": list(self.effects)}

@@ -94,7 +94,7 @@ def odds(posterior: Posterior) -> tuple[Odds, ...]:
     P = probabilities(posterior.hypotheses)
     e = posterior.evidence
     rows = [
-        Odds(h.name(e), tuple(e.names[k] for k in h.members), float(p))
+        Odds(h.name(e), tuple(e.names[k] for k in h.members), float(p), float(h.log_bayes))
         for h, p in zip(posterior.hypotheses, P, strict=True) if p > SHOWN
     ]  # fmt: skip
     rows.sort(key=lambda o: -o.probability)
