@@ -295,6 +295,25 @@ def export(
 
 
 @app.command()
+def effects(
+    case: Annotated[str | None, typer.Argument(metavar="[CASE]", help="Say where each could sit in this case.")] = None,
+    json: Json = None,
+) -> None:
+    """All effects the diagnosis knows: what each needs, where it could sit in a case, what the others lack."""
+    from thermoscope.commands.effects import effects as run
+
+    raise typer.Exit(run(case, json))
+
+
+@app.command()
+def quantities(json: Json = None) -> None:
+    """What a column may measure, in which units, and what memory holds."""
+    from thermoscope.commands.effects import quantities as run
+
+    raise typer.Exit(run(json))
+
+
+@app.command()
 def doctor(case: Case, json: Json = None) -> None:
     """What looks wrong in a case's files before anything is fitted, with the cure. Exit code 1 if something does."""
     from thermoscope.commands.doctor import doctor as run

@@ -55,6 +55,7 @@ ALLOWED = {  # file -> what its strings are, none of them a user's name for a pa
     "thermoscope/commands/simulate_readings.py": "inputs that lumped.coupled names itself",
     "thermoscope/crosscheck.py": "links by their own name, contact:A|B",
     "thermoscope/importing/target.py": "inputs by the unit that their name says, NAME_W: a guess that is shown",
+    "thermoscope/importing/words.py": "words of headers in other people's files: a guess that is shown",
     "thermoscope/importing/draft.py": "files by their own name, NAME.csv",
     "thermoscope/importing/text.py": "endings of files",
     "thermoscope/commands/new.py": "options, NAME=VALUE",

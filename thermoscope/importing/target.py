@@ -13,7 +13,8 @@ from thermoscope.units import QUANTITIES
 
 WORD, ROLE, DIGIT, EXTRA = 2.0, 1.5, 1.0, 0.1  # worth of a shared word, of a role, of a number; of a word too many
 LEAST = 0.8
-HELD = {q.feeds.rpartition("_")[2]: name for name, q in QUANTITIES.items() if q.feeds}  # A -> current
+FLUID = frozenset({"air", "gap", "stream"})
+UNITS = {q.feeds.rpartition("_")[2]: name for name, q in QUANTITIES.items() if q.feeds}  # A -> current
 SIDES = (
     {"left", "right"},
     {"links", "rechts"},
@@ -49,7 +50,7 @@ def target_of(network: Network) -> Target:
     identities = network.identities
     roles = {name: identity.role for name, identity in identities.items()}
     places = {n: roles.get(n, roles.get(p.part)) for n, p in network.places.items() if n not in network.boundaries}
-    inputs = {n: network.measures(n) or HELD.get(n.rpartition("_")[2], "") for n in sorted(read_by(network))}
+    inputs = {n: network.measures(n) or UNITS.get(n.rpartition("_")[2], "") for n in sorted(read_by(network))}
     inputs.pop("time_s", None)
     return Target(places, {b: roles.get(b) for b in network.boundaries}, inputs)
 
@@ -73,7 +74,8 @@ def _likeness(label: str, name: str, role: Role | None) -> float:
     score = WORD * len(words) + DIGIT * len(numbers)
     if role is not None and role in roles_of(label)[:2]:
         score += ROLE + (DIGIT / 2 if role is Role.COOLANT and a & INLET else 0.0)
-    return score - EXTRA * len(b - a)
+    wrong = sum(w in FLUID for w in b - a)  # a sensor on the housing is not in the air of the housing
+    return score - EXTRA * len(b - a) - WORD * wrong
 
 
 def _digits(words: Iterable[str]) -> set[str]:

@@ -24,22 +24,22 @@ QUANTITY: Mapping[str, frozenset[str]] = {
 }  # fmt: skip
 
 ROLES: Mapping[Role, frozenset[str]] = {
-    Role.WINDING: frozenset({"winding", "windings", "wdg", "wicklung", "wickelkopf", "coil", "spule", "endwinding",
+    Role.WINDING: frozenset({"winding", "wdg", "wicklung", "wickelkopf", "coil", "spule", "endwinding",
                              "endwind", "activewind", "copper", "kupfer", "wind", "nut", "slot"}),
     Role.IRON: frozenset({"stator", "yoke", "joch", "tooth", "teeth", "zahn", "core", "iron", "lamination",
-                          "blechpaket", "pole", "poles", "staender", "ständer"}),
+                          "blechpaket", "pole", "staender", "ständer"}),
     Role.ROTOR: frozenset({"rotor", "läufer", "laeufer", "armature", "anker"}),
     Role.CAGE: frozenset({"cage", "käfig"}),
-    Role.MAGNET: frozenset({"magnet", "magnets", "pm"}),
+    Role.MAGNET: frozenset({"magnet", "pm"}),
     Role.SHAFT: frozenset({"shaft", "welle"}),
-    Role.BEARING: frozenset({"bearing", "bearings", "lager", "brg"}),
+    Role.BEARING: frozenset({"bearing", "lager", "brg"}),
     Role.COMMUTATOR: frozenset({"commutator", "kommutator", "brush"}),
     Role.HOUSING: frozenset({"housing", "frame", "gehäuse", "gehaeuse", "casing", "enclosure"}),
     Role.END_SHIELD: frozenset({"flange", "flansch", "endcap", "endshield", "shield", "lagerschild", "endbell"}),
     Role.FOOT: frozenset({"foot", "feet", "fuss", "fuß"}),
     Role.COOLANT: frozenset({"coolant", "water", "wasser", "glycol", "oil", "öl", "inlet", "vorlauf", "kühlmittel",
                              "kuehlmittel", "kühlwasser", "kuehlwasser"}),
-    Role.AMBIENT: frozenset({"ambient", "amb", "room", "umgebung", "raum", "umg", "lab", "surrounding", "surroundings",
+    Role.AMBIENT: frozenset({"ambient", "amb", "room", "umgebung", "raum", "umg", "lab", "surrounding", 
                              "air", "luft", "tamb"}),
     Role.TEST_BED: frozenset({"bench", "bed", "plate", "prüfstand", "pruefstand"}),
 }  # fmt: skip
@@ -52,7 +52,11 @@ SHORTEST = 4  # letters of a word that may be looked for inside another
 
 def tokens(name: str) -> tuple[str, ...]:
     """Words and numbers of a name in lower case: "T_yokeLeft2" -> t, yoke, left, 2."""
-    return tuple(word.lower() for word in WORD.findall(name))
+    return tuple(_singular(word.lower()) for word in WORD.findall(name))
+
+
+def _singular(word: str) -> str:
+    return word[:-1] if len(word) > SHORTEST and word.endswith("s") and not word.endswith("ss") else word
 
 
 def quantities_of(name: str) -> list[str]:
