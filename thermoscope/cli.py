@@ -169,8 +169,8 @@ def calibrate(
     case: Case,
     anyway: Anyway = False,
     profile: Annotated[list[str] | None, typer.Option(metavar="GLOB", help="Profile these parameters too.")] = None,
-    starts: Annotated[int, typer.Option(min=1, help="Fits from so many points of the prior.")] = 1,
-    seed: Annotated[int, typer.Option(min=0, help="Of the points.")] = 0,
+    starts: Annotated[int | None, typer.Option(min=1, help="Fits from so many points of the prior.")] = None,
+    seed: Annotated[int | None, typer.Option(min=0, help="Of the points.")] = None,
     json: Json = None,
 ) -> None:
     """Fit the declared parameters to the calibration tests, with intervals and what the data cannot identify."""

@@ -22,7 +22,7 @@ HEAD = """# Quantities and effects
 """
 EFFECTS = """
 ## Effects
-`thermoscope effects CASE` says where each of these could sit in a case, and which input or role is missing for the rest.
+`thermoscope effects CASE` says where each of these could sit in a case, and which input or role the rest lack.
 
 | effect | what it is | sits at | needs columns of |
 |---|---|---|---|

@@ -157,8 +157,9 @@ def _drafts(read: Sequence[tuple[Source, Clock]], model: Model, wishes: Wishes) 
 def _written(folder: Path, model: Model, drafts: Sequence[Draft], tell: Progress) -> dict[str, Any]:
     """Write the case, read it as compare would, draw its columns; the document of the command."""
     from thermoscope.doctor import examined
-    from thermoscope.folder import patient_of, read_settings
+    from thermoscope.folder import patient_of
     from thermoscope.readings import read_test
+    from thermoscope.settings import read_settings
     from viz.columns import columns
 
     with folder_whole(folder) as partial:
