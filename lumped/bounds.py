@@ -75,6 +75,7 @@ KEYS = {
     "property_C": COOLANT_C,
     "mass_percent": Bounds(0.0, 60.0), "cells": Bounds(1, 64, whole=True), "parallel": Bounds(1, 1e4, whole=True),
     "bends": Bounds(0, 1e4, whole=True), "cycles": Bounds(1, 1e5, whole=True), "number": Bounds(1, 1e9, whole=True),
+    "starts": Bounds(1, 1000, whole=True), "seed": Bounds(0, 2**32 - 1, whole=True), "doubt": Bounds(0.0, 1e6),
     "pole_pairs": Bounds(1, 500, whole=True), "sign": Bounds(-1, 1, whole=True),
     "supply_V": Bounds(1e-9, 1e7), "wheel_radius_m": Bounds(1e-3, 100.0), "gear": Bounds(1e-3, 1e4),
     "drag_area_m2": Bounds(0.0, 1e3), "Kp": Bounds(0.0, 1e9), "Ki": Bounds(0.0, 1e9),

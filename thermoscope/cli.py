@@ -47,6 +47,31 @@ def demo(
 
 
 @app.command()
+def new(
+    files: Annotated[list[Path], typer.Argument(metavar="FILE...", help="CSV, text, xlsx, TDMS, MF4 or Parquet.")],
+    machine: Annotated[str | None, typer.Option(metavar="M", help="Hold them against this machine.")] = None,
+    network: Annotated[Path | None, typer.Option(metavar="N", help="Or against this network.toml.")] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="DIR", help="The new case; else the file's name.")
+    ] = None,
+    yes: Annotated[bool, typer.Option("--yes", help="Ask nothing: take the guesses.")] = False,
+    constants: Annotated[
+        list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="What was not recorded: ambient=21.5.")
+    ] = None,
+    period: Annotated[float | None, typer.Option(min=1e-6, help="Seconds between rows without a clock.")] = None,
+    start: Annotated[float, typer.Option("--from", min=0.0, help="The tests begin here (s from the first row).")] = 0.0,
+    end: Annotated[float | None, typer.Option("--to", min=0.0, help="And end here.")] = None,
+    json: Json = None,
+) -> None:
+    """A case from your own recordings: guesses each column, asks what it cannot know. Same columns: one test a file."""
+    from thermoscope.commands.new import Wishes, settings
+    from thermoscope.commands.new import new as run
+
+    wishes = Wishes(machine, network, out, yes, settings(constants or ()), period, (start, end))
+    raise typer.Exit(run(files, wishes, json))
+
+
+@app.command()
 def build(
     machine: Machine, out: Out = None, accuracy: Accuracy = 2.0, json: Json = None,
 ) -> None:  # fmt: skip
@@ -144,8 +169,8 @@ def calibrate(
     case: Case,
     anyway: Anyway = False,
     profile: Annotated[list[str] | None, typer.Option(metavar="GLOB", help="Profile these parameters too.")] = None,
-    starts: Annotated[int, typer.Option(min=1, help="Fits from so many points of the prior.")] = 1,
-    seed: Annotated[int, typer.Option(min=0, help="Of the points.")] = 0,
+    starts: Annotated[int | None, typer.Option(min=1, help="Fits from so many points of the prior.")] = None,
+    seed: Annotated[int | None, typer.Option(min=0, help="Of the points.")] = None,
     json: Json = None,
 ) -> None:
     """Fit the declared parameters to the calibration tests, with intervals and what the data cannot identify."""
@@ -267,6 +292,25 @@ def export(
     from thermoscope.commands.export import export as run
 
     raise typer.Exit(run(case, out, csv, json))
+
+
+@app.command()
+def effects(
+    case: Annotated[str | None, typer.Argument(metavar="[CASE]", help="Say where each could sit in this case.")] = None,
+    json: Json = None,
+) -> None:
+    """All effects the diagnosis knows: what each needs, where it could sit in a case, what the others lack."""
+    from thermoscope.commands.effects import effects as run
+
+    raise typer.Exit(run(case, json))
+
+
+@app.command()
+def quantities(json: Json = None) -> None:
+    """What a column may measure, in which units, and what memory holds."""
+    from thermoscope.commands.effects import quantities as run
+
+    raise typer.Exit(run(json))
 
 
 @app.command()

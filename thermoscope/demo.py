@@ -78,7 +78,7 @@ def fresh(out: Path) -> Path:
 
 
 def machine_of(case: Path) -> Path:
-    from thermoscope.folder import read_settings
+    from thermoscope.settings import read_settings
 
     machine = read_settings(case).machine
     assert machine is not None, "the demo's case is built from geometry"

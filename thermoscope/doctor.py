@@ -9,7 +9,8 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.network import Network
+from lumped.laws import InputPower
+from lumped.network import Link, Network, Source
 from thermoscope.consistency import read_by
 from thermoscope.sheet import Sheet
 from thermoscope.tables import Samples
@@ -23,6 +24,7 @@ UNEVEN = 0.5  # of a long step of a clock, between nine in ten and one in ten of
 RATES = 10.0  # times the rows of another test
 STORED = 20.0  # times the heat that came in; capacities are known within a factor of 2 or 3
 WARM_K = 3.0
+SWITCHES = ((0.0, 1.0), (0.0, 100.0))  # levels of an input that is switched: as a number, in percent
 
 
 @dataclass(frozen=True)
@@ -67,7 +69,8 @@ def examined(patients: list[Patient], network: Network) -> tuple[Finding, ...]:
     """Everything that looks wrong in the tests, in the case as a whole and in the network."""
     each = [finding for p in patients for check in CHECKS for finding in check(p)]
     power = [finding for p in patients for finding in _power(p, network)]
-    return (*each, *power, *_rates(patients), *_copies(patients), *_unused(patients, network), *_stores(network))
+    inputs = [*_unused(patients, network), *_switched(patients, network)]
+    return (*each, *power, *_rates(patients), *_copies(patients), *inputs, *_stores(network))
 
 
 def _units(p: Patient) -> Iterator[Finding]:
@@ -182,6 +185,23 @@ def _unused(patients: list[Patient], network: Network) -> Iterator[Finding]:
         if np.unique(values[np.isfinite(values)]).size < 2:
             yield Finding("", name, "no test moves this input: what depends on it cannot be told",
                           "a test in which it changes")  # fmt: skip
+
+
+def _switched(patients: list[Patient], network: Network) -> Iterator[Finding]:
+    """Inputs that are only ever on or off in a law that raises them to a power: 0 and 1 are the same to any power."""
+    for name in sorted(read_by(network)):
+        seen = [p.inputs[name] for p in patients if name in p.inputs]
+        seen += [p.sheet.events[name].value for p in patients if name in p.sheet.events]
+        levels = np.unique(np.concatenate(seen)) if seen else np.zeros(0)
+        levels = levels[np.isfinite(levels)]
+        if not any(np.array_equal(levels, pair) for pair in SWITCHES):
+            continue
+        items: list[Link | Source] = [*network.links, *network.sources]
+        for item in items:
+            terms = item.law.terms if isinstance(item.law, InputPower) else ()
+            for _, _, exponent in (t for t in terms if t[0] == name and t[2] != 1.0):
+                yield Finding("", name, f"is only on or off: the exponent {exponent:g} in '{item.name}' says nothing",
+                              "exponent = 1.0, or a column that says how much")  # fmt: skip
 
 
 def _stores(network: Network) -> Iterator[Finding]:

@@ -8,19 +8,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from geom.errors import InputError
-from geom.names import checked_name
-from geom.toml_file import read_toml
 from lumped.motor_losses import ASSUMED_W
 from lumped.network import Network, Parameter
-from lumped.reader import Table, known
+from lumped.reader import known
 from thermoscope.doctor import Finding, Patient, examined
-from thermoscope.formats import stem_of
 from thermoscope.history import History, checked_values, load_history
 from thermoscope.quantities import with_quantities
 from thermoscope.readings import read_test
+from thermoscope.settings import Entry, Settings, read_settings
 from thermoscope.sheet import Sheet, load_sheet
 from thermoscope.tables import load_table
-from validation.case import AddedEffect, Case, Model, Role, Test
+from validation.case import AddedEffect, Case, Model, Test
 from validation.fitting import matching
 
 if TYPE_CHECKING:
@@ -28,46 +26,6 @@ if TYPE_CHECKING:
     from thermoscope.pipeline import Built
 
 Progress = Callable[[str], None]
-ROLES = ("calibrate", "validate", "hold-out")
-
-
-@dataclass(frozen=True)
-class Entry:
-    """A test as case.toml lists it.  frees : globs of the parameters it is to fix before the others are fitted"""
-
-    name: str
-    role: Role
-    file: Path
-    sheet: Path
-    frees: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True)
-class Settings:
-    """case.toml.  machine or network is set, the other None;  free : globs of what calibration may move, () for all
-
-    model_K : slow misfit (K) the model is not expected to get right, see validation.case.Channel
-    axial_m : thickest layer of the mesh along the axis (m), for long stacks; None: the usual one
-    """
-
-    path: Path
-    name: str
-    description: str
-    machine: Path | None
-    network: Path | None
-    sample_s: float
-    model_K: float
-    tests: tuple[Entry, ...]
-    free: tuple[str, ...] = ()
-    axial_m: float | None = None
-
-    @property
-    def out(self) -> Path:
-        return self.path / "out"
-
-    @property
-    def model_file(self) -> Path:
-        return self.path / "model.toml"
 
 
 @dataclass(frozen=True)
@@ -86,34 +44,6 @@ class Folder:
     findings: tuple[Finding, ...] = ()
 
 
-def read_settings(path: Path, untested: bool = False) -> Settings:
-    """What case.toml says; `untested` allows it to name no tests."""
-    file = path / "case.toml"
-    if path.is_file():
-        raise InputError("is a file", str(path), "a folder with a case.toml")
-    top = Table(read_toml(file, "a case folder with a case.toml"), str(file))
-    head, tests, calibration = top.table("case"), top.tables("tests"), top.table("calibration")
-    top.close()
-    name, description = head.word("name", path.name), head.word("description", "")
-    machine, network = (path / head.word(key) if key in head else None for key in ("machine", "network"))
-    if (machine is None) == (network is None):
-        raise head.error(
-            "neither or both of machine and network given", 'machine = "NAME.toml" or network = "network.toml"'
-        )
-    sample, free = head.number("sample_s", 10.0), calibration.words("free", [])
-    model_K = head.number("model_error_K", 0.0)
-    axial_m = head.number("axial_mm") / 1e3 if "axial_mm" in head else None
-    head.close()
-    calibration.close()
-    if not tests and not untested:
-        raise InputError("no tests", str(file), '[tests.NAME] with role = "calibrate"')
-    entries = tuple(_entry(path, n, t) for n, t in tests.items())
-    return Settings(
-        path, name, description, machine, network, sample, model_K, entries, free,
-        axial_m,
-    )  # fmt: skip
-
-
 def _once(settings: Settings, files: Mapping[str, Path]) -> None:
     """A recording is one test: the same twice would count double, or hold out what was fitted."""
     seen: dict[Path, Entry] = {}
@@ -122,16 +52,6 @@ def _once(settings: Settings, files: Mapping[str, Path]) -> None:
         if first is not entry:
             what = f"[tests.{first.name}] ({first.role}) and [tests.{entry.name}] ({entry.role}) are one recording"
             raise InputError(what, str(settings.path / "case.toml"), "another file for one of them")
-
-
-def _entry(path: Path, name: str, table: Table) -> Entry:
-    file = path / table.word("file", f"tests/{checked_name(name, table.where)}")
-    role, beside = table.word("role", None, ROLES), file.with_name(f"{stem_of(file)}.toml")
-    sheet, frees = path / table.word("sheet") if "sheet" in table else beside, table.words("frees", [])
-    if frees and role != "calibrate":
-        raise table.error(f"frees parameters though its role is {role}", 'role = "calibrate"')
-    table.close()
-    return Entry(name, role, file, sheet, tuple(frees))  # type: ignore[arg-type]
 
 
 def load_case(
@@ -159,7 +79,7 @@ def load_case(
     tests = tuple(replace(_allowing(test, settings.model_K), frees=frees[test.name]) for test, _ in read)
     sheets = [one.sheet for one in patients.values()]
     network = with_quantities(network, sheets, tests)
-    case = Case(settings.name, _model(network, history), tests, _free(network, settings))
+    case = Case(settings.name, _model(network, history), tests, _free(network, settings), settings.doubt)
     return Folder(settings, _checked(case, history), history, notes, _positions(sheets), built, findings)
 
 

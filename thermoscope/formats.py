@@ -58,8 +58,11 @@ def stem_of(path: Path) -> str:
     return path.name[: len(path.name) - len(_suffix(path))]
 
 
-def read_frame(file: Path, worksheet: str = "") -> pd.DataFrame:
-    """The table of a recording, column names stripped. worksheet : of a workbook; of a TDMS file, the group."""
+def read_frame(file: Path, worksheet: str = "", least: int = 3) -> pd.DataFrame:
+    """The table of a recording, column names stripped. worksheet : of a workbook; of a TDMS file, the group.
+
+    least : rows without which it is none
+    """
     suffix = _suffix(file)
     readers: dict[str, Callable[[], pd.DataFrame]] = {
         ".csv": lambda: read_csv(file), ".csv.gz": lambda: read_csv(file), ".xlsx": lambda: _xlsx(file, worksheet),
@@ -72,17 +75,18 @@ def read_frame(file: Path, worksheet: str = "") -> pd.DataFrame:
     twice = [name for name, count in Counter(table.columns).items() if count > 1]
     if twice:
         raise InputError(f"column '{twice[0]}' stands twice in the header", str(file), "a name of its own for each")
-    if len(table) < 3:
-        raise InputError(f"the file holds {len(table)} rows", str(file), "at least 3 rows of numbers under the header")
+    if len(table) < least:
+        raise InputError(f"the file holds {len(table)} rows", str(file), f"at least {least} rows under the header")
     return table
 
 
-def _opened(file: Path, kind: str, package: str, read: Callable[[], Any]) -> Any:
+def opened(file: Path, kind: str, package: str, read: Callable[[], Any]) -> Any:
     """What a reader returns; whatever it trips over becomes one message."""
     try:
         return read()
     except ImportError:
-        raise MissingDependency(f"{file}: reading {kind} needs the package {package}; pip install {package}") from None
+        missing = f"{file}: reading {kind} needs the package {package}; pip install 'thermoscope[bench]'"
+        raise MissingDependency(missing) from None
     except InputError:
         raise
     except Exception as fault:
@@ -100,13 +104,13 @@ def _xlsx(file: Path, worksheet: str) -> pd.DataFrame:
                 raise InputError(f"no worksheet '{worksheet}'", str(file), right)
             return book.parse(worksheet or 0)
 
-    return _opened(file, "an Excel workbook", "openpyxl", read)
+    return opened(file, "an Excel workbook", "openpyxl", read)
 
 
 def _parquet(file: Path) -> pd.DataFrame:
     import pandas as pd
 
-    return _opened(file, "Parquet", "pyarrow", lambda: pd.read_parquet(file))
+    return opened(file, "Parquet", "pyarrow", lambda: pd.read_parquet(file))
 
 
 def _tdms(file: Path, group: str) -> pd.DataFrame:
@@ -123,7 +127,7 @@ def _tdms(file: Path, group: str) -> pd.DataFrame:
                 (c.name if names.count(c.name) == 1 else f"{g}/{c.name}", *_tdms_signal(c)) for g, c in channels
             )
 
-    return _opened(file, "TDMS", "nptdms", read)
+    return opened(file, "TDMS", "nptdms", read)
 
 
 def _tdms_signal(channel: Any) -> tuple[Array, Array]:
@@ -142,7 +146,7 @@ def _mf4(file: Path) -> pd.DataFrame:
             signals = [s for s in mdf.iter_channels(skip_master=True) if len(s.samples) and s.samples.ndim == 1]
             return joined((s.name, np.asarray(s.timestamps, float), np.asarray(s.samples)) for s in signals)
 
-    return _opened(file, "MF4", "asammdf", read)
+    return opened(file, "MF4", "asammdf", read)
 
 
 def joined(signals: Iterable[Signal]) -> pd.DataFrame:

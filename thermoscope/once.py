@@ -20,7 +20,7 @@ def twice(names: Iterable[str]) -> list[str]:
 def declared_once(sheet: Sheet) -> None:
     """InputError for an input fed twice, a sensor declared twice, a mean that takes a column's name."""
     fed = [c.feeds for c in sheet.columns if c.feeds]
-    for name in twice([*fed, *sheet.inputs, *sheet.squares]):
+    for name in twice([*fed, *sheet.inputs, *sheet.squares, *sheet.events]):
         raise InputError(f"input '{name}' is fed twice", sheet.where, "one column or constant per input: "
                          "use = false for the others")  # fmt: skip
     for header in twice(c.header for c in sheet.columns if c.is_temperature):

@@ -28,6 +28,7 @@ def read_test(
     grid, doubts = grid_of(samples, step, sheet.where)
     notes += doubts
     inputs = {n: np.full(grid.size, v) for n, v in sheet.inputs.items()}
+    inputs |= {n: events.mean(grid, samples.start_s) for n, events in sheet.events.items()}
     boundaries = {n: np.full(grid.size, v) for n, v in sheet.boundaries.items()}
     for column in sheet.columns:
         if column.is_temperature and column.place not in network.boundaries:
@@ -72,7 +73,7 @@ def _complete(network: Network, inputs: Mapping[str, Array], boundaries: Mapping
     for item in items:
         for name in item.law.reads:
             if name not in inputs and name != "time_s":
-                right = f'a column with input = "{name}", or [inputs] {name} = ...'
+                right = f'a column with input = "{name}", [events.{name}], or [inputs] {name} = ...'
                 raise InputError(f"nothing gives the input '{name}', which '{item.name}' needs", sheet.where, right)
 
 

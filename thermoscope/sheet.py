@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from math import inf
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,7 @@ from geom.toml_file import read_toml
 from lumped.reader import Table
 from thermoscope.electrical import QUANTITIES as ELECTRICAL
 from thermoscope.electrical import Electrical, read_electrical
+from thermoscope.events import Events, read_events
 from thermoscope.once import declared_once
 from thermoscope.units import QUANTITIES, checked_input, checked_unit, held_as
 
@@ -85,6 +87,7 @@ class Sheet:
 
     squares : input -> columns of which it is the root of the sum of squares, e.g. a current from its dq components
     inputs, boundaries : what stayed constant and was not recorded
+    events : input -> when it was switched;  from_s, to_s : the part of the recording that is the test
     [test] filter_s, the time constant of a filter in the recorder, is added to the lag of every temperature
     """
 
@@ -102,6 +105,9 @@ class Sheet:
     boundaries: Mapping[str, float] = field(default_factory=dict)
     worksheet: str = ""
     recorders: Mapping[str, Recorder] = field(default_factory=dict)
+    events: Mapping[str, Events] = field(default_factory=dict)
+    from_s: float = 0.0
+    to_s: float = inf
 
 
 def load_sheet(path: Path) -> Sheet:
@@ -119,7 +125,7 @@ def read_sheet(data: Mapping[str, Any], where: str, folder: Path = Path()) -> Sh
     top = Table(data, where)
     test, columns, means = top.table("test"), top.tables("columns"), top.tables("means")
     inputs, boundaries = top.table("inputs").constants("inputs"), top.table("boundaries").constants("boundaries")
-    squares, recorders = top.table("root_sum_square"), top.tables("recorders")
+    squares, recorders, events = top.table("root_sum_square"), top.tables("recorders"), top.tables("events")
     top.close()
     period = test.number("period_s") if "period_s" in test else 0.0
     test.word("columns_of", "")
@@ -132,12 +138,21 @@ def read_sheet(data: Mapping[str, Any], where: str, folder: Path = Path()) -> Sh
         tuple(_mean(name, table, filtered) for name, table in means.items()),
         {name: squares.words(name) for name in squares.data}, inputs, boundaries, test.word("worksheet", ""),
         {name: _recorder(table, folder) for name, table in recorders.items()},
+        {name: read_events(name, table, folder) for name, table in events.items()}, *_window(test),
     )  # fmt: skip
     test.close()
     if not sheet.columns:
         raise InputError("no columns", where, "[columns.NAME] with quantity, unit and place")
     declared_once(sheet)
     return sheet
+
+
+def _window(test: Table) -> tuple[float, float]:
+    """From and to (s from the recording's first row)."""
+    start, end = test.number("from_s", 0.0), test.number("to_s") if "to_s" in test else inf
+    if start >= end:
+        raise test.error(f"from_s = {start:g} is not before to_s = {end:g}", "from_s below to_s")
+    return start, end
 
 
 def _initial(test: Table) -> float | Mapping[str, float] | str:

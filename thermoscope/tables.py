@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 GAP = 3.5  # times the usual step
 FROZEN_SHARE, FROZEN_MOVE_K = 0.2, 2.0
+LEAST = 3  # rows of a test
 LARGEST = 1e9  # of anything that is no temperature, in the unit of memory
 
 
@@ -33,6 +34,7 @@ class Samples:
     """time (n,) s from 0;  values : column -> (n,), NaN where nothing was read;  gaps : (from, to) s
 
     sigma_K : channel -> 1-sigma that follows from its readings, for sensors whose sheet gives none
+    start_s : where the test begins in its recording, if that was cropped
     """
 
     file: Path
@@ -41,6 +43,7 @@ class Samples:
     gaps: tuple[tuple[float, float], ...] = ()
     notes: tuple[str, ...] = field(default=())
     sigma_K: Mapping[str, float] = field(default_factory=dict)
+    start_s: float = 0.0
 
 
 def load_table(path: Path, sheet: Sheet) -> Samples:
@@ -54,19 +57,22 @@ def load_table(path: Path, sheet: Sheet) -> Samples:
                 f"column '{name}' is not in the file", f"{file} (asked for by {sheet.where})", known(name, here)
             )
     time = _times(table, replace(sheet, time_unit="s") if sheet.recorders else sheet, file)
+    rows = _window(time, sheet, file)
+    time = time[rows]
+    start, time = float(time[0]), time - time[0]
     gaps = _gaps(time)
     values, sigma, notes = {}, {}, [_gap_note(file, a, b) for a, b in gaps]
     for column in sheet.columns:
-        raw = numbers(table, column.header, file)
+        raw = numbers(table, column.header, file)[rows]
         if (codes := coded(raw)).any():
-            notes.append(code_note(f"{file.name} column '{column.header}'", raw, codes, HEADER))
+            notes.append(code_note(f"{file.name} column '{column.header}'", raw, codes, HEADER + rows.start))
             raw = np.where(codes, np.nan, raw)
         read = converted(raw, column.quantity, column.unit)
         values[column.name] = read if column.electrical is None else column.electrical.temperature(read)
         if column.electrical is not None and not column.sigma_K:
             sigma[column.name] = column.electrical.sigma(read)
-        notes += _look(column, values[column.name], file)
-    return Samples(file, time, values, gaps, (*notes, *_frozen(sheet.columns, time, values, file)), sigma)
+        notes += _look(column, values[column.name], file, rows.start)
+    return Samples(file, time, values, gaps, (*notes, *_frozen(sheet.columns, time, values, file)), sigma, start)
 
 
 def _frame(file: Path, sheet: Sheet) -> pd.DataFrame:
@@ -128,8 +134,17 @@ def _gap_note(file: Path, a: float, b: float) -> str:
     return f"{file.name}: no rows from {a:g} s to {b:g} s; inputs are drawn straight across, nothing is compared there"
 
 
-def _look(column: Column, values: Array, file: Path) -> list[str]:
-    """Missing readings and impossible temperatures of one column."""
+def _window(time: Array, sheet: Sheet, file: Path) -> slice:
+    """The rows from from_s to to_s."""
+    inside = np.flatnonzero((time >= sheet.from_s) & (time <= sheet.to_s))
+    if inside.size < LEAST:
+        raise InputError(f"{inside.size} rows lie from {sheet.from_s:g} to {sheet.to_s:g} s", f"{sheet.where} [test]",
+                         f"from_s and to_s within the recording, 0 to {time[-1]:g} s")  # fmt: skip
+    return slice(int(inside[0]), int(inside[-1]) + 1)
+
+
+def _look(column: Column, values: Array, file: Path, first: int) -> list[str]:
+    """Missing readings and impossible temperatures of one column; first : row at which the test begins."""
     missing = np.flatnonzero(np.isnan(values))
     if missing.size == values.size:
         raise InputError(
@@ -141,12 +156,11 @@ def _look(column: Column, values: Array, file: Path) -> list[str]:
         what, row = "is below absolute zero" if values[out[0]] < -273.15 else "cannot be", int(out[0])
         unit = " degC" if column.is_temperature else ""
         raise InputError(f"{values[row]:g}{unit} {what if column.is_temperature else 'cannot be'}",
-                         cell(file, column.name, row), f"{low:g} to {high:g}{unit}: check the unit in the sheet, or "
-                         "leave the cell empty where nothing was read")  # fmt: skip
+                         cell(file, column.name, row + first), f"{low:g} to {high:g}{unit}: check the unit in the "
+                         "sheet, or leave the cell empty where nothing was read")  # fmt: skip
     if missing.size and column.electrical is None:
-        return [
-            f"{file.name} column '{column.name}': {missing.size} missing readings, first in line {missing[0] + HEADER}"
-        ]
+        line = missing[0] + HEADER + first
+        return [f"{file.name} column '{column.name}': {missing.size} missing readings, first in line {line}"]
     return []
 
 

@@ -47,6 +47,10 @@ QUANTITIES = {
     "time": Quantity({"s": (1, 0), "ms": (1e-3, 0), "min": (60, 0), "h": (3600, 0)}),
 }
 
+HELD = {name: next(unit for unit, how in q.units.items() if how == (1, 0)) for name, q in QUANTITIES.items()} | {
+    "share": "% where the input's name ends in _percent, else 0 to 1",
+}  # what memory holds
+
 LONGEST = 40  # characters
 _ONE = r"(?:1|[A-Za-zµμΩ°_]+)(?:(?:\*\*|\^)-?[1-4])?"
 UNIT = re.compile(rf"{_ONE}(?:\s*[*/·]\s*{_ONE})*|%")  # no powers beyond the fourth: pint would compute any

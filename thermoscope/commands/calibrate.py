@@ -18,15 +18,25 @@ NAME = "calibration.json"
 
 
 def calibrate(
-    case: str, anyway: bool, target: str | None, profile: tuple[str, ...] = (), starts: int = 1, seed: int = 0
+    case: str,
+    anyway: bool,
+    target: str | None,
+    profile: tuple[str, ...] = (),
+    starts: int | None = None,
+    seed: int | None = None,
 ) -> int:
-    """Exit code 1, and nothing written, when the fit does not converge. An interrupted fit goes on where it was."""
+    """Exit code 1, and nothing written, when the fit does not converge. An interrupted fit goes on where it was.
+
+    starts, seed : None for what case.toml says
+    """
     from validation.revise import calibrate as fitted
     from validation.staged import Search
 
     def step(folder: Folder, tell: Progress) -> Revision:
         unfinished = Unfinished(folder)
-        search = Search(starts, seed, unfinished.values(tell), unfinished.keep)
+        usual = folder.settings
+        many, drawn = usual.starts if starts is None else starts, usual.seed if seed is None else seed
+        search = Search(many, drawn, unfinished.values(tell), unfinished.keep)
         result = fitted(folder.case, progress=tell, profiled=profile, search=search)
         unfinished.done()
         return result

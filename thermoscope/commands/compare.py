@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from thermoscope.commands.error_budget import show_budget
-from thermoscope.commands.opened import in_short, opened
+from thermoscope.commands.opened import opened
 from thermoscope.terminal import give, progress, say, table
 
 EVIDENT = 10.0  # nats
@@ -22,7 +22,6 @@ def compare(case: str, target: str | None, why: bool = False) -> int:
 
     with progress() as tell:
         folder = opened(case, tell)
-        in_short(folder, case)
         tell("running the model")
         result = held_against(folder.case)
         more = failing(folder.case, tell).document() if why else {}

@@ -27,7 +27,7 @@ def diagnose(case: str, target: str | None, older: bool = False) -> int:
     with progress() as tell:
         folder = opened(case, tell)
         budgets = budgets_of_tests(folder, tell)
-        found = search(folder.case, progress=tell, budget=ErrorBudget.worst(budgets.values()).total_K)
+        found = search(folder.case, folder.settings.kinds, tell, budget=ErrorBudget.worst(budgets.values()).total_K)
     named = {"case": folder.case.name, "revision": folder.case.model.revision}
     document = {**named, **found.document(), "error_budget": documents(budgets)}
     save_diagnosis(folder, document)

@@ -7,9 +7,10 @@ from pathlib import Path
 
 from geom.errors import InputError
 from thermoscope.doctor import Finding, examined
-from thermoscope.folder import Entry, Settings, find_case, network_of, patient_of, read_settings
+from thermoscope.folder import find_case, network_of, patient_of
 from thermoscope.history import load_history
 from thermoscope.readings import read_test
+from thermoscope.settings import Entry, Settings, read_settings
 from thermoscope.terminal import Progress, give, progress, say, table
 
 

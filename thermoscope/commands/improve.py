@@ -29,7 +29,7 @@ def improve(case: str, yes: bool, most: int, target: str | None) -> int:
         folder = opened_to_write(case, tell)
         ledger = Ledger(folder)
         guide = Guide(singletons if yes else asked, ledger.keep)
-        done = climb(folder.case, guide, most, tell)
+        done = climb(folder.case, guide, most, tell, folder.settings.kinds)
     found = {"case": folder.case.name, "revision": ledger.history.last.number, **done.diagnosis.document()}
     save_diagnosis(folder, json.loads(json.dumps(found, default=float)))
     document = {"case": folder.case.name, **done.document(), "written": ledger.written}

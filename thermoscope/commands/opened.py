@@ -9,20 +9,24 @@ from geom.errors import InputError
 from thermoscope.folder import Folder, find_case, load_case
 from thermoscope.terminal import Progress, notes
 
+LOUD = 3  # findings that are said in full; doctor says all
 PACKAGE = Path(__file__).resolve().parents[1]
 
 
 def opened(name: str, progress: Progress, untested: bool = False) -> Folder:
     """The case for reading; doubts about its data go to stderr. `untested`: one without tests will do."""
     folder = load_case(find_case(name), progress, untested=untested)
-    notes(folder.notes)
+    notes([*folder.notes, *in_short(folder, name)])
     return folder
 
 
-def in_short(folder: Folder, name: str) -> None:
-    """How much looks wrong in the files, and what says more."""
-    if count := sum(not finding.remark for finding in folder.findings):
-        notes([f"{count} {'thing looks' if count == 1 else 'things look'} wrong: thermoscope doctor {name}"])
+def in_short(folder: Folder, name: str) -> list[str]:
+    """The first things that look wrong in the files, what no law reads, and what says more."""
+    said = [f for f in folder.findings if not any(f.what in note for note in folder.notes)]
+    wrong = sorted(said, key=lambda f: f.remark)
+    lines = [f"{', '.join(filter(None, (f.test, f.where)))}: {f.what}; {f.cure}" for f in wrong[:LOUD]]
+    more = len(wrong) - LOUD
+    return [*lines, *([f"{more} more such things: thermoscope doctor {name}"] if more > 0 else [])]
 
 
 def opened_to_write(name: str, progress: Progress) -> Folder:
@@ -39,5 +43,5 @@ def opened_to_write(name: str, progress: Progress) -> Folder:
     if (out := path / "out").exists() and not out.is_dir():
         raise InputError("is no folder", str(out), "a folder for results: move the file away")
     folder = load_case(path, progress)
-    notes(folder.notes)
+    notes([*folder.notes, *in_short(folder, name)])
     return folder

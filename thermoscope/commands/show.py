@@ -95,7 +95,7 @@ def _diagnosis(folder: Folder, tell: Progress, again: bool) -> tuple[Mapping[str
     if not again:
         last = last_diagnosis(folder)
         return last, last is not None
-    document = diagnose(folder.case, progress=tell).document()
+    document = diagnose(folder.case, folder.settings.kinds, tell).document()
     save_diagnosis(folder, document)
     return document, False
 

@@ -17,6 +17,7 @@ class AirLeak(Effect):
 
     kind = "bypass"
     title = "part of the stream passes by"
+    sits = "a stream"
     unit = "1"
     source = "mass balance of the stream"
     isolating_test = "inlet and outlet temperature at constant loss; flow sweep"

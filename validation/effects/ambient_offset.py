@@ -12,6 +12,7 @@ class AmbientOffset(Effect):
 
     kind = "ambient.offset"
     title = "boundary temperature is not the recorded one"
+    sits = "a boundary"
     unit = "K"
     source = "definition"
     isolating_test = "read the air at the machine's inlet and on both sides; a step of the chamber's temperature"

@@ -36,7 +36,7 @@ class Scene:
 class Effect(ABC):
     """Physics that a network may lack, at one place. With its parameter at neutral it changes nothing.
 
-    kind, title : short name and words;  place : where it sits
+    kind, title : short name and words;  place : where it sits;  sits : where it may, in words
     unit, sign, prior_sd, low, high : of its one parameter; sign is what physics allows (0: both)
     at : speed, current, ... at which the parameter is what the effect amounts to ("" : everywhere)
     typical : usual magnitude in `unit`
@@ -50,6 +50,7 @@ class Effect(ABC):
 
     kind: ClassVar[str]
     title: ClassVar[str]
+    sits: ClassVar[str] = "a place that its own file names"
     unit: ClassVar[str]
     at: ClassVar[str] = ""
     source: ClassVar[str]

@@ -15,6 +15,7 @@ class BearingFriction(Effect):
 
     kind = "bearing.friction"
     title = "bearing friction"
+    sits = "a part with role bearing"
     unit = "W"
     at = "1000 rpm"
     source = "Palmgren 1959: viscous moment ~ (nu n)^(2/3), so power ~ n^(5/3)"

@@ -14,6 +14,7 @@ class Blockage(Effect):
 
     kind = "blockage"
     title = "cooling of a face is blocked"
+    sits = "a part with a film to air or coolant"
     unit = "1"
     source = "definition; open fin channels lose flow along their length (Valenzuela and Tapia 2008)"
     isolating_test = "clean the fins; cool-down with the face freely exposed"

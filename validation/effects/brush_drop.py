@@ -15,6 +15,7 @@ class BrushDrop(Effect):
 
     kind = "brush.drop"
     title = "brush contact drop"
+    sits = "a part with role commutator"
     unit = "W"
     at = "100 A"
     source = "carbon brushes, about 1 V per brush (IEC 60276)"

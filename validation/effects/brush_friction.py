@@ -15,6 +15,7 @@ class BrushFriction(Effect):
 
     kind = "brush.friction"
     title = "brush friction"
+    sits = "a part with role commutator"
     unit = "W"
     at = "1000 rpm"
     source = "Coulomb friction, mu 0.15 to 0.3, 15 to 25 kPa"

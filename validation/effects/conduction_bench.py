@@ -21,6 +21,7 @@ class BenchConduction(Effect):
 
     kind = "conduction.bench"
     title = "conduction into the bench"
+    sits = "a standing outer part that the test bed does not hold yet"
     unit = "W/K"
     source = "one-dimensional conduction through the feet"
     isolating_test = "heat or insulate the bench plate (G10 spacer) and read its temperature"

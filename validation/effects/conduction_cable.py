@@ -15,6 +15,7 @@ class CableConduction(Effect):
 
     kind = "conduction.cable"
     title = "conduction along the leads"
+    sits = "a standing winding, with an ambient"
     unit = "W/K"
     source = "Incropera, infinite fin; copper of 35 mm2 with h = 10 W/m2/K: 0.05 W/K"
     isolating_test = "wrap the leads, or read them at two distances from the machine"

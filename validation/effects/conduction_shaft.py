@@ -36,6 +36,7 @@ class ShaftConduction(Effect):
 
     kind = "conduction.shaft"
     title = "conduction through shaft and coupling"
+    sits = "a part with role shaft, or the end of the axle, and something beyond it"
     unit = "W/K"
     source = "one-dimensional conduction k A / L; steel shaft of 30 mm, 100 mm long: 0.35 W/K"
     isolating_test = "uncouple, or put an insulating disc between the coupling's halves"

@@ -32,6 +32,7 @@ class ContactResistance(Effect):
 
     kind = "contact"
     title = "contact resistance larger than assumed"
+    sits = "a contact between two parts"
     unit = "1"
     source = "interface gap, R = gap / k_air (Motor-CAD default gaps, Staton 2005)"
     isolating_test = "DC heating at standstill with sensors on both sides of the joint"

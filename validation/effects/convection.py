@@ -18,6 +18,7 @@ class Convection(Effect):
 
     kind = "convection"
     title = "forced convection by vehicle wind"
+    sits = "an outer part or face, with an ambient"
     unit = "W/m2/K"
     at = "10 m/s"
     source = "McAdams 1954, turbulent flat plate, Nu ~ Re^0.8"

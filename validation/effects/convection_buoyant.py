@@ -15,6 +15,7 @@ class BuoyantConvection(Effect):
 
     kind = "convection.buoyant"
     title = "natural convection growing with the rise"
+    sits = "an outer part or face, with an ambient"
     unit = "W/m2/K"
     at = "40 K"
     source = "McAdams 1954, vertical plate, laminar, Nu ~ Ra^(1/4)"

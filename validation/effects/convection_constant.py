@@ -15,6 +15,7 @@ class ConstantConvection(Effect):
 
     kind = "convection.constant"
     title = "steady extra cooling to ambient"
+    sits = "an outer part or face, with an ambient"
     unit = "W/m2/K"
     source = "Newton's law of cooling; still air 5 to 15 W/m2/K (Staton and Cavagnino 2008)"
     isolating_test = "insulate the face; cool down with and without it"

@@ -19,6 +19,7 @@ class FanConvection(Effect):
 
     kind = "convection.fan"
     title = "air of a fan on the shaft over a standing face"
+    sits = "a standing outer part off the axle, with no air flow recorded"
     unit = "W/m2/K"
     at = "1000 rpm"
     source = "fin channels and end shields of TEFC machines, h ~ v^0.8 (Staton and Cavagnino 2008), v ~ n"

@@ -15,6 +15,7 @@ class RotationConvection(Effect):
 
     kind = "convection.rotation"
     title = "cooling of a turning part to ambient"
+    sits = "a turning part, with an ambient"
     unit = "W/m2/K"
     at = "1000 rpm"
     source = "rotating cylinder in still air, Nu = 0.133 Re^(2/3) Pr^(1/3) (Kays and Bjorklund 1958)"

@@ -30,6 +30,7 @@ class CoolantLink(Effect):
 
     kind = "coolant"
     title = "extra heat path to the coolant"
+    sits = "a part at or beside a fluid with role coolant"
     unit = "W/m2/K"
     source = "Newton's law of cooling; jacket sides beyond the modelled wall, hoses, manifolds"
     isolating_test = "step the coolant's inlet temperature at constant loss"

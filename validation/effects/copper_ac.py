@@ -16,6 +16,7 @@ class AcCopper(Effect):
 
     kind = "copper.ac"
     title = "AC copper loss"
+    sits = "a winding with copper loss"
     unit = "W"
     at = "1000 rpm and 100 A"
     source = "Dowell 1966, low-frequency limit, P ~ f^2 I^2"

@@ -22,6 +22,7 @@ class CopperFeedback(Effect):
 
     kind = "copper.feedback"
     title = "copper resistance does not follow its temperature"
+    sits = "a copper loss that follows a temperature, or says its reference"
     unit = "1/K"
     source = "IEC 60034-1: copper, 0.00393 1/K at 20 degC"
     isolating_test = "log the winding resistance during a constant-current run"

@@ -15,6 +15,7 @@ class Coupling(Effect):
 
     kind = "coupling"
     title = "thermal bridge between two parts"
+    sits = "two parts near each other without a link"
     unit = "W/K"
     source = "conduction through bolts, leads, potting or air that the drawing does not show"
     isolating_test = "heat one of the two parts alone and watch the other"

@@ -16,6 +16,7 @@ class EndSpaceMixing(Effect):
 
     kind = "end.mixing"
     title = "end-space air stirred by the rotor"
+    sits = "a fluid with role inner air and faces on it"
     unit = "W/m2/K"
     at = "1000 rpm"
     source = "Schubert 1968: h = 15 (1 + 0.4 v^0.9)"

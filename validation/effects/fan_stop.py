@@ -34,6 +34,7 @@ class FanStop(Effect):
 
     kind = "fan.stop"
     title = "fan or pump stops during a test"
+    sits = "a declared flow"
     unit = "1"
     source = "definition: a tripped breaker, a slipped hose"
     isolating_test = "read the flow, or listen; repeat the test"

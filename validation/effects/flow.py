@@ -32,6 +32,7 @@ class Flow(Effect):
 
     kind = "flow"
     title = "fan or coolant flow differs from the stated one"
+    sits = "a declared flow"
     unit = "1"
     source = "definition; films follow the flow with the exponents the network declares"
     isolating_test = "measure the flow; inlet and outlet temperature at constant loss; run with the fan off"

@@ -28,6 +28,7 @@ class Fouling(Effect):
 
     kind = "fouling"
     title = "cooling fades during the test"
+    sits = "a part with a film to air or coolant"
     unit = "1/h"
     source = "definition: dust, icing, a loosening duct, a fan that slows down"
     isolating_test = "repeat the same test after cleaning; the first and last test of the day at the same load"

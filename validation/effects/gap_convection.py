@@ -32,6 +32,7 @@ class GapConvection(Effect):
 
     kind = "gap.convection"
     title = "air-gap convection with speed"
+    sits = "a fluid with role air gap"
     unit = "W/m2/K"
     at = "1000 rpm"
     source = "Becker and Kaye 1962: Nu ~ Ta^0.48 beyond the critical Taylor number"

@@ -15,6 +15,7 @@ class IronLoss(Effect):
 
     kind = "iron"
     title = "iron loss growing with speed"
+    sits = "a part with role iron or rotor, or one with iron loss"
     unit = "W"
     at = "1000 rpm"
     source = "Steinmetz 1892, exponent 1 (hysteresis) to 2 (eddy current)"

@@ -33,6 +33,7 @@ class PwmIronLoss(Effect):
 
     kind = "iron.pwm"
     title = "iron loss of the inverter's ripple"
+    sits = "a part with role iron or rotor, or one with iron loss"
     unit = "W"
     at = "8 kHz"
     source = "Boglietti et al. 1996, iron loss under PWM: falls with the switching frequency, hardly follows the load"

@@ -15,6 +15,7 @@ class ConstantLoss(Effect):
 
     kind = "loss.constant"
     title = "constant heat input"
+    sits = "an outer part or face"
     unit = "W"
     source = "heat balance"
     isolating_test = "record with everything switched off"

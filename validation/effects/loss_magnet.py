@@ -15,6 +15,7 @@ class MagnetLoss(Effect):
 
     kind = "loss.rotor"
     title = "loss in rotor or magnets"
+    sits = "a turning part"
     unit = "W"
     at = "1000 rpm"
     source = "eddy currents in thin conductors, P ~ f^2"

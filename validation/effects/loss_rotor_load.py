@@ -16,6 +16,7 @@ class RotorLoadLoss(Effect):
 
     kind = "loss.rotor.load"
     title = "load-dependent loss in rotor or magnets"
+    sits = "a turning part that is no wound winding"
     unit = "W"
     at = "1000 rpm and 100 A"
     source = "winding harmonics of the armature field, B ~ I; eddy currents in thin conductors, P ~ (f B)^2"

@@ -15,6 +15,7 @@ class WindingLoss(Effect):
 
     kind = "loss.winding"
     title = "copper loss larger than assumed"
+    sits = "a winding with copper loss"
     unit = "W"
     at = "100 A"
     source = "Joule's law"

@@ -16,6 +16,7 @@ class Radiation(Effect):
 
     kind = "radiation"
     title = "thermal radiation to the surroundings"
+    sits = "an outer part or face, with an ambient"
     unit = "1"
     source = "Stefan-Boltzmann; grey body in large surroundings"
     isolating_test = "paint the face matt black or cover it with bright foil; wide range of temperature"

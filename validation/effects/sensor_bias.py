@@ -12,6 +12,7 @@ class SensorBias(Effect):
 
     kind = "sensor.bias"
     title = "sensor reads too high or too low"
+    sits = "a measured temperature"
     unit = "K"
     source = "IEC 60584-1 tolerance classes"
     isolating_test = "swap the sensor with its neighbour; ice bath"

@@ -12,6 +12,7 @@ class SensorDelay(Effect):
 
     kind = "time.offset"
     title = "clock of the temperatures is off"
+    sits = "a test"
     unit = "s"
     source = "definition"
     isolating_test = "a loss step that both loggers see"

@@ -12,6 +12,7 @@ class SensorDrift(Effect):
 
     kind = "sensor.drift"
     title = "sensor drifts during the test"
+    sits = "a measured temperature"
     unit = "K/h"
     source = "definition: adhesive that lets go, thermocouple decalibration"
     isolating_test = "repeat the start of the test; ice bath before and after"

@@ -12,6 +12,7 @@ class SensorGain(Effect):
 
     kind = "sensor.gain"
     title = "sensor reads a wrong slope"
+    sits = "a measured temperature"
     unit = "1"
     source = "definition; wrong thermocouple type gives tens of percent"
     isolating_test = "compare with a reference sensor at two temperatures"

@@ -12,6 +12,7 @@ class SensorLag(Effect):
 
     kind = "sensor.lag"
     title = "sensor follows late"
+    sits = "a measured temperature"
     unit = "s"
     source = "first-order instrument; contact and mass of the sensor"
     isolating_test = "plunge test; a step of the loss"

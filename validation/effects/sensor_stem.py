@@ -12,6 +12,7 @@ class SensorStem(Effect):
 
     kind = "sensor.stem"
     title = "stem conduction pulls the reading to ambient"
+    sits = "a measured temperature"
     unit = "1"
     source = "fin equation of the leads, a = h-dependent share (VDI/VDE 3511)"
     isolating_test = "insulate or anneal the leads; a second sensor with thinner wires"

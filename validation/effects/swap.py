@@ -13,6 +13,7 @@ class Swap(Effect):
 
     kind = "sensor.swap"
     title = "two channels are exchanged"
+    sits = "two measured temperatures"
     unit = "1"
     source = "definition"
     isolating_test = "warm one sensor by hand"

@@ -15,6 +15,7 @@ class Windage(Effect):
 
     kind = "windage"
     title = "windage"
+    sits = "a turning part"
     unit = "W"
     at = "1000 rpm"
     source = "Saari 1998, rotating cylinder, P ~ n^3 at constant friction factor"

@@ -1,0 +1,29 @@
+"""What an installation cannot do without is free to be used with closed programs."""
+
+import re
+import tomllib
+from importlib.metadata import metadata
+
+import pytest
+
+
+def required(root):
+    project = tomllib.loads((root / "pyproject.toml").read_text())["project"]
+    return [re.split(r"[<>=!\[ ;]", line)[0] for line in project["dependencies"]]
+
+
+def licence(name):
+    about = metadata(name)
+    words = [about.get("License-Expression"), (about.get("License") or "").partition("\n")[0]]
+    return " ".join(filter(None, [*words, *(c for c in about.get_all("Classifier") or [] if "License" in c)]))
+
+
+def test_nothing_that_is_required_is_gpl(root):
+    """Readers of TDMS and MF4 are LGPL: they are in the optional part [bench]."""
+    assert [name for name in required(root) if "GPL" in licence(name)] == []
+    assert not {"nptdms", "asammdf"} & set(required(root))
+
+
+@pytest.mark.parametrize("name", ["nptdms", "asammdf"])
+def test_the_check_reads_licences(name):
+    assert "GPL" in licence(name)

@@ -1,0 +1,84 @@
+"""thermoscope effects [CASE], thermoscope quantities"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from lumped.quantities import INPUTS
+from thermoscope.terminal import give, progress, say, table
+from thermoscope.units import HELD, QUANTITIES
+
+if TYPE_CHECKING:
+    from validation.effects.base import Effect, Scene
+
+PLACES = 4  # named in a row of the table; all in --json
+
+
+def effects(case: str | None, target: str | None) -> int:
+    """Every kind of effect: what it needs, and in a case where it could sit or what is missing."""
+    from thermoscope.commands.opened import opened
+    from validation.effects.registry import kinds
+    from validation.fitting import scene_of
+
+    scene = None
+    if case is not None:
+        with progress() as tell:
+            scene = scene_of(opened(case, tell).case)
+    document = {"case": case, "effects": [_described(kind, scene) for kind in kinds().values()]}
+    give(document, target, lambda: show(document))
+    return 0
+
+
+def _described(kind: type[Effect], scene: Scene | None) -> dict[str, Any]:
+    about = {
+        "effect": kind.kind, "title": kind.title, "sits": kind.sits, "needs": list(kind.needs), "unit": kind.unit,
+        "typical": list(kind.typical), "fault": kind.fault, "isolating_test": kind.isolating_test,
+        "source": kind.source,
+    }  # fmt: skip
+    if scene is None:
+        return about
+    inputs = [q for q in kind.needs if q not in scene.recorded]
+    suited = list(kind.where(scene))
+    missing = [*(f"a column of {q} (input {INPUTS.get(q, q)})" for q in inputs), *([] if suited else [kind.sits])]
+    return {**about, "places": list(kind.places(scene)), "missing": missing}
+
+
+def show(document: Mapping[str, Any]) -> None:
+    """Those that can sit in the case first, then what the others lack."""
+    rows = document["effects"]
+    if document["case"] is None:
+        say(f"{len(rows)} effects are known; with a CASE this says where each could sit in it.")
+        table("Effects", ["effect", "what", "sits at", "needs"],
+              [[e["effect"], e["title"], e["sits"], ", ".join(e["needs"])] for e in rows])  # fmt: skip
+        return
+    able = [e for e in rows if e["places"]]
+    unable = [e for e in rows if not e["places"]]
+    places = sum(len(e["places"]) for e in able)
+    say(f"{len(able)} of {len(rows)} effects can sit in {document['case']}, at {places} places; "
+        f"{len(unable)} lack an input or a role.")  # fmt: skip
+    table("Can sit here", ["effect", "places", "what"], [[e["effect"], named(e["places"]), e["title"]] for e in able])
+    table("Cannot", ["effect", "missing", "what"], [[e["effect"], "; ".join(e["missing"]), e["title"]] for e in unable])
+
+
+def named(places: list[str]) -> str:
+    """The first few places, and how many more there are."""
+    more = len(places) - PLACES
+    return ", ".join(places[:PLACES]) + (f" and {more} more" if more > 0 else "")
+
+
+def quantities(target: str | None) -> int:
+    """What a column may measure, its units, and what memory holds."""
+    rows = [{"quantity": name, "units": list(q.units), "held_as": HELD[name], "input": q.feeds}
+            for name, q in QUANTITIES.items()]  # fmt: skip
+    document = {"quantities": rows}
+    give(document, target, lambda: show_quantities(rows))
+    return 0
+
+
+def show_quantities(rows: list[dict[str, Any]]) -> None:
+    say(
+        f"A column measures one of {len(rows)} quantities; other units of the same dimension (ft/min) are read as well."
+    )
+    table("Quantities", ["quantity", "units", "held as", "input it drives"],
+          [[r["quantity"], ", ".join(r["units"]), r["held_as"], r["input"]] for r in rows])  # fmt: skip

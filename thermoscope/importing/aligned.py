@@ -1,0 +1,125 @@
+"""Recorders without a common clock: how far one has to be moved so that the test begins at the same instant in both."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geom.errors import InputError
+from thermoscope.importing.clock import Clock
+from thermoscope.importing.guess import Guess
+from thermoscope.importing.source import Source
+
+Array = NDArray[np.float64]
+EARLY, LATER = 0.05, 0.10  # of a column's range; the line through both crossings tells where the change began
+NOISE_TIMES = 6.0  # in standard deviations of the noise: a change, not a wobble
+STILL = 5  # readings that say where a column starts
+
+
+@dataclass(frozen=True)
+class Recording:
+    """One file: what it holds, its clock, and what its columns are.
+
+    shift_s : to add to its clock so that it agrees with the first file of its test;  how : what that was told by
+    """
+
+    source: Source
+    clock: Clock
+    guesses: list[Guess]
+    shift_s: float = 0.0
+    how: str = ""
+
+    @property
+    def name(self) -> str:
+        return self.source.file.name
+
+    @property
+    def step_s(self) -> float:
+        return float(np.median(np.diff(self.clock.seconds)))
+
+
+def shift(first: Recording, other: Recording) -> tuple[float, str]:
+    """Seconds to add to the other's clock, and by what. InputError for clocks that never overlap or show no onset."""
+    if first.clock.start is not None and other.clock.start is not None:
+        moved = other.clock.start - first.clock.start
+        _overlapping(first, other, moved)
+        return moved, "both clocks show dates"
+    (a, by), (b, of) = onset(first), onset(other)
+    moved = a - b
+    _overlapping(first, other, moved)
+    return moved, f"onset of '{by}' and '{of}', +- {first.step_s + other.step_s:.2g} s"
+
+
+def _overlapping(first: Recording, other: Recording, moved: float) -> None:
+    end, theirs = float(first.clock.seconds[-1]), float(other.clock.seconds[-1])
+    if moved > end or moved + theirs < 0.0:
+        late = "after the end" if moved > 0 else "before the start"
+        raise InputError(f"its clock never overlaps with that of {first.name}: it runs {abs(moved):.6g} s {late} of it",
+                         str(other.source.file), "two recordings of one test, or one command each")  # fmt: skip
+
+
+def onset(record: Recording) -> tuple[float, str]:
+    """The instant (s) at which the first of its columns begins to change, and which."""
+    found = {
+        g.column: at for g in record.guesses
+        if g.quantity and (at := column_onset(record.clock.seconds, record.source.numbers(g.column))) is not None
+    }  # fmt: skip
+    if not found:
+        raise InputError("nothing in it begins to change, so it cannot be set beside the other recording",
+                         str(record.source.file), "a clock with dates in both, or a rise that both saw")  # fmt: skip
+    column = min(found, key=lambda c: found[c])
+    return found[column], column
+
+
+def column_onset(time: Array, values: Array) -> float | None:
+    """Where a column leaves its first readings (s); None where it never does, or was moving from the start."""
+    seen = np.flatnonzero(np.isfinite(values) & np.isfinite(time))
+    t, y = time[seen], values[seen]
+    if y.size < 4 * STILL:
+        return None
+    away = np.abs(y - np.median(y[:STILL]))
+    noise = 1.4826 * float(np.median(np.abs(np.diff(y)))) / np.sqrt(2.0)
+    reach = float(away.max())
+    if reach <= NOISE_TIMES * noise or reach == 0.0:
+        return None
+    early, later = (_crossing(t, away, max(share * reach, NOISE_TIMES * noise)) for share in (EARLY, LATER))
+    if early <= t[STILL - 1]:
+        return None
+    return max(float(t[0]), early - max(0.0, later - early) * EARLY / (LATER - EARLY))
+
+
+def _crossing(t: Array, away: Array, level: float) -> float:
+    """The first instant at which a column is beyond a level; between two readings by a line, unless it jumps."""
+    i = int(np.flatnonzero(away >= level)[0])
+    if i == 0:
+        return float(t[0])
+    share = (level - away[i - 1]) / (away[i] - away[i - 1])
+    return float(t[i - 1] + share * (t[i] - t[i - 1]))
+
+
+def grouped(records: Sequence[Recording], kinds: Sequence[frozenset[str]]) -> list[list[Recording]]:
+    """Files with the same columns are tests; files with different ones are recorders of one test.
+
+    Two recorders for each of several tests are paired in the order they are given.
+    """
+    groups: list[list[int]] = []
+    for i, kind in enumerate(kinds):
+        home = next((g for g in groups if _alike(kinds[g[0]], kind)), None)
+        if home is None:
+            groups.append([i])
+        else:
+            home.append(i)
+    counts = {len(g) for g in groups}
+    if len(counts) != 1:
+        words = "; ".join(", ".join(records[i].name for i in g) for g in groups)
+        raise InputError(f"files of {len(groups)} recorders, not the same number of each", words,
+                         "one file of each recorder for every test")  # fmt: skip
+    return [[records[g[k]] for g in groups] for k in range(counts.pop())]
+
+
+def _alike(a: frozenset[str], b: frozenset[str]) -> bool:
+    """Do two files have mostly the same columns?"""
+    return len(a & b) > 0.5 * min(len(a), len(b))

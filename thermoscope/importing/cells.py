@@ -1,0 +1,93 @@
+"""One cell of a recording: a number with point or comma, an instant, a unit, or on and off."""
+
+from __future__ import annotations
+
+import re
+from datetime import date, datetime, time
+
+NUMBER = re.compile(r"[-+]?(\d+([.,]\d*)?|[.,]\d+)([eE][-+]?\d+)?")
+CLOCK = re.compile(r"\d{1,3}:\d{2}(:\d{2})?([.,]\d+)?(\s?[AaPp][Mm])?")
+DATE = re.compile(r"(\d{4}[-/.]\d{1,2}[-/.]\d{1,2}|\d{1,2}[-/.]\d{1,2}[-/.]\d{2,4})([T ].*)?")
+EMPTY = frozenset({"", "nan", "-", "--", "---", "n/a", "na", "null", "none", "#n/a", "inf", "-inf", "overload"})
+SWITCH = {"on": 1.0, "off": 0.0, "true": 1.0, "false": 0.0, "ein": 1.0, "aus": 0.0, "yes": 1.0, "no": 0.0,
+          "an": 1.0, "running": 1.0, "stopped": 0.0}  # fmt: skip
+
+# As written in headers of loggers, in lower case and without blanks -> as sheets write it.
+SPELLED = {
+    "°c": "degC", "degc": "degC", "deg.c": "degC", "gradc": "degC", "celsius": "degC", "℃": "degC", "c": "degC",
+    "ºc": "degC", "degreec": "degC", "degreesc": "degC", "grdc": "degC",
+    "°f": "degF", "degf": "degF", "fahrenheit": "degF", "k": "K", "kelvin": "K",
+    "a": "A", "ma": "mA", "ka": "kA", "amp": "A", "amps": "A", "aeff": "A", "arms": "A",
+    "v": "V", "mv": "mV", "kv": "kV", "volt": "V", "w": "W", "kw": "kW", "watt": "W", "watts": "W",
+    "nm": "Nm", "n*m": "N*m", "n.m": "N*m", "n·m": "N*m", "n-m": "N*m", "knm": "kN*m",
+    "rpm": "rpm", "r/min": "rpm", "u/min": "rpm", "1/min": "1/min", "min-1": "1/min", "min^-1": "1/min",
+    "rev/min": "rpm", "upm": "rpm", "rad/s": "rad/s", "hz": "Hz", "khz": "kHz",
+    "m/s": "m/s", "km/h": "km/h", "kmh": "km/h", "mps": "m/s",
+    "kph": "km/h", "mph": "mph",
+    "l/min": "l/min", "lpm": "l/min", "l/m": "l/min", "m3/h": "m3/h", "m³/h": "m3/h", "m^3/h": "m3/h", "m3/s": "m3/s",
+    "m3h": "m3/h",
+    "m³/s": "m3/s", "l/s": "l/s", "%": "%", "percent": "%", "pct": "%", "1": "1", "-": "1", "ohm": "ohm", "ω": "ohm",
+    "Ω".lower(): "ohm", "mohm": "mohm", "mω": "mohm", "kohm": "kohm",
+    "s": "s", "sec": "s", "secs": "s", "seconds": "s", "second": "s", "sek": "s", "ms": "ms", "min": "min",
+    "minutes": "min", "h": "h", "hours": "h", "hour": "h", "std": "h",
+}  # fmt: skip
+OTHER = frozenset({
+    "bar", "mbar", "pa", "kpa", "g", "mm", "m", "kg", "var", "va", "kva", "db", "m/s2", "m/s²", "n", "kn", "rev", "°",
+    "deg", "wh", "kwh", "mm:ss", "hh:mm", "hh:mm:ss", "hh:mm:ss.000", "dd.mm.yyyy", "yyyy-mm-dd",
+})  # fmt: skip
+
+
+def number(cell: object) -> float:
+    """The number in a cell, nan where there is none; a decimal comma is a point."""
+    if isinstance(cell, bool):
+        return float(cell)
+    if isinstance(cell, int | float):
+        return float(cell)
+    text = str(cell).strip()
+    return float(text.replace(",", ".")) if NUMBER.fullmatch(text) else float("nan")
+
+
+def is_clock(cell: object) -> bool:
+    """A time of day, or minutes and seconds."""
+    return isinstance(cell, time) or bool(CLOCK.fullmatch(str(cell).strip()))
+
+
+def is_date(cell: object) -> bool:
+    """A date, with or without a time of day and a zone."""
+    return isinstance(cell, datetime | date) or bool(DATE.fullmatch(str(cell).strip()))
+
+
+def is_reading(cell: object) -> bool:
+    """A number, an instant, on or off, or one of the ways to write that there is none."""
+    if isinstance(cell, int | float | datetime | date | time):
+        return True
+    text = str(cell).strip()
+    return bool(NUMBER.fullmatch(text)) or text.lower() in EMPTY | SWITCH.keys() or is_clock(text) or is_date(text)
+
+
+def unit_of(text: str) -> str:
+    """A unit as sheets write it, "" where it is none that is known."""
+    return SPELLED.get(text.strip().strip("[]()").replace(" ", "").lower(), "")
+
+
+def is_unit(text: str) -> bool:
+    """Is it a unit, also one that no column of a sheet has?"""
+    return bool(unit_of(text)) or text.strip().strip("[]()").lower() in OTHER
+
+
+BRACKETED = re.compile(r"^(.*?)\s*[\[(<{]([^\])>}]+)[\])>}]\s*(.*)$")
+TRAILING = re.compile(r"^(.*?)(?:_|\s*/\s*|\s+in\s+|,\s*|\s+)([^\s_/]+(?:/[a-z0-9]+)?)$")
+
+
+def split_unit(header: str) -> tuple[str, str]:
+    """A header without its unit, and the unit: "T1 [°C]", "Speed (1/min)", "T_yoke / °C", "t in s", "speed_rpm"."""
+    if (found := BRACKETED.match(header)) and is_unit(found[2]):
+        return f"{found[1]} {found[3]}".strip(), unit_of(found[2])
+    if (found := TRAILING.match(header)) and found[1] and _surely(found[2]):
+        return found[1].strip(), unit_of(found[2])
+    return header.strip(), ""
+
+
+def _surely(word: str) -> bool:
+    """A word that is a unit and hardly the name of a phase, a winding or a sensor (A, C, K, V, W, 1)."""
+    return (bool(unit_of(word)) and (len(word) > 1 or word == "%")) or word in ("s", "A", "V", "W", "K", "C", "h")

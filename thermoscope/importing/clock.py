@@ -1,0 +1,206 @@
+"""The time of a recording, in seconds from its first row, whatever its clock looks like."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import date, datetime, time
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geom.errors import InputError
+from thermoscope.formats import TIME
+from thermoscope.importing.cells import is_clock, is_date, unit_of
+from thermoscope.importing.source import BINARY, Source
+from thermoscope.units import QUANTITIES
+
+Array = NDArray[np.float64]
+WORDS = frozenset({"time", "zeit", "timestamp", "date", "datum", "uhrzeit", "clock", "elapsed", "datetime",
+                   "zeitstempel", "messzeit"})  # fmt: skip
+DAY_S = 86400.0
+UNIX = {1e9: 1.0, 1e12: 1e-3, 1e15: 1e-6, 1e18: 1e-9}  # seconds since 1970 are 1e9 today; ms, us, ns
+SHARE = 0.9  # of the cells of a column that is a clock
+LOOKED_AT = 200  # cells that tell what a column is
+
+
+@dataclass(frozen=True)
+class Clock:
+    """seconds : (rows,) from the first row;  start : s since 1970, None where only a duration is known
+
+    columns : those it was read from;  words : how;  sure : False where the unit of the time is a guess
+    """
+
+    seconds: Array
+    start: float | None
+    columns: tuple[str, ...]
+    words: str
+    sure: bool = True
+
+
+def clock_of(source: Source, period_s: float | None = None) -> Clock:
+    """period_s : time between rows, where the file has no clock. InputError for times that run back."""
+    found = _found(source)
+    if found is None or period_s is not None:
+        step = 1.0 if period_s is None else period_s
+        seconds = step * np.arange(source.rows, dtype=np.float64)
+        return Clock(seconds, source.start, (), f"no time column: rows {step:g} s apart", period_s is not None)
+    return checked(found, source)
+
+
+def checked(clock: Clock, source: Source) -> Clock:
+    """A clock that never runs back; from zero."""
+    t, where = clock.seconds, f"{source.file} column '{', '.join(clock.columns)}'"
+    known = np.isfinite(t)
+    if known.sum() < 3:
+        raise InputError("fewer than three rows have a time", where, "a time in every row")
+    back = np.flatnonzero(np.diff(t[known]) < 0)
+    if back.size:
+        step = float(np.diff(t[known])[back[0]])
+        summer = abs(step + 3600) < 120
+        right = "a clock in UTC, or with its zone" if summer else "rows in the order of time"
+        raise InputError(f"the clock runs back by {-step:g} s in row {int(back[0]) + 2} of the readings"
+                         + (": summer time ended?" if summer else ""), where, right)  # fmt: skip
+    first = float(t[known][0])
+    start = None if clock.start is None else clock.start + first
+    return Clock(t - first, start, clock.columns, clock.words, clock.sure)
+
+
+def _found(source: Source) -> Clock | None:
+    """A date with a time of day beside it, an instant, a clock, or numbers under a name for time."""
+    dates = [c for c in source.cells if _mostly(source.cells[c], is_date)]
+    clocks = [c for c in source.cells if _mostly(source.cells[c], is_clock)]
+    if dates and clocks and not _has_time(source.cells[dates[0]]):
+        texts = [f"{_day(d)} {t}" for d, t in zip(source.cells[dates[0]], source.cells[clocks[0]], strict=True)]
+        return _instants(texts, (dates[0], clocks[0]))
+    if dates and _has_time(source.cells[dates[0]]):
+        return _instants(source.cells[dates[0]], (dates[0],))
+    if clocks:
+        return _of_day(source.cells[clocks[0]], clocks[0])
+    return _numeric(source)
+
+
+def _mostly(cells: Sequence[Any], test: Any) -> bool:
+    if isinstance(cells, np.ndarray) and cells.dtype.kind == "M":
+        return bool(test is is_date)
+    seen = [c for c in cells[:LOOKED_AT] if c is not None and str(c).strip()]
+    return bool(seen) and sum(test(c) for c in seen) >= SHARE * len(seen)
+
+
+def _has_time(cells: Sequence[Any]) -> bool:
+    if isinstance(cells, np.ndarray) and cells.dtype.kind == "M":
+        return True
+    return any(":" in str(c) or (isinstance(c, datetime) and c.time() != time(0)) for c in cells[:LOOKED_AT])
+
+
+def _day(cell: Any) -> str:
+    return cell.strftime("%Y-%m-%d") if isinstance(cell, datetime | date) else str(cell).strip()
+
+
+def _instants(cells: Sequence[Any], columns: tuple[str, ...]) -> Clock:
+    """Dates with times, in any zone; a day before the month where points divide them or a first number is over 12."""
+    import pandas as pd
+
+    if isinstance(cells, np.ndarray) and cells.dtype.kind == "M":
+        texts = pd.Series(cells)
+        stamps = pd.to_datetime(texts, utc=True)
+        return _from_stamps(stamps, columns, "dates")
+    texts = pd.Series([None if c is None else re.sub(r"(\d),(\d)", r"\1.\2", str(c).strip()) for c in cells])
+    firsts = [int(m[1]) for c in texts if c and (m := re.match(r"(\d{1,2})[-/.]", str(c)))]
+    points = bool(texts.dropna().str.match(r"\d{1,2}\.\d{1,2}\.").all()) if len(texts.dropna()) else False
+    day_first = points or any(n > 12 for n in firsts)
+    zone = bool(texts.dropna().str.contains(r"(?:Z|UTC|GMT|[+-]\d{2}:?\d{2})$", regex=True).mean() > SHARE)
+    stamps = pd.to_datetime(texts, utc=True, errors="coerce", dayfirst=day_first, format="mixed")
+    order = "day before month, " if day_first else "month before day, " if firsts else ""
+    return _from_stamps(stamps, columns, f"dates, {order}{'with' if zone else 'without'} a zone")
+
+
+def _from_stamps(stamps: Any, columns: tuple[str, ...], words: str) -> Clock:
+    import pandas as pd
+
+    origin = pd.Timestamp(0, tz="UTC")
+    seconds = ((stamps - origin) / pd.Timedelta(seconds=1)).to_numpy(float)
+    first = seconds[np.isfinite(seconds)]
+    start = float(first[0]) if first.size else 0.0
+    return Clock(seconds - start, start, columns, words)
+
+
+def _of_day(cells: Sequence[Any], column: str) -> Clock:
+    """h:mm:ss or m:ss, with fractions; past midnight it goes on."""
+    parsed = [_parts(c) for c in cells]
+    two = all(len(p) == 2 for p in parsed if p)
+    seconds = np.array([_total(p, two) for p in parsed])
+    known = np.flatnonzero(np.isfinite(seconds))
+    turns = np.zeros(seconds.size)
+    turns[known[1:]] = np.cumsum(np.diff(seconds[known]) < -DAY_S / 2)
+    words = "minutes:seconds" if two else "hours:minutes:seconds"
+    return Clock(seconds + DAY_S * turns, None, (column,), words, not two or any("." in str(c) for c in cells[:9]))
+
+
+def _parts(cell: Any) -> list[float]:
+    text = str(cell).strip().lower().replace(",", ".") if cell is not None else ""
+    late = 12.0 if text.endswith("pm") else 0.0
+    digits = re.sub(r"\s?[ap]m$", "", text)
+    try:
+        found = [float(x) for x in digits.split(":")] if ":" in digits else []
+    except ValueError:
+        return []
+    if found and text.endswith(("am", "pm")):
+        found[0] = found[0] % 12 + late
+    return found
+
+
+def _total(parts: list[float], two: bool) -> float:
+    if not parts:
+        return float("nan")
+    return 60 * parts[0] + parts[1] if two else 3600 * parts[0] + 60 * parts[1] + sum(parts[2:3])
+
+
+def _numeric(source: Source) -> Clock | None:
+    """Numbers under a name for time, or that never fall and have a unit of time; of a file without names the first."""
+    numeric = [c for c in source.cells if source.is_numeric(c)]
+    named = [c for c in numeric if is_time(source.labels[c])]
+    timed = [c for c in numeric if unit_of(source.units[c]) in QUANTITIES["time"].units and _rises(source, c)]
+    own = [c for c in (*named, *timed) if c != TIME]
+    counted = source.file.suffix.lower() == ".tdms" and TIME in named and _counts(source.numbers(TIME))
+    if TIME in named and source.file.suffix.lower() in BINARY and not (own and counted):
+        return Clock(source.numbers(TIME), source.start, (TIME,), "the format's own time")
+    if own or TIME in named:
+        return _scaled(source, own[0] if own else TIME)
+    return _scaled(source, numeric[0]) if source.unnamed and _rises(source, numeric[0]) else None
+
+
+def is_time(label: str) -> bool:
+    """Is it a name for time?  A small t is one, a large T a temperature."""
+    words = re.split(r"[^a-zäöü]+", label.lower())
+    return label == "t" or bool(WORDS & set(words[:2]))
+
+
+def _rises(source: Source, column: str) -> bool:
+    if not source.is_numeric(column):
+        return False
+    values = source.numbers(column)
+    known = values[np.isfinite(values)]
+    return known.size > 2 and bool((np.diff(known) >= 0).all()) and bool(known[-1] > known[0])
+
+
+def _counts(values: Array) -> bool:
+    return bool(np.array_equal(values, np.arange(values.size)))
+
+
+def _scaled(source: Source, column: str) -> Clock:
+    """Seconds by the unit of the file; without one by size: seconds since 1970, days of a spreadsheet, else seconds."""
+    values, unit = source.numbers(column), unit_of(source.units[column])
+    if unit in QUANTITIES["time"].units:
+        return Clock(values * QUANTITIES["time"].units[unit][0], None, (column,), f"numbers in {unit}")
+    first = float(values[np.isfinite(values)][0])
+    for size, factor in UNIX.items():
+        if size <= first < 5 * size:
+            start = first * factor
+            return Clock((values - first) * factor, start, (column,), "seconds since 1970")
+    step = float(np.nanmedian(np.diff(values)))
+    if 3e4 < first < 7e4 and step < 0.5:
+        return Clock((values - first) * DAY_S, None, (column,), "days of a spreadsheet")
+    return Clock(values, None, (column,), "numbers, taken as seconds", False)

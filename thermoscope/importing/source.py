@@ -1,0 +1,193 @@
+"""A recording as its file has it: named columns of cells, their units, and where it came from."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geom.errors import InputError
+from thermoscope.formats import TIME, opened, read_frame
+from thermoscope.importing.cells import EMPTY, SWITCH, number, split_unit
+from thermoscope.importing.rows import layout
+from thermoscope.importing.text import text_rows
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Array = NDArray[np.float64]
+TEXT = 0.2  # share of cells that are words from which a column holds no readings
+BINARY = (".tdms", ".mf4", ".parquet")
+BOOKS = (".xlsx", ".xlsm")
+
+
+@dataclass(frozen=True)
+class Source:
+    """cells : column -> its cells, numbers where the file has numbers;  units : column -> unit as the file writes it
+
+    labels : column -> its name without the unit;  start : of its clock, where the format keeps one (s since 1970)
+    notes : what was done to read it;  unnamed : the file has no header
+    """
+
+    file: Path
+    cells: Mapping[str, Sequence[Any]]
+    units: Mapping[str, str]
+    labels: Mapping[str, str]
+    notes: tuple[str, ...] = ()
+    start: float | None = None
+    unnamed: bool = False
+    values: dict[str, Array] = field(default_factory=dict, compare=False, repr=False)
+
+    @property
+    def rows(self) -> int:
+        return len(next(iter(self.cells.values())))
+
+    def numbers(self, column: str) -> Array:
+        """(rows,) readings, nan where there is none or no number; on and off are 1 and 0."""
+        if column not in self.values:
+            self.values[column] = as_numbers(self.cells[column])
+        return self.values[column]
+
+    def is_numeric(self, column: str) -> bool:
+        """Does it hold numbers, but for a few words such as "overload"?"""
+        found = np.isfinite(self.numbers(column))
+        words = [c for c, good in zip(self.cells[column], found, strict=True) if not good and not _empty(c)]
+        return bool(found.any()) and len(words) <= TEXT * (len(words) + found.sum())
+
+
+def _empty(cell: Any) -> bool:
+    return cell is None or (isinstance(cell, float) and np.isnan(cell)) or str(cell).strip().lower() in EMPTY
+
+
+def as_numbers(cells: Sequence[Any]) -> Array:
+    """Numbers of cells, nan for all else; commas are points, switches 0 and 1."""
+    if isinstance(cells, np.ndarray) and cells.dtype.kind in "fiub":
+        return np.asarray(cells, float)
+    import pandas as pd
+
+    quick = np.array(pd.to_numeric(pd.Series(list(cells), dtype=object), errors="coerce"), float)
+    for i in np.flatnonzero(~np.isfinite(quick)):
+        quick[i] = _number(cells[int(i)])
+    return quick
+
+
+def _number(cell: Any) -> float:
+    if cell is None:
+        return float("nan")
+    value = number(cell)
+    return SWITCH.get(str(cell).strip().lower(), value) if np.isnan(value) else value
+
+
+def read_source(file: Path) -> Source:
+    """Any file a recorder writes. InputError where it is no record, MissingDependency where a package is not there."""
+    if not file.is_file():
+        raise InputError("no such file" if not file.exists() else "is no file", str(file), "a recording")
+    suffix = file.suffix.lower()
+    if suffix in BOOKS:
+        return _of_rows(file, _book(file))
+    return _of_frame(file) if suffix in BINARY else _of_rows(file, text_rows(file))
+
+
+def _book(file: Path) -> list[list[Any]]:
+    """The rows of the worksheet with the most cells."""
+    import pandas as pd
+
+    def read() -> list[list[Any]]:
+        with pd.ExcelFile(file, engine="openpyxl") as book:
+            sheets = [book.parse(name, header=None) for name in book.sheet_names]
+        largest = max(sheets, key=lambda sheet: sheet.size)
+        return [[None if pd.isna(c) else c for c in row] for row in largest.to_numpy(object).tolist()]
+
+    rows: list[list[Any]] = opened(file, "an Excel workbook", "openpyxl", read)
+    return rows
+
+
+def _of_rows(file: Path, rows: list[Any]) -> Source:
+    plan = layout(rows, str(file))
+    body = [row for row in rows[plan.first :] if any(c is not None and str(c).strip() for c in row)]
+    columns = [[row[j] if j < len(row) else None for row in body] for j in range(plan.width)]
+    names = plan.names if all(plan.names) else tuple(name or f"column {j + 1}" for j, name in enumerate(plan.names))
+    unnamed = not any(plan.names)
+    notes = [f"{file.name}: no header; columns are called after their number"] if unnamed else []
+    if plan.preamble:
+        notes.append(f"{file.name}: {plan.preamble} lines before the header are left out")
+    found = _source(file, _once(names), columns, dict(zip(_once(names), plan.units, strict=True)), notes)
+    return replace(found, unnamed=unnamed)
+
+
+def _of_frame(file: Path) -> Source:
+    table: pd.DataFrame = read_frame(file)
+    if table.index.name or table.index.dtype.kind == "M":
+        table = table.reset_index()
+    table.columns = [str(c).strip() for c in table.columns]
+    units, start = _described(file)
+    columns = [table[c].to_numpy() for c in table.columns]
+    return _source(file, list(table.columns), columns, units, [], start)
+
+
+def _source(
+    file: Path, names: Sequence[str], columns: Sequence[Any], units: Mapping[str, str], notes: Sequence[str],
+    start: float | None = None,
+) -> Source:  # fmt: skip
+    empty = [n for n, cells in zip(names, columns, strict=True) if not _any(cells)]
+    cells = {n: c for n, c in zip(names, columns, strict=True) if n not in empty}
+    if len(cells) < 2:
+        raise InputError("the file has one column only", str(file), "a time or an input, and at least one temperature")
+    split = {n: split_unit(n) for n in cells}
+    found = {n: units.get(n, "") or split[n][1] for n in cells}
+    labels = {n: n if units.get(n, "") else split[n][0] or n for n in cells}
+    return Source(file, cells, found, labels, tuple(notes), start)
+
+
+def _any(cells: Sequence[Any]) -> bool:
+    if isinstance(cells, np.ndarray) and cells.dtype.kind == "f":
+        return bool(np.isfinite(cells).any())
+    return any(not _empty(c) for c in cells)
+
+
+def _once(names: Sequence[str]) -> list[str]:
+    """Names, numbered where one comes twice."""
+    count: Counter[str] = Counter()
+    out = []
+    for name in names:
+        count[name] += 1
+        out.append(name if count[name] == 1 else f"{name} {count[name]}")
+    return out
+
+
+def _described(file: Path) -> tuple[dict[str, str], float | None]:
+    """Units, and the start of the clock (s since 1970), of formats that keep them."""
+    if file.suffix.lower() == ".tdms":
+        from nptdms import TdmsFile
+
+        channels = [c for group in TdmsFile.read_metadata(file).groups() for c in group.channels()]
+        starts = [c.properties.get("wf_start_time") for c in channels]
+        units = {c.name: str(c.properties.get("unit_string", "")) for c in channels}
+        return units, _seconds(next((s for s in starts if s is not None), None))
+    if file.suffix.lower() == ".mf4":
+        from asammdf import MDF
+
+        with MDF(file) as mdf:
+            return {c.name: c.unit or "" for g in mdf.groups for c in g.channels}, _seconds(mdf.start_time)
+    return {}, None
+
+
+def _seconds(instant: Any) -> float | None:
+    """Seconds since 1970, of a datetime or a NumPy instant."""
+    if instant is None:
+        return None
+    import pandas as pd
+
+    stamp = pd.Timestamp(instant)
+    found = float(stamp.timestamp())
+    return found if np.isfinite(found) and found > 0 else None
+
+
+def signature(source: Source) -> frozenset[str]:
+    """What tells the files of one recorder from those of another: the names of its columns."""
+    return frozenset(label.lower() for name, label in source.labels.items() if name != TIME)

@@ -1,0 +1,143 @@
+"""A case folder from drafts: case.toml, tests/NAME.csv with tests/NAME.toml, all of it or nothing."""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import re
+import shutil
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+from uuid import uuid4
+
+import numpy as np
+
+from geom.errors import InputError
+from thermoscope.files import write_whole
+from thermoscope.importing.aligned import Recording
+from thermoscope.importing.draft import Draft, sample_of
+from thermoscope.importing.guess import Guess
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+BARE = re.compile(r"[A-Za-z0-9_-]+")
+TIME = "time_s"
+ROLES = ("calibrate", "validate", "hold-out")
+
+
+@contextmanager
+def folder_whole(folder: Path) -> Iterator[Path]:
+    """A folder to fill that takes its place only when it is complete; gone if anything fails."""
+    if folder.exists():
+        raise InputError("is there already", str(folder), "--out with the name of a new folder")
+    if not folder.parent.is_dir():
+        raise InputError("no such folder", str(folder.parent), "--out in a folder that is there")
+    partial = folder.with_name(f".{folder.name}.{uuid4().hex}")
+    try:
+        partial.mkdir()
+        yield partial
+        os.rename(partial, folder)
+    finally:
+        shutil.rmtree(partial, ignore_errors=True)
+
+
+def write_case(folder: Path, name: str, model: Callable[[Path], str], drafts: Sequence[Draft]) -> None:
+    """model : puts the machine or network into the folder and returns its line of case.toml."""
+    lines = ["# Written by thermoscope new. Every line may be changed.", "[case]", f"name = {quoted(name)}",
+             model(folder), f"sample_s = {sample_of(drafts):g}", ""]  # fmt: skip
+    for draft, role in zip(drafts, roles(len(drafts)), strict=True):
+        lines += [f"[tests.{key(draft.name)}]", f'role = "{role}"', ""]
+        write_test(folder / "tests", draft)
+    write_whole(folder / "case.toml", "\n".join(lines))
+
+
+def roles(count: int) -> list[str]:
+    """The first test to fit, the last of three or more to hold out, the others to choose with."""
+    if count < 3:
+        return list(ROLES[:count])
+    return ["calibrate", *["validate"] * (count - 2), "hold-out"]
+
+
+def write_test(folder: Path, draft: Draft) -> None:
+    """The recordings as plain CSV, each with its own clock, and the sheet."""
+    for i, record in enumerate(draft.records):
+        write_whole(folder / _file(draft, i), _csv(readings(record)))
+    write_whole(folder / f"{draft.name}.toml", "\n".join(_sheet(draft)) + "\n")
+
+
+def _csv(table: pd.DataFrame) -> bytes:
+    """Shortest numbers that read back the same, empty cells where there is none."""
+    import pyarrow
+    from pyarrow.csv import write_csv
+
+    memory = io.BytesIO()
+    write_csv(pyarrow.Table.from_pandas(table, preserve_index=False), memory)
+    return memory.getvalue()
+
+
+def _file(draft: Draft, i: int) -> str:
+    return f"{draft.name}.csv" if i == 0 else f"{draft.name}.recorder-{i + 1}.csv"
+
+
+def readings(record: Recording) -> pd.DataFrame:
+    """Time (s) and all columns of numbers as the file has them; rows without a time of their own are left out."""
+    import pandas as pd
+
+    t = record.clock.seconds
+    keep = np.flatnonzero(np.isfinite(t))
+    keep = keep[np.concatenate([[True], np.diff(t[keep]) > 0])]
+    columns = [g.column for g in record.guesses if g.column != TIME and record.source.is_numeric(g.column)]
+    body = {c: record.source.numbers(c)[keep] for c in columns}
+    return pd.DataFrame({TIME: t[keep], **{c: np.where(np.isfinite(v), v, np.nan) for c, v in body.items()}})
+
+
+def _sheet(draft: Draft) -> Iterator[str]:
+    first = draft.records[0]
+    yield f"# Guessed by thermoscope new from {', '.join(r.name for r in draft.records)}. Every line may be changed."
+    yield from (f"# {note}" for note in draft.notes)
+    yield from ("", "[test]", f'time = "{TIME}"', f"description = {quoted(f'{first.name}, {first.clock.words}')}",
+                'initial = "first-readings"')  # fmt: skip
+    for name, value in zip(("from_s", "to_s"), draft.window_s, strict=True):
+        if value:
+            yield f"{name} = {value:g}"
+    yield from _constants("inputs", draft.constants)
+    yield from _constants("boundaries", draft.boundaries)
+    if draft.squares:
+        yield from ("", "[root_sum_square]")
+        yield from (f"{key(n)} = {json.dumps(list(of), ensure_ascii=False)}" for n, of in draft.squares.items())
+    for i, record in enumerate(draft.records[1:], 1):
+        yield from ("", f"[recorders.recorder-{i + 1}]   # {record.name}", f"file = {quoted(_file(draft, i))}",
+                    f'time = "{TIME}"', f"shift_s = {record.shift_s:.6g}   # {record.how}")  # fmt: skip
+    for guess in draft.guesses:
+        yield from _column(guess)
+
+
+def _constants(table: str, values: object) -> Iterator[str]:
+    if isinstance(values, dict) and values:
+        yield from ("", f"[{table}]   # constant: not recorded")
+        yield from (f"{key(name)} = {value:g}" for name, value in values.items())
+
+
+def _column(g: Guess) -> Iterator[str]:
+    """A column's table; of one that is left out a line that says why."""
+    yield ""
+    if not g.used:
+        yield f"# {json.dumps(g.column, ensure_ascii=False)} is left out: {g.doubt}"
+        return
+    yield f"[columns.{key(g.column)}]" + (f"   # {g.doubt}" if g.doubt else "")
+    yield f'quantity = "{g.quantity}"'
+    yield f'unit = "{g.unit}"'
+    yield f"place = {quoted(g.place)}" if g.place else f"input = {quoted(g.feeds)}"
+
+
+def quoted(text: str) -> str:
+    return json.dumps(text, ensure_ascii=False)
+
+
+def key(name: str) -> str:
+    """A name as a TOML key."""
+    return name if BARE.fullmatch(name) else quoted(name)
