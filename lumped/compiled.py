@@ -118,12 +118,12 @@ def control(network: Network, every: Assembly, m: Array, factors: Sequence[Array
     acts = [(p, x, f) for p, x, f in zip(every.patterns, m, factors, strict=True) if x != 0.0 and not p.heats]
     holds = not hidden.any() and all(p.monotone and np.min(x * f) >= 0.0 for p, x, f in acts)
     return Control(
-        _units(network, hidden), (~hidden).astype(np.int64), np.array([ERROR_K, ERROR_SHARE]),
+        state_units(network, hidden), (~hidden).astype(np.int64), np.array([ERROR_K, ERROR_SHARE]),
         np.array([holds], np.int64), np.array([HOTTEST]), np.zeros(1, np.int64),
     )  # fmt: skip
 
 
-def _units(network: Network, hidden: Mask) -> Array:
+def state_units(network: Network, hidden: Mask) -> Array:
     """(n,) K that a unit of every state makes: for a shape the largest mean square over the faces it touches."""
     out = np.where(hidden, 0.0, 1.0)
     for place in network.places.values() if hidden.any() else ():

@@ -32,6 +32,10 @@ Anyway = Annotated[bool, typer.Option("--anyway", help="Write it even if it is n
 Draws = Annotated[int | None, typer.Option("--draws", hidden=True, help="Of older versions; nothing is drawn now.")]
 Machine = Annotated[str, typer.Argument(metavar="MACHINE", help="A machine or STEP file, or a name that comes along.")]
 Accuracy = Annotated[float, typer.Option(min=0.01, help="Percent of a part's rise; means within half of it.")]
+Limit = Annotated[
+    list[str] | None,
+    typer.Option("--limit", metavar="PLACE=DEGC", help="For example winding=155; several are possible."),
+]
 Out = Annotated[Path | None, typer.Option("--out", metavar="DIR", callback=checked_out, help="Folder for the results.")]
 
 
@@ -285,13 +289,16 @@ def carry(
 def export(
     case: Case,
     out: Out = None,
-    csv: Annotated[bool, typer.Option("--csv", help="CSV files.")] = False,
+    form: Annotated[str, typer.Option("--as", help="xlsx, csv: results; c, fmu, json, matlab: the model.")] = "xlsx",
+    limit: Limit = None,
+    fmi: Annotated[int, typer.Option(help="Version of an FMU: 2 or 3.")] = 2,
+    csv: Annotated[bool, typer.Option("--csv", hidden=True, help="As --as csv.")] = False,
     json: Json = None,
 ) -> None:
-    """Inputs, results, errors and parameters as a workbook (.xlsx), or as CSV files."""
+    """Results as a workbook or CSV files; or the model to run elsewhere: C99, FMU, JSON or MAT file."""
     from thermoscope.commands.export import export as run
 
-    raise typer.Exit(run(case, out, csv, json))
+    raise typer.Exit(run(case, out, "csv" if csv else form, tuple(limit or ()), fmi, json))
 
 
 @app.command()

@@ -77,7 +77,7 @@ def _ran(
     from thermoscope.error_budget import error_budgets
     from validation.predict import thermal
 
-    rows, record, whole = _looks(network, folder), cycle.record, network
+    rows, record, whole = looks(network, folder), cycle.record, network
     network = thermal(network)
     residuals: tuple[float, ...] = ()
     if cycle.drive is None:
@@ -96,7 +96,7 @@ def _ran(
     return {**_document(cycle, record, rows, y, heat, residuals, file), "error_budget": budget.document()}
 
 
-def _looks(network: Network, folder: Folder) -> dict[str, Row]:
+def looks(network: Network, folder: Folder) -> dict[str, Row]:
     """Named temperatures: the means of parts and nodes, then where the sensors of the case sit."""
     means = {n: p.mean for n, p in network.places.items() if p.kind != "surface" and "#" not in n}
     return means | {f"sensor {name}": c.row for name, c in sensors(folder).items()}

@@ -1,0 +1,111 @@
+"""The exported C runs as `simulate` does: stiff random networks, and every case that comes along."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from random_networks import built, machine
+
+from lumped.build import bare_network, node_link, node_source
+from lumped.laws import FILMS, FilmTable, Fixed, Linear, Table
+from lumped.network import Row
+from lumped.simulate import Record, simulate
+from thermoscope.commands.export import export
+from thermoscope.error_budget import model_of
+from thermoscope.export.c_code import c_files
+from thermoscope.export.drive import AGREES_K, Compiled, difference
+from thermoscope.export.model import Output, exported, packed
+from thermoscope.folder import load_case
+from validation.predict import record
+
+CASES = Path(__file__).parents[2] / "cases"
+SHIPPED = sorted(str(p.parent.relative_to(CASES)) for p in CASES.rglob("case.toml"))
+
+
+def states(network):
+    return [Output(n, Row(np.array([i]), np.ones(1))) for i, n in enumerate(network.states)]
+
+
+@pytest.mark.parametrize("seed", range(1000, 1005))
+def test_stiff_random_networks_agree(seed):
+    """Capacities over six decades and none, cells of 0.1 J/K, flows that turn round, radiation and free convection.
+
+    Both integrators allow 0.01 K and 1e-4 of the range a step: they may differ by a few of these.
+    """
+    network, given = built(machine(seed, 25))
+    model = packed(network, {}, [Recorded(given)], states(network))
+    reach = np.ptp(simulate(network, given, rows=[o.row for o in model.outputs]).y)
+    assert difference(Compiled(model), network, given, {}) < AGREES_K + 5e-4 * reach
+
+
+class Recorded:
+    """A test, as far as ranges of inputs go."""
+
+    def __init__(self, given):
+        self.name, self.inputs, self.boundaries, self.initial = "recorded", given.inputs, given.boundaries, 20.0
+
+
+def curved():
+    """A node that every temperature law heats or cools, and one of a millionth of its capacity."""
+    knots = (0.0, 1.0, 10.0, 100.0)
+    films = tuple((np.array([1.0, 2.0, 4.0, 6.0]) * (1.0 + 0.05 * np.arange(FILMS)[:, None])).ravel().tolist())
+    net = bare_network("curved", {"body": 500.0, "chip": 5e-4}, ("air",))
+    links = [
+        node_link(net, "t", "film", "body", "air", Fixed(0.2, Table(knots, (1.0, 2.0, 4.0, 6.0)))),
+        node_link(net, "f", "film", "body", "air", Fixed(0.1, FilmTable(knots, films))),
+        node_link(net, "g", "link", "chip", "body", Fixed(3.0)),
+    ]
+    heat = [node_source(net, "h", "copper", {"chip": 1.0}, Fixed(40.0, Linear(0.004, 20.0)))]
+    time = np.array([0.0, 60.0, 60.0, 600.0, 3600.0])
+    return net.extended(links, heat), Record(time, {}, {"air": np.array([20.0, 20.0, 5.0, 5.0, 45.0])}, 20.0)
+
+
+@pytest.mark.parametrize(("flags", "within"), [((), 0.02), (("-DTHERMAL_REAL=float",), 0.05)], ids=["double", "float"])
+def test_temperature_laws_jumps_and_single_precision(flags, within):
+    network, given = curved()
+    assert difference(Compiled(packed(network, {}, [], states(network)), flags), network, given, {}) < within
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_shipped_cases_agree(name):
+    folder = load_case(CASES / name)
+    network, values = model_of(folder)
+    code = Compiled(exported(folder, {}))
+    assert max(difference(code, network, record(t, {}), values) for t in folder.case.tests) < AGREES_K
+
+
+def test_the_code_is_clean_c99_without_allocation(tmp_path):
+    network, _ = curved()
+    for name, text in c_files(packed(network, {}, [], states(network))).items():
+        (tmp_path / name).write_text(text)
+    warned = ["-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror", "-O2", "-c", "thermal_network.c"]
+    done = subprocess.run(["gcc", *warned], cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    used = subprocess.run(["nm", "-u", "thermal_network.o"], cwd=tmp_path, capture_output=True, text=True).stdout
+    assert not {"malloc", "calloc", "realloc", "free"} & set(used.split())
+
+
+@pytest.mark.parametrize(
+    ("target", "magic"),
+    [("x86_64-windows-gnu", b"\x64\x86"), ("aarch64-macos", b"\xcf\xfa\xed\xfe"), ("x86_64-linux-gnu", b"\x7fELF")],
+)
+def test_zig_compiles_it_for_other_platforms(tmp_path, target, magic):
+    """Objects only: linking would first build each platform's C library, which takes minutes once."""
+    pytest.importorskip("ziglang")
+    network, _ = curved()
+    for name, text in c_files(packed(network, {}, [], states(network))).items():
+        (tmp_path / name).write_text(text)
+    zig = [sys.executable, "-m", "ziglang", "cc", "-target", target, "-std=c99", "-c", "thermal_network.c", "-o", "o"]
+    done = subprocess.run(zig, cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "o").read_bytes().startswith(magic)
+
+
+def test_the_header_says_what_a_user_must_know(tmp_path):
+    assert export(str(CASES / "hust-ipmsm"), tmp_path, "c", ["winding=155"], 2, str(tmp_path / "said.json")) == 0
+    text = (tmp_path / "thermal_network_sizes.h").read_text()
+    for said in ("revision 0", "speed_rpm (rpm), 0 to", "coolant (degC)", "winding, limit 155 degC", "State: 88 bytes",
+                 "sensor rotor, against measurements 6.31 K rms (hold-out tests)"):  # fmt: skip
+        assert said in text

@@ -1,0 +1,177 @@
+"""The FMU passes the checker of FMPy and runs in it as `simulate` does; JSON and MAT with their solver too."""
+
+import importlib.util
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.io import loadmat
+from small_case import small_case
+from test_export_code import curved, states
+
+from lumped.simulate import initial_state, simulate
+from thermoscope.commands.export import export
+from thermoscope.error_budget import model_of
+from thermoscope.export.c_code import RUNTIME
+from thermoscope.export.compilers import here
+from thermoscope.export.document import document, mat
+from thermoscope.export.drive import AGREES_K, signals_of
+from thermoscope.export.fmu import fmu
+from thermoscope.export.model import exported, packed
+from thermoscope.folder import load_case
+from thermoscope.terminal import plain
+from validation.predict import record
+
+fmpy = pytest.importorskip("fmpy")
+
+
+@pytest.fixture(scope="module")
+def three(tmp_path_factory):
+    """The small case: its model, its first test as a record, and what `simulate` makes of it."""
+    folder = load_case(small_case(tmp_path_factory.mktemp("export")))
+    network, values = model_of(folder)
+    given, model = record(folder.case.tests[0], {}), exported(folder, {"winding": 155.0})
+    run = simulate(network, given, values, [o.row for o in model.outputs])
+    return model, given, run.y, initial_state(network, given.initial)
+
+
+def unpacked(model, version, folder):
+    content, platforms = fmu(model, version, [here()])
+    file = folder / f"model{version}.fmu"
+    file.write_bytes(content)
+    assert len(platforms) == 1
+    return str(file)
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_fmpy_checks_and_runs_it(three, version, tmp_path):
+    """Inputs stand still within a communication step of 0.1 s, which costs up to a hundredth of a kelvin here."""
+    from fmpy.validation import validate_fmu
+
+    model, given, y, x0 = three
+    file = unpacked(model, version, tmp_path)
+    assert validate_fmu(file) == []
+    u = signals_of(model, given)
+    table = np.array(
+        [(t, *row) for t, row in zip(given.time, u, strict=True)],
+        dtype=[("time", float), *((s.name, float) for s in model.signals)],
+    )
+    starts = {f"start of {n}": float(x) for n, x in zip(model.states, x0, strict=True)}
+    names = [o.name for o in model.outputs]
+    seen = fmpy.simulate_fmu(file, stop_time=given.time[-1], output_interval=0.1, input=table, start_values=starts,
+                             output=names)  # fmt: skip
+    own = np.column_stack([np.interp(given.time, seen["time"], seen[name]) for name in names])
+    assert np.abs(own - y).max() < AGREES_K
+
+
+def test_fmi_2_with_slopes_of_inputs_takes_whole_samples(three, tmp_path):
+    from fmpy.fmi2 import FMU2Slave
+
+    model, given, y, x0 = three
+    file, u = unpacked(model, 2, tmp_path), signals_of(model, given)
+    said = fmpy.read_model_description(file)
+    at = {v.name: v.valueReference for v in said.modelVariables}
+    unit = FMU2Slave(guid=said.guid, unzipDirectory=fmpy.extract(file, tmp_path / "x"), instanceName="one",
+                     modelIdentifier=said.coSimulation.modelIdentifier)  # fmt: skip
+    ins, outs = [at[s.name] for s in model.signals], [at[o.name] for o in model.outputs]
+    unit.instantiate()
+    unit.setupExperiment()
+    unit.enterInitializationMode()
+    unit.setReal([at[f"start of {n}"] for n in model.states], x0)
+    unit.setReal(ins, u[0])
+    unit.exitInitializationMode()
+    own = [unit.getReal(outs)]
+    for k, h in enumerate(np.diff(given.time)):
+        if k == 20:
+            kept = unit.getFMUstate()
+        if k == 30:  # back in time and on again
+            unit.setFMUstate(kept)
+            own = own[:21]
+            for j in range(20, 30):
+                own.append(stepped(unit, ins, outs, u, given.time, j))
+        own.append(stepped(unit, ins, outs, u, given.time, k))
+        assert h > 0
+    assert np.abs(np.array(own) - y).max() < 0.01
+    unit.terminate()
+    unit.freeInstance()
+
+
+def stepped(unit, ins, outs, u, time, k):
+    h = time[k + 1] - time[k]
+    unit.setReal(ins, u[k])
+    unit.setRealInputDerivatives(ins, [1] * len(ins), (u[k + 1] - u[k]) / h)
+    unit.doStep(time[k], h)
+    return unit.getReal(outs)
+
+
+def solver():
+    made = importlib.util.spec_from_file_location("reference_solver", RUNTIME / "reference_solver.py")
+    module = importlib.util.module_from_spec(made)
+    made.loader.exec_module(module)
+    return module
+
+
+def test_the_reference_solver_runs_the_json(three):
+    model, given, y, x0 = three
+    said = json.loads(json.dumps(plain(document(model))))
+    signals = dict(zip([s.name for s in model.signals], signals_of(model, given).T, strict=True))
+    assert np.abs(solver().solve(said, given.time, signals, x0) - y).max() < AGREES_K
+
+
+def test_json_says_the_same_flow_as_the_network():
+    """All temperature laws: heat into every node at one state, against the terms' own formulas at 80 and 20 degC."""
+    network, _ = curved()
+    said = json.loads(json.dumps(plain(document(packed(network, {}, [], states(network))))))
+    F = solver().flow(said, np.array([80.0, 82.0]), {"air": 20.0})
+    table = 0.2 * np.interp(60.0, [0, 1, 10, 100], [1, 2, 4, 6]) * 60.0
+    film = 0.1 * np.interp(60.0, [0, 1, 10, 100], [1, 2, 4, 6]) * (1.0 + 0.05 * (50.0 + 60.0) / 20.0) * 60.0
+    assert_allclose(F, [6.0 - table - film, 40.0 * (1.0 + 0.004 * 62.0) - 6.0], rtol=1e-9)
+
+
+def test_mat_holds_the_json_with_columns_from_one(three, tmp_path):
+    model, *_ = three
+    (tmp_path / "model.mat").write_bytes(mat(model))
+    held, said = loadmat(tmp_path / "model.mat", simplify_cells=True)["model"], document(model)
+    assert_allclose(held["K0"], said["K0"])
+    assert_allclose(held["C"], said["C"])
+    terms = np.atleast_1d(held["terms"])
+    assert [t["name"] for t in terms] == [t["name"] for t in said["terms"]]
+    first, own = terms[0], said["terms"][0]
+    assert_allclose(np.ravel(first["hot"]["col"]), own["hot"]["col"] + 1)
+    assert first["factor"]["coefficient"] == own["factor"][0]["coefficient"]
+
+
+def test_equal_models_give_equal_files(three):
+    model, *_ = three
+    assert fmu(model, 3, [here()])[0] == fmu(model, 3, [here()])[0]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("--as", "hdf"), "'hdf' is no form to export"),
+        (("--as", "c", "--limit", "winding"), "'winding' is no limit; PLACE=DEGC"),
+        (("--as", "c", "--limit", "coil=155"), "no temperature 'coil' to limit"),
+        (("--as", "fmu", "--fmi", "1"), "FMI 1 is not written; 2 or 3"),
+    ],
+)
+def test_what_is_wrong_is_one_message(arguments, message, thermoscope, tmp_path):
+    case = small_case(tmp_path)
+    said = thermoscope("export", case, *arguments)
+    assert said.code == 2
+    assert message in said.err.splitlines()[-1]
+    assert not (case / "out").exists()
+
+
+def test_the_command_writes_a_model(tmp_path, thermoscope):
+    said = thermoscope("export", small_case(tmp_path), "--as", "json", "--limit", "winding=155", "--json", "-")
+    assert said.code == 0, said.err
+    assert [Path(f).name for f in said.document["files"]] == ["model.json", "reference_solver.py"]
+    assert {o["name"]: o["limit_degC"] for o in said.document["outputs"]}["winding"] == 155.0
+
+
+def test_the_workbook_is_still_there(tmp_path):
+    assert export(str(small_case(tmp_path)), tmp_path / "o", "csv", (), 2, str(tmp_path / "said.json")) == 0
+    assert list((tmp_path / "o").glob("*.csv"))

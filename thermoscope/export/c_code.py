@@ -1,0 +1,100 @@
+"""C99 from a model: fixed code (runtime/), the model's numbers, and a header that says what they are good for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from lumped import stages
+from lumped.laws import FILMS, FIRST_C, STEP_K
+from lumped.settle import CONVERGED_K
+from lumped.terms import ENTRIES, POINTS, ROWS
+from thermoscope.export.flat import Flat, flat
+from thermoscope.export.heading import heading
+from thermoscope.export.model import Model
+
+RUNTIME = Path(__file__).resolve().parent / "runtime"
+SOURCES = ("thermal_network.h", "thermal_network.c")
+WIDE = 8  # numbers on a line
+EMPTY = ["0"] * 32  # C99 has no empty arrays, and compilers look ahead
+
+
+def c_files(model: Model) -> dict[str, str]:
+    """File name -> text: everything that has to be compiled."""
+    fixed = {name: (RUNTIME / name).read_text(encoding="utf-8") for name in SOURCES}
+    return {**fixed, "thermal_network_sizes.h": sizes(model), "thermal_network_data.h": data(model)}
+
+
+def sizes(model: Model) -> str:
+    """The header: what the model is, its inputs and outputs, and the sizes of its arrays."""
+    T = model.terms
+    counts = {
+        "STATES": len(model.states), "BOUNDARIES": len(model.boundaries), "INPUTS": len(model.inputs),
+        "SIGNALS": len(model.signals), "OUTPUTS": len(model.outputs), "TERMS": len(model.factors),
+        "ROWS": T.row.size, "ENTRIES": T.at.size,
+    }  # fmt: skip
+    numbers = {
+        "C21": stages.C21, "C31": stages.C31, "C32": stages.C32, "SLOPE2": stages.SLOPE2, "END1": stages.END1,
+        "END2": stages.END2, "END3": stages.END3, "ERROR_K": model.tolerance[0], "ERROR_SHARE": model.tolerance[1],
+        "REST_K": CONVERGED_K,
+    }  # fmt: skip
+    lines = [f"#define THERMAL_{k} {v}" for k, v in counts.items()]
+    lines += [f"#define THERMAL_{k} {v:.17g}" for k, v in numbers.items()]
+    guard = "THERMAL_NETWORK_SIZES_H"
+    return "\n".join([_comment(heading(model)), f"#ifndef {guard}", f"#define {guard}", *lines, "#endif", ""])
+
+
+def _comment(lines: Sequence[str]) -> str:
+    return "/* " + "\n   ".join(line.replace("*/", "* /") for line in lines) + " */"
+
+
+def data(model: Model) -> str:
+    """All arrays."""
+    T, F = model.terms, flat(model.factors, [s.name for s in model.signals])
+    rows = [o.row for o in model.outputs]
+    starts = np.concatenate([[0], np.cumsum([r.index.size for r in rows])]).astype(int)
+    parts = [
+        _reals("C", model.C), _matrix("K0", model.K0), _reals("UNIT", model.unit), _ints("NODE", model.node),
+        _ints("ENTRY_START", T.start[:, ENTRIES]), _ints("ENTRY_TO", T.to), _ints("ENTRY_AT", T.at),
+        _reals("ENTRY_WEIGHT", T.weight), _ints("ROW_START", T.start[:, ROWS]), _ints("ROW", T.row),
+        _ints("LAW", T.kind[:, 0]), _reals("LAW_A", T.par[:, 0]), _reals("LAW_B", T.par[:, 1]),
+        _ints("POINT_START", T.start[:, POINTS]), _reals("POINT_X", T.point[:, 0]), _reals("POINT_Y", T.point[:, 1]),
+        *_functions(F), _ints("OUTPUT_START", starts), _ints("OUTPUT_AT", _joined(r.index for r in rows)),
+        _reals("OUTPUT_WEIGHT", _joined(r.weights for r in rows)), f"#define FILMS {FILMS}",
+        f"#define FILM_FIRST ((thermal_real){FIRST_C})", f"#define FILM_STEP ((thermal_real){STEP_K})",
+    ]  # fmt: skip
+    return "\n".join(["/* The numbers of the model; see thermal_network_sizes.h. */", *parts, ""])
+
+
+def _functions(F: Flat) -> list[str]:
+    return [
+        _ints("PRODUCT_START", F.product_start), _reals("PRODUCT", F.coefficient),
+        _ints("FUNCTION_START", F.function_start), _matrix("FUNCTION", F.function, "int"),
+        _matrix("FUNCTION_A", F.parameters), _reals("FUNCTION_X", F.x), _reals("FUNCTION_Y", F.y),
+    ]  # fmt: skip
+
+
+def _joined(parts: Iterable[np.ndarray]) -> np.ndarray:
+    return np.concatenate([np.empty(0), *parts])
+
+
+def _broken(words: Sequence[str]) -> str:
+    return ",\n".join(", ".join(words[i : i + WIDE]) for i in range(0, len(words), WIDE))
+
+
+def _reals(name: str, values: np.ndarray) -> str:
+    words = [f"{v:.17g}" for v in np.ravel(values)] or EMPTY
+    return f"static const thermal_real {name}[] = {{{_broken(words)}}};"
+
+
+def _ints(name: str, values: np.ndarray) -> str:
+    words = [str(int(v)) for v in np.ravel(values)] or EMPTY
+    return f"static const int {name}[] = {{{_broken(words)}}};"
+
+
+def _matrix(name: str, values: np.ndarray, of: str = "thermal_real") -> str:
+    table = values if values.size else np.zeros((1, values.shape[1]), values.dtype)
+    rows = ",\n".join("{" + _broken([f"{v:.17g}" for v in row]) + "}" for row in table)
+    return f"static const {of} {name}[][{table.shape[1]}] = {{{rows}}};"

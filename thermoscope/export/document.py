@@ -1,0 +1,99 @@
+"""A model as data: for JSON, and as structs for MAT files."""
+
+from __future__ import annotations
+
+import io
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+
+from lumped.laws import FILMS, FIRST_C, STEP_K
+from lumped.terms import ENTRIES, FILM, POINTS, Terms
+from thermoscope.export.heading import heading
+from thermoscope.export.model import Model, Output
+from thermoscope.export.products import Function, Mapped, Positive, Powered, Straight, Sum, Tabulated
+
+KINDS: dict[type, str] = {
+    Powered: "power", Straight: "straight", Positive: "positive", Tabulated: "table", Mapped: "map",
+}  # fmt: skip
+LAWS = ("constant", "power", "radiation", "linear", "table", "film table")
+
+
+def document(model: Model) -> dict[str, Any]:
+    """C dx/dt = -K0 z - sum of terms, z = [x; u; 1]; a term takes factor * law * (P z) out of its rows.
+
+    P is given by its triplets row, col, val over the states; hot and cold are weighted sums of z.
+    """
+    return {
+        "about": heading(model), "name": model.name, "revision": model.revision, "effects": list(model.effects),
+        "states": list(model.states), "inputs": [asdict(s) for s in model.inputs],
+        "boundaries": [asdict(s) for s in model.boundaries], "initial_degC": model.initial_degC, "C": model.C,
+        "K0": model.K0, "terms": [_term(model, e) for e in range(len(model.factors))],
+        "outputs": [_output(o) for o in model.outputs],
+    }  # fmt: skip
+
+
+def _output(o: Output) -> dict[str, Any]:
+    return {
+        "name": o.name, "col": o.row.index, "val": o.row.weights, "limit_degC": o.limit, "error_K": o.error_K,
+        "role": o.role,
+    }  # fmt: skip
+
+
+def _term(model: Model, e: int) -> dict[str, Any]:
+    T = model.terms
+    some = slice(T.start[e, ENTRIES], T.start[e + 1, ENTRIES])
+    to, at, weight, first = T.to[some], T.at[some], T.weight[some], T.row.size + 2 * e
+    own = to < T.row.size
+    sides = {
+        name: {"col": at[to == first + k], "val": weight[to == first + k]} for k, name in enumerate(("hot", "cold"))
+    }
+    return {
+        "name": model.term_names[e], "row": T.row[to[own]], "col": at[own], "val": weight[own], **sides,
+        "law": _law(T, e), "factor": factor(model.factors[e]),
+    }  # fmt: skip
+
+
+def _law(T: Terms, e: int) -> dict[str, Any]:
+    code, (a, b) = int(T.kind[e, 0]), T.par[e]
+    points = T.point[T.start[e, POINTS] : T.start[e + 1, POINTS]]
+    out = {"kind": LAWS[code], "a": float(a), "b": float(b), "x": points[:, 0], "y": points[:, 1]}
+    if code == FILM:
+        films = FIRST_C + STEP_K * np.arange(FILMS)
+        return {**out, "x": points[: int(a), 0], "films": films, "y": points[:, 1].reshape(FILMS, -1)}
+    return out
+
+
+def factor(total: Sum) -> list[dict[str, Any]]:
+    """Products of functions of one input, to be summed."""
+    return [{"coefficient": p.coefficient, "functions": [_function(f) for f in p.functions]} for p in total]
+
+
+def _function(f: Function) -> dict[str, Any]:
+    out = {"kind": KINDS[type(f)], **asdict(f)}
+    return {**out, "y": np.reshape(f.y, (len(f.x1), len(f.x2)))} if isinstance(f, Mapped) else out
+
+
+def mat(model: Model) -> bytes:
+    """The document as a MAT file (level 5), one struct `model`; lists are cells, columns count from 1."""
+    from scipy.io import savemat
+
+    out = io.BytesIO()
+    savemat(out, {"model": _celled(document(model))}, long_field_names=True, oned_as="column")
+    return out.getvalue()
+
+
+def _celled(value: Any, key: str = "") -> Any:
+    if isinstance(value, dict):
+        return {k: _celled(v, k) for k, v in value.items()}
+    if isinstance(value, list):
+        cells = np.empty((len(value), 1), object)
+        for i, item in enumerate(value):
+            cells[i, 0] = _celled(item)
+        return cells
+    if value is None:
+        return np.nan
+    if key in ("row", "col"):
+        return np.asarray(value, float) + 1.0
+    return np.asarray(value, float) if isinstance(value, tuple | np.ndarray | bool) else value

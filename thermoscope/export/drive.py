@@ -1,0 +1,58 @@
+"""The exported C, compiled for this computer and held against `simulate` on the tests of the case."""
+
+from __future__ import annotations
+
+import ctypes
+import tempfile
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geom.errors import ThermoscopeError
+from lumped.network import Network
+from lumped.simulate import Record, initial_state, simulate
+from thermoscope.export.c_code import RUNTIME, c_files
+from thermoscope.export.compilers import here, library
+from thermoscope.export.model import Model
+
+Array = NDArray[np.float64]
+AGREES_K = 0.05  # largest difference to the simulation
+
+
+class Compiled:
+    """A model's C code, ready to run over records."""
+
+    def __init__(self, model: Model, extra: Sequence[str] = ()) -> None:
+        self.model = model
+        files = {**c_files(model), "thermal_run.c": (RUNTIME / "thermal_run.c").read_text(encoding="utf-8")}
+        with tempfile.TemporaryDirectory() as folder:  # the loader keeps the file open where it has to
+            file = Path(folder) / f"model{here().ending}"
+            file.write_bytes(library(files, here(), extra))
+            self.code = ctypes.CDLL(str(file))
+
+    def run(self, time: Array, u: Array, x0: Array) -> Array:
+        """(n_time, n_output) degC from signals u (n_time, n_signal) and first states (n_state,)."""
+        y = np.empty((time.size, len(self.model.outputs)))
+        given = [np.ascontiguousarray(a, float) for a in (time, u, x0)]
+        pointers = [a.ctypes.data_as(ctypes.c_void_p) for a in (*given, y)]
+        if self.code.thermal_run(ctypes.c_int(time.size), *pointers):
+            raise ThermoscopeError(f"the exported code of '{self.model.name}' finds no step")
+        return y
+
+
+def signals_of(model: Model, record: Record) -> Array:
+    """(n_time, n_signal)"""
+    given: Mapping[str, Array | float] = {**record.inputs, **record.boundaries}
+    return np.column_stack(
+        [np.broadcast_to(np.asarray(given[s.name], float), record.time.shape) for s in model.signals]
+    )
+
+
+def difference(code: Compiled, network: Network, record: Record, values: Mapping[str, float]) -> float:
+    """Largest difference (K) between the code and the simulation over a record."""
+    model = code.model
+    run = simulate(network, record, values, [o.row for o in model.outputs])
+    y = code.run(record.time, signals_of(model, record), initial_state(network, record.initial))
+    return float(np.abs(y - run.y).max())

@@ -1,0 +1,137 @@
+"""Laws as sums of products (products.py), exactly."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import singledispatch
+from itertools import product as pairs
+
+import numpy as np
+
+from lumped.declared_films import POINTS, FilmOver
+from lumped.declared_mixed import Share
+from lumped.laws import Fixed, InputPower, Law
+from lumped.loss_map import MapLoss
+from lumped.loss_measured import MeasuredLoss, Negative
+from lumped.losses import BrushLoss, CopperLoss, IronLoss, PowerLoss
+from lumped.motor_bases import Switched
+from lumped.motor_laws import Interpolated
+from lumped.reversal import Direction, OneWay
+from thermoscope.export.products import Mapped, Positive, Powered, Product, Straight, Sum, Tabulated
+from validation.forms import BendOfDifference, BendOfTemperature
+
+
+@dataclass(frozen=True)
+class Unknown:
+    """No expansion is known: to be tabulated."""
+
+
+@singledispatch
+def expanded(law: Law) -> Sum | Unknown:
+    """The input factor of a law, exactly, where it is known how."""
+    return Unknown()
+
+
+@expanded.register
+def _(law: Fixed) -> Sum | Unknown:
+    return (Product(law.value),)
+
+
+@expanded.register
+def _(law: InputPower) -> Sum | Unknown:
+    return (Product(law.value, tuple(Powered(*t) for t in law.terms)),)
+
+
+@expanded.register
+def _(law: PowerLoss) -> Sum | Unknown:
+    return tuple(Product(watts, tuple(Powered(*t) for t in powers)) for watts, powers in law.terms)
+
+
+@expanded.register
+def _(law: CopperLoss) -> Sum | Unknown:
+    orders = enumerate(law.ac) if law.speed else [(0, law.ac[0])]
+    factors = [(c, (Powered(law.speed, law.speed_at, float(k)),) if k and law.speed else ()) for k, c in orders]
+    return tuple(
+        Product(law.factor_ * law.resistance * c, (Powered(name, 1.0, 2.0), *ac))
+        for name, (c, ac) in pairs(law.currents, factors)
+    )
+
+
+@expanded.register
+def _(law: IronLoss) -> Sum | Unknown:
+    flux = (Powered(law.excitation, law.excitation_at, law.flux_exponent),) if law.excitation else ()
+    parts = ((law.hysteresis, law.frequency_exponent), (law.eddy, 2.0), (law.excess, 1.5))
+    return tuple(Product(w, (Powered(law.speed, law.speed_at, e), *flux)) for w, e in parts if w)
+
+
+@expanded.register
+def _(law: BrushLoss) -> Sum | Unknown:
+    drop = Product(law.drop, (Powered(law.current, 1.0, 1.0),))
+    return (drop, Product(law.friction, (Powered(law.speed, law.speed_at, 1.0),))) if law.speed else (drop,)
+
+
+@expanded.register
+def _(law: MapLoss) -> Sum | Unknown:
+    watts = tuple(np.ravel(law.watts).tolist())
+    return (Product(1.0, (Mapped(law.speed, law.torque, law.at_speed, law.at_torque, watts, True),)),)
+
+
+@expanded.register
+def _(law: MeasuredLoss) -> Sum | Unknown:
+    return tuple(Product(scale, tuple(Straight(n, 0.0, 1.0) for n in names)) for scale, names in law.powers)
+
+
+@expanded.register
+def _(law: Interpolated) -> Sum | Unknown:
+    return (Product(1.0, (Tabulated(law.of, law.at, law.value, True),)),)
+
+
+@expanded.register
+def _(law: Share) -> Sum | Unknown:
+    return (Product(1.0, (Tabulated(law.film.of, law.at, law.value, True),)),)
+
+
+@expanded.register
+def _(law: FilmOver) -> Sum | Unknown:
+    from lumped.correlations import RangeWarning
+
+    at = law.top * np.linspace(0.0, 1.0, POINTS) ** 2
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RangeWarning)
+        h = tuple(float(law.film(v)[0]) for v in at)
+    return (Product(1.0, (Tabulated(law.of, tuple(at.tolist()), h, True),)),)
+
+
+def _each(base: Law, change: Callable[[Product], Product]) -> Sum | Unknown:
+    """What another law's expansion becomes, product by product."""
+    inner = expanded(base)
+    return inner if isinstance(inner, Unknown) else tuple(change(p) for p in inner)
+
+
+@expanded.register
+def _(law: Negative) -> Sum | Unknown:
+    return _each(law.of, lambda p: replace(p, coefficient=-p.coefficient))
+
+
+@expanded.register
+def _(law: OneWay) -> Sum | Unknown:
+    return expanded(law.base)
+
+
+@expanded.register
+def _(law: Direction) -> Sum | Unknown:
+    return _each(law.base, lambda p: p.times(Positive(law.column, float(law.way))))
+
+
+@expanded.register
+def _(law: Switched) -> Sum | Unknown:
+    on = Straight(law.switch, 0.0, 1.0) if law.closed else Straight(law.switch, 1.0, -1.0)
+    return _each(law.base, lambda p: p.times(on))
+
+
+@expanded.register(BendOfTemperature)
+@expanded.register(BendOfDifference)
+def _(law: BendOfTemperature | BendOfDifference) -> Sum | Unknown:
+    return expanded(law.base)

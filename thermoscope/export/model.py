@@ -1,0 +1,179 @@
+"""What is exported: the network with its multipliers worked in, and what its user must know of inputs and outputs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geom.errors import InputError
+from lumped.assembly import Assembly, assembly
+from lumped.compiled import ERROR_K, ERROR_SHARE, capacity_multipliers, state_units
+from lumped.multipliers import multipliers
+from lumped.network import Network, Row
+from lumped.reader import known
+from lumped.terms import Terms
+from thermoscope.commands.simulate import looks
+from thermoscope.error_budget import model_of
+from thermoscope.export.products import Product, Sum
+from thermoscope.export.tables import Ranges, factors
+from thermoscope.folder import Folder
+from thermoscope.units import QUANTITIES
+from validation.case import RUNNING, Test
+from validation.compare import compare
+
+Array = NDArray[np.float64]
+USUAL_C = 20.0  # where a run starts unless it is told
+WIDER = 1.5  # tables of unknown laws reach that much beyond what the tests recorded
+
+
+@dataclass(frozen=True)
+class Signal:
+    """An input of a law, or a boundary temperature.  low, high : over all tests; None where no test records it"""
+
+    name: str
+    unit: str
+    low: float | None
+    high: float | None
+
+
+@dataclass(frozen=True)
+class Output:
+    """A temperature (degC).  row : over z = [x; u];  limit : degC, if one was given
+
+    error_K, role : root mean square against the readings of the tests of that role, where a sensor sits
+    low, high : reached by the model in the tests
+    """
+
+    name: str
+    row: Row
+    limit: float | None = None
+    error_K: float | None = None
+    role: str = ""
+
+
+@dataclass(frozen=True)
+class Model:
+    """A network as exported code has it.
+
+    K0 (n, n + nb + 1) : constant terms;  terms : the others, with multipliers worked into `factors`
+    unit, node (n,) : K per unit of a state; 1 where it is a temperature
+    """
+
+    name: str
+    revision: int
+    effects: tuple[str, ...]
+    states: tuple[str, ...]
+    C: Array
+    K0: Array
+    terms: Terms
+    term_names: tuple[str, ...]
+    factors: tuple[Sum, ...]
+    inputs: tuple[Signal, ...]
+    boundaries: tuple[Signal, ...]
+    outputs: tuple[Output, ...]
+    unit: Array
+    node: NDArray[np.int64]
+    tolerance: tuple[float, float] = (ERROR_K, ERROR_SHARE)
+    initial_degC: float = USUAL_C
+
+    @property
+    def signals(self) -> tuple[Signal, ...]:
+        """All that is set from outside: inputs, then boundaries."""
+        return (*self.inputs, *self.boundaries)
+
+
+def exported(folder: Folder, limits: Mapping[str, float]) -> Model:
+    """The model of a case as it stands. Raises InputError for a law that has no form outside this tool."""
+    network, values = model_of(folder)
+    model = packed(network, values, folder.case.tests, outputs(network, folder, limits))
+    effects = tuple(e.name for e in folder.case.model.effects)
+    return replace(model, name=folder.case.name, revision=folder.case.model.revision, effects=effects)
+
+
+def packed(network: Network, values: Mapping[str, float], tests: Sequence[Test], looks: Sequence[Output]) -> Model:
+    """A network at some values of its parameters; tests: which ranges of inputs it was held against."""
+    every, m = assembly(network), multipliers(network, values)
+    acting = np.array([m.get(name, 1.0) for name in every.names])
+    steady = np.array([not p.bends and not p.law.reads for p in every.patterns], bool)
+    live = ~steady & (acting != 0.0)
+    constant = [float(p.law.factor({})) if s else 0.0 for p, s in zip(every.patterns, steady, strict=True)]
+    names = _read(every, live)
+    hidden = np.array(["#" in s for s in network.states], bool)
+    return Model(
+        network.name, 0, (), network.states, network.C * capacity_multipliers(network, m),
+        every.matrix(acting * np.array(constant)), every.packed(live, steady),
+        tuple(n for n, on in zip(every.names, live, strict=True) if on),
+        tuple(_factors(every, live, acting, _reaches(tests, names))),
+        tuple(Signal(n, unit_of(network, n), *_range(tests, n)) for n in names),
+        tuple(Signal(b, "degC", *_range(tests, b)) for b in network.boundaries),
+        tuple(looks), state_units(network, hidden), (~hidden).astype(np.int64), initial_degC=_initial(tests),
+    )  # fmt: skip
+
+
+def _read(every: Assembly, live: NDArray[np.bool_]) -> list[str]:
+    return sorted({name for p, on in zip(every.patterns, live, strict=True) if on for name in p.law.reads})
+
+
+def _reaches(tests: Sequence[Test], names: Sequence[str]) -> Ranges:
+    """Input -> how far tables have to reach; what marks a single test is no input."""
+    out = {}
+    for name in names:
+        low, high = _range(tests, name)
+        if name not in {f"{RUNNING}{t.name}" for t in tests}:
+            out[name] = (WIDER * min(low or 0.0, 0.0), WIDER * max(high or 0.0, 0.0))
+    return out
+
+
+def _factors(every: Assembly, live: NDArray[np.bool_], acting: Array, reach: Ranges) -> list[Sum]:
+    chosen = [(p, x) for p, x, on in zip(every.patterns, acting, live, strict=True) if on]
+    return [tuple(_times(one, float(x)) for one in factors(p.name, p.law, reach)) for p, x in chosen]
+
+
+def _times(one: Product, by: float) -> Product:
+    return replace(one, coefficient=by * one.coefficient)
+
+
+def _range(tests: Sequence[Test], name: str) -> tuple[float | None, float | None]:
+    seen = [np.asarray(u, float) for t in tests for n, u in {**t.inputs, **t.boundaries}.items() if n == name]
+    if not seen:
+        return None, None
+    return min(float(u.min()) for u in seen), max(float(u.max()) for u in seen)
+
+
+def unit_of(network: Network, name: str) -> str:
+    """The unit of an input, as memory holds it; "1" where nobody says."""
+    quantity = network.measures(name)
+    units = QUANTITIES[quantity].units if quantity in QUANTITIES else {}
+    return next(iter(units), "1")
+
+
+def _initial(tests: Sequence[Test]) -> float:
+    """Where the first test starts."""
+    first = tests[0].initial if tests else USUAL_C
+    return float(np.mean(list(first.values()))) if isinstance(first, Mapping) else float(first)
+
+
+def outputs(network: Network, folder: Folder, limits: Mapping[str, float]) -> tuple[Output, ...]:
+    """All named temperatures with their limits and, where a sensor sits, their proven error."""
+    rows, errors = looks(network, folder), _errors(folder)
+    for place in limits:
+        if place not in rows:
+            raise InputError(f"no temperature '{place}' to limit", "--limit", known(place, rows))
+    return tuple(Output(n, row, limits.get(n), *errors.get(n, (None, ""))) for n, row in rows.items())
+
+
+def _errors(folder: Folder) -> dict[str, tuple[float | None, str]]:
+    """Sensor -> rms error (K) over the tests of the strictest role that has any, and that role."""
+    if not folder.case.tests:
+        return {}
+    rows = [(t.role, c) for t in compare(folder.case).tests for c in t.channels]
+    out: dict[str, tuple[float | None, str]] = {}
+    for role in ("calibrate", "validate", "hold-out"):
+        for name in dict.fromkeys(c.channel for r, c in rows if r == role):
+            own = [c for r, c in rows if r == role and c.channel == name]
+            square = np.average([c.rmse_K**2 for c in own], weights=[c.n for c in own])
+            out[f"sensor {name}"] = float(np.sqrt(square)), role
+    return out
