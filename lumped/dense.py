@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numba import types
 
@@ -9,7 +11,7 @@ from lumped.jit import inner, inner_reordered
 
 # numba's own way to BLAS, which it registers for compiled code: products of many columns are worth the call
 _POINTERS = (types.voidptr, types.intp)
-_GEMM = types.ExternalFunction("numba_xxgemm", types.intc(
+_GEMM: Any = types.ExternalFunction("numba_xxgemm", types.intc(
     types.char, types.char, types.char, types.intp, types.intp, types.intp, types.voidptr, *_POINTERS, *_POINTERS,
     types.voidptr, *_POINTERS,
 ))  # fmt: skip

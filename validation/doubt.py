@@ -52,6 +52,9 @@ TABLE: Mapping[str, Line] = MappingProxyType({
     "wander": Line(0.5, "1", "share of a sensor's accuracy that wanders within a test; the rest is bias and slope"),
     "fast": Line(0.25, "1", "fast misfit as a share of the slow one"),
     "flow": Line(0.03, "1", "flow meters of a bench"),
+    # what held in one test or for a while
+    "switched": Line(2.0, "of the usual size", "what is switched is larger than what a model forgets"),
+    "answer": Line(0.05, "1", "share of answers that are wrong: people forget one thing in twenty"),
 })  # fmt: skip
 
 USUAL: Doubt = {name: line.sd for name, line in TABLE.items()}  # a dictionary, for other processes take a case along
@@ -77,9 +80,10 @@ class Odds:
 
 PRIOR: Mapping[str, Odds] = MappingProxyType({
     "nothing": Odds(0.5, "half of the models that are asked about are good enough"),
-    "effect": Odds(0.25, "one physical effect explains most disagreements"),
-    "fault": Odds(0.08, "a sensor or a clock is at fault in one bench of ten"),
-    "heat": Odds(0.07, "no catalogue is complete"),
+    "effect": Odds(0.20, "one physical effect explains most disagreements"),
+    "fault": Odds(0.08, "a sensor, a meter or a clock is at fault in one bench of ten"),
+    "heat": Odds(0.05, "no catalogue is complete"),
+    "condition": Odds(0.07, "a fan, lid, hose, cover or meter differed in one test or for a while"),
     "two": Odds(0.10, "where one thing was forgotten another often was"),
 })  # fmt: skip
 
@@ -89,6 +93,8 @@ RARE: Mapping[str, Odds] = MappingProxyType({
     "sensor.gain": Odds(0.3, "a wrong thermocouple type is seen at once"),
     "coupling": Odds(0.3, "two solids that touch are seldom forgotten"),
     "mass": Odds(0.3, "masses are weighed"),
+    "input.factor": Odds(1.0, "wrong ranges and shunts are as frequent as sensors that are off"),
+    "loss.factor": Odds(0.3, "calibration moves declared losses already"),
 })  # fmt: skip
 
 TEMPER = Odds(1.0, "log evidence counts as it is; not yet set on machine kinds of their own")

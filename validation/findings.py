@@ -103,15 +103,39 @@ class Odds:
     """The probability of one hypothesis: "nothing", "kind@place", "kind@place + kind@place", "heat@place".
 
     log_evidence : over that of nothing (nats), None for "others"
+    tests : those a condition held in;  begin_s, end_s : when, if it held once and for a while
     """
 
     hypothesis: str
     effects: tuple[str, ...]
     probability: float
     log_evidence: float | None = None
+    tests: tuple[str, ...] = ()
+    begin_s: float | None = None
+    end_s: float | None = None
 
     def document(self) -> dict:
-        return {**vars(self), "effects": list(self.effects)}
+        return {**vars(self), "effects": list(self.effects), "tests": list(self.tests)}
+
+
+@dataclass(frozen=True)
+class Happening:
+    """Something that may have been different for a while.  spans : {"test", "begin_s", "end_s"}
+
+    probability : of all that it may have been;  effect : the most probable of these, its value refitted where it was
+    """
+
+    event: str
+    words: str
+    spans: tuple[dict, ...]
+    probability: float
+    effect: str
+    title: str
+    value: float
+    unit: str
+
+    def document(self) -> dict:
+        return {**vars(self), "spans": list(self.spans)}
 
 
 @dataclass(frozen=True)
@@ -120,6 +144,7 @@ class Diagnosis:
 
     bases : every base that a test may have stood on, where the network knows several
     odds : every hypothesis that carries weight, most probable first, summing to one;  p_nothing : of nothing missing
+    events : when something may have been different for a while, most probable first
     """
 
     verdict: Verdict
@@ -139,6 +164,7 @@ class Diagnosis:
     bases: tuple[Hypothesis, ...] = ()
     odds: tuple[Odds, ...] = ()
     p_nothing: float = 1.0
+    events: tuple[Happening, ...] = ()
 
     def document(self) -> dict:
         return {
@@ -153,6 +179,7 @@ class Diagnosis:
             "next_sensors": [t.document() for t in self.next_sensors],
             "odds": [o.document() for o in self.odds],
             "p_nothing": self.p_nothing,
+            "events": [e.document() for e in self.events],
             "rmse_K": self.rmse_K,
             "floor_K": self.floor_K,
             "threshold": self.threshold,

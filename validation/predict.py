@@ -48,10 +48,15 @@ def record(test: Test, shift: Mapping[str, float]) -> Record:
 def stretch_of_record(test: Test, shift: Mapping[str, float], some: slice) -> Record:
     """The samples of the record from some.start to some.stop, beginning as the whole does."""
     air = {n: np.broadcast_to(np.asarray(u, float), test.time.shape)[some] for n, u in test.boundaries.items()}
-    boundaries = {n: u + shift.get(f"boundary:{n}", 0.0) for n, u in air.items()}
+    boundaries = {n: u + shift.get(f"boundary:{n}", 0.0) + shift.get(here(test, n), 0.0) for n, u in air.items()}
     move, initial = shift.get(f"initial:{test.name}", 0.0), test.initial
     start = {k: v + move for k, v in initial.items()} if isinstance(initial, Mapping) else initial + move
     return Record(test.time[some], test.signals.part(some), boundaries, start)
+
+
+def here(test: Test, boundary: str) -> str:
+    """What acts on a boundary in one test alone."""
+    return f"boundary:{boundary} in {test.name}"
 
 
 class Course:
@@ -161,5 +166,6 @@ class Watch:
 
 def _felt(test: Test, p: Parameter) -> bool:
     """Is the boundary one of this test's, or the start this test's?"""
-    name = p.targets[0][0].split(":", 1)[1]
-    return name in test.boundaries or name == test.name
+    target = p.targets[0][0]
+    name = target.split(":", 1)[1]
+    return name in test.boundaries or name == test.name or target in {here(test, b) for b in test.boundaries}

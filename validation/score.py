@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import block_diag
 
 from validation.noise import Noise
 from validation.sheet import Segment
@@ -110,3 +111,12 @@ def score(G: Gram, theta: Array, prior_sd: Array, sign: NDArray[np.int64]) -> Sc
     V = G.ZZ - G.JZ.T @ take
     size = np.abs(take) * np.sqrt(np.maximum(np.diag(G.JJ), 0.0))[:, None]
     return Score(u, 0.5 * (V + V.T), np.diag(G.ZZ).copy(), sign, np.argmax(size, axis=0))
+
+
+def apart(grams: Mapping[str, Gram]) -> Gram:
+    """Every effect in every test as an effect of its own: test by test, in the order of the tests."""
+    each = list(grams.values())
+    return Gram(
+        np.sum([g.JJ for g in each], axis=0), np.hstack([g.JZ for g in each]), block_diag(*(g.ZZ for g in each)),
+        np.sum([g.Jr for g in each], axis=0), np.concatenate([g.Zr for g in each]), sum(g.rr for g in each),
+    )  # fmt: skip

@@ -11,6 +11,8 @@ from typing import Any
 from geom.errors import InputError
 from lumped.network import Network
 from validation.effects.base import Effect, Scene
+from validation.effects.during import IN, During
+from validation.effects.gate import event
 
 GROUP = "thermoscope.effects"
 
@@ -29,7 +31,8 @@ def kinds() -> dict[str, type[Effect]]:
     for module in iter_modules(here.__path__):
         import_module(f"validation.effects.{module.name}")
     root: Any = Effect
-    own = {c.kind: c for c in _concrete(root) if c.__module__.startswith("validation.effects.")}
+    found = [c for c in _concrete(root) if hasattr(c, "kind")]  # one that holds for a while has that of another
+    own = {c.kind: c for c in found if c.__module__.startswith("validation.effects.")}
     return dict(sorted(own.items())) | {c.kind: c for c in (entry.load() for entry in entry_points(group=GROUP))}
 
 
@@ -50,6 +53,9 @@ def effect(name: str, scene: Scene | None = None) -> Effect:
     """The effect called 'kind@place'; with a scene, only if it can sit there."""
     kind, _, place = name.partition("@")
     found = _of(kind, kinds(), f"effect '{name}'")
+    base, held, gate = place.rpartition(IN)
+    if held:
+        return During.of(found(base), _known(gate, scene, name))
     if scene is not None and place not in (places := found.places(scene)):
         needs = ", ".join(found.needs)
         right = (
@@ -59,6 +65,17 @@ def effect(name: str, scene: Scene | None = None) -> Effect:
         )
         raise InputError(f"'{kind}' cannot sit at '{place}'", f"effect '{name}'", right)
     return found(place)
+
+
+def _known(gate: str, scene: Scene | None, name: str) -> str:
+    """The gate, if the scene has what it speaks of."""
+    if scene is not None and gate not in scene.inputs:
+        found = event(gate)
+        for test in found.tests if found else (gate,):
+            if test not in scene.tests:
+                raise InputError(f"unknown test or event '{test}'", f"effect '{name}'",
+                                 f"one of {', '.join(scene.tests)}, or an event as `diagnose` names it")  # fmt: skip
+    return gate
 
 
 def extended(network: Network, effects: Iterable[Effect]) -> Network:

@@ -9,6 +9,7 @@ import numpy as np
 
 from validation.calibrate import silent
 from validation.case import Case
+from validation.conditions.found import with_conditions
 from validation.faults import broken_channels
 from validation.findings import Diagnosis
 from validation.imprint import imprint
@@ -19,7 +20,7 @@ from validation.inference.refits import refitted
 from validation.inference.tables import tabulate
 from validation.procedure.which_base import bases_tried, wrong_bases
 from validation.threads import one_blas_thread
-from validation.where import latent_heat
+from validation.where import scan
 
 Progress = Callable[[str], None]
 NO_BUDGET: Mapping[str, float] = MappingProxyType({})
@@ -76,10 +77,13 @@ def infer(case: Case, kinds: Sequence[str] | None = None, progress: Progress = s
     progress("scoring the catalogue")
     evidence = sharpened(scored(case, candidates(case, kinds), fit))
     progress("looking for where heat is missing")
-    heat = latent_heat(evidence.fit, evidence.tests)
+    looked = scan(evidence.fit, evidence.tests)
+    heat = looked.read(evidence.fit.parts, evidence.fit.noise, evidence.fit.theta, evidence.fit.error)
+    evidence, events = with_conditions(evidence, case, looked, heat, progress)
+    evidence = sharpened(evidence)
     ones = singles(evidence)
     weighed = [*ones, *pairs(evidence, ones), *unknown_heat({w.place: w.log_bayes for w in heat})]
-    return Posterior(evidence, tuple(refitted(evidence, weighed, progress)), tuple(heat))
+    return Posterior(evidence, tuple(refitted(evidence, weighed, progress)), tuple(heat), events)
 
 
 def sharpened(evidence: Evidence, rounds: int = 2) -> Evidence:

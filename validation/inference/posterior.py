@@ -20,7 +20,10 @@ from scipy.special import log_ndtr, logsumexp
 
 from validation.calibrate import Fit
 from validation.doubt import PRIOR, RARE, SIZES, TEMPER
+from validation.effects.during import During
+from validation.effects.gate import Event
 from validation.inference.evidence import Evidence
+from validation.score import Score
 from validation.where import Latent
 
 Array = NDArray[np.float64]
@@ -55,13 +58,19 @@ def probabilities(hypotheses: Sequence[Hypothesis]) -> Array:
 
 
 def prior_shares(evidence: Evidence) -> Array:
-    """(K,) prior probability of each effect alone: its class's share over kinds, its kind's over places."""
-    kinds = [e.kind for e in evidence.effects]
-    faults = {e.kind: e.fault for e in evidence.effects}
+    """(K,) prior probability of each effect alone: its class's share over kinds, its kind's over places.
+
+    What held in one test or for a while has a share of its own, which says what it costs to say when.
+    """
+    lasting = [e for e in evidence.effects if not isinstance(e, During)]
+    kinds = [e.kind for e in lasting]
+    faults = {e.kind: e.fault for e in lasting}
     weight = {k: RARE[k].share if k in RARE else 1.0 for k in faults}
     whole = {f: sum(w for k, w in weight.items() if faults[k] == f) for f in (False, True)}
     share = {k: PRIOR["fault" if faults[k] else "effect"].share * w / whole[faults[k]] for k, w in weight.items()}
-    return np.array([share[k] / kinds.count(k) for k in kinds])
+    own = {k: w / kinds.count(k) for k, w in share.items()}
+    held = PRIOR["condition"].share
+    return np.array([held * e.share if isinstance(e, During) else own[e.kind] for e in evidence.effects])
 
 
 def singles(evidence: Evidence) -> list[Hypothesis]:
@@ -73,12 +82,16 @@ def singles(evidence: Evidence) -> list[Hypothesis]:
 
 def linear(evidence: Evidence) -> Array:
     """(K,) log Bayes factor of each effect against nothing; of a joint also at its typical loss, of plugs exchanged."""
-    s, sd = evidence.score, np.array([q.prior_sd for q in evidence.parameters])
-    sizes = [one_size(s.u, np.diag(s.V), f * sd, s.sign) for f in SIZES]
-    tangent = np.where(s.visible, logsumexp(sizes, axis=0) - np.log(len(SIZES)), 0.0)
+    tangent = log_bayes_of(evidence.score, np.array([q.prior_sd for q in evidence.parameters]))
     must = np.array([e.whole for e in evidence.effects])
     both = np.logaddexp(tangent, evidence.whole) - np.where(np.isfinite(evidence.whole), np.log(2.0), 0.0)
     return np.asarray(np.where(must, evidence.whole, both))
+
+
+def log_bayes_of(s: Score, sd: Array) -> Array:
+    """(K,) log Bayes factors by tangents, averaged over the usual sizes `sd`; 0 where nothing is seen."""
+    sizes = [one_size(s.u, np.diag(s.V), f * sd, s.sign) for f in SIZES]
+    return np.asarray(np.where(s.visible, logsumexp(sizes, axis=0) - np.log(len(SIZES)), 0.0))
 
 
 def one_size(u: Array, V: Array, sd: Array, sign: NDArray[np.int64]) -> Array:
@@ -138,11 +151,15 @@ def inclusion(hypotheses: Sequence[Hypothesis], count: int) -> Array:
 
 @dataclass(frozen=True)
 class Posterior:
-    """What follows from the readings.  heat : of unknown cause at each place, most evident first"""
+    """What follows from the readings.
+
+    heat : of unknown cause at each place, most evident first;  events : when something may have been different
+    """
 
     evidence: Evidence
     hypotheses: tuple[Hypothesis, ...]
     heat: tuple[Latent, ...]
+    events: tuple[Event, ...] = ()
 
     @property
     def single(self) -> dict[int, Hypothesis]:

@@ -17,6 +17,7 @@ from validation.inference.posterior import Hypothesis, probabilities, told
 Array = NDArray[np.float64]
 WEIGHT = 0.01  # posterior probability from which a hypothesis is refitted
 ROUNDS, MOST = 4, 8  # what a refit promotes is refitted too; so many at once
+GREAT, NEAR = 50.0, 0.6  # nats beyond which tangents mislead, and the share of the best from which a rival is refitted
 NEARLY, TRIED = 0.4, 3  # linear amplitude, and how many, of effects that happen whole or not at all
 
 
@@ -25,7 +26,7 @@ def refitted(
 ) -> list[Hypothesis]:
     """The hypotheses with those that carry weight refitted, until none does that is not."""
     out = list(hypotheses)
-    for i in exchanged(evidence, out):
+    for i in (*exchanged(evidence, out), *rivals(out)):
         progress(f"refitting {out[i].name(evidence)}")
         out[i] = laplace(evidence, out[i])
     for _ in range(ROUNDS):
@@ -43,6 +44,14 @@ def fitted_alone(hypotheses: Sequence[Hypothesis], members: Sequence[int]) -> tu
     """The better fitted of two effects that were fitted each by itself, as far as they were."""
     found = [(h.members[0], h.fit) for h in hypotheses if h.fit and len(h.members) == 1 and h.members[0] in members]
     return min(found, key=lambda x: x[1].objective) if found and len(members) > 1 else None
+
+
+def rivals(hypotheses: Sequence[Hypothesis]) -> list[int]:
+    """Where evidence is so great that no tangent can be trusted: the single effects that come near the best."""
+    alone = sorted((h.log_bayes, i) for i, h in enumerate(hypotheses) if len(h.members) == 1)[::-1]
+    if not alone or alone[0][0] < GREAT:
+        return []
+    return [i for b, i in alone[:MOST] if b > NEAR * alone[0][0] and hypotheses[i].fit is None]
 
 
 def exchanged(evidence: Evidence, hypotheses: Sequence[Hypothesis]) -> list[int]:

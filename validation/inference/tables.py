@@ -11,6 +11,8 @@ from scipy.stats import norm
 
 from validation.calibrate import Fit, Measure
 from validation.case import Case, Test
+from validation.conditions.happenings import happenings
+from validation.effects.during import During
 from validation.findings import Candidate, Decided, Diagnosis, Hidden, Odds, Verdict
 from validation.inference.decision import Decision
 from validation.inference.detection import smallest, thresholds
@@ -49,7 +51,7 @@ def tabulate(
         named=tuple(g[0] for g in groups), groups=groups, candidates=rows, cannot_see=unseen(e), where=posterior.heat,
         next_tests=tuple(tests), next_sensors=tuple(sensors), rmse_K=rmse(e.fit.parts), floor_K=floor(e),
         threshold=float(np.min(thresholds(e))), pulls=pulls, cosine=confusion(e, [c.effect for c in rows[:12]]),
-        bases=bases, odds=odds(posterior), p_nothing=1.0 - choice.sure,
+        bases=bases, odds=odds(posterior), p_nothing=1.0 - choice.sure, events=happenings(posterior),
     )  # fmt: skip
 
 
@@ -94,12 +96,21 @@ def odds(posterior: Posterior) -> tuple[Odds, ...]:
     P = probabilities(posterior.hypotheses)
     e = posterior.evidence
     rows = [
-        Odds(h.name(e), tuple(e.names[k] for k in h.members), float(p), float(h.log_bayes))
+        _odds(e, h, float(p))
         for h, p in zip(posterior.hypotheses, P, strict=True) if p > SHOWN
     ]  # fmt: skip
     rows.sort(key=lambda o: -o.probability)
     rest = 1.0 - sum(o.probability for o in rows)
     return (*rows, Odds("others", (), max(rest, 0.0)))
+
+
+def _odds(e: Evidence, h: Hypothesis, p: float) -> Odds:
+    """A hypothesis with when it held."""
+    held = [x for k in h.members if isinstance(x := e.effects[k], During)]
+    tests = tuple(dict.fromkeys(t for x in held for t in x.tests))
+    spans = [s for x in held if x.event for s in x.event.every]
+    begin, end = spans[0] if len(spans) == 1 else (None, None)
+    return Odds(h.name(e), tuple(e.names[k] for k in h.members), p, float(h.log_bayes), tests, begin, end)
 
 
 def candidates(
@@ -190,7 +201,8 @@ def unseen(e: Evidence) -> tuple[Hidden, ...]:
     size = smallest(e)
     unusual = size / np.array([p.prior_sd for p in e.parameters])
     names, twins = e.fit.unknowns.names, e.twins
-    hit = [int(k) for k in np.argsort(-unusual) if unusual[k] > 2.0 or twins[k]]
+    lasting = [not isinstance(x, During) for x in e.effects]
+    hit = [int(k) for k in np.argsort(-unusual) if lasting[k] and (unusual[k] > 2.0 or twins[k])]
     return tuple(
         Hidden(e.names[k], float(size[k]), e.parameters[k].unit, twins[k] or _absorber(e, k, names)) for k in hit
     )
@@ -242,8 +254,9 @@ def _group(posterior: Posterior, group: tuple[int, ...], rows: Sequence[Candidat
     told = [f"{e.names[k]} {percent(by_name[e.names[k]].probability)}" for k in group if e.names[k] in by_name]
     best = by_name.get(e.names[group[0]])
     if len(group) == 1 and best:
-        place = best.effect.split("@", 1)[1]
-        return f"missing: {best.title} at {place}, {best.value:.3g} {best.unit} ({percent(best.probability)})"
+        effect = e.effects[group[0]]
+        place = effect.words if isinstance(effect, During) else f"at {effect.place}"
+        return f"missing: {best.title} {place}, {best.value:.3g} {best.unit} ({percent(best.probability)})"
     return "one of " + ", ".join(told) + "; these tests and sensors cannot tell them apart"
 
 

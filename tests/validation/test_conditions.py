@@ -1,0 +1,212 @@
+"""What held in one test or for a while: its gate, its response in closed form, and the posterior that finds it."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from one_body import C, G, P, measured, one_node
+
+from geom.errors import InputError
+from lumped.simulate import Record, simulate
+from validation import diagnose
+from validation.case import Case, Channel, Model, Test
+from validation.conditions.hats import Path, hats
+from validation.conditions.windows import best_stretch, joined, pulses
+from validation.effects import Scene, effect
+from validation.effects.gate import Event, checked, event, holds, share
+from validation.inference.evidence import calibrated_case, candidates, scored
+from validation.predict import predict
+from validation.where import scan
+
+ONE = Event.of({"day": [(600.0, 900.0)]})
+SEVEN = Event.of({"day one": [(600.0 * k, 600.0 * k + 90.25) for k in range(1, 8)], "night.2": [(0.0, 60.0)]})
+
+
+@pytest.mark.parametrize("one", [ONE, SEVEN])
+def test_the_name_of_an_event_says_all_of_it(one):
+    assert event(one.name) == one
+
+
+@pytest.mark.parametrize("name", ["day", "day:600s", "day.600-900s", "run 4", "a & b"])
+def test_other_names_are_no_events(name):
+    assert event(name) is None
+
+
+def test_a_share_of_each_sample_adds_up_to_the_span():
+    time = np.arange(0.0, 1000.0, 20.0)
+    for span in ((100.0, 300.0), (113.0, 119.0), (0.0, 980.0)):
+        own = share(time, [span])
+        assert np.sum(own * np.gradient(time) * np.where((time == 0) | (time == 980), 0.5, 1.0)) == pytest.approx(
+            span[1] - span[0]
+        )
+
+
+@pytest.mark.parametrize(
+    ("spans", "says"),
+    [([(300.0, 200.0)], "ends"), ([(100.0, 2000.0)], "outside"), ([(100.0, 300.0), (200.0, 400.0)], "overlaps")],
+)
+def test_an_event_that_cannot_be_is_one_message(spans, says):
+    with pytest.raises(InputError, match=says):
+        checked(Event.of({"day": spans}), "day", 0.0, 1000.0, "tests/day.events.toml")
+
+
+def test_a_gate_is_open_in_its_own_test_and_time_alone():
+    day, night = measured("day"), measured("night")
+    assert np.all(holds("day", day) == 1.0)
+    assert np.all(holds("day", night) == 0.0)
+    assert holds("day:600-900s", day).sum() == pytest.approx(3.0)
+    assert holds("day:600-900s", night).sum() == 0.0
+
+
+def test_heat_for_a_while_is_the_closed_form():
+    """One body at rest takes a W from 1000 s to 3000 s: a / G (e^-(t - 3000) G/C - e^-(t - 1000) G/C) afterwards."""
+    bare, a = one_node(), 30.0
+    test = replace(measured("day", samples=2000), time=10.0 * np.arange(2000))
+    test = replace(
+        test, boundaries={"ambient": np.full(2000, 20.0)}, channels=(replace(test.channels[0], y=np.zeros(2000)),)
+    )
+    held = effect("loss.constant@body in day:1000-3000s").extend(bare)
+    rise = predict(held, test, {held.parameters[-1].name: a}).y - predict(bare, test, {}).y
+    late = test.time > 3100.0
+    want = a / G * (np.exp(-(test.time - 3000.0) * G / C) - np.exp(-(test.time - 1000.0) * G / C))
+    assert rise[late, 0] == pytest.approx(want[late], abs=2e-3 * a / G)
+    assert np.all(rise[test.time < 900.0] == 0.0)
+
+
+@pytest.mark.parametrize(
+    "base", ["loss.constant@body", "convection.constant@body", "blockage@body", "input.factor@speed"]
+)
+def test_a_condition_of_a_test_is_the_effect_itself_there_and_nothing_elsewhere(base):
+    """Amplitudes small enough for the copies of laws that bend."""
+    from lumped.laws import InputPower
+
+    bare = one_node()
+    bare = replace(bare, sources=(replace(bare.sources[0], law=InputPower(P, (("speed", 10.0, 1.0),))),))
+    tests = {n: replace(measured(n), inputs={"speed": np.full(200, 8.0)}) for n in ("day", "night")}
+    lasting, held = effect(base).extend(bare), effect(f"{base} in day").extend(bare)
+    a = -0.1 if base.startswith("blockage") else 0.1
+    for name, test in tests.items():
+        want = predict(
+            lasting if name == "day" else bare, test, {lasting.parameters[-1].name: a} if name == "day" else {}
+        )
+        got = predict(held, test, {held.parameters[-1].name: a})
+        assert got.y == pytest.approx(want.y, abs=1e-6)
+
+
+def test_a_boundary_offset_in_one_test():
+    bare = one_node()
+    held = effect("ambient.offset@ambient in day").extend(bare)
+    for name, step in (("day", 2.0), ("night", 0.0)):
+        y = predict(held, measured(name), {held.parameters[-1].name: 2.0}).y - predict(bare, measured(name), {}).y
+        assert y[-1, 0] == pytest.approx(step, abs=1e-3)
+
+
+def test_masses_and_joints_hold_for_no_while():
+    with pytest.raises(InputError, match="cannot hold for a while"):
+        effect("mass@body in day").extend(one_node())
+
+
+def test_a_test_that_is_not_there_is_one_message():
+    with pytest.raises(InputError, match="unknown test or event 'noon'"):
+        effect("loss.constant@body in noon", Scene(one_node(), tests=("day", "night")))
+
+
+def test_pulses_are_the_steps_of_a_curve():
+    knots, rng = 60.0 * np.arange(60), np.random.default_rng(0)
+    q = np.where((knots >= 600.0) & (knots < 1200.0), 7.0, 0.0) - np.where(
+        (knots > 2400.0) & (knots < 2800.0), 9.0, 0.0
+    )
+    found = pulses(knots, q + 0.5 * rng.standard_normal(60), np.ones(60))
+    assert [round(level) for _, level in found] == [7, -9]
+    assert [span for span, _ in found] == [pytest.approx((570.0, 1170.0)), pytest.approx((2430.0, 2790.0))]
+
+
+def test_neighbours_of_one_sign_are_one_pulse():
+    assert joined([((0.0, 10.0), 1.0), ((10.0, 20.0), 3.0), ((20.0, 30.0), -1.0)]) == [
+        ((0.0, 20.0), pytest.approx(2.0)), ((20.0, 30.0), -1.0)
+    ]  # fmt: skip
+
+
+LID = (2000.0, 2600.0)
+
+
+@cache
+def bench(held=(("noon", (LID,)),), size=2.0, seed=0):
+    """Two bodies in three tests; while a lid is open one cools more."""
+
+    rng = np.random.default_rng(seed)
+    case_tests, net = [], two_bodies()
+    open_lid = effect(f"convection.constant@body in {Event.of(dict(held)).name}") if held else None
+    truth = open_lid.extend(net) if open_lid else net
+    values = {truth.parameters[-1].name: size} if open_lid else {}
+    for name in ("noon", "dawn", "dusk"):
+        time = np.arange(0.0, 6000.0, 20.0)
+        load = rng.uniform(0.2, 1.0, 6)[(time / 1000.0).astype(int)]
+        around = {"ambient": np.full_like(time, 20.0)}
+        test = Test(name, "calibrate", time, {"load": load}, around, (), 20.0)
+        rows = [net.places[p].mean for p in ("body", "core")]
+        y = simulate(truth, Record(time, test.signals, around, 20.0), values, rows).y
+        y = y + 0.05 * rng.standard_normal(y.shape)
+        channels = tuple(Channel(p, p, r, y[:, i], 0.3) for i, (p, r) in enumerate(zip(("body", "core"), rows)))
+        case_tests.append(replace(test, channels=channels))
+    return Case("bench", Model(net), tuple(case_tests))
+
+
+def two_bodies():
+    from lumped.declared import read_network
+
+    return read_network({
+        "network": {"name": "two", "boundaries": ["ambient"], "settles_s": 2000},
+        "nodes": {"body": {"C_J_K": 4000, "prior_sd": 0.1}, "core": {"C_J_K": 1500, "prior_sd": 0.1}},
+        "links": {
+            "joint": {"between": ["body", "core"], "G_W_K": 4.0, "prior_sd": 0.3},
+            "film": {"between": ["body", "ambient"], "G_W_K": 2.0, "prior_sd": 0.3},
+        },
+        "losses": {"heat": {"kind": "constant", "at": "core", "P_W": 80.0, "prior_sd": 0.1,
+                            "of": {"input": "load", "at": 1.0, "exponent": 1.0}}},
+    })  # fmt: skip
+
+
+def test_all_stretches_by_cumulated_sums_are_those_weighed_one_by_one():
+    case = bench()
+    fit = calibrated_case(case)
+    e = scored(case, candidates(case, ["convection.constant"]), fit)
+    found = hats(e, scan(fit, e.tests), fit.values)
+    for path in (Path("body"), Path("body", "ambient"), Path("body", "core")):
+        one = best_stretch(found, path, "noon")
+        assert found.weigh(one.event, path).log_bayes == pytest.approx(one.log_bayes, rel=1e-6)
+        begin, end = one.event.spans["noon"][0]
+        for other in ((begin, end - 180.0), (begin + 180.0, end)):
+            if other[0] < other[1]:
+                assert found.weigh(Event.of({"noon": [other]}), path).log_bayes <= one.log_bayes + 1e-9
+
+
+def test_a_lid_open_for_ten_minutes_is_named_with_its_times():
+    found = diagnose(bench(), plan=False)
+    best = found.odds[0]
+    assert found.verdict == "named"
+    assert best.effects[0].startswith("convection.constant@body in noon:")
+    assert best.tests == ("noon",)
+    assert (best.begin_s, best.end_s) == pytest.approx(LID, abs=40.0)
+    assert found.events[0].value == pytest.approx(2.0, rel=0.2)
+
+
+def test_a_lid_open_three_times_is_one_event():
+    spans = ((1000.0, 1400.0), (2400.0, 2800.0), (4000.0, 4400.0))
+    best = diagnose(bench((("noon", spans),), 5.0), plan=False).odds[0]
+    (name,) = [e for e in best.effects if "noon" in e]
+    told = event(name.split(" in ")[1])
+    assert name.startswith("convection.constant@body")
+    assert np.array(told.spans["noon"]) == pytest.approx(np.array(spans), abs=40.0)
+
+
+def test_a_fan_in_one_test_is_named_with_its_test():
+    whole = diagnose(bench((("noon", ((0.0, 5980.0),)),), 1.0), plan=False)
+    assert whole.odds[0].effects == ("convection.constant@body in noon",)
+
+
+def test_nothing_is_no_event():
+    found = diagnose(bench(()), plan=False)
+    assert found.verdict == "adequate"
+    assert all(h.probability < 0.2 for h in found.events)

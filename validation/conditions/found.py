@@ -1,0 +1,141 @@
+"""Conditions nobody wrote down, as hypotheses of the posterior: what may have held in one test, or for a while.
+
+All are scored by tangents; those that could carry weight join the evidence, where they are paired and refitted like
+all others. Their prior is a share of PRIOR["condition"]: half for whole tests, half for stretches, evenly over what, in
+which test, and when.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from validation.calibrate import silent
+from validation.case import Case
+from validation.conditions.hats import Stretch, hats
+from validation.conditions.menu import of_a_test, passing
+from validation.conditions.refine import columns, refined
+from validation.conditions.windows import distinct, stretches, worth
+from validation.doubt import PRIOR
+from validation.effects import Effect, extended
+from validation.effects.during import During
+from validation.effects.gate import Event
+from validation.effects.sites import neighbours
+from validation.fitting import scene_of
+from validation.inference.evidence import Evidence, extended_prior, projected, weighed
+from validation.inference.posterior import log_bayes_of
+from validation.score import apart, score, total
+from validation.where import Latent, Scan
+
+Array = NDArray[np.float64]
+TESTS, EVENTS, EACH = 16, 4, 6  # conditions of whole tests, events, and explanations of each that join the others
+HOPELESS = 5.0  # nats below nothing, prior included: what has less cannot carry weight
+
+
+@dataclass(frozen=True)
+class Condition:
+    """A condition before it joins.  worth : log posterior odds against nothing"""
+
+    effect: During
+    worth: float
+
+
+def with_conditions(
+    evidence: Evidence, case: Case, looked: Scan, heat: Sequence[Latent], progress: Callable[[str], None] = silent
+) -> tuple[Evidence, tuple[Event, ...]]:
+    """The evidence with the conditions that could carry weight among its effects, and the events they hold in."""
+    known = {**case.model.values, **evidence.fit.values}
+    scene = replace(scene_of(case), network=evidence.fit.network)
+    progress("looking for what held in one test or for a while")
+    chosen = best(in_one_test(evidence, of_a_test(scene), known), TESTS)
+    bases, events = passing(scene), []
+    for s in likely(evidence, looked, heat, known, len(bases)):
+        event, own = explained(evidence, bases, s, looked, known)
+        events.append(event)
+        chosen += best(own, EACH)
+    return joined(evidence, [c.effect for c in chosen], known), tuple(events)
+
+
+def best(conditions: Sequence[Condition], most: int) -> list[Condition]:
+    hopeful = [c for c in conditions if c.worth > -HOPELESS]
+    return sorted(hopeful, key=lambda c: -c.worth)[:most]
+
+
+def odds_against_nothing(share: float) -> float:
+    """log prior odds of a condition with a share of their prior."""
+    return float(np.log(PRIOR["condition"].share * share / PRIOR["nothing"].share))
+
+
+def in_one_test(evidence: Evidence, bases: Sequence[Effect], known: Mapping[str, float]) -> list[Condition]:
+    """Everything that may have held in one test alone; none where there is only one test."""
+    names = [t.name for t in evidence.tests]
+    if len(names) < 2 or not bases:
+        return []
+    parts = columns(evidence, bases, known)
+    parameters = extended(evidence.fit.network, bases).parameters[-len(bases) :]
+    theta, sd = extended_prior(evidence.fit)
+    sign = np.tile([q.sign for q in parameters], len(names)).astype(int)
+    found = score(apart(projected(evidence.fit, parts)), theta, sd, sign)
+    bayes = log_bayes_of(found, np.tile([q.prior_sd for q in parameters], len(names)))
+    share = 0.5 / (len(bases) * len(names))
+    each = [(base, test) for test in names for base in bases]
+    return [
+        Condition(During.of(base, test, share), float(b) + odds_against_nothing(share))
+        for (base, test), b, seen in zip(each, bayes, found.visible, strict=True) if seen
+    ]  # fmt: skip
+
+
+def likely(
+    evidence: Evidence, looked: Scan, heat: Sequence[Latent], known: Mapping[str, float], laws: int
+) -> list[Stretch]:
+    """The stretches that could carry weight once the price of when, what and where is paid."""
+    found = hats(evidence, looked, known)
+    limit = -HOPELESS - odds_against_nothing(0.5 / (laws * len(evidence.tests)))
+    ordered = stretches(found, heat, neighbours(evidence.fit.network))
+    return [s for s in distinct(ordered, EVENTS) if worth(found, s) > limit]
+
+
+def explained(
+    evidence: Evidence, bases: Sequence[Effect], s: Stretch, looked: Scan, known: Mapping[str, float]
+) -> tuple[Event, list[Condition]]:
+    """An event with its ends at the samples, and all that it may have been, exactly run."""
+    reach = {t: 1.5 * float(looked.knots[t][1] - looked.knots[t][0]) for t in s.event.spans}
+    timed = refined(evidence, likeness(evidence, bases, s, known), s.event, reach, known)
+    event = timed.event
+    share = 0.5 / (len(bases) * len(evidence.tests)) * float(np.exp(max(timed.log_share, -600.0)))
+    effects = [During.of(base, event.name, share) for base in bases]
+    return event, scored_in(evidence, effects, known, odds_against_nothing(share))
+
+
+def likeness(evidence: Evidence, bases: Sequence[Effect], s: Stretch, known: Mapping[str, float]) -> Effect:
+    """Of all that can hold for a while what explains a stretch best as it stands."""
+    effects = [During.of(base, s.event.name) for base in bases]
+    rows = scored_in(evidence, effects, known, 0.0)
+    return max(rows, key=lambda c: c.worth).effect.base if rows else bases[0]
+
+
+def scored_in(
+    evidence: Evidence, effects: Sequence[During], known: Mapping[str, float], prior: float
+) -> list[Condition]:
+    parameters = extended(evidence.fit.network, effects).parameters[-len(effects) :]
+    theta, sd = extended_prior(evidence.fit)
+    parts = columns(evidence, effects, known)
+    found = score(total(projected(evidence.fit, parts)), theta, sd, np.array([q.sign for q in parameters], int))
+    bayes = log_bayes_of(found, np.array([q.prior_sd for q in parameters]))
+    rows = zip(effects, bayes, found.visible, strict=True)
+    return [Condition(e, float(b) + prior) for e, b, seen in rows if seen]
+
+
+def joined(evidence: Evidence, effects: Sequence[During], known: Mapping[str, float]) -> Evidence:
+    """The evidence with further effects behind its own."""
+    if not effects:
+        return evidence
+    e, fit, p = evidence, evidence.fit, evidence.p
+    network = extended(e.network, effects)
+    parameters = (*e.parameters, *network.parameters[-len(effects) :])
+    new = columns(evidence, effects, known)
+    parts = tuple(replace(s, J=np.column_stack([s.J, n.J[:, p:]])) for s, n in zip(e.parts, new, strict=True))
+    return weighed(e.tests, fit, network, (*e.effects, *effects), parameters, parts, e.jumps)

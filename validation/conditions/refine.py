@@ -1,0 +1,128 @@
+"""When exactly: an event's ends at the record's own samples, by the response to steps at each of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import logsumexp
+
+from validation.case import Test
+from validation.doubt import SIZES, USUAL
+from validation.effects import Effect, extended
+from validation.effects.during import During
+from validation.effects.gate import Event, Span
+from validation.inference.evidence import Evidence, extended_prior, projected
+from validation.inference.posterior import one_size
+from validation.score import score, total
+from validation.sheet import Segment, segments
+
+Array = NDArray[np.float64]
+Known = Mapping[str, float]
+Spans = Mapping[str, Sequence[Span]]
+TRIED = 15  # instants around each end
+
+
+@dataclass(frozen=True)
+class Timed:
+    """An event with its ends at the samples.
+
+    log_share : log evidence of all ends over that of the best ones, less the price of there being so many
+    ends : per span, test by test, 95 % of its begin and of its end (s)
+    """
+
+    event: Event
+    log_share: float
+    ends: tuple[tuple[Span, Span], ...]
+
+
+def refined(evidence: Evidence, base: Effect, event: Event, reach_s: Mapping[str, float], known: Known) -> Timed:
+    """Ends of every span in turn, the others where they are.  reach_s : test -> how far an end may move"""
+    spans, log_share = {t: list(own) for t, own in event.spans.items()}, 0.0
+    ends: list[tuple[Span, Span]] = []
+    tests = {t.name: t for t in evidence.tests}
+    for test, own in event.spans.items():
+        for i in range(len(own)):
+            others = {t: [s for k, s in enumerate(all_) if (t, k) != (test, i)] for t, all_ in spans.items()}
+            one = moved(evidence, base, tests[test], own[i], others, reach_s[test], known)
+            spans[test][i] = one.event.spans[test][0]
+            log_share += one.log_share
+            ends += one.ends
+    return Timed(Event.of(spans), log_share, tuple(ends))
+
+
+def moved(
+    evidence: Evidence, base: Effect, test: Test, span: Span, others: Spans, reach_s: float, known: Known
+) -> Timed:
+    """Begin and end of one span: every two instants around them, each pair a difference of two steps."""
+    begins, ends = around(test, span[0], reach_s), around(test, span[1], reach_s)
+    at = np.concatenate([begins, ends])
+    u, V = steps(evidence, base, test, at, others, known)
+    a, b = (x.ravel() for x in np.meshgrid(np.arange(begins.size), np.arange(begins.size, at.size), indexing="ij"))
+    a, b = a[at[a] < at[b]], b[at[a] < at[b]]
+    bayes = log_bayes(*pulse(u, V, a, b), evidence, base)
+    best, weight = int(np.argmax(bayes)), np.exp(bayes - logsumexp(bayes))
+    count = 0.5 * test.time.size * (test.time.size + 1)
+    event = Event.of({test.name: [(at[a[best]], at[b[best]])]})
+    return Timed(event, float(logsumexp(bayes - bayes[best]) - np.log(count)),
+                 ((between(at[a], weight), between(at[b], weight)),))  # fmt: skip
+
+
+def pulse(u: Array, V: Array, a: NDArray[np.int64], b: NDArray[np.int64]) -> tuple[Array, Array]:
+    """Score and variance of what begins at a and ends at b, with the last column beside it."""
+    rest = u.size - 1
+    own = V[a, a] + V[b, b] - 2.0 * V[a, b]
+    return u[a] - u[b] + u[rest], own + V[rest, rest] + 2.0 * (V[a, rest] - V[b, rest])
+
+
+def log_bayes(u: Array, V: Array, evidence: Evidence, base: Effect) -> Array:
+    """Log Bayes factors of an effect at many times."""
+    sd = np.full(u.shape, USUAL["switched"] * base.extend(evidence.fit.network).parameters[-1].prior_sd)
+    sign = np.full(u.shape, base.sign)
+    sizes = [one_size(u, np.maximum(V, 0.0), f * sd, sign) for f in SIZES]
+    return np.asarray(logsumexp(sizes, axis=0) - np.log(len(SIZES)))
+
+
+def around(test: Test, at: float, reach_s: float) -> Array:
+    """Samples near an instant, inside the record."""
+    t, step = test.time, float(np.median(np.diff(test.time)))
+    low, high = max(at - reach_s, t[0]), min(at + reach_s, t[-1])
+    count = int(min(TRIED, round((high - low) / step) + 1))
+    return np.unique(t[0] + step * np.round((np.linspace(low, high, max(count, 1)) - t[0]) / step))
+
+
+def between(at: Array, weight: Array) -> Span:
+    """95 % of a weighted sample."""
+    order = np.argsort(at)
+    low, high = np.searchsorted(np.cumsum(weight[order]), [0.025, 0.975])
+    return float(at[order[low]]), float(at[order[min(high, at.size - 1)]])
+
+
+def steps(evidence: Evidence, base: Effect, test: Test, at: Array, others: Spans, known: Known) -> tuple[Array, Array]:
+    """Efficient score of an effect that begins at each of some instants of a test, and last that of the other spans."""
+    last = float(test.time[-1]) + 1.0
+    events = [Event.of({test.name: [(t, last)]}) for t in at]
+    rest = Event.of({t: own for t, own in others.items() if own})
+    effects = [During.of(base, e.name) for e in (*events, *([rest] if rest.spans else []))]
+    parts = columns(evidence, effects, known)
+    theta, sd = extended_prior(evidence.fit)
+    found = score(total(projected(evidence.fit, parts)), theta, sd, np.zeros(len(effects), int))
+    missing = 0 if rest.spans else 1
+    return np.pad(found.u, (0, missing)), np.pad(found.V, (0, missing))
+
+
+def columns(evidence: Evidence, effects: Sequence[Effect], known: Known) -> list[Segment]:
+    """The segments with the columns of calibration and of some effects; only tests are run in which one acts."""
+    fit, p = evidence.fit, evidence.p
+    network = extended(fit.network, effects)
+    own = network.parameters[-len(effects) :]
+    values = {**{q.name: known.get(q.name, q.value) for q in network.parameters}, **fit.values}
+    felt = {t for e in effects for t in (e.tests if isinstance(e, During) else (x.name for x in evidence.tests))}
+    parts = segments(network, [t for t in evidence.tests if t.name in felt], values, own)
+    new = {(s.test, s.channel): s.J for s in parts}
+    return [
+        replace(s, J=np.column_stack([s.J[:, :p], new.get((s.test, s.channel), np.zeros((s.r.size, len(own))))]))
+        for s in evidence.parts
+    ]  # fmt: skip

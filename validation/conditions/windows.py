@@ -1,0 +1,147 @@
+"""When was heat missing: change points of the missing-heat curves, and the stretch with most evidence of each path.
+
+Source: Killick, Fearnhead and Eckley 2012 (PELT), by `ruptures` (Truong, Oudre and Vayatis 2020).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from validation.conditions.hats import Hats, Path, Stretch, held, log_bayes
+from validation.effects.gate import Event, Span
+from validation.where import Latent
+
+Array = NDArray[np.float64]
+Pulse = tuple[Span, float]  # when, and its level (W) against what is usual in the test
+PLACES = 4  # of most evidence, whose curves are searched for change points
+PENALTY = 3.0  # times log(n) for a change point: BIC counts its time and its level, and a half more for either
+CLEAR = 2.0  # standard deviations from which a level is a pulse
+WHOLE = 0.9  # of a test: what lasts longer is a condition of that test, and no event
+REPEATS = 20  # of one event
+ALIKE = 0.5  # of the time in either of two events: such are one
+
+
+def stretches(found: Hats, heat: Sequence[Latent], near: Mapping[str, set[str]]) -> list[Stretch]:
+    """Candidate events, the most evident first; each keeps the path that explains it best."""
+    paths = found.paths(near)
+    singles = sorted((best_stretch(found, p, test) for p in paths for test in found.knots), key=lambda s: -s.log_bayes)
+    first = singles[: PLACES * len(found.knots)]
+    repeats = [repeated(found, s).event for s in first if s.log_bayes > 0.0]
+    events = [*(s.event for s in first), *repeats, *(e for h in heat[:PLACES] for e in turns(h))]
+    unique = {e.name: e for e in events if not throughout(found, e)}.values()
+    best = [max((found.weigh(e, p) for p in paths), key=lambda s: s.log_bayes) for e in unique]
+    return sorted(best, key=lambda s: -worth(found, s))
+
+
+def best_stretch(found: Hats, path: Path, test: str, beside: Event | None = None) -> Stretch:
+    """The stretch of knots with most evidence; all are tried, each a difference of cumulated sums.
+
+    beside : stretches that are there already, with the same amplitude; log_bayes is then that of all
+    """
+    (u, V), knots = found.at_knots(path, test), found.knots[test]
+    U, P = np.concatenate([[0.0], np.cumsum(u)]), np.zeros((u.size + 1, u.size + 1))
+    P[1:, 1:] = np.cumsum(np.cumsum(V, axis=0), axis=1)
+    i, j = np.triu_indices(u.size + 1, 1)
+    U, P = U[j] - U[i], P[j, j] - P[i, j] - P[j, i] + P[i, i]
+    if beside:
+        own, square, cross = found.sums(beside, path, test)
+        cross = np.concatenate([[0.0], np.cumsum(cross)])
+        U, P = U + own, P + square + 2.0 * (cross[j] - cross[i])
+    bayes = log_bayes(U, P, found.usual(path))
+    if beside:
+        taken = np.concatenate([[0.0], np.cumsum(held(knots, beside.spans.get(test, ())) > 0)])
+        bayes = np.where(taken[j] > taken[i], -np.inf, bayes)
+    k = int(np.argmax(bayes))
+    return Stretch(Event.of({test: [span_of(knots, int(i[k]), int(j[k]))]}), path, float(bayes[k]))
+
+
+def repeated(found: Hats, first: Stretch) -> Stretch:
+    """A stretch and its repeats of one amplitude, one after another as long as each is worth saying when."""
+    best = first
+    for _ in range(REPEATS):
+        more = max((best_stretch(found, first.path, t, best.event) for t in found.knots), key=lambda s: s.log_bayes)
+        spans = {t: [*best.event.spans.get(t, ()), *more.event.spans.get(t, ())] for t in found.knots}
+        both = Stretch(Event.of({t: own for t, own in spans.items() if own}), first.path, more.log_bayes)
+        if not np.isfinite(more.log_bayes) or worth(found, both) <= worth(found, best):
+            break
+        best = both
+    return best
+
+
+def span_of(knots: Array, first: int, stop: int) -> Span:
+    """From half a spacing before a knot to half a spacing behind the last one before `stop`, inside the record."""
+    half = 0.5 * (knots[1] - knots[0])
+    return float(max(knots[first] - half, knots[0])), float(min(knots[stop - 1] + half, knots[-1]))
+
+
+def turns(one: Latent) -> list[Event]:
+    """Each pulse of a place's curves, and those of one sign together, test by test and in all."""
+    own = {test: pulses(*curve) for test, curve in one.heat_W.items()}
+    events = [Event.of({test: [span]}) for test, every in own.items() for span, _ in every]
+    for sign in (1.0, -1.0):
+        alike = {t: [span for span, level in every if level * sign > 0] for t, every in own.items()}
+        events += [Event.of({t: spans}) for t, spans in alike.items() if len(spans) > 1]
+        if sum(len(spans) > 0 for spans in alike.values()) > 1:
+            events.append(Event.of({t: spans for t, spans in alike.items() if spans}))
+    return events
+
+
+def pulses(knots: Array, q: Array, sd: Array) -> list[Pulse]:
+    """Stretches in which a missing-heat curve stands on another level than most of the time."""
+    import ruptures
+
+    if q.size < 4:
+        return []
+    noise = float(np.median(sd))
+    ends = ruptures.Pelt(model="l2", min_size=1, jump=1).fit(q[:, None] / noise).predict(PENALTY * np.log(q.size))
+    pieces = list(pairwise([0, *ends]))
+    level = [float(np.mean(q[a:b])) for a, b in pieces]
+    usual = float(np.median(np.repeat(level, [b - a for a, b in pieces])))
+    clear = [(p, x - usual) for p, x in zip(pieces, level, strict=True) if abs(x - usual) > CLEAR * noise]
+    return joined((span_of(knots, a, b), x) for (a, b), x in clear)
+
+
+def joined(found: Iterable[Pulse]) -> list[Pulse]:
+    """Neighbouring pulses of one sign as one."""
+    out: list[Pulse] = []
+    for (a, b), x in found:
+        if out and out[-1][0][1] >= a - 1e-6 and out[-1][1] * x > 0:
+            (c, d), y = out[-1]
+            out[-1] = ((c, b), (y * (d - c) + x * (b - a)) / (b - c))
+        else:
+            out.append(((a, b), x))
+    return out
+
+
+def throughout(found: Hats, event: Event) -> bool:
+    """Does it last nearly all of its only test?"""
+    test, *others = event.tests
+    return not others and sum(b - a for a, b in event.every) > WHOLE * float(np.ptp(found.knots[test]))
+
+
+def worth(found: Hats, s: Stretch) -> float:
+    """Evidence less the price of when: the log of how many stretches there are among the knots."""
+    size = {t: k.size for t, k in found.knots.items()}
+    return s.log_bayes - sum(
+        len(own) * float(np.log(0.5 * size[t] * (size[t] + 1))) for t, own in s.event.spans.items()
+    )
+
+
+def distinct(ordered: Sequence[Stretch], most: int) -> list[Stretch]:
+    """The first of those that overlap."""
+    out: list[Stretch] = []
+    for s in ordered:
+        if len(out) < most and all(overlap(s.event, t.event) < ALIKE for t in out):
+            out.append(s)
+    return out
+
+
+def overlap(a: Event, b: Event) -> float:
+    """Time in both over time in either."""
+    both = sum(max(0.0, min(y, d) - max(x, c)) for t in a.spans for x, y in a.spans[t] for c, d in b.spans.get(t, ()))
+    every = sum(y - x for e in (a, b) for x, y in e.every)
+    return both / max(every - both, 1e-12)

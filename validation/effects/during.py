@@ -1,0 +1,105 @@
+"""An effect that holds in one test, or for a while: any other, times an input that says when."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
+
+from geom.errors import InputError
+from lumped.laws import CLOCK, Law
+from lumped.network import Link, Network, Parameter, Source
+from validation.doubt import USUAL
+from validation.effects.base import Effect, Scene, with_parameter
+from validation.effects.build import Shaped, copy_link, copy_source
+from validation.effects.gate import Event, Gate, event
+
+IN = " in "
+SAME = ("kind", "title", "unit", "at", "source", "isolating_test", "typical", "sign", "prior_sd", "low", "high",
+        "neutral", "confused_with", "needs", "fault")  # fmt: skip
+
+
+@dataclass(frozen=True)
+class During(Effect):
+    """Another effect while a gate is open: "kind@place in GATE", GATE a test, an event or an input of 0 to 1.
+
+    share : prior probability of this one among all conditions, when it held included
+    """
+
+    base: Effect
+    gate: str
+    share: float = field(default=1.0, compare=False)
+
+    def __post_init__(self) -> None:
+        for name in SAME:  # of this one, as they are of the other
+            object.__setattr__(self, name, getattr(self.base, name))
+        object.__setattr__(self, "prior_sd", USUAL["switched"] * self.base.prior_sd)
+        mapping = "offset" if self.base.mapping == "offset" else "amplitude"
+        object.__setattr__(self, "mapping", mapping)
+
+    @classmethod
+    def of(cls, base: Effect, gate: str, share: float = 1.0) -> During:
+        return cls(f"{base.place}{IN}{gate}", base, gate, share)
+
+    @property
+    def event(self) -> Event | None:
+        """When it held, where that is not all of a test or what an input says."""
+        return event(self.gate)
+
+    @property
+    def tests(self) -> tuple[str, ...]:
+        return self.event.tests if self.event else (self.gate,)
+
+    @property
+    def words(self) -> str:
+        """Where and when."""
+        return f"at {self.base.place} {self.event.words if self.event else f'in {self.gate}'}"
+
+    @classmethod
+    def where(cls, scene: Scene) -> Iterable[str]:
+        """Nowhere by itself: readings say which of the many there could be."""
+        return ()
+
+    def extend(self, network: Network) -> Network:
+        grown = self.base.extend(network)
+        own = replace(grown.parameters[-1], prior_sd=USUAL["switched"] * grown.parameters[-1].prior_sd)
+        if own.mapping == "amplitude":
+            return self._gated(network, grown, own)
+        if own.mapping == "offset":
+            return with_parameter(network, replace(own, name=self.name, targets=self._in_test(own)))
+        return self._copied(network, own)
+
+    def _in_test(self, own: Parameter) -> tuple[tuple[str, float], ...]:
+        return tuple((f"{target}{IN}{self.gate}", factor) for target, factor in own.targets)
+
+    def _law(self, law: Law, factor: float = 1.0) -> Law:
+        return Shaped(law, Gate(self.gate, factor), law.temperature, (CLOCK,))
+
+    def _gated(self, network: Network, grown: Network, own: Parameter) -> Network:
+        """What the other effect adds, times the gate."""
+        links, sources = grown.links[len(network.links) :], grown.sources[len(network.sources) :]
+        items: list[Link | Source] = [*links, *sources]
+        new = {x.name: f"{x.name}{IN}{self.gate}" for x in items}
+        parameters = tuple(
+            replace(p, targets=tuple((new.get(t, t), e) for t, e in p.targets))
+            for p in (*grown.parameters[:-1], replace(own, name=self.name))
+        )
+        return replace(
+            network, parameters=parameters,
+            links=(*network.links, *(replace(x, name=new[x.name], law=self._law(x.law)) for x in links)),
+            sources=(*network.sources, *(replace(x, name=new[x.name], law=self._law(x.law)) for x in sources)),
+        )  # fmt: skip
+
+    def _copied(self, network: Network, own: Parameter) -> Network:
+        """A share of what is there, more or less while the gate is open."""
+        links, sources = {x.name: x for x in network.links}, {x.name: x for x in network.sources}
+        names = []
+        for target, exponent in own.targets:
+            if target not in links and target not in sources:
+                raise InputError(f"'{self.base.name}' cannot hold for a while", self.name, "a film, a flow or a loss")
+            names.append(f"{self.name}:{target}")
+            if target in links:
+                network = copy_link(network, links[target], names[-1], self._law(links[target].law, exponent))
+            else:
+                network = copy_source(network, sources[target], names[-1], self._law(sources[target].law, exponent))
+        amplitude = replace(own, name=self.name, targets=tuple((n, 1.0) for n in names), mapping="amplitude")
+        return with_parameter(network, replace(amplitude, value=0.0, neutral=0.0))
