@@ -310,8 +310,14 @@ class Measure:
         """The segments without what the model error explains of their residuals."""
         if self.factor is None or error is None:
             return list(parts)
-        d = cho_solve(self.factor, self.along(self.white([s.r[:, None] for s in parts])))[:, 0]
+        d = self.doubts(parts)
         return [replace(s, r=s.r - error.of(s) @ d) for s in parts]
+
+    def doubts(self, parts: Sequence[Segment]) -> Array:
+        """(d,) deviations of the doubts that explain residuals best."""
+        if self.factor is None:
+            return np.zeros(0)
+        return np.asarray(cho_solve(self.factor, self.along(self.white([s.r[:, None] for s in parts])))[:, 0])
 
 
 def residual_noise(fit: Fit) -> Noise:

@@ -139,12 +139,47 @@ class Happening:
 
 
 @dataclass(frozen=True)
+class Remainder:
+    """A record that stays off with what is named in the model.
+
+    error_K : rms;  model_K : how much of it the doubts of the model take away;  doubt : the one that does most of it
+    effect : a second effect that would bring it to brought_K, with its probability;  test : the test that shows it
+    """
+
+    channel: str
+    record: str
+    error_K: float
+    model_K: float
+    doubt: str
+    effect: str
+    probability: float
+    brought_K: float
+    test: str
+
+    @property
+    def words(self) -> str:
+        said = f"{self.channel} is still {self.error_K:.1f} K off in {self.record}"
+        if self.model_K > 0.5 * self.error_K:
+            said += f"; {self.model_K:.1f} K of it is within the doubts of the model, most of all {self.doubt}"
+        if not self.effect:
+            return f"{said}; no second effect explains it."
+        return (
+            f"{said}; {self.effect} would bring it to {self.brought_K:.1f} K (probability {self.probability:.2f}). "
+            f"To tell: {self.test}."
+        )
+
+    def document(self) -> dict:
+        return {**vars(self), "words": self.words}
+
+
+@dataclass(frozen=True)
 class Diagnosis:
     """The answer. named : the effects to add, best first (one per group); words : the verdict in a sentence.
 
     bases : every base that a test may have stood on, where the network knows several
     odds : every hypothesis that carries weight, most probable first, summing to one;  p_nothing : of nothing missing
     events : when something may have been different for a while, most probable first
+    remainder : what is still off with what is named in the model
     """
 
     verdict: Verdict
@@ -165,6 +200,7 @@ class Diagnosis:
     odds: tuple[Odds, ...] = ()
     p_nothing: float = 1.0
     events: tuple[Happening, ...] = ()
+    remainder: tuple[Remainder, ...] = ()
 
     def document(self) -> dict:
         return {
@@ -180,6 +216,7 @@ class Diagnosis:
             "odds": [o.document() for o in self.odds],
             "p_nothing": self.p_nothing,
             "events": [e.document() for e in self.events],
+            "remainder": [r.document() for r in self.remainder],
             "rmse_K": self.rmse_K,
             "floor_K": self.floor_K,
             "threshold": self.threshold,

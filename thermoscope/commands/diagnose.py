@@ -44,6 +44,8 @@ def show(document: Mapping[str, Any]) -> None:
         _searched(document)
         show_budget(document.get("error_budget", {}))
     say(f"{document['verdict']}: {document['words']}")
+    for row in document["remainder"]:
+        say(row["words"])
 
 
 def _searched(document: Mapping[str, Any]) -> None:

@@ -179,9 +179,10 @@ def nodes(network: Network, test: Test, values: Mapping[str, float], own: Sequen
 
 @dataclass(frozen=True)
 class ModelError:
-    """columns : (test, channel) -> (n, d) change of the readings (K) by one deviation of each doubt."""
+    """columns : (test, channel) -> (n, d) change of the readings (K) by one deviation of each doubt;  names (d,)"""
 
     columns: Mapping[tuple[str, str], Array]
+    names: tuple[str, ...]
 
     def of(self, segment: Segment) -> Array:
         return self.columns[segment.test, segment.channel]
@@ -213,7 +214,16 @@ def model_error(
         beside = placements(network, test, values, doubt, sensed or tests)
         flow = flows(network, test, values, doubt, parts)
         out |= {(s.test, s.channel): np.column_stack([s.J * scale, beside[s.channel], flow[s.channel]]) for s in parts}
-    return ModelError(out)
+    return ModelError(out, named(network, doubts, cores, doubt, sensed or tests))
+
+
+def named(
+    network: Network, doubts: Sequence[Parameter], cores: Sequence[Parameter], doubt: Doubt, tests: Sequence[Test]
+) -> tuple[str, ...]:
+    """What each column stands for."""
+    own = [p.name.removeprefix("doubt:") for p in (*doubts, *cores)]
+    beside = [f"{n} in the reading of {c}" for c, n, _ in sensed_beside(network, tests, doubt)]
+    return (*own, *beside, "flow of air", "flow of liquid")
 
 
 def flows(
@@ -232,8 +242,7 @@ def placements(
     network: Network, test: Test, values: Mapping[str, float], doubt: Doubt, tests: Sequence[Test]
 ) -> dict[str, Array]:
     """Channel -> (n, c): a share of each neighbour's temperature in its reading, a column per sensor and neighbour."""
-    sensors = {c.name: c for t in tests for c in t.channels}
-    pairs = [(c.name, n, share) for c in sensors.values() for n, share in neighbours(network, c, doubt)]
+    pairs = sensed_beside(network, tests, doubt)
     here = {c.name: c for c in test.channels}
     virtual = [_virtual(here[c], network.places[n].mean, f"{i}:{c}") for i, (c, n, _) in enumerate(pairs) if c in here]
     own = [_virtual(c, c.row, c.name) for c in test.channels]
@@ -242,6 +251,12 @@ def placements(
     now = {k: v for k, v in values.items() if k in known}
     parts = {s.channel: s for s in segments(plain, [replace(test, channels=(*own, *virtual))], now)}
     return {c.name: _beside(c.name, pairs, parts) for c in test.channels if c.name in parts}
+
+
+def sensed_beside(network: Network, tests: Sequence[Test], doubt: Doubt) -> list[tuple[str, str, float]]:
+    """Every sensor, each place beside its own, and the share (one sigma) of that in its reading."""
+    sensors = {c.name: c for t in tests for c in t.channels}
+    return [(c.name, n, share) for c in sensors.values() for n, share in neighbours(network, c, doubt)]
 
 
 def _beside(channel: str, pairs: Sequence[tuple[str, str, float]], parts: Mapping[str, Segment]) -> Array:

@@ -19,6 +19,7 @@ from validation.inference.detection import smallest, thresholds
 from validation.inference.evidence import Evidence, deviance
 from validation.inference.posterior import Hypothesis, Posterior, inclusion, probabilities
 from validation.inference.refits import laplace
+from validation.inference.remainder import remainder
 from validation.planning.contenders import Contenders
 from validation.planning.experiments import next_tests
 from validation.planning.sensors import next_sensors
@@ -52,6 +53,7 @@ def tabulate(
         next_tests=tuple(tests), next_sensors=tuple(sensors), rmse_K=rmse(e.fit.parts), floor_K=floor(e),
         threshold=float(np.min(thresholds(e))), pulls=pulls, cosine=confusion(e, [c.effect for c in rows[:12]]),
         bases=bases, odds=odds(posterior), p_nothing=1.0 - choice.sure, events=happenings(posterior),
+        remainder=remainder(posterior, choice, single),
     )  # fmt: skip
 
 

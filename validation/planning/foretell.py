@@ -20,7 +20,7 @@ from validation.predict import predict
 from validation.sheet import segments
 
 Array = NDArray[np.float64]
-CHECKED = 3
+CHECKED = 2  # of the best plans are refitted: each costs as much as a refit of the diagnosis
 STEPS, ENOUGH = 4, 1.0  # of a rival's refit, and the gain (nats) of one: gaps are told in tens
 
 
@@ -55,12 +55,12 @@ def proven(evidence: Evidence, found: Contenders, promised: Iterable[Plan]) -> l
     """The plans with what is left of the gaps that tangents promise, best gain per hour first.
 
     Tangents promise too much: they do not know how far the rivals can bend. Refits show how much for the first CHECKED
-    plans and the pairs that might come apart; what was not refitted keeps the largest share that any of those kept.
+    plans and, in each, the closest pair that might come apart: that pair is the plan's gain. What was not refitted keeps
+    the largest share that any of those kept.
     """
     plans = sorted(promised, key=lambda p: -p.worth)
     kept: list[Gaps] = [
-        {pair: foretold(evidence, found, p.tests, pair) for pair, g in p.gaps.items() if g >= GAP}
-        for p in plans[:CHECKED]
+        {pair: foretold(evidence, found, p.tests, pair) for pair in closest(p.gaps)} for p in plans[:CHECKED]
     ]
     kept += [{}] * (len(plans) - len(kept))
     shares = [g / p.gaps[pair] for own, p in zip(kept, plans, strict=True) for pair, g in own.items()]
@@ -70,6 +70,11 @@ def proven(evidence: Evidence, found: Contenders, promised: Iterable[Plan]) -> l
         for own, p in zip(kept, plans, strict=True)
     ]
     return sorted(left, key=lambda p: -p.worth)
+
+
+def closest(gaps: Gaps) -> list[tuple[int, int]]:
+    """The pair with the smallest gap among those that might come apart; none if none does."""
+    return sorted((pair for pair, gap in gaps.items() if gap >= GAP), key=lambda pair: gaps[pair])[:1]
 
 
 def foretold(evidence: Evidence, found: Contenders, new: Sequence[Test], pair: tuple[int, int]) -> float:
@@ -104,4 +109,4 @@ def widened_error(evidence: Evidence, more: Sequence[Test]) -> ModelError | None
     if fit.error is None:
         return None
     new = model_error(fit.network, more, fit.values, sensed=evidence.tests)
-    return ModelError({**fit.error.columns, **new.columns})
+    return ModelError({**fit.error.columns, **new.columns}, new.names)
