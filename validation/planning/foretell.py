@@ -55,7 +55,7 @@ def proven(evidence: Evidence, found: Contenders, promised: Iterable[Plan]) -> l
     """The plans with what is left of the gaps that tangents promise, best gain per hour first.
 
     Tangents promise too much: they do not know how far the rivals can bend. Refits show how much for the first CHECKED
-    plans and, in each, the closest pair that might come apart: that pair is the plan's gain. What was not refitted keeps
+    plans and, in each, the closest pair that might come apart: it is the gain of the plan. What was not refitted keeps
     the largest share that any of those kept.
     """
     plans = sorted(promised, key=lambda p: -p.worth)
