@@ -15,7 +15,7 @@ import json
 import platform
 from pathlib import Path
 
-from hidden import sizes
+from hidden import sizes, temper
 from hidden.cases import SHARES, plan
 from hidden.kinds import KINDS
 from hidden.odds import reliability
@@ -66,7 +66,16 @@ def main() -> None:
         told += f"{r['peer_name']} {r['peer']:.3g}" if "peer" in r else ""
         print(f"{r['case']:32s} {r['measure']:30s} {r['ours']:8.3g} {r['unit']}{told}")
     if a.page:
-        a.page.write_text("\n\n".join([markdown(table), "\n".join(diagram(reliability(pairs(out))))]) + "\n")
+        a.page.write_text(
+            "\n\n".join(
+                [
+                    markdown(table),
+                    "\n".join(diagram(reliability(pairs(out)))),
+                    "\n".join(temper.markdown(temper.folds(pairs(out)))),
+                ]
+            )
+            + "\n"
+        )
     if a.json:
         computer = f"{platform.machine()}, {platform.processor() or platform.system()}"
         document = {

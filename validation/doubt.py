@@ -97,7 +97,7 @@ RARE: Mapping[str, Odds] = MappingProxyType({
     "loss.factor": Odds(0.3, "calibration moves declared losses already"),
 })  # fmt: skip
 
-TEMPER = Odds(1.0, "log evidence counts as it is; not yet set on machine kinds of their own")
+TEMPER = Odds(1.75, "divides log evidence: no model is quite right; any six of seven machine kinds ask for it")
 SIZES = (0.3, 1.0, 3.0)  # of an effect's usual size: nobody knows it better than within a decade
 
 # What a statement costs; a wrong name is one.
