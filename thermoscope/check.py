@@ -9,7 +9,8 @@ import sys
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 
-from thermoscope.terminal import give, progress, table
+from thermoscope.answer import Answer
+from thermoscope.terminal import give, progress
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "microsoft-edge")
 VULKAN = "apt-get install -y libvulkan1 mesa-vulkan-drivers"
@@ -92,12 +93,18 @@ def check(target: str | None) -> int:
         tell("looking for graphics")
         found = findings()
     document = {"ready": all(f.found for f in found if f.needed), "checks": [asdict(f) for f in found]}
-    give(document, target, lambda: show(found))
+    give(document, target, lambda: answer(found))
     return 0 if document["ready"] else 1
 
 
-def show(found: list[Finding]) -> None:
-    """A row per check."""
-    word = {(True, True): "yes", (True, False): "yes", (False, True): "MISSING", (False, False): "no (optional)"}
-    rows = [[f.name, word[f.found, f.needed], f.needed_for, f.fix] for f in found]
-    table("This computer", ["what", "there", "needed for", "install it with"], rows, marked=["MISSING"])
+def answer(found: list[Finding]) -> Answer:
+    """What is missing, and the command that fixes it."""
+    missing = [f.name for f in found if f.needed and not f.found]
+    lines = [_line(f) for f in found]
+    sentence = f"This computer lacks {', '.join(missing)}." if missing else "This computer has all that is needed."
+    return Answer(sentence, lines)
+
+
+def _line(f: Finding) -> str:
+    state = "there" if f.found else "MISSING" if f.needed else "not there (optional)"
+    return f"{f.name}: {state}; for {f.needed_for}" + (f". Install it with: {f.fix}" if f.fix else "")

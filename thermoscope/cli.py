@@ -10,14 +10,17 @@ from typing import Annotated
 import typer
 
 from geom.errors import ThermoscopeError
+from thermoscope.answer import LINES, within
 from thermoscope.files import checked_out, checked_target
 
 app = typer.Typer(
     help="See where your motor's thermal model is wrong, and why.",
     epilog="Exit codes: 0 done; 1 the model disagrees, or nothing was found; 2 the input is wrong. "
-    "--debug after any command shows where an error came from.",
+    "--all after any command shows all it knows; --debug where an error came from.",
     no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False, rich_markup_mode=None,
 )  # fmt: skip
+
+ANYWHERE = ("--all", "--debug")  # options of every command
 
 # Read when NumPy is imported. The matrices of a diagnosis are small: threads of BLAS would mostly wait for each other.
 BLAS_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
@@ -340,9 +343,10 @@ def main() -> None:
     """Run the command line and exit; what is wrong with the input is one message on stderr and exit code 2."""
     for name in BLAS_THREADS:
         os.environ.setdefault(name, "1")
-    arguments = [a for a in sys.argv[1:] if a != "--debug"]
+    arguments = [a for a in sys.argv[1:] if a not in ANYWHERE]
     try:
-        app(arguments, prog_name="thermoscope")
+        with within(None if "--all" in sys.argv else LINES):
+            app(arguments, prog_name="thermoscope")
     except (ThermoscopeError, OSError) as fault:
         if "--debug" in sys.argv:
             raise

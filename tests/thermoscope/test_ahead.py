@@ -1,28 +1,27 @@
 """What would decide is shown only where something would."""
 
-from thermoscope.commands.ahead import show_ahead
+from thermoscope.commands.ahead import ahead
 
 
-def shown(capsys, **document):
-    show_ahead({"next_tests": [], "next_sensors": [], **document})
-    return capsys.readouterr().out
+def shown(**document):
+    return str(ahead({"next_tests": [], "next_sensors": [], **document}))
 
 
 def planned(name, gain, *separates):
     return {"test": name, "separates": list(separates), "predicted_gain": gain, "hours": 2.0}
 
 
-def test_a_test_that_separates_is_shown_and_the_others_are_not(capsys):
-    out = shown(capsys, next_tests=[planned("blower on", 31.0, "a@b / c@d"), planned("spin", 4.0)])
+def test_a_test_that_separates_is_shown_and_the_others_are_not():
+    out = shown(next_tests=[planned("blower on", 31.0, "a@b / c@d"), planned("spin", 4.0)])
     assert "blower on" in out
     assert "spin" not in out
 
 
-def test_that_none_would_decide_is_said_with_the_nearest(capsys):
-    out = shown(capsys, next_tests=[planned("spin", 4.0), planned("blower on", 7.0)])
+def test_that_none_would_decide_is_said_with_the_nearest():
+    out = shown(next_tests=[planned("spin", 4.0), planned("blower on", 7.0)])
     assert "No test of the menu" in out
     assert "blower on" in out
 
 
-def test_nothing_is_said_where_there_is_no_group(capsys):
-    assert shown(capsys) == ""
+def test_nothing_is_said_where_there_is_no_group():
+    assert shown() == ""

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from geom.errors import InputError
+from thermoscope.answer import Answer, Grid
 from thermoscope.commands import crosscheck
 from thermoscope.folder import load_machine_file
-from thermoscope.terminal import give, progress, say, table
+from thermoscope.terminal import give, progress
 
 if TYPE_CHECKING:
     from geom.mesh import NamedMesh
@@ -43,7 +44,7 @@ def build(machine: str, out: Path | None, target: str | None, accuracy: float | 
         write_vtu(built.mesh, folder / f"{described.name}.vtu")
         document = {**described_as(built, solids), **checked, **({} if found is None else {"sizes": found.document()})}
         crosscheck.save(document, folder)
-    give(document, target, lambda: show(document, folder))
+    give(document, target, lambda: answer(document, folder))
     return 0 if found is None or found.met else 1
 
 
@@ -88,17 +89,20 @@ def mesh_volumes(mesh: NamedMesh) -> dict[str, float]:
     return dict(zip(mesh.parts, np.bincount(mesh.region, sizes, len(mesh.parts)).tolist(), strict=True))
 
 
-def show(document: Mapping[str, Any], folder: Path) -> None:
-    """Parts, error against size, the field against the network, and where the files are."""
+def answer(document: Mapping[str, Any], folder: Path) -> Answer:
+    """How well the network agrees with the field, part by part, and where the files are."""
+    mesh, network = document["mesh"], document["network"]
+    worst = crosscheck.worst(document)
+    off = abs(worst["percent_of_rise"])
+    sentence = (f"{document['machine']}: a network of {network['nodes']} states from {mesh['tets']} tetrahedra; "
+                f"means within {off:.2g} % of the rise (worst: {worst['place']}).")  # fmt: skip
     headers = ["part", "material", "volume (l)", "in the mesh (l)", "mass (kg)", "to fluids (m2)", "to parts (m2)",
                "watertight"]  # fmt: skip
-    table("Parts", headers, [_row(part) for part in document["parts"]], marked=["NO"])
-    if "sizes" in document:
-        show_sizes(document["sizes"])
-    crosscheck.show(document, folder)
-    mesh, network = document["mesh"], document["network"]
-    say(f"mesh: {mesh['nodes']} points, {mesh['tets']} tetrahedra")
-    say(f"network: {network['nodes']} states, {network['links']} links; files in {folder}")
+    parts = Grid("Parts", headers, [_row(part) for part in document["parts"]], ["NO"], ["mass (kg)", "watertight"])
+    sizes = _sizes(document["sizes"]) if "sizes" in document else []
+    shown = [*sizes, crosscheck.parts(document), parts]
+    rest = [crosscheck.links(document), crosscheck.hand(document)]
+    return Answer(sentence, shown, f"solids, mesh and tables in {folder}; --json FILE", rest)
 
 
 def _row(part: Mapping[str, Any]) -> list[Any]:
@@ -107,7 +111,7 @@ def _row(part: Mapping[str, Any]) -> list[Any]:
     return [part["name"], part["material"], *litres, part["mass_kg"], *areas, "yes" if part["watertight"] else "NO"]
 
 
-def show_sizes(sizes: Mapping[str, Any]) -> None:
+def _sizes(sizes: Mapping[str, Any]) -> list[Grid | str]:
     """Error against number of states, and what the guard saw at points nothing was fitted to."""
     wish = sizes["wish_percent"]
     rows = [["means only" if not s["asked"] else f"up to {s['asked']}", *_errors(s)] for s in sizes["sizes"]]
@@ -116,10 +120,13 @@ def show_sizes(sizes: Mapping[str, Any]) -> None:
     ]
     title = f"Error in % of a part's rise (wish: means {wish['mean']:g}, hot spots and points {wish['hot']:g})"
     headers = ["network", "states", "mean", "hot spot", "point", "mean, random", "hot, random", "point, random", "met"]
-    table(title, headers, rows)
+    missed: list[Grid | str] = []
     if not sizes["met"]:
-        worst = sizes["guard"][-1]["random"]
-        say(f"the wish is missed: mean {worst['mean_part']}, hot spot {worst['hot_part']}, point {worst['point_part']}")
+        bad = sizes["guard"][-1]["random"]
+        missed = [
+            f"The wish is missed: mean {bad['mean_part']}, hot spot {bad['hot_part']}, point {bad['point_part']}."
+        ]
+    return [Grid(title, headers, rows, keep=["states", "mean, random", "hot, random", "met"]), *missed]
 
 
 def _errors(size: Mapping[str, Any]) -> Sequence[Any]:

@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from thermoscope.commands.error_budget import show_budget
+from thermoscope.answer import Answer, Grid
+from thermoscope.commands.error_budget import budget, in_short
 from thermoscope.commands.opened import opened
-from thermoscope.terminal import give, progress, say, table
+from thermoscope.terminal import give, progress
 
 EVIDENT = 10.0  # nats
 WHITE = 0.01
+RULE = "within: rms up to 2 sigma, or up to 4 % of the rise"
 TURNS = {True: "yes", False: "no", None: ""}
 
 
@@ -27,63 +29,94 @@ def compare(case: str, target: str | None, why: bool = False) -> int:
         more = failing(folder.case, tell).document() if why else {}
         budgets = budgets_of_tests(folder, tell)
     document = {**result.document(), **more, "error_budget": documents(budgets)}
-    give(document, target, lambda: show(document))
+    give(document, target, lambda: answer(document))
     return 0 if result.agrees else 1
 
 
-def show(document: Mapping[str, Any]) -> None:
-    """A table per test, and the whole in one sentence."""
-    headers = ["sensor", "place", "n", "rms (K)", "bias (K)", "largest (K)", "1 sigma (K)", "% of rise", "verdict"]
-    keys = ["channel", "place", "n", "rmse_K", "bias_K", "max_abs_K", "sigma_K", "percent_of_rise", "verdict"]
-    for test in document["tests"]:
-        title = f"{test['name']} ({test['role']}): rms {test['rmse_K']:.2f} K"
-        table(title, headers, [[c[k] for k in keys] for c in test["channels"]], marked=["over"])
-    if "patterns" in document:
-        show_why(document)
-    show_roles(document["roles"])
-    show_budget(document["error_budget"])
-    model, over = document["model"], [c for t in document["tests"] for c in t["channels"] if c["verdict"] == "over"]
+def answer(document: Mapping[str, Any]) -> Answer:
+    """How many sensors are over, which, and what the rest looks like."""
+    records = [{"test": t["name"], **c} for t in document["tests"] for c in t["channels"]]
+    over = sorted((r for r in records if r["verdict"] == "over"), key=lambda r: -r["rmse_K"] / r["sigma_K"])
+    model = document["model"]
     effects = f" with {', '.join(model['effects'])}" if model["effects"] else ""
-    say(
-        f"{document['case']}, revision {model['revision']}{effects}: rms {document['rmse_K']:.2f} K; the sensors' own "
-        f"uncertainty explains {document['floor_K']:.2f} K; {len(over)} sensor records out of tolerance"
-    )
+    found = f"{len(over)} of {len(records)} sensor records are over" if over else f"all {len(records)} sensors within"
+    sentence = (f"{document['case']}, revision {model['revision']}{effects}: {found}; rms {document['rmse_K']:.2f} K, "
+                f"the sensors' own uncertainty explains {document['floor_K']:.2f} K.")  # fmt: skip
+    why = _why(document) if "patterns" in document else []
+    parts = [*why, tests(document["tests"]), records_of("Over: error is measured - model", over),
+             in_short(document["error_budget"]), roles_in_short(document["roles"])]  # fmt: skip
+    rest = [*(records_of(f"{t['name']} ({t['role']})", [{"test": t["name"], **c} for c in t["channels"]])
+              for t in document["tests"]), roles(document["roles"]), *budget(document["error_budget"])]  # fmt: skip
+    return Answer(sentence, parts, f"{RULE}; --why, --json FILE; thermoscope report {document['case']}", rest)
 
 
-def show_roles(roles: Sequence[Mapping[str, Any]]) -> None:
-    """What was guessed, with its evidence, and how to say it; nothing where all is declared."""
-    guessed = [r for r in roles if r["known"] == "guessed"]
+def tests(found: Sequence[Mapping[str, Any]]) -> Grid:
+    """A row per test."""
+    rows = [[t["name"], t["role"], len(t["channels"]), sum(c["verdict"] == "over" for c in t["channels"]), t["rmse_K"]]
+            for t in found]  # fmt: skip
+    return Grid("", ["test", "role", "sensors", "over", "rms (K)"], rows, keep=["rms (K)", "over"])
+
+
+def records_of(title: str, records: Sequence[Mapping[str, Any]]) -> Grid:
+    """A row per sensor."""
+    headers = [
+        "sensor",
+        "test",
+        "place",
+        "n",
+        "rms (K)",
+        "bias (K)",
+        "largest (K)",
+        "1 sigma (K)",
+        "% of rise",
+        "verdict",
+    ]
+    keys = ["channel", "test", "place", "n", "rmse_K", "bias_K", "max_abs_K", "sigma_K", "percent_of_rise", "verdict"]
+    keep = ["test", "rms (K)", "bias (K)", "verdict", "1 sigma (K)"]
+    return Grid(title, headers, [[r[k] for k in keys] for r in records], ["over"], keep)
+
+
+def roles_in_short(found: Sequence[Mapping[str, Any]]) -> str:
+    """How many roles nobody declares; "" where all are."""
+    guessed = [r["name"] for r in found if r["known"] == "guessed"]
     if not guessed:
-        return
-    rows = [[r["name"], r["role"] or "?", TURNS[r["turns"]], r["evidence"]] for r in guessed]
-    table("Roles that nobody declares, guessed from topology and losses", ["name", "role", "turns", "evidence"], rows)
-    missing = sum(r["role"] is None for r in guessed)
-    say(
-        f"{len(guessed)} roles guessed, {missing} of them unknown: the diagnosis places effects by them. "
-        'Say role = "..." in [nodes.NAME] or [boundaries.NAME] of network.toml'
-    )
+        return ""
+    unknown = sum(r["role"] is None for r in found if r["known"] == "guessed")
+    how = 'say role = "..." in network.toml'
+    return f"{len(guessed)} roles are guessed, {unknown} of them unknown; effects are placed by them: {how}."
 
 
-def show_why(document: Mapping[str, Any]) -> None:
+def roles(found: Sequence[Mapping[str, Any]]) -> Grid:
+    """What was guessed, with its evidence."""
+    rows = [[r["name"], r["role"] or "?", TURNS[r["turns"]], r["evidence"]] for r in found if r["known"] == "guessed"]
+    return Grid("Roles that nobody declares", ["name", "role", "turns", "evidence"], rows)
+
+
+def _why(document: Mapping[str, Any]) -> list[Grid | str]:
     """The error against the uncertainty of readings, inputs and arithmetic; what it follows; where heat is missing."""
-    headers = ["test", "sensor", "error (K)", "u reading", "u inputs", "u numeric", "explained", "white", "follows"]
+    headers = ["sensor", "test", "error (K)", "u reading", "u inputs", "u numeric", "explained", "white", "follows"]
     left = {(p["test"], p["channel"]): p for p in document["patterns"]}
     rows = []
-    for u in document["uncertainty"]:
+    for u in sorted(document["uncertainty"], key=lambda u: bool(u["explained"])):
         numbers = [u[k] for k in ("error_K", "reading_K", "input_K", "numeric_K")]
         p = left.get((u["test"], u["channel"]))
-        rows.append([u["test"], u["channel"], *numbers, "yes" if u["explained"] else "no", *_pattern(p)])
-    table("Against all uncertainties (ASME V&V 20, standard uncertainties in K)", headers, rows, marked=["no"])
-    found = [h for h in document["where"] if h["evidence_nats"] > EVIDENT]
+        rows.append([u["channel"], u["test"], *numbers, "yes" if u["explained"] else "no", *_pattern(p)])
+    title = "Against all uncertainties (ASME V&V 20, standard uncertainties in K)"
+    keep = ["test", "error (K)", "explained", "follows"]
+    return [Grid(title, headers, rows, ["no"], keep), *_missing(document["where"])]
+
+
+def _missing(places: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Where heat is missing, and how much at most."""
+    found = [h for h in places if h["evidence_nats"] > EVIDENT]
+    lines = []
     for h in found[:3]:
         name, series = max(h["heat"].items(), key=lambda kv: max(map(abs, kv[1]["heat_W"])))
         k = max(range(len(series["heat_W"])), key=lambda i: abs(series["heat_W"][i]))
         watts, when = series["heat_W"][k], series["time_s"][k]
-        say(
-            f"heat missing at {h['place']}: {watts:+.3g} W after {when:.0f} s of {name} ({h['evidence_nats']:.0f} nats)"
-        )
-    if not found:
-        say("no place where heat is clearly missing (beyond what calibration mends)")
+        lines.append(f"Heat missing at {h['place']}: {watts:+.3g} W after {when:.0f} s of {name} "
+                     f"({h['evidence_nats']:.0f} nats).")  # fmt: skip
+    return lines or ["No place where heat is clearly missing (beyond what calibration mends)."]
 
 
 def _pattern(p: Mapping[str, Any] | None) -> list[str]:

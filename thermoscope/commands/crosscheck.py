@@ -11,9 +11,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from geom.errors import ThermoscopeError
+from thermoscope.answer import Answer, Grid
 from thermoscope.files import write_whole
 from thermoscope.folder import load_machine_file
-from thermoscope.terminal import give, plain, progress, say, table
+from thermoscope.terminal import give, plain, progress
 
 if TYPE_CHECKING:
     from thermoscope.pipeline import Built
@@ -34,7 +35,7 @@ def crosscheck(machine: str, out: Path | None, accuracy: float, target: str | No
         found = sized(described, accuracy, progress=tell)
         document = {"machine": described.name, **checked(found.built, found, tell)}
         save(document, folder)
-    give(document, target, lambda: show(document, folder))
+    give(document, target, lambda: answer(document, folder))
     return 0 if found.met else 1
 
 
@@ -111,25 +112,39 @@ def _csv(rows: Sequence[Mapping[str, Any]]) -> str:
     return text.getvalue()
 
 
-def show(document: Mapping[str, Any], folder: Path) -> None:
+def answer(document: Mapping[str, Any], folder: Path) -> Answer:
     """Parts, the links that differ most, and the hand formulas furthest off."""
+    off = worst(document)
+    sentence = (f"Steady at the rated point, network and field differ by {abs(off['percent_of_rise']):.2g} % of "
+                f"the rise at most ({off['place']}); its energy balance {document['energy_balance']:.1e}.")  # fmt: skip
     point = ", ".join(f"{name} {value:.4g}" for name, value in document["operating_point"].items())
-    headers = [
-        "part",
-        "field mean",
-        "network mean",
-        "field max",
-        "network max",
-        "off (% of rise)",
-        "field max, laws local",
-        "link that differs most",
-    ]
-    title = f"Steady at {point}, 20 degC around: temperatures (degC)"
-    table(title, headers, [list(part.values()) for part in document["crosscheck"]])
-    heats = [(link, f"{link['fem_W']:.1f}", f"{link['network_W']:.1f}") for link in document["links"][:SHOWN]]
-    table("Heat through links (W), largest difference first", ["link", "field", "network", "off (% of all heat)"],
-          [[link["link"], field, network, link["percent_of_heat"]] for link, field, network in heats])  # fmt: skip
-    hand = sorted(document["hand"], key=lambda row: -abs(row["ratio"] - 1.0))
-    table("Hand formulas (K/W), furthest off first", ["link", "formula", "textbook", "field", "ratio"],
-          [list(row.values()) for row in hand[:SHOWN]])  # fmt: skip
-    say(f"energy balance of the field: {document['energy_balance']:.1e}; all rows in {folder}/crosscheck*.csv")
+    shown = [parts(document), links(document), hand(document)]
+    return Answer(sentence, shown, f"all rows in {folder}/crosscheck*.csv; --json FILE", [f"Operating point: {point}"])
+
+
+def worst(document: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The part that is furthest off."""
+    rows: Sequence[Mapping[str, Any]] = document["crosscheck"]
+    return max(rows, key=lambda part: abs(part["percent_of_rise"]))
+
+
+def parts(document: Mapping[str, Any]) -> Grid:
+    """Temperatures by field and network, the largest difference first."""
+    headers = ["part", "field mean", "network mean", "field max", "network max", "off (% of rise)",
+               "field max, laws local", "link that differs most"]  # fmt: skip
+    rows = sorted(document["crosscheck"], key=lambda part: -abs(part["percent_of_rise"]))
+    title, keep = "Temperatures (degC), 20 degC around", ["off (% of rise)", "field mean", "network mean"]
+    return Grid(title, headers, [list(part.values()) for part in rows], keep=keep)
+
+
+def links(document: Mapping[str, Any]) -> Grid:
+    """Heat through links, the largest difference first."""
+    rows = [[link["link"], link["fem_W"], link["network_W"], link["percent_of_heat"]] for link in document["links"]]
+    return Grid("Heat through links (W)", ["link", "field", "network", "off (% of all heat)"], rows[:SHOWN])
+
+
+def hand(document: Mapping[str, Any]) -> Grid:
+    """Hand formulas, the furthest off first."""
+    rows = sorted(document["hand"], key=lambda row: -abs(row["ratio"] - 1.0))
+    body = [list(row.values()) for row in rows[:SHOWN]]
+    return Grid("Hand formulas (K/W)", ["link", "formula", "textbook", "field", "ratio"], body, keep=["ratio", "field"])

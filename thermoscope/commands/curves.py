@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from thermoscope.answer import Answer, Grid, cell
 from thermoscope.commands.opened import opened
-from thermoscope.terminal import cell, give, progress, say, table
+from thermoscope.terminal import give, progress
 
 
 def curves(case: str, resolution: float, target: str | None) -> int:
@@ -18,35 +19,42 @@ def curves(case: str, resolution: float, target: str | None) -> int:
         tell("fitting the warming curves")
         found = found_in(folder.case, resolution)
     document = found.document()
-    give(document, target, lambda: show(document))
+    give(document, target, lambda: answer(document))
     return 0 if found.agrees else 1
 
 
-def show(document: Mapping[str, Any]) -> None:
-    """Eq. 8 and eq. 9 sensor by sensor, the rule assembly by assembly, and the repeats."""
-    headers = ["test", "sensor", "a (degC)", "b", "c (1/min)", "rms (K)", "T(0)", "tau_95 (min)", "steady", "K/h"]
-    rows = [[t["name"], c["channel"], *_row(c)] for t in document["tests"] for c in t["curves"]]
-    table("Warming: T = a exp(b exp(c t)), 95 % intervals; steady by eq. 9", headers, rows, marked=["no"])
-    rows = [
-        [t["name"], a["place"], a["measured"], a["calculated"], a["percent"], a["percent_of_rise"],
-         a["U95_percent"], a["verdict"]]
-        for t in document["tests"] for a in t["assemblies"]
-    ]  # fmt: skip
-    headers = ["test", "assembly", "measured (degC)", "calculated (degC)", "%", "% of rise", "reading's 95 % (%)",
+def answer(document: Mapping[str, Any]) -> Answer:
+    """The rule assembly by assembly, the repeats, then eq. 8 and eq. 9 sensor by sensor."""
+    held = [(t["name"], a) for t in document["tests"] for a in t["assemblies"]]
+    over = sum(a["verdict"] != "within" for _, a in held)
+    rows = [[a["place"], name, a["measured"], a["calculated"], a["percent"], a["percent_of_rise"], a["U95_percent"],
+             a["verdict"]] for name, a in held]  # fmt: skip
+    headers = ["assembly", "test", "measured (degC)", "calculated (degC)", "%", "% of rise", "reading's 95 % (%)",
                "verdict"]  # fmt: skip
-    table("Within 3 to 4 % of the measured temperature, never above 7 %", headers, rows, marked=["beyond 7 %"])
-    rows = [
-        [", ".join(r["tests"]), r["place"], r["mean"], r["sd_mean"], r["spread"], r["limit"],
-         "yes" if r["repeat"] else "no"]
-        for r in document["repeats"]
-    ]  # fmt: skip
-    if rows:
-        headers = ["equal tests", "place", "mean rise (K)", "1 sigma (K)", "largest difference", "95 % limit", "repeat"]
-        table("Equal tests pooled", headers, rows, marked=["no"])
-    for t in document["tests"]:
-        for c in t["curves"]:
-            for words in [*((c["eq8"] or {}).get("warnings", [])), *([c["why"]] if c["why"] else [])]:
-                say(f"{t['name']}, {c['channel']}: {words}")
+    rule = Grid("Within 3 to 4 % of the measured temperature, never above 7 %", headers, rows, ["beyond 7 %"],
+                ["test", "%", "verdict"])  # fmt: skip
+    sentence = f"{len(held) - over} of {len(held)} assemblies are within the 3 to 4 % rule."
+    parts: list[Grid | str] = [rule, _repeats(document), _warming(document), *_doubts(document)]
+    return Answer(sentence, parts, "--json FILE")
+
+
+def _warming(document: Mapping[str, Any]) -> Grid:
+    headers = ["sensor", "test", "a (degC)", "b", "c (1/min)", "rms (K)", "T(0)", "tau_95 (min)", "steady", "K/h"]
+    rows = [[c["channel"], t["name"], *_row(c)] for t in document["tests"] for c in t["curves"]]
+    keep = ["test", "tau_95 (min)", "steady", "rms (K)"]
+    return Grid("Warming: T = a exp(b exp(c t)), 95 % intervals; steady by eq. 9", headers, rows, ["no"], keep)
+
+
+def _repeats(document: Mapping[str, Any]) -> Grid:
+    rows = [[r["place"], ", ".join(r["tests"]), r["mean"], r["sd_mean"], r["spread"], r["limit"],
+             "yes" if r["repeat"] else "no"] for r in document["repeats"]]  # fmt: skip
+    headers = ["place", "equal tests", "mean rise (K)", "1 sigma (K)", "largest difference", "95 % limit", "repeat"]
+    return Grid("Equal tests pooled", headers, rows, ["no"], ["repeat", "mean rise (K)", "equal tests"])
+
+
+def _doubts(document: Mapping[str, Any]) -> list[str]:
+    return [f"{t['name']}, {c['channel']}: {words}" for t in document["tests"] for c in t["curves"]
+            for words in [*((c["eq8"] or {}).get("warnings", [])), *([c["why"]] if c["why"] else [])]]  # fmt: skip
 
 
 def _row(c: Mapping[str, Any]) -> list[Any]:

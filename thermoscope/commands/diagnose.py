@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
-from thermoscope.commands.ahead import show_ahead
-from thermoscope.commands.bases import show_bases
-from thermoscope.commands.error_budget import show_budget
+from thermoscope.answer import Answer, Grid, cell
+from thermoscope.commands.ahead import ahead
+from thermoscope.commands.bases import bases_tried
+from thermoscope.commands.error_budget import budget, in_short
 from thermoscope.commands.opened import opened
 from thermoscope.commands.saved import save_diagnosis
-from thermoscope.terminal import give, notes, progress, say, sized, table
+from thermoscope.terminal import give, notes, progress, sized
 
-ROWS = 10
+ODDS, ROWS = 5, 10  # shown of hypotheses and of candidates
 SHOWN = 0.005  # probabilities below half a per cent are in --json
 
 
@@ -31,46 +32,59 @@ def diagnose(case: str, target: str | None, older: bool = False) -> int:
     named = {"case": folder.case.name, "revision": folder.case.model.revision}
     document = {**named, **found.document(), "error_budget": documents(budgets)}
     save_diagnosis(folder, document)
-    give(document, target, lambda: show(document))
+    give(document, target, lambda: answer(document))
     return 0 if found.verdict in ("named", "group", "several") else 1
 
 
-def show(document: Mapping[str, Any]) -> None:
-    """Candidates, next tests, and the verdict in a sentence; of a wrong base only that, for it comes first."""
+def answer(document: Mapping[str, Any]) -> Answer:
+    """The verdict; of a wrong base only that, for it comes first."""
+    sentence, case = f"{document['verdict']}: {document['words']}", document.get("case", "CASE")
     bases = document.get("bases", [])
     if any(h["declared"] and h["excluded"] for h in bases):
-        show_bases(bases)
-    else:
-        _searched(document)
-        show_budget(document.get("error_budget", {}))
-    say(f"{document['verdict']}: {document['words']}")
-    for row in document["remainder"]:
-        say(row["words"])
+        return Answer(sentence, [bases_tried(bases)], f"--json FILE; thermoscope bases {case}")
+    named = document.get("named", [])
+    step = f"Next: thermoscope add {case} {named[0]}" if named else f"Next: thermoscope effects {case}"
+    hidden = [f"{h['effect']} below {cell(h['smallest_detectable'])} {h['unit']}" for h in document["cannot_see"]]
+    unseen = f"{len(hidden)} effects could be there unseen: {', '.join(hidden[:2])}, ..." if hidden else ""
+    remaining = [row["words"] for row in document.get("remainder", [])]
+    parts = [_odds(document), _candidates(document["candidates"]), *remaining, *_leader(document["candidates"]), ahead(document),
+             in_short(document.get("error_budget", {})), unseen]  # fmt: skip
+    rest = [*budget(document.get("error_budget", {})), *hidden]
+    return Answer(sentence, parts, f"{step}; --json FILE; thermoscope report {case}", rest)
 
 
-def _searched(document: Mapping[str, Any]) -> None:
-    rows = [_row(c) for c in document["candidates"][:ROWS]]
-    headers = ["hypothesis", "probability (%)"]
-    odds = [[o["hypothesis"], f"{100 * o['probability']:.1f}"] for o in document["odds"] if o["probability"] > SHOWN]
-    table("What the readings say", headers, odds[:ROWS])
-    headers = ["effect", "%", "amplitude (95 %)", "unit", "error (K)", "held out (K)", "decision"]
-    table("Candidates", headers, rows, marked=["named", "group"])
-    for c in document["candidates"][1:ROWS]:
-        if c["note"] and c["probability"] > SHOWN:
-            say(f"against {c['effect']}: it {c['note']} than {document['candidates'][0]['effect']}")
-    if document["candidates"] and (alike := document["candidates"][0]["confused_with"]):
-        say(f"{document['candidates'][0]['effect']} looks like {', '.join(alike)} to these tests and sensors")
-    show_ahead(document)
-    hidden = [h["effect"] for h in document["cannot_see"]]
-    if hidden:
-        say(f"{len(hidden)} effects could be there unseen, e.g. {', '.join(hidden[:4])} (all in --json)")
+def _odds(document: Mapping[str, Any]) -> Grid:
+    """Every hypothesis with its probability."""
+    rows = [[o["hypothesis"], f"{100 * o['probability']:.1f}"] for o in document["odds"] if o["probability"] > SHOWN]
+    return Grid("What the readings say", ["hypothesis", "probability (%)"], rows[:ODDS])
+
+
+def _candidates(found: Sequence[Mapping[str, Any]]) -> Grid:
+    """Size with interval and detection limit, and what it buys."""
+    headers = ["effect", "%", "size (95 %)", "unit", "seen from", "error (K)", "held out (K)", "decision"]
+    keep = ["size (95 %)", "%", "unit", "error (K)"]
+    rows = [_row(c) for c in found if c["probability"] > SHOWN or c["decision"] != "no"] or [_row(c) for c in found[:1]]
+    return Grid("Candidates", headers, rows[:ROWS], ["named", "group"], keep)
+
+
+def _leader(found: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Why the rivals lost, what the leader looks like, and the experiment that proves it."""
+    if not found or found[0]["probability"] <= SHOWN:
+        return []
+    first = found[0]
+    lines = [f"Proof: {first['isolating_test']}."] if first["isolating_test"] else []
+    if first["confused_with"]:
+        lines.append(f"{first['effect']} looks like {', '.join(first['confused_with'])} to these tests and sensors.")
+    lost = [f"Against {c['effect']}: it {c['note']} than {first['effect']}." for c in found[1:ROWS]
+            if c["note"] and c["probability"] > SHOWN]  # fmt: skip
+    return [*lines, *lost]
 
 
 def _row(c: Mapping[str, Any]) -> list[Any]:
     size, share = c["amplitude"], f"{100 * c['probability']:.1f}"
     return [
         c["effect"], share, sized(size["value"], *size["ci95"]), "" if size["unit"] == "1" else size["unit"],
-        _arrow(c["rmse_K"]), _arrow(c["holdout_rmse_K"]), c["decision"],
+        cell(c["smallest_detectable"]), _arrow(c["rmse_K"]), _arrow(c["holdout_rmse_K"]), c["decision"],
     ]  # fmt: skip
 
 

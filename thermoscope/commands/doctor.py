@@ -6,12 +6,13 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from geom.errors import InputError
+from thermoscope.answer import Answer
 from thermoscope.doctor import Finding, examined
 from thermoscope.folder import find_case, network_of, patient_of
 from thermoscope.history import load_history
 from thermoscope.readings import read_test
 from thermoscope.settings import Entry, Settings, read_settings
-from thermoscope.terminal import Progress, give, progress, say, table
+from thermoscope.terminal import Progress, give, progress
 
 
 def doctor(case: str, target: str | None) -> int:
@@ -21,7 +22,7 @@ def doctor(case: str, target: str | None) -> int:
         wrong, doubts = looked(path, tell)
     document = {"case": path.resolve().name, "wrong": [f.document() for f in wrong],
                 "doubts": [f.document() for f in doubts]}  # fmt: skip
-    give(document, target, lambda: show(wrong, doubts))
+    give(document, target, lambda: answer(wrong, doubts, case))
     return 2 if wrong else 1 if doubts else 0
 
 
@@ -46,10 +47,10 @@ def _fault(settings: Settings, entry: Entry, fault: InputError) -> Finding:
     return Finding(entry.name, fault.where.removeprefix(f"{settings.path}/"), fault.what, fault.right)
 
 
-def show(wrong: Sequence[Finding], doubts: Sequence[Finding]) -> None:
-    """One line a finding: test, where, what, cure; what would be refused first."""
-    for title, rows in (("Would be refused", wrong), ("Looks wrong", doubts)):
-        if rows:
-            table(title, ["test", "where", "what", "cure"], [[f.test or "all", f.where, f.what, f.cure] for f in rows])
+def answer(wrong: Sequence[Finding], doubts: Sequence[Finding], case: str) -> Answer:
+    """What would be refused first; a line for each finding and its cure."""
     found = len(wrong) + len(doubts)
-    say(f"{len(wrong)} things would be refused, {len(doubts)} look wrong" if found else "nothing looks wrong")
+    sentence = f"{len(wrong)} things would be refused, {len(doubts)} look wrong." if found else "Nothing looks wrong."
+    lines = [f"{word}{', '.join(filter(None, (f.test, f.where))) or 'all'}: {f.what}. Cure: {f.cure}"
+             for word, rows in (("REFUSED ", wrong), ("", doubts)) for f in rows]  # fmt: skip
+    return Answer(sentence, lines, f"--json FILE; next: thermoscope compare {case}")

@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from lumped.quantities import INPUTS
-from thermoscope.terminal import give, progress, say, table
+from thermoscope.answer import Answer, Grid
+from thermoscope.terminal import give, progress
 from thermoscope.units import HELD, QUANTITIES
 
 if TYPE_CHECKING:
@@ -26,7 +27,7 @@ def effects(case: str | None, target: str | None) -> int:
         with progress() as tell:
             scene = scene_of(opened(case, tell).case)
     document = {"case": case, "effects": [_described(kind, scene) for kind in kinds().values()]}
-    give(document, target, lambda: show(document))
+    give(document, target, lambda: answer(document))
     return 0
 
 
@@ -44,21 +45,25 @@ def _described(kind: type[Effect], scene: Scene | None) -> dict[str, Any]:
     return {**about, "places": list(kind.places(scene)), "missing": missing}
 
 
-def show(document: Mapping[str, Any]) -> None:
+def answer(document: Mapping[str, Any]) -> Answer:
     """Those that can sit in the case first, then what the others lack."""
     rows = document["effects"]
     if document["case"] is None:
-        say(f"{len(rows)} effects are known; with a CASE this says where each could sit in it.")
-        table("Effects", ["effect", "what", "sits at", "needs"],
-              [[e["effect"], e["title"], e["sits"], ", ".join(e["needs"])] for e in rows])  # fmt: skip
-        return
+        known = [[e["effect"], e["title"], e["sits"], ", ".join(e["needs"])] for e in rows]
+        sentence = f"{len(rows)} effects are known; with a CASE this says where each could sit in it."
+        return Answer(
+            sentence, [Grid("", ["effect", "what", "sits at", "needs"], known)], "docs/reference/quantities.md"
+        )
     able = [e for e in rows if e["places"]]
     unable = [e for e in rows if not e["places"]]
     places = sum(len(e["places"]) for e in able)
-    say(f"{len(able)} of {len(rows)} effects can sit in {document['case']}, at {places} places; "
-        f"{len(unable)} lack an input or a role.")  # fmt: skip
-    table("Can sit here", ["effect", "places", "what"], [[e["effect"], named(e["places"]), e["title"]] for e in able])
-    table("Cannot", ["effect", "missing", "what"], [[e["effect"], "; ".join(e["missing"]), e["title"]] for e in unable])
+    sentence = (f"{len(able)} of {len(rows)} effects can sit in {document['case']}, at {places} places; "
+                f"{len(unable)} lack an input or a role.")  # fmt: skip
+    lacking = [[e["effect"], "; ".join(e["missing"]), e["title"]] for e in unable]
+    sitting = [[e["effect"], named(e["places"]), e["title"]] for e in able]
+    parts = [Grid("Cannot sit here", ["effect", "missing", "what"], lacking, keep=["missing"]),
+             Grid("Can sit here", ["effect", "places", "what"], sitting, keep=["places"])]  # fmt: skip
+    return Answer(sentence, parts[::-1], "--json FILE with tests that isolate them")
 
 
 def named(places: list[str]) -> str:
@@ -76,9 +81,9 @@ def quantities(target: str | None) -> int:
     return 0
 
 
-def show_quantities(rows: list[dict[str, Any]]) -> None:
-    say(
-        f"A column measures one of {len(rows)} quantities; other units of the same dimension (ft/min) are read as well."
-    )
-    table("Quantities", ["quantity", "units", "held as", "input it drives"],
-          [[r["quantity"], ", ".join(r["units"]), r["held_as"], r["input"]] for r in rows])  # fmt: skip
+def show_quantities(rows: list[dict[str, Any]]) -> Answer:
+    """A row per quantity."""
+    body = [[r["quantity"], ", ".join(r["units"]), r["held_as"], r["input"]] for r in rows]
+    sentence = f"A column measures one of {len(rows)} quantities; other units of the same dimension are read as well."
+    return Answer(sentence, [Grid("", ["quantity", "units", "held as", "input it drives"], body)],
+                  "docs/reference/quantities.md")  # fmt: skip

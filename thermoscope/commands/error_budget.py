@@ -5,19 +5,30 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from thermoscope.terminal import say, table
+from thermoscope.answer import Grid
 
 Places = Sequence[Mapping[str, Any]]
 KEYS = ("place", "mesh_K", "condensation_K", "time_K", "total_K")
 HEADERS = ["place", "mesh (K)", "condensation (K)", "time steps (K)", "sum (K)"]
 
 
-def show_budget(budgets: Mapping[str, Places]) -> None:
+def budget(budgets: Mapping[str, Places]) -> list[Grid | str]:
     """budgets : run -> places, as in the documents"""
-    if rows := worst(budgets):
-        shown = [["-" if row[key] is None else row[key] for key in KEYS] for row in rows]
-        table("Error budget: what the model's own numbers may be wrong by", HEADERS, shown)
-        say(words(rows))
+    rows = sorted(worst(budgets), key=_total, reverse=True)
+    if not rows:
+        return []
+    shown = [["-" if row[key] is None else row[key] for key in KEYS] for row in rows]
+    return [Grid("Error budget: what the model's own numbers may be wrong by", HEADERS, shown, keep=["sum (K)"]),
+            words(rows)]  # fmt: skip
+
+
+def in_short(budgets: Mapping[str, Places]) -> str:
+    """The largest sum in a sentence."""
+    rows = worst(budgets)
+    if not rows:
+        return ""
+    most = max(rows, key=_total)
+    return f"The model's own numbers are good to {_total(most):.2g} K (worst at {most['place']})."
 
 
 def worst(budgets: Mapping[str, Places]) -> list[Mapping[str, Any]]:

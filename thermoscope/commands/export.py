@@ -8,10 +8,11 @@ from typing import Any
 
 from geom.errors import InputError, MissingDependency, ThermoscopeError
 from lumped.reader import known
+from thermoscope.answer import Answer
 from thermoscope.commands.opened import opened
 from thermoscope.files import write_whole
 from thermoscope.folder import Folder
-from thermoscope.terminal import Progress, give, plain, progress, say
+from thermoscope.terminal import Progress, give, plain, progress
 from thermoscope.workbook import tables, write_csvs, write_xlsx
 
 WORKBOOKS = ("xlsx", "csv")
@@ -34,7 +35,7 @@ def export(case: str, out: Path | None, form: str, limits: Sequence[str], versio
     where, name = out or folder.settings.out, folder.settings.path.resolve().name
     written = write_csvs(where, content) if form == "csv" else [write_xlsx(where / f"{name}.xlsx", content)]
     document = {"case": folder.case.name, "files": [str(p) for p in written], "worksheets": list(content)}
-    give(document, target, lambda: say("\n".join(str(p) for p in written)))
+    give(document, target, lambda: Answer(f"{len(written)} files written.", [str(p) for p in written]))
     return 0
 
 
@@ -74,7 +75,7 @@ def _model(
                     for o in model.outputs],
         "difference_K": apart,
     }  # fmt: skip
-    give(document, target, lambda: show(document))
+    give(document, target, lambda: answer(document))
     return 0
 
 
@@ -122,12 +123,11 @@ def _files(model: Any, form: str, version: int, tell: Progress) -> tuple[dict[st
     return {"model.mat": mat(model), **solver}, []
 
 
-def show(document: Mapping[str, Any]) -> None:
+def answer(document: Mapping[str, Any]) -> Answer:
     """What was written and how well it agrees."""
-    say("\n".join(document["files"]))
-    say(f"{document['states']} states, {document['state_bytes']} bytes from step to step")
-    if document["platforms"]:
-        say(f"compiled for {', '.join(document['platforms'])}")
+    sentence = f"{document['states']} states, {document['state_bytes']} bytes from step to step."
+    lines = [f"Compiled for {', '.join(document['platforms'])}."] if document["platforms"] else []
     if apart := document["difference_K"]:
         test = max(apart, key=lambda t: apart[t])
-        say(f"largest difference from simulate over {len(apart)} tests: {apart[test]:.2g} K ({test})")
+        lines.append(f"Largest difference from simulate over {len(apart)} tests: {apart[test]:.2g} K ({test}).")
+    return Answer(sentence, [*lines, *document["files"]], "--json FILE")

@@ -7,13 +7,14 @@ import sys
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from thermoscope.commands.ahead import show_ahead
+from thermoscope.answer import Answer, Grid
+from thermoscope.commands.ahead import ahead
 from thermoscope.commands.opened import opened_to_write
 from thermoscope.commands.revise import recorded
 from thermoscope.commands.saved import save_diagnosis
 from thermoscope.folder import Folder
 from thermoscope.history import History, save_history
-from thermoscope.terminal import give, progress, say, sized, table
+from thermoscope.terminal import give, progress, sized
 from viz.ahead import deciding
 
 if TYPE_CHECKING:
@@ -33,7 +34,7 @@ def improve(case: str, yes: bool, most: int, target: str | None) -> int:
     found = {"case": folder.case.name, "revision": ledger.history.last.number, **done.diagnosis.document()}
     save_diagnosis(folder, json.loads(json.dumps(found, default=float)))
     document = {"case": folder.case.name, **done.document(), "written": ledger.written}
-    give(document, target, lambda: show(document, folder))
+    give(document, target, lambda: answer(document, folder))
     return 0 if done.adequate else 1
 
 
@@ -67,19 +68,22 @@ def offer(c: Candidate) -> str:
     return f"{c.effect}: {c.title}, {size}, probability {100 * c.probability:.0f} %{fell}"
 
 
-def show(document: Mapping[str, Any], folder: Folder) -> None:
-    """The error staircase, what would decide if it stopped, and why it ended."""
-    stairs = document["stairs"]
-    headers = ["step", *(f"{t['name']} ({t['role']}, K)" for t in stairs[0]["tests"]), "all (K)", "probability"]
+def answer(document: Mapping[str, Any], folder: Folder) -> Answer:
+    """Why it ended, the error step by step, and what would decide if it stopped."""
+    steps = document["stairs"]
+    headers = ["step", *(f"{t['name']} ({t['role']}, K)" for t in steps[0]["tests"]), "all (K)", "probability"]
     rows = [
-        [s["effect"] or s["step"], *(t["rmse_K"] for t in s["tests"]), s["rmse_K"], sure]
-        for s in stairs
-        for sure in [s["evidence"].get("probability", "")]
+        [
+            s["effect"] or s["step"],
+            *(t["rmse_K"] for t in s["tests"]),
+            s["rmse_K"],
+            s["evidence"].get("probability", ""),
+        ]
+        for s in steps
     ]
-    table("Error, step by step (rms)", headers, rows)
-    if not document["adequate"]:
-        show_ahead(document["diagnosis"])
-    kept = (
-        f"{document['written']} revisions written to {folder.settings.model_file}; `thermoscope undo` takes them back"
-    )
-    say(f"{document['verdict']}: {document['why']}; {kept if document['written'] else 'nothing written'}")
+    errors = Grid("Error, step by step (rms)", headers, rows, keep=["all (K)", "probability"])
+    written = f"{document['written']} revisions written to {folder.settings.model_file}"
+    kept = written if document["written"] else "nothing written"
+    further = "" if document["adequate"] else ahead(document["diagnosis"])
+    more = f"thermoscope undo {document['case']} takes a step back; thermoscope report {document['case']}"
+    return Answer(f"{document['verdict']}: {document['why']}; {kept}.", [errors, further], more)

@@ -7,7 +7,8 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from thermoscope.terminal import give, say, table
+from thermoscope.answer import Answer, Grid
+from thermoscope.terminal import give
 
 if TYPE_CHECKING:
     from geom.gallery import Entry
@@ -19,7 +20,7 @@ def machines(out: Path | None, target: str | None) -> int:
 
     entries = catalogue()
     page = write_library(out) if out is not None else None
-    give({"machines": [described(entry, page) for entry in entries]}, target, lambda: show(entries, page))
+    give({"machines": [described(entry, page) for entry in entries]}, target, lambda: answer(entries, page))
     return 0
 
 
@@ -31,12 +32,12 @@ def described(entry: Entry, page: Path | None) -> dict[str, Any]:
     return fields if page is None else {**fields, "thumbnail": page.parent / "thumbnails" / f"{entry.name}.svg"}
 
 
-def show(entries: Sequence[Entry], page: Path | None) -> None:
+def answer(entries: Sequence[Entry], page: Path | None) -> Answer:
+    """A row per machine."""
     rows = [
         [e.name, e.family, e.parts, e.mass, " x ".join(f"{1e3 * size:.0f}" for size in e.envelope), e.cooling, e.source]
         for e in entries
     ]
     headers = ["machine", "family", "parts", "mass (kg)", "l x w x h (mm)", "cooling", "numbers from"]
-    table("Machines that come along", headers, rows)
-    if page is not None:
-        say(f"thumbnails: {page}")
+    where = f"thumbnails: {page}" if page is not None else "--out DIR for thumbnails"
+    return Answer(f"{len(rows)} machines come along.", [Grid("", headers, rows)], f"{where}; thermoscope build MACHINE")

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from geom.errors import InputError
+from thermoscope.answer import Answer, Grid
 from thermoscope.files import write_whole
 from thermoscope.importing.aligned import Recording, grouped, shift
 from thermoscope.importing.cells import number
@@ -23,7 +24,7 @@ from thermoscope.importing.source import Source, read_source, signature
 from thermoscope.importing.starter import starter
 from thermoscope.importing.target import Target, target_of
 from thermoscope.importing.written import folder_whole, quoted, write_case
-from thermoscope.terminal import Progress, give, progress, say, table
+from thermoscope.terminal import Progress, give, progress
 
 if TYPE_CHECKING:
     from lumped.network import Network
@@ -69,7 +70,7 @@ def new(files: Sequence[Path], wishes: Wishes, target: str | None) -> int:
     drafts = _drafts(read, model, wishes)
     with progress() as tell:
         document = _written(folder, model, drafts, tell)
-    give(document, target, lambda: show(document))
+    give(document, target, lambda: answer(document))
     return 0
 
 
@@ -202,24 +203,42 @@ def meaning(g: Guess) -> str:
     return f"{g.place or g.feeds} ({g.unit})" if g.used else ""
 
 
-def show(document: Mapping[str, Any]) -> None:
+def answer(document: Mapping[str, Any]) -> Answer:
     """What became of each column of the first test, what was assumed, and the next command."""
+    tests, folder = document["tests"], document["folder"]
+    columns = sorted(tests[0]["columns"], key=lambda c: (not _goes(c), not c["doubt"]))
+    used = sum(bool(_goes(c)) for c in columns)
+    sentence = (f"{folder}: {len(tests)} {'test' if len(tests) == 1 else 'tests'}, {used} of {len(columns)} columns "
+                "used. All of this is guessed: change it in tests/*.toml.")  # fmt: skip
+    rows = [[c["column"], _goes(c) or "left out", c["unit"], c["quantity"], c["doubt"]] for c in columns]
+    guessed = Grid("", ["column", "goes to", "unit", "quantity", "doubt"], rows, keep=["goes to", "unit", "doubt"])
+    parts: list[Grid | str] = [*_moved(tests), *_said(document), guessed, _files(tests)]
+    return Answer(sentence, parts, f"picture: {folder}/out/{PICTURE}; next: thermoscope compare {folder}")
+
+
+def _goes(column: Mapping[str, Any]) -> str:
+    return str(column["place"] or column["feeds"])
+
+
+def _files(tests: Sequence[Mapping[str, Any]]) -> Grid:
+    rows = [
+        [Path(f["file"]).name, t["role"], t["duration_s"], f["rows"], f["clock"]] for t in tests for f in t["files"]
+    ]
+    return Grid("Files", ["file", "role", "seconds", "rows", "clock"], rows)
+
+
+def _moved(tests: Sequence[Mapping[str, Any]]) -> list[str]:
+    return [f"{Path(f['file']).name} moved by {f['shift_s']:+.6g} s: {f['aligned_by']}."
+            for t in tests for f in t["files"] if f["aligned_by"]]  # fmt: skip
+
+
+def _said(document: Mapping[str, Any]) -> list[str]:
+    """What was assumed, and what looks wrong."""
     tests = document["tests"]
-    used = sum(bool(c["place"] or c["feeds"]) for c in tests[0]["columns"])
-    say(f"{document['folder']}: {len(tests)} {'test' if len(tests) == 1 else 'tests'}, {used} of "
-        f"{len(tests[0]['columns'])} columns used; look at the guesses below, change them in tests/*.toml")  # fmt: skip
-    rows = [[c["column"], c["quantity"] or "-", c["unit"], c["place"] or c["feeds"] or "left out", c["doubt"]]
-            for c in sorted(tests[0]["columns"], key=lambda c: not (c["place"] or c["feeds"]))]  # fmt: skip
-    table(f"Columns of {tests[0]['name']}", ["column", "quantity", "unit", "goes to", "doubt"], rows)
-    for test in tests:
-        for file in test["files"]:
-            moved = f"; moved by {file['shift_s']:+.6g} s ({file['aligned_by']})" if file["aligned_by"] else ""
-            say(f"{Path(file['file']).name}: {test['role']}, {file['clock']}, {test['duration_s']:.6g} s{moved}")
-    for note in dict.fromkeys(n for t in tests for n in (*t["notes"], *(m for f in t["files"] for m in f["notes"]))):
-        say(f"note: {note}")
+    said = [note for t in tests for note in (*t["notes"], *(m for f in t["files"] for m in f["notes"]))]
     if document["invented_network"]:
-        say("note: no machine and no network was given: network.toml is a first one made from the columns, its numbers "
-            "are orders of magnitude")  # fmt: skip
+        said.append("no machine and no network was given: network.toml is made from the columns, its numbers are "
+                    "orders of magnitude")  # fmt: skip
     if document["findings"]:
-        say(f"note: {len(document['findings'])} things look wrong: thermoscope doctor {document['folder']}")
-    say(f"Picture: {document['folder']}/out/{PICTURE}.  Next: thermoscope compare {document['folder']}")
+        said.append(f"{len(document['findings'])} things look wrong: thermoscope doctor {document['folder']}")
+    return [f"Note: {note}." for note in dict.fromkeys(said)]

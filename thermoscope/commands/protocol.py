@@ -42,9 +42,10 @@ from typing import Any
 from geom.errors import InputError
 from geom.toml_file import read_toml
 from lumped.reader import Table
+from thermoscope.answer import Answer, Grid
 from thermoscope.electrical import meter_of, saturation_of
 from thermoscope.formats import pairs, read_frame, recording
-from thermoscope.terminal import give, progress, say, table
+from thermoscope.terminal import give, progress
 from validation.procedure.meters import OHMMETER, VOLTMETER
 from validation.procedure.protocol import Cold, Hot, Protocol, Record
 from validation.procedure.protocol import protocol as judged
@@ -59,7 +60,7 @@ def protocol(file: Path | None, target: str | None) -> int:
     with progress() as tell:
         tell("checking the record")
         found = judged(Record(1.0) if file is None else read_record(file))
-    give(found.document(), target, lambda: show(found))
+    give(found.document(), target, lambda: answer(found))
     if found.refused:
         first = found.refused[0]
         more = f" (and {len(found.refused) - 1} more)" if len(found.refused) > 1 else ""
@@ -136,19 +137,27 @@ def _range(table: Table, key: str, usual: Reading) -> Reading:
     return Reading(usual.name, (low + high) / 200.0, abs(high - low) / 200.0)
 
 
-def show(found: Protocol) -> None:
-    """What to do when; then the temperatures with their three uncertainties."""
-    rows: list[list[Any]] = [[s.name, s.when, s.what, s.state, s.words] for s in found.steps]
-    table("Thermal test", ["step", "when", "what", "state", "found"], rows, marked=["refused"])
-    if found.ways:
-        rows = [[w.method, w.at_s, w.value, w.sd, w.words] for w in found.ways]
-        table("Winding when switched off", ["way", "at (s)", "degC", "1 sigma (K)", "how"], rows)
+def answer(found: Protocol) -> Answer:
+    """What to do next; the temperatures with their three uncertainties; then all steps."""
     spreads = [(n, s) for n, s in (("winding", found.winding), ("magnets", found.magnets)) if s is not None]
-    if spreads:
-        headers = ["rise", "K", "worst case", "GUM 95 %", "Monte Carlo 95 %", "largest share"]
-        table("Rises over the cold temperature", headers, [_row(n, s) for n, s in spreads])
+    headers = ["rise", "K", "worst case", "GUM 95 %", "Monte Carlo 95 %", "largest share"]
+    rises = Grid("Rises over the cold temperature", headers, [_row(n, s) for n, s in spreads], keep=["K", "GUM 95 %"])
+    ways = [[w.method, w.at_s, w.value, w.sd, w.words] for w in found.ways]
+    off = Grid("Winding when switched off", ["way", "at (s)", "degC", "1 sigma (K)", "how"], ways)
+    rows: list[list[Any]] = [[s.name, s.state, s.when, s.what, s.words] for s in found.steps]
+    steps = Grid(
+        "Thermal test", ["step", "state", "when", "what", "found"], rows, ["refused"], ["state", "when", "what"]
+    )
+    return Answer(_in_short(found), [rises, off, steps], "--json FILE; docs/how-to/thermal-test.md")
+
+
+def _in_short(found: Protocol) -> str:
     if found.refused:
-        say(f"{len(found.refused)} steps refused: no temperature is given")
+        return f"{len(found.refused)} steps are refused: no temperature is given."
+    rises = [
+        f"{n} {s.value:.1f} K" for n, s in (("winding", found.winding), ("magnets", found.magnets)) if s is not None
+    ]
+    return f"Rises: {', '.join(rises)}." if rises else f"A thermal test has {len(found.steps)} steps."
 
 
 def _row(name: str, s: Spread) -> list[Any]:

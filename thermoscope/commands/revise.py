@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from geom.errors import InputError
+from thermoscope.answer import Answer, Grid, cell
 from thermoscope.commands.opened import opened_to_write
 from thermoscope.commands.saved import saved_diagnosis
 from thermoscope.folder import Folder
 from thermoscope.history import Revision, save_history
 from thermoscope.runs import at_revision
-from thermoscope.terminal import cell, give, progress, say, table
+from thermoscope.terminal import give, progress
 from validation.compare import compare
 
 if TYPE_CHECKING:
     from validation import revise
 
-ROWS = 12
+FEW = 4  # parameters named in a sentence
 
 
 def add(case: str, effect: str, anyway: bool, target: str | None) -> int:
@@ -48,12 +49,9 @@ def undo(case: str, number: int | None, target: str | None) -> int:
     save_history(folder.settings.model_file, history, folder.history)
     model = {"case": folder.case.name, "revision": history.last.number, "why": history.last.why}
     document = {**model, "effects": list(history.last.effects), "rmse_K": errors}
-    give(document, target, lambda: say(f"revision {history.last.number}: {history.last.why}; {_told(errors)}"))
+    sentence, rows = f"Revision {history.last.number}: {history.last.why}.", list(errors.items())
+    give(document, target, lambda: Answer(sentence, [Grid("", ["test", "rms (K)"], rows)]))
     return 0
-
-
-def _told(errors: Mapping[str, float]) -> str:
-    return ", ".join(f"{name} {rmse:.2f} K" for name, rmse in errors.items())
 
 
 def revised(case: str, step: Callable[..., revise.Revision], anyway: bool, target: str | None) -> int:
@@ -66,7 +64,7 @@ def revised(case: str, step: Callable[..., revise.Revision], anyway: bool, targe
         longer = folder.history.and_then(recorded(result, evidence(folder, result)))
         save_history(folder.settings.model_file, longer, folder.history)
     document = {**result.document(), "case": folder.case.name, "written": keep}
-    give(document, target, lambda: show(document, folder))
+    give(document, target, lambda: answer(document, folder))
     return 0 if keep else 1
 
 
@@ -109,23 +107,28 @@ def note(p: Mapping[str, Any]) -> str:
     return "at its bound" if p["at_bound"] else f"trades with {p['partner']}" if p["partner"] else ""
 
 
-def show(document: Mapping[str, Any], folder: Folder) -> None:
-    """The error before and after, and the values that the data fixed."""
-    rows = [[t["name"], t["role"], t["rmse_K"]["before"], t["rmse_K"]["after"]] for t in document["tests"]]
+def answer(document: Mapping[str, Any], folder: Folder) -> Answer:
+    """Whether it stands, the error before and after, and the values that the data fixed."""
     name = f"{document['action']} {document['effect'] or ''}".strip()
-    table(f"{name}: error per test", ["test", "role", "before (K)", "after (K)"], rows, marked=["hold-out"])
-    seen = sorted((p for p in document["parameters"] if p["identified"] and not p["of_measurement"]), key=telling)
-    blind = [named(p) for p in document["parameters"] if not p["identified"] and not p["of_measurement"]]
-    values = [
-        [p["name"], p["value"], p["unit"], *p["ci95"], profiled(p), *p["prior"][1:], note(p)] for p in seen[:ROWS]
-    ]
-    if values:
-        headers = ["parameter", "value", "unit", "from", "to", "by profile", "prior from", "prior to", ""]
-        table("What the data fixed (95 %)", headers, values)
-    if blind:
-        say(f"the data do not fix {len(blind)} parameters: {', '.join(blind[:6])}{', ...' if len(blind) > 6 else ''}")
-    for check in document["checks"]:
-        say(f"{'passed' if check['passed'] else 'FAILED'}  {check['check']}: {check['words']}")
     verdict = "accepted" if document["accepted"] else "not accepted"
     where = f"written to {folder.settings.model_file} as revision {document['revision']}"
-    say(f"{verdict}: {document['why']}; {where if document['written'] else 'nothing written (--anyway writes it)'}")
+    kept = where if document["written"] else "nothing written (--anyway writes it)"
+    rows = [[t["name"], t["role"], t["rmse_K"]["before"], t["rmse_K"]["after"]] for t in document["tests"]]
+    errors = Grid("", ["test", "role", "error before (K)", "after (K)"], rows, ["hold-out"])
+    checks = [f"{'passed' if c['passed'] else 'FAILED'}  {c['check']}: {c['words']}" for c in document["checks"]]
+    more = "Next: thermoscope diagnose" if document["action"] == "calibrate" else "Next: thermoscope compare"
+    parts: list[Grid | str] = [errors, *checks, _fixed(document["parameters"]), _blind(document["parameters"])]
+    return Answer(f"{name}: {verdict}; {document['why']}; {kept}.", parts, f"{more} {document['case']}; --json FILE")
+
+
+def _fixed(parameters: Sequence[Mapping[str, Any]]) -> Grid:
+    seen = sorted((p for p in parameters if p["identified"] and not p["of_measurement"]), key=telling)
+    rows = [[p["name"], p["value"], p["unit"], *p["ci95"], profiled(p), *p["prior"][1:], note(p)] for p in seen]
+    headers = ["parameter", "value", "unit", "from", "to", "by profile", "prior from", "prior to", "note"]
+    return Grid("What the data fixed (95 %)", headers, rows, keep=["value", "unit", "from", "to"])
+
+
+def _blind(parameters: Sequence[Mapping[str, Any]]) -> str:
+    blind = [named(p) for p in parameters if not p["identified"] and not p["of_measurement"]]
+    few = f"{', '.join(blind[:FEW])}{', ...' if len(blind) > FEW else ''}"
+    return f"The data do not fix {len(blind)} parameters: {few}" if blind else ""

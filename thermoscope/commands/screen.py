@@ -8,15 +8,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from geom.errors import InputError
+from thermoscope.answer import Answer, Grid
 from thermoscope.commands.opened import opened
 from thermoscope.folder import load_machine_file
-from thermoscope.terminal import give, notes, progress, say, table
+from thermoscope.terminal import give, notes, progress
 
 if TYPE_CHECKING:
     from geom import Machine
 
 DESIGNS = ("full", "half", "gap", "morris", "sobol")
-ROWS = 12
 TRAJECTORIES, SAMPLES = 20, 256  # 160 runs, 2304 runs of some milliseconds
 
 
@@ -32,7 +32,7 @@ def screen(machine: str, design: str, target: str | None, out: Path | None = Non
         tell(f"screening {described.name}")
         document = _by_shares(described, design) if design in ("morris", "sobol") else _by_effects(described, design)
     document = {"machine": described.name, "design": design, **document}
-    give(document, target, lambda: show(document))
+    give(document, target, lambda: answer(document))
     if out is not None:
         notes(f"written: {path}" for path in plots(document, out))
     return 0
@@ -59,15 +59,27 @@ def _by_shares(machine: Machine, design: str) -> dict[str, Any]:
     return {"rankings": {name: method(factors, response).document() for name, response in responses.items()}}
 
 
-def show(document: Mapping[str, Any]) -> None:
-    """A table per response, largest first: the Pareto chart."""
-    for name, found in document.get("effects", {}).items():
-        title = f"{name}: effects beyond {found['simultaneous']:.2f} are not chance (Lenth, simultaneous 95 %)"
-        rows = [[e["effect"], e["words"], e["value"], "yes" if e["active"] else ""] for e in found["effects"][:ROWS]]
-        table(title, ["effect", "factors", f"high - low ({unit_of(name)})", "active"], rows, marked=["yes"])
-    for name, found in document.get("rankings", {}).items():
-        rows = [[r["factor"], r["measure"], r["conf95"], r["spread"]] for r in found["ranking"]]
-        table(f"{name}: {found['method']}, {found['runs']} runs", ["factor", "measure", "+- 95 %", "spread"], rows)
+def answer(document: Mapping[str, Any]) -> Answer:
+    """The factor that moves each response most; a table per response, largest first: the Pareto chart."""
+    tables = [_effects(name, found) for name, found in document.get("effects", {}).items()]
+    tables += [_ranking(name, found) for name, found in document.get("rankings", {}).items()]
+    leading = "; ".join(f"{g.title.partition(':')[0]}: {g.rows[0][1] if document.get('effects') else g.rows[0][0]}"
+                        for g in tables if g.rows)  # fmt: skip
+    return Answer(f"{document['machine']}, {document['design']}: what moves most. {leading}.", tables,
+                  "--out DIR for plots; --json FILE")  # fmt: skip
+
+
+def _effects(name: str, found: Mapping[str, Any]) -> Grid:
+    rows = [[e["effect"], e["words"], e["value"], "yes" if e["active"] else ""] for e in found["effects"]]
+    title = f"{name}: beyond {found['simultaneous']:.2f} is not chance (Lenth, simultaneous 95 %)"
+    headers = ["effect", "factors", f"high - low ({unit_of(name)})", "active"]
+    return Grid(title, headers, rows, ["yes"], headers[2:])
+
+
+def _ranking(name: str, found: Mapping[str, Any]) -> Grid:
+    rows = [[r["factor"], r["measure"], r["conf95"], r["spread"]] for r in found["ranking"]]
+    title = f"{name}: {found['method']}, {found['runs']} runs"
+    return Grid(title, ["factor", "measure", "+- 95 %", "spread"], rows)
 
 
 def unit_of(response: str) -> str:
@@ -101,11 +113,17 @@ def two_paths(case: str, winding: str, machine: str, target: str | None) -> int:
         folder = opened(case, tell)
         found = {t.name: of_test(folder.case, t, winding, machine).document() for t in folder.case.tests}
     document = {"case": folder.case.name, "tests": found}
+    give(document, target, lambda: paths(found))
+    return 0
+
+
+def paths(found: Mapping[str, Mapping[str, Any]]) -> Answer:
+    """Two resistances per test."""
     headers = ["test", "R_ext (K/W)", "R_w (K/W)", "winding (K)", "machine (K)", "left at other loads (K)"]
     keys = ("R_ext", "R_w", "winding_K", "machine_K", "largest_residual_K")
-    rows = [[name, *(one[k] for k in keys)] for name, one in found.items()]
-    give(document, target, lambda: table("Two resistances", headers, rows))
-    return 0
+    left = max(one["largest_residual_K"] for one in found.values())
+    sentence = f"Two resistances describe {len(found)} tests to {left:.2g} K at other loads."
+    return Answer(sentence, [Grid("", headers, [[name, *(one[k] for k in keys)] for name, one in found.items()])])
 
 
 def carry(source: str, targets: list[str], target: str | None) -> int:
@@ -121,23 +139,16 @@ def carry(source: str, targets: list[str], target: str | None) -> int:
     return 0 if all(one.agrees for one in found) else 1
 
 
-def show_carried(document: Mapping[str, Any]) -> None:
-    keys = ("test", "channel", "measured_C", "simulated_C", "difference_K", "U95_K", "worst_K")
-    headers = [
-        "case",
-        "test",
-        "sensor",
-        "measured (degC)",
-        "simulated (degC)",
-        "difference (K)",
-        "95 % (K)",
-        "worst case (K)",
-        "",
-    ]
-    rows = [
-        [one["case"], *(r[key] for key in keys), "within" if r["within"] else "over"]
-        for one in document["targets"] for r in one["rows"]
-    ]  # fmt: skip
-    table(f"Model of {document['source']}, revision {document['revision']}, on other machines", headers, rows, ["over"])
+def show_carried(document: Mapping[str, Any]) -> Answer:
+    """Where the model of one machine is over on the others."""
+    keys = ("test", "measured_C", "simulated_C", "difference_K", "U95_K", "worst_K")
+    headers = ["sensor", "case", "test", "measured (degC)", "simulated (degC)", "difference (K)", "95 % (K)",
+               "worst case (K)", "verdict"]  # fmt: skip
+    rows = [[r["channel"], one["case"], *(r[key] for key in keys), "within" if r["within"] else "over"]
+            for one in document["targets"] for r in sorted(one["rows"], key=lambda r: r["within"])]  # fmt: skip
+    over = sum(row[-1] == "over" for row in rows)
     taken = document["targets"][0]["parameters"] if document["targets"] else []
-    say(f"taken over: {', '.join(taken) or 'nothing'}")
+    sentence = (f"{document['source']}, revision {document['revision']}, on other machines: {over} of {len(rows)} "
+                "sensors are over.")  # fmt: skip
+    keep = ["case", "difference (K)", "95 % (K)", "verdict"]
+    return Answer(sentence, [Grid("", headers, rows, ["over"], keep), f"Taken over: {', '.join(taken) or 'nothing'}."])

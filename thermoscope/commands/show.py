@@ -12,12 +12,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from geom.errors import MissingDependency
+from thermoscope.answer import Answer
 from thermoscope.commands.opened import opened_to_write
 from thermoscope.commands.saved import last_diagnosis, save_diagnosis, saved_diagnosis
 from thermoscope.folder import Folder
 from thermoscope.history import Revision
 from thermoscope.runs import at_revision, before_last, fields, held, parameters, readings, steps
-from thermoscope.terminal import Progress, give, notes, progress, say, table
+from thermoscope.terminal import Progress, give, notes, progress
 from validation.case import Case, Test
 
 if TYPE_CHECKING:
@@ -40,7 +41,8 @@ def report(case: str, out: Path | None, target: str | None, again: bool = True) 
         tell("printing")
         pdf = write_pdf(path)
     document = {"case": folder.case.name, "revision": folder.case.model.revision, "report": str(path)}
-    give({**document, "pdf": pdf and str(pdf)}, target, lambda: say(f"{path}" if pdf is None else f"{path}\n{pdf}"))
+    printed = [f"As PDF: {pdf}"] if pdf else []
+    give({**document, "pdf": pdf and str(pdf)}, target, lambda: Answer(f"The report is {path}.", printed))
     return 0
 
 
@@ -76,7 +78,7 @@ def render(case: str, out: Path | None, target: str | None) -> int:
     if folder.built is None:
         notes(["this case has no geometry (a hand-declared network): no field and no recording"])
     document = {"case": folder.case.name, "files": [str(f) for f in files]}
-    give(document, target, lambda: table("Written", ["file"], [[str(f)] for f in files]))
+    give(document, target, lambda: Answer(f"{len(files)} files in {into}.", [str(f.name) for f in files]))
     return 0
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -17,13 +17,14 @@ from lumped.network import Network, Row
 from lumped.runaway import checked_run
 from lumped.simulate import Record
 from lumped.simulate import simulate as integrated
-from thermoscope.commands.error_budget import show_budget
+from thermoscope.answer import Answer, Grid
+from thermoscope.commands.error_budget import budget, in_short
 from thermoscope.commands.opened import PACKAGE, opened
 from thermoscope.commands.simulate_readings import readings, sensors, short_of
 from thermoscope.cycle import Cycle, find_cycle, load_cycle
 from thermoscope.files import write_whole
 from thermoscope.folder import Folder
-from thermoscope.terminal import Progress, give, progress, say, table
+from thermoscope.terminal import Progress, give, progress
 
 Array = NDArray[np.float64]
 MISMATCH = 0.01  # of all losses: parabolas miss a hundredth of that; more means that heat went astray
@@ -40,7 +41,7 @@ def simulate(case: str, cycle: str | None, out: Path | None, target: str | None)
     document = {
         "case": folder.case.name, "revision": folder.case.model.revision, "runs": runs, "circuits": circuits,
     }  # fmt: skip
-    give(document, target, lambda: show(document))
+    give(document, target, lambda: answer(document))
     return 0
 
 
@@ -144,24 +145,41 @@ def _circuits(folder: Folder) -> list[dict[str, Any]]:
     ]
 
 
-def show(document: Mapping[str, Any]) -> None:
-    """Per run: temperatures, losses, and how well it closed."""
-    for run in document["runs"]:
-        keys = ["place", "start_C", "max_C", "max_at_s", "end_C"]
-        headers = ["place", "start (degC)", "largest (degC)", "at (s)", "end (degC)"]
-        places = [[p[k] if k != "max_at_s" else round(p[k]) for k in keys] for p in run["places"]]
-        table(f"{run['name']}: {run['duration_s']:g} s", headers, places)
-        watts = [[x["loss"], f"{x['mean_W']:.1f}"] for x in run["losses"] if x["mean_W"]]
-        table("Losses", ["loss", "mean (W)"], watts)
-        for name, share in run["short_of"].items():
-            say(f"{name}: for {100 * share:.3g} % of the time short of what was wanted by more than 1 %, at the limits")
-        rounds = run["coupling"]["residuals_K"]
-        if rounds:
-            shown = ", ".join(f"{r:.2g}" for r in rounds)
-            say(f"drive and temperatures agree after {len(rounds)} rounds; largest change per round (K): {shown}")
-        say(f"heat in - out - stored: {run['energy_balance']:.1e} of the heat; losses injected against declared: "
-            f"{run['loss_mismatch']:.1e}; written to {run['file']}")  # fmt: skip
-    show_budget({run["name"]: run["error_budget"] for run in document["runs"]})
-    for c in document["circuits"]:
-        say(f"circuit {c['circuit']}: {c['flow_m3_s'] * 6e4:.3g} l/min, {c['pressure_drop_Pa'] / 1e3:.3g} kPa, "
-            f"pump {c['pump_W']:.3g} W")  # fmt: skip
+def answer(document: Mapping[str, Any]) -> Answer:
+    """The hottest place of each run; per run temperatures, losses, and how well it closed."""
+    runs = document["runs"]
+    hottest = [(p["max_C"], p["place"], r["name"]) for r in runs for p in r["places"]]
+    top = max(hottest)
+    sentence = f"Hottest: {top[1]}, {top[0]:.1f} degC in {top[2]}; {len(runs)} {'run' if len(runs) == 1 else 'runs'}."
+    budgets, closing = {run["name"]: run["error_budget"] for run in runs}, [x for run in runs for x in _closing(run)]
+    parts: list[Grid | str] = [_places(runs), *closing, in_short(budgets), *map(_circuit, document["circuits"])]
+    rest = [*(_losses(run) for run in runs), *budget(budgets)]
+    return Answer(sentence, parts, f"temperatures in {runs[0]['file']}{' ...' if len(runs) > 1 else ''}", rest)
+
+
+def _places(runs: Sequence[Mapping[str, Any]]) -> Grid:
+    """Temperatures, the hottest first."""
+    rows = [[p["place"], r["name"], p["start_C"], p["max_C"], round(p["max_at_s"]), p["end_C"]]
+            for r in runs for p in sorted(r["places"], key=lambda p: -p["max_C"])]  # fmt: skip
+    headers = ["place", "run", "start (degC)", "largest (degC)", "at (s)", "end (degC)"]
+    return Grid("", headers, rows, keep=["largest (degC)", "run", "end (degC)"])
+
+
+def _losses(run: Mapping[str, Any]) -> Grid:
+    watts = [[x["loss"], x["mean_W"]] for x in run["losses"] if x["mean_W"]]
+    return Grid(f"Losses in {run['name']}", ["loss", "mean (W)"], sorted(watts, key=lambda row: -row[1]))
+
+
+def _closing(run: Mapping[str, Any]) -> list[str]:
+    """What the drive could not do, whether it agrees with the temperatures, and the balance of heat."""
+    lines = [f"{name}: for {100 * share:.3g} % of the time short of what was wanted by more than 1 %, at the limits."
+             for name, share in run["short_of"].items()]  # fmt: skip
+    if rounds := run["coupling"]["residuals_K"]:
+        lines.append(f"Drive and temperatures agree after {len(rounds)} rounds (last change {rounds[-1]:.2g} K).")
+    return [*lines, f"{run['name']}: heat in - out - stored {run['energy_balance']:.1e} of the heat, losses injected "
+            f"against declared {run['loss_mismatch']:.1e}."]  # fmt: skip
+
+
+def _circuit(c: Mapping[str, Any]) -> str:
+    return (f"Circuit {c['circuit']}: {c['flow_m3_s'] * 6e4:.3g} l/min, {c['pressure_drop_Pa'] / 1e3:.3g} kPa, "
+            f"pump {c['pump_W']:.3g} W.")  # fmt: skip

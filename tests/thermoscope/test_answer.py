@@ -1,0 +1,95 @@
+"""The answer first: a sentence, at most 25 lines of at most 80 columns, then where the rest is; no number is broken."""
+
+import ast
+import re
+import subprocess
+import sys
+
+from conftest import RUN
+from hypothesis import given
+from hypothesis import strategies as st
+
+from thermoscope.answer import LINES, Answer, Grid, folded, lay_out
+
+WORDS = st.text("abcdefgh ", min_size=1, max_size=60).map(str.strip).filter(bool)
+CELLS = st.one_of(WORDS, st.floats(-1e6, 1e6), st.integers(-(10**6), 10**6), st.none())
+
+
+@st.composite
+def grids(draw):
+    n = draw(st.integers(1, 12))
+    headers = [f"h{i} {draw(WORDS)[:12]}" for i in range(n)]
+    rows = draw(st.lists(st.lists(CELLS, min_size=n, max_size=n), max_size=60))
+    return Grid(draw(WORDS), headers, rows, keep=headers[: n // 2])
+
+
+ANSWERS = st.builds(Answer, WORDS, st.lists(st.one_of(grids(), WORDS.map(lambda w: f"{w} " * 9)), max_size=6), WORDS)
+
+
+def after_the_sentence(answer, width, most):
+    lines = [line for line, _ in lay_out(answer, width, most)]
+    head = folded(answer.sentence, width)
+    assert lines[: len(head)] == head
+    return lines[len(head) :]
+
+
+@given(ANSWERS)
+def test_what_follows_the_sentence_fits_on_a_screen(answer):
+    lines = after_the_sentence(answer, 80, LINES)
+    assert len(lines) <= LINES
+    assert lines[-1].endswith(folded(answer.more, 80)[-1])
+
+
+def test_wide_tables_lose_columns_by_priority_and_no_number():
+    headers = ["sensor", "test", "a", "b", "c", "verdict"]
+    rows = [["T_winding", "a long name of a test", 1234.5678, -0.000123456, 98765.4321, "over"]] * 3
+    table = Grid("", headers, rows, keep=["verdict", "a"])
+    wide, small = (after_the_sentence(Answer("x", [table]), width, LINES) for width in (80, 36))
+    assert wide[0].split() == headers
+    assert small[0].split() == ["sensor", "a", "verdict"]
+    assert small[1].split() == ["T_winding", "1.23e+03", "over"]
+    assert max(map(len, small)) <= 36
+
+
+@given(st.lists(st.floats(-1e9, 1e9), min_size=2, max_size=9), st.integers(20, 80))
+def test_a_number_is_shown_whole_or_not_at_all(values, width):
+    headers = [f"column {i}" for i in range(len(values))]
+    head, body = after_the_sentence(Answer("x", [Grid("", ["name", *headers], [["w", *values]])]), width, LINES)
+    assert "…" not in body
+    assert len(body.split()) - 1 == head.count("column")
+
+
+def test_rows_that_do_not_fit_are_counted_and_all_shows_them():
+    answer = Answer("many", [Grid("t", ["n"], [[i] for i in range(100)])], "report")
+    lines = after_the_sentence(answer, 80, LINES)
+    assert lines[-2:] == ["  ... and 79 more", "More: --all; report"]
+    assert len(after_the_sentence(answer, 80, None)) == 103
+
+
+def test_commands_print_through_answers_alone(root):
+    """None of them prints by itself, so that the rule above holds for each; a question is on stderr."""
+    for file in (root / "thermoscope/commands").glob("*.py"):
+        for node in ast.walk(ast.parse(file.read_text())):
+            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in ("print", "table"):
+                assert any(k.arg == "file" for k in node.keywords), f"{file.name} line {node.lineno}"
+
+
+def run(*arguments, cwd=None):
+    environment = {"COLUMNS": "80", **__import__("os").environ, "PYTHONUTF8": "1"}
+    command = [sys.executable, "-c", RUN, *map(str, arguments)]
+    return subprocess.run(command, cwd=cwd, capture_output=True, text=True, timeout=500, env=environment)
+
+
+CHEAP = ["compare CASE", "compare CASE --why", "doctor CASE", "effects CASE", "effects", "quantities", "machines",
+         "simulate CASE", "export CASE", "calibrate CASE", "undo CASE", "protocol", "check"]  # fmt: skip
+
+
+def test_every_command_at_80_columns(tmp_path, case):
+    """One process each; at most two lines of sentence, no line wider than the terminal but for a path."""
+    for words in CHEAP:
+        done = run(*(str(case) if w == "CASE" else w for w in words.split()), cwd=tmp_path)
+        lines = done.stdout.splitlines()
+        assert done.returncode in (0, 1), f"{words}: {done.stderr}"
+        assert 1 <= len(lines) <= LINES + 3, words
+        assert all(len(line) <= 80 or "/" in line for line in lines), words
+        assert not re.search(r"[┃│━]", done.stdout), words

@@ -1,0 +1,194 @@
+"""What a command answers: one sentence, then what fits on a screen, then where the rest is. No number is ever broken.
+
+Columns that do not fit are left out, the least important first; rows that do not fit are counted.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import shutil
+import sys
+from collections.abc import Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass
+from textwrap import wrap
+from typing import Any
+
+LINES, USUAL = 25, 80  # lines after the sentence, and columns where nobody says
+GAP = "  "
+TITLE, LEAST = 2, 8  # lines over the rows of a table; letters that a shortened word keeps
+
+_limit: ContextVar[int | None] = ContextVar("lines", default=LINES)
+
+
+@dataclass(frozen=True)
+class Grid:
+    """A table.  headers : in the order they are shown;  keep : those that are left out last, after the first column
+
+    rows : most important first;  marked : words that make their row stand out
+    """
+
+    title: str
+    headers: Sequence[str]
+    rows: Sequence[Sequence[Any]]
+    marked: Sequence[str] = ()
+    keep: Sequence[str] = ()
+
+
+@dataclass(frozen=True)
+class Answer:
+    """sentence : the answer;  parts : what it rests on, most important first;  more : where the rest is
+
+    rest : what only --all shows
+    """
+
+    sentence: str
+    parts: Sequence[Grid | str] = ()
+    more: str = ""
+    rest: Sequence[Grid | str] = ()
+
+
+@contextmanager
+def within(lines: int | None) -> Any:
+    """Answers in here have so many lines after their sentence; None for all there is, at any width."""
+    token = _limit.set(lines)
+    try:
+        yield
+    finally:
+        _limit.reset(token)
+
+
+def lay_out(answer: Answer, width: int, most: int | None) -> list[tuple[str, str]]:
+    """(line, style) of an answer: at most `most` lines after its sentence, None for everything."""
+    wide = 10**6 if most is None else width
+    sentence = [(line, "bold") for line in folded(answer.sentence, wide)]
+    parts = [
+        p for p in (*answer.parts, *(answer.rest if most is None else ())) if (p.rows if isinstance(p, Grid) else p)
+    ]
+    full = [_lines(part, wide, None) for part in parts]
+    if most is None:
+        return [*sentence, *(line for block in full for line in block), *_plain(answer.more, wide)]
+    tail = _plain(_pointer(answer.more, bool(answer.rest)), wide)
+    if sum(map(len, full)) + len(tail) > most:
+        tail = _plain(_pointer(answer.more, True), wide)
+        full = _cut(parts, full, wide, most - len(tail))
+    return [*sentence, *(line for block in full for line in block), *tail]
+
+
+def _pointer(more: str, cut: bool) -> str:
+    return "; ".join(filter(None, ["More: --all" if cut else "", more]))
+
+
+def _cut(parts: Sequence[Grid | str], full: list[Any], width: int, room: int) -> list[Any]:
+    """As much of each part as fits when every later one keeps a little."""
+    out = []
+    for i, (part, whole) in enumerate(zip(parts, full, strict=True)):
+        later = sum(min(len(b), TITLE + 2 if isinstance(p, Grid) else 1) for p, b in zip(parts[i + 1 :], full[i + 1 :]))
+        mine = max(min(room - later, len(whole)), 0)
+        out.append(whole if mine >= len(whole) else _lines(part, width, mine))
+        room -= len(out[-1])
+    return out
+
+
+def _lines(part: Grid | str, width: int, most: int | None) -> list[tuple[str, str]]:
+    if isinstance(part, str):
+        found = _plain(part, width)
+        return found if most is None or len(found) <= most else []
+    if most is not None and most < TITLE + 2:
+        return []
+    rows = part.rows if most is None or len(part.rows) + TITLE <= most else part.rows[: most - TITLE - 1]
+    lines = grid(part, rows, width)
+    left = len(part.rows) - len(rows)
+    return [*lines, *([(f"{GAP}... and {left} more", "dim")] if left else [])]
+
+
+def _plain(text: str, width: int) -> list[tuple[str, str]]:
+    return [(line, "") for line in folded(text, width)]
+
+
+def folded(text: str, width: int) -> list[str]:
+    """A sentence over several lines, broken between words."""
+    return [
+        line
+        for piece in text.splitlines()
+        for line in wrap(piece, width, break_long_words=False, break_on_hyphens=False)
+    ]
+
+
+def grid(table: Grid, rows: Sequence[Sequence[Any]], width: int) -> list[tuple[str, str]]:
+    """Title, headers and rows as lines that are no wider than `width`."""
+    body = [[cell(value) for value in row] for row in rows]
+    whole = [[cell(value) for value in row] for row in table.rows]
+    right = [any(isinstance(row[j], int | float) for row in table.rows) for j in range(len(table.headers))]
+    widths = [max(map(len, (h, *(row[j] for row in whole)))) for j, h in enumerate(table.headers)]
+    shown = _fitting(table, whole, widths, width)
+    words = [j for j in shown if not right[j] and not _numbers(whole, j)]
+    while words and _total(widths, shown) > width:
+        j = max(words, key=lambda j: widths[j])
+        if widths[j] <= LEAST:
+            break
+        widths[j] -= min(widths[j] - LEAST, _total(widths, shown) - width)
+
+    def line(cells: Sequence[str]) -> str:
+        return GAP.join(_padded(cells[j], widths[j], right[j]) for j in shown).rstrip()
+
+    marked = ["bold" if any(c in table.marked for c in row) else "" for row in body]
+    head = [*([(folded(table.title, width)[0], "bold")] if table.title else []), (line(list(table.headers)), "dim")]
+    return [*head, *((line(row), style) for row, style in zip(body, marked, strict=True))]
+
+
+def _fitting(table: Grid, body: list[list[str]], widths: list[int], width: int) -> list[int]:
+    """The columns that are shown: those that say something, less the least important until the rest fits."""
+    shown = [j for j in range(len(table.headers)) if j == 0 or any(row[j] not in ("", "-") for row in body)]
+    ranked = [j for j in shown if table.headers[j] in table.keep]
+    order = [*reversed([j for j in shown[1:] if j not in ranked]), *reversed([j for j in ranked if j != 0])]
+    floor = [w if _numbers(body, j) else min(w, 3 * LEAST) for j, w in enumerate(widths)]
+    for j in order:
+        if _total(floor, shown) <= width:
+            break
+        shown.remove(j)
+    return shown
+
+
+def _numbers(body: list[list[str]], j: int) -> bool:
+    """Does a column hold numbers, which are not to be shortened?"""
+    return any(row[j][:1].isdigit() or (row[j][:1] in "+-" and row[j][1:2].isdigit()) for row in body)
+
+
+def _total(widths: Sequence[int], shown: Sequence[int]) -> int:
+    return sum(widths[j] for j in shown) + len(GAP) * (len(shown) - 1)
+
+
+def _padded(text: str, width: int, right: bool) -> str:
+    short = text if len(text) <= width else f"{text[: width - 1]}…"
+    return short.rjust(width) if right else short.ljust(width)
+
+
+def cell(value: Any) -> str:
+    """A value as a table shows it: numbers to three digits."""
+    if value is None or (isinstance(value, float) and not math.isfinite(value)):
+        return "-"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, float):
+        return f"{value:.2f}" if 0.1 <= abs(value) < 1000 else f"{value:.3g}"
+    if isinstance(value, list | tuple):
+        return ", ".join(cell(v) for v in value)
+    return str(value)
+
+
+def width() -> int:
+    """Of the terminal, or as COLUMNS says; a pipe has 80."""
+    return shutil.get_terminal_size((USUAL, 24)).columns if sys.stdout.isatty() or "COLUMNS" in os.environ else USUAL
+
+
+def printed(answer: Answer) -> None:
+    """On stdout."""
+    from rich.console import Console
+    from rich.text import Text
+
+    console = Console(soft_wrap=True)
+    for line, style in lay_out(answer, width(), _limit.get()):
+        console.print(Text(line, style if console.is_terminal else ""), soft_wrap=True)
