@@ -11,6 +11,7 @@ from thermoscope.terminal import give, progress, say, table
 
 EVIDENT = 10.0  # nats
 WHITE = 0.01
+ROWS = 12
 TURNS = {True: "yes", False: "no", None: ""}
 
 
@@ -74,16 +75,38 @@ def show_why(document: Mapping[str, Any]) -> None:
         p = left.get((u["test"], u["channel"]))
         rows.append([u["test"], u["channel"], *numbers, "yes" if u["explained"] else "no", *_pattern(p)])
     table("Against all uncertainties (ASME V&V 20, standard uncertainties in K)", headers, rows, marked=["no"])
+    show_contradiction(document["contradiction"])
     found = [h for h in document["where"] if h["evidence_nats"] > EVIDENT]
     for h in found[:3]:
-        name, series = max(h["heat"].items(), key=lambda kv: max(map(abs, kv[1]["heat_W"])))
-        k = max(range(len(series["heat_W"])), key=lambda i: abs(series["heat_W"][i]))
-        watts, when = series["heat_W"][k], series["time_s"][k]
-        say(
-            f"heat missing at {h['place']}: {watts:+.3g} W after {when:.0f} s of {name} ({h['evidence_nats']:.0f} nats)"
-        )
+        say(f"heat missing at {h['place']} ({h['evidence_nats']:.0f} nats): {_pulses(h)}")
     if not found:
         say("no place where heat is clearly missing (beyond what calibration mends)")
+
+
+def show_contradiction(found: Mapping[str, Any] | None) -> None:
+    """What would have to differ between tests: in a sentence, then as a table."""
+    if not found:
+        return
+    rows = [
+        [d["test"], d["parameter"], d["others"], d["here"], "" if d["unit"] == "1" else d["unit"], abs(d["sd"]),
+         "yes" if d["possible"] else "no"] for d in found["differences"][:ROWS]
+    ]  # fmt: skip
+    if rows:
+        headers = ["test", "parameter", "other tests", "this test", "unit", "deviations", "can it differ?"]
+        table("What would have to differ between tests (by tangents)", headers, rows, marked=["no"])
+    say(found["words"])
+
+
+def _pulses(h: Mapping[str, Any]) -> str:
+    """Every pulse of a missing-heat curve; of one without any its largest value."""
+    if h["pulses"]:
+        told = [
+            f"{p['heat_W']:+.3g} W from {p['begin_s']:.0f} to {p['end_s']:.0f} s of {p['test']}" for p in h["pulses"]
+        ]
+        return ", ".join(told)
+    name, series = max(h["heat"].items(), key=lambda kv: max(map(abs, kv[1]["heat_W"])))
+    k = max(range(len(series["heat_W"])), key=lambda i: abs(series["heat_W"][i]))
+    return f"{series['heat_W'][k]:+.3g} W after {series['time_s'][k]:.0f} s of {name}"
 
 
 def _pattern(p: Mapping[str, Any] | None) -> list[str]:

@@ -7,6 +7,7 @@ from typing import Any
 
 from thermoscope.commands.ahead import show_ahead
 from thermoscope.commands.bases import show_bases
+from thermoscope.commands.compare import show_contradiction
 from thermoscope.commands.error_budget import show_budget
 from thermoscope.commands.opened import opened
 from thermoscope.commands.saved import save_diagnosis
@@ -60,10 +61,22 @@ def _searched(document: Mapping[str, Any]) -> None:
             say(f"against {c['effect']}: it {c['note']} than {document['candidates'][0]['effect']}")
     if document["candidates"] and (alike := document["candidates"][0]["confused_with"]):
         say(f"{document['candidates'][0]['effect']} looks like {', '.join(alike)} to these tests and sensors")
+    show_events(document)
+    show_contradiction(document.get("contradiction"))
     show_ahead(document)
     hidden = [h["effect"] for h in document["cannot_see"]]
     if hidden:
         say(f"{len(hidden)} effects could be there unseen, e.g. {', '.join(hidden[:4])} (all in --json)")
+
+
+def show_events(document: Mapping[str, Any]) -> None:
+    """When something may have been different, every stretch that was tried."""
+    rows = [
+        [e["words"], f"{100 * e['probability']:.1f}", e["effect"].split(" in ")[0], e["value"],
+         "" if e["unit"] == "1" else e["unit"]] for e in document.get("events", [])
+    ]  # fmt: skip
+    if rows:
+        table("What may have differed for a while", ["when", "%", "most likely", "size", "unit"], rows)
 
 
 def _row(c: Mapping[str, Any]) -> list[Any]:
