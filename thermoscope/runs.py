@@ -13,7 +13,8 @@ from thermoscope.folder import Folder
 from thermoscope.history import Revision
 from validation.case import AddedEffect, Case, Test
 from validation.compare import physical
-from validation.fitting import to_value, working
+from validation.effects.during import During
+from validation.fitting import effects_of, to_value, working
 from validation.predict import predict, record, thermal
 
 if TYPE_CHECKING:
@@ -48,7 +49,14 @@ def held(folder: Folder, test: Test) -> Comparison:
     from viz.data import Comparison
 
     earlier = before_last(folder)
-    return Comparison(test, readings(folder.case, test), None if earlier is None else readings(earlier, test))
+    before = None if earlier is None else readings(earlier, test)
+    return Comparison(test, readings(folder.case, test), before, accepted(folder.case, test))
+
+
+def accepted(case: Case, test: Test) -> tuple[tuple[float, float], ...]:
+    """When something was different in a test, by the model's effects: from and to (s)."""
+    own = [effect.event for effect in effects_of(case) if isinstance(effect, During) and effect.event]
+    return tuple(span for event in own for span in event.spans.get(test.name, ()))
 
 
 def fields(case: Case, test: Test, nodes: SplitMesh, frames: int) -> tuple[Array, Array]:

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from validation.calibrate import silent
 from validation.case import Case
 from validation.compare import physical
+from validation.conditions.contradiction import Contradiction, contradiction
+from validation.conditions.windows import pulses
 from validation.fitting import working
 from validation.inference.evidence import calibrated_case, diagnosing
 from validation.residuals import Pattern, patterns
@@ -19,17 +21,22 @@ from validation.where import Latent, latent_heat
 
 @dataclass(frozen=True)
 class Failing:
-    """All rows of all tests, held-out ones too; heat : what would have to enter where, most evident first."""
+    """All rows of all tests, held-out ones too; heat : what would have to enter where, most evident first.
+
+    contradiction : what would have to differ between the tests that are fitted
+    """
 
     uncertainty: tuple[Uncertainty, ...]
     patterns: tuple[Pattern, ...]
     heat: tuple[Latent, ...]
+    contradiction: Contradiction
 
     def document(self) -> dict:
         return {
             "uncertainty": [u.document() for u in self.uncertainty],
             "patterns": [p.document() for p in self.patterns],
-            "where": [h.document() for h in self.heat],
+            "where": [{**h.document(), "pulses": steps(h)} for h in self.heat],
+            "contradiction": self.contradiction.document(),
         }
 
 
@@ -43,4 +50,14 @@ def failing(case: Case, progress: Callable[[str], None] = silent) -> Failing:
     left = patterns(segments(network, case.tests, now), case.tests)
     fit = calibrated_case(case, progress)
     progress("looking for where heat is missing")
-    return Failing(rows, tuple(left), tuple(latent_heat(fit, diagnosing(case))))
+    tests = diagnosing(case)
+    return Failing(rows, tuple(left), tuple(latent_heat(fit, tests)), contradiction(fit, tests))
+
+
+def steps(heat: Latent) -> list[dict]:
+    """Every stretch in which a missing-heat curve stands on another level: test, begin and end (s), W."""
+    found = {test: pulses(*curve) for test, curve in heat.heat_W.items()}
+    return [
+        {"test": test, "begin_s": a, "end_s": b, "heat_W": level}
+        for test, own in found.items() for (a, b), level in own
+    ]  # fmt: skip

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal
 from validation.where import Latent
 
 if TYPE_CHECKING:
+    from validation.conditions.contradiction import Contradiction
     from validation.procedure.which_base import Hypothesis
 
 Verdict = Literal["adequate", "named", "group", "several", "outside", "absorbed", "data"]
@@ -180,6 +181,7 @@ class Diagnosis:
     odds : every hypothesis that carries weight, most probable first, summing to one;  p_nothing : of nothing missing
     events : when something may have been different for a while, most probable first
     remainder : what is still off with what is named in the model
+    contradiction : what would have to differ between the tests
     """
 
     verdict: Verdict
@@ -201,6 +203,7 @@ class Diagnosis:
     p_nothing: float = 1.0
     events: tuple[Happening, ...] = ()
     remainder: tuple[Remainder, ...] = ()
+    contradiction: Contradiction | None = None
 
     def document(self) -> dict:
         return {
@@ -217,6 +220,7 @@ class Diagnosis:
             "p_nothing": self.p_nothing,
             "events": [e.document() for e in self.events],
             "remainder": [r.document() for r in self.remainder],
+            "contradiction": None if self.contradiction is None else self.contradiction.document(),
             "rmse_K": self.rmse_K,
             "floor_K": self.floor_K,
             "threshold": self.threshold,

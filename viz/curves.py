@@ -48,6 +48,7 @@ def residuals(comparison: Comparison, *, png: str | Path | None = None) -> Figur
     channels = _read(comparison)
     band = 2 * max(c.sigma_K for c in channels)
     ax.axhspan(-band, band, color=LIGHT.faint, alpha=0.25, lw=0)
+    shade(ax, comparison)
     colours = []
     for channel in channels:
         r = comparison.residual(channel)
@@ -73,6 +74,7 @@ def _read(comparison: Comparison) -> tuple[Channel, ...]:
 def _panel(ax: Axes, comparison: Comparison, channel: Channel) -> None:
     thin = comparison.thin
     t, y = comparison.clock[0][thin], np.asarray(channel.y, float)[thin]
+    shade(ax, comparison)
     ax.fill_between(t, y - 2 * channel.sigma_K, y + 2 * channel.sigma_K, color=LIGHT.faint, alpha=0.45, lw=0)
     ax.plot(t, y, color=LIGHT.ink, lw=1.0)
     if comparison.before is not None:
@@ -94,6 +96,13 @@ def _name_lines(ax: Axes, comparison: Comparison) -> None:
     )
     for i, (text, colour) in enumerate(lines):
         ax.text(0.03, 0.97 - 0.12 * i, text, transform=ax.transAxes, va="top", color=colour, fontsize=8.5)
+
+
+def shade(ax: Axes, comparison: Comparison) -> None:
+    """When something was different."""
+    unit_s = 60.0 if comparison.clock[1] == "min" else 3600.0
+    for begin, end in comparison.events:
+        ax.axvspan(begin / unit_s, end / unit_s, color=ORANGE, alpha=0.15, lw=0)
 
 
 def wrongness(residual: np.ndarray, limit: float) -> str:

@@ -44,11 +44,13 @@ class Comparison:
     """One test held against a model.
 
     model : channel name -> (n_time,) degC;  before : the same of an earlier revision, if it is to be shown
+    events : when something was, or may have been, different, from and to (s)
     """
 
     test: Test
     model: Mapping[str, Array]
     before: Mapping[str, Array] | None = None
+    events: tuple[tuple[float, float], ...] = ()
 
     def __post_init__(self) -> None:
         missing = [c.name for c in self.test.channels if c.name not in self.model]

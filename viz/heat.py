@@ -9,16 +9,19 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from viz import paper
-from viz.colours import LIGHT, VERMILION
+from viz.colours import LIGHT, ORANGE, VERMILION
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
 @paper.styled
-def missing_heat(where: Sequence[Mapping[str, Any]], *, png: str | Path | None = None) -> Figure:
+def missing_heat(
+    where: Sequence[Mapping[str, Any]], *, events: Sequence[Mapping[str, Any]] = (), png: str | Path | None = None
+) -> Figure:
     """Missing heat (W) over each test at the likeliest place, with its 2-sigma band.
 
+    events : of the same document, shaded as far as they are probable
     where : [{"place", "evidence_nats", "heat": {test: {"time_s", "heat_W", "sd_W"}}}], as in a `diagnose` document
     """
     best = max(where, key=lambda w: w["evidence_nats"])
@@ -31,6 +34,9 @@ def missing_heat(where: Sequence[Mapping[str, Any]], *, png: str | Path | None =
         ax.fill_between(t / 60, q - 2 * sd, q + 2 * sd, color=LIGHT.faint, alpha=0.4, lw=0)
         ax.plot(t / 60, q, color=VERMILION)
         ax.axhline(0, color=LIGHT.ink, lw=0.8)
+        for event, span in [(e, s) for e in events for s in e["spans"] if s["test"] == name]:
+            shade = 0.25 * event["probability"]
+            ax.axvspan(span["begin_s"] / 60, span["end_s"] / 60, color=ORANGE, alpha=shade, lw=0)
         ax.margins(x=0)
         ax.set_title(name)
     for ax in axes[len(tests) :]:

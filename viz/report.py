@@ -123,19 +123,46 @@ def _missing(r: Report) -> str:
         html.plot(candidates.scores(ranked), "scores", "Candidates by score; beyond the black mark is not chance.")
     ]
     parts.append(html.table(_HEADERS, [_row(c) for c in ranked[:12]], [c["decision"] == "named" for c in ranked]))
+    parts.append(_events(r.diagnosis))
+    parts.append(_contradiction(r.diagnosis))
     if placed(r.diagnosis) and r.diagnosis["where"][0].get("heat"):
         caption = "Heat that would have to enter (or leave, below zero) at the likeliest place, with its 2σ band."
-        parts.append(html.plot(heat.missing_heat(r.diagnosis["where"]), "heat", caption))
+        drawn = heat.missing_heat(r.diagnosis["where"], events=r.diagnosis.get("events", []))
+        parts.append(html.plot(drawn, "heat", caption))
     parts.append(html.text("Errors: without the effect → with it, all else fitted anew each time."))
     alike = [(c["effect"], ", ".join(c["confused_with"])) for c in ranked[:12] if c["confused_with"]]
     likeness = html.table(["effect", "looks like"], alike)
     names = [c["effect"] for c in ranked[:10]]
     if r.diagnosis.get("confusion"):
-        drawn = candidates.confusion(names, candidates.matrix(r.diagnosis["confusion"], names))
-        likeness += html.plot(drawn, "confusion", "Likeness of their traces.")
+        likely = candidates.confusion(names, candidates.matrix(r.diagnosis["confusion"], names))
+        likeness += html.plot(likely, "confusion", "Likeness of their traces.")
     if likeness:
         parts.append(html.more("Which of them look alike", likeness))
     return html.section("What was missing before the last step" if r.earlier else "What is missing", *parts)
+
+
+def _events(diagnosis: Document) -> str:
+    """When something may have been different for a while."""
+    rows: list[list[html.Cell]] = [
+        [e["words"], f"{100 * e['probability']:.0f} %", e["title"], e["effect"], _number(e["value"]), e["unit"]]
+        for e in diagnosis.get("events", [])
+    ]
+    headers = ["when", "probability", "most likely", "effect", "size", "unit"]
+    return "<h3>What may have differed for a while</h3>" + html.table(headers, rows) if rows else ""
+
+
+def _contradiction(diagnosis: Document) -> str:
+    """Which test stands against the others, and what it would need."""
+    found = diagnosis.get("contradiction")
+    if not found or not found["differences"]:
+        return ""
+    rows: list[list[html.Cell]] = [
+        [d["test"], d["parameter"], _number(d["others"]), _number(d["here"]), "" if d["unit"] == "1" else d["unit"],
+         _number(abs(d["sd"])), "yes" if d["possible"] else "no"] for d in found["differences"][:12]
+    ]  # fmt: skip
+    headers = ["test", "parameter", "other tests", "this test", "unit", "standard deviations", "can it differ?"]
+    table = html.table(headers, rows, [d["possible"] is False for d in found["differences"][:12]])
+    return f"<h3>Tests that contradict each other</h3>{html.text(found['words'])}{html.more('In numbers', table)}"
 
 
 _HEADERS = ["effect", "decision", "score", "threshold", "size", "95 % interval", "error (K)", "held-out (K)"]

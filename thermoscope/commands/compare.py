@@ -13,6 +13,7 @@ from thermoscope.terminal import give, progress
 EVIDENT = 10.0  # nats
 WHITE = 0.01
 RULE = "within: rms up to 2 sigma, or up to 4 % of the rise"
+DIFFERENCES = 12  # shown
 TURNS = {True: "yes", False: "no", None: ""}
 
 
@@ -103,20 +104,41 @@ def _why(document: Mapping[str, Any]) -> list[Grid | str]:
         rows.append([u["channel"], u["test"], *numbers, "yes" if u["explained"] else "no", *_pattern(p)])
     title = "Against all uncertainties (ASME V&V 20, standard uncertainties in K)"
     keep = ["test", "error (K)", "explained", "follows"]
-    return [Grid(title, headers, rows, ["no"], keep), *_missing(document["where"])]
+    differing = contradiction(document["contradiction"])
+    return [*differing[:1], Grid(title, headers, rows, ["no"], keep), *differing[1:], *_missing(document["where"])]
 
 
 def _missing(places: Sequence[Mapping[str, Any]]) -> list[str]:
     """Where heat is missing, and how much at most."""
     found = [h for h in places if h["evidence_nats"] > EVIDENT]
-    lines = []
-    for h in found[:3]:
-        name, series = max(h["heat"].items(), key=lambda kv: max(map(abs, kv[1]["heat_W"])))
-        k = max(range(len(series["heat_W"])), key=lambda i: abs(series["heat_W"][i]))
-        watts, when = series["heat_W"][k], series["time_s"][k]
-        lines.append(f"Heat missing at {h['place']}: {watts:+.3g} W after {when:.0f} s of {name} "
-                     f"({h['evidence_nats']:.0f} nats).")  # fmt: skip
+    lines = [f"Heat missing at {h['place']} ({h['evidence_nats']:.0f} nats): {_pulses(h)}." for h in found[:3]]
     return lines or ["No place where heat is clearly missing (beyond what calibration mends)."]
+
+
+def contradiction(found: Mapping[str, Any] | None) -> list[Grid | str]:
+    """What would have to differ between tests: in a sentence, then as a table."""
+    if not found:
+        return []
+    rows = [
+        [d["test"], d["parameter"], d["others"], d["here"], "" if d["unit"] == "1" else d["unit"], abs(d["sd"]),
+         "yes" if d["possible"] else "no"] for d in found["differences"][:DIFFERENCES]
+    ]  # fmt: skip
+    headers = ["test", "parameter", "other tests", "this test", "unit", "deviations", "can it differ?"]
+    keep = ["parameter", "this test", "deviations", "can it differ?"]
+    title = "What would have to differ between tests (by tangents)"
+    return [found["words"], *([Grid(title, headers, rows, ["no"], keep)] if rows else [])]
+
+
+def _pulses(h: Mapping[str, Any]) -> str:
+    """Every pulse of a missing-heat curve; of one without any its largest value."""
+    if h["pulses"]:
+        told = [
+            f"{p['heat_W']:+.3g} W from {p['begin_s']:.0f} to {p['end_s']:.0f} s of {p['test']}" for p in h["pulses"]
+        ]
+        return ", ".join(told)
+    name, series = max(h["heat"].items(), key=lambda kv: max(map(abs, kv[1]["heat_W"])))
+    k = max(range(len(series["heat_W"])), key=lambda i: abs(series["heat_W"][i]))
+    return f"{series['heat_W'][k]:+.3g} W after {series['time_s'][k]:.0f} s of {name}"
 
 
 def _pattern(p: Mapping[str, Any] | None) -> list[str]:

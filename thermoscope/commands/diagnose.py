@@ -8,6 +8,7 @@ from typing import Any
 from thermoscope.answer import Answer, Grid, cell
 from thermoscope.commands.ahead import ahead
 from thermoscope.commands.bases import bases_tried
+from thermoscope.commands.compare import contradiction
 from thermoscope.commands.error_budget import budget, in_short
 from thermoscope.commands.opened import opened
 from thermoscope.commands.saved import save_diagnosis
@@ -47,7 +48,8 @@ def answer(document: Mapping[str, Any]) -> Answer:
     hidden = [f"{h['effect']} below {cell(h['smallest_detectable'])} {h['unit']}" for h in document["cannot_see"]]
     unseen = f"{len(hidden)} effects could be there unseen: {', '.join(hidden[:2])}, ..." if hidden else ""
     remaining = [row["words"] for row in document.get("remainder", [])]
-    parts = [_odds(document), _candidates(document["candidates"]), *remaining, *_leader(document["candidates"]), ahead(document),
+    parts = [_odds(document), _candidates(document["candidates"]), *events(document), *remaining,
+             *_leader(document["candidates"]), *contradiction(document.get("contradiction")), ahead(document),
              in_short(document.get("error_budget", {})), unseen]  # fmt: skip
     rest = [*budget(document.get("error_budget", {})), *hidden]
     return Answer(sentence, parts, f"{step}; --json FILE; thermoscope report {case}", rest)
@@ -78,6 +80,17 @@ def _leader(found: Sequence[Mapping[str, Any]]) -> list[str]:
     lost = [f"Against {c['effect']}: it {c['note']} than {first['effect']}." for c in found[1:ROWS]
             if c["note"] and c["probability"] > SHOWN]  # fmt: skip
     return [*lines, *lost]
+
+
+def events(document: Mapping[str, Any]) -> list[Grid]:
+    """When something may have been different, every stretch that was tried."""
+    rows = [
+        [e["words"], f"{100 * e['probability']:.1f}", e["effect"].split(" in ")[0], e["value"],
+         "" if e["unit"] == "1" else e["unit"]] for e in document.get("events", [])
+    ]  # fmt: skip
+    return (
+        [Grid("What may have differed for a while", ["when", "%", "most likely", "size", "unit"], rows)] if rows else []
+    )
 
 
 def _row(c: Mapping[str, Any]) -> list[Any]:

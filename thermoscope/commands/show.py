@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import platform
 from collections.abc import Mapping
+from dataclasses import replace
 from datetime import datetime
 from importlib.metadata import version
 from pathlib import Path
@@ -22,9 +23,11 @@ from thermoscope.terminal import Progress, give, notes, progress
 from validation.case import Case, Test
 
 if TYPE_CHECKING:
+    from viz.data import Comparison
     from viz.nodes import SplitMesh
 
 FRAMES = 61
+LIKELY = 0.5  # probability from which an event is drawn
 ORDER = {"hold-out": 0, "validate": 1, "calibrate": 2}
 
 
@@ -54,7 +57,8 @@ def write_page(folder: Folder, case: str, into: Path, tell: Progress, again: boo
 
     tell("running the model")
     result, (diagnosis, earlier) = compare(folder.case), _diagnosis(folder, tell, again)
-    curves, budgets = [held(folder, test) for test in by_interest(folder)], budgets_of_tests(folder, tell)
+    curves = [marked(held(folder, test), diagnosis) for test in by_interest(folder)]
+    budgets = budgets_of_tests(folder, tell)
     tell("drawing")
     page = Report(
         folder.case.name, folder.settings.description, result.document(), diagnosis, steps(folder),
@@ -62,6 +66,13 @@ def write_page(folder: Folder, case: str, into: Path, tell: Progress, again: boo
         commands(folder, case), made(), earlier, documents(budgets),
     )  # fmt: skip
     return write_report(page, into / "report.html")
+
+
+def marked(comparison: Comparison, diagnosis: Mapping[str, Any] | None) -> Comparison:
+    """The comparison with the events that a diagnosis finds likely."""
+    likely = [e for e in (diagnosis or {}).get("events", []) if e["probability"] > LIKELY]
+    spans = [(s["begin_s"], s["end_s"]) for e in likely for s in e["spans"] if s["test"] == comparison.test.name]
+    return replace(comparison, events=(*comparison.events, *spans))
 
 
 def render(case: str, out: Path | None, target: str | None) -> int:
@@ -107,7 +118,7 @@ def _plots(folder: Folder, into: Path) -> list[Path]:
 
     written = []
     for test in by_interest(folder):
-        comparison = held(folder, test)
+        comparison = marked(held(folder, test), saved_diagnosis(folder))
         for name, draw in (("curves", curves.measured_and_model), ("residuals", curves.residuals)):
             written.append(into / f"{name}-{test.name}.png")
             draw(comparison, png=written[-1])

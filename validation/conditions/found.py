@@ -19,7 +19,7 @@ from validation.conditions.hats import Stretch, hats
 from validation.conditions.menu import of_a_test, passing
 from validation.conditions.refine import columns, refined
 from validation.conditions.windows import distinct, stretches, worth
-from validation.doubt import PRIOR
+from validation.doubt import PRIOR, USUAL
 from validation.effects import Effect, extended
 from validation.effects.during import During
 from validation.effects.gate import Event
@@ -43,10 +43,10 @@ class Condition:
     worth: float
 
 
-def with_conditions(
+def conditions(
     evidence: Evidence, case: Case, looked: Scan, heat: Sequence[Latent], progress: Callable[[str], None] = silent
-) -> tuple[Evidence, tuple[Event, ...]]:
-    """The evidence with the conditions that could carry weight among its effects, and the events they hold in."""
+) -> tuple[list[During], tuple[Event, ...]]:
+    """The conditions that could carry weight, and the events they hold in."""
     known = {**case.model.values, **evidence.fit.values}
     scene = replace(scene_of(case), network=evidence.fit.network)
     progress("looking for what held in one test or for a while")
@@ -56,7 +56,7 @@ def with_conditions(
         event, own = explained(evidence, bases, s, looked, known)
         events.append(event)
         chosen += best(own, EACH)
-    return joined(evidence, [c.effect for c in chosen], known), tuple(events)
+    return [c.effect for c in chosen], tuple(events)
 
 
 def best(conditions: Sequence[Condition], most: int) -> list[Condition]:
@@ -120,13 +120,15 @@ def likeness(evidence: Evidence, bases: Sequence[Effect], s: Stretch, known: Map
 def scored_in(
     evidence: Evidence, effects: Sequence[During], known: Mapping[str, float], prior: float
 ) -> list[Condition]:
+    """Conditions at their linear amplitude, without those that move no reading further than chance does."""
     parameters = extended(evidence.fit.network, effects).parameters[-len(effects) :]
     theta, sd = extended_prior(evidence.fit)
     parts = columns(evidence, effects, known)
     found = score(total(projected(evidence.fit, parts)), theta, sd, np.array([q.sign for q in parameters], int))
     bayes = log_bayes_of(found, np.array([q.prior_sd for q in parameters]))
-    rows = zip(effects, bayes, found.visible, strict=True)
-    return [Condition(e, float(b) + prior) for e, b, seen in rows if seen]
+    moved = np.max([np.max(np.abs(s.J[:, evidence.p :]), axis=0) / s.weight for s in parts], axis=0)
+    clear = found.visible & (moved * np.abs(found.amplitude) > USUAL["excursion"])
+    return [Condition(e, float(b) + prior) for e, b, seen in zip(effects, bayes, clear, strict=True) if seen]
 
 
 def joined(evidence: Evidence, effects: Sequence[During], known: Mapping[str, float]) -> Evidence:

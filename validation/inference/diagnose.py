@@ -9,7 +9,9 @@ import numpy as np
 
 from validation.calibrate import silent
 from validation.case import Case
-from validation.conditions.found import with_conditions
+from validation.conditions.contradiction import contradiction
+from validation.conditions.found import conditions, joined
+from validation.conditions.robust import without
 from validation.faults import broken_channels
 from validation.findings import Diagnosis
 from validation.imprint import imprint
@@ -76,14 +78,15 @@ def infer(case: Case, kinds: Sequence[str] | None = None, progress: Progress = s
     fit = calibrated_case(case, progress)
     progress("scoring the catalogue")
     evidence = sharpened(scored(case, candidates(case, kinds), fit))
+    against = contradiction(evidence.fit, evidence.tests)
     progress("looking for where heat is missing")
     looked = scan(evidence.fit, evidence.tests)
     heat = looked.read(evidence.fit.parts, evidence.fit.noise, evidence.fit.theta, evidence.fit.error)
-    evidence, events = with_conditions(evidence, case, looked, heat, progress)
-    evidence = sharpened(evidence)
+    chosen, events = conditions(without(evidence, against.test), case, looked, heat, progress)
+    evidence = sharpened(joined(evidence, chosen, {**case.model.values, **evidence.fit.values}))
     ones = singles(evidence)
     weighed = [*ones, *pairs(evidence, ones), *unknown_heat({w.place: w.log_bayes for w in heat})]
-    return Posterior(evidence, tuple(refitted(evidence, weighed, progress)), tuple(heat), events)
+    return Posterior(evidence, tuple(refitted(evidence, weighed, progress)), tuple(heat), events, against)
 
 
 def sharpened(evidence: Evidence, rounds: int = 2) -> Evidence:

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +26,9 @@ from validation.effects.gate import Event
 from validation.inference.evidence import Evidence
 from validation.score import Score
 from validation.where import Latent
+
+if TYPE_CHECKING:
+    from validation.conditions.contradiction import Contradiction
 
 Array = NDArray[np.float64]
 NOTHING = "nothing"
@@ -154,12 +158,14 @@ class Posterior:
     """What follows from the readings.
 
     heat : of unknown cause at each place, most evident first;  events : when something may have been different
+    against : what would have to differ between the tests
     """
 
     evidence: Evidence
     hypotheses: tuple[Hypothesis, ...]
     heat: tuple[Latent, ...]
     events: tuple[Event, ...] = ()
+    against: Contradiction | None = None
 
     @property
     def single(self) -> dict[int, Hypothesis]:

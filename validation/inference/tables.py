@@ -54,6 +54,7 @@ def tabulate(
         threshold=float(np.min(thresholds(e))), pulls=pulls, cosine=confusion(e, [c.effect for c in rows[:12]]),
         bases=bases, odds=odds(posterior), p_nothing=1.0 - choice.sure, events=happenings(posterior),
         remainder=remainder(posterior, choice, single),
+        contradiction=posterior.against,
     )  # fmt: skip
 
 
