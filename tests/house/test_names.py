@@ -21,6 +21,7 @@ ALLOWED = {  # file -> what its strings are, none of them a user's name for a pa
     "thermoscope/csv_file.py": "endings of files",
     "thermoscope/commands/saved.py": "hidden files",
     "geom/step.py": "labels of a STEP assembly",
+    "validation/effects/gate.py": "events that the tool names itself, TEST:BEGIN-END",
     "fem/streams.py": "cells that fem.streams names itself, FLUID@3",
     "lumped/motor_path.py": "cells that fem.streams names itself, FLUID@3",
     "lumped/motor_shapes.py": "a choice of the family",
