@@ -36,7 +36,10 @@ def decide(evidence: Evidence, hypotheses: Sequence[Hypothesis]) -> Decision:
         return Decision("adequate", (), 1.0 - nothing)
     if heat > 0.5 * (1.0 - nothing):
         return Decision("outside", (), 1.0 - nothing)
-    groups = (first := cover(evidence, hypotheses, P), *second(evidence, hypotheses, P, first))
+    found = [cover(evidence, hypotheses, P)]
+    while more := beside(evidence, hypotheses, P, found):
+        found.append(more)
+    groups = tuple(found)
     return Decision(_verdict(evidence, groups, P, hypotheses), groups, 1.0 - nothing)
 
 
@@ -71,15 +74,17 @@ def cover(
     return tuple(out)
 
 
-def second(
-    evidence: Evidence, hypotheses: Sequence[Hypothesis], P: Array, first: tuple[int, ...]
-) -> list[tuple[int, ...]]:
-    """What is missing beside the first, if to keep silent about it costs more than to say it."""
-    known = [(h, p) for h, p in zip(hypotheses, P, strict=True) if set(h.members) & set(first)]
-    both = [(h, p) for h, p in known if len(h.members) > 1]
+def beside(
+    evidence: Evidence, hypotheses: Sequence[Hypothesis], P: Array, groups: Sequence[tuple[int, ...]]
+) -> tuple[int, ...]:
+    """What is missing beside the leads of the groups so far, if to keep silent about it costs more than to say it."""
+    lead, last = frozenset(g[0] for g in groups), groups[-1]
+    others = lead - set(last)
+    known = [
+        (h, p) for h, p in zip(hypotheses, P, strict=True) if others <= set(h.members) and set(h.members) & set(last)
+    ]
+    both = [(h, p) for h, p in known if len(h.members) > len(groups)]
     if sum(p for _, p in both) < (1.0 - SILENT) * sum(p for _, p in known):
-        return []
-    lead = frozenset(first[:1])
-    beside = [(h, p) for h, p in both if lead <= set(h.members)]
-    found = cover(evidence, [h for h, _ in beside], np.array([p for _, p in beside]), lead)
-    return [found] if found else []
+        return ()
+    rest = [(h, p) for h, p in both if lead <= set(h.members)]
+    return cover(evidence, [h for h, _ in rest], np.array([p for _, p in rest]), lead)

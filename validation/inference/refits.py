@@ -30,7 +30,7 @@ def refitted(
         progress(f"refitting {out[i].name(evidence)}")
         out[i] = laplace(evidence, out[i])
     for _ in range(ROUNDS):
-        P = probabilities(out)
+        P = shares(out)
         due = [i for i in np.argsort(-P) if P[i] > WEIGHT and out[i].members and out[i].fit is None][:MOST]
         if not due:
             break
@@ -38,6 +38,12 @@ def refitted(
             progress(f"refitting {out[i].name(evidence)}")
             out[i] = laplace(evidence, out[i], fitted_alone(out, out[i].members))
     return out
+
+
+def shares(hypotheses: Sequence[Hypothesis]) -> Array:
+    """Probabilities; of what has a name those without heat of unknown cause, which is not refitted and may hide it."""
+    P, named = probabilities(hypotheses), np.array([not h.heat for h in hypotheses])
+    return np.where(named, P / max(float(P[named].sum()), 1e-300), P)
 
 
 def fitted_alone(hypotheses: Sequence[Hypothesis], members: Sequence[int]) -> tuple[int, Fit] | None:
