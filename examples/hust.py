@@ -144,6 +144,7 @@ def main() -> None:
 
     case = load_case(find_case("hust-ipmsm"), tell).case
     done = climb(case, Guide(best), options.rounds, progress=tell)
+    options.out.mkdir(parents=True, exist_ok=True)
     file = options.out / "model.toml"
     save_history(file, history(done.stairs), load_history(file))
     text = "\n".join([table(done.stairs), "", *EVIDENCE, *(evidence(s) for s in done.stairs if s.effect), ""])

@@ -9,7 +9,7 @@ from playground import Truth, wind
 from scipy.integrate import quad
 from scipy.stats import norm
 
-from validation.doubt import PRIOR, TABLE, USUAL, widened
+from validation.doubt import PRIOR, TABLE, TEMPER, USUAL, widened
 from validation.effects import effect
 from validation.inference.decision import SURE, decide
 from validation.inference.detection import smallest
@@ -64,8 +64,9 @@ def test_two_effects_that_share_nothing_are_worth_what_each_is():
     assert float(two(one, a, b)[0]) <= most + 1e-9
 
 
-def test_probabilities_follow_bayes():
-    hypotheses = [Hypothesis(log_prior=np.log(0.5)), Hypothesis((0,), "", np.log(0.1), np.log(20.0))]
+def test_probabilities_follow_bayes_with_tempered_evidence():
+    """A Bayes factor of 20 to the power of the temper counts as one of 20."""
+    hypotheses = [Hypothesis(log_prior=np.log(0.5)), Hypothesis((0,), "", np.log(0.1), TEMPER.share * np.log(20.0))]
     np.testing.assert_allclose(probabilities(hypotheses), [0.5 / 2.5, 2.0 / 2.5])
 
 

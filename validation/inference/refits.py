@@ -30,7 +30,7 @@ def refitted(
         progress(f"refitting {out[i].name(evidence)}")
         out[i] = laplace(evidence, out[i])
     for _ in range(ROUNDS):
-        P = shares(out)
+        P = shares(promised(hypotheses, out))
         due = [i for i in np.argsort(-P) if P[i] > WEIGHT and out[i].members and out[i].fit is None][:MOST]
         if not due:
             break
@@ -38,6 +38,14 @@ def refitted(
             progress(f"refitting {out[i].name(evidence)}")
             out[i] = laplace(evidence, out[i], fitted_alone(out, out[i].members))
     return out
+
+
+def promised(before: Sequence[Hypothesis], after: Sequence[Hypothesis]) -> list[Hypothesis]:
+    """Two effects gain by tangents what either of them gains by its refit more than by its tangent."""
+    linear = {h.members[0]: h.log_bayes for h in before if len(h.members) == 1}
+    more = {h.members[0]: h.log_bayes - linear[h.members[0]] for h in after if h.fit and len(h.members) == 1}
+    gain = [0.0 if h.fit or len(h.members) < 2 else max(0.0, *(more.get(k, 0.0) for k in h.members)) for h in after]
+    return [replace(h, log_bayes=h.log_bayes + g) for h, g in zip(after, gain, strict=True)]
 
 
 def shares(hypotheses: Sequence[Hypothesis]) -> Array:
@@ -53,11 +61,13 @@ def fitted_alone(hypotheses: Sequence[Hypothesis], members: Sequence[int]) -> tu
 
 
 def rivals(hypotheses: Sequence[Hypothesis]) -> list[int]:
-    """Where evidence is so great that no tangent can be trusted: the single effects that come near the best."""
-    alone = sorted((h.log_bayes, i) for i, h in enumerate(hypotheses) if len(h.members) == 1)[::-1]
-    if not alone or alone[0][0] < GREAT:
+    """Where evidence is too great for tangents to be trusted: single effects that come near the most probable."""
+    P = probabilities(hypotheses)
+    alone = sorted((-P[i], i) for i, h in enumerate(hypotheses) if len(h.members) == 1)[:MOST]
+    best = hypotheses[alone[0][1]].log_bayes if alone else 0.0
+    if best < GREAT:
         return []
-    return [i for b, i in alone[:MOST] if b > NEAR * alone[0][0] and hypotheses[i].fit is None]
+    return [i for _, i in alone if hypotheses[i].log_bayes > NEAR * best and hypotheses[i].fit is None]
 
 
 def exchanged(evidence: Evidence, hypotheses: Sequence[Hypothesis]) -> list[int]:
