@@ -48,8 +48,9 @@ def answer(document: Mapping[str, Any]) -> Answer:
     hidden = [f"{h['effect']} below {cell(h['smallest_detectable'])} {h['unit']}" for h in document["cannot_see"]]
     unseen = f"{len(hidden)} effects could be there unseen: {', '.join(hidden[:2])}, ..." if hidden else ""
     remaining = [row["words"] for row in document.get("remainder", [])]
-    parts = [_odds(document), _candidates(document["candidates"]), *events(document), *remaining,
-             *_leader(document["candidates"]), *contradiction(document.get("contradiction")), ahead(document),
+    found = document["candidates"]
+    parts = [_odds(document), _candidates(found), *events(document), *remaining, *_leader(found),
+             *contradiction(document.get("contradiction")), ahead(document),
              in_short(document.get("error_budget", {})), unseen]  # fmt: skip
     rest = [*budget(document.get("error_budget", {})), *hidden]
     return Answer(sentence, parts, f"{step}; --json FILE; thermoscope report {case}", rest)
