@@ -69,7 +69,7 @@ def render(report: Report) -> str:
 def _top(r: Report) -> str:
     diagnosis = None if r.earlier else r.diagnosis
     tone, sentence = words.verdict(diagnosis, r.comparison)
-    head = f"<h1>thermoscope report: {escape(r.case)}</h1>"
+    head = f"<h1>thermoscope show report: {escape(r.case)}</h1>"
     head += f'<p class="verdict"><span class="{tone}">{escape(sentence)}</span></p>'
     return head + html.text(words.story(r.history), words.detail(diagnosis), r.description) + _cards(r)
 

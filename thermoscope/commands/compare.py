@@ -1,4 +1,4 @@
-"""thermoscope compare CASE"""
+"""thermoscope test compare CASE"""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def answer(document: Mapping[str, Any]) -> Answer:
              in_short(document["error_budget"]), roles_in_short(document["roles"])]  # fmt: skip
     rest = [*(records_of(f"{t['name']} ({t['role']})", [{"test": t["name"], **c} for c in t["channels"]])
               for t in document["tests"]), roles(document["roles"]), *budget(document["error_budget"])]  # fmt: skip
-    return Answer(sentence, parts, f"{WORDS}; --why, --json FILE; thermoscope report {document['case']}", rest)
+    return Answer(sentence, parts, f"{WORDS}; --why, --json FILE; thermoscope show report {document['case']}", rest)
 
 
 def tests(found: Sequence[Mapping[str, Any]]) -> Grid:

@@ -1,4 +1,4 @@
-"""thermoscope report CASE, thermoscope render CASE"""
+"""thermoscope show report CASE, thermoscope show render CASE"""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def report(case: str, out: Path | None, target: str | None) -> int:
     document = {"case": folder.case.name, "revision": folder.case.model.revision, "report": str(path)}
     printed = [f"As PDF: {pdf}"] if pdf else []
     if not (folder.settings.out / "diagnosis.json").exists():
-        printed.append(f"It has no diagnosis yet: thermoscope diagnose {case}")
+        printed.append(f"It has no diagnosis yet: thermoscope explain diagnose {case}")
     give({**document, "pdf": pdf and str(pdf)}, target, lambda: Answer(f"The report is {path}.", printed))
     return 0
 
@@ -207,8 +207,8 @@ def assumptions(folder: Folder) -> list[str]:
 def commands(folder: Folder, case: str) -> list[str]:
     """What leads from the declared model to this page."""
     known = [r for r in folder.history.revisions if r.action in ("calibrate", "add", "remove")]
-    done = [f"thermoscope {r.action} {case} {r.effect}".strip() for r in known]
-    return [*done, f"thermoscope report {case}"]
+    done = [f"thermoscope model {r.action} {case} {r.effect}".strip() for r in known]
+    return [*done, f"thermoscope show report {case}"]
 
 
 def made() -> str:
