@@ -71,7 +71,7 @@ def write_library(folder: Path | str) -> Path:
 _HEAD = [
     "# Machines of the library",
     "",
-    "Written by `geom.write_library`. `thermoscope build NAME` builds one.",
+    "Written by `geom.write_library`. `thermoscope model build NAME` builds one.",
     "",
     "| | machine | parts | mass (kg) | length x width x height (mm) | cooling | numbers |",
     "|---|---|---|---|---|---|---|",

@@ -12,6 +12,7 @@ import typer
 from geom.errors import ThermoscopeError
 from thermoscope.answer import LINES, within
 from thermoscope.files import checked_out, checked_target
+from thermoscope.groups import grouped, old_name
 
 app = typer.Typer(
     help="See where your motor's thermal model is wrong, and why.",
@@ -339,11 +340,16 @@ def check(json: Json = None) -> None:
     raise typer.Exit(run(json))
 
 
+grouped(app)
+
+
 def main() -> None:
     """Run the command line and exit; what is wrong with the input is one message on stderr and exit code 2."""
     for name in BLAS_THREADS:
         os.environ.setdefault(name, "1")
     arguments = [a for a in sys.argv[1:] if a not in ANYWHERE]
+    if note := old_name(arguments):
+        print(f"note: {note}", file=sys.stderr)
     try:
         with within(None if "--all" in sys.argv else LINES):
             app(arguments, prog_name="thermoscope")

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import io
 import shutil
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import redirect_stdout
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from geom.errors import InputError
+from geom.errors import InputError, MissingDependency
+from thermoscope.answer import Answer, Grid, within
 from thermoscope.commands.build import build
 from thermoscope.commands.calibrate import calibrate
 from thermoscope.commands.compare import compare
@@ -17,15 +20,18 @@ from thermoscope.commands.diagnose import diagnose
 from thermoscope.commands.opened import opened
 from thermoscope.commands.revise import add
 from thermoscope.commands.saved import saved_diagnosis
-from thermoscope.commands.show import render, report
+from thermoscope.commands.show import by_interest, render, report
 from thermoscope.folder import find_case
-from thermoscope.terminal import give, progress, say, table
+from thermoscope.runs import fields, held
+from thermoscope.terminal import give, notes, progress, say
 
 if TYPE_CHECKING:
+    from thermoscope.pipeline import Built
     from validation.compare import Comparison
     from validation.tuned import Tuned
 
 CASE, KNOB = "road-test", "fan.flow"
+SHORT, LONGER = 5, 10  # lines of a chapter after its first sentence: the whole story is at most 80
 MARKER = ".made-by-thermoscope-demo"
 
 
@@ -43,27 +49,96 @@ def demo(out: Path, target: str | None) -> int:
     case = fresh(out)
     stages = []
     headline("1  The machine: solids, mesh, field, network")
-    build(str(machine_of(case)), out / "machine", None)
-    headline("2  Calibrated on the brake stand")
-    calibrate(str(case), True, None)
+    with within(SHORT):
+        build(str(machine_of(case)), out / "machine", None)
+        picture(machine_picture(case, out), "the parts and their names")
+        headline("2  Calibrated on the brake stand")
+        calibrate(str(case), True, None)
     stages.append(Stage("calibrated on the stand", held_against(case)))
     headline("3  Held against the road")
-    compare(str(case), None)
+    with within(SHORT):
+        compare(str(case), None)
+        picture(misses(case, out), "the motor after an hour on the road, labelled by what the model misses")
     headline("4  The old way: turn up the fan's air flow until the right flange agrees")
     turned = old_way(case)
     stages.append(Stage(f"{KNOB} x {turned.factor:.2f} instead", turned.comparison))
     headline("5  What is missing?")
-    diagnose(str(case), str(out / "diagnose.json"))
-    named = (saved_diagnosis(opened(str(case), lambda _: None)) or {}).get("named", [])
+    with within(LONGER):
+        diagnose(str(case), str(out / "diagnose.json"))
+    found = saved_diagnosis(opened(str(case), lambda _: None)) or {}
+    named = found.get("named", [])
+    picture(odds(found, out), "what the readings say")
     done = False
     if named:
         headline(f"6  Add {named[0]}")
-        done = add(str(case), named[0], False, str(out / "add.json")) == 0
+        with within(SHORT):
+            done = add(str(case), named[0], False, str(out / "add.json")) == 0
         stages.append(Stage(f"with {named[0]}", held_against(case)))
-    headline("7  Pictures, recording, report")
-    render(str(case), out, None)
-    report(str(case), out, None, again=False)
+    headline("7  What is left, and where to look")
+    with within(0), redirect_stdout(io.StringIO()):
+        render(str(case), out, None)
+        report(str(case), out, None)
+    picture(out / "error.png", "the error, step by step")
+    picture(out / "field-before-after.png", "the field before and after")
     return closing(stages, done, out, target, time.monotonic() - begun)
+
+
+def picture(file: Path | None, words: str) -> None:
+    """Name a picture where the story has come to it; nothing where this computer cannot draw it."""
+    if file is not None and file.exists():
+        say(f"Picture: {file}: {words}")
+
+
+def machine_picture(case: Path, out: Path) -> Path | None:
+    """The parts, each with its name."""
+    from viz import regions, split
+
+    mesh = _built(case).mesh
+    return _drawn(out / "1-machine.png", lambda png: regions(split(mesh), png=png).close())
+
+
+def _built(case: Path) -> Built:
+    found = opened(str(case), silent).built
+    assert found is not None, "the demo's case is built from geometry"
+    return found
+
+
+def misses(case: Path, out: Path) -> Path | None:
+    """The machine at the end of the held-out test, its sensors labelled by what the calibrated model misses."""
+    from viz import cutaway, sensors, split
+
+    folder = opened(str(case), silent)
+    test = by_interest(folder)[0]
+
+    def draw(png: Path) -> None:
+        nodes = split(_built(case).mesh)
+        now = fields(folder.case, test, nodes, 1)[1][-1]
+        cutaway(nodes, now, sensors=sensors(held(folder, test), folder.positions), title=test.name, png=png)
+
+    return _drawn(out / "2-misses.png", draw)
+
+
+def _drawn(png: Path, draw: Callable[[Path], Any]) -> Path | None:
+    """The picture, None where graphics are missing (`thermoscope check` says how to get them)."""
+    from viz import require_gl
+
+    try:
+        require_gl()
+        draw(png)
+    except MissingDependency as fault:
+        notes([str(fault)])
+        return None
+    return png
+
+
+def odds(found: Mapping[str, Any], out: Path) -> Path | None:
+    """The probability of every hypothesis."""
+    from viz import posterior
+
+    if not found:
+        return None
+    posterior(found["odds"], png=out / "3-odds.png")
+    return out / "3-odds.png"
 
 
 def fresh(out: Path) -> Path:
@@ -85,8 +160,12 @@ def machine_of(case: Path) -> Path:
     return machine
 
 
+def silent(message: str) -> None:
+    """No progress."""
+
+
 def headline(words: str) -> None:
-    say(f"\n=== {words} ===")
+    say(f"=== {words} ===")
 
 
 def held_against(case: Path) -> Comparison:
@@ -120,19 +199,20 @@ def closing(stages: Sequence[Stage], done: bool, out: Path, target: str | None, 
     held = [(a, b) for a, b in zip(first.tests, last.tests, strict=True) if a.role == "hold-out"]
     fell = done and all(b.rmse_K < a.rmse_K for a, b in held)
     document = {"case": CASE, "stages": [{"stage": s.name, **s.comparison.document()} for s in stages], "fell": fell}
-    give(document, target, lambda: show(stages, out, seconds))
+    give(document, target, lambda: answer(stages, out, seconds))
     return 0 if fell else 1
 
 
-def show(stages: Sequence[Stage], out: Path, seconds: float) -> None:
+def answer(stages: Sequence[Stage], out: Path, seconds: float) -> Answer:
+    """The errors, model by model."""
     tests = stages[0].comparison.tests
-    headers = ["model", *(f"{t.name} ({t.role})" for t in tests)]
+    headers = ["model", *(f"{t.name}{'*' if t.role == 'hold-out' else ''}" for t in tests)]
     rows = [[s.name, *(t.rmse_K for t in s.comparison.tests)] for s in stages]
-    say("")
-    table("Error of all sensors, rms (K)", headers, rows)
-    rows = [[s.name, *(right_flange(t) for t in s.comparison.tests)] for s in stages]
-    table("Error on the right flange alone, rms (K)", headers, rows)
-    say(f"Look at {out}: report.html, pictures (*.png), a recording (*.rrd), the machine (STEP, STL).  {seconds:.0f} s")
+    flange = [[s.name, *(right_flange(t) for t in s.comparison.tests)] for s in stages]
+    sentence = f"{out / 'report.html'} tells it all. {seconds:.0f} s; * was never used."
+    return Answer(sentence, [Grid("Error of all sensors, rms (K)", headers, rows, keep=headers),
+                             Grid("Error on the right flange alone, rms (K)", headers, flange, keep=headers)],
+                  f"recording {out}/*.rrd; solids {out}/machine; thermoscope show serve {out / CASE}")  # fmt: skip
 
 
 def right_flange(test: Any) -> float:

@@ -32,7 +32,7 @@ Progress = Callable[[str], None]
 class Folder:
     """An open case.  positions : channel -> (x, y, z) m where the sheet gives them;  notes : doubts about the data
 
-    findings : what looks wrong in the files, see `thermoscope doctor`
+    findings : what looks wrong in the files, see `thermoscope test doctor`
     """
 
     settings: Settings

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import os
+import hashlib
+import pickle
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from lumped.motor_shapes import wound
 from lumped.network import Network
 from lumped.reduction import Recipe, Reduction, reduce
 from lumped.zone import Zone
+from thermoscope.caches import cache_folder
 
 Progress = Callable[[str], None]
 ACROSS = 1  # elements over a compact face: windings are quadratic, so their hot spots are within 0.5 % with one
@@ -57,12 +58,6 @@ class Built:
     field: FieldModel
     network: Network
     meshing: Meshing
-
-
-def cache_folder() -> Path:
-    """Where meshes and bases are kept: $THERMOSCOPE_CACHE, else a folder of the user's."""
-    home = os.environ.get("XDG_CACHE_HOME", str(Path.home() / ".cache"))
-    return Path(os.environ.get("THERMOSCOPE_CACHE", Path(home) / "thermoscope"))
 
 
 def field_of(machine: Machine, mesh: NamedMesh) -> FieldModel:
@@ -148,7 +143,22 @@ def build(
     machine: Machine, size_m: float = 0.06, segments: int = 48, recipe: Recipe = SMALL, progress: Progress = silent,
     axial_m: float | None = None,
 ) -> Built:  # fmt: skip
-    """Everything from the machine file to the network, at one mesh size."""
+    """Everything from the machine file to the network, at one mesh size; once for each machine in a process."""
+    key = hashlib.sha256(pickle.dumps((machine, size_m, segments, recipe, axial_m))).digest()
+    if key not in _built:
+        while len(_built) >= KEPT:
+            _built.pop(next(iter(_built)))
+        _built[key] = _anew(machine, size_m, segments, recipe, progress, axial_m)
+    return _built[key]
+
+
+KEPT = 2  # machines: a command works on one, `carry` on pairs
+_built: dict[bytes, Built] = {}  # by content: nothing that is asked for has changed
+
+
+def _anew(
+    machine: Machine, size_m: float, segments: int, recipe: Recipe, progress: Progress, axial_m: float | None
+) -> Built:  # fmt: skip
     ready = prepared(machine, size_m, segments, progress, axial_m)
     progress("network from the field")
     condensed = reduced(ready, recipe).network(max_states=recipe.max_states)

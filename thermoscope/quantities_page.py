@@ -14,15 +14,15 @@ PAGE = Path(__file__).parents[1] / "docs" / "reference" / "quantities.md"
 HEAD = """# Quantities and effects
 
 ## What a column may measure
-`thermoscope quantities` prints this table. Files may use any unit of the table, or another one of the same dimension
-(`ft/min`). Memory holds one unit for each quantity.
+`thermoscope test quantities` prints this table. Files may use any unit of the table, or another one of the same
+dimension (`ft/min`). Memory holds one unit for each quantity.
 
 | quantity | units | memory holds | input that a column drives by itself |
 |---|---|---|---|
 """
 EFFECTS = """
 ## Effects
-`thermoscope effects CASE` says where each of these could sit in a case, and which input or role the rest lack.
+`thermoscope explain effects CASE` says where each of these could sit in a case, and which input or role the rest lack.
 
 | effect | what it is | sits at | needs columns of |
 |---|---|---|---|

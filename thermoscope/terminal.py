@@ -5,29 +5,16 @@ from __future__ import annotations
 import json
 import math
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from thermoscope.answer import Answer, Grid, printed
 from thermoscope.files import write_whole
+from thermoscope.stages import Progress, progress
 
-Progress = Callable[[str], None]
 STDOUT = "-"
-
-
-@contextmanager
-def progress() -> Iterator[Progress]:
-    """A function that says what is going on: one line that changes on a terminal, else a line per step."""
-    from rich.console import Console
-
-    console = Console(stderr=True)
-    if not console.is_terminal:
-        yield _line
-        return
-    with console.status("") as status:
-        yield lambda message: status.update(message)
+__all__ = ["Progress", "give", "notes", "plain", "progress", "say", "sized", "table"]
 
 
 def _line(message: str) -> None:

@@ -13,16 +13,15 @@ from lumped.runaway import checked_run
 from validation.case import Case, Channel, Test
 from validation.fitting import nuisances, working
 from validation.predict import predict
-
-RULE_PERCENT = 4.0
-COVERAGE = 2.0
+from validation.within import limit, rise_K
 
 
 @dataclass(frozen=True)
 class ChannelError:
-    """Error of one sensor in one test (K); percent_of_rise: rmse over the largest rise measured in the test.
+    """Error of one sensor in one test, measured - model (K).
 
-    verdict : "within" when rmse is inside 2 sigma or inside 4 % of the rise, else "over"
+    percent_of_rise : rmse over the largest rise measured in the test;  limit_K : see validation.within
+    verdict : "within" when rmse is no more than limit_K, else "over"
     """
 
     channel: str
@@ -33,11 +32,11 @@ class ChannelError:
     max_abs_K: float
     sigma_K: float
     percent_of_rise: float
+    limit_K: float
 
     @property
     def verdict(self) -> str:
-        close = self.rmse_K <= COVERAGE * self.sigma_K or self.percent_of_rise <= RULE_PERCENT
-        return "within" if close else "over"
+        return "within" if self.rmse_K <= self.limit_K else "over"
 
     def document(self) -> dict:
         return {**vars(self), "verdict": self.verdict}
@@ -141,8 +140,8 @@ def test_error(network, test: Test, values: Mapping[str, float]) -> TestError:
 
 def channel_error(channel: Channel, predicted: np.ndarray) -> ChannelError:
     read = np.isfinite(channel.y)
-    e, seen = predicted[read] - channel.y[read], channel.y[read]
-    rmse, rise = float(np.sqrt(np.mean(e**2))), float(np.max(np.abs(seen - seen[0])))
+    e = channel.y[read] - predicted[read]
+    rmse, rise = float(np.sqrt(np.mean(e**2))), rise_K(channel)
     percent = 100.0 * rmse / rise if rise > 0 else float("inf")
     return ChannelError(
         channel.name,
@@ -153,6 +152,7 @@ def channel_error(channel: Channel, predicted: np.ndarray) -> ChannelError:
         float(np.abs(e).max()),
         channel.sigma_K,
         percent,
+        limit(channel.sigma_K, rise),
     )
 
 

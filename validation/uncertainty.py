@@ -1,6 +1,6 @@
 """How far a comparison can be believed: uncertainty of readings, inputs and arithmetic, per sensor and test.
 
-    u_val^2 = u_reading^2 + u_input^2 + u_numeric^2 ,   model error = E +- 2 u_val ,   E = model - reading
+    u_val^2 = u_reading^2 + u_input^2 + u_numeric^2 ,   model error = -(E +- 2 u_val) ,   E = reading - model
 
 Inputs are moved one at a time by their own standard uncertainty; the arithmetic is judged by running at half the step.
 Source: ASME V&V 20-2009, chapters 3 (inputs, sampled one at a time) and 2 (Richardson).
@@ -29,7 +29,7 @@ COVERAGE = 2.0
 class Uncertainty:
     """Standard uncertainties (K, rms over the test) of one sensor, and what is left of the error.
 
-    inputs : what each input contributes;  error_K : rms of model minus reading
+    inputs : what each input contributes;  error_K : rms of reading minus model
     """
 
     test: str
@@ -67,7 +67,7 @@ def uncertainties(network: Network, test: Test, values: Mapping[str, float]) -> 
     for j, c in enumerate(test.channels):
         if np.isfinite(c.y).any():
             inputs = {name: _rms(d[:, j]) for name, d in moved.items()}
-            error = _rms((y[:, j] - c.y)[np.isfinite(c.y)])
+            error = _rms((c.y - y[:, j])[np.isfinite(c.y)])
             out.append(Uncertainty(test.name, c.name, c.sigma_K, inputs, _rms(numeric[:, j]), error))
     return out
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geom.errors import InputError
+from validation.within import limit_K
 from viz import paper
 from viz.colours import BLUE, LIGHT, ORANGE, VERMILION
 from viz.data import Comparison, short
@@ -42,7 +43,7 @@ def measured_and_model(comparison: Comparison, *, columns: int = 3, png: str | P
 
 @paper.styled
 def residuals(comparison: Comparison, *, png: str | Path | None = None) -> Figure:
-    """Measured - modelled per sensor over time; sensors that leave the 2-sigma band are coloured and named in bold."""
+    """Measured - modelled per sensor over time; those that are over (validation.within) are coloured, named in bold."""
     figure, (ax,) = paper.subplots(8.4, 3.8)
     (t, unit), thin = comparison.clock, comparison.thin
     channels = _read(comparison)
@@ -52,7 +53,7 @@ def residuals(comparison: Comparison, *, png: str | Path | None = None) -> Figur
     colours = []
     for channel in channels:
         r = comparison.residual(channel)
-        colours.append(wrongness(r, 2 * channel.sigma_K))
+        colours.append(wrongness(r, limit_K(channel)))
         ax.plot(t[thin], r[thin], color=colours[-1], lw=1.6 if colours[-1] != LIGHT.faint else 1.0)
     ends = [float(r[np.isfinite(r)][-1]) for r in map(comparison.residual, channels)]
     beside(ax, ends, [short(c.name) for c in channels], [LIGHT.ink if c == LIGHT.faint else c for c in colours])
@@ -61,7 +62,7 @@ def residuals(comparison: Comparison, *, png: str | Path | None = None) -> Figur
     ax.set(
         xlabel=f"time ({unit})", ylabel="measured − model (K)", title=f"{comparison.test.name}: what the model misses"
     )
-    ax.set_title("grey: within the sensors' uncertainty", loc="right", fontweight="normal", fontsize=8.5)
+    ax.set_title("grey: within 2 sigma, or 4 % of the rise", loc="right", fontweight="normal", fontsize=8.5)
     return paper.saved(figure, png)
 
 
@@ -82,7 +83,7 @@ def _panel(ax: Axes, comparison: Comparison, channel: Channel) -> None:
     ax.plot(t, comparison.model[channel.name][thin], color=BLUE)
     ax.set_title(short(channel.name))
     ax.margins(x=0)
-    over = comparison.rmse(channel) > 2 * channel.sigma_K
+    over = comparison.rmse(channel) > limit_K(channel)
     colour = VERMILION if over else LIGHT.ink
     ax.set_title(
         f"rms {comparison.rmse(channel):.1f} K", loc="right", color=colour, fontweight="bold" if over else "normal"
@@ -106,10 +107,9 @@ def shade(ax: Axes, comparison: Comparison) -> None:
 
 
 def wrongness(residual: np.ndarray, limit: float) -> str:
-    """Faint where the rms of the warm half is within the limit; else by sign: vermilion where the machine is hotter
-    than the model, blue where it is colder."""
-    late = residual[len(residual) // 2 :]
-    late = late[np.isfinite(late)]
-    if not late.size or np.sqrt(np.mean(late**2)) <= limit:
+    """Faint where the rms of the test is within the limit; else by sign: vermilion where the machine, once warm, is
+    hotter than the model, blue where it is colder."""
+    seen = residual[np.isfinite(residual)]
+    if not seen.size or np.sqrt(np.mean(seen**2)) <= limit:
         return LIGHT.faint
-    return VERMILION if late.mean() > 0 else BLUE
+    return VERMILION if seen[len(seen) // 2 :].mean() > 0 else BLUE

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError
 from validation.case import Channel, Test
+from validation.within import limit_K
 
 Array = NDArray[np.float64]
 LONG_S = 5 * 3600.0
@@ -21,20 +22,22 @@ class Sensor:
     """A thermocouple on the machine.
 
     xyz : position (m);  residual_K : measured - modelled, None where only the position is known
-    limit_K : what the sensor's uncertainty explains (2 sigma)
+    limit_K : the largest error that counts as agreement, see validation.within
+    rmse_K : error of the whole test, which decides; None where only one instant is shown
     """
 
     name: str
     xyz: tuple[float, float, float]
     residual_K: float | None = None
     limit_K: float = 1.0
+    rmse_K: float | None = None
 
     @property
     def verdict(self) -> str:
         """unknown, within, hot (measured above the model) or cold."""
         if self.residual_K is None or not np.isfinite(self.residual_K):
             return "unknown"
-        if abs(self.residual_K) <= self.limit_K:
+        if (abs(self.residual_K) if self.rmse_K is None else self.rmse_K) <= self.limit_K:
             return "within"
         return "hot" if self.residual_K > 0 else "cold"
 
@@ -94,5 +97,6 @@ def sensors(comparison: Comparison, positions: Mapping[str, Sequence[float]]) ->
             x, y, z = positions[c.name]
             late = comparison.residual(c)[int(0.8 * len(comparison.test.time)) :]
             late = late[np.isfinite(late)]
-            out.append(Sensor(c.name, (x, y, z), float(late.mean()) if late.size else None, 2 * c.sigma_K))
+            residual = float(late.mean()) if late.size else None
+            out.append(Sensor(c.name, (x, y, z), residual, limit_K(c), comparison.rmse(c)))
     return tuple(out)

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError, MissingDependency
+from validation.within import limit_K
 from viz.arrangement import blueprint
 from viz.colours import BLUE, LIGHT, ORANGE, VERDICT, heat
 from viz.curves import wrongness
@@ -149,7 +150,7 @@ def _markers(stream: rr.RecordingStream, placed: Sequence[Channel], index: Any, 
     import rerun as rr
 
     colours = [
-        _rgba(VERDICT[Sensor(channel.name, (0, 0, 0), r, 2 * channel.sigma_K).verdict])
+        _rgba(VERDICT[Sensor(channel.name, (0, 0, 0), r, limit_K(channel)).verdict])
         for row in residual
         for channel, r in zip(placed, row, strict=True)
     ]
@@ -164,7 +165,7 @@ def _curves(stream: rr.RecordingStream, c: Comparison) -> None:
         if c.before is not None:
             earlier = c.before[channel.name]
             _series(stream, f"curves/{channel.name}/earlier", c.test.time, earlier, ORANGE, "earlier model")
-        colour = wrongness(c.residual(channel), 2 * channel.sigma_K)
+        colour = wrongness(c.residual(channel), limit_K(channel))
         _series(stream, f"residual/{channel.name}", c.test.time, c.residual(channel), colour, short(channel.name))
 
 

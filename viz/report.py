@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from geom.kept import written_whole
+from validation.within import WORDS
 from viz import candidates, curves, errors, heat, html, words
 from viz.ahead import deciding, undecided
 from viz.data import Comparison
@@ -68,7 +69,7 @@ def render(report: Report) -> str:
 def _top(r: Report) -> str:
     diagnosis = None if r.earlier else r.diagnosis
     tone, sentence = words.verdict(diagnosis, r.comparison)
-    head = f"<h1>thermoscope report: {escape(r.case)}</h1>"
+    head = f"<h1>thermoscope show report: {escape(r.case)}</h1>"
     head += f'<p class="verdict"><span class="{tone}">{escape(sentence)}</span></p>'
     return head + html.text(words.story(r.history), words.detail(diagnosis), r.description) + _cards(r)
 
@@ -220,7 +221,7 @@ def _sensors(r: Report) -> str:
         rows = [
             (
                 c["channel"], c["place"], c["n"], _number(c["rmse_K"]), _number(c["bias_K"]), _number(c["max_abs_K"]),
-                _number(c["sigma_K"]), _number(c["percent_of_rise"]), c["verdict"],
+                _number(c.get("limit_K")), _number(c["sigma_K"]), _number(c["percent_of_rise"]), c["verdict"],
             )
             for c in test["channels"]
         ]  # fmt: skip
@@ -231,13 +232,15 @@ def _sensors(r: Report) -> str:
             "rms (K)",
             "bias (K)",
             "largest (K)",
+            "limit (K)",
             "1σ (K)",
             "% of rise",
             "verdict",
         ]
         name = f"{test['name']} ({test['role']}), rms {test['rmse_K']:.2f} K"
         parts.append(html.more(name, html.table(headers, rows), opened=test["role"] == "hold-out"))
-    return html.section("Every sensor", *parts)
+    rule = f"<p>Error is measured − model; {WORDS}.</p>"
+    return html.section("Every sensor", rule, *parts)
 
 
 def _numerical(r: Report) -> str:

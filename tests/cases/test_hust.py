@@ -101,7 +101,7 @@ def test_the_start_is_the_published_model(root, folder, profile):
 
 
 def test_what_is_found_halves_every_error_of_the_published_model_on_profiles_never_used(folder, example):
-    """What the case's README says is named, as `thermoscope add` adds it."""
+    """What the case's README says is named, as `thermoscope model add` adds it."""
     before = example.errors(compare(folder.case), "hold-out")
     case = with_model(folder.case, calibrate(folder.case).model)
     for name in NAMED:

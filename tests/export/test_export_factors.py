@@ -94,7 +94,7 @@ def subclasses(of):
 
 
 def test_laws_that_code_cannot_have_are_refused_by_name():
-    with pytest.raises(InputError, match=r"--as: 'dust' follows the record's time.*thermoscope remove"):
+    with pytest.raises(InputError, match=r"--as: 'dust' follows the record's time.*thermoscope model remove"):
         factors("dust", Shaped(Fixed(1.0), hours, CONSTANT, ("time_s",)), RANGES)
     with pytest.raises(InputError, match=r"'one' follows 'running road'"):
         factors("one", InputPower(1.0, (("running road", 1.0, 1.0),)), RANGES)

@@ -1,4 +1,4 @@
-"""`thermoscope build` on a small machine of every family, and on the STEP file that it wrote."""
+"""`thermoscope model build` on a small machine of every family, and on the STEP file that it wrote."""
 
 import json
 from dataclasses import replace

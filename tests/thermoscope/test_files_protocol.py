@@ -1,4 +1,4 @@
-"""thermoscope protocol through the command: the list, a good record from files, a refusal with exit code 2."""
+"""thermoscope bench protocol through the command: the list, a good record from files, a refusal with exit code 2."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""thermoscope improve and undo: the error staircase, what is never added, what stays in the history."""
+"""thermoscope explain improve and undo: the error staircase, what is never added, what stays in the history."""
 
 import io
 import json

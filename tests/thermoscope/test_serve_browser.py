@@ -98,7 +98,7 @@ def test_the_whole_loop(root, page, served):
     page.click("#report")
     with page.context.expect_page() as opening:
         page.click("#report-link")
-    assert "thermoscope report: three" in opening.value.inner_text("h1")
+    assert "thermoscope show report: three" in opening.value.inner_text("h1")
     assert (served[1] / "out" / "report.html").is_file()
     opening.value.close()
 

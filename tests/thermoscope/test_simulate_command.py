@@ -1,4 +1,4 @@
-"""thermoscope simulate: tests, duties and drives in, temperatures out."""
+"""thermoscope use simulate: tests, duties and drives in, temperatures out."""
 
 import json
 

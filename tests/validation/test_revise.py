@@ -104,6 +104,15 @@ def test_comparison_document():
     out = compare(replace(case, model=first.model)).document()
     assert {"case", "model", "tests", "rmse_K", "floor_K", "roles"} == set(out)
     row = out["tests"][0]["channels"][0]
-    assert {"channel", "place", "n", "rmse_K", "bias_K", "max_abs_K", "sigma_K", "percent_of_rise", "verdict"} == set(
-        row
-    )
+    assert {
+        "channel",
+        "place",
+        "n",
+        "rmse_K",
+        "bias_K",
+        "max_abs_K",
+        "sigma_K",
+        "percent_of_rise",
+        "limit_K",
+        "verdict",
+    } == set(row)

@@ -27,7 +27,7 @@ def page(tmp_path_factory):
     report = Report(
         "road <test>", "A fictional motor.", compare, diagnose, HISTORY, [value], [comparison()],
         {"Field after an hour": folder / "field.png"}, ["Losses as rated."],
-        ["thermoscope report CASE"], "today",
+        ["thermoscope show report CASE"], "today",
     )  # fmt: skip
     return write_report(report, folder / "report.html").read_text(encoding="utf-8")
 

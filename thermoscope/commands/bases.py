@@ -1,4 +1,4 @@
-"""thermoscope bases CASE"""
+"""thermoscope bench bases CASE"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""thermoscope build MACHINE"""
+"""thermoscope model build MACHINE"""
 
 from __future__ import annotations
 

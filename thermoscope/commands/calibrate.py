@@ -1,4 +1,4 @@
-"""thermoscope calibrate CASE"""
+"""thermoscope model calibrate CASE"""
 
 from __future__ import annotations
 

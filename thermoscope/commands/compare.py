@@ -1,4 +1,4 @@
-"""thermoscope compare CASE"""
+"""thermoscope test compare CASE"""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from thermoscope.answer import Answer, Grid
 from thermoscope.commands.error_budget import budget, in_short
 from thermoscope.commands.opened import opened
 from thermoscope.terminal import give, progress
+from validation.within import WORDS
 
 EVIDENT = 10.0  # nats
 WHITE = 0.01
-RULE = "within: rms up to 2 sigma, or up to 4 % of the rise"
 DIFFERENCES = 12  # shown
 TURNS = {True: "yes", False: "no", None: ""}
 
@@ -37,7 +37,7 @@ def compare(case: str, target: str | None, why: bool = False) -> int:
 def answer(document: Mapping[str, Any]) -> Answer:
     """How many sensors are over, which, and what the rest looks like."""
     records = [{"test": t["name"], **c} for t in document["tests"] for c in t["channels"]]
-    over = sorted((r for r in records if r["verdict"] == "over"), key=lambda r: -r["rmse_K"] / r["sigma_K"])
+    over = sorted((r for r in records if r["verdict"] == "over"), key=lambda r: -r["rmse_K"] / r["limit_K"])
     model = document["model"]
     effects = f" with {', '.join(model['effects'])}" if model["effects"] else ""
     found = f"{len(over)} of {len(records)} sensor records are over" if over else f"all {len(records)} sensors within"
@@ -48,7 +48,7 @@ def answer(document: Mapping[str, Any]) -> Answer:
              in_short(document["error_budget"]), roles_in_short(document["roles"])]  # fmt: skip
     rest = [*(records_of(f"{t['name']} ({t['role']})", [{"test": t["name"], **c} for c in t["channels"]])
               for t in document["tests"]), roles(document["roles"]), *budget(document["error_budget"])]  # fmt: skip
-    return Answer(sentence, parts, f"{RULE}; --why, --json FILE; thermoscope report {document['case']}", rest)
+    return Answer(sentence, parts, f"{WORDS}; --why, --json FILE; thermoscope show report {document['case']}", rest)
 
 
 def tests(found: Sequence[Mapping[str, Any]]) -> Grid:
@@ -60,20 +60,11 @@ def tests(found: Sequence[Mapping[str, Any]]) -> Grid:
 
 def records_of(title: str, records: Sequence[Mapping[str, Any]]) -> Grid:
     """A row per sensor."""
-    headers = [
-        "sensor",
-        "test",
-        "place",
-        "n",
-        "rms (K)",
-        "bias (K)",
-        "largest (K)",
-        "1 sigma (K)",
-        "% of rise",
-        "verdict",
-    ]
-    keys = ["channel", "test", "place", "n", "rmse_K", "bias_K", "max_abs_K", "sigma_K", "percent_of_rise", "verdict"]
-    keep = ["test", "rms (K)", "bias (K)", "verdict", "1 sigma (K)"]
+    headers = ["sensor", "test", "place", "n", "rms (K)", "bias (K)", "largest (K)", "limit (K)", "1 sigma (K)",
+               "% of rise", "verdict"]  # fmt: skip
+    keys = ["channel", "test", "place", "n", "rmse_K", "bias_K", "max_abs_K", "limit_K", "sigma_K", "percent_of_rise",
+            "verdict"]  # fmt: skip
+    keep = ["test", "rms (K)", "bias (K)", "limit (K)", "verdict"]
     return Grid(title, headers, [[r[k] for k in keys] for r in records], ["over"], keep)
 
 

@@ -1,4 +1,4 @@
-"""thermoscope crosscheck MACHINE"""
+"""thermoscope model crosscheck MACHINE"""
 
 from __future__ import annotations
 

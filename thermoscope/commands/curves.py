@@ -1,4 +1,4 @@
-"""thermoscope curves CASE"""
+"""thermoscope bench curves CASE"""
 
 from __future__ import annotations
 

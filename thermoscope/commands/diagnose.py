@@ -1,4 +1,4 @@
-"""thermoscope diagnose CASE"""
+"""thermoscope explain diagnose CASE"""
 
 from __future__ import annotations
 
@@ -42,17 +42,18 @@ def answer(document: Mapping[str, Any]) -> Answer:
     sentence, case = f"{document['verdict']}: {document['words']}", document.get("case", "CASE")
     bases = document.get("bases", [])
     if any(h["declared"] and h["excluded"] for h in bases):
-        return Answer(sentence, [bases_tried(bases)], f"--json FILE; thermoscope bases {case}")
+        return Answer(sentence, [bases_tried(bases)], f"--json FILE; thermoscope bench bases {case}")
     named = document.get("named", [])
-    step = f"Next: thermoscope add {case} {named[0]}" if named else f"Next: thermoscope effects {case}"
+    step = f"Next: thermoscope model add {case} {named[0]}" if named else f"Next: thermoscope explain effects {case}"
     hidden = [f"{h['effect']} below {cell(h['smallest_detectable'])} {h['unit']}" for h in document["cannot_see"]]
     unseen = f"{len(hidden)} effects could be there unseen: {', '.join(hidden[:2])}, ..." if hidden else ""
     remaining = [row["words"] for row in document.get("remainder", [])]
-    parts = [_odds(document), _candidates(document["candidates"]), *events(document), *remaining,
-             *_leader(document["candidates"]), *contradiction(document.get("contradiction")), ahead(document),
+    found = document["candidates"]
+    parts = [_odds(document), _candidates(found), *events(document), *remaining, *_leader(found),
+             *contradiction(document.get("contradiction")), ahead(document),
              in_short(document.get("error_budget", {})), unseen]  # fmt: skip
     rest = [*budget(document.get("error_budget", {})), *hidden]
-    return Answer(sentence, parts, f"{step}; --json FILE; thermoscope report {case}", rest)
+    return Answer(sentence, parts, f"{step}; --json FILE; thermoscope show report {case}", rest)
 
 
 def _odds(document: Mapping[str, Any]) -> Grid:

@@ -1,4 +1,4 @@
-"""thermoscope doctor CASE"""
+"""thermoscope test doctor CASE"""
 
 from __future__ import annotations
 
@@ -53,4 +53,4 @@ def answer(wrong: Sequence[Finding], doubts: Sequence[Finding], case: str) -> An
     sentence = f"{len(wrong)} things would be refused, {len(doubts)} look wrong." if found else "Nothing looks wrong."
     lines = [f"{word}{', '.join(filter(None, (f.test, f.where))) or 'all'}: {f.what}. Cure: {f.cure}"
              for word, rows in (("REFUSED ", wrong), ("", doubts)) for f in rows]  # fmt: skip
-    return Answer(sentence, lines, f"--json FILE; next: thermoscope compare {case}")
+    return Answer(sentence, lines, f"--json FILE; next: thermoscope test compare {case}")

@@ -1,4 +1,4 @@
-"""thermoscope effects [CASE], thermoscope quantities"""
+"""thermoscope explain effects [CASE], thermoscope test quantities"""
 
 from __future__ import annotations
 

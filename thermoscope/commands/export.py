@@ -1,4 +1,4 @@
-"""thermoscope export CASE: a workbook of results, or the model itself to run elsewhere."""
+"""thermoscope use export CASE: a workbook of results, or the model itself to run elsewhere."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""thermoscope improve CASE"""
+"""thermoscope explain improve CASE"""
 
 from __future__ import annotations
 
@@ -85,5 +85,5 @@ def answer(document: Mapping[str, Any], folder: Folder) -> Answer:
     written = f"{document['written']} revisions written to {folder.settings.model_file}"
     kept = written if document["written"] else "nothing written"
     further = "" if document["adequate"] else ahead(document["diagnosis"])
-    more = f"thermoscope undo {document['case']} takes a step back; thermoscope report {document['case']}"
+    more = f"thermoscope model undo {document['case']} takes a step back; thermoscope show report {document['case']}"
     return Answer(f"{document['verdict']}: {document['why']}; {kept}.", [errors, further], more)

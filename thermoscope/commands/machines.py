@@ -1,4 +1,4 @@
-"""thermoscope machines"""
+"""thermoscope model machines"""
 
 from __future__ import annotations
 
@@ -40,4 +40,5 @@ def answer(entries: Sequence[Entry], page: Path | None) -> Answer:
     ]
     headers = ["machine", "family", "parts", "mass (kg)", "l x w x h (mm)", "cooling", "numbers from"]
     where = f"thumbnails: {page}" if page is not None else "--out DIR for thumbnails"
-    return Answer(f"{len(rows)} machines come along.", [Grid("", headers, rows)], f"{where}; thermoscope build MACHINE")
+    more = f"{where}; thermoscope model build MACHINE"
+    return Answer(f"{len(rows)} machines come along.", [Grid("", headers, rows)], more)

@@ -1,4 +1,4 @@
-"""thermoscope new FILE... [--machine M | --network N] [--yes]"""
+"""thermoscope test new FILE... [--machine M | --network N] [--yes]"""
 
 from __future__ import annotations
 
@@ -213,7 +213,7 @@ def answer(document: Mapping[str, Any]) -> Answer:
     rows = [[c["column"], _goes(c) or "left out", c["unit"], c["quantity"], c["doubt"]] for c in columns]
     guessed = Grid("", ["column", "goes to", "unit", "quantity", "doubt"], rows, keep=["goes to", "unit", "doubt"])
     parts: list[Grid | str] = [*_moved(tests), *_said(document), guessed, _files(tests)]
-    return Answer(sentence, parts, f"picture: {folder}/out/{PICTURE}; next: thermoscope compare {folder}")
+    return Answer(sentence, parts, f"picture: {folder}/out/{PICTURE}; next: thermoscope test compare {folder}")
 
 
 def _goes(column: Mapping[str, Any]) -> str:
@@ -240,5 +240,5 @@ def _said(document: Mapping[str, Any]) -> list[str]:
         said.append("no machine and no network was given: network.toml is made from the columns, its numbers are "
                     "orders of magnitude")  # fmt: skip
     if document["findings"]:
-        said.append(f"{len(document['findings'])} things look wrong: thermoscope doctor {document['folder']}")
+        said.append(f"{len(document['findings'])} things look wrong: thermoscope test doctor {document['folder']}")
     return [f"Note: {note}." for note in dict.fromkeys(said)]

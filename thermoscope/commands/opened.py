@@ -26,7 +26,7 @@ def in_short(folder: Folder, name: str) -> list[str]:
     wrong = sorted(said, key=lambda f: f.remark)
     lines = [f"{', '.join(filter(None, (f.test, f.where)))}: {f.what}; {f.cure}" for f in wrong[:LOUD]]
     more = len(wrong) - LOUD
-    return [*lines, *([f"{more} more such things: thermoscope doctor {name}"] if more > 0 else [])]
+    return [*lines, *([f"{more} more such things: thermoscope test doctor {name}"] if more > 0 else [])]
 
 
 def opened_to_write(name: str, progress: Progress) -> Folder:

@@ -1,4 +1,4 @@
-"""thermoscope protocol [RECORD.toml]
+"""thermoscope bench protocol [RECORD.toml]
 
 [machine]
 rated_kW = 7

@@ -1,4 +1,4 @@
-"""thermoscope add | remove CASE EFFECT@PLACE, thermoscope undo CASE"""
+"""thermoscope model add | remove CASE EFFECT@PLACE, thermoscope model undo CASE"""
 
 from __future__ import annotations
 
@@ -116,9 +116,13 @@ def answer(document: Mapping[str, Any], folder: Folder) -> Answer:
     rows = [[t["name"], t["role"], t["rmse_K"]["before"], t["rmse_K"]["after"]] for t in document["tests"]]
     errors = Grid("", ["test", "role", "error before (K)", "after (K)"], rows, ["hold-out"])
     checks = [f"{'passed' if c['passed'] else 'FAILED'}  {c['check']}: {c['words']}" for c in document["checks"]]
-    more = "Next: thermoscope diagnose" if document["action"] == "calibrate" else "Next: thermoscope compare"
+    step = "explain diagnose" if document["action"] == "calibrate" else "test compare"
     parts: list[Grid | str] = [errors, *checks, _fixed(document["parameters"]), _blind(document["parameters"])]
-    return Answer(f"{name}: {verdict}; {document['why']}; {kept}.", parts, f"{more} {document['case']}; --json FILE")
+    return Answer(
+        f"{name}: {verdict}; {document['why']}; {kept}.",
+        parts,
+        f"Next: thermoscope {step} {document['case']}; --json FILE",
+    )
 
 
 def _fixed(parameters: Sequence[Mapping[str, Any]]) -> Grid:

@@ -1,4 +1,4 @@
-"""thermoscope screen MACHINE, thermoscope two-paths CASE"""
+"""thermoscope bench screen MACHINE, thermoscope bench two-paths CASE"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""thermoscope serve CASE"""
+"""thermoscope show serve CASE"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""thermoscope report CASE, thermoscope render CASE"""
+"""thermoscope show report CASE, thermoscope show render CASE"""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ import numpy as np
 from geom.errors import MissingDependency
 from thermoscope.answer import Answer
 from thermoscope.commands.opened import opened_to_write
-from thermoscope.commands.saved import last_diagnosis, save_diagnosis, saved_diagnosis
+from thermoscope.commands.saved import last_diagnosis, saved_diagnosis
 from thermoscope.folder import Folder
 from thermoscope.history import Revision
 from thermoscope.runs import at_revision, before_last, fields, held, parameters, readings, steps
@@ -31,32 +31,31 @@ LIKELY = 0.5  # probability from which an event is drawn
 ORDER = {"hold-out": 0, "validate": 1, "calibrate": 2}
 
 
-def report(case: str, out: Path | None, target: str | None, again: bool = True) -> int:
-    """One page, as PDF too where this computer can; the diagnosis is the last one if nothing has changed since.
-
-    again : diagnose anew when something has; else the page shows the one that led to the model's last step
-    """
+def report(case: str, out: Path | None, target: str | None) -> int:
+    """One page, as PDF too where this computer can. Its diagnosis is the last one there was; none is started here."""
     from viz import write_pdf
 
     with progress() as tell:
         folder = opened_to_write(case, tell)
-        path = write_page(folder, case, out or folder.settings.out, tell, again)
+        path = write_page(folder, case, out or folder.settings.out, tell)
         tell("printing")
         pdf = write_pdf(path)
     document = {"case": folder.case.name, "revision": folder.case.model.revision, "report": str(path)}
     printed = [f"As PDF: {pdf}"] if pdf else []
+    if not (folder.settings.out / "diagnosis.json").exists():
+        printed.append(f"It has no diagnosis yet: thermoscope explain diagnose {case}")
     give({**document, "pdf": pdf and str(pdf)}, target, lambda: Answer(f"The report is {path}.", printed))
     return 0
 
 
-def write_page(folder: Folder, case: str, into: Path, tell: Progress, again: bool = True) -> Path:
+def write_page(folder: Folder, case: str, into: Path, tell: Progress) -> Path:
     """Write into/report.html with its pictures; `case` is what the commands on it call the case."""
     from thermoscope.error_budget import budgets_of_tests, documents
     from validation.compare import compare
     from viz.report import Report, write_report
 
     tell("running the model")
-    result, (diagnosis, earlier) = compare(folder.case), _diagnosis(folder, tell, again)
+    result, (diagnosis, earlier) = compare(folder.case), _diagnosis(folder)
     curves = [marked(held(folder, test), diagnosis) for test in by_interest(folder)]
     budgets = budgets_of_tests(folder, tell)
     tell("drawing")
@@ -98,19 +97,13 @@ def by_interest(folder: Folder) -> list[Test]:
     return sorted(folder.case.tests, key=lambda test: ORDER[test.role])
 
 
-def _diagnosis(folder: Folder, tell: Progress, again: bool) -> tuple[Mapping[str, Any] | None, bool]:
+def _diagnosis(folder: Folder) -> tuple[Mapping[str, Any] | None, bool]:
     """What the page shows, and whether it is of the model before its last step."""
-    from validation import diagnose
-
     kept = saved_diagnosis(folder)
     if kept is not None:
         return kept, False
-    if not again:
-        last = last_diagnosis(folder)
-        return last, last is not None
-    document = diagnose(folder.case, folder.settings.kinds, tell).document()
-    save_diagnosis(folder, document)
-    return document, False
+    last = last_diagnosis(folder)
+    return last, last is not None
 
 
 def _plots(folder: Folder, into: Path) -> list[Path]:
@@ -214,8 +207,8 @@ def assumptions(folder: Folder) -> list[str]:
 def commands(folder: Folder, case: str) -> list[str]:
     """What leads from the declared model to this page."""
     known = [r for r in folder.history.revisions if r.action in ("calibrate", "add", "remove")]
-    done = [f"thermoscope {r.action} {case} {r.effect}".strip() for r in known]
-    return [*done, f"thermoscope report {case}"]
+    done = [f"thermoscope model {r.action} {case} {r.effect}".strip() for r in known]
+    return [*done, f"thermoscope show report {case}"]
 
 
 def made() -> str:

@@ -1,4 +1,4 @@
-"""thermoscope simulate CASE: inputs in, temperatures out."""
+"""thermoscope use simulate CASE: inputs in, temperatures out."""
 
 from __future__ import annotations
 

@@ -43,7 +43,7 @@ def factors(name: str, law: Law, ranges: Ranges) -> Sum:
 
 
 def _refused(what: str) -> InputError:
-    return InputError(what, "--as", "take that effect out first (thermoscope remove), or export the workbook")
+    return InputError(what, "--as", "take that effect out first (thermoscope model remove), or export the workbook")
 
 
 @dataclass(frozen=True)

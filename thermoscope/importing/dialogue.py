@@ -119,5 +119,5 @@ def _answer(question: str, default: str) -> str:
     print(f"{question}{f' [{default}]' if default else ''} ", end="", file=sys.stderr, flush=True)
     line = sys.stdin.readline()
     if not line:
-        raise InputError(f"nobody answers: {question}", "thermoscope new", "--yes takes the guesses")
+        raise InputError(f"nobody answers: {question}", "thermoscope test new", "--yes takes the guesses")
     return line.strip() or default

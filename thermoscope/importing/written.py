@@ -97,7 +97,7 @@ def readings(record: Recording) -> pd.DataFrame:
 
 def _sheet(draft: Draft) -> Iterator[str]:
     first = draft.records[0]
-    yield f"# Guessed by thermoscope new from {', '.join(r.name for r in draft.records)}. Every line may be changed."
+    yield f"# Guessed by thermoscope test new from {', '.join(r.name for r in draft.records)}; all may be changed."
     yield from (f"# {note}" for note in draft.notes)
     yield from ("", "[test]", f'time = "{TIME}"', f"description = {quoted(f'{first.name}, {first.clock.words}')}",
                 'initial = "first-readings"')  # fmt: skip

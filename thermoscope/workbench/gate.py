@@ -62,7 +62,7 @@ class Gate:
             raise web.HTTPForbidden(text="requests from other pages are refused")
         shown = request.query.get("token") or request.cookies.get(cookie_of(request), "")
         if self.token and not hmac.compare_digest(shown.encode("utf-8", "surrogateescape"), self.token.encode()):
-            raise web.HTTPUnauthorized(text="open the address that thermoscope serve printed: it carries the token")
+            raise web.HTTPUnauthorized(text="open the address that thermoscope show serve printed, with its token")
 
     def _let_in(self, request: web.Request) -> web.HTTPFound:
         """The same address without the token, which a cookie carries from now on."""

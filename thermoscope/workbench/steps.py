@@ -47,8 +47,7 @@ def stepped(
 
 
 def reported(folder: Folder, tell: Progress) -> Path:
-    """Write out/report.html; right after an addition with the diagnosis that led to it."""
+    """Write out/report.html with the last diagnosis there was."""
     from thermoscope.commands.show import write_page
 
-    again = folder.history.last.action != "add"
-    return write_page(folder, str(folder.settings.path), folder.settings.out, tell, again)
+    return write_page(folder, str(folder.settings.path), folder.settings.out, tell)

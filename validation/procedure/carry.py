@@ -34,7 +34,7 @@ class Row:
 
     @property
     def difference_K(self) -> float:
-        return self.simulated_C - self.measured_C
+        return self.measured_C - self.simulated_C
 
     @property
     def within(self) -> bool:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geom.errors import InputError
+from validation.within import limit_K
 from viz.colours import BLUE, LIGHT, ORANGE, Theme
 from viz.curves import wrongness
 from viz.data import Comparison, short
@@ -54,12 +55,12 @@ def sensor(comparison: Comparison, channel: str, *, theme: Theme = LIGHT) -> go.
 
 
 def residuals(comparison: Comparison, *, theme: Theme = LIGHT) -> go.Figure:
-    """Measured - modelled of every sensor over time (K); those beyond their 2-sigma band are coloured."""
+    """Measured - modelled of every sensor over time (K); those that are over are coloured (validation.within)."""
     (t, unit), thin = comparison.clock, comparison.thin
     out = figure(theme, title={"text": f"{comparison.test.name}: what the model misses", "x": 0.02})
     for c in comparison.channels:
         r = comparison.residual(c)
-        colour = wrongness(r, 2 * c.sigma_K)
+        colour = wrongness(r, limit_K(c))
         _line(out, plain(t[thin]), r[thin], short(c.name), theme.faint if colour == LIGHT.faint else colour, 1)
     out.update_xaxes(title=f"time ({unit})")
     out.update_yaxes(title="measured − model (K)", zeroline=True, zerolinecolor=theme.ink)

@@ -1,0 +1,48 @@
+"""The commands in groups: thermoscope test compare. Names of before the groups work for a version, with a note."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Sequence
+
+import typer
+
+GROUPS: dict[str, tuple[str, tuple[str, ...]]] = {
+    "model": ("Machines, networks, and the model as it stands.",
+              ("machines", "build", "crosscheck", "calibrate", "add", "remove", "undo")),
+    "test": ("Recordings: bring them in, look at them, hold the model against them.",
+             ("new", "doctor", "compare", "quantities")),
+    "explain": ("What is missing, and what would show it.", ("diagnose", "improve", "effects")),
+    "show": ("Report, pictures, the workbench in the browser.", ("report", "render", "serve")),
+    "use": ("Run the model, and take it elsewhere.", ("simulate", "export", "rate", "watch")),
+    "bench": ("The published test procedure, from resistances to screened models.",
+              ("protocol", "curves", "bases", "screen", "two-paths", "carry")),
+}  # fmt: skip
+HOME = {name: group for group, (_, names) in GROUPS.items() for name in names}
+UNTIL = "0.3"  # version from which the old names are gone
+
+
+def grouped(app: typer.Typer) -> typer.Typer:
+    """Every command of the app under its group as well; the old names are hidden, what has no group stays."""
+    parts = {
+        group: typer.Typer(help=words, no_args_is_help=True, rich_markup_mode=None)
+        for group, (words, _) in GROUPS.items()
+    }
+    for one in app.registered_commands:
+        name = str(one.name or getattr(one.callback, "__name__", ""))
+        one.short_help = inspect.getdoc(one.callback)  # else the list of commands cuts it
+        if name in HOME and one.callback is not None:
+            parts[HOME[name]].command(name, short_help=one.short_help)(one.callback)
+            one.hidden = True
+    for group, part in parts.items():
+        app.add_typer(part, name=group, short_help=GROUPS[group][0])
+    return app
+
+
+def old_name(arguments: Sequence[str]) -> str:
+    """What to say where a command was called by its old name; "" where it was not."""
+    first = next((word for word in arguments if not word.startswith("-")), "")
+    if first not in HOME:
+        return ""
+    new = f"thermoscope {HOME[first]} {first}"
+    return f"'thermoscope {first}' is '{new}' now; the old name works until version {UNTIL}"
