@@ -140,6 +140,19 @@ def add(case: Case, effect: Effect, anyway: Anyway = False, json: Json = None) -
 
 
 @app.command()
+def answer(
+    case: Case,
+    word: Annotated[str, typer.Argument(metavar="yes|no", help="To the question that `diagnose` ended with.")],
+    about: Annotated[str | None, typer.Option(metavar="NAME", help="Test, event or fault; else what it asked.")] = None,
+    json: Json = None,
+) -> None:  # fmt: skip
+    """Answer what `diagnose` asked; the next diagnosis takes it as evidence, `undo` takes it back."""
+    from thermoscope.commands.answer import answer as run
+
+    raise typer.Exit(run(case, word, about, json))
+
+
+@app.command()
 def remove(case: Case, effect: Effect, json: Json = None) -> None:
     """Take an effect out again and recalibrate."""
     from thermoscope.commands.revise import remove as run

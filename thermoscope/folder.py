@@ -79,7 +79,8 @@ def load_case(
     tests = tuple(replace(_allowing(test, settings.model_K), frees=frees[test.name]) for test, _ in read)
     sheets = [one.sheet for one in patients.values()]
     network = with_quantities(network, sheets, tests)
-    case = Case(settings.name, _model(network, history), tests, _free(network, settings), settings.doubt)
+    case = Case(settings.name, _model(network, history), tests, _free(network, settings), settings.doubt,
+                history.last.answers)  # fmt: skip
     return Folder(settings, _checked(case, history), history, notes, _positions(sheets), built, findings)
 
 

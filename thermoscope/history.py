@@ -15,7 +15,7 @@ from lumped.network import Parameter
 from lumped.reader import Table, known
 from thermoscope.files import locked, write_whole
 
-ACTIONS = ("calibrate", "add", "remove", "step back")
+ACTIONS = ("calibrate", "add", "remove", "answer", "step back")
 HEADER = "Written by thermoscope: one [[revision]] per step, the last one counts. Delete this file to start again."
 Pair = tuple[float, float]
 ROUNDED = 1e-6  # of a bound: values are written with eight digits
@@ -27,6 +27,7 @@ class Revision:
 
     effects : in the model after this step;  values : parameter -> value;  intervals : parameter -> (low, high) 95 %
     rmse_K : test -> (before, after);  evidence : what spoke for the step
+    answers : what the user was asked and said so far
     """
 
     number: int
@@ -38,6 +39,7 @@ class Revision:
     rmse_K: Mapping[str, Pair] = field(default_factory=dict)
     why: str = ""
     evidence: Mapping[str, float | str] = field(default_factory=dict)
+    answers: Mapping[str, bool] = field(default_factory=dict)
 
     def document(self) -> dict[str, Any]:
         """As model.toml holds it."""
@@ -48,7 +50,8 @@ class Revision:
         out["values"] = {k: float(f"{v:.8g}") for k, v in self.values.items()}
         out["intervals"] = {k: [float(f"{x:.5g}") for x in pair] for k, pair in self.intervals.items()}
         out["rmse_K"] = {t: {"before": round(a, 4), "after": round(b, 4)} for t, (a, b) in self.rmse_K.items()}
-        return {**out, "evidence": dict(self.evidence)} if self.evidence else out
+        more = {"evidence": dict(self.evidence), "answers": dict(self.answers)}
+        return {**out, **{key: table for key, table in more.items() if table}}
 
 
 @dataclass(frozen=True)
@@ -62,6 +65,11 @@ class History:
         return self.revisions[-1] if self.revisions else Revision(0, "calibrate")
 
     def and_then(self, revision: Revision) -> History:
+        """One revision more; what the user answered stays."""
+        answers = {**self.last.answers, **revision.answers}
+        return self._longer(replace(revision, answers=answers))
+
+    def _longer(self, revision: Revision) -> History:
         return History((*self.revisions, replace(revision, number=self.last.number + 1)))
 
     def back_to(self, number: int) -> History:
@@ -71,7 +79,7 @@ class History:
             raise InputError(f"no revision {number}", "model.toml", f"0 to {self.last.number}")
         again, now = found[number], {test: after for test, (_, after) in self.last.rmse_K.items()}
         rmse = {t: (now.get(t, after), after) for t, (_, after) in again.rmse_K.items()}
-        return self.and_then(replace(again, action="step back", effect="", rmse_K=rmse, why=f"as in revision {number}"))
+        return self._longer(replace(again, action="step back", effect="", rmse_K=rmse, why=f"as in revision {number}"))
 
 
 def load_history(path: Path) -> History:
@@ -128,6 +136,7 @@ def _revision(table: Table) -> Revision:
         int(table.number("number")), table.word("action", None, ACTIONS), table.words("effects", []),
         table.word("effect", ""), _inner(table, "values").constants("values"), _pairs(_inner(table, "intervals")),
         _before_after(_inner(table, "rmse_K")), table.word("why", ""), _evidence(_inner(table, "evidence")),
+        _answers(_inner(table, "answers")),
     )  # fmt: skip
     table.close()
     return out
@@ -139,6 +148,10 @@ def _inner(table: Table, key: str) -> Table:
 
 def _evidence(table: Table) -> dict[str, float | str]:
     return {k: table.word(k) if isinstance(v, str) else table.number(k, of="value") for k, v in table.data.items()}
+
+
+def _answers(table: Table) -> dict[str, bool]:
+    return {about: table.flag(about) for about in table.data}
 
 
 def _pairs(table: Table) -> dict[str, Pair]:

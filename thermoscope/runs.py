@@ -29,7 +29,7 @@ def at_revision(folder: Folder, revision: Revision) -> Case:
     """The case with the model of an earlier revision."""
     effects = tuple(AddedEffect(*name.partition("@")[::2]) for name in revision.effects)
     model = replace(folder.case.model, effects=effects, values=dict(revision.values), revision=revision.number)
-    return replace(folder.case, model=model)
+    return replace(folder.case, model=model, answers=revision.answers)
 
 
 def before_last(folder: Folder) -> Case | None:

@@ -99,6 +99,7 @@ class Case:
     """A model and the tests it is held against.
 
     doubt : what models of this kind get wrong, the usual table or with lines that the case widens
+    answers : what the user said about a test, an event or a fault: was it so?
     """
 
     name: str
@@ -106,6 +107,7 @@ class Case:
     tests: tuple[Test, ...]
     nuisances: tuple[Parameter, ...] = ()
     doubt: Doubt = field(default_factory=lambda: USUAL)
+    answers: Mapping[str, bool] = field(default_factory=dict)
 
     def training(self) -> Case:
         """The case without its held-out tests: all that may be fitted, chosen or accepted with."""

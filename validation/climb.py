@@ -100,7 +100,7 @@ def climb(
     A model that was never calibrated is calibrated first. What the diagnosis cannot tell is not offered.
     """
     stairs = [Stair(compare(case), {})]
-    if case.model.revision == 0:
+    if not case.model.values:
         progress("calibrating")
         case = _kept(case, calibrate(case, progress=progress), guide, {}, stairs)
     while True:

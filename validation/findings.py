@@ -120,6 +120,22 @@ class Odds:
 
 
 @dataclass(frozen=True)
+class Question:
+    """A yes-or-no question that needs no test.
+
+    about : what `answer` takes;  yes : probability of yes;  nats : information expected of an answer
+    """
+
+    about: str
+    words: str
+    yes: float
+    nats: float
+
+    def document(self) -> dict:
+        return dict(vars(self))
+
+
+@dataclass(frozen=True)
 class Happening:
     """Something that may have been different for a while.  spans : {"test", "begin_s", "end_s"}
 
@@ -182,6 +198,7 @@ class Diagnosis:
     events : when something may have been different for a while, most probable first
     remainder : what is still off with what is named in the model
     contradiction : what would have to differ between the tests
+    question : what to ask the user, where an answer would tell more than a guess
     """
 
     verdict: Verdict
@@ -204,6 +221,7 @@ class Diagnosis:
     events: tuple[Happening, ...] = ()
     remainder: tuple[Remainder, ...] = ()
     contradiction: Contradiction | None = None
+    question: Question | None = None
 
     def document(self) -> dict:
         return {
@@ -220,6 +238,7 @@ class Diagnosis:
             "p_nothing": self.p_nothing,
             "events": [e.document() for e in self.events],
             "remainder": [r.document() for r in self.remainder],
+            "question": None if self.question is None else self.question.document(),
             "contradiction": None if self.contradiction is None else self.contradiction.document(),
             "rmse_K": self.rmse_K,
             "floor_K": self.floor_K,

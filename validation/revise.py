@@ -13,7 +13,9 @@ from validation.acceptance import Check, checks, failures
 from validation.calibrate import Fit, silent, with_model_error
 from validation.case import AddedEffect, Case, Model, Test
 from validation.compare import Comparison, compare
-from validation.effects import effect
+from validation.effects import Effect, effect
+from validation.effects.during import During
+from validation.effects.gate import checked
 from validation.fitting import FREE, scene_of, working
 from validation.intervals import Estimate, Profile, estimates
 from validation.operators import of_measurement
@@ -93,16 +95,24 @@ def add(case: Case, name: str, progress: Progress = silent) -> Revision:
     What was never calibrated is calibrated first: an effect is compared with the best model without it.
     """
     one = effect(name, scene_of(case))
+    inside(one, case)
     if name in {e.name for e in case.model.effects}:
         raise InputError(
             f"'{name}' is in the model already", f"case '{case.name}'", "another effect, or `remove` it first"
         )
-    if case.model.revision == 0:
+    if not case.model.values:
         progress("calibrating without the effect")
         bare = calibrate(case, TRAINING, progress).model
-        case = replace(case, model=replace(bare, revision=0))
+        case = replace(case, model=replace(bare, revision=case.model.revision))
     model = replace(case.model, effects=(*case.model.effects, AddedEffect(one.kind, one.place)))
     return _revised(case, model, "add", name, TRAINING, progress)
+
+
+def inside(one: Effect, case: Case) -> None:
+    """An event lies inside the records of its tests."""
+    if isinstance(one, During) and one.event:
+        for test in [t for t in case.tests if t.name in one.event.spans]:
+            checked(one.event, test.name, float(test.time[0]), float(test.time[-1]), f"effect '{one.name}'")
 
 
 def remove(case: Case, name: str, progress: Progress = silent) -> Revision:

@@ -210,3 +210,35 @@ def test_nothing_is_no_event():
     found = diagnose(bench(()), plan=False)
     assert found.verdict == "adequate"
     assert all(h.probability < 0.2 for h in found.events)
+
+
+def test_an_answer_counts_as_its_odds_of_being_right():
+    from validation.conditions.question import answered, information
+    from validation.doubt import USUAL
+    from validation.inference.diagnose import infer
+    from validation.inference.posterior import probabilities
+
+    post = infer(bench((("noon", ((0.0, 5980.0),)),), 0.6), ["convection.constant"])
+    e, own = post.evidence, [bool(h.members) and "noon" in h.name(post.evidence) for h in post.hypotheses]
+    P = probabilities(post.hypotheses)
+    yes, right = P[own].sum(), 1.0 - USUAL["answer"]
+    Q = probabilities(answered(e, post.hypotheses, {"noon": True}))
+    assert Q[own].sum() == pytest.approx(right * yes / (right * yes + (1.0 - right) * (1.0 - yes)))
+    assert information(0.5) > information(0.9) > information(1.0) == pytest.approx(0.0)
+
+
+def test_tests_contradict_each_other_where_one_is_different():
+    from validation.conditions.contradiction import contradiction
+
+    for held, words in (((("noon", ((0.0, 5980.0),)),), "noon contradicts"), ((), "agree")):
+        case = bench(held, 2.0)
+        assert words in contradiction(calibrated_case(case), case.tests).words
+
+
+def test_masses_and_joints_cannot_differ_between_tests():
+    from validation.conditions.contradiction import can_differ
+
+    net = two_bodies()
+    able = {p.name: can_differ(net, p) for p in net.parameters}
+    assert able == {"capacity.body": False, "capacity.core": False, "link.joint": False, "link.film": True,
+                    "loss.heat": True}  # fmt: skip

@@ -51,9 +51,17 @@ def answer(document: Mapping[str, Any]) -> Answer:
     found = document["candidates"]
     parts = [_odds(document), _candidates(found), *events(document), *remaining, *_leader(found),
              *contradiction(document.get("contradiction")), ahead(document),
-             in_short(document.get("error_budget", {})), unseen]  # fmt: skip
+             in_short(document.get("error_budget", {})), unseen, question(document)]  # fmt: skip
     rest = [*budget(document.get("error_budget", {})), *hidden]
     return Answer(sentence, parts, f"{step}; --json FILE; thermoscope show report {case}", rest)
+
+
+def question(document: Mapping[str, Any]) -> str:
+    """What to ask the user, if an answer would tell more than a guess."""
+    found = document.get("question")
+    if not found:
+        return ""
+    return f"One question: {found['words']} Then: thermoscope answer {document.get('case', 'CASE')} yes|no"
 
 
 def _odds(document: Mapping[str, Any]) -> Grid:
@@ -86,12 +94,11 @@ def _leader(found: Sequence[Mapping[str, Any]]) -> list[str]:
 def events(document: Mapping[str, Any]) -> list[Grid]:
     """When something may have been different, every stretch that was tried."""
     rows = [
-        [e["words"], f"{100 * e['probability']:.1f}", e["effect"].split(" in ")[0], e["value"],
-         "" if e["unit"] == "1" else e["unit"]] for e in document.get("events", [])
+        [f"event@{i}", e["words"], f"{100 * e['probability']:.1f}", e["effect"].split(" in ")[0], e["value"],
+         "" if e["unit"] == "1" else e["unit"]] for i, e in enumerate(document.get("events", []), 1)
     ]  # fmt: skip
-    return (
-        [Grid("What may have differed for a while", ["when", "%", "most likely", "size", "unit"], rows)] if rows else []
-    )
+    headers = ["to add", "when", "%", "most likely", "size", "unit"]
+    return [Grid("What may have differed for a while", headers, rows)] if rows else []
 
 
 def _row(c: Mapping[str, Any]) -> list[Any]:

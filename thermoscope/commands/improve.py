@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from thermoscope.answer import Answer, Grid
+from thermoscope.columns import write_columns
 from thermoscope.commands.ahead import ahead
 from thermoscope.commands.opened import opened_to_write
 from thermoscope.commands.revise import recorded
@@ -42,12 +43,13 @@ class Ledger:
     """model.toml, one revision longer after every step; none of the earlier ones is touched."""
 
     def __init__(self, folder: Folder) -> None:
-        self.file, self.written = folder.settings.model_file, 0
+        self.folder, self.file, self.written = folder, folder.settings.model_file, 0
         self.history: History = folder.history
 
     def keep(self, step: Revision, evidence: Mapping[str, float | str]) -> None:
         self.history = save_history(self.file, self.history.and_then(recorded(step, evidence)), self.history)
         self.written += 1
+        write_columns(self.folder, self.history.last.effects)
 
 
 def asked(found: Diagnosis, choice: Sequence[Candidate]) -> str | None:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from geom.errors import InputError
 from thermoscope.answer import Answer, Grid, cell
+from thermoscope.columns import write_columns
 from thermoscope.commands.opened import opened_to_write
 from thermoscope.commands.saved import saved_diagnosis
 from thermoscope.folder import Folder
@@ -22,10 +23,26 @@ FEW = 4  # parameters named in a sentence
 
 
 def add(case: str, effect: str, anyway: bool, target: str | None) -> int:
-    """Exit code 1, and nothing written, when a check fails: bounds, or tests left out in turn."""
+    """Exit code 1, and nothing written, when a check fails: bounds, or tests left out in turn.
+
+    "event@N" is the likeliest explanation of the N-th event of the last diagnosis
+    """
     from validation.revise import add as added
 
-    return revised(case, lambda folder, tell: added(folder.case, effect, tell), anyway, target)
+    return revised(case, lambda folder, tell: added(folder.case, meant(folder, effect), tell), anyway, target)
+
+
+def meant(folder: Folder, effect: str) -> str:
+    """The effect itself, or of "event@N" and "event@NAME" what the last diagnosis thinks it was."""
+    kind, _, which = effect.partition("@")
+    if kind != "event":
+        return effect
+    found = (saved_diagnosis(folder) or {}).get("events", [])
+    names = {name: e["effect"] for i, e in enumerate(found) for name in (str(i + 1), e["event"])}
+    if which not in names:
+        right = f"event@1 to event@{len(found)}" if found else "thermoscope diagnose first: it found no event in these"
+        raise InputError(f"no event '{which}'", f"effect '{effect}'", right)
+    return str(names[which])
 
 
 def remove(case: str, effect: str, target: str | None) -> int:
@@ -47,6 +64,7 @@ def undo(case: str, number: int | None, target: str | None) -> int:
         tell("running the model")
         errors = {t.name: t.rmse_K for t in compare(after).tests}
     save_history(folder.settings.model_file, history, folder.history)
+    write_columns(folder, history.last.effects)
     model = {"case": folder.case.name, "revision": history.last.number, "why": history.last.why}
     document = {**model, "effects": list(history.last.effects), "rmse_K": errors}
     sentence, rows = f"Revision {history.last.number}: {history.last.why}.", list(errors.items())
@@ -63,6 +81,7 @@ def revised(case: str, step: Callable[..., revise.Revision], anyway: bool, targe
     if keep:
         longer = folder.history.and_then(recorded(result, evidence(folder, result)))
         save_history(folder.settings.model_file, longer, folder.history)
+        write_columns(folder, longer.last.effects)
     document = {**result.document(), "case": folder.case.name, "written": keep}
     give(document, target, lambda: answer(document, folder))
     return 0 if keep else 1

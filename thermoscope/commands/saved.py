@@ -32,9 +32,11 @@ def plan_of(case: Path) -> str:
 
 
 def model_of(folder: Folder) -> str:
-    """Fingerprint of the model as it stands, however it came about."""
+    """Fingerprint of the model as it stands and of what the user answered, however it came about."""
     last = folder.history.last
-    return hashlib.sha256(repr((last.effects, sorted(last.values.items()))).encode()).hexdigest()
+    return hashlib.sha256(
+        repr((last.effects, sorted(last.values.items()), *sorted(last.answers.items()))).encode()
+    ).hexdigest()
 
 
 def keep(path: Path, document: Mapping[str, Any]) -> None:

@@ -18,11 +18,11 @@ from validation.case import Case
 from validation.conditions.hats import Stretch, hats
 from validation.conditions.menu import of_a_test, passing
 from validation.conditions.refine import columns, refined
-from validation.conditions.windows import distinct, stretches, worth
+from validation.conditions.windows import ALIKE, distinct, stretches, worth
 from validation.doubt import PRIOR, USUAL
 from validation.effects import Effect, extended
 from validation.effects.during import During
-from validation.effects.gate import Event
+from validation.effects.gate import Event, event
 from validation.effects.sites import neighbours
 from validation.fitting import scene_of
 from validation.inference.evidence import Evidence, extended_prior, projected, weighed
@@ -44,19 +44,39 @@ class Condition:
 
 
 def conditions(
-    evidence: Evidence, case: Case, looked: Scan, heat: Sequence[Latent], progress: Callable[[str], None] = silent
-) -> tuple[list[During], tuple[Event, ...]]:
-    """The conditions that could carry weight, and the events they hold in."""
+    evidence: Evidence, case: Case, looked: Scan, heat: Sequence[Latent], only: Sequence[str] | None = None,
+    progress: Callable[[str], None] = silent,
+) -> tuple[list[During], tuple[Event, ...]]:  # fmt: skip
+    """The conditions that could carry weight, and the events they hold in.  only : kinds, None for all"""
     known = {**case.model.values, **evidence.fit.values}
     scene = replace(scene_of(case), network=evidence.fit.network)
+    bases = [e for e in passing(scene) if only is None or e.kind in only]
+    if not bases:
+        return [], ()
     progress("looking for what held in one test or for a while")
-    chosen = best(in_one_test(evidence, of_a_test(scene), known), TESTS)
-    bases, events = passing(scene), []
+    whole = [e for e in of_a_test(scene) if only is None or e.kind in only]
+    chosen, events = best(in_one_test(evidence, whole, known), TESTS), []
     for s in likely(evidence, looked, heat, known, len(bases)):
-        event, own = explained(evidence, bases, s, looked, known)
-        events.append(event)
+        found, own = explained(evidence, bases, s, looked, known)
+        events.append(found)
         chosen += best(own, EACH)
+    for gate, share in told(case, evidence, events):
+        effects = [During.of(base, gate, share / len(bases)) for base in bases]
+        chosen += best(scored_in(evidence, effects, known, odds_against_nothing(share / len(bases))), EACH)
     return [c.effect for c in chosen], tuple(events)
+
+
+def told(case: Case, evidence: Evidence, events: Sequence[Event]) -> list[tuple[str, float]]:
+    """What the user says was different: inputs of 0 and 1 that no law reads, and events he confirmed, each with its
+    share of the prior."""
+    laws = [*(x.law for x in evidence.network.links), *(x.law for x in evidence.network.sources)]
+    read = {name for law in laws for name in law.reads}
+    inputs = {n: np.concatenate([t.inputs[n] for t in evidence.tests if n in t.inputs]) for t in evidence.tests
+              for n in t.inputs}  # fmt: skip
+    switches = [n for n, u in inputs.items() if n not in read and set(np.unique(u)) == {0.0, 1.0}]
+    said = [e for name, yes in case.answers.items() if yes and (e := event(name))]
+    new = [e.name for e in said if all(e.overlap(x) < ALIKE for x in events)]
+    return [(n, 0.5 / len(switches)) for n in switches] + [(n, 0.5 / len(evidence.tests)) for n in new]
 
 
 def best(conditions: Sequence[Condition], most: int) -> list[Condition]:
@@ -104,10 +124,9 @@ def explained(
     """An event with its ends at the samples, and all that it may have been, exactly run."""
     reach = {t: 1.5 * float(looked.knots[t][1] - looked.knots[t][0]) for t in s.event.spans}
     timed = refined(evidence, likeness(evidence, bases, s, known), s.event, reach, known)
-    event = timed.event
     share = 0.5 / (len(bases) * len(evidence.tests)) * float(np.exp(max(timed.log_share, -600.0)))
-    effects = [During.of(base, event.name, share) for base in bases]
-    return event, scored_in(evidence, effects, known, odds_against_nothing(share))
+    effects = [During.of(base, timed.event.name, share) for base in bases]
+    return timed.event, scored_in(evidence, effects, known, odds_against_nothing(share))
 
 
 def likeness(evidence: Evidence, bases: Sequence[Effect], s: Stretch, known: Mapping[str, float]) -> Effect:

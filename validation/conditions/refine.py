@@ -119,10 +119,14 @@ def columns(evidence: Evidence, effects: Sequence[Effect], known: Known) -> list
     network = extended(fit.network, effects)
     own = network.parameters[-len(effects) :]
     values = {**{q.name: known.get(q.name, q.value) for q in network.parameters}, **fit.values}
-    felt = {t for e in effects for t in (e.tests if isinstance(e, During) else (x.name for x in evidence.tests))}
-    parts = segments(network, [t for t in evidence.tests if t.name in felt], values, own)
+    parts = segments(network, [t for t in evidence.tests if any(felt(e, t) for e in effects)], values, own)
     new = {(s.test, s.channel): s.J for s in parts}
     return [
         replace(s, J=np.column_stack([s.J[:, :p], new.get((s.test, s.channel), np.zeros((s.r.size, len(own))))]))
         for s in evidence.parts
     ]  # fmt: skip
+
+
+def felt(effect: Effect, test: Test) -> bool:
+    """Can the effect act in the test?  What an input says may be in any."""
+    return not isinstance(effect, During) or test.name in effect.tests or effect.gate in test.inputs

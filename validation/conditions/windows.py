@@ -22,7 +22,7 @@ PENALTY = 3.0  # times log(n) for a change point: BIC counts its time and its le
 CLEAR = 2.0  # standard deviations from which a level is a pulse
 WHOLE = 0.9  # of a test: what lasts longer is a condition of that test, and no event
 REPEATS = 20  # of one event
-ALIKE = 0.5  # of the time in either of two events: such are one
+ALIKE = 0.5  # of the time in either of two events is in both: such are one
 
 
 def stretches(found: Hats, heat: Sequence[Latent], near: Mapping[str, set[str]]) -> list[Stretch]:
@@ -135,13 +135,6 @@ def distinct(ordered: Sequence[Stretch], most: int) -> list[Stretch]:
     """The first of those that overlap."""
     out: list[Stretch] = []
     for s in ordered:
-        if len(out) < most and all(overlap(s.event, t.event) < ALIKE for t in out):
+        if len(out) < most and all(s.event.overlap(t.event) < ALIKE for t in out):
             out.append(s)
     return out
-
-
-def overlap(a: Event, b: Event) -> float:
-    """Time in both over time in either."""
-    both = sum(max(0.0, min(y, d) - max(x, c)) for t in a.spans for x, y in a.spans[t] for c, d in b.spans.get(t, ()))
-    every = sum(y - x for e in (a, b) for x, y in e.every)
-    return both / max(every - both, 1e-12)

@@ -54,6 +54,15 @@ class Event:
         length = float(np.median([end - begin for begin, end in self.every])) / 60.0
         return f"{len(self.every)} times in {', '.join(self.tests)}, about {length:.2g} min each"
 
+    def overlap(self, other: Event) -> float:
+        """Time in both over time in either."""
+        both = sum(
+            max(0.0, min(y, d) - max(x, c))
+            for t in self.spans for x, y in self.spans[t] for c, d in other.spans.get(t, ())
+        )  # fmt: skip
+        every = sum(y - x for e in (self, other) for x, y in e.every)
+        return both / max(every - both, 1e-12)
+
     def document(self) -> dict:
         spans = [{"test": t, "begin_s": a, "end_s": b} for t, own in self.spans.items() for a, b in own]
         return {"event": self.name, "words": self.words, "spans": spans}

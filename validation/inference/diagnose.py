@@ -11,6 +11,7 @@ from validation.calibrate import silent
 from validation.case import Case
 from validation.conditions.contradiction import contradiction
 from validation.conditions.found import conditions, joined
+from validation.conditions.question import answered
 from validation.conditions.robust import without
 from validation.faults import broken_channels
 from validation.findings import Diagnosis
@@ -82,11 +83,12 @@ def infer(case: Case, kinds: Sequence[str] | None = None, progress: Progress = s
     progress("looking for where heat is missing")
     looked = scan(evidence.fit, evidence.tests)
     heat = looked.read(evidence.fit.parts, evidence.fit.noise, evidence.fit.theta, evidence.fit.error)
-    chosen, events = conditions(without(evidence, against.test), case, looked, heat, progress)
+    chosen, events = conditions(without(evidence, against.test), case, looked, heat, kinds, progress)
     evidence = sharpened(joined(evidence, chosen, {**case.model.values, **evidence.fit.values}))
     ones = singles(evidence)
     weighed = [*ones, *pairs(evidence, ones), *unknown_heat({w.place: w.log_bayes for w in heat})]
-    return Posterior(evidence, tuple(refitted(evidence, weighed, progress)), tuple(heat), events, against)
+    heard = answered(evidence, weighed, case.answers)
+    return Posterior(evidence, tuple(refitted(evidence, heard, progress)), tuple(heat), events, against)
 
 
 def sharpened(evidence: Evidence, rounds: int = 2) -> Evidence:

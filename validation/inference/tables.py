@@ -12,6 +12,7 @@ from scipy.stats import norm
 from validation.calibrate import Fit, Measure
 from validation.case import Case, Test
 from validation.conditions.happenings import happenings
+from validation.conditions.question import best_question
 from validation.effects.during import During
 from validation.findings import Candidate, Decided, Diagnosis, Hidden, Odds, Verdict
 from validation.inference.decision import Decision
@@ -54,7 +55,7 @@ def tabulate(
         threshold=float(np.min(thresholds(e))), pulls=pulls, cosine=confusion(e, [c.effect for c in rows[:12]]),
         bases=bases, odds=odds(posterior), p_nothing=1.0 - choice.sure, events=happenings(posterior),
         remainder=remainder(posterior, choice, single),
-        contradiction=posterior.against,
+        contradiction=posterior.against, question=best_question(posterior),
     )  # fmt: skip
 
 

@@ -1,0 +1,105 @@
+"""Events on the command line: found, added as a column beside the test, undone; a question answered, taken back."""
+
+import json
+
+import numpy as np
+import pytest
+from small_case import HEADER, measured, small_case
+
+from geom.errors import InputError
+from thermoscope.commands import revise
+from thermoscope.commands.answer import answer
+from thermoscope.commands.diagnose import diagnose
+from thermoscope.history import load_history
+
+LID = (1000.0, 1500.0)
+
+
+@pytest.fixture(scope="module")
+def opened_lid(tmp_path_factory):
+    """A case without wind in whose second test a lid is open for a while, diagnosed; folder and document."""
+    folder = tmp_path_factory.mktemp("events")
+    case = small_case(folder, 0.0)
+    rows = measured(1, True, 0.0)
+    dt, extra = 10.0, np.zeros(3)
+    for k in range(1, len(rows)):  # the flange cools by 8 W/K more, and its neighbours follow it
+        w, y, f = extra
+        own = 8.0 * (rows[k, 6] + f - 20.0) if LID[0] <= rows[k, 0] < LID[1] else 0.0
+        flow = np.array([-8.0 * (w - y), 8.0 * (w - y) - 6.0 * (y - f) - 3.0 * y, 6.0 * (y - f) - 1.5 * f - own])
+        extra = extra + dt * flow / np.array([2000.0, 6000.0, 3000.0])
+        rows[k, 4:] += extra
+    lines = [HEADER, *(",".join(f"{v:.3f}" for v in row) for row in rows)]
+    (case / "tests" / "road.csv").write_text("\n".join(lines) + "\n")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("THERMOSCOPE_CACHE", str(folder / "cache"))
+        diagnose(str(case), str(folder / "found.json"))
+    return case, json.loads((folder / "found.json").read_text())
+
+
+def test_the_lid_is_found_with_its_times(opened_lid):
+    best = opened_lid[1]["odds"][0]
+    assert best["effects"][0].startswith("convection.constant@flange in road:")
+    assert (best["begin_s"], best["end_s"]) == pytest.approx(LID, abs=40.0)
+    assert opened_lid[1]["events"][0]["spans"][0]["test"] == "road"
+
+
+def test_the_tests_contradict_each_other(opened_lid):
+    found = opened_lid[1]["contradiction"]
+    assert "contradicts the other" in found["words"] or "agree" in found["words"]
+
+
+def test_an_event_is_added_as_a_column_and_undone(opened_lid, capsys):
+    case, found = opened_lid
+    file, recording = case / "tests" / "road.derived.csv", (case / "tests" / "road.csv").read_bytes()
+    assert revise.add(str(case), "event@1", False, None) == 0
+    header, *rows = file.read_text().splitlines()
+    assert header.startswith("time_s,")
+    open_ = np.array([[float(x) for x in row.split(",")] for row in rows])
+    assert np.sum(open_[:, 1]) * 20.0 == pytest.approx(LID[1] - LID[0], abs=80.0)
+    assert (case / "tests" / "road.csv").read_bytes() == recording
+    assert load_history(case / "model.toml").last.effects[0] == found["events"][0]["effect"]
+    revise.undo(str(case), 0, None)
+    assert not file.exists()
+    assert load_history(case / "model.toml").last.effects == ()
+    capsys.readouterr()
+
+
+@pytest.mark.parametrize(
+    ("name", "says"),
+    [("event@9", "no event '9'"), ("loss.constant@flange in noon", "unknown test or event"),
+     ("loss.constant@flange in road:900-5000s", "outside the record"),
+     ("loss.constant@flange in road:900-700s", "ends at"),
+     ("loss.constant@flange in road:500-900,700-1000s", "overlaps itself")],
+)  # fmt: skip
+def test_an_event_that_cannot_be_is_refused(opened_lid, name, says):
+    with pytest.raises(InputError, match=says):
+        revise.add(str(opened_lid[0]), name, False, None)
+
+
+def test_a_file_of_the_users_stays(opened_lid):
+    file = opened_lid[0] / "tests" / "stand.derived.csv"
+    file.write_text("mine,too\n1,2\n")
+    with pytest.raises(InputError, match="it stays"):
+        revise.undo(str(opened_lid[0]), 0, None)
+    file.unlink()
+
+
+def test_an_answer_is_kept_and_taken_back(opened_lid, capsys):
+    case = str(opened_lid[0])
+    before = load_history(opened_lid[0] / "model.toml").last
+    answer(case, "no", "road", None)
+    last = load_history(opened_lid[0] / "model.toml").last
+    assert (last.action, last.answers, last.values) == ("answer", {"road": False}, before.values)
+    revise.undo(case, None, None)
+    assert load_history(opened_lid[0] / "model.toml").last.answers == {}
+    capsys.readouterr()
+
+
+@pytest.mark.parametrize(
+    ("word", "about", "says"),
+    [("perhaps", "road", "is no answer"), ("yes", "noon", "is no test, event or fault"),
+     ("yes", "road:0-9000s", "outside the record")],
+)  # fmt: skip
+def test_an_answer_to_nothing_is_refused(opened_lid, word, about, says):
+    with pytest.raises(InputError, match=says):
+        answer(str(opened_lid[0]), word, about, None)

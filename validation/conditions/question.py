@@ -1,0 +1,98 @@
+"""Asking the user: the yes-or-no question that would tell most and needs no test, and what an answer does to the odds.
+
+An answer is wrong with the probability of the table's line "answer"; the information expected of it is the mutual
+information between it and the hypotheses, H(answer) - H(wrong). Source: Lindley 1956.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from validation.doubt import USUAL
+from validation.effects import Effect
+from validation.effects.during import During
+from validation.effects.gate import event
+from validation.findings import Question
+from validation.inference.decision import SURE
+from validation.inference.evidence import Evidence
+from validation.inference.posterior import Hypothesis, Posterior, probabilities
+
+Array = NDArray[np.float64]
+WORTH = 0.1  # nats: an answer that tells less is not worth a question
+LIKE = 0.3  # of the time in either: then a question speaks of a hypothesis's event
+THINGS = {
+    "loss.constant": "something that heats", "convection.constant": "a fan, a draught or an open lid",
+    "blockage": "a cover, a shield or dirt", "flow": "a pump or fan at another speed, or a squeezed hose",
+    "conduction.bench": "another mounting", "input.factor": "another range or shunt at the meter",
+    "ambient.offset": "a thermometer somewhere else",
+}  # fmt: skip
+
+
+def answered(evidence: Evidence, hypotheses: Sequence[Hypothesis], answers: Mapping[str, bool]) -> list[Hypothesis]:
+    """The hypotheses with what the user said as evidence."""
+    wrong = USUAL["answer"]
+    out = list(hypotheses)
+    for about, yes in answers.items():
+        says = [np.log(1.0 - wrong if holds(evidence, h, about) == yes else wrong) for h in out]
+        out = [replace(h, log_prior=h.log_prior + float(x)) for h, x in zip(out, says, strict=True)]
+    return out
+
+
+def holds(evidence: Evidence, h: Hypothesis, about: str) -> bool:
+    return any(concerns(evidence.effects[k], about) for k in h.members)
+
+
+def concerns(effect: Effect, about: str) -> bool:
+    """Would the answer be yes if this effect were there?"""
+    if not isinstance(effect, During):
+        return effect.name == about
+    asked = event(about)
+    if asked is None:
+        return about in effect.tests or about == effect.gate
+    if effect.event is None:
+        return effect.gate in asked.tests
+    return effect.event.overlap(asked) > LIKE
+
+
+def best_question(posterior: Posterior) -> Question | None:
+    """The question expected to tell most; None where the odds are clear, or no answer would change them."""
+    P, e = probabilities(posterior.hypotheses), posterior.evidence
+    if P.max() >= SURE:
+        return None
+    asked = dict.fromkeys(x.gate if isinstance(x, During) else x.name for x in e.effects
+                          if isinstance(x, During) or x.fault)  # fmt: skip
+    rows = [(about, yes_of(posterior, P, about)) for about in asked]
+    about, yes = max(rows, key=lambda row: information(row[1]), default=("", 0.0))
+    if information(yes) < WORTH:
+        return None
+    return Question(about, words(posterior, P, about), yes, information(yes))
+
+
+def yes_of(posterior: Posterior, P: Array, about: str) -> float:
+    return float(sum(p for p, h in zip(P, posterior.hypotheses, strict=True) if holds(posterior.evidence, h, about)))
+
+
+def information(yes: float) -> float:
+    """Nats expected of an answer that is wrong now and then."""
+    wrong = USUAL["answer"]
+    return entropy(yes * (1.0 - wrong) + (1.0 - yes) * wrong) - entropy(wrong)
+
+
+def entropy(p: float) -> float:
+    return float(-sum(x * np.log(x) for x in (p, 1.0 - p) if x > 0.0))
+
+
+def words(posterior: Posterior, P: Array, about: str) -> str:
+    """The question, with the likeliest thing that a yes would mean."""
+    e, share = posterior.evidence, np.zeros(len(posterior.evidence.effects))
+    for h, p in zip(posterior.hypotheses, P, strict=True):
+        for k in h.members:
+            share[k] += p if concerns(e.effects[k], about) else 0.0
+    best = e.effects[int(np.argmax(share))]
+    if not isinstance(best, During):
+        return f"can it be that {best.title}, {best.place.replace('|', ' and ')}?"
+    return f"was there {THINGS.get(best.kind, best.title)} {best.words}?"
