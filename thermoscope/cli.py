@@ -40,6 +40,10 @@ Limit = Annotated[
     list[str] | None,
     typer.Option("--limit", metavar="PLACE=DEGC", help="For example winding=155; several are possible."),
 ]
+Sure = Annotated[
+    bool | None,
+    typer.Option("--bands/--no-bands", help="95 % bands of all temperatures; usual for networks of up to 40 states."),
+]
 Out = Annotated[Path | None, typer.Option("--out", metavar="DIR", callback=checked_out, help="Folder for the results.")]
 
 
@@ -101,12 +105,12 @@ def crosscheck(machine: Machine, out: Out = None, accuracy: Accuracy = 2.0, json
 def simulate(
     case: Case,
     cycle: Annotated[str | None, typer.Option(metavar="FILE|NAME", help="A drive cycle; else all tests.")] = None,
-    out: Out = None, json: Json = None,
+    out: Out = None, bands: Sure = None, json: Json = None,
 ) -> None:  # fmt: skip
     """Drive cycle in, temperatures out: a CSV per run, and how well its heat balance closed."""
     from thermoscope.commands.simulate import simulate as run
 
-    raise typer.Exit(run(case, cycle, out, json))
+    raise typer.Exit(run(case, cycle, out, json, bands))
 
 
 @app.command()
@@ -115,12 +119,13 @@ def compare(
     why: Annotated[
         bool, typer.Option("--why", help="Uncertainty, whiteness, inputs it follows, missing heat.")
     ] = False,
+    bands: Sure = None,
     json: Json = None,
 ) -> None:
     """The model against every test: error per sensor against its uncertainty. Exit code 1 if it disagrees."""
     from thermoscope.commands.compare import compare as run
 
-    raise typer.Exit(run(case, json, why))
+    raise typer.Exit(run(case, json, why, bands))
 
 
 @app.command()

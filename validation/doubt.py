@@ -52,6 +52,7 @@ TABLE: Mapping[str, Line] = MappingProxyType({
     "wander": Line(0.5, "1", "share of a sensor's accuracy that wanders within a test; the rest is bias and slope"),
     "fast": Line(0.25, "1", "fast misfit as a share of the slow one"),
     "flow": Line(0.03, "1", "flow meters of a bench"),
+    "input": Line(0.02, "1", "shunts, torque flanges, voltage dividers, where the sheet says nothing"),
     # what held in one test or for a while
     "switched": Line(2.0, "of the usual size", "what is switched is larger than what a model forgets"),
     "excursion": Line(3.0, "of the slow misfit", "the largest of some hundred stretches strays so far by chance"),

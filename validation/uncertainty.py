@@ -20,7 +20,6 @@ from validation.doubt import USUAL
 from validation.predict import predict
 
 Array = NDArray[np.float64]
-INPUT_SHARE = 0.02  # of a recorded input, where the sheet says nothing: shunts, torque flanges, flow meters
 FIRST_ORDER = 2.0  # error of a step over the change when it is halved, for the lowest order a scheme can have
 COVERAGE = 2.0
 
@@ -80,7 +79,7 @@ def shifted_inputs(test: Test) -> Iterator[tuple[str, Test]]:
     """The test with one input or boundary at a time off by its standard uncertainty."""
     for name, u in test.inputs.items():
         if np.any(u):
-            yield name, replace(test, inputs={**test.inputs, name: (1.0 + INPUT_SHARE) * np.asarray(u, float)})
+            yield name, replace(test, inputs={**test.inputs, name: (1.0 + USUAL["input"]) * np.asarray(u, float)})
     for name, u in test.boundaries.items():
         yield name, replace(test, boundaries={**test.boundaries, name: np.asarray(u, float) + USUAL["boundary"]})
 

@@ -7,9 +7,10 @@ import pytest
 from one_body import LOSS, G, P, measured, one_node
 
 from validation.case import Case, Model
+from validation.doubt import USUAL
 from validation.failing import failing
 from validation.residuals import dependence, ljung_box, periodogram
-from validation.uncertainty import INPUT_SHARE, halved, uncertainties
+from validation.uncertainty import halved, uncertainties
 
 RNG = np.random.default_rng(0)
 WHITE = RNG.standard_normal((200, 400))
@@ -84,7 +85,7 @@ def test_half_the_step_falls_as_the_step():
 
 
 def test_inputs_move_by_their_share():
-    assert 0.0 < INPUT_SHARE < 0.1
+    assert 0.0 < USUAL["input"] < 0.1
     assert halved(steady()).time.size == 2 * steady().time.size - 1
 
 

@@ -17,8 +17,9 @@ DIFFERENCES = 12  # shown
 TURNS = {True: "yes", False: "no", None: ""}
 
 
-def compare(case: str, target: str | None, why: bool = False) -> int:
+def compare(case: str, target: str | None, why: bool = False, sure: bool | None = None) -> int:
     """Exit code 1 when a sensor is outside its uncertainty and outside the 4 % rule."""
+    from thermoscope.bands import of_tests, wanted
     from thermoscope.error_budget import budgets_of_tests, documents
     from validation.compare import compare as held_against
     from validation.failing import failing
@@ -29,7 +30,8 @@ def compare(case: str, target: str | None, why: bool = False) -> int:
         result = held_against(folder.case)
         more = failing(folder.case, tell).document() if why else {}
         budgets = budgets_of_tests(folder, tell)
-    document = {**result.document(), **more, "error_budget": documents(budgets)}
+        bands = {"bands": of_tests(folder, tell)} if wanted(folder.case.model.network, sure) else {}
+    document = {**result.document(), **more, "error_budget": documents(budgets), **bands}
     give(document, target, lambda: answer(document))
     return 0 if result.agrees else 1
 
@@ -47,7 +49,8 @@ def answer(document: Mapping[str, Any]) -> Answer:
     parts = [*why, tests(document["tests"]), records_of("Over: error is measured - model", over),
              in_short(document["error_budget"]), roles_in_short(document["roles"])]  # fmt: skip
     rest = [*(records_of(f"{t['name']} ({t['role']})", [{"test": t["name"], **c} for c in t["channels"]])
-              for t in document["tests"]), roles(document["roles"]), *budget(document["error_budget"])]  # fmt: skip
+              for t in document["tests"]), roles(document["roles"]), *budget(document["error_budget"]),
+             bands_of(document.get("bands", ()))]  # fmt: skip
     return Answer(sentence, parts, f"{WORDS}; --why, --json FILE; thermoscope show report {document['case']}", rest)
 
 
@@ -66,6 +69,17 @@ def records_of(title: str, records: Sequence[Mapping[str, Any]]) -> Grid:
             "verdict"]  # fmt: skip
     keep = ["test", "rms (K)", "bias (K)", "limit (K)", "verdict"]
     return Grid(title, headers, [[r[k] for k in keys] for r in records], ["over"], keep)
+
+
+def bands_of(rows: Sequence[Mapping[str, Any]]) -> Grid:
+    """How sure each place is, least sure first; of all tests the one in which it is least sure."""
+    worst: dict[str, Mapping[str, Any]] = {}
+    for r in rows:
+        if r["place"] not in worst or r["widest_ci95_K"] > worst[r["place"]]["widest_ci95_K"]:
+            worst[r["place"]] = r
+    found = sorted(worst.values(), key=lambda r: -r["widest_ci95_K"])
+    body = [[r["place"], r["widest_ci95_K"], r["test"], r.get("inside")] for r in found]
+    return Grid("95 % bands of the model", ["place", "widest (K)", "in", "readings inside"], body)
 
 
 def roles_in_short(found: Sequence[Mapping[str, Any]]) -> str:

@@ -18,6 +18,7 @@ from lumped.runaway import checked_run
 from lumped.simulate import Record
 from lumped.simulate import simulate as integrated
 from thermoscope.answer import Answer, Grid
+from thermoscope.bands import along, belief_of, documents, wanted
 from thermoscope.commands.error_budget import budget, in_short
 from thermoscope.commands.opened import PACKAGE, opened
 from thermoscope.commands.simulate_readings import readings, sensors, short_of
@@ -25,18 +26,20 @@ from thermoscope.cycle import Cycle, find_cycle, load_cycle
 from thermoscope.files import write_whole
 from thermoscope.folder import Folder
 from thermoscope.terminal import Progress, give, progress
+from validation.bands import Bands, Belief
 
 Array = NDArray[np.float64]
 MISMATCH = 0.01  # of all losses: parabolas miss a hundredth of that; more means that heat went astray
 
 
-def simulate(case: str, cycle: str | None, out: Path | None, target: str | None) -> int:
-    """All tests of the case, or one cycle."""
+def simulate(case: str, cycle: str | None, out: Path | None, target: str | None, sure: bool | None = None) -> int:
+    """All tests of the case, or one cycle.  sure : with 95 % bands; None: where they cost little"""
     with progress() as tell:
         folder = opened(case, tell, untested=True)
         network, values = _model(folder)
         into = out or _out(folder)
-        runs = [_ran(network, values, one, folder, into, tell) for one in _cycles(folder, network, cycle)]
+        known = belief_of(folder, tell) if wanted(network, sure) else None
+        runs = [_ran(network, values, one, folder, into, tell, known) for one in _cycles(folder, network, cycle)]
         circuits = _circuits(folder)
     document = {
         "case": folder.case.name, "revision": folder.case.model.revision, "runs": runs, "circuits": circuits,
@@ -72,8 +75,9 @@ def _cycles(folder: Folder, network: Network, cycle: str | None) -> Iterable[Cyc
 
 
 def _ran(
-    network: Network, values: Mapping[str, float], cycle: Cycle, folder: Folder, into: Path, tell: Progress
-) -> dict[str, Any]:
+    network: Network, values: Mapping[str, float], cycle: Cycle, folder: Folder, into: Path, tell: Progress,
+    known: Belief | None,
+) -> dict[str, Any]:  # fmt: skip
     tell(f"running {cycle.name}")
     from thermoscope.error_budget import error_budgets
     from validation.predict import thermal
@@ -92,9 +96,14 @@ def _ran(
     heat = audit(network, record, values)
     if heat.mismatch > MISMATCH:
         raise ThermoscopeError(f"{cycle.name}: injected and declared losses differ by {100 * heat.mismatch:.3g} %")
-    file = write_whole(into / f"simulate-{cycle.name}.csv", _csv(record, rows, y))
+    band = None if known is None else along(known, cycle.name, record, rows)
+    file = write_whole(into / f"simulate-{cycle.name}.csv", _csv(record, rows, y, band))
     budget = error_budgets(folder, {cycle.name: record}, tell)[cycle.name]
-    return {**_document(cycle, record, rows, y, heat, residuals, file), "error_budget": budget.document()}
+    document = _document(cycle, record, rows, y, heat, residuals, file)
+    if band is not None:
+        fields = documents(band)
+        document["places"] = [{**p, **fields[p["place"]]} for p in document["places"]]
+    return {**document, "error_budget": budget.document()}
 
 
 def looks(network: Network, folder: Folder) -> dict[str, Row]:
@@ -103,10 +112,13 @@ def looks(network: Network, folder: Folder) -> dict[str, Row]:
     return means | {f"sensor {name}": c.row for name, c in sensors(folder).items()}
 
 
-def _csv(record: Record, rows: Mapping[str, Row], y: Array) -> str:
+def _csv(record: Record, rows: Mapping[str, Row], y: Array, band: Bands | None) -> str:
     inputs = {n: np.broadcast_to(v, record.time.shape) for n, v in {**record.inputs, **record.boundaries}.items()}
     head = ["time_s", *inputs, *(f"T {name} (degC)" for name in rows)]
     body = np.column_stack([record.time, *inputs.values(), y])
+    if band is not None:
+        head += [f"95 % T {name} (+- K)" for name in rows]
+        body = np.column_stack([body, band.half95])
     return "\n".join([",".join(head), *(",".join(f"{x:.7g}" for x in line) for line in body)]) + "\n"
 
 
@@ -162,7 +174,10 @@ def _places(runs: Sequence[Mapping[str, Any]]) -> Grid:
     rows = [[p["place"], r["name"], p["start_C"], p["max_C"], round(p["max_at_s"]), p["end_C"]]
             for r in runs for p in sorted(r["places"], key=lambda p: -p["max_C"])]  # fmt: skip
     headers = ["place", "run", "start (degC)", "largest (degC)", "at (s)", "end (degC)"]
-    return Grid("", headers, rows, keep=["largest (degC)", "run", "end (degC)"])
+    if all("widest_ci95_K" in p for r in runs for p in r["places"]):
+        widths = [p["widest_ci95_K"] for r in runs for p in sorted(r["places"], key=lambda p: -p["max_C"])]
+        rows, headers = [[*row, w] for row, w in zip(rows, widths, strict=True)], [*headers, "95 % band (K)"]
+    return Grid("", headers, rows, keep=["largest (degC)", "95 % band (K)", "run", "end (degC)"])
 
 
 def _losses(run: Mapping[str, Any]) -> Grid:

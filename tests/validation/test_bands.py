@@ -1,0 +1,89 @@
+"""Bands: a closed form, what a sensor does to them, and that they hold the truth of another machine."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from lumped.build import bare_network, node_link, node_source
+from lumped.laws import Fixed
+from lumped.network import Parameter, Row
+from validation.bands import Place, bands, belief
+from validation.case import Case, Channel, Model, Test
+from validation.doubt import USUAL
+from validation.revise import calibrate
+
+G, P, C, HOURS = 2.0, 60.0, 4000.0, 10.0
+TIME = np.arange(0.0, 3600.0 * HOURS, 300.0)
+
+
+def chain():
+    """shell - air (G), core - shell (2 G), heat P in the core."""
+    net = bare_network("chain", {"core": C, "shell": C}, ("air",))
+    links = [node_link(net, "film", "film", "shell", "air", Fixed(G)),
+             node_link(net, "joint", "link", "core", "shell", Fixed(2.0 * G))]  # fmt: skip
+    heat = [node_source(net, "heat", "copper", {"core": 1.0}, Fixed(P))]
+    own = [("film", 0.3), ("joint", 0.4), ("heat", 0.1)]
+    parameters = tuple(Parameter(f"p.{n}", ((n, 1.0),), prior_sd=sd) for n, sd in own)
+    return replace(net.extended(links, heat, parameters))
+
+
+def places(network):
+    return [Place(n, Row(np.array([i]), np.ones(1))) for i, n in enumerate(network.states)]
+
+
+def measured(seen=("shell",), seed=0, factors=(1.0, 1.0, 1.0)):
+    """A test whose film, joint and heat are the model's times `factors`: exact solution of the linear network."""
+    g, k, p = np.array(factors) * (G, 2.0 * G, P)
+    A = np.array([[-k, k], [k, -k - g]]) / C
+    values, vectors = np.linalg.eig(A)
+    rest = -np.linalg.solve(A, np.array([p / C, 0.0]))
+    T = 20.0 + rest - (vectors * np.exp(np.outer(TIME, values))[:, None, :]) @ np.linalg.solve(vectors, rest)
+    rng = np.random.default_rng(seed)
+    channels = [Channel(n, n, Row(np.array([i]), np.ones(1)), T[:, i] + 0.05 * rng.standard_normal(TIME.size), 0.3)
+                for i, n in enumerate(("core", "shell")) if n in seen]  # fmt: skip
+    air = np.full(TIME.size, 20.0)
+    return Test("stand", "calibrate", TIME, {}, {"air": air}, tuple(channels), 20.0), T
+
+
+def test_before_a_calibration_the_priors_add_up():
+    """At rest (to 0.3 % after 10 h) T_core = air + P (1/G + 1/2G): each prior by its share of the rise."""
+    network, (test, _) = chain(), measured()
+    few = {k: 1e-9 for k in USUAL} | {"boundary": 0.5}
+    known = belief(Case("chain", Model(network), (test,), doubt=few))
+    found = bands(known, test, places(network))
+    shell, joint = P / G, P / (2.0 * G)
+    core = np.sqrt((0.3 * shell) ** 2 + (0.4 * joint) ** 2 + (0.1 * (shell + joint)) ** 2 + 0.5**2)
+    assert_allclose(found.sd[-1], [core, np.hypot(0.5, np.hypot(0.3, 0.1) * shell)], rtol=5e-3)
+
+
+@pytest.fixture(scope="module")
+def calibrated():
+    test, T = measured(factors=(1.3, 0.7, 1.1))
+    case = Case("chain", Model(chain()), (test,))
+    return replace(case, model=calibrate(case).model), T
+
+
+def test_a_place_without_a_sensor_is_less_sure(calibrated):
+    case, T = calibrated
+    found = bands(belief(case), case.tests[0], places(case.model.network))
+    core, shell = found.sd[-1]
+    assert shell < 0.1 * np.ptp(T[:, 1])  # slope and place of its sensor leave 6 %
+    assert core > 2.0 * shell
+    assert np.all(np.abs(T - found.y)[-1] < found.half95[-1])
+
+
+def test_what_trades_in_the_fit_does_not_widen_what_was_measured(calibrated):
+    """The shell reads a quotient of heat and film: without their correlation it would seem less sure than it is."""
+    case, _ = calibrated
+    known = belief(case)
+    apart = replace(known, covariance=np.diag(np.diag(known.covariance)))
+    tied, loose = (bands(k, case.tests[0], places(case.model.network)).sd[-1, 1] for k in (known, apart))
+    assert tied < 0.8 * loose
+
+
+def test_the_start_is_as_sure_as_its_doubt(calibrated):
+    case, _ = calibrated
+    found = bands(belief(case), case.tests[0], places(case.model.network))
+    assert np.all(found.sd[0] <= USUAL["start"] + 0.01)

@@ -1,0 +1,128 @@
+"""Bands around what a case's model predicts; what the calibration left unsure is kept by the content of the case."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import json
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.laws import CLOCK
+from lumped.network import Network, Row
+from lumped.simulate import Record
+from thermoscope.files import write_whole
+from thermoscope.folder import Folder, Progress
+from thermoscope.pipeline import cache_folder
+from validation.bands import Bands, Belief, Place, bands, belief
+from validation.bands.band import NORMAL_95
+from validation.case import RUNNING, Test
+
+Array = NDArray[np.float64]
+SMALL = 40  # states up to which bands cost less than a run's other work
+JUMP_S = 1e-6
+LAYOUT = 1  # of a kept file: a change here makes old ones be left alone
+
+
+def wanted(network: Network, asked: bool | None) -> bool:
+    """Whether bands are made: as asked, else where they cost little."""
+    return len(network.states) <= SMALL if asked is None else asked
+
+
+def belief_of(folder: Folder, progress: Progress) -> Belief:
+    """Of the model as it stands, from the cache where this very case was looked at before."""
+    file = cache_folder() / f"belief-{_key(folder)}.npz"
+    if file.exists():
+        return _kept(folder, file)
+    found = belief(folder.case, progress)
+    if found.fitted:
+        out = io.BytesIO()
+        np.savez_compressed(out, covariance=found.covariance, said=json.dumps([found.names, found.fitted]))
+        write_whole(file, out.getvalue())
+    return found
+
+
+def _kept(folder: Folder, file: Path) -> Belief:
+    with np.load(file) as held:
+        names, fitted = json.loads(str(held["said"]))
+        bare = replace(folder.case, model=replace(folder.case.model, revision=0))
+        covariance = held["covariance"]
+    return replace(belief(bare), names=tuple(names), covariance=covariance, fitted=tuple(fitted))
+
+
+def _key(folder: Folder) -> str:
+    """Of everything that decides: the case's files, the machine, and what was calibrated."""
+    settings, model = folder.settings, folder.case.model
+    content = hashlib.sha256(repr((LAYOUT, model.effects, sorted(model.values.items()), model.revision)).encode())
+    files = [settings.path / "case.toml", settings.network, *(f for e in settings.tests for f in (e.file, e.sheet))]
+    for file in files:
+        if file is not None and Path(file).is_file():
+            content.update(Path(file).read_bytes())
+    for test in folder.case.tests:
+        for c in test.channels:
+            content.update(np.ascontiguousarray(c.y).tobytes())
+    if folder.built is not None:
+        content.update(repr((folder.built.meshing, folder.built.machine.sections)).encode())
+    return content.hexdigest()[:20]
+
+
+def along(of: Belief, name: str, record: Record, rows: Mapping[str, Row]) -> Bands:
+    """Temperatures along a record and how sure they are."""
+    nt = record.time.shape
+    inputs = {n: np.broadcast_to(np.asarray(u, float), nt) for n, u in record.inputs.items()}
+    inputs = {n: u for n, u in inputs.items() if n not in (CLOCK, f"{RUNNING}{name}")}
+    air = {n: np.broadcast_to(np.asarray(u, float), nt) for n, u in record.boundaries.items()}
+    test = Test(name, "hold-out", apart(record.time), inputs, air, (), record.initial)
+    return bands(of, test, [Place(n, row) for n, row in rows.items()])
+
+
+def apart(time: Array) -> Array:
+    """The times, where one is given twice (a jump) a microsecond apart: rates of change are taken of them."""
+    return time + JUMP_S * np.cumsum(np.diff(time, prepend=-np.inf) == 0.0)
+
+
+def documents(found: Bands) -> dict[str, dict[str, Any]]:
+    """Place -> the fields of its band: at its largest temperature, at the end, and where it is widest."""
+    out = {}
+    for k, name in enumerate(found.names):
+        hottest = int(np.argmax(found.y[:, k]))
+        out[name] = {
+            "max_ci95": interval(found, hottest, k), "end_ci95": interval(found, -1, k),
+            "widest_ci95_K": float(2.0 * found.half95[:, k].max()),
+        }  # fmt: skip
+    return out
+
+
+def of_tests(folder: Folder, progress: Progress) -> list[dict[str, Any]]:
+    """Test by test and place by place the width of the band; for a sensor also how much of its record is inside.
+
+    The readings' own uncertainty (1 sigma of the sheet) counts with it.
+    """
+    from thermoscope.commands.simulate import looks
+    from thermoscope.error_budget import model_of
+    from validation.predict import record
+
+    of, rows = belief_of(folder, progress), looks(model_of(folder)[0], folder)
+    out = []
+    for test in folder.case.tests:
+        found = along(of, test.name, record(test, {}), rows)
+        read = {f"sensor {c.name}": c for c in test.channels}
+        for k, name in enumerate(found.names):
+            row = {"test": test.name, "place": name, "mean_ci95_K": float(2.0 * found.half95[:, k].mean())}
+            row["widest_ci95_K"] = float(2.0 * found.half95[:, k].max())
+            if c := read.get(name):
+                close = np.abs(c.y - found.y[:, k]) <= np.hypot(found.half95[:, k], NORMAL_95 * c.sigma_K)
+                row["inside"] = float(np.mean(close[np.isfinite(c.y)]))
+            out.append(row)
+    return out
+
+
+def interval(found: Bands, at: int, k: int) -> list[float]:
+    """Central 95 % (degC)."""
+    half = float(found.half95[at, k])
+    return [float(found.y[at, k]) - half, float(found.y[at, k]) + half]
