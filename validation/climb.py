@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from validation.calibrate import silent
 from validation.case import Case
@@ -106,19 +106,32 @@ def climb(
     while True:
         found = diagnose(case, kinds=kinds, progress=progress)
         progress(f"{found.verdict}: {found.words}")
-        choice = guide.offer(found)
-        if not choice:
-            return Climbed(case, tuple(stairs), found, found.words)
-        if len(stairs) > most:
+        if guide.offer(found) and len(stairs) > most:
             return Climbed(case, tuple(stairs), found, f"{most} steps are enough for one run")
+        step, said, why = _added(case, guide, found, progress)
+        if step is None:
+            return Climbed(case, tuple(stairs), found, why)
+        case = _kept(case, step, guide, said, stairs)
+
+
+def _added(
+    case: Case, guide: Guide, found: Diagnosis, progress: Progress
+) -> tuple[Revision | None, Mapping[str, float | str], str]:
+    """The first of what is missing that is chosen and accepted, and its evidence; or None, and why."""
+    why = []
+    for i in range(max(len(found.groups), 1)):
+        choice = guide.offer(replace(found, groups=found.groups[i:], named=found.named[i:]))
+        if not choice:
+            break
         name = guide.choose(found, choice)
         if name is None:
-            return Climbed(case, tuple(stairs), found, f"{' or '.join(c.effect for c in choice)}: not added")
-        chosen = next(c for c in choice if c.effect == name)
+            why.append(f"{' or '.join(c.effect for c in choice)}: not added")
+            break
         step = add(case, name, progress)
-        if not step.accepted:
-            return Climbed(case, tuple(stairs), found, f"{name} was not accepted: {step.why}")
-        case = _kept(case, step, guide, evidence(found, chosen), stairs)
+        if step.accepted:
+            return step, evidence(found, next(c for c in choice if c.effect == name)), ""
+        why.append(f"{name} was not accepted: {step.why}")
+    return None, {}, "; ".join(why) or found.words
 
 
 def _kept(
