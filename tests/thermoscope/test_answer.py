@@ -1,15 +1,14 @@
 """The answer first: a sentence, at most 25 lines of at most 80 columns, then where the rest is; no number is broken."""
 
 import ast
-import re
-import subprocess
-import sys
 
-from conftest import RUN
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from small_case import small_case
 
 from thermoscope.answer import LINES, Answer, Grid, folded, lay_out
+from thermoscope.cli import main
 
 WORDS = st.text("abcdefgh ", min_size=1, max_size=60).map(str.strip).filter(bool)
 CELLS = st.one_of(WORDS, st.floats(-1e6, 1e6), st.integers(-(10**6), 10**6), st.none())
@@ -74,22 +73,28 @@ def test_commands_print_through_answers_alone(root):
                 assert any(k.arg == "file" for k in node.keywords), f"{file.name} line {node.lineno}"
 
 
-def run(*arguments, cwd=None):
-    environment = {"COLUMNS": "80", **__import__("os").environ, "PYTHONUTF8": "1"}
-    command = [sys.executable, "-c", RUN, *map(str, arguments)]
-    return subprocess.run(command, cwd=cwd, capture_output=True, text=True, timeout=500, env=environment)
+CHEAP = ["test compare CASE", "test doctor CASE", "explain effects CASE", "explain effects", "test quantities",
+         "model machines", "use simulate CASE", "use export CASE", "model calibrate CASE", "model undo CASE",
+         "bench protocol", "check", "compare CASE --all"]  # fmt: skip
 
 
-CHEAP = ["compare CASE", "compare CASE --why", "doctor CASE", "effects CASE", "effects", "quantities", "machines",
-         "simulate CASE", "export CASE", "calibrate CASE", "undo CASE", "protocol", "check"]  # fmt: skip
+@pytest.fixture(scope="module")
+def three(tmp_path_factory):
+    return small_case(tmp_path_factory.mktemp("three"))
 
 
-def test_every_command_at_80_columns(tmp_path, case):
-    """One process each; at most two lines of sentence, no line wider than the terminal but for a path."""
-    for words in CHEAP:
-        done = run(*(str(case) if w == "CASE" else w for w in words.split()), cwd=tmp_path)
-        lines = done.stdout.splitlines()
-        assert done.returncode in (0, 1), f"{words}: {done.stderr}"
-        assert 1 <= len(lines) <= LINES + 3, words
-        assert all(len(line) <= 80 or "/" in line for line in lines), words
-        assert not re.search(r"[┃│━]", done.stdout), words
+@pytest.mark.parametrize("words", CHEAP)
+def test_every_command_at_80_columns(three, words, monkeypatch, capsys, tmp_path):
+    """At most two lines of sentence, no line wider than the terminal but for a path; --all is longer."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "80")
+    monkeypatch.setattr("sys.argv", ["thermoscope", *(str(three) if w == "CASE" else w for w in words.split())])
+    with pytest.raises(SystemExit) as end:
+        main()
+    lines = capsys.readouterr().out.splitlines()
+    assert end.value.code in (0, 1)
+    if "--all" in words:
+        assert len(lines) > LINES
+        return
+    assert 1 <= len(lines) <= LINES + 2
+    assert [line for line in lines if len(line) > 80 and "/" not in line] == []
