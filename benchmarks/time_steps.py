@@ -1,6 +1,6 @@
 """Random networks against SciPy's Radau: how far off, whether any node leaves what is allowed, what the estimate says.
 
-    python benchmarks/time_steps.py [--first SEED] [--count 1000] [--json FILE]
+    python benchmarks/time_steps.py [--first SEED] [--count 1000] [--json FILE] [--references FOLDER]
 
 Networks, equations and reference are those of tests/lumped/random_networks.py: 3 to 40 nodes, capacities over six
 decades and none, cells of 0.1 J/K, samples of 1 to 60 s, inputs in steps and ramps, streams through zero and reversed,
@@ -19,18 +19,29 @@ import numpy as np
 from lumped.simulate import simulate
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "lumped"))
-from random_networks import admissible, built, machine, reference
+from random_networks import Machine, admissible, built, machine, reference
 
 WRONG_K, WRONG_SHARE, OUTSIDE_K = 0.1, 1e-3, 0.01
 
 
-def measured(seed: int) -> dict[str, float]:
+def exactly(m: Machine, seed: int, folder: Path | None) -> np.ndarray:
+    """Radau's answer, which takes most of the time: from a folder where it is known."""
+    if folder is None:
+        return reference(m)
+    folder.mkdir(parents=True, exist_ok=True)
+    file = folder / f"{seed}.npy"
+    if not file.exists():
+        np.save(file, reference(m))
+    return np.load(file)
+
+
+def measured(seed: int, folder: Path | None = None) -> dict[str, float]:
     """One network: error (K), what is allowed (K), how far outside (K), estimate (K), steps per sample."""
     m = machine(seed)
     network, record = built(m)
     run = simulate(network, record, rows=[network.place(n).mean for n in network.states], keep_states=True)
     assert run.z is not None
-    x, exact, (low, high) = run.z[:, : m.C.size], reference(m), admissible(m)
+    x, exact, (low, high) = run.z[:, : m.C.size], exactly(m, seed, folder), admissible(m)
     span = max(exact.max(), m.around.max()) - min(exact.min(), m.around.min())
     return {
         "seed": seed, "error_K": float(np.abs(x - exact).max()), "allowed_K": max(WRONG_K, WRONG_SHARE * span),
@@ -44,10 +55,13 @@ def main() -> None:
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--count", type=int, default=1000)
     parser.add_argument("--json", type=Path, metavar="FILE", help="one row per network")
+    parser.add_argument(
+        "--references", type=Path, metavar="FOLDER", help="keep Radau's answers there for the next time"
+    )
     given = parser.parse_args()
     rows = []
     for seed in range(given.first, given.first + given.count):
-        rows.append(measured(seed))
+        rows.append(measured(seed, given.references))
         r = rows[-1]
         if r["error_K"] > r["allowed_K"] or r["outside_K"] > OUTSIDE_K:
             print(f"seed {seed}: error {r['error_K']:.4f} K, outside by {r['outside_K']:.4f} K", flush=True)

@@ -49,14 +49,14 @@ def audit(network: Network, record: Record, values: Mapping[str, float] | None =
     core = compiled(network, record, values, all_terms=True)
     run = march(network, record, core, keep_states=True)
     way, m = walk(network, record, core, run), multipliers(network, values)
-    signals = Signals(record.inputs, run.time.size).finer(way.at)
+    signals = record.inputs if isinstance(record.inputs, Signals) else Signals(record.inputs, run.time.size)
     declared = {s.name: m.get(s.name, 1.0) * _heat(s, signals, way) for s in network.sources}
     heat = counted(network, core, run, way)
     return Audit(declared, {name: float(x[-1]) for name, x in heat.injected.items()}, heat)
 
 
 def _heat(source: Source, signals: Signals, way: Walk) -> float:
-    factor = signals.factor(source.name, source.law)
+    factor = signals.along(source.name, source.law, way.at)
     return float(np.sum(way.weight * factor * _over(source.law.temperature, source, way.x)))
 
 

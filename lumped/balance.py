@@ -111,7 +111,7 @@ def _counted(core: Compiled, way: Walk, through: Array, nt: int) -> Array:
     """(nw, nt, n_terms) J; `through` (nw, rows of all terms) says which rows count as the heat through a term."""
     forcing, n, ne = core.forcing, core.C.size, core.terms.m.size
     out, u = np.zeros((len(through), nt, ne)), forcing.u
-    arrays = stages(np.zeros(n), u[0], core.terms), work(n, u.shape[1], ne, 0)
+    arrays = stages(np.zeros(n), u[0], core.terms), work(n, u.shape[1], core.terms, 0)
     count(forcing, core.K0, core.terms, through, way.steps, way.x, way.weight, way.row, *arrays, out)
     return np.cumsum(out, axis=1)
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-CURVED = 3e-4  # of the largest factor of an interval: what a parabola may miss, times its share of the interval
+CURVED = 1e-3  # of the largest factor of an interval: what a parabola may miss, times its share of the interval
 SMALL = 1e-2  # of the largest factor of a record: less than that counts as that
 FINEST = 1e-3  # of an interval
 QUARTERS = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
@@ -53,13 +53,25 @@ class Between(Mapping[str, Array]):
         return len(self.inputs)
 
 
+def parabolas(c: Curve, knots: Array, at: Array) -> Array:
+    """(n,) a curve at positions between its knots."""
+    k = np.clip(np.searchsorted(knots, at, "right") - 1, 0, knots.size - 2)
+    s, bulge = (at - knots[k]) / (knots[k + 1] - knots[k]), np.broadcast_to(c.bulge, knots.shape)
+    return np.asarray(c.value[k] + s * (c.value[k + 1] - c.value[k]) + 4.0 * s * (1.0 - s) * bulge[k + 1])
+
+
 def straight(value: Array) -> Curve:
     """A factor that is linear between the samples."""
     return Curve(value, np.zeros(()), NONE)
 
 
-def curve(factor: Callable[[Array], Array], nt: int, turns: Array = NONE) -> Curve:
-    """From a factor at any positions; () where it never changes.  turns : positions at which it may have a corner."""
+def curve(
+    factor: Callable[[Array], Array], nt: int, turns: Array = NONE, skip: NDArray[np.bool_] | None = None
+) -> Curve:
+    """From a factor at any positions; () where it never changes.  turns : positions at which it may have a corner
+
+    skip (nt,) : the intervals that end there are not to be cut
+    """
     samples, steps = np.arange(nt, dtype=float), np.arange(nt - 1, dtype=float)
     every = factor(np.concatenate([samples, *(steps + q for q in QUARTERS[1:-1])]))
     if every.ndim == 0 or np.all(every == every[0]):
@@ -70,6 +82,8 @@ def curve(factor: Callable[[Array], Array], nt: int, turns: Array = NONE) -> Cur
     bulge[1:] = middle - 0.5 * (value[:-1] + value[1:])
     bulge[np.abs(bulge) <= 1e-12 * scale] = 0.0  # rounding
     wrong = _missed(five, SMALL * scale) > CURVED
+    if skip is not None:
+        wrong &= ~skip[1:]
 
     def again(at: Array) -> Array:
         """Beside the samples, for laws that look for the largest of what they are given."""

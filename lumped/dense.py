@@ -87,6 +87,22 @@ def copy(x, y):
         y[j] = x[j]
 
 
+@inner_reordered
+def _fours(a, first, last, X, c, out):
+    """out -= c sum of a[j] X[j] from first to last, four rows at a time: out is read and written a quarter as often."""
+    j = first
+    while j + 3 < last:
+        a0, a1, a2, a3 = c * a[j], c * a[j + 1], c * a[j + 2], c * a[j + 3]
+        if a0 != 0.0 or a1 != 0.0 or a2 != 0.0 or a3 != 0.0:
+            x0, x1, x2, x3 = X[j], X[j + 1], X[j + 2], X[j + 3]
+            for k in range(out.size):
+                out[k] -= a0 * x0[k] + a1 * x1[k] + a2 * x2[k] + a3 * x3[k]
+        j += 4
+    while j < last:
+        axpy(-c * a[j], X[j], out)
+        j += 1
+
+
 @inner
 def solve_many(A, pivot, B):
     """Right-hand sides in the columns of B (n, p), in place."""
@@ -96,13 +112,12 @@ def solve_many(A, pivot, B):
             for j in range(p):
                 B[i, j], B[pivot[i], j] = B[pivot[i], j], B[i, j]
     for i in range(1, n):
-        for j in range(i):
-            axpy(-A[i, j], B[j], B[i])
+        _fours(A[i], 0, i, B, 1.0, B[i])
     for i in range(n - 1, -1, -1):
-        for j in range(i + 1, n):
-            axpy(-A[i, j], B[j], B[i])
+        _fours(A[i], i + 1, n, B, 1.0, B[i])
+        inverse = 1.0 / A[i, i]
         for j in range(p):
-            B[i, j] /= A[i, i]
+            B[i, j] *= inverse
 
 
 @inner

@@ -2,39 +2,71 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from typing import Any
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any, NamedTuple
 from weakref import ref
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
-from lumped.curve import NONE, Between, Curve, between, curve, straight
+from lumped.curve import NONE, Between, Curve, between, curve, parabolas, straight
 from lumped.laws import Law
+from lumped.projection import crowded, projected
 
 Array = NDArray[np.float64]
 LONG = 200_000  # samples: factors of longer records are not kept, whose runs take far longer than their factors
 
 
+class Source(NamedTuple):
+    """Of signals that are looked at on other instants: the samples as recorded, their times and ours (s)."""
+
+    signals: Signals
+    time: Array
+    at: Array
+
+    def between(self, at: Array) -> Between:
+        """The recorded inputs at positions of ours (index plus share)."""
+        return Between(self.signals, np.interp(between(self.at, at), self.time, np.arange(self.time.size)))
+
+    def part(self, at: Array) -> Source:
+        """The recorded samples from before the first to after the last of some times, with these as ours."""
+        first, last = np.searchsorted(self.time, [at[0], at[-1]], "right") - 1
+        some = slice(max(int(first), 0), min(int(last) + 2, self.time.size))
+        return Source(self.signals.part(some), self.time[some], at)
+
+
 class Signals(dict[str, Array]):
     """Input -> finite array (nt,); a factor of a record that is not LONG stays known as long as its law.
 
-    Laws and signals never change, so the runs of a fit, which differ in multipliers alone, share them.
+    Laws and signals never change, so the runs of a fit, which differ in multipliers alone, share them. On instants
+    wider apart than the samples were recorded, factors are still made of these and keep their integrals.
     """
 
     def __init__(self, inputs: Mapping[str, Any], nt: int) -> None:
         super().__init__({name: _checked(name, value, nt) for name, value in inputs.items()})
         self.nt = nt
         self._around: tuple[Signals, Array] | None = None
+        self._source: Source | None = None
         self._known: dict[int, tuple[ref[Law], Curve]] = {}
         self._finer: dict[bytes, Signals] = {}
+
+    @classmethod
+    def recorded(cls, inputs: Mapping[str, Any], time: Array, at: Array) -> Signals:
+        """Inputs (n,) recorded at some times (s), to be looked at on instants `at` (nt,) within these."""
+        source = Source(cls(inputs, time.size), time, at)
+        out = cls(dict(source.between(np.arange(at.size, dtype=float))), at.size)
+        out._source = source
+        return out
 
     def part(self, some: slice) -> Signals:
         """The signals of a stretch of the record; all of it is itself."""
         if (some.start, some.stop) == (0, self.nt):
             return self
-        return self._at(np.arange(some.start, some.stop, dtype=float))
+        out = Signals({name: value[some] for name, value in self.items()}, some.stop - some.start)
+        out._around = self, np.arange(some.start, some.stop, dtype=float)
+        out._source = self._source and self._source.part(self._source.at[some])
+        return out
 
     def finer(self, at: Array) -> Signals:
         """The signals at positions (index of a sample plus share), kept for the next time."""
@@ -44,11 +76,14 @@ class Signals(dict[str, Array]):
         return self._finer[key]
 
     def _at(self, at: Array) -> Signals:
-        out = Signals({name: between(value, at) for name, value in self.items()}, at.size)
-        out._around = self, at
+        source = self._source
+        out = Signals(dict(source.between(at) if source else Between(self, at)), at.size)
+        out._around, out._source = (self, at), source and source._replace(at=between(source.at, at))
         return out
 
     def __reduce__(self) -> Any:
+        if self._source:
+            return Signals.recorded, (dict(self._source.signals), self._source.time, self._source.at)
         return Signals, (dict(self), self.nt)
 
     def factor(self, name: str, law: Law) -> Array:
@@ -60,10 +95,22 @@ class Signals(dict[str, Array]):
         found = self._known.get(id(law))
         if found is not None and found[0]() is law:
             return found[1]
-        made, key = self._made(name, law), id(law)
+        made = self._made(name, law)
         if self.nt <= LONG:
-            self._known[key] = ref(law, lambda _: self._known.pop(key, None)), made
+            self._known[id(law)] = ref(law, _forgetting(self, id(law))), made
         return made
+
+    def forget(self, key: int) -> None:
+        """The factor of a law that is gone."""
+        self._known.pop(key, None)
+
+    def along(self, name: str, law: Law, at: Array) -> Array:
+        """A factor at positions: its law there, or parabolas that keep its integral where more is known."""
+        if self._source is None:
+            return self.finer(at).factor(name, law)
+        knots = np.union1d(np.arange(self.nt, dtype=float), self.curve(name, law).inserted)
+        c = self.finer(knots).curve(name, law)
+        return c.value if c.value.ndim == 0 else parabolas(c, knots, at)
 
     def _made(self, name: str, law: Law) -> Curve:
         missing = [x for x in law.reads if x not in self]
@@ -71,12 +118,18 @@ class Signals(dict[str, Array]):
             raise InputError(
                 f"input '{missing[0]}' is missing", f"'{name}'", f"given: {', '.join(sorted(self)) or 'none'}"
             )
+        source = self._source
         if not law.looks_at_all:
-            return curve(lambda at: self._factor(name, law, at), self.nt, self._turns(law.reads))
+            full = crowded(source.at, source.time) if source else None
+            near = curve(lambda at: self._factor(name, law, at), self.nt, self._turns(law.reads), full)
+            return projected(near, source.at, source.signals.curve(name, law), source.time) if source else near
         if self._around:
             whole, at = self._around
             value = whole.factor(name, law)
             return straight(value if value.ndim == 0 else between(value, at))
+        if source:
+            value = source.signals.factor(name, law)
+            return straight(value if value.ndim == 0 else np.interp(source.at, source.time, value))
         value = self._factor(name, law, None)
         constant = value.ndim == 1 and bool(np.all(value == value[0]))
         return straight(np.asarray(value[0]) if constant else value)
@@ -92,12 +145,24 @@ class Signals(dict[str, Array]):
     def _factor(self, name: str, law: Law, at: Array | None) -> Array:
         """The factor at positions, or at the samples of the whole record."""
         size = self.nt if at is None else at.size
-        value = np.asarray(law.factor(self if at is None else Between(self, at)), float)
+        given = self if at is None else self._source.between(at) if self._source else Between(self, at)
+        value = np.asarray(law.factor(given), float)
         if value.shape not in ((), (size,)) or not np.all(np.isfinite(value)):
             raise InputError(
                 f"the input factor is not finite or has shape {value.shape}", f"'{name}'", f"finite, () or ({size},)"
             )
         return value
+
+
+def _forgetting(signals: Signals, law: int) -> Callable[[Any], None]:
+    """Called when the law is gone. It must not hold the signals: they would wait for the collector of cycles."""
+    kept = ref(signals)
+
+    def forget(_: Any) -> None:
+        if (alive := kept()) is not None:
+            alive.forget(law)
+
+    return forget
 
 
 def _checked(name: str, value: Any, nt: int) -> Array:

@@ -130,12 +130,12 @@ class _Course:
         self.network, self.core, self.given, self.taken = network, core, steps, 0
         self.time = np.asarray(record.time, float)
         nt, n, nb, nr = self.time.size, core.C.size, core.forcing.u.shape[1], core.rows.start.size - 1
-        ne, p = core.terms.m.size, core.tangents.dC.shape[1]
+        p = core.tangents.dC.shape[1]
         self.z, self.y = np.zeros((nt if keep_states else 0, n + nb)), np.zeros((nt, nr))
         self.dy, self.late = np.zeros((nt, nr, p)), np.zeros(nr)
         x0, u0 = begin.x if begin else initial_state(network, record.initial), core.forcing.u[0]
-        self.both, self.scratch = stages(x0, u0, core.terms), work(n, nb, ne, 0)
-        self.moved = (stages(x0, u0, core.terms), work(n, nb, ne, p)) if p else (self.both, self.scratch)
+        self.both, self.scratch = stages(x0, u0, core.terms), work(n, nb, core.terms, 0)
+        self.moved = (stages(x0, u0, core.terms), work(n, nb, core.terms, p)) if p else (self.both, self.scratch)
         self.trace = _trace(min(core.forcing.time.size * 2 if steps is None else steps.knot.size, PORTION), n, nb)
         self.position = Position(np.zeros(5, np.int64), np.array([0.0, -1.0, 1e300, 1e300]))
         self.position.clock[LOW] = np.append(x0[core.control.node == 1], u0).min()

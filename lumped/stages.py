@@ -54,7 +54,8 @@ class Work(NamedTuple):
     """Scratch.  f (2, ne) input factors at start and end of the step, df (ne,), du (nb,) slopes of both
 
     F (3, n) right-hand side as z;  W, G, H (n, n), pivot;  error (2, n) of the step and of the run so far
-    heat (2, n) least and most of all sources;  D (n, p) tangents, R (4, n, p) of the stages and one more
+    heat (2, n) least and most of all sources
+    D (n, p) tangents, R (4, n, p) of the stages and one more, V (nv + 2 ne, p) what all terms see of them
     """
 
     f: Floats
@@ -72,6 +73,7 @@ class Work(NamedTuple):
     X: Floats
     M: Floats
     factors: Floats
+    V: Floats
 
 
 class Steps(NamedTuple):
@@ -92,11 +94,13 @@ def stages(x0: Floats, u0: Floats, T: Terms) -> Stages:
     return Stages(z, np.zeros((3, nv)), tau, np.zeros((3, nz)), np.zeros((3, nv)))
 
 
-def work(n: int, nb: int, ne: int, p: int) -> Work:
-    """Scratch for n states, nb boundaries, ne terms and p tangents."""
+def work(n: int, nb: int, T: Terms, p: int) -> Work:
+    """Scratch for n states, nb boundaries, some terms and p tangents."""
+    ne = T.m.size
     W, G, H, X, M = np.zeros((5, n, n))
     return Work(np.zeros((2, ne)), np.zeros(ne), np.zeros(nb), np.zeros((3, n)), W, G, H, np.zeros(n, np.int64),
-                np.zeros((2, n)), np.zeros((2, n)), np.zeros((n, p)), np.zeros((4, n, p)), X, M, FACTORS)  # fmt: skip
+                np.zeros((2, n)), np.zeros((2, n)), np.zeros((n, p)), np.zeros((4, n, p)), X, M, FACTORS,
+                np.zeros((T.row.size + 2 * ne, p)))  # fmt: skip
 
 
 @pasted

@@ -52,7 +52,7 @@ def steady(
     n, p, u = len(network.states), core.tangents.dC.shape[1], core.forcing.u[0]
     hidden = np.array(["#" in s for s in network.states], bool)
     x0 = np.where(hidden, 0.0, ABOVE_K + (u.mean() if u.size else 20.0))
-    both, scratch = stages(x0, u, core.terms), work(n, u.size, core.terms.m.size, p)
+    both, scratch = stages(x0, u, core.terms), work(n, u.size, core.terms, p)
     rests = settle(np.zeros(n), core.K0, core.terms, core.tangents, core.forcing.factor[0], both, scratch)
     if not rests or np.linalg.eigvals(scratch.G).real.min() <= 0:
         why = "a node nothing holds, or thermal runaway"

@@ -24,6 +24,7 @@ from lumped.terms import (
     flow,
     jacobian,
     patterns,
+    seen,
     spread,
 )  # fmt: skip
 
@@ -66,30 +67,34 @@ def _solved(q, out):
 
 
 @inner
+def _drawn(q, c, keep, out):
+    """out = -c G D, or that added to out."""
+    for i in range(len(q.G)):
+        for j in range(len(q.G)):
+            q.M[i, j] = -c * q.G[i, j]
+    product(q.M, q.D, q.factors, keep, out)
+
+
+@inner
 def _rosenbrock(T, S, K0, C, h, curved, a, q):
     """Move the tangents q.D over a step whose stages are restored and whose matrix is factored."""
     n, gh = C.size, GAMMA * h
+    if curved:
+        seen(T, q.D, q.V)
     for stage in range(3):
         clear(q.R[stage])
         if curved:
-            bend(T, q.f[0], q.df, slope_of(stage) * h, a.tau[0], a.v[0], a.vw[stage], gh, q.M)
-        if stage == 0 or curved:
-            for i in range(n):
-                for j in range(n):
-                    q.M[i, j] = -(q.M[i, j] if curved else 0.0) - (gh * q.G[i, j] if stage == 0 else 0.0)
-            product(q.M, q.D, q.factors, 1, q.R[stage])
+            bend(T, q.f[0], q.df, slope_of(stage) * h, a.tau[0], a.v[0], a.vw[stage], gh, q.V, q.R[stage])
         _moved(T, S, stage, a, q, h, q.R[stage])
         for i in range(n):
             axpy(-a.w[stage, i], S.dC[i], q.R[stage, i])
+    _drawn(q, gh, 1, q.R[0])
     _solved(q, q.R[0])
     for i in range(n):
         axpy(1.0 / GAMMA, q.R[0, i], q.D[i])
     if curved:
         jacobian(T, K0, q.f[1], a.tau[1], a.v[1], q.G)
-    for i in range(n):
-        for j in range(n):
-            q.M[i, j] = -gh * q.G[i, j]
-    product(q.M, q.D, q.factors, 0, q.R[3])
+    _drawn(q, gh, 0, q.R[3])
     for stage in range(1, 3):
         for i in range(n):
             axpy(1.0, q.R[3, i], q.R[stage, i])

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from lumped.dense import axpy
 from lumped.jit import inner, pasted
 from lumped.laws import FILMS, FIRST_C, STEP_K
 
@@ -240,16 +241,31 @@ def directional(e, f, df, tau, v_dot, rows):
 
 
 @inner
-def bend(T, f, df, late, tau, v, v_dot, scale, H):
-    """H = scale * how G changes along v_dot and over `late` seconds; df (ne,) slopes of the factors."""
-    rows = T.row.size
-    clear(H)
+def seen(T, D, V):
+    """V = P D of all dynamic terms that touch the matrix, then what their laws see: rows of v, a column per tangent."""
+    clear(V)
     for e in range(T.m.size):
         if T.kind[e, DYNAMIC] and T.kind[e, STIFF] and T.m[e] != 0.0:
-            m, slope = scale * T.m[e], late * df[e]
-            hot, cold = v_dot[rows + 2 * e], v_dot[rows + 2 * e + 1]
-            by_hot = slope * tau[e, 1] + f[e] * (tau[e, 3] * hot + tau[e, 4] * cold)
-            by_cold = slope * tau[e, 2] + f[e] * (tau[e, 4] * hot + tau[e, 5] * cold)
-            spread(T, e, m * directional(e, f[e], slope, tau, v_dot, rows), v, m * by_hot, m * by_cold, H)
-            if T.kind[e, BENDS]:
-                spread(T, e, 0.0, v_dot, m * f[e] * tau[e, 1], m * f[e] * tau[e, 2], H)
+            for i in range(T.start[e, ENTRIES], T.start[e + 1, ENTRIES]):
+                if T.at[i] < len(D):
+                    axpy(T.weight[i], D[T.at[i]], V[T.to[i]])
+
+
+@inner
+def bend(T, f, df, late, tau, v, v_dot, scale, V, out):
+    """out -= scale times how G changes along v_dot and over `late` seconds, times D.
+
+    df (ne,) slopes of the factors;  V : of `seen`
+    """
+    rows = T.row.size
+    for e in range(T.m.size):
+        if T.kind[e, DYNAMIC] and T.kind[e, STIFF] and T.m[e] != 0.0:
+            m, slope, hot, cold = scale * T.m[e], late * df[e], rows + 2 * e, rows + 2 * e + 1
+            by_hot = slope * tau[e, 1] + f[e] * (tau[e, 3] * v_dot[hot] + tau[e, 4] * v_dot[cold])
+            by_cold = slope * tau[e, 2] + f[e] * (tau[e, 4] * v_dot[hot] + tau[e, 5] * v_dot[cold])
+            turn = directional(e, f[e], slope, tau, v_dot, rows)
+            for s in range(T.start[e, ROWS], T.start[e + 1, ROWS]):
+                axpy(-m * turn, V[s], out[T.row[s]])
+                if T.kind[e, BENDS]:
+                    axpy(-m * (by_hot * v[s] + f[e] * tau[e, 1] * v_dot[s]), V[hot], out[T.row[s]])
+                    axpy(-m * (by_cold * v[s] + f[e] * tau[e, 2] * v_dot[s]), V[cold], out[T.row[s]])

@@ -18,6 +18,7 @@ from lumped.duty import s1, s2, s3, s6
 from lumped.network import Network
 from lumped.permanent_magnet import PMMachine
 from lumped.reader import Table, known
+from lumped.signals import Signals
 from lumped.simulate import Record
 from thermoscope.sheet import read_sheet
 from thermoscope.tables import load_table
@@ -52,13 +53,16 @@ def load_cycle(path: Path, network: Network, ratings: Mapping[str, float]) -> Cy
     head = top.table("cycle")
     head.word("description", "")
     step = head.number("step_s", 1.0)
-    time, inputs, boundaries = _duty(top) if "duty" in top else _columns(path, top, head, step)
+    columns = None if "duty" in top else _columns(path, top, head)
+    time, inputs, boundaries = _duty(top) if columns is None else columns.every(step)
     inputs |= {n: np.full(time.size, v) for n, v in top.table("inputs").constants("inputs").items()}
     boundaries |= {n: np.full(time.size, v) for n, v in top.table("boundaries").constants("boundaries").items()}
     start = head.number("initial_degC", _usual(network, boundaries, str(path)))
     drive, watched = _drive(top, network, ratings, time, inputs)
     head.close()
     top.close()
+    if columns is not None and drive is None:
+        inputs = columns.signals(inputs, time)
     cycle = Cycle(path.stem, Record(time, inputs, boundaries, start), drive, watched)
     _complete(network, cycle, str(path))
     return cycle
@@ -72,19 +76,41 @@ def _usual(network: Network, boundaries: Mapping[str, Array], where: str) -> flo
     return float(np.mean([boundaries[name][0] for name in network.boundaries]))
 
 
-def _columns(path: Path, top: Table, head: Table, step: float) -> tuple[Array, dict[str, Array], dict[str, Array]]:
-    """Inputs and boundaries from the cycle's table, on steps of `step` (s)."""
+@dataclass(frozen=True)
+class Columns:
+    """A cycle's table as recorded: time (n,) s, inputs and boundaries (n,)."""
+
+    time: Array
+    inputs: dict[str, Array]
+    boundaries: dict[str, Array]
+
+    def every(self, step: float) -> tuple[Array, dict[str, Array], dict[str, Array]]:
+        """Time, inputs and boundaries at steps (s)."""
+        time = np.arange(0.0, self.time[-1] + 1e-9, step)
+
+        def at(of: dict[str, Array]) -> dict[str, Array]:
+            return {n: np.interp(time, self.time, u) for n, u in of.items()}
+
+        return time, at(self.inputs), at(self.boundaries)
+
+    def signals(self, inputs: Mapping[str, Array], time: Array) -> Signals:
+        """Inputs at some times that keep what was recorded between these; those that were not recorded are constant."""
+        fine = {n: self.inputs.get(n, np.full(self.time.size, u[0])) for n, u in inputs.items()}
+        return Signals.recorded(fine, self.time, time)
+
+
+def _columns(path: Path, top: Table, head: Table) -> Columns:
+    """Inputs and boundaries of the cycle's table."""
     keys = {key: head.raw(key) for key in ("time", "time_unit", "period_s", "worksheet") if key in head}
     sheet = read_sheet({"test": keys, "columns": top.raw("columns", {})}, str(path), path.parent)
     samples = load_table(path.parent / head.word("file", f"{path.stem}.csv"), sheet)
-    grid = np.arange(0.0, samples.time[-1] + 1e-9, step)
     inputs: dict[str, Array] = {}
     boundaries: dict[str, Array] = {}
     for c in sheet.columns:
         seen = np.isfinite(samples.values[c.name])
-        values = np.interp(grid, samples.time[seen], samples.values[c.name][seen])
+        values = np.interp(samples.time, samples.time[seen], samples.values[c.name][seen])
         (boundaries if c.is_temperature else inputs)[c.place if c.is_temperature else c.feeds] = values
-    return grid, inputs, boundaries
+    return Columns(samples.time, inputs, boundaries)
 
 
 def _duty(top: Table) -> tuple[Array, dict[str, Array], dict[str, Array]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,6 +20,7 @@ from thermoscope.sheet import Sheet, load_sheet
 from thermoscope.tables import load_table
 from validation.case import AddedEffect, Case, Model, Test
 from validation.fitting import matching
+from validation.sampling import SampleStep
 
 if TYPE_CHECKING:
     from geom import Machine
@@ -32,7 +33,7 @@ Progress = Callable[[str], None]
 class Folder:
     """An open case.  positions : channel -> (x, y, z) m where the sheet gives them;  notes : doubts about the data
 
-    findings : what looks wrong in the files, see `thermoscope test doctor`
+    findings : what looks wrong in the files, see `thermoscope test doctor`;  steps : test -> its sample step
     """
 
     settings: Settings
@@ -42,6 +43,7 @@ class Folder:
     positions: dict[str, tuple[float, ...]]
     built: Built | None = None
     findings: tuple[Finding, ...] = ()
+    steps: Mapping[str, SampleStep] = field(default_factory=dict)
 
 
 def _once(settings: Settings, files: Mapping[str, Path]) -> None:
@@ -74,14 +76,15 @@ def load_case(
         for e in settings.tests
     ]
     findings = examined(list(patients.values()), network)
-    notes = tuple(dict.fromkeys([*_assumed(built), *(note for _, doubts in read for note in doubts)]))
+    notes = tuple(dict.fromkeys([*_assumed(built), *(note for one in read for note in one.notes)]))
     frees = {e.name: e.frees for e in settings.tests}
-    tests = tuple(replace(_allowing(test, settings.model_K), frees=frees[test.name]) for test, _ in read)
+    tests = tuple(replace(_allowing(r.test, settings.model_K), frees=frees[r.test.name]) for r in read)
     sheets = [one.sheet for one in patients.values()]
     network = with_quantities(network, sheets, tests)
     case = Case(settings.name, _model(network, history), tests, _free(network, settings), settings.doubt,
                 history.last.answers)  # fmt: skip
-    return Folder(settings, _checked(case, history), history, notes, _positions(sheets), built, findings)
+    steps = {r.test.name: r.step for r in read}
+    return Folder(settings, _checked(case, history), history, notes, _positions(sheets), built, findings, steps)
 
 
 def patient_of(entry: Entry) -> Patient:

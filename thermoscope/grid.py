@@ -47,6 +47,17 @@ def averaged(time: Array, values: Array, grid: Array) -> Array:
     return np.where(count > 1, total / np.maximum(count, 1), np.nan)
 
 
+def read(time: Array, values: Array, grid: Array) -> Array:
+    """Readings on the grid: means around the instants; at an end around which there is but half, the one there."""
+    out, half = averaged(time, values, grid), 0.5 * (grid[1] - grid[0])
+    for end in (0, -1):
+        near = int(np.argmin(np.abs(time - grid[end])))
+        alone = end == 0 or time[-1] < grid[-1] + 0.99 * half
+        if alone and abs(time[near] - grid[end]) < half:
+            out[end] = values[near]
+    return out
+
+
 def rms(time: Array, values: Array, grid: Array) -> Array:
     """Root mean square with the sign of the mean: a current whose heat is that of the record."""
     return np.copysign(np.sqrt(averaged(time, values**2, grid)), averaged(time, values, grid))

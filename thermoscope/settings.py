@@ -33,6 +33,7 @@ class Settings:
     """case.toml.  machine or network is set, the other None;  free : globs of what calibration may move, () for all
 
     model_K : slow misfit (K) the model is not expected to get right, see validation.case.Channel
+    sample_s : coarsest step (s) at which tests are looked at; None: as coarse as their sensors do not feel
     axial_m : thickest layer of the mesh along the axis (m), for long stacks; None: the usual one
     kinds : of effects that a diagnosis looks for, None for all;  starts, seed : of a calibration, see Search
     doubt : the table of doubt with the lines that the case widens
@@ -43,7 +44,7 @@ class Settings:
     description: str
     machine: Path | None
     network: Path | None
-    sample_s: float
+    sample_s: float | None
     model_K: float
     tests: tuple[Entry, ...]
     free: tuple[str, ...] = ()
@@ -77,7 +78,7 @@ def read_settings(path: Path, untested: bool = False) -> Settings:
         raise head.error(
             "neither or both of machine and network given", 'machine = "NAME.toml" or network = "network.toml"'
         )
-    sample, free = head.number("sample_s", 10.0), calibration.words("free", [])
+    sample, free = head.number("sample_s") if "sample_s" in head else None, calibration.words("free", [])
     model_K = head.number("model_error_K", 0.0)
     axial_m = head.number("axial_mm") / 1e3 if "axial_mm" in head else None
     starts, seed = int(calibration.number("starts", 1)), int(calibration.number("seed", 0))

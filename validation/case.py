@@ -42,6 +42,27 @@ class Channel:
 
 
 @dataclass(frozen=True)
+class Recorded:
+    """The inputs of a test as they were recorded, in finer steps than it is looked at in.
+
+    time (n,) s;  inputs : name -> (n,);  grid, seen : time and inputs of the test that were made of them
+    """
+
+    time: Array
+    inputs: Mapping[str, Array]
+    grid: Array
+    seen: Mapping[str, Array]
+
+    def now(self, test: Test) -> dict[str, Array] | None:
+        """The recorded inputs of a test; one that was replaced there is as it is there. None on another time axis."""
+        if test.time is not self.grid:
+            return None
+        kept = {name for name, u in test.inputs.items() if self.seen.get(name) is u}
+        other = {n: np.interp(self.time, test.time, u) for n, u in test.inputs.items() if n not in kept}
+        return other | {n: self.inputs[n] for n in kept}
+
+
+@dataclass(frozen=True)
 class Test:
     """One test on one time grid.
 
@@ -50,6 +71,7 @@ class Test:
     initial : degC for the whole machine, or per place
     role : calibrate (parameters are fitted to it), validate (effects are chosen with it), hold-out (only predicted)
     frees : globs of the parameters that this test alone is to fix, before the others are fitted
+    recorded : the inputs in finer steps, where there are any: what the laws are made of
     """
 
     name: str
@@ -60,13 +82,45 @@ class Test:
     channels: tuple[Channel, ...]
     initial: float | Mapping[str, float] = 20.0
     frees: tuple[str, ...] = ()
+    recorded: Recorded | None = None
     __test__: ClassVar[bool] = False  # its name makes pytest think so
 
     @cached_property
     def signals(self) -> Signals:
         """What the laws of a network may read: inputs, time, and that it is this test."""
-        own = {CLOCK: self.time, f"{RUNNING}{self.name}": np.ones_like(self.time)}
-        return Signals({**self.inputs, **own}, self.time.size)
+        fine = self.recorded.now(self) if self.recorded else None
+        if self.recorded is None or fine is None:
+            return Signals({**self.inputs, **self._beside(self.time)}, self.time.size)
+        time = self.recorded.time
+        return Signals.recorded({**fine, **self._beside(time)}, time, self.time)
+
+    def _beside(self, time: Array) -> dict[str, Array]:
+        return {CLOCK: time, f"{RUNNING}{self.name}": np.ones_like(time)}
+
+    @property
+    def spread(self) -> float:
+        """What a mean over a sample step adds to the instant, in second differences over the three instants around it.
+
+        1/8 where an input switches there, 1/24 where it does not: 1/12, less where a step holds few readings.
+        """
+        if self.recorded is None or self.recorded.now(self) is None or self.time.size < 3:
+            return 0.0
+        return max(1.0 - (self.step_s / (self.time[1] - self.time[0])) ** 2, 0.0) / 12.0
+
+    @property
+    def step_s(self) -> float:
+        """Usual time between two records of an input (s)."""
+        time = self.recorded.time if self.recorded else self.time
+        return float(np.median(np.diff(time))) if time.size > 1 else 0.0
+
+    def scaled(self, factors: Mapping[str, float]) -> Test:
+        """The test with some inputs multiplied."""
+        inputs = {**self.inputs, **{n: f * np.asarray(self.inputs[n], float) for n, f in factors.items()}}
+        if self.recorded is None:
+            return replace(self, inputs=inputs)
+        fine = {**self.recorded.inputs, **{n: f * self.recorded.inputs[n] for n, f in factors.items()}}
+        seen = {n: inputs[n] if n in factors else u for n, u in self.recorded.seen.items()}
+        return replace(self, inputs=inputs, recorded=replace(self.recorded, inputs=fine, seen=seen))
 
 
 @dataclass(frozen=True)

@@ -71,8 +71,7 @@ def nuisances(network: Network, tests: Sequence[Test], doubt: Doubt = USUAL) -> 
 
 def clock(test: Test, doubt: Doubt) -> float:
     """Standard deviation (s) of a test's clock: the recorder's, and of steps that lie anywhere between two samples."""
-    sample = float(np.median(np.diff(test.time))) if test.time.size > 1 else 0.0
-    return float(np.hypot(doubt["clock"], doubt["step in sample"] * sample))
+    return float(np.hypot(doubt["clock"], doubt["step in sample"] * test.step_s))
 
 
 def _sensor(network: Network, c: Channel, doubt: Doubt) -> list[Parameter]:

@@ -77,7 +77,7 @@ class Course:
         What was asked for last is kept, so the next may begin, and end, anywhere from its beginning, and end, on.
         """
         first = some.start - self.kept.start
-        T, dT = self.T[first:], self.dT[first:]
+        T, dT = self.T, self.dT = self.T[first:].copy(), self.dT[first:].copy()
         if some.stop > self.kept.stop:
             run = self._run(slice(max(self.kept.stop - 1, 0), some.stop))
             new = run.dy if run.dy is not None else np.empty((*run.y.shape, 0))
@@ -112,7 +112,7 @@ class Watch:
             for i, (p, kind) in enumerate(zip(tangents, self.heads, strict=True))
             if kind in SHIFTS and _felt(test, p)
         }
-        self.late_s = abs(self.now.get(f"delay:{test.name}", 0.0))
+        self.late_s, self.spread = abs(self.now.get(f"delay:{test.name}", 0.0)), test.spread
 
     def until(self, stop: int) -> Prediction:
         """Readings and derivatives from where the last look ended to sample `stop`."""
@@ -139,13 +139,15 @@ class Watch:
         """The samples that a late clock makes those depend on."""
         time = self.test.time
         if not (self.late_s or "delay" in self.heads):
-            return some
+            beside = 1 if self.spread else 0
+            return slice(max(some.start - beside, 0), min(some.stop + beside, time.size))
         low, high = np.searchsorted(time, [time[some.start] - self.late_s, time[some.stop - 1] + self.late_s])
         return slice(max(int(low) - MARGIN, 0), min(int(high) + MARGIN, time.size))
 
     def _late(self, T: Array, some: slice, now: Mapping[str, float]) -> Array:
-        """Temperatures of the samples, out of those around, when the recorder's clock is late."""
+        """Temperatures as the samples have them, out of those around: means over a step, a late recorder's clock."""
         delay, time = now.get(f"delay:{self.test.name}", 0.0), self.test.time
+        T = softened(T, self.spread)
         if not delay:
             return T[some.start - self.around.start : some.stop - self.around.start]
         return shifted(time[self.around], T, delay, time[some], (float(time[0]), float(time[-1])))
@@ -162,6 +164,15 @@ class Watch:
             if c.name == name:
                 out[:, j] = (look.through([c], late[:, j : j + 1], now, f"step {i}")[:, 0] - y[:, j]) / step
         return out
+
+
+def softened(T: Array, spread: float) -> Array:
+    """(n, ...) means over a sample step from the instants in their middles; both ends as they are."""
+    if not spread:
+        return T
+    out = T.copy()
+    out[1:-1] += spread * (T[2:] - 2.0 * T[1:-1] + T[:-2])
+    return out
 
 
 def _felt(test: Test, p: Parameter) -> bool:

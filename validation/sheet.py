@@ -73,6 +73,7 @@ def _of_test(
         for j, c in enumerate(test.channels):
             r = np.nan_to_num(c.y[own]) - seen.y[:, j]
             means[j].add(first, np.column_stack([test.time[own], r, seen.J[:, j]]), np.isfinite(c.y[own]).astype(float))
+        del seen  # before the next stretch takes as much
     read = [(c, b.means()) for c, b in zip(test.channels, means, strict=True) if np.isfinite(c.y).sum() >= 3]
     return [Segment(test.name, c.name, m[:, 0], m[:, 1], m[:, 2:], c.sigma_K, allowed(c)) for c, m in read]
 

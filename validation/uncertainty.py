@@ -2,8 +2,8 @@
 
     u_val^2 = u_reading^2 + u_input^2 + u_numeric^2 ,   model error = -(E +- 2 u_val) ,   E = reading - model
 
-Inputs are moved one at a time by their own standard uncertainty; the arithmetic is judged by running at half the step.
-Source: ASME V&V 20-2009, chapters 3 (inputs, sampled one at a time) and 2 (Richardson).
+Inputs are moved one at a time by their own standard uncertainty; the arithmetic is what the integrator leaves.
+Source: ASME V&V 20-2009, chapter 3 (inputs, sampled one at a time).
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.network import Network
+from lumped.simulate import simulate
 from validation.case import Test
 from validation.doubt import USUAL
-from validation.predict import predict
+from validation.predict import predict, record, thermal
 
 Array = NDArray[np.float64]
-FIRST_ORDER = 2.0  # error of a step over the change when it is halved, for the lowest order a scheme can have
 COVERAGE = 2.0
 
 
@@ -61,14 +61,21 @@ def uncertainties(network: Network, test: Test, values: Mapping[str, float]) -> 
     """One row per channel that was read."""
     y = predict(network, test, values).y
     moved = {name: predict(network, other, values).y - y for name, other in shifted_inputs(test)}
-    numeric = FIRST_ORDER * (predict(network, halved(test), values).y[::2] - y)
+    late = _late(network, test, values)
     out = []
     for j, c in enumerate(test.channels):
         if np.isfinite(c.y).any():
             inputs = {name: _rms(d[:, j]) for name, d in moved.items()}
             error = _rms((c.y - y[:, j])[np.isfinite(c.y)])
-            out.append(Uncertainty(test.name, c.name, c.sigma_K, inputs, _rms(numeric[:, j]), error))
+            out.append(Uncertainty(test.name, c.name, c.sigma_K, inputs, late[j], error))
     return out
+
+
+def _late(network: Network, test: Test, values: Mapping[str, float]) -> list[float]:
+    """Error of the time steps at every channel (K)."""
+    bare = thermal(network)
+    heat = {p.name: values[p.name] for p in bare.parameters if p.name in values}
+    return simulate(bare, record(test, {}), heat, [c.row for c in test.channels]).time_error_K.tolist()
 
 
 def _rms(a: Array) -> float:
@@ -79,20 +86,6 @@ def shifted_inputs(test: Test) -> Iterator[tuple[str, Test]]:
     """The test with one input or boundary at a time off by its standard uncertainty."""
     for name, u in test.inputs.items():
         if np.any(u):
-            yield name, replace(test, inputs={**test.inputs, name: (1.0 + USUAL["input"]) * np.asarray(u, float)})
+            yield name, test.scaled({name: 1.0 + USUAL["input"]})
     for name, u in test.boundaries.items():
         yield name, replace(test, boundaries={**test.boundaries, name: np.asarray(u, float) + USUAL["boundary"]})
-
-
-def halved(test: Test) -> Test:
-    """The test on twice as many instants, straight between the recorded ones."""
-    time = np.empty(2 * len(test.time) - 1)
-    time[::2], time[1::2] = test.time, 0.5 * (test.time[1:] + test.time[:-1])
-
-    def between(u: Array) -> Array:
-        return np.asarray(np.interp(time, test.time, np.broadcast_to(u, test.time.shape)), float)
-
-    inputs = {k: between(np.asarray(u, float)) for k, u in test.inputs.items()}
-    boundaries = {k: between(np.asarray(u, float)) for k, u in test.boundaries.items()}
-    still = tuple(replace(c, y=np.zeros_like(time)) for c in test.channels)
-    return replace(test, time=time, inputs=inputs, boundaries=boundaries, channels=still)

@@ -89,13 +89,13 @@ sigma_K = 0.4
 HEADER = "time_s,current,wind,air,T_winding,T_yoke,T_flange"
 
 
-def measured(seed: int, wind: bool, strength: float) -> np.ndarray:
-    """(n, 7) rows of a test of 50 min, the columns of HEADER.
+def measured(seed: int, wind: bool, strength: float, step: float = 10.0) -> np.ndarray:
+    """(n, 7) rows of a test of 50 min, one every `step` (s), the columns of HEADER.
 
     strength : W/K at 10 m/s, the convection at the flange that the network lacks
     """
     rng = np.random.default_rng(seed)
-    t = np.arange(0.0, 3000.0, 10.0)
+    t = np.arange(0.0, 3000.0, step)
     current = 100.0 * rng.uniform(0.5, 1.2, 11)[(t / 300).astype(int)]
     speed = rng.uniform(3.0, 15.0, 11)[(t / 280).astype(int)] if wind else np.zeros_like(t)
 
@@ -123,13 +123,13 @@ def write_csv(path: Path, rows: np.ndarray) -> None:
     path.write_text("\n".join(lines) + "\n")
 
 
-def small_case(folder: Path, strength: float = 6.0) -> Path:
+def small_case(folder: Path, strength: float = 6.0, step: float = 10.0) -> Path:
     """The case folder `folder`/three."""
     case = folder / "three"
     (case / "tests").mkdir(parents=True)
     (case / "network.toml").write_text(NETWORK)
     (case / "case.toml").write_text(CASE)
     for seed, name in enumerate(["stand", "road", "town"]):
-        write_csv(case / "tests" / f"{name}.csv", measured(seed, name != "stand", strength))
+        write_csv(case / "tests" / f"{name}.csv", measured(seed, name != "stand", strength, step))
         (case / "tests" / f"{name}.toml").write_text(SHEET)
     return case

@@ -10,7 +10,7 @@ from validation.case import Case, Model
 from validation.doubt import USUAL
 from validation.failing import failing
 from validation.residuals import dependence, ljung_box, periodogram
-from validation.uncertainty import halved, uncertainties
+from validation.uncertainty import uncertainties
 
 RNG = np.random.default_rng(0)
 WHITE = RNG.standard_normal((200, 400))
@@ -67,26 +67,19 @@ def test_an_error_beyond_all_uncertainty_is_said():
     assert row.error_K == pytest.approx(5.0, rel=0.01)
 
 
-def test_half_the_step_falls_as_the_step():
-    """The estimate of the arithmetic's error against the exact solution, at two steps."""
-
-    def error_and_estimate(every):
-        test = measured()
-        keep = slice(None, None, every)
-        time = test.time[keep]
-        test = replace(test, time=time, boundaries={"ambient": np.full_like(time, 20.0)},
-                       channels=(replace(test.channels[0], y=test.channels[0].y[keep]),))  # fmt: skip
-        (row,) = uncertainties(one_node(LOSS), test, {})
-        return row.error_K, row.numeric_K
-
-    coarse, fine = error_and_estimate(10), error_and_estimate(5)
-    assert fine[1] < coarse[1]
-    assert coarse[0] <= 1.5 * coarse[1]  # what is estimated covers what is
+@pytest.mark.parametrize("every", [1, 5, 10])
+def test_the_arithmetics_own_error_covers_what_it_is(every):
+    """Against the exact solution, at steps of 100 to 1000 s."""
+    test, keep = measured(), slice(None, None, every)
+    time = test.time[keep]
+    test = replace(test, time=time, boundaries={"ambient": np.full_like(time, 20.0)},
+                   channels=(replace(test.channels[0], y=test.channels[0].y[keep]),))  # fmt: skip
+    (row,) = uncertainties(one_node(LOSS), test, {})
+    assert 0.0 < row.error_K <= row.numeric_K < 0.1
 
 
 def test_inputs_move_by_their_share():
     assert 0.0 < USUAL["input"] < 0.1
-    assert halved(steady()).time.size == 2 * steady().time.size - 1
 
 
 def test_all_tests_and_sensors_are_looked_at():

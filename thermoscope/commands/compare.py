@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from thermoscope.answer import Answer, Grid
-from thermoscope.commands.error_budget import budget, in_short
+from thermoscope.commands.error_budget import budget, in_short, sampling
 from thermoscope.commands.opened import opened
 from thermoscope.terminal import give, progress
 from validation.within import WORDS
@@ -31,7 +31,7 @@ def compare(case: str, target: str | None, why: bool = False, sure: bool | None 
         more = failing(folder.case, tell).document() if why else {}
         budgets = budgets_of_tests(folder, tell)
         bands = {"bands": of_tests(folder, tell)} if wanted(folder.case.model.network, sure) else {}
-    document = {**result.document(), **more, "error_budget": documents(budgets), **bands}
+    document = {**result.document(), **more, "error_budget": documents(budgets), **sampling(folder), **bands}
     give(document, target, lambda: answer(document))
     return 0 if result.agrees else 1
 
@@ -47,10 +47,10 @@ def answer(document: Mapping[str, Any]) -> Answer:
                 f"the sensors' own uncertainty explains {document['floor_K']:.2f} K.")  # fmt: skip
     why = _why(document) if "patterns" in document else []
     parts = [*why, tests(document["tests"]), records_of("Over: error is measured - model", over),
-             in_short(document["error_budget"]), roles_in_short(document["roles"])]  # fmt: skip
+             in_short(document["error_budget"], document["sampling"]), roles_in_short(document["roles"])]  # fmt: skip
     rest = [*(records_of(f"{t['name']} ({t['role']})", [{"test": t["name"], **c} for c in t["channels"]])
-              for t in document["tests"]), roles(document["roles"]), *budget(document["error_budget"]),
-             bands_of(document.get("bands", ()))]  # fmt: skip
+              for t in document["tests"]), roles(document["roles"]),
+             *budget(document["error_budget"], document["sampling"]), bands_of(document.get("bands", ()))]  # fmt: skip
     return Answer(sentence, parts, f"{WORDS}; --why, --json FILE; thermoscope show report {document['case']}", rest)
 
 

@@ -9,7 +9,7 @@ from thermoscope.answer import Answer, Grid, cell
 from thermoscope.commands.ahead import ahead
 from thermoscope.commands.bases import bases_tried
 from thermoscope.commands.compare import contradiction
-from thermoscope.commands.error_budget import budget, in_short
+from thermoscope.commands.error_budget import budget, in_short, sampling
 from thermoscope.commands.opened import opened
 from thermoscope.commands.saved import save_diagnosis
 from thermoscope.terminal import give, notes, progress, sized
@@ -31,7 +31,7 @@ def diagnose(case: str, target: str | None, older: bool = False) -> int:
         budgets = budgets_of_tests(folder, tell)
         found = search(folder.case, folder.settings.kinds, tell, budget=ErrorBudget.worst(budgets.values()).total_K)
     named = {"case": folder.case.name, "revision": folder.case.model.revision}
-    document = {**named, **found.document(), "error_budget": documents(budgets)}
+    document = {**named, **found.document(), "error_budget": documents(budgets), **sampling(folder)}
     save_diagnosis(folder, document)
     give(document, target, lambda: answer(document))
     return 0 if found.verdict in ("named", "group", "several") else 1
@@ -40,7 +40,7 @@ def diagnose(case: str, target: str | None, older: bool = False) -> int:
 def answer(document: Mapping[str, Any]) -> Answer:
     """The verdict; of a wrong base only that, for it comes first."""
     sentence, case = f"{document['verdict']}: {document['words']}", document.get("case", "CASE")
-    bases = document.get("bases", [])
+    bases, steps = document.get("bases", []), document.get("sampling", {})
     if any(h["declared"] and h["excluded"] for h in bases):
         return Answer(sentence, [bases_tried(bases)], f"--json FILE; thermoscope bench bases {case}")
     named = document.get("named", [])
@@ -51,8 +51,8 @@ def answer(document: Mapping[str, Any]) -> Answer:
     found = document["candidates"]
     parts = [_odds(document), _candidates(found), *events(document), *remaining, *_leader(found),
              *contradiction(document.get("contradiction")), ahead(document),
-             in_short(document.get("error_budget", {})), unseen, question(document)]  # fmt: skip
-    rest = [*budget(document.get("error_budget", {})), *hidden]
+             in_short(document.get("error_budget", {}), steps), unseen, question(document)]  # fmt: skip
+    rest = [*budget(document.get("error_budget", {}), steps), *hidden]
     return Answer(sentence, parts, f"{step}; --json FILE; thermoscope show report {case}", rest)
 
 

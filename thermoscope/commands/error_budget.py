@@ -3,32 +3,49 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from thermoscope.answer import Grid
 
+if TYPE_CHECKING:
+    from thermoscope.folder import Folder
+
 Places = Sequence[Mapping[str, Any]]
+Steps = Mapping[str, Mapping[str, Any]]
 KEYS = ("place", "mesh_K", "condensation_K", "time_K", "total_K")
 HEADERS = ["place", "mesh (K)", "condensation (K)", "time steps (K)", "sum (K)"]
 
 
-def budget(budgets: Mapping[str, Places]) -> list[Grid | str]:
-    """budgets : run -> places, as in the documents"""
+def sampling(folder: Folder) -> dict[str, dict[str, Any]]:
+    """The step at which every test is looked at, and what that leaves, for a document."""
+    return {"sampling": {name: step.document() for name, step in folder.steps.items()}}
+
+
+def budget(budgets: Mapping[str, Places], steps: Steps) -> list[Grid | str]:
+    """budgets : run -> places;  steps : test -> sample step, both as in the documents"""
     rows = sorted(worst(budgets), key=_total, reverse=True)
     if not rows:
-        return []
+        return _sampled(steps)
     shown = [["-" if row[key] is None else row[key] for key in KEYS] for row in rows]
     return [Grid("Error budget: what the model's own numbers may be wrong by", HEADERS, shown, keep=["sum (K)"]),
-            words(rows)]  # fmt: skip
+            words(rows), *_sampled(steps)]  # fmt: skip
 
 
-def in_short(budgets: Mapping[str, Places]) -> str:
-    """The largest sum in a sentence."""
-    rows = worst(budgets)
+def _sampled(steps: Steps) -> list[Grid | str]:
+    from validation.sampling import SampleStep, sampled
+
+    return [sampled({name: SampleStep(**step) for name, step in steps.items()})] if steps else []
+
+
+def in_short(budgets: Mapping[str, Places], steps: Steps) -> str:
+    """The largest sum and the sample steps in a sentence."""
+    rows, every = worst(budgets), sorted({step["step_s"] for step in steps.values()})
+    said = f"compared every {' to '.join(f'{h:.3g}' for h in dict.fromkeys((every[0], every[-1])))} s" if every else ""
     if not rows:
-        return ""
+        return f"Readings and model are {said}." if said else ""
     most = max(rows, key=_total)
-    return f"The model's own numbers are good to {_total(most):.2g} K (worst at {most['place']})."
+    good = f"The model's own numbers are good to {_total(most):.2g} K (worst at {most['place']})"
+    return f"{good}, {said}." if said else f"{good}."
 
 
 def worst(budgets: Mapping[str, Places]) -> list[Mapping[str, Any]]:

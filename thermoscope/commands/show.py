@@ -21,6 +21,7 @@ from thermoscope.history import Revision
 from thermoscope.runs import at_revision, before_last, fields, held, parameters, readings, steps
 from thermoscope.terminal import Progress, give, notes, progress
 from validation.case import Case, Test
+from validation.sampling import sampled
 
 if TYPE_CHECKING:
     from viz.data import Comparison
@@ -198,7 +199,7 @@ def assumptions(folder: Folder) -> list[str]:
     return [
         f"The model is {kind} with {len(case.model.network.parameters)} adjustable parameters.",
         f"Tests by role: {used}.",
-        f"Recordings are averaged to {s.sample_s:g} s.",
+        *([f"Sample steps: {sampled(folder.steps)}."] if folder.steps else []),
         f"Sensors are taken to be right within {sigma[0]:g} to {sigma[-1]:g} K (one standard deviation).",
         *folder.notes,
     ]

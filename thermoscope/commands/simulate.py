@@ -164,8 +164,8 @@ def answer(document: Mapping[str, Any]) -> Answer:
     top = max(hottest)
     sentence = f"Hottest: {top[1]}, {top[0]:.1f} degC in {top[2]}; {len(runs)} {'run' if len(runs) == 1 else 'runs'}."
     budgets, closing = {run["name"]: run["error_budget"] for run in runs}, [x for run in runs for x in _closing(run)]
-    parts: list[Grid | str] = [_places(runs), *closing, in_short(budgets), *map(_circuit, document["circuits"])]
-    rest = [*(_losses(run) for run in runs), *budget(budgets)]
+    parts: list[Grid | str] = [_places(runs), *closing, in_short(budgets, {}), *map(_circuit, document["circuits"])]
+    rest = [*(_losses(run) for run in runs), *budget(budgets, {})]
     return Answer(sentence, parts, f"temperatures in {runs[0]['file']}{' ...' if len(runs) > 1 else ''}", rest)
 
 

@@ -232,8 +232,8 @@ def flows(
     """Channel -> (n, k): each kind of flow, as its meter may be off in all tests.  plain : the test as recorded"""
     columns = []
     for quantity in (AIR, LIQUID):
-        own = {n: u * (1.0 + doubt["flow"]) for n, u in test.inputs.items() if network.measures(n) == quantity}
-        more = segments(network, [replace(test, inputs={**test.inputs, **own})], values) if own else plain
+        own = {n: 1.0 + doubt["flow"] for n in test.inputs if network.measures(n) == quantity}
+        more = segments(network, [test.scaled(own)], values) if own else plain
         columns.append([a.r - b.r for a, b in zip(plain, more, strict=True)])
     return {s.channel: np.column_stack([c[i] for c in columns]) for i, s in enumerate(plain)}
 
