@@ -33,8 +33,7 @@ Progress = Callable[[str], None]
 class Folder:
     """An open case.  positions : channel -> (x, y, z) m where the sheet gives them;  notes : doubts about the data
 
-    findings : what looks wrong in the files, see `thermoscope test doctor`
-    steps : test -> how it is looked at in time
+    findings : what looks wrong in the files, see `thermoscope test doctor`;  steps : test -> its sample step
     """
 
     settings: Settings

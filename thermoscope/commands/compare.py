@@ -31,7 +31,7 @@ def compare(case: str, target: str | None, why: bool = False, sure: bool | None 
         more = failing(folder.case, tell).document() if why else {}
         budgets = budgets_of_tests(folder, tell)
         bands = {"bands": of_tests(folder, tell)} if wanted(folder.case.model.network, sure) else {}
-    document = {**result.document(), **more, "error_budget": documents(budgets), **bands, **sampling(folder)}
+    document = {**result.document(), **more, "error_budget": documents(budgets), **sampling(folder), **bands}
     give(document, target, lambda: answer(document))
     return 0 if result.agrees else 1
 

@@ -97,10 +97,7 @@ def moved_inputs(network: Network, test: Test, doubt: Doubt) -> Iterator[tuple[s
             groups.setdefault(FLOWS.get(network.measures(name), f"input {name}"), []).append(name)
     for group, names in groups.items():
         share = doubt["flow" if group in FLOWS.values() else "input"]
-        yield (
-            group,
-            replace(test, inputs={**test.inputs, **{n: (1.0 + share) * np.asarray(test.inputs[n]) for n in names}}),
-        )
+        yield group, test.scaled(dict.fromkeys(names, 1.0 + share))
 
 
 def moved_boundaries(test: Test, doubt: Doubt) -> Iterator[tuple[str, Test]]:
