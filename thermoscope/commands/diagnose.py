@@ -47,9 +47,9 @@ def answer(document: Mapping[str, Any]) -> Answer:
     step = f"Next: thermoscope model add {case} {named[0]}" if named else f"Next: thermoscope explain effects {case}"
     hidden = [f"{h['effect']} below {cell(h['smallest_detectable'])} {h['unit']}" for h in document["cannot_see"]]
     unseen = f"{len(hidden)} effects could be there unseen: {', '.join(hidden[:2])}, ..." if hidden else ""
-    remaining = [row["words"] for row in document.get("remainder", [])]
+    remaining = " ".join(row["words"] for row in document.get("remainder", []))
     found = document["candidates"]
-    parts = [_odds(document), _candidates(found), *events(document), *remaining, *_leader(found),
+    parts = [_odds(document), remaining, _candidates(found), *events(document), *_leader(found),
              *contradiction(document.get("contradiction")), ahead(document),
              in_short(document.get("error_budget", {}), steps), unseen, question(document)]  # fmt: skip
     rest = [*budget(document.get("error_budget", {}), steps), *hidden]
