@@ -56,4 +56,4 @@ def test_a_shipped_case_goes_through_the_commands(tmp_path, monkeypatch, capsys,
 def test_the_package_runs_as_a_module():
     done = subprocess.run([sys.executable, "-m", "thermoscope", "--help"], capture_output=True, text=True, cwd=ROOT)
     assert done.returncode == 0
-    assert "doctor" in done.stdout
+    assert "explain" in done.stdout

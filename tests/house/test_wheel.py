@@ -37,7 +37,7 @@ def run(home, *arguments):
 def test_command_answers(elsewhere):
     done = run(elsewhere, "--help")
     assert done.returncode == 0, done.stderr
-    assert "diagnose" in done.stdout
+    assert "explain" in done.stdout
 
 
 def test_shipped_case_runs_without_the_checkout(elsewhere):

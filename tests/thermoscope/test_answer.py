@@ -3,7 +3,7 @@
 import ast
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from small_case import small_case
 
@@ -32,6 +32,7 @@ def after_the_sentence(answer, width, most):
     return lines[len(head) :]
 
 
+@settings(deadline=None)  # a shared computer may be slow
 @given(ANSWERS)
 def test_what_follows_the_sentence_fits_on_a_screen(answer):
     lines = after_the_sentence(answer, 80, LINES)
@@ -50,6 +51,7 @@ def test_wide_tables_lose_columns_by_priority_and_no_number():
     assert max(map(len, small)) <= 36
 
 
+@settings(deadline=None)
 @given(st.lists(st.floats(-1e9, 1e9), min_size=2, max_size=9), st.integers(20, 80))
 def test_a_number_is_shown_whole_or_not_at_all(values, width):
     headers = [f"column {i}" for i in range(len(values))]

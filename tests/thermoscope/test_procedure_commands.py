@@ -106,7 +106,9 @@ def test_curves_of_equal_tests(thermoscope, tmp_path):
 
 
 def test_curves_shows_them_and_the_pool(ask, tmp_path):
-    code, out, _ = ask("curves", equal_tests(tmp_path / "two", (-0.3, 0.0, 0.3)), "--json", tmp_path / "found.json")
+    code, out, _ = ask(
+        "curves", equal_tests(tmp_path / "two", (-0.3, 0.0, 0.3)), "--all", "--json", tmp_path / "found.json"
+    )
     assert code == 0
     assert (tmp_path / "found.json").is_file()
     assert "T = a exp(b exp(c t))" in out
@@ -151,7 +153,7 @@ def test_resolution_has_to_be_one(thermoscope, case):
 
 def test_screen_gives_the_effects(ask, tmp_path):
     """Tables on stdout, and a half-normal plot with its Pareto chart for every response."""
-    code, out, err = ask("screen", "pmsm-m1", "--design", "half", "--out", tmp_path)
+    code, out, err = ask("screen", "pmsm-m1", "--design", "half", "--all", "--out", tmp_path)
     assert code == 0
     names = {"magnets", "winding", "end-winding", "lamination", "winding-minus-magnets", "R_w"}
     assert {p.stem for p in tmp_path.glob("*.png")} == names
