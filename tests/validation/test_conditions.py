@@ -242,3 +242,25 @@ def test_masses_and_joints_cannot_differ_between_tests():
     able = {p.name: can_differ(net, p) for p in net.parameters}
     assert able == {"capacity.body": False, "capacity.core": False, "link.joint": False, "link.film": True,
                     "loss.heat": True}  # fmt: skip
+
+
+def test_a_declared_loss_too_high_above_a_load_is_said_in_words():
+    """In truth a third of the heat is missing above a load of 0.7, in three tests that go from low to high."""
+    net, cases = two_bodies(), []
+    law = "law@loss:heat|load>0.7"
+    truth = effect(law).extend(net)
+    rng = np.random.default_rng(3)
+    for name in ("noon", "dawn", "dusk"):
+        time = np.arange(0.0, 9000.0, 30.0)
+        load = rng.permutation(np.linspace(0.1, 1.0, 9))[(time / 1000.0).astype(int)]
+        around = {"ambient": np.full_like(time, 20.0)}
+        test = Test(name, "calibrate", time, {"load": load}, around, (), 20.0)
+        rows = [net.places[p].mean for p in ("body", "core")]
+        y = simulate(truth, Record(time, test.signals, around, 20.0), {law: -0.33}, rows).y
+        y = y + 0.05 * rng.standard_normal(y.shape)
+        channels = tuple(Channel(p, p, r, y[:, i], 0.3) for i, (p, r) in enumerate(zip(("body", "core"), rows)))
+        cases.append(replace(test, channels=channels))
+    found = diagnose(Case("bench", Model(net), tuple(cases)), plan=False)
+    assert found.odds[0].effects[0].startswith("law@loss:heat|load>0.")
+    assert "the declared loss:heat is" in found.words
+    assert "% too high where load is above" in found.words

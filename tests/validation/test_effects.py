@@ -26,7 +26,7 @@ COOLING = [
 ]
 HEATING = ["iron", "windage", "bearing.friction", "brush.drop", "brush.friction", "loss.winding", "loss.rotor",
            "loss.constant", "iron.pwm", "copper.ac", "copper.feedback"]  # fmt: skip
-SHARED = {"base", "build", "during", "gate", "registry", "sites", "__init__"}
+SHARED = {"above", "base", "build", "during", "gate", "registry", "sites", "__init__"}
 
 
 @pytest.fixture(scope="module")

@@ -150,7 +150,7 @@ def scored_in(
     return [Condition(e, float(b) + prior) for e, b, seen in zip(effects, bayes, clear, strict=True) if seen]
 
 
-def joined(evidence: Evidence, effects: Sequence[During], known: Mapping[str, float]) -> Evidence:
+def joined(evidence: Evidence, effects: Sequence[Effect], known: Mapping[str, float]) -> Evidence:
     """The evidence with further effects behind its own."""
     if not effects:
         return evidence

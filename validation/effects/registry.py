@@ -10,6 +10,7 @@ from typing import Any
 
 from geom.errors import InputError
 from lumped.network import Network
+from validation.effects.above import KIND, Above
 from validation.effects.base import Effect, Scene
 from validation.effects.during import IN, During
 from validation.effects.gate import event
@@ -52,6 +53,8 @@ def _of(kind: str, known: Mapping[str, type[Effect]], where: str) -> type[Effect
 def effect(name: str, scene: Scene | None = None) -> Effect:
     """The effect called 'kind@place'; with a scene, only if it can sit there."""
     kind, _, place = name.partition("@")
+    if kind == KIND:
+        return Above(place)
     found = _of(kind, kinds(), f"effect '{name}'")
     base, held, gate = place.rpartition(IN)
     if held:

@@ -11,8 +11,10 @@ from validation.calibrate import silent
 from validation.case import Case
 from validation.conditions.contradiction import contradiction
 from validation.conditions.found import conditions, joined
+from validation.conditions.laws import laws
 from validation.conditions.question import answered
 from validation.conditions.robust import without
+from validation.effects.above import KIND
 from validation.faults import broken_channels
 from validation.findings import Diagnosis
 from validation.imprint import imprint
@@ -84,7 +86,9 @@ def infer(case: Case, kinds: Sequence[str] | None = None, progress: Progress = s
     looked = scan(evidence.fit, evidence.tests)
     heat = looked.read(evidence.fit.parts, evidence.fit.noise, evidence.fit.theta, evidence.fit.error)
     chosen, events = conditions(without(evidence, against.test), case, looked, heat, kinds, progress)
-    evidence = sharpened(joined(evidence, chosen, {**case.model.values, **evidence.fit.values}))
+    known = {**case.model.values, **evidence.fit.values}
+    bent = laws(evidence, known) if kinds is None or KIND in kinds else []
+    evidence = sharpened(joined(evidence, [*chosen, *bent], known))
     ones = singles(evidence)
     weighed = [*ones, *pairs(evidence, ones), *unknown_heat({w.place: w.log_bayes for w in heat})]
     heard = answered(evidence, weighed, case.answers)

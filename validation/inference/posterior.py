@@ -21,6 +21,8 @@ from scipy.special import log_ndtr, logsumexp
 
 from validation.calibrate import Fit
 from validation.doubt import PRIOR, RARE, SIZES, TEMPER
+from validation.effects import Effect
+from validation.effects.above import Above
 from validation.effects.during import During
 from validation.effects.gate import Event
 from validation.inference.evidence import Evidence
@@ -66,15 +68,19 @@ def prior_shares(evidence: Evidence) -> Array:
 
     What held in one test or for a while has a share of its own, which says what it costs to say when.
     """
-    lasting = [e for e in evidence.effects if not isinstance(e, During)]
+    lasting = [e for e in evidence.effects if not isinstance(e, During | Above)]
     kinds = [e.kind for e in lasting]
     faults = {e.kind: e.fault for e in lasting}
     weight = {k: RARE[k].share if k in RARE else 1.0 for k in faults}
     whole = {f: sum(w for k, w in weight.items() if faults[k] == f) for f in (False, True)}
     share = {k: PRIOR["fault" if faults[k] else "effect"].share * w / whole[faults[k]] for k, w in weight.items()}
     own = {k: w / kinds.count(k) for k, w in share.items()}
-    held = PRIOR["condition"].share
-    return np.array([held * e.share if isinstance(e, During) else own[e.kind] for e in evidence.effects])
+    held, law = PRIOR["condition"].share, PRIOR["effect"].share * RARE["law"].share
+
+    def of(e: Effect) -> float:
+        return held * e.share if isinstance(e, During) else law * e.share if isinstance(e, Above) else own[e.kind]
+
+    return np.array([of(e) for e in evidence.effects])
 
 
 def singles(evidence: Evidence) -> list[Hypothesis]:

@@ -13,6 +13,7 @@ from validation.calibrate import Fit, Measure
 from validation.case import Case, Test
 from validation.conditions.happenings import happenings
 from validation.conditions.question import best_question
+from validation.effects.above import Above
 from validation.effects.during import During
 from validation.findings import Candidate, Decided, Diagnosis, Hidden, Odds, Verdict
 from validation.inference.decision import Decision
@@ -259,6 +260,8 @@ def _group(posterior: Posterior, group: tuple[int, ...], rows: Sequence[Candidat
     best = by_name.get(e.names[group[0]])
     if len(group) == 1 and best:
         effect = e.effects[group[0]]
+        if isinstance(effect, Above):
+            return f"{effect.words(best.value)} ({percent(best.probability)})"
         place = effect.words if isinstance(effect, During) else f"at {effect.place}"
         return f"missing: {best.title} {place}, {best.value:.3g} {best.unit} ({percent(best.probability)})"
     return "one of " + ", ".join(told) + "; these tests and sensors cannot tell them apart"

@@ -1,0 +1,90 @@
+"""A declared loss or film that is off where an input is large: a correction to its law, smooth in that input."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from geom.errors import InputError
+from lumped.laws import Array, Inputs
+from lumped.network import Link, Network, Source
+from validation.effects.base import Effect, Scene, with_parameter
+from validation.effects.build import Shaped, copy_link, copy_source
+
+KIND = "law"
+PLACE = re.compile(r"(.+)\|(.+)>(\d+(?:\.\d+)?(?:e[+-]?\d+)?)")
+WIDTH = 0.1  # of the level: over so much the correction sets in, about as sharply as a map of ten points can show
+
+
+@dataclass(frozen=True)
+class Ramp:
+    """0 well below a level of an input, 1 well above."""
+
+    input: str
+    level: float
+
+    def __call__(self, inputs: Inputs) -> Array:
+        u = np.abs(np.asarray(inputs[self.input], float))
+        return np.asarray(1.0 / (1.0 + np.exp(np.clip((self.level - u) / (WIDTH * self.level), -50.0, 50.0))))
+
+
+@dataclass(frozen=True)
+class Above(Effect):
+    """g = g0 (1 + a r(u)) of one declared loss or film, r from 0 to 1 around a level of an input u.
+
+    Place: "LOSS OR LINK|INPUT>LEVEL", the level in the input's unit.
+    share : prior probability of this one among all such
+    """
+
+    share: float = field(default=1.0, compare=False)
+
+    title = "a declared law is off at high values of an input"
+    unit = "1"
+    source = "definition: a map measured on another machine, a constant where the law bends"
+    isolating_test = "two tests at constant load, one below and one above that value"
+    typical = (-0.5, 0.5)
+    sign = 0
+    prior_sd = 0.3
+    low = -0.95
+    high = 3.0
+    confused_with = ("loss.factor", "input.factor")
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "kind", KIND)  # not in the catalogue: levels come from the readings
+        self.parts()
+
+    @classmethod
+    def where(cls, scene: Scene) -> Iterable[str]:
+        """Nowhere by itself: readings say at which level."""
+        return ()
+
+    def parts(self) -> tuple[str, str, float]:
+        """Loss or link, input, level."""
+        found = PLACE.fullmatch(self.place)
+        if found is None or float(found[3]) <= 0.0:
+            raise InputError(f"'{self.place}' is no law above a level", f"effect '{self.name}'", "LOSS|INPUT>LEVEL")
+        return found[1], found[2], float(found[3])
+
+    def words(self, a: float) -> str:
+        """ "the declared loss:stator is 40 % too high above current_A 150"."""
+        target, name, level = self.parts()
+        side = "too low" if a > 0 else "too high"
+        wrong = 100.0 * abs(a if a > 0 else a / (1.0 + a))  # a loss of which 1 + a is true is so much too high
+        return f"the declared {target} is {wrong:.0f} % {side} where {name} is above {level:g}"
+
+    def extend(self, network: Network) -> Network:
+        target, name, level = self.parts()
+        known: list[Link | Source] = [*network.links, *network.sources]
+        found = [x for x in known if x.name == target and not x.origin]
+        if not found:
+            names = ", ".join(x.name for x in known if not x.origin)
+            raise InputError(f"no loss or link '{target}'", f"effect '{self.name}'", f"one of {names}")
+        law = Shaped(found[0].law, Ramp(name, level), found[0].law.temperature, (name,))
+        if isinstance(found[0], Link):
+            network = copy_link(network, found[0], self.name, law)
+        else:
+            network = copy_source(network, found[0], self.name, law)
+        return with_parameter(network, self.parameter(self.name))
