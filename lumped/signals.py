@@ -41,13 +41,15 @@ class Signals(dict[str, Array]):
 
     Laws and signals never change, so the runs of a fit, which differ in multipliers alone, share them. On instants
     wider apart than the samples were recorded, factors are still made of these and keep their integrals.
+
+    source : the samples as recorded, of signals that are looked at on other instants
     """
 
     def __init__(self, inputs: Mapping[str, Any], nt: int) -> None:
         super().__init__({name: _checked(name, value, nt) for name, value in inputs.items()})
         self.nt = nt
         self._around: tuple[Signals, Array] | None = None
-        self._source: Source | None = None
+        self.source: Source | None = None
         self._known: dict[int, tuple[ref[Law], Curve]] = {}
         self._finer: dict[bytes, Signals] = {}
 
@@ -56,7 +58,7 @@ class Signals(dict[str, Array]):
         """Inputs (n,) recorded at some times (s), to be looked at on instants `at` (nt,) within these."""
         source = Source(cls(inputs, time.size), time, at)
         out = cls(dict(source.between(np.arange(at.size, dtype=float))), at.size)
-        out._source = source
+        out.source = source
         return out
 
     def part(self, some: slice) -> Signals:
@@ -65,7 +67,7 @@ class Signals(dict[str, Array]):
             return self
         out = Signals({name: value[some] for name, value in self.items()}, some.stop - some.start)
         out._around = self, np.arange(some.start, some.stop, dtype=float)
-        out._source = self._source and self._source.part(self._source.at[some])
+        out.source = self.source and self.source.part(self.source.at[some])
         return out
 
     def finer(self, at: Array) -> Signals:
@@ -76,14 +78,14 @@ class Signals(dict[str, Array]):
         return self._finer[key]
 
     def _at(self, at: Array) -> Signals:
-        source = self._source
+        source = self.source
         out = Signals(dict(source.between(at) if source else Between(self, at)), at.size)
-        out._around, out._source = (self, at), source and source._replace(at=between(source.at, at))
+        out._around, out.source = (self, at), source and source._replace(at=between(source.at, at))
         return out
 
     def __reduce__(self) -> Any:
-        if self._source:
-            return Signals.recorded, (dict(self._source.signals), self._source.time, self._source.at)
+        if self.source:
+            return Signals.recorded, (dict(self.source.signals), self.source.time, self.source.at)
         return Signals, (dict(self), self.nt)
 
     def factor(self, name: str, law: Law) -> Array:
@@ -106,7 +108,7 @@ class Signals(dict[str, Array]):
 
     def along(self, name: str, law: Law, at: Array) -> Array:
         """A factor at positions: its law there, or parabolas that keep its integral where more is known."""
-        if self._source is None:
+        if self.source is None:
             return self.finer(at).factor(name, law)
         knots = np.union1d(np.arange(self.nt, dtype=float), self.curve(name, law).inserted)
         c = self.finer(knots).curve(name, law)
@@ -118,7 +120,7 @@ class Signals(dict[str, Array]):
             raise InputError(
                 f"input '{missing[0]}' is missing", f"'{name}'", f"given: {', '.join(sorted(self)) or 'none'}"
             )
-        source = self._source
+        source = self.source
         if not law.looks_at_all:
             full = crowded(source.at, source.time) if source else None
             near = curve(lambda at: self._factor(name, law, at), self.nt, self._turns(law.reads), full)
@@ -145,7 +147,7 @@ class Signals(dict[str, Array]):
     def _factor(self, name: str, law: Law, at: Array | None) -> Array:
         """The factor at positions, or at the samples of the whole record."""
         size = self.nt if at is None else at.size
-        given = self if at is None else self._source.between(at) if self._source else Between(self, at)
+        given = self if at is None else self.source.between(at) if self.source else Between(self, at)
         value = np.asarray(law.factor(given), float)
         if value.shape not in ((), (size,)) or not np.all(np.isfinite(value)):
             raise InputError(

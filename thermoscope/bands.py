@@ -15,13 +15,14 @@ from numpy.typing import NDArray
 
 from lumped.laws import CLOCK
 from lumped.network import Network, Row
+from lumped.signals import Signals
 from lumped.simulate import Record
 from thermoscope.files import write_whole
 from thermoscope.folder import Folder, Progress
 from thermoscope.pipeline import cache_folder
 from validation.bands import Bands, Belief, Place, bands, belief
 from validation.bands.band import NORMAL_95
-from validation.case import RUNNING, Test
+from validation.case import RUNNING, Recorded, Test
 
 Array = NDArray[np.float64]
 SMALL = 40  # states up to which bands cost less than a run's other work
@@ -77,7 +78,9 @@ def along(of: Belief, name: str, record: Record, rows: Mapping[str, Row]) -> Ban
     inputs = {n: np.broadcast_to(np.asarray(u, float), nt) for n, u in record.inputs.items()}
     inputs = {n: u for n, u in inputs.items() if n not in (CLOCK, f"{RUNNING}{name}")}
     air = {n: np.broadcast_to(np.asarray(u, float), nt) for n, u in record.boundaries.items()}
-    test = Test(name, "hold-out", apart(record.time), inputs, air, (), record.initial)
+    time, source = apart(record.time), record.inputs.source if isinstance(record.inputs, Signals) else None
+    fine = Recorded(source.time, {n: source.signals[n] for n in inputs}, time, inputs) if source else None
+    test = Test(name, "hold-out", time, inputs, air, (), record.initial, recorded=fine)
     return bands(of, test, [Place(n, row) for n, row in rows.items()])
 
 
