@@ -49,6 +49,7 @@ class InputFactor(Effect):
 
     kind = "input.factor"
     title = "an input is recorded too small or too large"
+    sits = "an input that a law of the network reads"
     unit = "1"
     source = "definition; the laws that read it follow it"
     isolating_test = "read the input with a second instrument"
