@@ -12,18 +12,17 @@ from pathlib import Path
 
 import numpy as np
 
-from thermoscope.folder import find_case, load_case
+import thermoscope as ts
 from thermoscope.runs import held
-from validation import compare
 from viz import measured_and_model, residuals
 from viz.live import against_input, parity, saved
 
 out = Path(sys.argv[1] if len(sys.argv) > 1 else "out/examples")
 
 # %% The case and one of its held-out profiles.
-folder = load_case(find_case("hust-ipmsm"))
-test = next(t for t in folder.case.tests if t.role == "hold-out")
-comparison = held(folder, test)
+case = ts.open("hust-ipmsm")
+test = next(t for t in case.tests.values() if t.role == "hold-out")
+comparison = held(case.folder, test)
 
 # %% On paper.
 measured_and_model(comparison, png=out / "residuals-1.png")
@@ -36,7 +35,7 @@ saved(against_input(comparison, rotor, speed), out / "against-speed.html")
 saved(parity(comparison), out / "parity.html")
 
 # %% The error as the tool computes it, and from the curves that were drawn.
-computed = next(t for t in compare(folder.case).tests if t.name == test.name).rmse_K
+computed = next(t for t in case.compare().tests if t.name == test.name).rmse_K
 every = np.concatenate([comparison.residual(c) for c in comparison.channels])
 exact = float(np.sqrt(np.nanmean(every**2)))
 error_K = abs(computed - exact)

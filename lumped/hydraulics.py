@@ -7,8 +7,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-import fluids
-
 from lumped.correlations.ducts import LAMINAR, TURBULENT
 from lumped.properties import Fluid
 
@@ -71,6 +69,8 @@ def friction(Re: float, relative_roughness: float = 0.0) -> float:
 
     Source: Colebrook 1939, solved by Clamond 2009 (fluids); the bridge is the one of the film (Gnielinski 2013).
     """
+    import fluids
+
     share = min(max((Re - LAMINAR) / (TURBULENT - LAMINAR), 0.0), 1.0)
     out = (1.0 - share) * fluids.friction.friction_laminar(max(min(Re, LAMINAR), 1e-12))
     return out + (share * fluids.friction.Clamond(max(Re, TURBULENT), relative_roughness) if share > 0.0 else 0.0)
@@ -78,6 +78,8 @@ def friction(Re: float, relative_roughness: float = 0.0) -> float:
 
 def helical_friction(Re: float, diameter: float, coil: float, relative_roughness: float = 0.0) -> float:
     """Darcy factor of a coiled channel, by Schmidt 1967 (fluids): laminar, and turbulent above his critical Re."""
+    import fluids
+
     critical = fluids.helical_transition_Re_Schmidt(diameter, coil)
     if critical >= Re:
         return fluids.friction.helical_laminar_fd_Schmidt(max(Re, 1e-12), diameter, coil)
@@ -90,6 +92,8 @@ def helical_friction(Re: float, diameter: float, coil: float, relative_roughness
 
 def pressure_drop(duct: Passage, flow: float, fluid: Fluid, roughness: float = ROUGHNESS) -> float:
     """Along a duct (Pa), with a sharp entrance, its bends and its exit; flow (m3/s) through all parallel channels."""
+    import fluids
+
     speed = abs(flow) / duct.section
     Re = speed * duct.diameter / fluid.nu
     if Re == 0.0:

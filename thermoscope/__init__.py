@@ -1,0 +1,103 @@
+"""See where your motor's thermal model is wrong, and why.
+
+import thermoscope as ts
+
+case = ts.open("my-case")           # a case folder, or the name of a case that comes along
+case.compare()                      # the model against every test: error per sensor (K)
+d = case.diagnose()                 # which effect is missing, with its probability
+better = case.add(d.best)           # a new case: the effect added, the parameters calibrated again
+better.save()                       # one more revision in model.toml
+better.plot()                       # measured and modelled over time
+
+machine = ts.build("tefc-industrial")           # mesh, field and network of a machine
+machine.field(current_A=20.0, ambient_C=40.0)   # its steady temperatures
+
+Nothing heavy is loaded before it is used. What is wrong with the input raises InputError: what, where, what would be
+right.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from thermoscope.shadowing import checked_rooms
+
+if TYPE_CHECKING:
+    from geom.errors import InputError, MissingDependency, ThermoscopeError
+    from lumped.declared import load_network, read_network
+    from lumped.network import Network, Parameter
+    from lumped.record import Record
+    from lumped.simulate import Run, simulate
+    from lumped.steady import Steady, steady
+    from thermoscope.interface.case import Case, effects, open
+    from thermoscope.interface.machine import Field, Machine, build, machines
+    from validation.compare import Comparison
+    from validation.effects.base import Effect
+    from validation.findings import Candidate, Diagnosis
+    from validation.revise import Revision
+
+_HOME = {
+    "open": "thermoscope.interface.case",
+    "effects": "thermoscope.interface.case",
+    "Case": "thermoscope.interface.case",
+    "build": "thermoscope.interface.machine",
+    "machines": "thermoscope.interface.machine",
+    "Machine": "thermoscope.interface.machine",
+    "Field": "thermoscope.interface.machine",
+    "Comparison": "validation.compare",
+    "Diagnosis": "validation.findings",
+    "Candidate": "validation.findings",
+    "Revision": "validation.revise",
+    "Effect": "validation.effects.base",
+    "Network": "lumped.network",
+    "Parameter": "lumped.network",
+    "Record": "lumped.record",
+    "Run": "lumped.simulate",
+    "simulate": "lumped.simulate",
+    "Steady": "lumped.steady",
+    "steady": "lumped.steady",
+    "load_network": "lumped.declared",
+    "read_network": "lumped.declared",
+    "InputError": "geom.errors",
+    "MissingDependency": "geom.errors",
+    "ThermoscopeError": "geom.errors",
+}
+__all__ = [
+    "Candidate",
+    "Case",
+    "Comparison",
+    "Diagnosis",
+    "Effect",
+    "Field",
+    "InputError",
+    "Machine",
+    "MissingDependency",
+    "Network",
+    "Parameter",
+    "Record",
+    "Revision",
+    "Run",
+    "Steady",
+    "ThermoscopeError",
+    "build",
+    "effects",
+    "load_network",
+    "machines",
+    "open",
+    "read_network",
+    "simulate",
+    "steady",
+]
+
+checked_rooms()
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module 'thermoscope' has no attribute '{name}'; known: {', '.join(__all__)}")
+    return getattr(import_module(_HOME[name]), name)
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
+from geom.errors import InputError
 from validation.where import Latent
 
 if TYPE_CHECKING:
@@ -222,6 +223,13 @@ class Diagnosis:
     remainder: tuple[Remainder, ...] = ()
     contradiction: Contradiction | None = None
     question: Question | None = None
+
+    @property
+    def best(self) -> str:
+        """The effect to add first, "kind@place". Raises InputError where none is named: the verdict says why."""
+        if not self.named:
+            raise InputError(f"no effect is named: {self.words}", f"verdict '{self.verdict}'")
+        return self.named[0]
 
     def document(self) -> dict:
         return {

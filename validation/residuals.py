@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import kstwobign
+from scipy.special import kolmogorov
 
 from validation.blocks import groups
 from validation.case import Test
@@ -75,7 +75,7 @@ def periodogram(r: Array) -> float:
     power = np.abs(np.fft.rfft(r - np.mean(r)))[1:] ** 2
     share = np.cumsum(power) / max(float(np.sum(power)), 1e-300)
     line = np.arange(1, power.size + 1) / power.size
-    return float(kstwobign.sf(np.sqrt(power.size) * np.max(np.abs(share - line))))
+    return float(kolmogorov(np.sqrt(power.size) * np.max(np.abs(share - line))))
 
 
 def dependence(r: Array, u: Array) -> float:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import make_interp_spline
 
 from lumped.jit import entry
 
@@ -22,6 +21,8 @@ def through(time: Array, y: Array, at: Array) -> Array:
     Of fewer than four points the polynomial through all.
     """
     if time.size < FEWEST:
+        from scipy.interpolate import make_interp_spline
+
         return np.asarray(make_interp_spline(time, y, time.size - 1)(at))
     flat = np.ascontiguousarray(y, float).reshape(time.size, -1)
     out, slope, rest = np.empty((at.size, flat.shape[1])), np.empty_like(flat), np.empty(time.size)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import minimize_scalar
 
 from geom.errors import InputError
 from validation.case import Case
@@ -28,6 +27,8 @@ def tuned(case: Case, parameter: str, channel: str | None = None) -> Tuned:
 
     Nothing tells this fit what is physically right: no prior, no other test.
     """
+    from scipy.optimize import minimize_scalar
+
     known = {p.name: p.value for p in case.model.network.parameters}
     if parameter not in known:
         raise InputError(f"unknown parameter '{parameter}'", case.name, f"known: {', '.join(sorted(known))}")

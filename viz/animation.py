@@ -31,7 +31,7 @@ def animate(
 ) -> Path:
     """Write a .gif or .mp4 of fields (n_times, n_nodes) degC on one colour scale, the minute of the test in the corner.
 
-    An .mp4 needs imageio-ffmpeg, which brings its own encoder.
+    An .mp4 needs imageio-ffmpeg (the extra [video]), which brings an encoder of its own, under the GPL.
     """
     path, T = Path(path), on_nodes(nodes, fields)
     if path.suffix not in WRITERS:
@@ -69,7 +69,9 @@ def _mp4(path: Path, pictures: list[NDArray[np.uint8]], frames_per_second: float
     try:
         from imageio_ffmpeg import write_frames
     except ImportError:
-        raise MissingDependency("an .mp4 needs an encoder; install it with: uv pip install imageio-ffmpeg") from None
+        raise MissingDependency(
+            "an .mp4 needs an encoder; write a .gif, or: pip install 'thermoscope[video]'"
+        ) from None
     height, width = pictures[0].shape[:2]
     writer = write_frames(str(path), (width, height), fps=frames_per_second, macro_block_size=2)
     writer.send(None)

@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import math
 
-import fluids
-import ht
-
 from lumped.correlations.info import Info, checked
 from lumped.properties import Fluid, air
 
@@ -27,6 +24,8 @@ def gnielinski_turbulent(Re: float, Pr: float) -> float:
 
     Range: 3000 < Re < 5e6, 0.5 < Pr < 2000. Source: Gnielinski 1976, Int. Chem. Eng. 16, 359 (ht).
     """
+    import ht
+
     return ht.turbulent_Gnielinski(Re, Pr, (0.79 * math.log(Re) - 1.64) ** -2)
 
 
@@ -54,6 +53,8 @@ def shah_london(side_ratio: float) -> float:
 
     Source: Shah and London 1978 (ht).
     """
+    import ht
+
     return ht.Nu_laminar_rectangular_Shan_London(side_ratio)
 
 
@@ -65,6 +66,9 @@ def schmidt_helical(speed: float, diameter: float, coil_diameter: float, fluid: 
     diameter: hydraulic (m), coil_diameter: of the helix (m). Range: Re < 2e5.
     Source: E. F. Schmidt 1967, Chem. Ing. Tech. 39, 781; VDI Heat Atlas G3.
     """
+    import fluids
+    import ht
+
     Re, Pr, ratio = abs(speed) * diameter / fluid.nu, fluid.Pr, diameter / coil_diameter
     critical = fluids.helical_transition_Re_Schmidt(diameter, coil_diameter)
     share = min(max((Re - critical) / (COIL_TURBULENT - critical), 0.0), 1.0)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import ht
-
 from lumped.correlations.info import Info, checked
 from lumped.properties import Fluid, air
 
@@ -31,6 +29,8 @@ def churchill_bernstein(speed: float, diameter: float, fluid: Fluid | None = Non
     Range: Re Pr > 0.2 (below, the film tends to the still Nu = 0.3), Re < 1e7.
     Source: Churchill and Bernstein 1977, J. Heat Transfer 99, 300 (ht).
     """
+    import ht
+
     fluid = fluid or air(30.0)
     Re = abs(speed) * diameter / fluid.nu
     Nu = ht.Nu_cylinder_Churchill_Bernstein(Re, fluid.Pr)

@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-import ht
-
 from lumped.correlations.info import Info, checked
 from lumped.properties import Fluid, air
 
@@ -26,6 +24,8 @@ def churchill_chu_cylinder(diameter: float, surface: float, ambient: float, of: 
     diameter (m); surface, ambient (degC); of: T (degC) -> Fluid.
     Range: Ra < 1e12. Source: Churchill and Chu 1975, Int. J. Heat Mass Transfer 18, 1049 (ht).
     """
+    import ht
+
     fluid = of(0.5 * (surface + ambient))
     Gr = _grashof(diameter, surface, ambient, fluid)
     Nu = ht.Nu_horizontal_cylinder_Churchill_Chu(fluid.Pr, Gr)
@@ -40,6 +40,8 @@ def churchill_chu_plate(height: float, surface: float, ambient: float, of: Of = 
     height (m); surface, ambient (degC).  Worked value: test_natural.py.
     Range: Ra < 1e12. Source: Churchill and Chu 1975, Int. J. Heat Mass Transfer 18, 1323 (ht).
     """
+    import ht
+
     fluid = of(0.5 * (surface + ambient))
     Gr = _grashof(height, surface, ambient, fluid)
     Nu = ht.Nu_vertical_plate_Churchill(fluid.Pr, Gr)
@@ -75,6 +77,8 @@ def popiel_cylinder(height: float, diameter: float, surface: float, ambient: flo
     height, diameter (m); surface, ambient (degC).
     Range: 0.01 < Pr < 100, Ra < 1e12, X < 5 (ours). Source: Popiel 2008, Heat Transfer Eng. 29, 521 (ht).
     """
+    import ht
+
     fluid = of(0.5 * (surface + ambient))
     Gr, slender = _grashof(height, surface, ambient, fluid), height / diameter
     X = math.sqrt(32.0) * slender / Gr**0.25 if Gr > 0.0 else math.inf

@@ -3,6 +3,7 @@
 import runpy
 import sys
 
+import numpy as np
 import pytest
 
 TOLERANCE = {"one_node": ("error_K", 1e-3), "residuals": ("error_K", 1e-9), "machine": ("error", 1e-9)}
@@ -10,6 +11,18 @@ WRITES = {
     "one_node": [],
     "residuals": ["residuals-1.png", "residuals-2.png", "parity.html"],
     "machine": ["machine.svg"],
+}
+# What `computed` may differ from `expected` by, and why.
+REFERENCE = {
+    "slab": 1.0,  # s of 610: zeta is tabulated to four digits (0.1 s), forty cells err by 1/12/40^2 (0.1 s); air 0.5 s
+    "hollow_cylinder": 1e-6,  # K: the circuit is exact for the mean
+    "jacket": 0.15,  # K: half of a cell's transfer units, 0.005, of what is left of 50 K times 0.6
+    "shaft_fan": 0.01,  # K of 50: Radau is exact to 1e-6, the tool's steps keep to a few mK
+    "copper_feedback": 1e-6,  # K: Newton's method to rounding
+    "duty_cycle": 0.01,  # K of 70: steps of the integrator
+    "radiation": 3.6,  # s of 3600: a thousandth, the tool's time steps
+    "two_bodies": 0.01,  # K of 80: steps of the integrator
+    "own_effect": 1e-6,  # K: linear
 }
 TESTED_ELSEWHERE = {"hust", "tclab"}
 
@@ -24,5 +37,20 @@ def test_example(name, root, tmp_path, monkeypatch):
     assert all((tmp_path / file).stat().st_size > 1000 for file in WRITES[name])
 
 
+@pytest.mark.parametrize("name", REFERENCE)
+def test_example_against_its_reference(name, root):
+    left = runpy.run_path(str(root / "examples" / f"{name}.py"))
+    assert np.shape(left["computed"]) == np.shape(left["expected"])
+    assert np.abs(left["computed"] - left["expected"]).max() < REFERENCE[name]
+
+
+def test_runaway_is_said(root):
+    assert runpy.run_path(str(root / "examples" / "copper_feedback.py"))["runaway"]
+
+
+def test_own_effect_is_placed_where_it_says(root):
+    assert runpy.run_path(str(root / "examples" / "own_effect.py"))["places"] == ["housing"]
+
+
 def test_no_example_is_forgotten(root):
-    assert {p.stem for p in (root / "examples").glob("*.py")} == {*TOLERANCE, *TESTED_ELSEWHERE}
+    assert {p.stem for p in (root / "examples").glob("*.py")} == {*TOLERANCE, *REFERENCE, *TESTED_ELSEWHERE}

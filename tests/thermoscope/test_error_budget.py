@@ -9,12 +9,13 @@ from small_case import small_case
 
 from geom import load_machine
 from lumped.reduction import Recipe
-from thermoscope import error_budget, pipeline
+from thermoscope import pipeline, rated_errors
 from thermoscope.commands.compare import compare
 from thermoscope.commands.simulate import simulate
-from thermoscope.error_budget import HOT, Looks, Reader, at_rated_point, kept
+from thermoscope.error_budget import Looks
 from thermoscope.frozen import rated
 from thermoscope.pipeline import Meshing, build, coefficients_on, meshed
+from thermoscope.rated_errors import HOT, Reader, at_rated_point, kept
 
 MACHINE, SIZE, SEGMENTS, AXIAL = "pmsm-m1-no-base", 0.1, 36, 0.12
 RECIPE = Recipe(tolerance=0.05, shifts=(0.01,), random_points=1, max_states=60)
@@ -71,9 +72,9 @@ def test_a_network_of_more_states_leaves_less(built, looks, found):
 
 
 def test_what_was_looked_at_once_is_kept(built, looks, found, monkeypatch):
-    monkeypatch.setattr(error_budget, "at_rated_point", lambda built, looks: found)
+    monkeypatch.setattr(rated_errors, "at_rated_point", lambda built, looks: found)
     first = kept(built, looks)
-    monkeypatch.setattr(error_budget, "at_rated_point", None)
+    monkeypatch.setattr(rated_errors, "at_rated_point", None)
     assert kept(built, looks) == first == found
 
 

@@ -15,10 +15,12 @@ from thermoscope.folder import load_machine_file
 from thermoscope.terminal import give, progress
 
 if TYPE_CHECKING:
+    from geom import Machine
     from geom.mesh import NamedMesh
     from geom.surfaces import CadCheck
     from thermoscope.pipeline import Built
     from thermoscope.sized import Sized
+    from thermoscope.terminal import Progress
 
 ERRORS = ("mean", "hot", "point")
 
@@ -35,7 +37,7 @@ def build(machine: str, out: Path | None, target: str | None, accuracy: float | 
     if Path(machine).is_file() and folder.resolve() == Path(machine).resolve().parent:
         raise InputError("the machine file lies there: a result could take its name", f"--out {folder}", "out/NAME")
     with progress() as tell:
-        built, found = _built(described, accuracy, tell)
+        built, found = built_from(described, accuracy, tell)
         checked = crosscheck.checked(built, found, tell)
         tell("solids")
         solids = check_cad(described)
@@ -48,14 +50,17 @@ def build(machine: str, out: Path | None, target: str | None, accuracy: float | 
     return 0 if found is None or found.met else 1
 
 
-def _built(described: Any, accuracy: float | None, tell: Any) -> tuple[Built, Sized | None]:
+def built_from(
+    described: Machine, accuracy: float | None, tell: Progress, size_m: float = 0.06
+) -> tuple[Built, Sized | None]:
+    """At the size a case runs, or at the smallest that is accurate enough.  size_m : of the mesh's triangles (m)"""
     from lumped.motor_bases import on_all
-    from thermoscope.pipeline import build as built_from
+    from thermoscope.pipeline import build as usual
     from thermoscope.sized import sized
 
     if accuracy is None:
-        return built_from(on_all(described), progress=tell), None
-    found = sized(described, accuracy, progress=tell)
+        return usual(on_all(described), size_m, progress=tell), None
+    found = sized(described, accuracy, size_m, progress=tell)
     return found.built, found
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from thermoscope.answer import Answer, Grid, cell
 from thermoscope.commands.ahead import ahead
@@ -12,7 +12,11 @@ from thermoscope.commands.compare import contradiction
 from thermoscope.commands.error_budget import budget, in_short, sampling
 from thermoscope.commands.opened import opened
 from thermoscope.commands.saved import save_diagnosis
-from thermoscope.terminal import give, notes, progress, sized
+from thermoscope.terminal import Progress, give, notes, progress, sized
+
+if TYPE_CHECKING:
+    from thermoscope.folder import Folder
+    from validation.findings import Diagnosis
 
 ODDS, ROWS = 5, 10  # shown of hypotheses and of candidates
 SHOWN = 0.005  # probabilities below half a per cent are in --json
@@ -20,21 +24,26 @@ SHOWN = 0.005  # probabilities below half a per cent are in --json
 
 def diagnose(case: str, target: str | None, older: bool = False) -> int:
     """Exit code 1 when no effect is named.  older : an option of older versions was given"""
+    if older:
+        notes(["--draws is no longer needed: nothing is drawn"])
+    with progress() as tell:
+        found, document = diagnosed(opened(case, tell), tell)
+    give(document, target, lambda: answer(document))
+    return 0 if found.verdict in ("named", "group", "several") else 1
+
+
+def diagnosed(folder: Folder, tell: Progress) -> tuple[Diagnosis, dict[str, Any]]:
+    """What is missing in an open case, and the document of it, which is kept in the case's out/."""
     from lumped.error_budget import ErrorBudget
     from thermoscope.error_budget import budgets_of_tests, documents
     from validation import diagnose as search
 
-    if older:
-        notes(["--draws is no longer needed: nothing is drawn"])
-    with progress() as tell:
-        folder = opened(case, tell)
-        budgets = budgets_of_tests(folder, tell)
-        found = search(folder.case, folder.settings.kinds, tell, budget=ErrorBudget.worst(budgets.values()).total_K)
+    budgets = budgets_of_tests(folder, tell)
+    found = search(folder.case, folder.settings.kinds, tell, budget=ErrorBudget.worst(budgets.values()).total_K)
     named = {"case": folder.case.name, "revision": folder.case.model.revision}
     document = {**named, **found.document(), "error_budget": documents(budgets), **sampling(folder)}
     save_diagnosis(folder, document)
-    give(document, target, lambda: answer(document))
-    return 0 if found.verdict in ("named", "group", "several") else 1
+    return found, document
 
 
 def answer(document: Mapping[str, Any]) -> Answer:

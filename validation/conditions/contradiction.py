@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import norm
+from scipy.special import ndtri
 
 from lumped.network import Network, Parameter
 from validation.calibrate import Fit
@@ -71,7 +71,7 @@ def contradiction(fit: Fit, tests: Sequence[Test]) -> Contradiction:
     if len(tests) < 2:
         return Contradiction("there is one test only: nothing can contradict it", "", 0.0, ())
     rows = differences(fit)
-    limit = float(norm.isf(0.5 * FALSE / max(len(rows), 1)))
+    limit = -float(ndtri(0.5 * FALSE / max(len(rows), 1)))
     sure = tuple(sorted((d for d in rows if abs(d.sd) > limit), key=lambda d: -abs(d.sd)))
     return Contradiction(sentence(sure, len(tests)), sure[0].test if sure else "", limit, sure)
 

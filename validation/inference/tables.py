@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import norm
+from scipy.special import ndtri
 
 from validation.calibrate import Fit, Measure
 from validation.case import Case, Test
@@ -76,7 +76,7 @@ def strained(fit: Fit) -> tuple[tuple[str, float, float], ...]:
     """Parameters that calibration pulls further from their prior than one in twenty fits does any: name, value,
     deviations; and those at a physical bound beyond two deviations."""
     pull = fit.theta / fit.unknowns.sd
-    limit = float(norm.isf(0.025 / pull.size))
+    limit = -float(ndtri(0.025 / pull.size))
     hit = (np.abs(pull) > limit) | (fit.at_bound & (np.abs(pull) > 2.0))
     order = [int(j) for j in np.argsort(-np.abs(pull)) if hit[j]]
     return tuple((fit.unknowns.names[j], fit.values[fit.unknowns.names[j]], float(pull[j])) for j in order)

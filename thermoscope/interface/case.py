@@ -1,0 +1,172 @@
+"""An open case in a script: compare, diagnose, add, calibrate, save, plot. A step gives a new case; this one stays."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from geom.errors import InputError
+from thermoscope.folder import Folder, find_case, load_case
+from thermoscope.history import History, save_history
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from lumped.network import Network
+    from validation.case import Test
+    from validation.compare import Comparison
+    from validation.effects.base import Effect
+    from validation.findings import Diagnosis
+    from validation.revise import Revision
+
+Progress = Callable[[str], None]
+
+
+def silent(message: str) -> None:
+    """No progress."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """Measurements and the model held against them.
+
+    folder : what the files hold, with the model as it stands here;  saved : the history that model.toml holds
+    steps : what was done since, oldest first;  progress : is told what is going on
+    """
+
+    folder: Folder
+    saved: History
+    steps: tuple[Revision, ...] = ()
+    progress: Progress = silent
+
+    @property
+    def name(self) -> str:
+        return self.folder.case.name
+
+    @property
+    def tests(self) -> Mapping[str, Test]:
+        """Test by name: time (s), inputs, boundaries (degC), channels with their readings (degC) and 1 sigma (K)."""
+        return {test.name: test for test in self.folder.case.tests}
+
+    @property
+    def network(self) -> Network:
+        """The network with the effects that were added."""
+        from validation.fitting import working
+
+        return working(self.folder.case)[0]
+
+    @property
+    def effects(self) -> tuple[str, ...]:
+        """Names of the effects in the model, "kind@place"."""
+        return tuple(effect.name for effect in self.folder.case.model.effects)
+
+    @property
+    def values(self) -> Mapping[str, float]:
+        """Calibrated value by parameter, in the parameter's unit."""
+        return dict(self.folder.case.model.values)
+
+    def candidates(self) -> tuple[Effect, ...]:
+        """Every effect at every place of this network where it can sit."""
+        from validation.effects import catalogue
+        from validation.fitting import scene_of
+
+        return catalogue(scene_of(self.folder.case), self.folder.settings.kinds)
+
+    def compare(self) -> Comparison:
+        """The model against every test: error per sensor (K) against the sensor's uncertainty and 4 % of its rise."""
+        from validation.compare import compare
+
+        return compare(self.folder.case)
+
+    def diagnose(self) -> Diagnosis:
+        """Which effect is missing, with its probability and size; kept in the case's out/, as the command does.
+
+        Source: Kass and Raftery 1995, J. Am. Stat. Assoc. 90, 773 (probabilities from evidence).
+        """
+        from thermoscope.commands.diagnose import diagnosed
+
+        return diagnosed(self.folder, self.progress)[0]
+
+    def add(self, effect: str) -> Case:
+        """With the effect "kind@place", calibrated on all tests but the held-out ones.
+
+        Raises InputError for an unknown effect, or one that cannot sit there.
+        """
+        from thermoscope.commands.revise import meant
+        from validation.revise import add
+
+        return self._after(add(self.folder.case, meant(self.folder, effect), self.progress))
+
+    def remove(self, effect: str) -> Case:
+        """Without the effect, calibrated again. Raises InputError if the model does not hold it."""
+        from validation.revise import remove
+
+        return self._after(remove(self.folder.case, effect, self.progress))
+
+    def calibrate(self) -> Case:
+        """With what case.toml leaves free fitted to the calibration tests; intervals are in `steps[-1].parameters`."""
+        from validation.revise import calibrate
+
+        return self._after(calibrate(self.folder.case, progress=self.progress))
+
+    def save(self, anyway: bool = False) -> Case:
+        """Write the steps to model.toml, one revision each.  anyway : also those that were not accepted
+
+        Raises InputError where a step was not accepted, where the case came with the tool, or where another program
+        has changed model.toml since.
+        """
+        from thermoscope.columns import write_columns
+        from thermoscope.commands.opened import PACKAGE
+
+        refused = [s for s in self.steps if not s.accepted and s.action != "remove"]
+        if refused and not anyway:
+            what = f"{refused[0].action} {refused[0].effect or ''}".strip()
+            raise InputError(f"was not accepted: {refused[0].why}", what, "save(anyway=True) writes it")
+        path = self.folder.settings.path
+        if PACKAGE in path.resolve().parents:
+            raise InputError("came with the tool and is not changed", str(path), "a copy of the folder, opened instead")
+        history = save_history(self.folder.settings.model_file, self.folder.history, self.saved)
+        write_columns(self.folder, history.last.effects)
+        return replace(self, folder=replace(self.folder, history=history), saved=history, steps=())
+
+    def plot(self, test: str | None = None, png: str | Path | None = None) -> Figure:
+        """Measured and modelled (degC) over time, a panel per sensor; beside the model before the last step.
+
+        test : its name; else the first that was never used to fit. Raises InputError for an unknown one.
+        """
+        from thermoscope.commands.show import by_interest
+        from thermoscope.runs import held
+        from viz import measured_and_model
+
+        if test is not None and test not in self.tests:
+            raise InputError(f"no test '{test}'", f"case '{self.name}'", f"one of {', '.join(self.tests)}")
+        chosen = by_interest(self.folder)[0] if test is None else self.tests[test]
+        return measured_and_model(held(self.folder, chosen), png=png)
+
+    def _after(self, step: Revision) -> Case:
+        from thermoscope.commands.revise import evidence, recorded
+
+        history = self.folder.history.and_then(recorded(step, evidence(self.folder, step)))
+        case = replace(self.folder.case, model=step.model)
+        return replace(self, folder=replace(self.folder, case=case, history=history), steps=(*self.steps, step))
+
+
+def open(path: str | Path, progress: Progress = silent) -> Case:
+    """A case: a folder with case.toml, or the name of a case that comes along.  progress : is told what is going on
+
+    Raises InputError: file, key or column, what is wrong with it, and what would be right.
+    """
+    folder = load_case(find_case(path), progress)
+    return Case(folder, folder.history, progress=progress)
+
+
+def effects() -> Mapping[str, type[Effect]]:
+    """Every kind of effect by name, those of other packages too (entry points "thermoscope.effects").
+
+    Each says its title, unit, typical size, needs, source and isolating_test.
+    """
+    from validation.effects.registry import kinds
+
+    return kinds()

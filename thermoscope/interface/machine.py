@@ -1,0 +1,132 @@
+"""A machine that was built, in a script: mesh, network, and steady temperature fields."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geom.errors import InputError
+from thermoscope.folder import load_machine_file
+
+if TYPE_CHECKING:
+    import pyvista
+
+    from geom import NamedMesh
+    from lumped.network import Network
+    from thermoscope.crosscheck import CrossCheck, PartCheck
+    from thermoscope.pipeline import Built
+
+Array = NDArray[np.float64]
+Progress = Callable[[str], None]
+
+
+def silent(message: str) -> None:
+    """No progress."""
+
+
+@dataclass(frozen=True)
+class Field:
+    """A steady temperature field and what the network says of the same operating point."""
+
+    built: Built
+    check: CrossCheck
+
+    @property
+    def T(self) -> Array:
+        """(n,) temperature of the field's unknowns (degC)."""
+        return self.check.field
+
+    @property
+    def parts(self) -> Mapping[str, PartCheck]:
+        """Mean and hottest temperature (degC) by part, of field and network."""
+        return {part.place: part for part in self.check.parts}
+
+    @property
+    def heat_W(self) -> float:
+        """All losses (W)."""
+        return self.check.heat
+
+    @property
+    def energy_balance(self) -> float:
+        """|heat in - heat out| / heat in."""
+        return self.check.energy_balance
+
+    def plot(self, png: str | Path | None = None) -> pyvista.Plotter:
+        """The machine cut open, coloured by temperature (degC). Raises MissingDependency without OpenGL."""
+        from viz import cutaway, require_gl, split
+
+        require_gl()
+        nodes = split(self.built.mesh)
+        x = self.check.state[: len(self.built.network.states)]
+        recovery: Any = self.built.network.recovery
+        return cutaway(nodes, np.concatenate([recovery.of_part(part, x) for part in nodes.parts]), png=png)
+
+
+@dataclass(frozen=True)
+class Machine:
+    """A machine at every stage: geometry, mesh, field and network."""
+
+    built: Built
+
+    @property
+    def name(self) -> str:
+        return self.built.machine.name
+
+    @property
+    def mesh(self) -> NamedMesh:
+        """Tetrahedra (m), the part of each, named faces and contacts."""
+        return self.built.mesh
+
+    @property
+    def network(self) -> Network:
+        """Condensed from the field: states, links, sources, places, parameters."""
+        return self.built.network
+
+    @cached_property
+    def rated(self) -> Mapping[str, float]:
+        """The rated operating point: input -> value, the unit in its name."""
+        from lumped.motor import rated_inputs
+
+        return rated_inputs(self.built.machine)
+
+    def field(self, ambient_C: float = 20.0, **inputs: float) -> Field:
+        """The steady field at an operating point, with the coefficients at which the network settles there.
+
+        inputs : those of `rated`, for example current_A=20, speed_rpm=1450; those that are not given are rated
+        Raises InputError for an unknown input, ThermoscopeError where the machine does not settle.
+        """
+        from lumped.motor_losses import loss_shares
+        from thermoscope.crosscheck import crosscheck
+
+        unknown = sorted(set(inputs) - set(self.rated))
+        if unknown:
+            raise InputError(f"unknown input '{unknown[0]}'", self.name, f"one of {', '.join(self.rated)}")
+        point, b = {**self.rated, **inputs}, self.built
+        return Field(b, crosscheck(b.field, b.network, point, ambient_C, shares=loss_shares(b.machine, b.network)))
+
+
+def build(
+    machine: str | Path, accuracy: float | None = None, size_m: float = 0.06, progress: Progress = silent
+) -> Machine:
+    """Mesh, field and network of a machine file, or of a machine that comes along by its name.
+
+    accuracy : percent of a part's own rise that the network may be wrong by; None: the size that a case runs
+    size_m : of the mesh's triangles (m)
+    Raises InputError: the key of the file, what is wrong with it, and what would be right.
+    """
+    from thermoscope.commands.build import built_from
+
+    return Machine(built_from(load_machine_file(Path(machine)), accuracy, progress, size_m)[0])
+
+
+def machines() -> tuple[str, ...]:
+    """Names of the machines that come along."""
+    from geom import library
+
+    return tuple(library())
