@@ -308,6 +308,24 @@ def carry(
 
 
 @app.command()
+def rate(
+    name: Annotated[str, typer.Argument(metavar="CASE|MACHINE", help="A case, or a machine with nothing measured.")],
+    limit: Limit = None,
+    at: Annotated[list[str] | None, typer.Option("--at", metavar="NAME=VALUE", help="Input or boundary.")] = None,
+    losses: Annotated[Path | None, typer.Option(metavar="CSV", help="Loss map over torque and speed.")] = None,
+    voltage: Annotated[float | None, typer.Option(help="Of the map's slices.")] = None,
+    overload: Annotated[float, typer.Option(min=100.1, help="Percent of the continuous rating.")] = 150.0,
+    top: Annotated[float | None, typer.Option(min=0.0, metavar="RPM", help="Largest speed of the envelope.")] = None,
+    bands: Sure = None, json: Json = None,
+) -> None:  # fmt: skip
+    """What a machine may carry: S1, S2, S3, S6, 10 s, 60 s, derating, overload; with bands, beside the last model."""
+    from thermoscope.commands.rate import rate as run
+
+    given = tuple(limit or ()), tuple(at or ())
+    raise typer.Exit(run(name, *given, losses, voltage, overload, top, bands, json))
+
+
+@app.command()
 def export(
     case: Case,
     out: Out = None,

@@ -42,6 +42,7 @@ ALLOWED = {  # file -> what its strings are, none of them a user's name for a pa
     "validation/effects/air_leak.py": "links by their own name, stream:NAME",
     "validation/effects/copper_feedback.py": "sources by their own name, loss:NAME",
     "validation/effects/fan_stop.py": "places of this effect, FLOW:TEST:50",
+    "validation/rating/loss_grid.py": "columns of a loss map, NAME_W; sources by their own name, loss:NAME",
     "validation/procedure/pm_network.py": "nodes that this file names itself",
     "validation/procedure/carry.py": "parameters of losses, as the networks of machines name them",
     "viz/sankey.py": "streams that a machine's network names itself, fan:CELL",

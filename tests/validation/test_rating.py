@@ -1,0 +1,135 @@
+"""Ratings of one node against closed forms, and loss maps against their own numbers."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from geom.errors import InputError
+from lumped.build import bare_network, node_link, node_source
+from lumped.laws import Fixed, InputPower
+from lumped.network import Row
+from lumped.steady import steady
+from validation.rating.derating import deratings
+from validation.rating.envelope import rated, until
+from validation.rating.loss_grid import loss_grid, with_losses
+from validation.rating.operation import at_altitude, density, operation
+from validation.rating.points import Duty, Model
+
+C, G, R, AIR = 1000.0, 2.0, 0.01, 20.0
+TAU = C / G
+
+
+def body(law=None):
+    net = bare_network("body", {"body": C}, ("air",))
+    film = node_link(net, "film", "film", "body", "air", law or Fixed(G))
+    loss = node_source(net, "loss:copper", "copper", {"body": 1.0}, InputPower(R, (("current_A", 1.0, 2.0),)))
+    return net.extended([film], [loss])
+
+
+def model(net=None):
+    return Model(net or body(), {}, [Row(np.array([0]), np.ones(1))])
+
+
+OP = operation(body(), (), {"current_A": 50.0, "air": AIR})
+LIMIT = {"body": 120.0}
+REST = np.sqrt(G * 100.0 / R) / 50.0  # R I^2 = G (120 - 20)
+
+
+def test_the_continuous_rating_is_the_balance():
+    found = rated(model(), OP, LIMIT, "S1", None)
+    assert found.at == "body"
+    assert_allclose(found.load, REST, rtol=2e-3)
+    assert_allclose(found.slope, 200.0 / REST, rtol=0.02)  # T - air ~ load^2
+
+
+@pytest.mark.parametrize(("form", "seconds"), [("S2 10 s", 10.0), ("S2 60 s", 60.0), ("S2 60 min", 3600.0)])
+def test_short_time_ratings_follow_the_exponential(form, seconds):
+    assert_allclose(rated(model(), OP, LIMIT, form, None).load, REST / np.sqrt(1.0 - np.exp(-seconds / TAU)), rtol=3e-3)
+
+
+def test_a_duty_repeats_itself():
+    """Load for 240 s of 600 s, then none: T_max = rise (1 - e^(-on/tau)) / (1 - e^(-period/tau))."""
+    share = (1.0 - np.exp(-240.0 / TAU)) / (1.0 - np.exp(-600.0 / TAU))
+    assert_allclose(rated(model(), OP, LIMIT, "S3 40 %", None).load, REST / np.sqrt(share), rtol=3e-3)
+    always = model().repeated(OP, REST, None, Duty(share=0.999999))
+    assert_allclose(always, 120.0, atol=0.3)
+
+
+def test_how_long_at_half_as_much_again():
+    """exp(-t / tau) = 1 - 1 / 1.5^2 from cold; from rest at 75 % the rise begins at 0.75^2 of the limit."""
+    cold = -TAU * np.log(1.0 - 1.0 / 2.25)
+    warm = -TAU * np.log((2.25 - 1.0) / (2.25 - 0.75**2))
+    assert_allclose(until(model(), OP, [120.0], 1.5 * REST, None, None), cold, rtol=5e-3)
+    assert_allclose(until(model(), OP, [120.0], 1.5 * REST, None, 0.75 * REST), warm, rtol=5e-3)
+    assert until(model(), OP, [120.0], 0.9 * REST, None, None) == np.inf
+
+
+def test_derating_over_ambient_and_altitude():
+    """Load ~ sqrt(limit - ambient); still air thins as density^0.5, so the load as its root."""
+    found = {(d.of, d.value): d.load / REST for d in deratings(model(), OP, LIMIT)}
+    assert_allclose(found["ambient", 60.0], np.sqrt(0.6), rtol=3e-3)
+    assert_allclose(found["altitude", 4000.0], density(4000.0) ** 0.25, rtol=3e-3)
+    assert_allclose(density(4000.0), 0.669, atol=1e-3)  # international standard atmosphere
+
+
+def test_blown_films_thin_more():
+    blown = InputPower(G, (("speed_rpm", 1000.0, 0.8),))
+    thin = at_altitude(body(blown), 2000.0)
+    T = steady(thin, {"current_A": 100.0, "speed_rpm": 1000.0}, {"air": AIR})["body"]
+    assert_allclose(T - AIR, R * 100.0**2 / (G * density(2000.0) ** 0.8), rtol=1e-6)
+
+
+def test_a_limit_below_the_surroundings_is_refused():
+    with pytest.raises(InputError, match=r"limit of 'body', 15 degC, is exceeded without any load \(20.0 degC\)"):
+        rated(model(), OP, {"body": 15.0}, "S1", None)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [({"current_A": 5.0}, "nothing says how warm 'air' is"), ({"air": 20.0}, "nothing says what 'current_A' is"),
+     ({"current_A": 0.0, "air": 20.0}, "the load is zero"), ({"amps": 1.0}, "'amps' is no input or boundary")],
+)  # fmt: skip
+def test_what_is_not_known_is_asked_for(given, message):
+    with pytest.raises(InputError, match=message):
+        operation(body(), (), given)
+
+
+def grid(torques=(0.0, 50.0, 100.0), speeds=(0.0, 2000.0), T=(20.0,)):
+    """Copper 0.02 T^2 (1 + 0.004 (T - 20)) W and its input power."""
+    rows = np.array([(m, n, t) for t in T for n in speeds for m in torques])
+    m, n, t = rows.T
+    copper = 0.02 * m**2 * (1.0 + 0.004 * (t - 20.0))
+    return {"torque_Nm": m, "speed_rpm": n, "temperature_degC": t, "copper_W": copper,
+            "input_W": m * n * np.pi / 30.0 + copper}  # fmt: skip
+
+
+def test_a_map_takes_the_place_of_the_losses():
+    net = with_losses(body(), loss_grid(grid(T=(20.0, 120.0)), "map.csv"), "map.csv")
+    at = steady(net, {"torque_Nm": 100.0, "speed_rpm": 1000.0}, {"air": AIR})["body"]
+    assert_allclose(at - AIR, 200.0 / (G - 0.8), rtol=1e-6)  # G dT = 200 (1 + 0.004 dT)
+
+
+def without(columns, k):
+    return {n: np.delete(c, k) for n, c in columns.items()}
+
+
+@pytest.mark.parametrize(
+    ("columns", "message"),
+    [
+        (without(grid(), 1), "holes or doubles: 1 of 6 points are missing, the first at 50 Nm, 0 1/min"),
+        ({n: np.append(c, c[0]) for n, c in grid().items()}, "1 points are given twice"),
+        (grid() | {"copper_W": grid()["copper_W"] * 30.0}, "the powers do not balance: at 100 Nm, 0 1/min"),
+        ({"torque_Nm": np.zeros(1)}, "column 'speed_rpm' is missing"),
+        ({n: c for n, c in grid().items() if n != "copper_W"}, "no losses"),
+        (grid() | {"voltage_V": np.array([1.0, 1, 1, 2, 2, 2])}, "the map has 2 voltages"),
+    ],
+)
+def test_maps_that_cannot_be(columns, message):
+    with pytest.raises(InputError, match=message):
+        loss_grid(columns, "map.csv")
+
+
+def test_a_loss_that_the_network_lacks():
+    columns = {**grid(), "iron_W": np.zeros(6)}
+    with pytest.raises(InputError, match="'iron_W' is no loss of the network; known: copper"):
+        with_losses(body(), loss_grid(columns, "map.csv"), "map.csv")

@@ -1,0 +1,104 @@
+"""Ratings: the load at which the first limit is reached, for ever, for a time, or in a duty; with its band.
+
+T(load) = limit,   sd of the load = sd of T at the limit / (dT / d load)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from geom.errors import InputError
+from validation.rating.operation import Operation
+from validation.rating.points import S3, S6, Model
+
+Array = NDArray[np.float64]
+LARGEST = 50.0  # of the reference load; beyond, no temperature limits
+CLOSE = 1e-3  # of a load: a tenth of what inputs are known to
+FORMS = ("S1", "S2 60 min", "S2 60 s", "S2 10 s", "S3 40 %", "S6 40 %")
+TIMES = {"S2 60 min": 3600.0, "S2 60 s": 60.0, "S2 10 s": 10.0}
+
+
+@dataclass(frozen=True)
+class Rating:
+    """One rating.  load : of the reference, inf where no load within LARGEST reaches a limit
+
+    at : the place that limits;  slope : d T / d load there (K)
+    """
+
+    form: str
+    speed: float | None
+    load: float
+    at: str
+    slope: float
+
+
+def rated(model: Model, op: Operation, limits: Mapping[str, float], form: str, speed: float | None) -> Rating:
+    """The load of a form at a speed (1/min; the reference where None); short times begin cold.
+
+    Raises InputError where a limit is exceeded without any load.
+    """
+    names, most = list(limits), np.array(list(limits.values()))
+    over = excess(model, op, form, speed)
+
+    def worst(load: float) -> float:
+        return float(np.max(over(load) - most))
+
+    if worst(0.0) >= 0.0:
+        T = over(0.0)
+        k = int(np.argmax(T - most))
+        raise InputError(
+            f"the limit of '{names[k]}', {most[k]:g} degC, is exceeded without any load ({T[k]:.1f} degC)",
+            "--limit", "a higher limit, cooler surroundings or a lower speed",
+        )  # fmt: skip
+    high = 1.0
+    while worst(high) < 0.0:
+        high *= 1.5
+        if high > LARGEST:
+            return Rating(form, speed, float("inf"), "", 0.0)
+    load = float(brentq(worst, 0.0, high, xtol=CLOSE * high))
+    here, beyond = over(load), over(load * 1.01)
+    k = int(np.argmax(here - most))
+    return Rating(form, speed, load, names[k], float((beyond[k] - here[k]) / (0.01 * load)))
+
+
+def excess(model: Model, op: Operation, form: str, speed: float | None) -> Callable[[float], Array]:
+    """load -> largest temperatures (degC) of a form."""
+    if form == "S1":
+        return lambda load: model.rest(op, load, speed)
+    if form in TIMES:
+        begin = model.start(op, None, speed)
+        return lambda load: model.course(op, load, speed, begin, TIMES[form])[1].max(axis=0)
+    duty = S3 if form == "S3 40 %" else S6
+    return lambda load: model.repeated(op, load, speed, duty)
+
+
+def until(
+    model: Model, op: Operation, limits: Sequence[float], load: float, speed: float | None, warm: float | None,
+    longest: float = 86400.0,
+) -> float:  # fmt: skip
+    """Seconds until a limit is reached under a load, from cold or from rest under the load `warm`; inf if never."""
+    begin, most = model.start(op, warm, speed), np.asarray(limits)
+    if np.any(begin_at(model, op, begin, speed) >= most):
+        return 0.0
+    time, T = model.course(op, load, speed, begin, longest)
+    over = np.flatnonzero(np.any(most <= T, axis=1))
+    if over.size == 0:
+        return float("inf")
+    low, high = time[over[0] - 1], time[over[0]]
+
+    def left(seconds: float) -> float:
+        return float(np.max(model.course(op, load, speed, begin, seconds)[1][-1] - most))
+
+    return float(brentq(left, max(low, 1e-3), high, rtol=1e-3)) if left(max(low, 1e-3)) < 0.0 else float(low)
+
+
+def begin_at(model: Model, op: Operation, begin: object, speed: float | None) -> Array:
+    """(n_rows,) degC at a start."""
+    x = begin.x  # type: ignore[attr-defined]
+    z = np.concatenate([x, [op.boundaries[b] for b in model.network.boundaries]])
+    return np.array([r.weights @ z[r.index] for r in model.rows])

@@ -1,0 +1,88 @@
+"""Temperatures of a network under constant load: at rest, after a time, and over a repeated period."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geom.errors import ThermoscopeError
+from lumped.duty import s3
+from lumped.network import Network, Row
+from lumped.simulate import Record, Stand, initial_state, simulate
+from lumped.steady import steady
+from validation.rating.operation import Operation
+
+Array = NDArray[np.float64]
+TOGETHER, ROUNDS = 8, 12  # periods that run as one record; of these at most
+REPEATS_K = 0.02  # change per period below which a duty repeats itself
+SAMPLES = 24  # of a period
+RUNAWAY_C = 1e4  # what a load without rest counts as
+
+
+@dataclass(frozen=True)
+class Model:
+    """A network at some values of its parameters, looked at in the places that are limited."""
+
+    network: Network
+    values: Mapping[str, float]
+    rows: Sequence[Row]
+
+    def rest(self, op: Operation, load: float, speed: float | None) -> Array:
+        """(n_rows,) degC under the load for ever; RUNAWAY_C where losses grow faster than the cooling."""
+        try:
+            return steady(self.network, op.at(load, speed), op.boundaries, self.values, self.rows).y
+        except ThermoscopeError:
+            return np.full(len(self.rows), RUNAWAY_C)
+
+    def start(self, op: Operation, load: float | None, speed: float | None) -> Stand:
+        """A stand to begin from: all at the mean of what is around, or at rest under a load."""
+        if load is None:
+            x = initial_state(self.network, float(np.mean(list(op.boundaries.values()))))
+        else:
+            x = steady(self.network, op.at(load, speed), op.boundaries, self.values).z[: len(self.network.states)]
+        return Stand(x, np.zeros((x.size, 0)), np.zeros(x.size), 1.0, float(min(x.min(), *op.boundaries.values())))
+
+    def course(
+        self, op: Operation, load: float, speed: float | None, begin: Stand, seconds: float
+    ) -> tuple[Array, Array]:
+        """times (nt,) s and temperatures (nt, n_rows) under a constant load; RUNAWAY_C where a run goes astray."""
+        time = np.concatenate([[0.0], seconds * np.geomspace(1e-3, 1.0, SAMPLES)])
+        record = Record(time, {n: np.full(time.size, u) for n, u in op.at(load, speed).items()}, op.boundaries)
+        try:
+            return time, simulate(self.network, record, self.values, self.rows, begin=begin).y
+        except ThermoscopeError:
+            return time, np.full((time.size, len(self.rows)), RUNAWAY_C)
+
+    def repeated(self, op: Operation, load: float, speed: float | None, duty: Duty) -> Array:
+        """(n_rows,) largest temperatures of a duty that is repeated until it repeats itself."""
+        time, share = s3(duty.period_s, duty.share, TOGETHER, duty.period_s / SAMPLES)
+        pause = op.at(duty.idle * load, 0.0 if duty.stops else speed)
+        given = {n: np.where(share > 0.5, u, pause[n]) for n, u in op.at(load, speed).items()}
+        record = Record(time, given, op.boundaries)
+        last = time >= duty.period_s * (TOGETHER - 1)
+        try:
+            begin = self.start(op, load * np.sqrt(duty.share + (1.0 - duty.share) * duty.idle**2), speed)
+            for _ in range(ROUNDS):
+                run = simulate(self.network, record, self.values, self.rows, begin=replace(begin, step=1.0))
+                done, begin = np.abs(run.end.x - begin.x).max() < REPEATS_K * TOGETHER, run.end
+                if done:
+                    break
+            return np.asarray(run.y[last].max(axis=0))
+        except ThermoscopeError:
+            return np.full(len(self.rows), RUNAWAY_C)
+
+
+@dataclass(frozen=True)
+class Duty:
+    """IEC 60034-1: load for a share of a period; then a share `idle` of it, at standstill where it `stops`."""
+
+    period_s: float = 600.0
+    share: float = 0.4
+    idle: float = 0.0
+    stops: bool = True
+
+
+S3, S6 = Duty(), Duty(stops=False)
