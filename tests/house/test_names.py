@@ -19,6 +19,7 @@ ALLOWED = {  # file -> what its strings are, none of them a user's name for a pa
     "thermoscope/units.py": "names of inputs by the unit that they say they hold, NAME_percent",
     "thermoscope/doctor.py": "shapes that the network names itself, PART#1",
     "thermoscope/csv_file.py": "endings of files",
+    "thermoscope/groups.py": "options on the command line",
     "thermoscope/commands/saved.py": "hidden files",
     "geom/step.py": "labels of a STEP assembly",
     "validation/effects/gate.py": "events that the tool names itself, TEST:BEGIN-END",

@@ -8,7 +8,9 @@ HOLES = "torque_Nm,speed_rpm,copper_W\n0,0,0\n50,0,20\n0,1000,0\n"
 
 def test_the_continuous_rating_is_the_rest_of_the_network(thermoscope, tmp_path):
     """G from winding to air: 8 in series with (3 + (6 in series with 1.5)); R grows with the winding's temperature."""
-    said = thermoscope("rate", small_case(tmp_path), "--limit", "winding=120", "--at", "ambient=20", "--json", "-")
+    said = thermoscope(
+        "use", "rate", small_case(tmp_path), "--limit", "winding=120", "--at", "ambient=20", "--json", "-"
+    )
     assert said.code == 0, said.err
     document = said.document
     air = 3.0 + 1.0 / (1.0 / 6.0 + 1.0 / 1.5)
@@ -34,6 +36,6 @@ def test_what_is_wrong_is_one_message(thermoscope, tmp_path):
         (): "no limit is given",
         ("--limit", "winding=120", "--losses", str(holes)): "1 of 4 points are missing, the first at 50 Nm, 1000 1/min",
     }.items():
-        said = thermoscope("rate", case, *arguments)
+        said = thermoscope("use", "rate", case, *arguments)
         assert said.code == 2
         assert message in said.err.splitlines()[-1]
