@@ -12,9 +12,9 @@ GROUPS: dict[str, tuple[str, tuple[str, ...]]] = {
               ("machines", "build", "crosscheck", "calibrate", "add", "remove", "undo")),
     "test": ("Recordings: bring them in, look at them, hold the model against them.",
              ("new", "doctor", "compare", "quantities")),
-    "explain": ("What is missing, and what would show it.", ("diagnose", "improve", "effects")),
+    "explain": ("What is missing, and what would show it.", ("diagnose", "improve", "effects", "answer")),
     "show": ("Report, pictures, the workbench in the browser.", ("report", "render", "serve")),
-    "use": ("Run the model, and take it elsewhere.", ("simulate", "export", "rate", "watch")),
+    "use": ("Run the model, and take it elsewhere.", ("simulate", "export", "rate")),
     "bench": ("The published test procedure, from resistances to screened models.",
               ("protocol", "curves", "bases", "screen", "two-paths", "carry")),
 }  # fmt: skip

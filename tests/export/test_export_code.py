@@ -15,7 +15,7 @@ from lumped.simulate import Record, simulate
 from thermoscope.commands.export import export
 from thermoscope.error_budget import model_of
 from thermoscope.export.c_code import c_files
-from thermoscope.export.drive import AGREES_K, Compiled, difference
+from thermoscope.export.drive import AGREES_K, Compiled, difference, sampled
 from thermoscope.export.model import Output, exported, packed
 from thermoscope.folder import load_case
 from validation.predict import record
@@ -73,7 +73,7 @@ def test_shipped_cases_agree(name):
     folder = load_case(CASES / name)
     network, values = model_of(folder)
     code = Compiled(exported(folder, {}))
-    assert max(difference(code, network, record(t, {}), values) for t in folder.case.tests) < AGREES_K
+    assert max(difference(code, network, sampled(record(t, {})), values) for t in folder.case.tests) < AGREES_K
 
 
 def test_the_code_is_clean_c99_without_allocation(tmp_path):
@@ -107,5 +107,5 @@ def test_the_header_says_what_a_user_must_know(tmp_path):
     assert export(str(CASES / "hust-ipmsm"), tmp_path, "c", ["winding=155"], 2, str(tmp_path / "said.json")) == 0
     text = (tmp_path / "thermal_network_sizes.h").read_text()
     for said in ("revision 0", "speed_rpm (rpm), 0 to", "coolant (degC)", "winding, limit 155 degC", "State: 88 bytes",
-                 "sensor rotor, against measurements 6.31 K rms (hold-out tests)"):  # fmt: skip
+                 "sensor rotor, against measurements 6.28 K rms (hold-out tests)"):  # fmt: skip
         assert said in text

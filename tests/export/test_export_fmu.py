@@ -17,7 +17,7 @@ from thermoscope.error_budget import model_of
 from thermoscope.export.c_code import RUNTIME
 from thermoscope.export.compilers import here
 from thermoscope.export.document import document, mat
-from thermoscope.export.drive import AGREES_K, signals_of
+from thermoscope.export.drive import AGREES_K, sampled, signals_of
 from thermoscope.export.fmu import fmu
 from thermoscope.export.model import exported, packed
 from thermoscope.folder import load_case
@@ -32,7 +32,7 @@ def three(tmp_path_factory):
     """The small case: its model, its first test as a record, and what `simulate` makes of it."""
     folder = load_case(small_case(tmp_path_factory.mktemp("export")))
     network, values = model_of(folder)
-    given, model = record(folder.case.tests[0], {}), exported(folder, {"winding": 155.0})
+    given, model = sampled(record(folder.case.tests[0], {})), exported(folder, {"winding": 155.0})
     run = simulate(network, given, values, [o.row for o in model.outputs])
     return model, given, run.y, initial_state(network, given.initial)
 

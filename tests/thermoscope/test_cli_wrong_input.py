@@ -265,7 +265,7 @@ def test_gap_in_time_is_told_and_not_compared(case, monkeypatch, capsys):
     rows = lines(case)
     rewritten(case, [*rows[:100], *rows[108:]])
     _, out, err = answer(monkeypatch, capsys, "compare", case, "--json", "-")
-    assert json.loads(out)["tests"][0]["channels"][0]["n"] == 150 - 4  # 8 rows of 10 s on a grid of 20 s
+    assert json.loads(out)["tests"][0]["channels"][0]["n"] == 200 - 5  # 8 rows of 10 s on a grid of 15 s
     assert "no rows from 980 s to 1070 s" in err
 
 

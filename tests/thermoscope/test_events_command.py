@@ -55,7 +55,7 @@ def test_an_event_is_added_as_a_column_and_undone(opened_lid, capsys):
     header, *rows = file.read_text().splitlines()
     assert header.startswith("time_s,")
     open_ = np.array([[float(x) for x in row.split(",")] for row in rows])
-    assert np.sum(open_[:, 1]) * 20.0 == pytest.approx(LID[1] - LID[0], abs=80.0)
+    assert np.trapezoid(open_[:, 1], open_[:, 0]) == pytest.approx(LID[1] - LID[0], abs=80.0)
     assert (case / "tests" / "road.csv").read_bytes() == recording
     assert load_history(case / "model.toml").last.effects[0] == found["events"][0]["effect"]
     revise.undo(str(case), 0, None)

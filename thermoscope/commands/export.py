@@ -85,7 +85,7 @@ def _differences(folder: Folder, model: Any, tell: Progress) -> dict[str, float]
     Raises ThermoscopeError where they disagree.
     """
     from thermoscope.error_budget import model_of
-    from thermoscope.export.drive import AGREES_K, Compiled, difference
+    from thermoscope.export.drive import AGREES_K, Compiled, difference, sampled
     from validation.predict import record
 
     tell("holding the code against the simulation")
@@ -95,7 +95,7 @@ def _differences(folder: Folder, model: Any, tell: Progress) -> dict[str, float]
         tell(f"not held against the simulation: {fault}")
         return {}
     network, values = model_of(folder)
-    out = {t.name: difference(code, network, record(t, {}), values) for t in folder.case.tests}
+    out = {t.name: difference(code, network, sampled(record(t, {})), values) for t in folder.case.tests}
     for test, apart in out.items():
         if not apart <= AGREES_K:
             raise ThermoscopeError(f"the exported code differs from the simulation of '{test}' by {apart:.3g} K")

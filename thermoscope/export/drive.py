@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import tempfile
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -48,6 +49,11 @@ def signals_of(model: Model, record: Record) -> Array:
     return np.column_stack(
         [np.broadcast_to(np.asarray(given[s.name], float), record.time.shape) for s in model.signals]
     )
+
+
+def sampled(record: Record) -> Record:
+    """The record as the code is given it: inputs at its samples, straight between them, nothing finer."""
+    return replace(record, inputs={name: np.asarray(u, float) for name, u in record.inputs.items()})
 
 
 def difference(code: Compiled, network: Network, record: Record, values: Mapping[str, float]) -> float:
