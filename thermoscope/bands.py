@@ -17,9 +17,9 @@ from lumped.laws import CLOCK
 from lumped.network import Network, Row
 from lumped.signals import Signals
 from lumped.simulate import Record
+from thermoscope.caches import cache_folder
 from thermoscope.files import write_whole
 from thermoscope.folder import Folder, Progress
-from thermoscope.pipeline import cache_folder
 from validation.bands import Bands, Belief, Place, bands, belief
 from validation.bands.band import NORMAL_95
 from validation.case import RUNNING, Recorded, Test
