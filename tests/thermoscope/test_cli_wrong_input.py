@@ -180,7 +180,7 @@ WRONG = {
     shuffled_times: ["stand.csv", "line 22", "sort"],
     repeated_time: ["stand.csv", "line 31", "twice"],
     long_hole_in_input: ["stand.csv", "current"],
-    long_gap_in_time: ["stand.csv", "980"],
+    long_gap_in_time: ["stand.csv", "from 975 s to 1995 s"],
     no_reading: ["stand.csv", "T_flange"],
     below_absolute_zero: ["stand.csv", "T_flange", "line 12"],
     input_missing: ["stand.toml", "current_A"],

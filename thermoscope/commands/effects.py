@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from lumped.quantities import INPUTS
@@ -57,7 +58,7 @@ def answer(document: Mapping[str, Any]) -> Answer:
     able = [e for e in rows if e["places"]]
     unable = [e for e in rows if not e["places"]]
     places = sum(len(e["places"]) for e in able)
-    sentence = (f"{len(able)} of {len(rows)} effects can sit in {document['case']}, at {places} places; "
+    sentence = (f"{len(able)} of {len(rows)} effects can sit in {Path(document['case']).name}, at {places} places; "
                 f"{len(unable)} lack an input or a role.")  # fmt: skip
     lacking = [[e["effect"], "; ".join(e["missing"]), e["title"]] for e in unable]
     sitting = [[e["effect"], named(e["places"]), e["title"]] for e in able]
