@@ -76,7 +76,8 @@ def ghosted(surface: Surface, places: Array, chosen: NDArray[np.bool_], eye: Arr
     Windows keep off the other places, chosen or not: each must show its own part.
     """
     size = float(np.linalg.norm(np.ptp(surface.nodes.points, axis=0)))
-    windows = [window(places[i], eye, min(RADIUS * size, _free(places, i, eye))) for i in np.flatnonzero(chosen).tolist()]
+    rows = np.flatnonzero(chosen).tolist()
+    windows = [window(places[i], eye, min(RADIUS * size, _free(places, i, eye))) for i in rows]
     windows.sort(key=lambda w: float(np.linalg.norm(w.bottom - eye)))
     if not windows:
         return Ghosted(surface)
