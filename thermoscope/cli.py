@@ -222,6 +222,25 @@ def render(case: Case, out: Out = None, json: Json = None) -> None:
 
 
 @app.command()
+def picture(
+    case: Case,
+    what: Annotated[
+        str,
+        typer.Argument(
+            metavar="WHAT",
+            help="field, difference, exploded, parts, mesh, flux, network, losses, curves, residuals or errors.",
+        ),
+    ],
+    out: Annotated[Path | None, typer.Option("--out", metavar="FILE", help="A PNG file.")] = None,
+    json: Json = None,
+) -> None:
+    """One picture: of the temperatures, the parts, the heat, or the model against its most telling test."""
+    from thermoscope.commands.picture import picture as run
+
+    raise typer.Exit(run(case, what, out, json))
+
+
+@app.command()
 def serve(
     case: Case,
     host: Annotated[str, typer.Option(help="Where to listen; all browsers need the token.")] = "127.0.0.1",

@@ -8,7 +8,7 @@ from typing import Any
 _HOME = {
     "Comparison": "data", "Sensor": "data", "sensors": "data",
     "SplitMesh": "nodes", "split": "nodes", "require_gl": "gl", "off_screen_window": "gl",
-    "Wedge": "cut", "HALF": "cut", "QUARTER": "cut", "cutaway": "field", "pair": "field",
+    "Wedge": "cut", "HALF": "cut", "QUARTER": "cut", "cutaway": "field", "pair": "field", "difference": "field",
     "regions": "parts", "exploded": "parts", "missing_heat": "heat", "missing_in_machine": "missing",
     "flux_arrows": "arrows", "heat_flux": "arrows",
     "heat_flows": "flows", "sankey_of_losses": "sankey", "network_in_machine": "network", "animate": "animation",

@@ -51,18 +51,19 @@ def callouts(
         for q, height in zip(mine, heights, strict=True):
             _callout(p, q, edge * right + height * up + front * towards, side, theme, size)
             if dots:
-                _dot(p, q)
+                dot(p, q)
 
 
-def _dot(p: pyvista.Plotter, label: Label) -> None:
+def dot(p: pyvista.Plotter, label: Label, size: float = 1.0) -> None:
+    """A marker without a label, `size` times as large as one with a label."""
     import pyvista
 
     flat: dict[str, Any] = {"lighting": False, "render_points_as_spheres": True}
     here = pyvista.PolyData(np.array([label.xyz]))
-    on_top(p.add_mesh(here, color="white", point_size=26, **flat), 2)
-    on_top(p.add_mesh(here.copy(), color=label.colour, point_size=19, **flat), 3)
+    on_top(p.add_mesh(here, color="white", point_size=26 * size, **flat), 2)
+    on_top(p.add_mesh(here.copy(), color=label.colour, point_size=19 * size, **flat), 3)
     if label.covered:
-        on_top(p.add_mesh(here.copy(), color="white", point_size=HOLLOW * 19, **flat), 4)
+        on_top(p.add_mesh(here.copy(), color="white", point_size=HOLLOW * 19 * size, **flat), 4)
 
 
 def _callout(p: pyvista.Plotter, label: Label, end: Array, side: int, theme: Theme, size: int) -> None:

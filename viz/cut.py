@@ -68,9 +68,13 @@ class Surface:
         """(n_points,) or (n_points, n) values from (n_nodes,) or (n_nodes, n) nodal ones."""
         return self.weights @ T
 
-    def clipped(self, direction: Array) -> Surface:
-        """The side of the plane through the axis on which `direction @ point >= 0`."""
-        d = _snapped(self.points @ direction)
+    def only(self, chosen: NDArray[np.bool_]) -> Surface:
+        """Some of the triangles, (n,)."""
+        return Surface(self.nodes, self.weights, self.triangles[chosen], self.part[chosen])
+
+    def clipped(self, direction: Array, offset: float = 0.0) -> Surface:
+        """The side of a plane on which `direction @ point >= offset` (m); through the axis without an offset."""
+        d = _snapped(self.points @ direction - offset)
         above = (d >= 0)[self.triangles]
         count = above.sum(axis=1)
         one, two = count == 1, count == 2
@@ -109,9 +113,9 @@ def exposed(nodes: SplitMesh, contacts: bool = False) -> Surface:
     return Surface(nodes, identity(nodes.size, format="csr"), triangles[~contact], part[~contact]).compact()
 
 
-def section(nodes: SplitMesh, normal: Array) -> Surface:
-    """The plane through the axis across `normal`, through the solid parts."""
-    d = _snapped(nodes.points @ normal)
+def section(nodes: SplitMesh, normal: Array, offset: float = 0.0) -> Surface:
+    """The solid parts in the plane `normal @ point == offset` (m), which runs through the axis without an offset."""
+    d = _snapped(nodes.points @ normal - offset)
     above = (d >= 0)[nodes.tets]
     count = above.sum(axis=1)
     mixes = _Mixes(d, 0)

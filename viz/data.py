@@ -33,6 +33,12 @@ class Sensor:
     rmse_K: float | None = None
 
     @property
+    def weight(self) -> float:
+        """Its residual over its uncertainty; -1 where there is none."""
+        known = self.residual_K is not None and np.isfinite(self.residual_K)
+        return abs(self.residual_K) / self.limit_K if known and self.residual_K is not None else -1.0
+
+    @property
     def verdict(self) -> str:
         """unknown, within, hot (measured above the model) or cold."""
         if self.residual_K is None or not np.isfinite(self.residual_K):

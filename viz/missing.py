@@ -15,6 +15,7 @@ from viz.callouts import Label, callouts, width
 from viz.colours import BLUE, LIGHT, VERMILION, Theme, missing
 from viz.cut import QUARTER, Wedge, cut_away
 from viz.nodes import SplitMesh
+from viz.scale import rounded
 from viz.scene import TITLE, Room, View
 from viz.sight import anchors
 
@@ -66,8 +67,8 @@ def missing_in_machine(
     data.cell_data["W"] = watts[surface.part]
     scene.outline(p, data, theme)
     p.add_mesh(
-        data, scalars="W", cmap=missing(), clim=(-top, top), nan_color="#E4E8EC", show_scalar_bar=False, ambient=0.8,
-        diffuse=0.28, culling="back",
+        data, scalars="W", cmap=missing(), clim=rounded(-top, top), nan_color="#E4E8EC", show_scalar_bar=False,
+        ambient=0.8, diffuse=0.28, culling="back",
     )  # fmt: skip
     scene.colour_bar(p, "W", theme)
     unsure = "" if placed({"where": where}) else " (too little evidence to locate it)"

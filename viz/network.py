@@ -18,6 +18,7 @@ from viz.colours import LIGHT, Theme, heat, power
 from viz.cut import HALF, cut_away
 from viz.flows import Heat
 from viz.nodes import SplitMesh, split
+from viz.scale import rounded
 from viz.scene import Room, View
 
 if TYPE_CHECKING:
@@ -30,8 +31,7 @@ CLOSEST = 0.075  # distance of two nodes, share of the machine's length
 SMALL = 0.01  # of the largest flow: thinner lines are left out
 LABELLED = 10  # flows whose watts are written
 BELOW: dict[str, Any] = {
-    "vertical": False, "position_x": 0.28, "position_y": 0.04, "width": 0.36, "height": 0.1, "n_labels": 5,
-    "fmt": "%.0f W",
+    "vertical": False, "position_x": 0.28, "position_y": 0.04, "width": 0.36, "height": 0.1, "unit": "W",
 }  # fmt: skip
 
 
@@ -136,8 +136,8 @@ def _lines(p: pyvista.Plotter, at: Mapping[str, Array], flow: Heat, colours: Col
         line = pyvista.Line(a, b)
         line.point_data["W"] = np.full(line.n_points, f.watts)
         actor = p.add_mesh(
-            line, scalars="W", cmap=colours, clim=(0.0, most), lighting=False, show_scalar_bar=False, name=f"link {i}",
-            line_width=max(2.0, 24 * np.sqrt(f.conductance / widest)),
+            line, scalars="W", cmap=colours, clim=rounded(0.0, most), lighting=False, show_scalar_bar=False,
+            name=f"link {i}", line_width=max(2.0, 24 * np.sqrt(f.conductance / widest)),
         )  # fmt: skip
         on_top(actor, 1)
         middle = (a + b) / 2
@@ -154,6 +154,14 @@ def _nodes(p: pyvista.Plotter, at: Mapping[str, Array], T: Mapping[str, float]) 
     cloud.point_data["T"] = [T[name] for name in at]
     style: dict[str, Any] = {"render_points_as_spheres": True, "lighting": False, "show_scalar_bar": False}
     halo = p.add_mesh(cloud.copy(), color="white", point_size=50, **style)
-    dots = p.add_mesh(cloud, scalars="T", cmap=heat(), point_size=42, name="nodes", **style)
+    dots = p.add_mesh(
+        cloud,
+        scalars="T",
+        cmap=heat(),
+        clim=rounded(min(T.values()), max(T.values())),
+        point_size=42,
+        name="nodes",
+        **style,
+    )
     on_top(halo, 4)
     on_top(dots, 5)

@@ -16,6 +16,7 @@ from viz.callouts import Label, callouts, text
 from viz.colours import LIGHT, Theme, heat, part_colours
 from viz.cut import QUARTER, Surface, Wedge, cut_away, exposed
 from viz.nodes import SplitMesh, on_nodes
+from viz.scale import rounded
 from viz.scene import TITLE, Room, View
 from viz.sight import anchors
 
@@ -139,7 +140,9 @@ def _paint(
         p.add_mesh(data, scalars="colour", rgb=True, **light)  # type: ignore[arg-type]
     else:
         data.point_data["T"] = surface.values(T)
-        p.add_mesh(data, scalars="T", cmap=heat(), show_scalar_bar=False, **light)  # type: ignore[arg-type]
+        p.add_mesh(
+            data, scalars="T", cmap=heat(), clim=rounded(float(T.min()), float(T.max())), show_scalar_bar=False, **light
+        )  # type: ignore[arg-type]
 
 
 def _rgb(colour: str) -> tuple[int, ...]:

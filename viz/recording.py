@@ -28,6 +28,7 @@ from viz.data import Comparison, Sensor, short
 from viz.edges import outline_strips
 from viz.errors import PALE, error_paths
 from viz.nodes import SplitMesh, on_nodes
+from viz.scale import rounded
 
 if TYPE_CHECKING:
     import rerun as rr
@@ -98,7 +99,7 @@ def _machine(
 ) -> None:
     import rerun as rr
 
-    low, high = float(fields.min()), float(fields.max())
+    low, high = rounded(float(fields.min()), float(fields.max()))
     stream.log("machine", rr.ViewCoordinates.RIGHT_HAND_Y_UP, static=True)
     mesh = rr.Mesh3D(vertex_positions=surface.points, triangle_indices=surface.triangles)
     stream.log("machine/field", mesh, static=True)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from viz.colours import LIGHT, Theme
 from viz.cut import Surface
 from viz.gl import require_gl
+from viz.scale import decimals, marks
 
 if TYPE_CHECKING:
     import pyvista
@@ -107,11 +108,14 @@ def look(p: pyvista.Plotter, points: Array, view: View, room: Room = NO_ROOM) ->
 
 
 def colour_bar(p: pyvista.Plotter, title: str, theme: Theme = LIGHT, **options: Any) -> None:
-    """A vertical bar at the right edge, its title above it."""
+    """A vertical bar at the right edge, its title above it, marked where a rounded range has its round numbers."""
     style: dict[str, Any] = {
         "title": title, "vertical": True, "position_x": 0.905, "position_y": 0.14, "width": 0.045, "height": 0.66,
-        "n_labels": 6, "fmt": "%.0f", "label_font_size": 17, "title_font_size": 17, "color": theme.ink,
+        "label_font_size": 17, "title_font_size": 17, "color": theme.ink,
     }  # fmt: skip
+    low, high = (options.get("mapper") or p.mapper).scalar_range
+    unit = f" {unit}" if (unit := options.pop("unit", "")) else ""
+    style |= {"n_labels": len(marks(low, high)), "fmt": f"%.{decimals(high - low)}f{unit}"}
     bar = p.add_scalar_bar(**{**style, **options})
     bar.SetTextPad(6)
     bar.SetVerticalTitleSeparation(14)

@@ -60,6 +60,18 @@ def covered(obstacle: Any, points: Array, eye: Array) -> NDArray[np.bool_]:
     return np.array([obstacle.IntersectWithLine(a, eye, 0.0, vtkPoints(), vtkIdList()) > 0 for a in start], bool)
 
 
+def distance(obstacle: Any, points: Array) -> Array:
+    """(n,) from each of the points (n, 3) m to the nearest of the surface (m)."""
+    from vtkmodules.vtkCommonCore import mutable
+
+    def nearest(at: Array) -> float:
+        found, cell, sub, squared = [0.0] * 3, mutable(0), mutable(0), mutable(0.0)
+        obstacle.FindClosestPoint(at, found, cell, sub, squared)
+        return float(np.sqrt(float(squared)))
+
+    return np.array([nearest(at) for at in points], float)
+
+
 def _ray(row: int, column: int, view: View) -> Array:
     """From the eye through the middle of a pixel, of length 1 along the line of sight."""
     towards, right, up = view.axes()

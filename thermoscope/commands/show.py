@@ -140,7 +140,8 @@ def _pictures(folder: Folder, into: Path, diagnosis: Mapping[str, Any] | None) -
     nodes, test = split(folder.built.mesh), by_interest(folder)[0]
     now, file = fields(folder.case, test, nodes, 1)[1][-1], into / "field.png"
     seen = sensors(held(folder, test), folder.positions)
-    cutaway(nodes, now, sensors=seen, title=f"{test.name}, model at the end", png=file)
+    title = f"{test.name} at {test.time[-1] / 60:.0f} min: temperature of the model"
+    cutaway(nodes, now, sensors=seen, title=title, png=file)
     out = {f"Temperature at the end of {test.name}; labels: measured minus modelled.": file}
     out |= _missing_heat(diagnosis, nodes, into)
     earlier = before_last(folder)

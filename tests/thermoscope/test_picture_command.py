@@ -1,0 +1,29 @@
+"""thermoscope show picture: a picture per kind, one message for what it does not know."""
+
+import pytest
+
+from geom.errors import InputError
+from thermoscope.commands.picture import PICTURES, picture
+
+
+@pytest.mark.parametrize("what", ["curves", "residuals", "losses"])
+def test_a_case_without_geometry_has_its_plots(case, tmp_path, what):
+    file = tmp_path / "shown" / f"{what}.png"
+    assert picture(str(case), what, file, None) == 0
+    assert file.read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize("what", sorted(set(PICTURES) - {"curves", "residuals", "losses"}))
+def test_what_a_case_lacks_is_said_and_nothing_written(case, tmp_path, what):
+    """No machine, and no revision yet."""
+    file = tmp_path / "shown.png"
+    with pytest.raises(InputError):
+        picture(str(case), what, file, None)
+    assert not file.exists()
+
+
+def test_an_unknown_picture_is_one_message_with_the_known_ones(thermoscope):
+    answer = thermoscope("show", "picture", "tclab", "fieldd")
+    assert answer.code == 2
+    assert len(answer.err.strip().splitlines()) == 1
+    assert "field" in answer.err
