@@ -65,7 +65,8 @@ def distance(obstacle: Any, points: Array) -> Array:
     from vtkmodules.vtkCommonCore import mutable
 
     def nearest(at: Array) -> float:
-        found, cell, sub, squared = [0.0] * 3, mutable(0), mutable(0), mutable(0.0)
+        found, cell, sub = [0.0] * 3, mutable(0), mutable(0)
+        squared: Any = mutable(0.0)
         obstacle.FindClosestPoint(at, found, cell, sub, squared)
         return float(np.sqrt(float(squared)))
 
