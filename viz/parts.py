@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -130,19 +130,18 @@ def _paint(
 ) -> None:  # fmt: skip
     data = scene.polydata(surface, shift)
     scene.outline(p, data, theme)
-    light = {"ambient": 0.55, "diffuse": 0.5, "specular": 0.0, "culling": "back"}
+    light: dict[str, Any] = {"ambient": 0.55, "diffuse": 0.5, "specular": 0.0, "culling": "back"}
     light |= {"show_edges": mesh, "edge_color": theme.ink, "edge_opacity": 0.45, "line_width": 1.0}
     if T is None:
         rgb = np.array(
             [_rgb(colour) for colour in part_colours(surface.nodes.parts, surface.nodes.identities).values()], np.uint8
         )
         data.cell_data["colour"] = rgb[surface.part]
-        p.add_mesh(data, scalars="colour", rgb=True, **light)  # type: ignore[arg-type]
+        p.add_mesh(data, scalars="colour", rgb=True, **light)
     else:
         data.point_data["T"] = surface.values(T)
-        p.add_mesh(
-            data, scalars="T", cmap=heat(), clim=rounded(float(T.min()), float(T.max())), show_scalar_bar=False, **light
-        )  # type: ignore[arg-type]
+        limits = rounded(float(T.min()), float(T.max()))
+        p.add_mesh(data, scalars="T", cmap=heat(), clim=limits, show_scalar_bar=False, **light)
 
 
 def _rgb(colour: str) -> tuple[int, ...]:

@@ -113,7 +113,8 @@ def colour_bar(p: pyvista.Plotter, title: str, theme: Theme = LIGHT, **options: 
         "title": title, "vertical": True, "position_x": 0.905, "position_y": 0.14, "width": 0.045, "height": 0.66,
         "label_font_size": 17, "title_font_size": 17, "color": theme.ink,
     }  # fmt: skip
-    low, high = (options.get("mapper") or p.mapper).scalar_range
+    mapper: Any = options.get("mapper") or p.mapper
+    low, high = mapper.scalar_range
     unit = f" {unit}" if (unit := options.pop("unit", "")) else ""
     style |= {"n_labels": len(marks(low, high)), "fmt": f"%.{decimals(high - low)}f{unit}"}
     bar = p.add_scalar_bar(**{**style, **options})

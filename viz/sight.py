@@ -65,9 +65,9 @@ def distance(obstacle: Any, points: Array) -> Array:
     from vtkmodules.vtkCommonCore import mutable
 
     def nearest(at: Array) -> float:
-        found, cell, sub, squared = [0.0] * 3, mutable(0), mutable(0), mutable(0.0)
-        obstacle.FindClosestPoint(at, found, cell, sub, squared)
-        return float(np.sqrt(float(squared)))
+        found = [0.0] * 3
+        obstacle.FindClosestPoint(at, found, mutable(0), mutable(0), mutable(0.0))
+        return float(np.linalg.norm(at - np.array(found)))
 
     return np.array([nearest(at) for at in points], float)
 
