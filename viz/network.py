@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -30,6 +30,9 @@ SIDE = View(direction=(-1.0, 0.0, 0.0), angle=4.0)
 CLOSEST = 0.075  # distance of two nodes, share of the machine's length
 SMALL = 0.01  # of the largest flow: thinner lines are left out
 LABELLED = 10  # flows whose watts are written
+LABEL = 0.018, 0.045  # half height and width of such a label, share of the machine's length in a picture 1280 wide
+NODE = 0.02  # radius of a node, the same
+SHARES = (0.5, 0.42, 0.58, 0.34, 0.66, 0.26, 0.74)  # of a line: where its label may stand, the middle first
 BELOW: dict[str, Any] = {
     "vertical": False, "position_x": 0.28, "position_y": 0.04, "width": 0.36, "height": 0.1, "unit": "W",
 }  # fmt: skip
@@ -60,9 +63,10 @@ def network_in_machine(
     front = np.array([surface.points[:, 0].min() - 0.02, 0.0, 0.0])
     at = {name: xyz + front for name, xyz in at.items() if xyz[1] > 0 and name in temperatures}
     low, high = surface.points.min(axis=0), surface.points.max(axis=0)
-    at = apart(at, CLOSEST * float(np.ptp(nodes.points[:, 2])))
+    length = float(np.ptp(nodes.points[:, 2]))
+    at = apart(at, CLOSEST * length)
     frame = front + np.array([[0, -0.2 * high[1], low[2]], [0, high[1], high[2]]])
-    widest = _lines(p, at, flow, power() if theme == LIGHT else power().reversed())
+    widest = _lines(p, at, flow, power() if theme == LIGHT else power().reversed(), length)
     _nodes(p, at, temperatures)
     names = [Label(tuple(xyz), f"{name}  {temperatures[name]:.0f} °C", LIGHT.ink) for name, xyz in at.items()]  # type: ignore[arg-type]
     scene.colour_bar(p, "°C", theme, mapper=p.actors["nodes"].mapper)
@@ -120,8 +124,8 @@ def _volumes(nodes: SplitMesh) -> Array:
     return np.abs(np.einsum("ij,ij->i", np.cross(edges[:, 0], edges[:, 1]), edges[:, 2])) / 6
 
 
-def _lines(p: pyvista.Plotter, at: Mapping[str, Array], flow: Heat, colours: Colormap) -> float:
-    """A line per flow; the largest carry their watts where no larger one's stand already. The widest line's W/K."""
+def _lines(p: pyvista.Plotter, at: Mapping[str, Array], flow: Heat, colours: Colormap, length: float) -> float:
+    """A line per flow; the largest carry their watts where there is room. The widest line's W/K."""
     import pyvista
 
     inner = [replace(f, watts=abs(f.watts)) for f in flow.flows if f.start in at and f.end in at]
@@ -140,11 +144,25 @@ def _lines(p: pyvista.Plotter, at: Mapping[str, Array], flow: Heat, colours: Col
             name=f"link {i}", line_width=max(2.0, 24 * np.sqrt(f.conductance / widest)),
         )  # fmt: skip
         on_top(actor, 1)
-        middle = (a + b) / 2
-        if len(taken) < LABELLED and all(np.linalg.norm((middle - other) * [0, 2, 1]) > 0.035 for other in taken):
-            p.add_actor(text(f"{f.watts:.0f} W", middle, "#6B2A12", 0, 11), reset_camera=False)
-            taken.append(middle)
+        place = clear_place(a, b, list(at.values()), taken, length) if len(taken) < LABELLED else None
+        if place is not None:
+            p.add_actor(text(f"{f.watts:.0f} W", place, "#6B2A12", 0, 11), reset_camera=False)
+            taken.append(place)
     return widest
+
+
+def clear_place(a: Array, b: Array, nodes: Sequence[Array], taken: Sequence[Array], length: float) -> Array | None:
+    """Where a label on the line from a to b (m) covers no node and no other label, near its middle; None: nowhere.
+
+    length : of the machine (m), which the sizes of labels and nodes go by
+    """
+    half, dot = length * np.array(LABEL), length * NODE
+
+    def clear(at: Array) -> bool:
+        near = [np.abs(at - other)[1:] < half + dot for other in nodes] + [np.abs(at - o)[1:] < 2 * half for o in taken]
+        return not any(one.all() for one in near)
+
+    return next((at for at in (a + share * (b - a) for share in SHARES) if clear(at)), None)
 
 
 def _nodes(p: pyvista.Plotter, at: Mapping[str, Array], T: Mapping[str, float]) -> None:
@@ -154,14 +172,7 @@ def _nodes(p: pyvista.Plotter, at: Mapping[str, Array], T: Mapping[str, float]) 
     cloud.point_data["T"] = [T[name] for name in at]
     style: dict[str, Any] = {"render_points_as_spheres": True, "lighting": False, "show_scalar_bar": False}
     halo = p.add_mesh(cloud.copy(), color="white", point_size=50, **style)
-    dots = p.add_mesh(
-        cloud,
-        scalars="T",
-        cmap=heat(),
-        clim=rounded(min(T.values()), max(T.values())),
-        point_size=42,
-        name="nodes",
-        **style,
-    )
+    limits = rounded(min(T[name] for name in at), max(T[name] for name in at))
+    dots = p.add_mesh(cloud, scalars="T", cmap=heat(), clim=limits, point_size=42, name="nodes", **style)
     on_top(halo, 4)
     on_top(dots, 5)

@@ -11,7 +11,7 @@ from lumped.laws import Fixed
 from viz import paper
 from viz.animation import animate
 from viz.flows import Flow, Heat, heat_flows
-from viz.network import apart, network_in_machine, places
+from viz.network import LABEL, NODE, apart, clear_place, network_in_machine, places
 from viz.nodes import split
 from viz.sankey import sankey_of_losses
 
@@ -110,3 +110,23 @@ def test_animation_has_a_frame_per_time_and_warms_up(tmp_path):
     gif.seek(3)
     last = np.asarray(gif.convert("RGB")).astype(int)
     assert last[200:500, 200:700, 1].mean() > first[200:500, 200:700, 1].mean() + 20
+
+
+def test_a_label_on_a_line_covers_no_node_and_no_other_label():
+    """A node in the middle of the line: the label moves along it; a line between close neighbours gets none."""
+    a, b = np.array([0.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
+    nodes = [a, b, np.array([0.0, 0.0, 0.5])]
+    first = clear_place(a, b, nodes, [], 1.0)
+    second = clear_place(a, b, nodes, [first], 1.0)
+    least = LABEL[1] + NODE
+    assert all(abs(first[2] - n[2]) >= least for n in nodes)
+    assert abs(second[2] - first[2]) >= 2 * LABEL[1]
+    assert clear_place(a, np.array([0.0, 0.0, least]), nodes, [], 1.0) is None
+
+
+def test_the_network_s_colours_span_its_own_nodes():
+    """A state without a place of its own does not stretch the range."""
+    heat = Heat({}, (Flow("yoke", "housing", "link", 75.0, 8.0),), {})
+    p = network_in_machine(MESH, {"yoke": 90.0, "housing": 40.0, "shape.1": -150.0}, heat)
+    assert p.actors["nodes"].mapper.scalar_range == (40.0, 90.0)
+    p.close()
