@@ -33,7 +33,7 @@ def coarse(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("THERMOSCOPE_CACHE", str(tmp_path_factory.mktemp("cache")))
         patch.setattr(command, "load_machine_file", lambda path: small(path.name) if path.name in FEW else usual(path))
-        patch.setattr(command, "_built", lambda m, accuracy, tell: (pipeline(m, 0.1, 36), None))
+        patch.setattr(command, "built_from", lambda m, accuracy, tell: (pipeline(m, 0.1, 36), None))
         yield command.build
 
 
