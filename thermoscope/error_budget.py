@@ -13,6 +13,7 @@ import numpy as np
 
 from lumped.error_budget import ErrorBudget, PlaceError
 from lumped.network import Array, Network, Row
+from lumped.recovery import Shapes
 from lumped.simulate import Record, simulate
 from thermoscope.folder import Folder, Progress
 from validation.case import Channel, Test
@@ -43,7 +44,7 @@ def error_budgets(folder: Folder, records: Mapping[str, Record], progress: Progr
     looks, found = Looks.of(folder), None
     network, values = model_of(folder)
     rows = dict(looks.rows)
-    if folder.built is not None:  # the field's packages are loaded only where there is one
+    if folder.built is not None and isinstance(network.recovery, Shapes):  # only then the field's packages are loaded
         from thermoscope.rated_errors import hot_rows, kept
 
         progress("error of mesh and condensation")
