@@ -49,6 +49,7 @@ TABLE: Mapping[str, Line] = MappingProxyType({
     "placement": Line(0.08, "1", "share of the neighbours' temperatures in a reading"),
     "placement in stream": Line(0.1, "1", "a thermometer in a stream reads one streamline"),
     "slow": Line(0.02, "1", "slow misfit as a share of the rise: 4 % at two deviations counts as a good model"),
+    "misfit": Line(2.0, "times the slow misfit", "what a model of this kind may be wrong by is known within a factor"),
     "wander": Line(0.5, "1", "share of a sensor's accuracy that wanders within a test; the rest is bias and slope"),
     "fast": Line(0.25, "1", "fast misfit as a share of the slow one"),
     "flow": Line(0.03, "1", "flow meters of a bench"),

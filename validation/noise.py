@@ -170,6 +170,22 @@ class Noise:
         level = self.at(segment)
         return (_whitener(stamp(segment.time), level.shape()) @ columns) / level.white
 
+    def logdet(self, segment: Segment) -> float:
+        """log|Sigma| of a segment."""
+        level = self.at(segment)
+        white = _whitener(stamp(segment.time), level.shape())
+        return 2.0 * float(segment.time.size * np.log(level.white) - np.sum(np.log(np.diag(white))))
+
+    def log_prior(self, parts: Sequence[Segment]) -> float:
+        """Of the slow misfit per channel, where it is larger than a model of this kind is allowed (log-normal), and of
+        the times of the shape."""
+        over: dict[str, float] = {}
+        for s in parts:
+            ratio = self.at(s).slow / max(s.model_K, FLOOR_K)
+            over[s.channel] = max(over.get(s.channel, 1.0), ratio)
+        times = sum(self.levels.get(c, self.reserve).shape().log_prior() for c in over)
+        return times - 0.5 * float(sum((np.log(x) / np.log(USUAL["misfit"])) ** 2 for x in over.values()))
+
 
 def first_noise(parts: Sequence[Segment]) -> Noise:
     """Before any calibration: slow error of the usual size, white of a third of it."""

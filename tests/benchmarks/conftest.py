@@ -1,4 +1,4 @@
-"""The benchmarks are scripts: their folder goes on the path, last, for benchmarks/viz.py must not hide the room viz."""
+"""The benchmarks are scripts: their folder goes on the path, last, so that none of them hides a module of that name."""
 
 import sys
 from pathlib import Path

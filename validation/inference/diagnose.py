@@ -19,15 +19,35 @@ from validation.faults import broken_channels
 from validation.findings import Diagnosis
 from validation.imprint import imprint
 from validation.inference.decision import Decision, decide
-from validation.inference.evidence import Evidence, calibrated_case, candidates, noise_beside, scored, under
-from validation.inference.posterior import Hypothesis, Posterior, pairs, singles, unknown_heat
+from validation.inference.evidence import (
+    Evidence,
+    calibrated_case,
+    candidates,
+    log_evidence,
+    noise_beside,
+    scored,
+    under,
+    with_noise,
+)
+from validation.inference.posterior import (
+    Hypothesis,
+    Posterior,
+    against_nothing,
+    averaged,
+    pairs,
+    singles,
+    unknown_heat,
+)
 from validation.inference.refits import refitted
+from validation.inference.several import further
 from validation.inference.tables import tabulate
+from validation.noise import Noise
 from validation.procedure.which_base import bases_tried, wrong_bases
 from validation.threads import one_blas_thread
 from validation.where import scan
 
 Progress = Callable[[str], None]
+CONTENDERS = 8  # effects whose own noise is looked at: one of them leads under any
 NO_BUDGET: Mapping[str, float] = MappingProxyType({})
 
 
@@ -89,17 +109,34 @@ def infer(case: Case, kinds: Sequence[str] | None = None, progress: Progress = s
     known = {**case.model.values, **evidence.fit.values}
     bent = laws(evidence, known) if kinds is None or KIND in kinds else []
     evidence = sharpened(joined(evidence, [*chosen, *bent], known))
+    loud = under(evidence, fit.noise)
     ones = singles(evidence)
     weighed = [*ones, *pairs(evidence, ones), *unknown_heat({w.place: w.log_bayes for w in heat})]
+    weighed = averaged(weighed, loud, log_evidence(loud.fit, loud.parts) - log_evidence(evidence.fit, evidence.parts))
     heard = answered(evidence, weighed, case.answers)
-    return Posterior(evidence, tuple(refitted(evidence, heard, progress)), tuple(heat), events, against)
+    every = further(case, evidence, refitted(evidence, heard, progress), progress)
+    return Posterior(evidence, tuple(against_nothing(every)), tuple(heat), events, against)
 
 
 def sharpened(evidence: Evidence, rounds: int = 2) -> Evidence:
     """The evidence under the noise that is left beside the leading effect: what is missing is no noise."""
     for _ in range(rounds):
-        lead = max(singles(evidence), key=lambda h: h.log_prior + h.log_bayes)
-        if not lead.members or evidence.effects[lead.members[0]].whole:
+        noise = noise_of_leader(evidence)
+        if noise is None:
             break
-        evidence = under(evidence, noise_beside(evidence, lead.members))
+        evidence = under(evidence, noise)
     return evidence
+
+
+def noise_of_leader(evidence: Evidence) -> Noise | None:
+    """The noise left beside the effect that, with its own noise, has most evidence; None where nothing has more."""
+    e = evidence
+    ordered = sorted(singles(e)[1:], key=lambda h: -h.weight)
+    few = [h for h in ordered if not e.effects[h.members[0]].whole][:CONTENDERS]
+    best, worth = None, log_evidence(e.fit, e.parts) + singles(e)[0].log_prior
+    for h in few:
+        noise = noise_beside(e, h.members)
+        found = with_noise(e, h.members, noise) + h.log_prior
+        if found > worth:
+            best, worth = noise, found
+    return best

@@ -183,6 +183,35 @@ def exchange(parts: Sequence[Segment], effects: Sequence[Effect], p: int) -> Non
             s.J[:, p + k] = s.r - np.interp(s.time, t.time, t.r) - s.J[:, p + k]
 
 
+def log_evidence(fit: Fit, parts: Sequence[Segment]) -> float:
+    """Of the readings under a fit's noise (nats), calibration and model error integrated out by tangents; the columns
+    of `parts` behind the calibrated parameters are left out.
+
+    With the normalisation of the noise, so that a large noise pays for what it leaves room for.
+    """
+    p = len(fit.unknowns.parameters)
+    G = total(projected(fit, [replace(s, J=s.J[:, :p]) for s in parts]))
+    theta, sd = extended_prior(fit)
+    weight = sd**-2.0
+    g = G.Jr - weight * theta
+    H = G.JJ + np.diag(weight)
+    left = G.rr + theta @ (weight * theta) - g @ np.linalg.solve(H, g)
+    wide = np.linalg.slogdet(H)[1] + 2.0 * np.sum(np.log(sd)) + sum(fit.noise.logdet(s) for s in parts)
+    return float(-0.5 * (left + wide) + fit.noise.log_prior(parts))
+
+
+def with_noise(evidence: Evidence, members: Sequence[int], noise: Noise) -> float:
+    """Log evidence of some effects of usual size under another noise, by tangents."""
+    e = evidence
+    fit, parts = replace(e.fit, noise=noise), e.parts_of(members)
+    theta, sd = extended_prior(fit)
+    found = score(total(projected(fit, parts)), theta, sd, e.score.sign[list(members)])
+    usual = np.array([e.parameters[k].prior_sd for k in members])
+    H = found.V + np.diag(usual**-2.0)
+    gain = 0.5 * found.u @ np.linalg.solve(H, found.u) - 0.5 * np.linalg.slogdet(np.diag(usual) @ H @ np.diag(usual))[1]
+    return log_evidence(fit, parts) + float(gain)
+
+
 def under(evidence: Evidence, noise: Noise) -> Evidence:
     """The evidence under another noise, the calibration gone on under it."""
     e, fit = evidence, evidence.fit

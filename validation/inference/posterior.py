@@ -12,7 +12,7 @@ Source: Kass and Raftery 1995; Kaipio and Somersalo 2005 for the model error in 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -43,13 +43,25 @@ class Hypothesis:
 
     members : indices of effects, none for nothing;  heat : place of heat of unknown cause, if that is it
     log_prior : log prior probability;  log_bayes : log evidence over that of nothing (nats);  fit : once refitted
+    loud : log evidence under the larger noise that nothing asks for, over that of nothing under the other
     """
 
     members: tuple[int, ...] = ()
     heat: str = ""
     log_prior: float = 0.0
     log_bayes: float = 0.0
+    loud: float = -np.inf
     fit: Fit | None = field(default=None, compare=False)
+
+    @property
+    def nats(self) -> float:
+        """Log evidence, but for a constant, averaged over what the noise may be."""
+        return float(np.logaddexp(self.log_bayes, self.loud))
+
+    @property
+    def weight(self) -> float:
+        """Log posterior probability, but for a constant."""
+        return self.log_prior + self.nats / TEMPER.share
 
     def name(self, evidence: Evidence) -> str:
         if self.heat:
@@ -59,7 +71,7 @@ class Hypothesis:
 
 def probabilities(hypotheses: Sequence[Hypothesis]) -> Array:
     """(n,) that sum to one."""
-    x = np.array([h.log_prior + h.log_bayes / TEMPER.share for h in hypotheses])
+    x = np.array([h.weight for h in hypotheses])
     return np.asarray(np.exp(x - logsumexp(x)))
 
 
@@ -149,6 +161,32 @@ def unknown_heat(evidence_nats: Mapping[str, float]) -> list[Hypothesis]:
     """Heat of unknown cause at each place.  evidence_nats : place -> log Bayes factor against nothing"""
     share = float(np.log(PRIOR["heat"].share / max(len(evidence_nats), 1)))
     return [Hypothesis((), place, share, nats) for place, nats in evidence_nats.items()]
+
+
+def averaged(hypotheses: Sequence[Hypothesis], loud: Evidence, over: float) -> list[Hypothesis]:
+    """The hypotheses with their evidence under a larger noise as well, so that what is merely noisier is a rival.
+
+    over : log evidence of nothing under that noise over the one it has without.  Heat of unknown cause gains nothing
+    there.
+    """
+    alone = linear(loud)
+    many = [h for h in hypotheses if len(h.members) == 2]
+    both = (
+        dict(zip([h.members for h in many], two(loud, *np.array([h.members for h in many], int).T), strict=True))
+        if many
+        else {}
+    )
+
+    def gain(h: Hypothesis) -> float:
+        return float(both[h.members] if h.members in both else alone[h.members[0]] if h.members else 0.0)
+
+    return [replace(h, loud=over + gain(h)) for h in hypotheses]
+
+
+def against_nothing(hypotheses: Sequence[Hypothesis]) -> list[Hypothesis]:
+    """The hypotheses with evidence of which nothing has none."""
+    none = next(h.nats for h in hypotheses if not h.members and not h.heat)
+    return [replace(h, log_bayes=h.log_bayes - none, loud=h.loud - none) for h in hypotheses]
 
 
 def inclusion(hypotheses: Sequence[Hypothesis], count: int) -> Array:

@@ -12,7 +12,7 @@ import numpy as np
 
 from validation.calibrate import silent
 from validation.case import Case
-from validation.doubt import PRIOR, TEMPER
+from validation.doubt import PRIOR
 from validation.effects.during import During
 from validation.inference.evidence import Evidence, scored
 from validation.inference.posterior import Hypothesis, prior_shares, singles
@@ -25,18 +25,13 @@ def further(
     case: Case, evidence: Evidence, hypotheses: Sequence[Hypothesis], progress: Callable[[str], None] = silent
 ) -> list[Hypothesis]:
     """The hypotheses, with larger ones where heat of unknown cause explains more than all that the catalogue can."""
-    out, heat = list(hypotheses), max((weight(h) for h in hypotheses if h.heat), default=-np.inf)
+    out, heat = list(hypotheses), max((h.weight for h in hypotheses if h.heat), default=-np.inf)
     fitted = [h for h in out if h.fit and h.members and not any(evidence.effects[k].whole for k in h.members)]
-    best = max(fitted, key=weight, default=None)
-    while best is not None and weight(best) < heat and len(best.members) < MOST:
+    best = max(fitted, key=lambda h: h.weight, default=None)
+    while best is not None and best.weight < heat and len(best.members) < MOST:
         best = with_one_more(case, evidence, best, progress)
         out += [best] if best else []
     return out
-
-
-def weight(h: Hypothesis) -> float:
-    """Logarithm of a posterior probability, but for a constant."""
-    return h.log_prior + h.log_bayes / TEMPER.share
 
 
 def with_one_more(
@@ -47,10 +42,10 @@ def with_one_more(
     others = [k for k, e in enumerate(evidence.effects) if k not in best.members and not isinstance(e, During)]
     others = [k for k in others if not evidence.effects[k].whole]
     now = scored(case, [evidence.effects[k] for k in others], best.fit)
-    lead = max(singles(now)[1:], key=weight)
+    lead = max(singles(now)[1:], key=lambda h: h.weight)
     progress(f"refitting {best.name(evidence)} + {lead.name(now)}")
     found, k = laplace(now, lead), others[lead.members[0]]
     again = PRIOR["two"].share / (PRIOR["effect"].share + PRIOR["fault"].share)  # as rare as a second beside a first
     prior = best.log_prior + float(np.log(again * prior_shares(evidence)[k]))
-    new = Hypothesis((*best.members, k), "", prior, best.log_bayes + found.log_bayes, found.fit)
-    return new if weight(new) > weight(best) else None
+    new = Hypothesis((*best.members, k), "", prior, best.log_bayes + found.log_bayes, best.loud, found.fit)
+    return new if new.weight > best.weight else None

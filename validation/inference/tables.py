@@ -13,6 +13,7 @@ from validation.calibrate import Fit, Measure
 from validation.case import Case, Test
 from validation.conditions.happenings import happenings
 from validation.conditions.question import best_question
+from validation.doubt import TEMPER
 from validation.effects.above import Above
 from validation.effects.during import During
 from validation.findings import Candidate, Decided, Diagnosis, Hidden, Odds, Verdict
@@ -115,7 +116,7 @@ def _odds(e: Evidence, h: Hypothesis, p: float) -> Odds:
     tests = tuple(dict.fromkeys(t for x in held for t in x.tests))
     spans = [s for x in held if x.event for s in x.event.every]
     begin, end = spans[0] if len(spans) == 1 else (None, None)
-    return Odds(h.name(e), tuple(e.names[k] for k in h.members), p, float(h.log_bayes), tests, begin, end)
+    return Odds(h.name(e), tuple(e.names[k] for k in h.members), p, h.nats, tests, begin, end)
 
 
 def candidates(
@@ -169,9 +170,9 @@ class Beside:
 
 def _row(e: Evidence, h: Hypothesis, share: float, limit: float, size: float, beside: Beside, leads: bool) -> Candidate:
     k, s = h.members[0], e.score
-    a, sd = float(s.amplitude[k]), float(s.sd[k])
+    a = float(s.amplitude[k])
     row = Candidate(
-        e.names[k], h.log_bayes, limit, a, e.parameters[k].unit, (a - NORMAL_95 * sd, a + NORMAL_95 * sd), "no",
+        e.names[k], h.nats, limit, a, e.parameters[k].unit, interval(a, float(s.sd[k])), "no",
         absorbed=float(s.absorbed[k]), smallest_detectable=size, twin=e.twins[k], title=e.effects[k].title,
         isolating_test=e.effects[k].isolating_test, probability=share,
     )  # fmt: skip
@@ -179,13 +180,19 @@ def _row(e: Evidence, h: Hypothesis, share: float, limit: float, size: float, be
         return row
     before, after, p = rmse(e.fit.parts), rmse(h.fit.parts), e.p
     if not e.effects[k].whole:
-        a, sd = float(h.fit.theta[p]), float(h.fit.sd[p])
-        row = replace(row, value=a, ci95=(a - NORMAL_95 * sd, a + NORMAL_95 * sd))
+        a = float(h.fit.theta[p])
+        row = replace(row, value=a, ci95=interval(a, float(h.fit.sd[p])))
     held = None if beside.error_K is None else (beside.error_K, error_on(beside.tests, h.fit))
     return replace(
         row, rmse_K=(before, after), explained=1.0 - (after / before) ** 2, holdout_rmse_K=held,
         note=against(e, h.fit, beside) if beside.lead and not leads else "",
     )  # fmt: skip
+
+
+def interval(a: float, sd: float) -> tuple[float, float]:
+    """Central 95 % of an amplitude; the temper that divides log evidence widens it as well."""
+    half = NORMAL_95 * float(np.sqrt(TEMPER.share)) * sd
+    return a - half, a + half
 
 
 def against(e: Evidence, fit: Fit, beside: Beside) -> str:

@@ -1,6 +1,6 @@
 """Pictures, recording and workbench: how long one waits.
 
-    python benchmarks/viz.py [--size-mm 10] [--segments 200] [--json FILE]
+    python benchmarks/rendering.py [--size-mm 10] [--segments 200] [--json FILE]
 
 The motor's mesh has about 150,000 nodes at the default size. Wall seconds of one process, and its CPU seconds beside
 them, which say more on a shared computer; the load of the computer at the start is kept too. The first picture takes
