@@ -59,7 +59,7 @@ def seen(label: Answer, answer: Answer, size: float) -> bool | None:
 
 def confidently_wrong(label: Answer, answer: Answer) -> bool | None:
     """One name alone, and it is none of what is hidden; a thermometer or input accused alone is a name as well."""
-    alone = [g[0] for g in answer["groups"][:1] if len(g) == 1]
+    alone = [g[0].split(" in ")[0] for g in answer["groups"][:1] if len(g) == 1]
     if answer["verdict"] == "data":
         return not fault_found(label, answer) and (bool(alone) or not answer["groups"])
     return answer["verdict"] == "named" and not any(meets(names, alone) for names in label["right"])
