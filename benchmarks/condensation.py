@@ -28,11 +28,11 @@ import numpy as np
 from condensation_cost import Row, offline_rows, row
 from condensation_points import Pair, Point
 
-from fem.solve import Fluids, steady
+from fem.solvers.solve import Fluids, steady
 from geom import library, load_machine
-from lumped.guard import Errors, errors, merged
-from lumped.network import Network
-from thermoscope.sized import Sized, sized
+from lumped.condensation.guard import Errors, errors, merged
+from lumped.model.network import Network
+from thermoscope.verification.sized import Sized, sized
 
 WANTED = {"mean": 1.0, "hot": 2.0, "point": 2.0}
 AT_RANDOM = {**WANTED, "hot": 3.0}

@@ -11,12 +11,12 @@ from typing import Any
 from field import MOTOR
 from field_contenders import peak_gib
 
-from fem.solve import Solver
+from fem.solvers.solve import Solver
 from geom import build_mesh, load_machine
-from lumped.motor import nominal_coefficients
-from lumped.motor_zones import motor_zones
+from lumped.machine.motor import nominal_coefficients
+from lumped.machine.zones import motor_zones
 from thermoscope.pipeline import Meshing, Prepared, field_of, reduced
-from thermoscope.sized import FINE
+from thermoscope.verification.sized import FINE
 
 Row = dict[str, Any]
 

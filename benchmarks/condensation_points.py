@@ -11,15 +11,15 @@ from functools import cached_property
 
 import numpy as np
 
-from fem.snapshots import drawn
-from fem.solve import coupled, film_columns
-from lumped.linear import linear, unit_load
-from lumped.motor import rated_inputs
-from lumped.network import Network
-from lumped.reduction import Reduction
-from thermoscope.crosscheck import coefficients, fluid_nodes
-from thermoscope.load_cases import rated_watts
-from thermoscope.sized import Sized
+from fem.solvers.snapshots import drawn
+from fem.solvers.solve import coupled, film_columns
+from lumped.condensation.linear import linear, unit_load
+from lumped.condensation.reduction import Reduction
+from lumped.machine.motor import rated_inputs
+from lumped.model.network import Network
+from thermoscope.verification.crosscheck import coefficients, fluid_nodes
+from thermoscope.verification.load_cases import rated_watts
+from thermoscope.verification.sized import Sized
 
 Floats = np.ndarray
 WARM = 20.0  # K, of a coolant's inlet over the surroundings in the third load case

@@ -23,15 +23,15 @@ from typing import Any
 
 import numpy as np
 
-from lumped.build import bare_network, node_link, node_source
-from lumped.laws import Fixed, InputPower, Linear, Power
-from lumped.network import Network, Parameter
-from lumped.simulate import Record, simulate
+from lumped.integration.simulate import Record, simulate
+from lumped.model.build import bare_network, node_link, node_source
+from lumped.model.network import Network, Parameter
+from lumped.transfer.laws import Fixed, InputPower, Linear, Power
 from validation import diagnose
 from validation.case import Case, Channel, Model, Test
+from validation.comparison.sheet import segments
 from validation.inference.evidence import calibrated_case, candidates
-from validation.score import gram
-from validation.sheet import segments
+from validation.inference.score import gram
 
 NODES, SENSORS, CANDIDATES = 20, 12, 60
 LIMIT_S = 20.0  # of a diagnosis with 60 candidates

@@ -27,13 +27,13 @@ import numpy as np
 import shapely
 
 from geom import InputError, Machine, check_cad
-from geom.draws import random_geometry
+from geom.description.draws import random_geometry
+from geom.description.profile import ArcGrid
 from geom.families import families
 from geom.families.family import Family
-from geom.machine import machine_from
-from geom.partition import partition
-from geom.profile import ArcGrid
-from geom.voids import filled
+from geom.machine_file import machine_from
+from geom.meshing.partition import partition
+from geom.meshing.voids import filled
 
 WITHIN = 0.01  # of the exact volume
 MOST = 400  # prisms of a machine whose solids are built: with hundreds of bars a single one takes minutes

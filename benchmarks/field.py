@@ -26,13 +26,13 @@ from typing import Any
 
 import numpy as np
 
-from fem.assembly import FieldModel
-from fem.grids import ring
-from fem.solve import Fluids, Solver
-from fem.streams import Stream, cut, flowing
-from fem.transient import transient
+from fem.matrices.assembly import FieldModel
+from fem.matrices.grids import ring
+from fem.matrices.streams import Stream, cut, flowing
+from fem.solvers.solve import Fluids, Solver
+from fem.solvers.transient import transient
 from geom import build_mesh, load_machine
-from lumped.motor import nominal_coefficients
+from lumped.machine.motor import nominal_coefficients
 from thermoscope.pipeline import field_of
 
 SIZES = {"50k": 36, "300k": 66}

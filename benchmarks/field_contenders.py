@@ -40,7 +40,7 @@ class Watch:
 
 
 class Timed:
-    """A solver of fem.solve that tells the watch where boundary terms end and the solve begins and ends."""
+    """A solver of fem.solvers.solve that tells the watch where boundary terms end and the solve begins and ends."""
 
     def __init__(self, inner: Any, watch: Watch) -> None:
         self._inner, self._watch, self.field = inner, watch, inner.field
@@ -61,10 +61,10 @@ class Timed:
 
 def thermoscope(problem: Problem) -> tuple[Laps, float]:
     """As its users run it: `steady` adds the boundary terms, refuses what floats, and checks the energy balance."""
-    from fem.assembly import assemble
-    from fem.material import laminated
-    from fem.solve import Iterative, only_fixed, steady
-    from geom.mesh import NamedMesh, Patch
+    from fem.matrices.assembly import assemble
+    from fem.matrices.material import laminated
+    from fem.solvers.solve import Iterative, only_fixed, steady
+    from geom.meshing.mesh import NamedMesh, Patch
 
     points, tets, facets = problem
     patches = {f"stack.{name}": Patch("stack", name, f) for name, f in facets.items()}

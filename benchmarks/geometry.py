@@ -35,9 +35,9 @@ from geom import (
     mesh_quality,
     part_table,
 )  # fmt: skip
-from geom.cad import solids
-from geom.machine import machine_from
-from geom.mesher import _planned
+from geom.machine_file import machine_from
+from geom.meshing.mesher import _planned
+from geom.solids.cad import solids
 
 SETTINGS: dict[str, dict[str, Any]] = {
     "coarse": COARSE,

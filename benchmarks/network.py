@@ -26,11 +26,11 @@ from typing import Any, TextIO
 import numpy as np
 from network_peers import peers, reference, timed
 
-from lumped.build import bare_network, node_link, node_source
-from lumped.ensemble import dask_cluster, ensemble
-from lumped.laws import Fixed, InputPower, Linear, Power, Radiation
-from lumped.network import Network, Parameter
-from lumped.simulate import Record, simulate
+from lumped.integration.ensemble import dask_cluster, ensemble
+from lumped.integration.simulate import Record, simulate
+from lumped.model.build import bare_network, node_link, node_source
+from lumped.model.network import Network, Parameter
+from lumped.transfer.laws import Fixed, InputPower, Linear, Power, Radiation
 
 MEMBERS = 1000
 
@@ -157,7 +157,7 @@ FIRST = """
 import time, sys
 sys.path.insert(0, {here!r})
 from network import record, ring
-from lumped.simulate import simulate
+from lumped.integration.simulate import simulate
 net, rec = ring(10), record(5)
 for tangents in ((), net.parameters[:2]):
     start = time.process_time()

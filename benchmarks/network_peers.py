@@ -18,9 +18,9 @@ import numpy as np
 from numba import njit
 from scipy.integrate import solve_ivp
 
-from lumped.network import Network
-from lumped.simulate import Record
-from lumped.terms import SIGMA, SMOOTH, ZERO_C
+from lumped.integration.simulate import Record
+from lumped.model.network import Network
+from lumped.numerics.terms import SIGMA, SMOOTH, ZERO_C
 
 TOLERANCES = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7)
 USUAL = 1e-6

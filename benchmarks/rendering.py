@@ -30,16 +30,17 @@ sys.path = [p for p in sys.path if Path(p).resolve() != Path(__file__).resolve()
 # ruff: noqa: E402
 
 from geom import NamedMesh, build_mesh, load_machine
-from lumped.network import Row
+from lumped.model.network import Row
 from validation.case import Channel, Test
-from viz import scene, split, write_recording
+from viz import split, write_recording
 from viz.colours import LIGHT
-from viz.cut import cut_away
 from viz.data import Comparison
-from viz.field import paint
 from viz.live.curves import sensor
-from viz.nodes import SplitMesh
-from viz.scene import View
+from viz.machine.field import paint
+from viz.rendering import scene
+from viz.rendering.cut import cut_away
+from viz.rendering.nodes import SplitMesh
+from viz.rendering.scene import View
 
 FRAMES, SENSORS = 60, 17
 

@@ -33,9 +33,9 @@ sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "thermoscope")]
 
 from small_case import small_case  # noqa: E402
 
+from thermoscope.case_folder.folder import load_case  # noqa: E402
 from thermoscope.cli import main as command_line  # noqa: E402
 from thermoscope.commands.saved import fingerprint  # noqa: E402
-from thermoscope.folder import load_case  # noqa: E402
 
 COMMANDS = {
     "calibrate": ("calibrate", "{case}", "--anyway"),

@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from lumped.simulate import simulate
+from lumped.integration.simulate import simulate
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "lumped"))
 from random_networks import Machine, admissible, built, machine, reference

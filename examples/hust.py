@@ -20,15 +20,16 @@ from pathlib import Path
 
 import numpy as np
 
-from thermoscope.commands.revise import recorded
-from thermoscope.files import write_whole
-from thermoscope.folder import find_case, load_case
-from thermoscope.history import History, load_history, save_history
-from validation import diagnose, revise
+from thermoscope.case_folder.files import write_whole
+from thermoscope.case_folder.folder import find_case, load_case
+from thermoscope.case_folder.history import History, load_history, save_history
+from thermoscope.commands.model.revise import recorded
+from validation import diagnose
+from validation.calibration.fitting import with_model
 from validation.case import Case
-from validation.climb import Guide, Stair, best, climb
-from validation.compare import Comparison
-from validation.fitting import with_model
+from validation.comparison.compare import Comparison
+from validation.revision import revise
+from validation.revision.climb import Guide, Stair, best, climb
 
 CHANNELS = ("winding", "stator", "rotor")
 EVIDENCE = (

@@ -16,7 +16,7 @@ from validation.effects import Scene, extended
 
 PACKAGE = """
 from dataclasses import dataclass
-from lumped.laws import Fixed
+from lumped.transfer.laws import Fixed
 from validation.effects.base import Effect, with_parameter
 from validation.effects.build import heat
 

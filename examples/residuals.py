@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 import thermoscope as ts
-from thermoscope.runs import held
+from thermoscope.case_folder.runs import held
 from viz import measured_and_model, residuals
 from viz.live import against_input, parity, saved
 

@@ -14,9 +14,9 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
-from thermoscope.files import write_whole
-from thermoscope.folder import find_case, load_case
-from validation.climb import Climbed, Guide, Stair, best, climb, leading
+from thermoscope.case_folder.files import write_whole
+from thermoscope.case_folder.folder import find_case, load_case
+from validation.revision.climb import Climbed, Guide, Stair, best, climb, leading
 
 PATHS = ("convection.constant", "convection.buoyant", "radiation", "coupling", "sensor.lag")
 

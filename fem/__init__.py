@@ -4,15 +4,15 @@ field = assemble(mesh, conductivity, capacity)
 found = steady(Solver(field), films, contacts, field.losses(watts), only_fixed(ambient=20.0))
 """
 
-from fem.assembly import FieldModel, assemble
-from fem.gap import AirGap
-from fem.material import Conductivity, LoopWound, isotropic, laminated, wound
-from fem.newton import Settled, settle
-from fem.solve import Fluids, Iterative, Solver, Steady, only_fixed, steady
-from fem.streams import Stream, cut, flowing
-from fem.terms import CopperLoss, Radiation, Term, VaryingConductivity
-from fem.transient import transient
-from fem.winding import bundle, homogenised, unit_cell
+from fem.matrices.assembly import FieldModel, assemble
+from fem.matrices.gap import AirGap
+from fem.matrices.material import Conductivity, LoopWound, isotropic, laminated, wound
+from fem.matrices.streams import Stream, cut, flowing
+from fem.matrices.terms import CopperLoss, Radiation, Term, VaryingConductivity
+from fem.matrices.winding import bundle, homogenised, unit_cell
+from fem.solvers.newton import Settled, settle
+from fem.solvers.solve import Fluids, Iterative, Solver, Steady, only_fixed, steady
+from fem.solvers.transient import transient
 
 __all__ = [
     "AirGap",

@@ -1,6 +1,6 @@
 """geom: what is the machine? Named prismatic parts, solids, a named mesh.
 
-machine = load_machine("pmsm-m1")        # a name of the library, a .toml file, or a .step file (see geom.step)
+machine = load_machine("pmsm-m1")        # a name of the library, a .toml file, or a .step file (see geom.solids.step)
 for row in part_table(machine): ...      # volumes, masses, film and contact areas, without solids or mesh
 check_cad(machine); export_cad(machine, "out")
 mesh = build_mesh(machine, **COARSE)
@@ -12,36 +12,36 @@ from importlib import import_module
 from typing import Any
 
 _HOME = {
-    "load_machine": "machine",
-    "library": "machine",
-    "Machine": "machine",
-    "import_step": "step",
-    "Part": "part",
-    "Material": "materials",
-    "material": "materials",
-    "material_table": "materials",
-    "winding_conductivity": "materials",
-    "build_mesh": "mesher",
-    "COARSE": "mesher",
-    "FINE": "mesher",
-    "mesh_quality": "quality",
-    "export_cad": "cad",
-    "check_cad": "surfaces",
-    "part_table": "areas",
-    "PartRow": "areas",
-    "drawing_of": "drawing",
-    "thumbnail_of": "drawing",
-    "catalogue": "gallery",
-    "write_library": "gallery",
-    "write_pages": "family_page",
-    "NamedMesh": "mesh",
-    "Patch": "mesh",
-    "Contact": "mesh",
+    "load_machine": "machine_file",
+    "library": "machine_file",
+    "Machine": "description.machine",
+    "import_step": "solids.step",
+    "Part": "description.part",
+    "Material": "description.materials",
+    "material": "description.materials",
+    "material_table": "description.materials",
+    "winding_conductivity": "description.materials",
+    "build_mesh": "meshing.mesher",
+    "COARSE": "meshing.mesher",
+    "FINE": "meshing.mesher",
+    "mesh_quality": "meshing.quality",
+    "export_cad": "solids.cad",
+    "check_cad": "solids.surfaces",
+    "part_table": "description.areas",
+    "PartRow": "description.areas",
+    "drawing_of": "drawings.drawing",
+    "thumbnail_of": "drawings.drawing",
+    "catalogue": "drawings.gallery",
+    "write_library": "drawings.gallery",
+    "write_pages": "drawings.family_page",
+    "NamedMesh": "meshing.mesh",
+    "Patch": "meshing.mesh",
+    "Contact": "meshing.mesh",
     "InputError": "errors",
     "ThermoscopeError": "errors",
     "MissingDependency": "errors",
-    "read_vtu": "meshio_io",
-    "write_vtu": "meshio_io",
+    "read_vtu": "meshing.meshio_io",
+    "write_vtu": "meshing.meshio_io",
 }
 __all__ = [*_HOME]
 

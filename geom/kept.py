@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from uuid import uuid4
 
-from geom.part import Part
+from geom.description.part import Part
 
 
 def kept_file(part: Part, folder: Path | str | None, kind: str, suffix: str) -> Path | None:

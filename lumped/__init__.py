@@ -1,15 +1,15 @@
 """lumped: how does the whole machine warm up?"""
 
-from lumped.audit import Audit, audit
-from lumped.balance import Balance, balance
-from lumped.build import bare_network, node_link, node_source, stream
-from lumped.coupled import Coupled, coupled
-from lumped.declared import load_circuits, load_network
-from lumped.ensemble import dask_cluster, ensemble
-from lumped.multipliers import multipliers
-from lumped.network import Link, Network, Parameter, Place, Recovery, Row, Source
-from lumped.simulate import Record, Run, simulate
-from lumped.steady import Steady, steady
+from lumped.declarations.network import load_circuits, load_network
+from lumped.drives.coupled import Coupled, coupled
+from lumped.integration.audit import Audit, audit
+from lumped.integration.balance import Balance, balance
+from lumped.integration.ensemble import dask_cluster, ensemble
+from lumped.integration.simulate import Record, Run, simulate
+from lumped.integration.steady import Steady, steady
+from lumped.model.build import bare_network, node_link, node_source, stream
+from lumped.model.multipliers import multipliers
+from lumped.model.network import Link, Network, Parameter, Place, Recovery, Row, Source
 
 __all__ = [
     "Audit",

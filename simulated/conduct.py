@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from geom.mesh import NamedMesh, Patch
+from geom.meshing.mesh import NamedMesh, Patch
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]

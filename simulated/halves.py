@@ -12,11 +12,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from geom import build_mesh, shapes
-from geom.machine import Machine
-from geom.mesh import Contact, NamedMesh, Patch
-from geom.part import Part, Prism, fluid
-from geom.profile import Loop, Profile, Vertex
+from geom import build_mesh
+from geom.description import shapes
+from geom.description.machine import Machine
+from geom.description.part import Part, Prism, fluid
+from geom.description.profile import Loop, Profile, Vertex
+from geom.meshing.mesh import Contact, NamedMesh, Patch
 
 ROTOR = ("shaft", "rotor.core", "slot.liner", "winding.armature", "winding.armature.left", "winding.armature.right",
          "commutator")  # fmt: skip

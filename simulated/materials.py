@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from fnmatch import fnmatch
 
-from geom.machine import Machine
+from geom.description.machine import Machine
 from simulated.conduct import Solid
 from simulated.draws import Draws
 

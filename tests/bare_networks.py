@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from fem.snapshots import Basis
+from fem.solvers.snapshots import Basis
 from geom import Machine
-from lumped.condensed import network_in
-from lumped.motor import boundaries, fluids, motor_network
-from lumped.network import Network
+from lumped.condensation.condensed import network_in
+from lumped.machine.motor import boundaries, fluids, motor_network
+from lumped.model.network import Network
 from thermoscope.pipeline import Prepared
 
 

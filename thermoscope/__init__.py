@@ -25,17 +25,17 @@ from thermoscope.shadowing import checked_rooms
 
 if TYPE_CHECKING:
     from geom.errors import InputError, MissingDependency, ThermoscopeError
-    from lumped.declared import load_network, read_network
-    from lumped.network import Network, Parameter
-    from lumped.record import Record
-    from lumped.simulate import Run, simulate
-    from lumped.steady import Steady, steady
+    from lumped.declarations.network import load_network, read_network
+    from lumped.integration.record import Record
+    from lumped.integration.simulate import Run, simulate
+    from lumped.integration.steady import Steady, steady
+    from lumped.model.network import Network, Parameter
     from thermoscope.interface.case import Case, effects, open
     from thermoscope.interface.machine import Field, Machine, build, machines
-    from validation.compare import Comparison
+    from validation.comparison.compare import Comparison
+    from validation.diagnosis.findings import Candidate, Diagnosis
     from validation.effects.base import Effect
-    from validation.findings import Candidate, Diagnosis
-    from validation.revise import Revision
+    from validation.revision.revise import Revision
 
 _HOME = {
     "open": "thermoscope.interface.case",
@@ -45,20 +45,20 @@ _HOME = {
     "machines": "thermoscope.interface.machine",
     "Machine": "thermoscope.interface.machine",
     "Field": "thermoscope.interface.machine",
-    "Comparison": "validation.compare",
-    "Diagnosis": "validation.findings",
-    "Candidate": "validation.findings",
-    "Revision": "validation.revise",
+    "Comparison": "validation.comparison.compare",
+    "Diagnosis": "validation.diagnosis.findings",
+    "Candidate": "validation.diagnosis.findings",
+    "Revision": "validation.revision.revise",
     "Effect": "validation.effects.base",
-    "Network": "lumped.network",
-    "Parameter": "lumped.network",
-    "Record": "lumped.record",
-    "Run": "lumped.simulate",
-    "simulate": "lumped.simulate",
-    "Steady": "lumped.steady",
-    "steady": "lumped.steady",
-    "load_network": "lumped.declared",
-    "read_network": "lumped.declared",
+    "Network": "lumped.model.network",
+    "Parameter": "lumped.model.network",
+    "Record": "lumped.integration.record",
+    "Run": "lumped.integration.simulate",
+    "simulate": "lumped.integration.simulate",
+    "Steady": "lumped.integration.steady",
+    "steady": "lumped.integration.steady",
+    "load_network": "lumped.declarations.network",
+    "read_network": "lumped.declarations.network",
     "InputError": "geom.errors",
     "MissingDependency": "geom.errors",
     "ThermoscopeError": "geom.errors",

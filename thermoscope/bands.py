@@ -13,13 +13,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.laws import CLOCK
-from lumped.network import Network, Row
-from lumped.signals import Signals
-from lumped.simulate import Record
+from lumped.integration.signals import Signals
+from lumped.integration.simulate import Record
+from lumped.model.network import Network, Row
+from lumped.transfer.laws import CLOCK
 from thermoscope.caches import cache_folder
-from thermoscope.files import write_whole
-from thermoscope.folder import Folder, Progress
+from thermoscope.case_folder.files import write_whole
+from thermoscope.case_folder.folder import Folder, Progress
+from thermoscope.case_folder.runs import looks
 from validation.bands import Bands, Belief, Place, bands, belief
 from validation.bands.band import NORMAL_95
 from validation.case import RUNNING, Recorded, Test
@@ -106,9 +107,8 @@ def of_tests(folder: Folder, progress: Progress) -> list[dict[str, Any]]:
 
     The readings' own uncertainty (1 sigma of the sheet) counts with it.
     """
-    from thermoscope.commands.simulate import looks
-    from thermoscope.error_budget import model_of
-    from validation.predict import record
+    from thermoscope.verification.error_budget import model_of
+    from validation.comparison.predict import record
 
     of, rows = belief_of(folder, progress), looks(model_of(folder)[0], folder)
     out = []

@@ -9,8 +9,8 @@ import sys
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 
-from thermoscope.answer import Answer
-from thermoscope.terminal import give, progress
+from thermoscope.console.answer import Answer
+from thermoscope.console.terminal import give, progress
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "microsoft-edge")
 VULKAN = "apt-get install -y libvulkan1 mesa-vulkan-drivers"
@@ -53,13 +53,13 @@ def as_root(command: str) -> str:
 
 
 def _gl() -> bool:
-    from viz.gl import off_screen_window
+    from viz.rendering.gl import off_screen_window
 
     return off_screen_window() is not None
 
 
 def _gl_fix() -> str:
-    from viz.gl import COMMAND
+    from viz.rendering.gl import COMMAND
 
     return COMMAND
 

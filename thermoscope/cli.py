@@ -10,9 +10,9 @@ from typing import Annotated
 import typer
 
 from geom.errors import ThermoscopeError
-from thermoscope.answer import LINES, within
-from thermoscope.files import checked_out, checked_target
-from thermoscope.groups import grouped, old_name
+from thermoscope.case_folder.files import checked_out, checked_target
+from thermoscope.console.answer import LINES, within
+from thermoscope.console.groups import grouped, old_name
 
 app = typer.Typer(
     help="See where your motor's thermal model is wrong, and why.",
@@ -76,8 +76,8 @@ def new(
     json: Json = None,
 ) -> None:
     """A case from your own recordings: guesses each column, asks what it cannot know. Same columns: one test a file."""
-    from thermoscope.commands.new import Wishes, settings
-    from thermoscope.commands.new import new as run
+    from thermoscope.commands.test.new import Wishes, settings
+    from thermoscope.commands.test.new import new as run
 
     wishes = Wishes(machine, network, out, yes, settings(constants or ()), period, (start, end))
     raise typer.Exit(run(files, wishes, json))
@@ -88,7 +88,7 @@ def build(
     machine: Machine, out: Out = None, accuracy: Accuracy = 2.0, json: Json = None,
 ) -> None:  # fmt: skip
     """Solids (STEP, STL, GLB), mesh and the smallest network that is accurate enough. Exit code 1 if none is."""
-    from thermoscope.commands.build import build as run
+    from thermoscope.commands.model.build import build as run
 
     raise typer.Exit(run(machine, out, json, accuracy))
 
@@ -96,7 +96,7 @@ def build(
 @app.command()
 def crosscheck(machine: Machine, out: Out = None, accuracy: Accuracy = 2.0, json: Json = None) -> None:
     """Where network and field disagree, which link is responsible, and the hand formula beside the field's value."""
-    from thermoscope.commands.crosscheck import crosscheck as run
+    from thermoscope.commands.model.crosscheck import crosscheck as run
 
     raise typer.Exit(run(machine, out, accuracy, json))
 
@@ -108,7 +108,7 @@ def simulate(
     out: Out = None, bands: Sure = None, json: Json = None,
 ) -> None:  # fmt: skip
     """Drive cycle in, temperatures out: a CSV per run, and how well its heat balance closed."""
-    from thermoscope.commands.simulate import simulate as run
+    from thermoscope.commands.use.simulate import simulate as run
 
     raise typer.Exit(run(case, cycle, out, json, bands))
 
@@ -123,7 +123,7 @@ def compare(
     json: Json = None,
 ) -> None:
     """The model against every test: error per sensor against its uncertainty. Exit code 1 if it disagrees."""
-    from thermoscope.commands.compare import compare as run
+    from thermoscope.commands.test.compare import compare as run
 
     raise typer.Exit(run(case, json, why, bands))
 
@@ -131,7 +131,7 @@ def compare(
 @app.command()
 def diagnose(case: Case, draws: Draws = None, json: Json = None) -> None:
     """Which effect is missing, how sure, what it is confused with, which test would decide. Exit code 1 if none."""
-    from thermoscope.commands.diagnose import diagnose as run
+    from thermoscope.commands.explain.diagnose import diagnose as run
 
     raise typer.Exit(run(case, json, older=draws is not None))
 
@@ -139,7 +139,7 @@ def diagnose(case: Case, draws: Draws = None, json: Json = None) -> None:
 @app.command()
 def add(case: Case, effect: Effect, anyway: Anyway = False, json: Json = None) -> None:
     """Add an effect, recalibrate, and show the error before and after on every test, held-out ones too."""
-    from thermoscope.commands.revise import add as run
+    from thermoscope.commands.model.revise import add as run
 
     raise typer.Exit(run(case, effect, anyway, json))
 
@@ -152,7 +152,7 @@ def answer(
     json: Json = None,
 ) -> None:  # fmt: skip
     """Answer what `diagnose` asked; the next diagnosis takes it as evidence, `undo` takes it back."""
-    from thermoscope.commands.answer import answer as run
+    from thermoscope.commands.explain.answer import answer as run
 
     raise typer.Exit(run(case, word, about, json))
 
@@ -160,7 +160,7 @@ def answer(
 @app.command()
 def remove(case: Case, effect: Effect, json: Json = None) -> None:
     """Take an effect out again and recalibrate."""
-    from thermoscope.commands.revise import remove as run
+    from thermoscope.commands.model.revise import remove as run
 
     raise typer.Exit(run(case, effect, json))
 
@@ -172,7 +172,7 @@ def undo(
     json: Json = None,
 ) -> None:
     """Step back: one revision more, equal to an earlier one. The history stays whole."""
-    from thermoscope.commands.revise import undo as run
+    from thermoscope.commands.model.revise import undo as run
 
     raise typer.Exit(run(case, to, json))
 
@@ -185,7 +185,7 @@ def improve(
     json: Json = None,
 ) -> None:
     """Diagnose, ask, add, again, until the model is adequate. Exit code 1 if it stops before."""
-    from thermoscope.commands.improve import improve as run
+    from thermoscope.commands.explain.improve import improve as run
 
     raise typer.Exit(run(case, yes, most, json))
 
@@ -200,7 +200,7 @@ def calibrate(
     json: Json = None,
 ) -> None:
     """Fit the declared parameters to the calibration tests, with intervals and what the data cannot identify."""
-    from thermoscope.commands.calibrate import calibrate as run
+    from thermoscope.commands.model.calibrate import calibrate as run
 
     raise typer.Exit(run(case, anyway, json, tuple(profile or ()), starts, seed))
 
@@ -208,7 +208,7 @@ def calibrate(
 @app.command()
 def report(case: Case, out: Out = None, json: Json = None) -> None:
     """One self-contained HTML page: verdict, pictures, numbers with their uncertainty."""
-    from thermoscope.commands.show import report as run
+    from thermoscope.commands.show.pages import report as run
 
     raise typer.Exit(run(case, out, json))
 
@@ -216,7 +216,7 @@ def report(case: Case, out: Out = None, json: Json = None) -> None:
 @app.command()
 def render(case: Case, out: Out = None, json: Json = None) -> None:
     """Pictures (PNG) and a recording (.rrd) for the rerun viewer."""
-    from thermoscope.commands.show import render as run
+    from thermoscope.commands.show.pages import render as run
 
     raise typer.Exit(run(case, out, json))
 
@@ -235,7 +235,7 @@ def picture(
     json: Json = None,
 ) -> None:
     """One picture: of the temperatures, the parts, the heat, or the model against its most telling test."""
-    from thermoscope.commands.picture import picture as run
+    from thermoscope.commands.show.picture import picture as run
 
     raise typer.Exit(run(case, what, out, json))
 
@@ -247,7 +247,7 @@ def serve(
     port: Annotated[int, typer.Option(min=0, max=65535, help="0 takes a free one.")] = 8710,
 ) -> None:
     """The workbench in the browser: the machine, its sensors, what is missing, add it and see the error fall."""
-    from thermoscope.commands.serve import serve as run
+    from thermoscope.commands.show.serve import serve as run
 
     raise typer.Exit(run(case, host, port))
 
@@ -255,7 +255,7 @@ def serve(
 @app.command()
 def machines(out: Out = None, json: Json = None) -> None:
     """The machines that come along; with --out also a page with a thumbnail of each."""
-    from thermoscope.commands.machines import machines as run
+    from thermoscope.commands.model.machines import machines as run
 
     raise typer.Exit(run(out, json))
 
@@ -266,7 +266,7 @@ def protocol(
     json: Json = None,
 ) -> None:
     """The thermal test: what to measure when, what is wrong with a record, and the temperatures it gives."""
-    from thermoscope.commands.protocol import protocol as run
+    from thermoscope.commands.bench.protocol import protocol as run
 
     raise typer.Exit(run(record, json))
 
@@ -278,7 +278,7 @@ def screen(
     out: Out = None, json: Json = None,
 ) -> None:  # fmt: skip
     """Which factors move the temperatures of a PM machine: effects with Lenth's limits, Morris or Sobol."""
-    from thermoscope.commands.screen import screen as run
+    from thermoscope.commands.bench.screen import screen as run
 
     raise typer.Exit(run(machine, design, json, out))
 
@@ -291,7 +291,7 @@ def two_paths(
     json: Json = None,
 ) -> None:
     """The network of a case as two resistances: machine to ambient, winding to machine."""
-    from thermoscope.commands.screen import two_paths as run
+    from thermoscope.commands.bench.screen import two_paths as run
 
     raise typer.Exit(run(case, winding, machine, json))
 
@@ -302,7 +302,7 @@ def curves(
     resolution: Annotated[float, typer.Option(min=1e-3, help="K, of the thermocouples.")] = 0.5, json: Json = None,
 ) -> None:  # fmt: skip
     """Warming curves: equilibrium, tau_95, the 3 to 4 % rule, equal tests pooled; exit code 1 if these two fail."""
-    from thermoscope.commands.curves import curves as run
+    from thermoscope.commands.bench.curves import curves as run
 
     raise typer.Exit(run(case, resolution, json))
 
@@ -310,7 +310,7 @@ def curves(
 @app.command()
 def bases(case: Case, json: Json = None) -> None:
     """Which base a machine stood on in each test. Exit code 1 if the readings exclude the one that a sheet says."""
-    from thermoscope.commands.bases import bases as run
+    from thermoscope.commands.bench.bases import bases as run
 
     raise typer.Exit(run(case, json))
 
@@ -321,7 +321,7 @@ def carry(
     json: Json = None,
 ) -> None:  # fmt: skip
     """The calibrated model of one case on other machines. Exit code 1 if one disagrees beyond its uncertainty."""
-    from thermoscope.commands.screen import carry as run
+    from thermoscope.commands.bench.screen import carry as run
 
     raise typer.Exit(run(source, targets, json))
 
@@ -338,7 +338,7 @@ def rate(
     bands: Sure = None, json: Json = None,
 ) -> None:  # fmt: skip
     """What a machine may carry: S1, S2, S3, S6, 10 s, 60 s, derating, overload; with bands, beside the last model."""
-    from thermoscope.commands.rate import rate as run
+    from thermoscope.commands.use.rate import rate as run
 
     given = tuple(limit or ()), tuple(at or ())
     raise typer.Exit(run(name, *given, losses, voltage, overload, top, bands, json))
@@ -355,7 +355,7 @@ def export(
     json: Json = None,
 ) -> None:
     """Results as a workbook or CSV files; or the model to run elsewhere: C99, FMU, JSON or MAT file."""
-    from thermoscope.commands.export import export as run
+    from thermoscope.commands.use.export import export as run
 
     raise typer.Exit(run(case, out, "csv" if csv else form, tuple(limit or ()), fmi, json))
 
@@ -366,7 +366,7 @@ def effects(
     json: Json = None,
 ) -> None:
     """All effects the diagnosis knows: what each needs, where it could sit in a case, what the others lack."""
-    from thermoscope.commands.effects import effects as run
+    from thermoscope.commands.explain.effects import effects as run
 
     raise typer.Exit(run(case, json))
 
@@ -374,7 +374,7 @@ def effects(
 @app.command()
 def quantities(json: Json = None) -> None:
     """What a column may measure, in which units, and what memory holds."""
-    from thermoscope.commands.effects import quantities as run
+    from thermoscope.commands.explain.effects import quantities as run
 
     raise typer.Exit(run(json))
 
@@ -382,7 +382,7 @@ def quantities(json: Json = None) -> None:
 @app.command()
 def doctor(case: Case, json: Json = None) -> None:
     """What looks wrong in a case's files before anything is fitted, with the cure. Exit code 1 if something does."""
-    from thermoscope.commands.doctor import doctor as run
+    from thermoscope.commands.test.doctor import doctor as run
 
     raise typer.Exit(run(case, json))
 

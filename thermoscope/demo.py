@@ -12,23 +12,23 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from geom.errors import InputError, MissingDependency
-from thermoscope.answer import Answer, Grid, within
-from thermoscope.commands.build import build
-from thermoscope.commands.calibrate import calibrate
-from thermoscope.commands.compare import compare
-from thermoscope.commands.diagnose import diagnose
+from thermoscope.case_folder.folder import find_case
+from thermoscope.case_folder.runs import fields, held
+from thermoscope.commands.explain.diagnose import diagnose
+from thermoscope.commands.model.build import build
+from thermoscope.commands.model.calibrate import calibrate
+from thermoscope.commands.model.revise import add
 from thermoscope.commands.opened import opened
-from thermoscope.commands.revise import add
 from thermoscope.commands.saved import saved_diagnosis
-from thermoscope.commands.show import by_interest, render, report
-from thermoscope.folder import find_case
-from thermoscope.runs import fields, held
-from thermoscope.terminal import give, notes, progress, say
+from thermoscope.commands.show.pages import by_interest, render, report
+from thermoscope.commands.test.compare import compare
+from thermoscope.console.answer import Answer, Grid, within
+from thermoscope.console.terminal import give, notes, progress, say
 
 if TYPE_CHECKING:
     from thermoscope.pipeline import Built
-    from validation.compare import Comparison
-    from validation.tuned import Tuned
+    from validation.calibration.tuned import Tuned
+    from validation.comparison.compare import Comparison
 
 CASE, KNOB = "road-test", "fan.flow"
 SHORT, LONGER = 7, 10  # lines of a chapter after its first sentence: the whole story is at most 80
@@ -153,7 +153,7 @@ def fresh(out: Path) -> Path:
 
 
 def machine_of(case: Path) -> Path:
-    from thermoscope.settings import read_settings
+    from thermoscope.case_folder.settings import read_settings
 
     machine = read_settings(case).machine
     assert machine is not None, "the demo's case is built from geometry"
@@ -169,7 +169,7 @@ def headline(words: str) -> None:
 
 
 def held_against(case: Path) -> Comparison:
-    from validation.compare import compare as compared
+    from validation.comparison.compare import compare as compared
 
     with progress() as tell:
         return compared(opened(str(case), tell).case)
@@ -177,7 +177,7 @@ def held_against(case: Path) -> Comparison:
 
 def old_way(case: Path) -> Tuned:
     """One knob, turned until the right flange agrees on the first road test."""
-    from validation.tuned import tuned
+    from validation.calibration.tuned import tuned
 
     with progress() as tell:
         folder = opened(str(case), tell)

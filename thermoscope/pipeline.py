@@ -9,19 +9,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fem.assembly import FieldModel, HasTensor, assemble
-from fem.material import Conductivity, LoopWound
-from fem.streams import cut
-from fem.winding import homogenised
+from fem.matrices.assembly import FieldModel, HasTensor, assemble
+from fem.matrices.material import Conductivity, LoopWound
+from fem.matrices.streams import cut
+from fem.matrices.winding import homogenised
 from geom import Machine, NamedMesh, build_mesh
-from geom.materials import Material
-from geom.shapes import evenly
-from lumped.motor import boundaries, fluids, motor_network, nominal_coefficients
-from lumped.motor_path import path_of
-from lumped.motor_shapes import wound
-from lumped.network import Network
-from lumped.reduction import Recipe, Reduction, reduce
-from lumped.zone import Zone
+from geom.description.materials import Material
+from geom.description.shapes import evenly
+from lumped.condensation.reduction import Recipe, Reduction, reduce
+from lumped.condensation.zone import Zone
+from lumped.machine.motor import boundaries, fluids, motor_network, nominal_coefficients
+from lumped.machine.path import path_of
+from lumped.machine.shapes import wound
+from lumped.model.network import Network
 from thermoscope.caches import cache_folder
 
 Progress = Callable[[str], None]

@@ -1,11 +1,11 @@
 """Does the model agree with the measurements, and if not, what is missing?"""
 
 from validation.case import AddedEffect, Case, Channel, Model, Test
-from validation.compare import Comparison, compare
+from validation.comparison.compare import Comparison, compare
+from validation.diagnosis.findings import Diagnosis
 from validation.effects import Effect, Scene, catalogue, effect, kinds
-from validation.findings import Diagnosis
 from validation.inference.diagnose import diagnose
-from validation.revise import Revision, add, calibrate, remove
+from validation.revision.revise import Revision, add, calibrate, remove
 
 __all__ = [
     "AddedEffect",

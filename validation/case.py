@@ -10,9 +10,9 @@ from typing import ClassVar, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.laws import CLOCK
-from lumped.network import Network, Parameter, Row
-from lumped.signals import Signals
+from lumped.integration.signals import Signals
+from lumped.model.network import Network, Parameter, Row
+from lumped.transfer.laws import CLOCK
 from validation.doubt import USUAL, Doubt
 
 Array = NDArray[np.float64]

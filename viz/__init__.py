@@ -6,16 +6,18 @@ from importlib import import_module
 from typing import Any
 
 _HOME = {
-    "Comparison": "data", "Sensor": "data", "sensors": "data",
-    "SplitMesh": "nodes", "split": "nodes", "require_gl": "gl", "off_screen_window": "gl",
-    "Wedge": "cut", "HALF": "cut", "QUARTER": "cut", "cutaway": "field", "pair": "field", "difference": "field",
-    "regions": "parts", "exploded": "parts", "missing_heat": "heat", "missing_in_machine": "missing",
-    "flux_arrows": "arrows", "heat_flux": "arrows",
-    "heat_flows": "flows", "sankey_of_losses": "sankey", "network_in_machine": "network", "animate": "animation",
-    "measured_and_model": "curves", "residuals": "curves", "before_after": "errors", "staircase": "errors",
-    "scores": "candidates", "posterior": "candidates", "confusion": "candidates",
-    "write_recording": "recording", "verify": "recording", "Report": "report", "write_report": "report",
-    "write_pdf": "pdf", "screened": "screening", "ranking": "screening",
+    "Comparison": "data", "Sensor": "data", "sensors": "data", "SplitMesh": "rendering.nodes",
+    "split": "rendering.nodes", "require_gl": "rendering.gl", "off_screen_window": "rendering.gl",
+    "Wedge": "rendering.cut", "HALF": "rendering.cut", "QUARTER": "rendering.cut", "cutaway": "machine.field",
+    "pair": "machine.field", "difference": "machine.field", "regions": "machine.parts", "exploded": "machine.parts",
+    "missing_heat": "figures.heat", "missing_in_machine": "machine.missing", "flux_arrows": "machine.arrows",
+    "heat_flux": "machine.arrows", "heat_flows": "figures.flows", "sankey_of_losses": "figures.sankey",
+    "network_in_machine": "machine.network", "animate": "machine.animation", "measured_and_model": "figures.curves",
+    "residuals": "figures.curves", "before_after": "figures.errors", "staircase": "figures.errors",
+    "scores": "figures.candidates", "posterior": "figures.candidates", "confusion": "figures.candidates",
+    "write_recording": "recordings.recording", "verify": "recordings.recording", "Report": "pages.report",
+    "write_report": "pages.report", "write_pdf": "pages.pdf", "screened": "figures.screening",
+    "ranking": "figures.screening",
 }  # fmt: skip
 __all__ = sorted(_HOME)
 

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from geom.identity import Identity
-from geom.roles import Role
+from geom.description.identity import Identity
+from geom.description.roles import Role
 
 if TYPE_CHECKING:
     from matplotlib.colors import LinearSegmentedColormap

@@ -8,14 +8,15 @@ from __future__ import annotations
 from html import escape
 from typing import Any
 
-from geom.machine import Machine
-from lumped.network import Network
-from validation.compare import Comparison as Compared
-from validation.findings import Diagnosis
-from validation.revise import Revision
-from viz import candidates, curves, html, paper, words
+from geom.description.machine import Machine
+from lumped.model.network import Network
+from validation.comparison.compare import Comparison as Compared
+from validation.diagnosis.findings import Diagnosis
+from validation.revision.revise import Revision
 from viz.data import Comparison
-from viz.report import Report, render
+from viz.figures import candidates, curves, paper
+from viz.pages import html, words
+from viz.pages.report import Report, render
 
 SHOWN = 10
 

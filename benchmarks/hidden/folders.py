@@ -16,9 +16,9 @@ from typing import Any
 
 from hidden.answer import answer
 from hidden.cases import Label
-from lumped.network import Network
-from thermoscope.folder import load_case
-from validation.effects.contact import joints, label
+from lumped.model.network import Network
+from thermoscope.case_folder.folder import load_case
+from validation.effects.conduction.contact import joints, label
 
 CLASSES = {"confounded": "pair", "data": "fault", "outside": "foreign"}
 SIZES = {"small": 1.0, "medium": 2.0, "large": 4.0}

@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validation import Case
+from validation.comparison.sheet import Segment
 from validation.inference.evidence import Evidence, calibrated_case, candidates, refit, scored, starts
-from validation.sheet import Segment
 
 Array = NDArray[np.float64]
 SIGMA_K, LRT, AIC = 0.5, 3.84, 2.0

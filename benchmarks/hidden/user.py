@@ -10,8 +10,8 @@ from typing import Any
 
 from hidden.kinds import KINDS
 from hidden.truth.archetype import Archetype, Edit, Record
-from lumped.declared import read_network
-from lumped.network import Network
+from lumped.declarations.network import read_network
+from lumped.model.network import Network
 from validation.case import Case, Channel, Model, Test
 
 MACHINES = Path(__file__).parent / "machines"

@@ -9,11 +9,11 @@ import numpy as np
 from PIL import Image
 
 import viz
-from fem.material import Conductivity
+from fem.matrices.material import Conductivity
 from geom import load_machine
 from lumped import Record, balance, simulate
 from thermoscope.pipeline import Built, build
-from viz.parts import exploded, regions
+from viz.machine.parts import exploded, regions
 
 HERE = Path(__file__).parent
 INPUTS = {"current_A": 130.0, "speed_rpm": 1000.0, "fan_flow_m3h": 138.0}

@@ -9,11 +9,12 @@ from pathlib import Path
 
 from PIL import Image
 
-from thermoscope.commands.show import by_interest
-from thermoscope.folder import load_case
-from thermoscope.runs import before_last, fields, held
-from viz import Comparison, cutaway, scene, sensors, split
+from thermoscope.case_folder.folder import load_case
+from thermoscope.case_folder.runs import before_last, fields, held
+from thermoscope.commands.show.pages import by_interest
+from viz import Comparison, cutaway, sensors, split
 from viz.colours import LIGHT
+from viz.rendering import scene
 
 
 def draw(case: Path, png: Path) -> None:

@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from geom.parameters import Parameter
-from geom.part import Part, Port
+from geom.description.parameters import Parameter
+from geom.description.part import Part, Port
 
 
 @dataclass(frozen=True)

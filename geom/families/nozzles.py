@@ -7,10 +7,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from geom import shapes
-from geom.part import Made, Part, Port, Prism, Rod
-from geom.profile import Loop, Profile, Vertex
-from geom.roles import Role
+from geom.description import shapes
+from geom.description.part import Made, Part, Port, Prism, Rod
+from geom.description.profile import Loop, Profile, Vertex
+from geom.description.roles import Role
 
 TUBE = 1.5  # outer diameter, and length, of a port over its bore
 CLEAR = 0.55  # of the bore: from its middle to the end of the channel

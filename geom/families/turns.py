@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from geom.description.part import Helix
 from geom.families.nozzles import CLEAR
-from geom.part import Helix
 
 _END = 0.8  # of a rib: what a helix may take from the walls at its ends
 

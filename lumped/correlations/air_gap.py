@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from lumped.correlations.info import Info, checked
-from lumped.properties import Fluid, air
+from lumped.transfer.properties import Fluid, air
 
 AXIAL_RE = 3e3
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from lumped.correlations.info import Info, checked
-from lumped.properties import ZERO_C
+from lumped.transfer.properties import ZERO_C
 
 K_AIR = 0.026
 SIGMA = 5.670374419e-8

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from lumped.correlations.info import Info, checked
-from lumped.properties import Fluid, air
+from lumped.transfer.properties import Fluid, air
 
 LAMINAR, TURBULENT, COIL_TURBULENT = 2300.0, 4000.0, 22001.0
 

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from lumped.correlations.info import Info, checked
 from lumped.correlations.natural import G, Of
-from lumped.properties import Fluid, air
+from lumped.transfer.properties import Fluid, air
 
 INVERSE_METRE = 11.8 / 0.0254  # the paper's 11.8 per inch
 

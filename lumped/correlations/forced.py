@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from lumped.correlations.info import Info, checked
-from lumped.properties import Fluid, air
+from lumped.transfer.properties import Fluid, air
 
 CRITICAL_RE = 5e5
 

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 
 from lumped.correlations.info import Info, checked
-from lumped.properties import Fluid, air
+from lumped.transfer.properties import Fluid, air
 
 G = 9.80665
 MOST_CURVED = 5.0

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from lumped.correlations.info import Info, checked
-from lumped.properties import Fluid, air
+from lumped.transfer.properties import Fluid, air
 
 DISC_CRITICAL = 2.4e5
 TORQUE_LAWS = ((10.0, 1.0), (2.0, 0.6), (1.03, 0.5), (0.065, 0.2))

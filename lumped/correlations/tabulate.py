@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable
 import numpy as np
 
 from lumped.correlations.info import Info, RangeWarning
-from lumped.laws import FILMS, FIRST_C, STEP_K, FilmTable, Table
+from lumped.transfer.laws import FILMS, FIRST_C, STEP_K, FilmTable, Table
 
 STILL_AIR_K = tuple(float(d) for d in np.concatenate([[0.0], np.geomspace(0.1, 300.0, 48)]))
 

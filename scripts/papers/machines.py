@@ -11,18 +11,18 @@ import numpy as np
 from scipy.stats import t as student
 
 from geom import load_machine
-from lumped.network import Network
+from lumped.model.network import Network
 from scripts.papers.page import Row, Section
-from thermoscope.folder import Folder, load_case
-from thermoscope.runs import readings
-from validation.calibrate import calibrated
+from thermoscope.case_folder.folder import Folder, load_case
+from thermoscope.case_folder.runs import readings
+from validation.calibration.calibrate import calibrated
+from validation.calibration.fitting import working
 from validation.case import Case, Test
-from validation.fitting import working
-from validation.procedure.base_heat import BaseHeat, base_heat
-from validation.procedure.carry import Carried, carried, settled
-from validation.procedure.repeats import Repeats, normalised_error, pooled_curves, repeats
-from validation.procedure.two_paths import TwoPaths, of_test
-from validation.procedure.which_base import which_base
+from validation.procedure.measuring.repeats import Repeats, normalised_error, pooled_curves, repeats
+from validation.procedure.reduction.base_heat import BaseHeat, base_heat
+from validation.procedure.reduction.carry import Carried, carried, settled
+from validation.procedure.reduction.two_paths import TwoPaths, of_test
+from validation.procedure.reduction.which_base import which_base
 
 CASES = Path(__file__).resolve().parents[2] / "cases"
 BASE_TESTS = ("wood", "plate", "bench")

@@ -10,14 +10,14 @@ from geom import load_machine
 from scripts.papers.figures import figure_1, figure_2, figures_3_and_9
 from scripts.papers.machines import bases, circuits, constructive, machines, repeated, table_two, wrong_base
 from scripts.papers.page import Row, Section, page
-from validation.procedure.factorial import full
-from validation.procedure.meters import OHMMETER, VOLTMETER, Meter, Range
-from validation.procedure.readings import COPPER, NDFEB, Winding, magnet_rise
-from validation.procedure.screening import STEP, TABLE_I, WITH_GAP, Screening, screen, varied
-from validation.procedure.sensitivity import Ranking, morris, sobol
-from validation.procedure.spread import Spread, spread
-from validation.procedure.switch_off import Cooling, exponentials, rule_150, semilog_at
-from viz.screening import screened
+from validation.procedure.factors.factorial import full
+from validation.procedure.factors.screening import STEP, TABLE_I, WITH_GAP, Screening, screen, varied
+from validation.procedure.factors.sensitivity import Ranking, morris, sobol
+from validation.procedure.measuring.meters import OHMMETER, VOLTMETER, Meter, Range
+from validation.procedure.measuring.readings import COPPER, NDFEB, Winding, magnet_rise
+from validation.procedure.measuring.spread import Spread, spread
+from validation.procedure.measuring.switch_off import Cooling, exponentials, rule_150, semilog_at
+from viz.figures.screening import screened
 
 TITLE = "Thermal Test Procedure and Analytical Model Calibration Method for Electrical Machines"
 RISE = 80.0

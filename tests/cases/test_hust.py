@@ -6,11 +6,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from lumped.simulate import Record, simulate
-from thermoscope.folder import load_case
-from validation.compare import compare
-from validation.fitting import with_model
-from validation.revise import add, calibrate
+from lumped.integration.simulate import Record, simulate
+from thermoscope.case_folder.folder import load_case
+from validation.calibration.fitting import with_model
+from validation.comparison.compare import compare
+from validation.revision.revise import add, calibrate
 
 HELD_OUT = {"id_5", "id_8", "id_11", "id_15"}
 NAMED = ("gap.convection@rotor|stator",)

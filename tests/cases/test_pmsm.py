@@ -11,11 +11,11 @@ import pytest
 
 from scripts.papers import machines
 from scripts.pmsm_cases import TESTS, folder_of, text
+from thermoscope.case_folder.folder import load_case
 from thermoscope.cli import main
-from thermoscope.folder import load_case
-from validation.procedure.carry import carried, settled
-from validation.procedure.repeats import repeats
-from validation.procedure.which_base import bases_tried, declared_base, on_base, which_base, wrong_bases
+from validation.procedure.measuring.repeats import repeats
+from validation.procedure.reduction.carry import carried, settled
+from validation.procedure.reduction.which_base import bases_tried, declared_base, on_base, which_base, wrong_bases
 
 GAP = "k.liner-gap"
 SWITCHES = {"plate": "on_plate", "bench": "on_bench"}

@@ -6,14 +6,14 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from lumped.simulate import simulate
-from thermoscope.folder import load_case
-from validation.calibrate import minimise
+from lumped.integration.simulate import simulate
+from thermoscope.case_folder.folder import load_case
+from validation.calibration.calibrate import minimise
+from validation.calibration.fitting import with_model, working
 from validation.case import AddedEffect
-from validation.compare import compare
-from validation.fitting import with_model, working
-from validation.predict import record
-from validation.revise import start
+from validation.comparison.compare import compare
+from validation.comparison.predict import record
+from validation.revision.revise import start
 
 COOLED = (AddedEffect("convection.constant", "heater1"), AddedEffect("convection.constant", "heater2"))
 EXCHANGE = AddedEffect("coupling", "heater1|heater2")

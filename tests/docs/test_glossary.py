@@ -7,7 +7,7 @@ from typing import get_args
 
 import pytest
 
-from validation.findings import Decided, Verdict
+from validation.diagnosis.findings import Decided, Verdict
 
 # Words of everyday English, units alone, and letters of a formula whose title says them.
 PLAIN = {
@@ -33,7 +33,7 @@ def table(root):
 
 def headers(root):
     """The second argument of every Grid, and every list called headers, in the commands and the demo."""
-    for file in [*(root / "thermoscope/commands").glob("*.py"), root / "thermoscope/demo.py"]:
+    for file in [*(root / "thermoscope/commands").rglob("*.py"), root / "thermoscope/demo.py"]:
         for node in ast.walk(ast.parse(file.read_text())):
             if isinstance(node, ast.Assign) and getattr(node.targets[0], "id", "").lower() == "headers":
                 yield from words_in(node.value)

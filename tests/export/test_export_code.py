@@ -8,17 +8,17 @@ import numpy as np
 import pytest
 from random_networks import built, machine
 
-from lumped.build import bare_network, node_link, node_source
-from lumped.laws import FILMS, FilmTable, Fixed, Linear, Table
-from lumped.network import Row
-from lumped.simulate import Record, simulate
-from thermoscope.commands.export import export
-from thermoscope.error_budget import model_of
+from lumped.integration.simulate import Record, simulate
+from lumped.model.build import bare_network, node_link, node_source
+from lumped.model.network import Row
+from lumped.transfer.laws import FILMS, FilmTable, Fixed, Linear, Table
+from thermoscope.case_folder.folder import load_case
+from thermoscope.commands.use.export import export
 from thermoscope.export.c_code import c_files
 from thermoscope.export.drive import AGREES_K, Compiled, difference, sampled
 from thermoscope.export.model import Output, exported, packed
-from thermoscope.folder import load_case
-from validation.predict import record
+from thermoscope.verification.error_budget import model_of
+from validation.comparison.predict import record
 
 CASES = Path(__file__).parents[2] / "cases"
 SHIPPED = sorted(str(p.parent.relative_to(CASES)) for p in CASES.rglob("case.toml"))

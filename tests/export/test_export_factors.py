@@ -9,23 +9,23 @@ from numpy.testing import assert_allclose
 
 import lumped
 from geom.errors import InputError
-from lumped.declared_films import FilmOver
-from lumped.declared_mixed import Share
-from lumped.exchanger import CellFilm, Exchanger, Flow, Rate
-from lumped.laws import CONSTANT, Fixed, InputPower, Law, Power
-from lumped.loss_map import MapLoss
-from lumped.loss_measured import MeasuredLoss, Negative
-from lumped.losses import BrushLoss, CopperLoss, IronLoss, PowerLoss, RippleLoss
-from lumped.motor_bases import Switched
-from lumped.motor_laws import Interpolated
-from lumped.reversal import Direction, OneWay
+from lumped.declarations.films import FilmOver
+from lumped.declarations.mixed import Share
+from lumped.machine.bases import Switched
+from lumped.machine.laws import Interpolated
+from lumped.sources.loss_map import MapLoss
+from lumped.sources.loss_measured import MeasuredLoss, Negative
+from lumped.sources.losses import BrushLoss, CopperLoss, IronLoss, PowerLoss, RippleLoss
+from lumped.transfer.exchanger import CellFilm, Exchanger, Flow, Rate
+from lumped.transfer.laws import CONSTANT, Fixed, InputPower, Law, Power
+from lumped.transfer.reversal import Direction, OneWay
 from thermoscope.export.expansion import Unknown, expanded
 from thermoscope.export.products import value
 from thermoscope.export.tables import factors
+from validation.calibration.forms import Bend, BendOfDifference, BendOfTemperature
 from validation.effects.build import Shaped
-from validation.effects.fouling import hours
-from validation.effects.iron_pwm import Ripple
-from validation.forms import Bend, BendOfDifference, BendOfTemperature
+from validation.effects.losses.iron_pwm import Ripple
+from validation.effects.streams.fouling import hours
 
 
 def film(speed):

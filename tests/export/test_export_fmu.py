@@ -11,18 +11,18 @@ from scipy.io import loadmat
 from small_case import small_case
 from test_export_code import curved, states
 
-from lumped.simulate import initial_state, simulate
-from thermoscope.commands.export import export
-from thermoscope.error_budget import model_of
+from lumped.integration.simulate import initial_state, simulate
+from thermoscope.case_folder.folder import load_case
+from thermoscope.commands.use.export import export
+from thermoscope.console.terminal import plain
 from thermoscope.export.c_code import RUNTIME
 from thermoscope.export.compilers import here
 from thermoscope.export.document import document, mat
 from thermoscope.export.drive import AGREES_K, sampled, signals_of
 from thermoscope.export.fmu import fmu
 from thermoscope.export.model import exported, packed
-from thermoscope.folder import load_case
-from thermoscope.terminal import plain
-from validation.predict import record
+from thermoscope.verification.error_budget import model_of
+from validation.comparison.predict import record
 
 fmpy = pytest.importorskip("fmpy")
 

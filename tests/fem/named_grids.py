@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from fem.grids import box
+from fem.matrices.grids import box
 
 
 def named(centres, *choices, default=""):

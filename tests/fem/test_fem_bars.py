@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from named_grids import bar
 
-from fem.assembly import assemble
-from fem.material import isotropic
-from fem.solve import Fluids, Solver, only_fixed, steady
-from fem.transient import transient
+from fem.matrices.assembly import assemble
+from fem.matrices.material import isotropic
+from fem.solvers.solve import Fluids, Solver, only_fixed, steady
+from fem.solvers.transient import transient
 
 GIVEN = 1e9  # stands for a given wall temperature, W/m2/K
 

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from fem.assembly import assemble
-from fem.grids import box, ring
-from fem.material import isotropic, laminated
-from fem.solve import Solver, only_fixed, steady
+from fem.matrices.assembly import assemble
+from fem.matrices.grids import box, ring
+from fem.matrices.material import isotropic, laminated
+from fem.solvers.solve import Solver, only_fixed, steady
 
 K, Q, HOT, H = 0.8, 2e5, 20.0, 1e9
 

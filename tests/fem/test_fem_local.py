@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from fem.assembly import assemble
-from fem.grids import ring
-from fem.local import local_solutions, of_unit_energy
-from fem.material import isotropic, laminated
-from fem.snapshots import Recipe, alone, bases, drawn, energies, principals, snapshots
-from fem.solve import Solver
+from fem.matrices.assembly import assemble
+from fem.matrices.grids import ring
+from fem.matrices.material import isotropic, laminated
+from fem.solvers.local import local_solutions, of_unit_energy
+from fem.solvers.snapshots import Recipe, alone, bases, drawn, energies, principals, snapshots
+from fem.solvers.solve import Solver
 
 CONTACTS = {"core|yoke": 500.0}
 

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from fem.assembly import assemble
-from fem.material import Conductivity
-from fem.newton import settle
-from fem.solve import Solver, steady
-from fem.streams import Stream, cut, flowing
-from fem.terms import CopperLoss, Radiation
+from fem.matrices.assembly import assemble
+from fem.matrices.material import Conductivity
+from fem.matrices.streams import Stream, cut, flowing
+from fem.matrices.terms import CopperLoss, Radiation
+from fem.solvers.newton import settle
+from fem.solvers.solve import Solver, steady
 from geom import build_mesh, library, load_machine
 
 TINY = {"size_m": 0.1, "segments": 36, "across": 1, "axial_m": 0.2}

@@ -5,13 +5,13 @@ import pytest
 from named_grids import bar, named
 from scipy.optimize import brentq
 
-from fem.assembly import assemble
-from fem.grids import box
-from fem.material import isotropic
-from fem.newton import settle
-from fem.solve import Iterative, Solver, only_fixed
-from fem.terms import SIGMA, ZERO_C, CopperLoss, Radiation, VaryingConductivity
-from fem.transient import transient
+from fem.matrices.assembly import assemble
+from fem.matrices.grids import box
+from fem.matrices.material import isotropic
+from fem.matrices.terms import SIGMA, ZERO_C, CopperLoss, Radiation, VaryingConductivity
+from fem.solvers.newton import settle
+from fem.solvers.solve import Iterative, Solver, only_fixed
+from fem.solvers.transient import transient
 from geom.errors import InputError
 
 GIVEN = 1e9  # a film so good that its fluid's temperature is the wall's, W/m2/K

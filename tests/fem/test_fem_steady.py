@@ -9,12 +9,12 @@ from scipy.sparse.linalg import spsolve
 from skfem import Basis, BilinearForm, ElementTetP1, MeshTet
 from skfem.helpers import dot, grad
 
-from fem.assembly import assemble
-from fem.grids import box, cylinder, ring, sector
-from fem.material import Conductivity, isotropic, laminated
-from fem.multifrontal import analyse, factorise
-from fem.pardiso import Pardiso
-from fem.solve import Fluids, Iterative, Solver, only_fixed, steady
+from fem.matrices.assembly import assemble
+from fem.matrices.grids import box, cylinder, ring, sector
+from fem.matrices.material import Conductivity, isotropic, laminated
+from fem.solvers.multifrontal import analyse, factorise
+from fem.solvers.pardiso import Pardiso
+from fem.solvers.solve import Fluids, Iterative, Solver, only_fixed, steady
 from geom.errors import InputError
 
 

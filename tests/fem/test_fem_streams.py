@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from named_grids import bar, named
 
-from fem.assembly import assemble
-from fem.gap import AirGap
-from fem.grids import ring
-from fem.material import isotropic
-from fem.solve import Fluids, Solver, only_fixed, steady
-from fem.streams import Stream, cut, flowing
+from fem.matrices.assembly import assemble
+from fem.matrices.gap import AirGap
+from fem.matrices.grids import ring
+from fem.matrices.material import isotropic
+from fem.matrices.streams import Stream, cut, flowing
+from fem.solvers.solve import Fluids, Solver, only_fixed, steady
 from geom.errors import InputError
 from lumped.correlations.air_gap import taylor_film
 

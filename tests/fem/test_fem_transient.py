@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from fem.assembly import assemble
-from fem.grids import box
-from fem.material import isotropic
-from fem.solve import Solver, only_fixed
-from fem.transient import transient
+from fem.matrices.assembly import assemble
+from fem.matrices.grids import box
+from fem.matrices.material import isotropic
+from fem.solvers.solve import Solver, only_fixed
+from fem.solvers.transient import transient
 
 L, k, rho_cp, h = 0.05, 2.0, 2e6, 80.0  # Bi = 2
 

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from fem.material import Conductivity
-from fem.winding import HEXAGONAL, SQUARE, bundle, flat_cell, homogenised, unit_cell
+from fem.matrices.material import Conductivity
+from fem.matrices.winding import HEXAGONAL, SQUARE, bundle, flat_cell, homogenised, unit_cell
+from geom.description.materials import filled, material, winding_conductivity
 from geom.errors import InputError
-from geom.materials import filled, material, winding_conductivity
 
 COPPER, RESIN = 400.0, 0.2
 

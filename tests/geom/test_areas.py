@@ -5,9 +5,10 @@ import math
 import pytest
 from measures import area
 
-from geom import material, part_table, shapes
-from geom.machine import Machine
-from geom.part import Part, fluid
+from geom import material, part_table
+from geom.description import shapes
+from geom.description.machine import Machine
+from geom.description.part import Part, fluid
 
 
 @pytest.fixture(scope="module")

@@ -4,10 +4,11 @@ import math
 
 import pytest
 
-from geom import InputError, check_cad, export_cad, shapes
-from geom.cad import solids
-from geom.machine import Machine
-from geom.part import Part
+from geom import InputError, check_cad, export_cad
+from geom.description import shapes
+from geom.description.machine import Machine
+from geom.description.part import Part
+from geom.solids.cad import solids
 
 
 @pytest.fixture(scope="module")

@@ -5,9 +5,10 @@ import xml.etree.ElementTree as ElementTree
 
 import pytest
 
-from geom import drawing_of, load_machine, shapes, write_pages
+from geom import drawing_of, load_machine, write_pages
+from geom.description import shapes
+from geom.drawings.views import path
 from geom.families import families
-from geom.views import path
 
 SVG = "{http://www.w3.org/2000/svg}"
 

@@ -65,8 +65,8 @@ def test_cooling_in_words():
 
 
 def test_command_lists_the_library_as_document_and_as_table(page, tmp_path, capsys):
-    from thermoscope.answer import within
-    from thermoscope.commands.machines import machines
+    from thermoscope.commands.model.machines import machines
+    from thermoscope.console.answer import within
 
     assert machines(tmp_path / "lib", "-") == 0
     document = json.loads(capsys.readouterr().out)

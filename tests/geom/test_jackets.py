@@ -7,9 +7,9 @@ import pytest
 from measures import area
 
 from geom import COARSE, InputError, build_mesh, export_cad, import_step, library, load_machine
-from geom.carved import carved, channel
-from geom.machine import machine_from
-from geom.part import Helix
+from geom.description.part import Helix
+from geom.machine_file import machine_from
+from geom.solids.carved import carved, channel
 
 SHIPPED = [name for name in library() if "jacket" in name]
 HELICAL = ["ipmsm-48s8p-jacket", "series-dc-100kw-jacket-one-helical", "series-dc-100kw-jacket-two"]

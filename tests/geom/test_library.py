@@ -18,8 +18,8 @@ from geom import (
     read_vtu,
     write_vtu,
 )  # fmt: skip
-from geom.machine import machine_from
-from geom.mesher import _planned
+from geom.machine_file import machine_from
+from geom.meshing.mesher import _planned
 
 
 @pytest.fixture(scope="module", params=library())

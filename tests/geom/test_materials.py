@@ -5,8 +5,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from geom import InputError, material, material_table, winding_conductivity
-from geom.machine import machine_from
-from geom.materials import K_AIR
+from geom.description.materials import K_AIR
+from geom.machine_file import machine_from
 
 VALUES = {"k_plane", "k_axial", "rho", "cp", "emissivity"}
 

@@ -115,7 +115,7 @@ def test_finer_in_every_direction(motor, motor_mesh):
 
 def test_cached_mesh_is_the_same_and_follows_the_content(motor, tmp_path, monkeypatch):
     first = build_mesh(motor, size_m=0.08, segments=36, across=1, cache=tmp_path)
-    monkeypatch.setattr("geom.mesher.partition", None)
+    monkeypatch.setattr("geom.meshing.mesher.partition", None)
     again = build_mesh(motor, size_m=0.08, segments=36, across=1, cache=tmp_path)
     assert np.array_equal(first.points, again.points)
     assert np.array_equal(first.tets, again.tets)
@@ -135,7 +135,7 @@ def test_point_in_lies_in_the_part(motor, motor_mesh):
 
 
 def test_machine_without_fins_or_with_ducts_meshes_too():
-    from geom.machine import machine_from
+    from geom.machine_file import machine_from
 
     geometry = {"housing": {"fins": 0}, "rotor": {"ducts": 8, "duct_diameter_mm": 16.0}}
     table = {"machine": {"family": "series-dc"}, "geometry": geometry}

@@ -2,11 +2,12 @@
 
 import pytest
 
-from geom import InputError, shapes
-from geom.blocks import find_blocks, find_columns
-from geom.part import Part, fluid
-from geom.partition import partition
-from geom.voids import filled
+from geom import InputError
+from geom.description import shapes
+from geom.description.part import Part, fluid
+from geom.meshing.blocks import find_blocks, find_columns
+from geom.meshing.partition import partition
+from geom.meshing.voids import filled
 
 
 def body(name, profile, z0, z1):

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from geom import shapes
-from geom.profile import ArcGrid, Profile
+from geom.description import shapes
+from geom.description.profile import ArcGrid, Profile
 
 angles = st.floats(0.05, 3.0)
 

@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 
 from geom import InputError, check_cad
 from geom.families import families
-from geom.machine import machine_from
-from geom.partition import partition
-from geom.voids import filled
+from geom.machine_file import machine_from
+from geom.meshing.partition import partition
+from geom.meshing.voids import filled
 
 # few slots and fins: a machine with 9 slots goes wrong in the same ways as one with 90, ten times as fast
 FEW = {

@@ -5,8 +5,8 @@ from dataclasses import replace
 import pytest
 
 from geom import build_mesh, check_cad, export_cad
-from geom.cad import solids
-from geom.machine import machine_from
+from geom.machine_file import machine_from
+from geom.solids.cad import solids
 
 TINY = {"size_m": 0.2, "segments": 24, "across": 1}
 
@@ -14,21 +14,21 @@ TINY = {"size_m": 0.2, "segments": 24, "across": 1}
 @pytest.fixture
 def built(monkeypatch):
     """Names of the parts whose solids are built, as it happens."""
-    from geom import cad
+    from geom.solids import cad
 
     names, build = [], cad._built
-    monkeypatch.setattr("geom.cad._built", lambda part: names.append(part.name) or build(part))
+    monkeypatch.setattr("geom.solids.cad._built", lambda part: names.append(part.name) or build(part))
     return names
 
 
 @pytest.fixture
 def planned(monkeypatch):
     """How often the plane is partitioned."""
-    from geom import mesher
+    from geom.meshing import mesher
 
     counted, partition = [], mesher.partition
     mesher._planned.cache_clear()
-    monkeypatch.setattr("geom.mesher.partition", lambda *a: counted.append(1) or partition(*a))
+    monkeypatch.setattr("geom.meshing.mesher.partition", lambda *a: counted.append(1) or partition(*a))
     return counted
 
 

@@ -6,7 +6,7 @@ import trimesh
 from thinned import thinned
 
 from geom import check_cad, export_cad, library, load_machine
-from geom.cad import solids
+from geom.solids.cad import solids
 
 
 def only_new_parts():

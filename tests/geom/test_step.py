@@ -6,10 +6,11 @@ import cadquery as cq
 import pytest
 from measures import tet_volumes
 
-from geom import COARSE, InputError, build_mesh, export_cad, import_step, load_machine, part_table, shapes
-from geom.machine import Machine
-from geom.part import Part
-from geom.slicing import sliced
+from geom import COARSE, InputError, build_mesh, export_cad, import_step, load_machine, part_table
+from geom.description import shapes
+from geom.description.machine import Machine
+from geom.description.part import Part
+from geom.solids.slicing import sliced
 
 R, L = 0.02, 0.1
 

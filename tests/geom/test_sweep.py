@@ -5,12 +5,12 @@ import pytest
 from test_random_machines import FAMILIES, FEW, build, table_of
 
 from geom import InputError, check_cad
-from geom.draws import random_geometry
+from geom.description.draws import random_geometry
+from geom.description.reading import usual_geometry
 from geom.families import families
-from geom.machine import machine_from
-from geom.partition import partition
-from geom.reading import usual_geometry
-from geom.voids import filled
+from geom.machine_file import machine_from
+from geom.meshing.partition import partition
+from geom.meshing.voids import filled
 
 ROOT = {"series-dc": "rotor", "pmsm": "stator", "tefc": "stator"}
 

@@ -6,12 +6,12 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from geom import shapes
-from geom.blocks import find_blocks, find_columns
-from geom.delaunay import interior_points, nudged, triangulate_face
-from geom.part import Part
-from geom.partition import partition
-from geom.triangulate import triangulate
+from geom.description import shapes
+from geom.description.part import Part
+from geom.meshing.blocks import find_blocks, find_columns
+from geom.meshing.delaunay import interior_points, nudged, triangulate_face
+from geom.meshing.partition import partition
+from geom.meshing.triangulate import triangulate
 
 
 def flat_area(points, triangles):

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from recordings import case_of, changed, edited
 
-from thermoscope.folder import load_case
-from validation.compare import compare
+from thermoscope.case_folder.folder import load_case
+from validation.comparison.compare import compare
 
 STAND = "tests/stand.toml"
 

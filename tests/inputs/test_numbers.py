@@ -6,10 +6,10 @@ import pytest
 from documents import ROOT, documented, key_of, numbers, put, shipped
 
 from geom.errors import InputError
-from geom.machine import machine_from
-from lumped.bounds import KEYS, UNITS, Bounds, bounds
-from lumped.declared import read_network
-from thermoscope.sheet import read_sheet
+from geom.machine_file import machine_from
+from lumped.declarations.network import read_network
+from lumped.schemas.bounds import KEYS, UNITS, Bounds, bounds
+from thermoscope.recordings.sheet import read_sheet
 
 NO_NUMBER = {
     "nan": math.nan, "inf": math.inf, "huge": 10**400, "-1e300": -1e300, "word": "12", "true": True, "list": [[1.0]],

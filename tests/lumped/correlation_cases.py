@@ -11,7 +11,7 @@ from functools import partial
 import lumped.correlations
 from lumped.correlations import Info, air_gap, bearings, contacts, ducts, end_space, fins, forced, natural, rotating
 from lumped.correlations import windings as wires
-from lumped.properties import Fluid, air, ethylene_glycol
+from lumped.transfer.properties import Fluid, air, ethylene_glycol
 
 AIR, GLYCOL = air(60.0), ethylene_glycol(60.0, 0.5)
 K40, K80 = air(40.0).k, air(80.0).k

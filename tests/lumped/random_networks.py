@@ -11,11 +11,11 @@ import numpy as np
 from numba import njit
 from scipy.integrate import solve_ivp
 
-from lumped.build import bare_network, node_link, node_source, stream
-from lumped.laws import Fixed, InputPower, Law, Power, Radiation
-from lumped.losses import CopperLoss
-from lumped.network import Network, Parameter
-from lumped.simulate import Record
+from lumped.integration.simulate import Record
+from lumped.model.build import bare_network, node_link, node_source, stream
+from lumped.model.network import Network, Parameter
+from lumped.sources.losses import CopperLoss
+from lumped.transfer.laws import Fixed, InputPower, Law, Power, Radiation
 
 SMALLEST = 0.01  # K: |dT|^p is smoothed below, as the tool documents
 AMBIENT, INLET, OUTLET = "ambient", "inlet", "outlet"

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from lumped.build import bare_network, node_link, node_source
-from lumped.laws import FILMS, FilmTable, Fixed, InputPower, Linear, Power, Radiation, Table
-from lumped.network import Parameter
+from lumped.model.build import bare_network, node_link, node_source
+from lumped.model.network import Parameter
+from lumped.transfer.laws import FILMS, FilmTable, Fixed, InputPower, Linear, Power, Radiation, Table
 
 G12, G2A, C1, C2 = 10.0, 25.0, 2500.0, 25000.0
 

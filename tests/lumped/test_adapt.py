@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-import lumped.reduction
-from fem.assembly import assemble
-from fem.grids import ring
-from fem.material import isotropic, laminated, wound
-from fem.solve import Solver
-from lumped.adapt import Size, adapt, excess
-from lumped.guard import Wish, mixes, point_errors
-from lumped.reduction import Recipe, Zone, reduce
+import lumped.condensation.reduction
+from fem.matrices.assembly import assemble
+from fem.matrices.grids import ring
+from fem.matrices.material import isotropic, laminated, wound
+from fem.solvers.solve import Solver
+from lumped.condensation.adapt import Size, adapt, excess
+from lumped.condensation.guard import Wish, mixes, point_errors
+from lumped.condensation.reduction import Recipe, Zone, reduce
 
 CONTACTS = {"coil|core": 400.0, "coil|yoke": 800.0}
 LEFT = Zone("coil", lambda c: (c[:, 2] < 0.06).astype(float))
@@ -116,7 +116,7 @@ def refused(*_):
 def test_a_far_away_coefficient_is_solved_anew(field, tmp_path, monkeypatch):
     """Beyond the spread the shapes were made for, they are not trusted."""
     reduction(field, tmp_path)
-    monkeypatch.setattr(lumped.reduction, "snapshots", refused)
+    monkeypatch.setattr(lumped.condensation.reduction, "snapshots", refused)
     with pytest.raises(AssertionError, match="solved again"):
         reduction(field, tmp_path, {"coil|core": 4000.0, "coil|yoke": 800.0})
 

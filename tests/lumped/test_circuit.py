@@ -8,12 +8,15 @@ import pytest
 from numpy.testing import assert_allclose
 
 from geom.errors import InputError
-from lumped.balance import balance
-from lumped.coolant import coolant, glycol
-from lumped.declared import read_network
-from lumped.declared_circuit import read_circuits
-from lumped.exchanger import counterflow, crossflow, parallel_flow
-from lumped.hydraulics import (
+from lumped.declarations.circuit import read_circuits
+from lumped.declarations.network import read_network
+from lumped.integration.balance import balance
+from lumped.integration.simulate import Record, simulate
+from lumped.integration.steady import steady
+from lumped.schemas.reader import Table
+from lumped.transfer.coolant import coolant, glycol
+from lumped.transfer.exchanger import counterflow, crossflow, parallel_flow
+from lumped.transfer.hydraulics import (
     Duct,
     fan_law,
     fan_point,
@@ -23,10 +26,7 @@ from lumped.hydraulics import (
     pressure_drop,
     pumping_power,
 )
-from lumped.properties import water
-from lumped.reader import Table
-from lumped.simulate import Record, simulate
-from lumped.steady import steady
+from lumped.transfer.properties import water
 
 CHANNEL = {"wall": "housing", "width_mm": 20, "height_mm": 6, "length_m": 1.2, "bends": 2}
 LOSS, LOSS_W = {"kind": "constant", "at": "housing", "P_W": 12420.0}, 12420.0

@@ -25,7 +25,7 @@ from lumped.correlations.natural import churchill_chu_cylinder, churchill_chu_pl
 from lumped.correlations.rotating import saari_windage
 from lumped.correlations.windings import hashin_shtrikman, lamination
 from lumped.correlations.windings import mellor as mellor_circuit
-from lumped.properties import air, ethylene_glycol, mass_fraction_of, water
+from lumped.transfer.properties import air, ethylene_glycol, mass_fraction_of, water
 
 pytestmark = pytest.mark.filterwarnings("ignore::lumped.correlations.RangeWarning")
 

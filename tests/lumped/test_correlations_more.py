@@ -18,7 +18,7 @@ from lumped.correlations.bearings import (
 )
 from lumped.correlations.fins import exponential_decay, heiles, heiles_decaying, mean_of_decay, straight_decay
 from lumped.correlations.views import coaxial_discs, enclosed, groove, parallel_rectangles
-from lumped.properties import air
+from lumped.transfer.properties import air
 
 
 def test_a_wide_vertical_cylinder_is_a_plate_and_a_slender_one_is_better():

@@ -9,7 +9,7 @@ from itertools import pairwise
 import pytest
 
 from lumped.correlations import air_gap, bearings, contacts, ducts, end_space, fins, forced, natural, rotating, windings
-from lumped.properties import Fluid, air
+from lumped.transfer.properties import Fluid, air
 
 pytestmark = pytest.mark.filterwarnings("ignore::lumped.correlations.RangeWarning")
 

@@ -6,14 +6,14 @@ from numpy.testing import assert_allclose
 from small_networks import two_masses
 
 from geom.errors import ThermoscopeError
-from lumped.build import bare_network, node_link, node_source
-from lumped.coupled import coupled, pm_drive, series_drive
-from lumped.drive import Controller, SeriesMachine, Vehicle
-from lumped.laws import Fixed, InputPower, Linear
-from lumped.losses import CopperLoss
-from lumped.permanent_magnet import PMMachine
-from lumped.simulate import Record
-from lumped.steady import steady
+from lumped.drives.coupled import coupled, pm_drive, series_drive
+from lumped.drives.drive import Controller, SeriesMachine, Vehicle
+from lumped.drives.permanent_magnet import PMMachine
+from lumped.integration.simulate import Record
+from lumped.integration.steady import steady
+from lumped.model.build import bare_network, node_link, node_source
+from lumped.sources.losses import CopperLoss
+from lumped.transfer.laws import Fixed, InputPower, Linear
 
 MOTOR = PMMachine(4, 4.67e-3, 0.1e-3, 0.25e-3, 0.07, current_limit=400.0, voltage_limit=200.0)
 

@@ -9,9 +9,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 from geom.errors import InputError
-from lumped.balance import balance
-from lumped.declared import load_network, read_network
-from lumped.simulate import Record, simulate
+from lumped.declarations.network import load_network, read_network
+from lumped.integration.balance import balance
+from lumped.integration.simulate import Record, simulate
 
 
 @pytest.fixture(scope="module")

@@ -10,12 +10,12 @@ from jsonschema import Draft202012Validator
 
 from geom.errors import InputError
 from lumped.correlations import RangeWarning, air_gap, contacts, ducts, end_space, fins, forced, natural, rotating
-from lumped.declared import read_network
-from lumped.declared_films import FORCED, NATURAL
-from lumped.properties import air, ethylene_glycol
-from lumped.schema import schema
-from lumped.simulate import Record, simulate
-from lumped.steady import steady
+from lumped.declarations.films import FORCED, NATURAL
+from lumped.declarations.network import read_network
+from lumped.integration.simulate import Record, simulate
+from lumped.integration.steady import steady
+from lumped.schemas.schema import schema
+from lumped.transfer.properties import air, ethylene_glycol
 
 pytestmark = pytest.mark.filterwarnings("ignore::lumped.correlations.RangeWarning")
 AREA = 0.4

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from lumped.drive import Controller, SeriesMachine, Vehicle, drive_cycle
-from lumped.duty import s1, s2, s3, s6
+from lumped.drives.drive import Controller, SeriesMachine, Vehicle, drive_cycle
+from lumped.drives.duty import s1, s2, s3, s6
 
 MACHINE = SeriesMachine.from_ratings(100e3, 1000.0, 220.0, 511.0)
 VEHICLE = Vehicle(mass=9000.0, wheel_radius=0.48, gear=4.52)

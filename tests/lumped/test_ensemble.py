@@ -6,8 +6,8 @@ from numpy.testing import assert_array_equal
 from small_networks import boundaries, every_law, inputs
 
 from geom.errors import InputError
-from lumped.ensemble import dask_cluster, ensemble
-from lumped.simulate import Record, simulate
+from lumped.integration.ensemble import dask_cluster, ensemble
+from lumped.integration.simulate import Record, simulate
 
 NETWORK = every_law()
 TIME = np.arange(0.0, 300.0, 5.0)

@@ -5,10 +5,10 @@ from dataclasses import replace
 
 import pytest
 
+from geom.description.identity import identity
+from geom.description.roles import Role
 from geom.errors import InputError
-from geom.identity import identity
-from geom.roles import Role
-from lumped.declared import read_network
+from lumped.declarations.network import read_network
 
 
 def document(root, kind):

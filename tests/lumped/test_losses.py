@@ -6,12 +6,12 @@ from numpy.testing import assert_allclose
 from small_networks import boundaries, every_law, inputs
 
 from geom.errors import InputError
-from lumped.audit import audit
 from lumped.correlations import RangeWarning
-from lumped.declared import read_network
-from lumped.loss_map import MapLoss
-from lumped.losses import BrushLoss, CopperLoss, IronLoss, PowerLoss, RippleLoss
-from lumped.simulate import Record, simulate
+from lumped.declarations.network import read_network
+from lumped.integration.audit import audit
+from lumped.integration.simulate import Record, simulate
+from lumped.sources.loss_map import MapLoss
+from lumped.sources.losses import BrushLoss, CopperLoss, IronLoss, PowerLoss, RippleLoss
 
 AT = {"speed_rpm": np.array([0.0, 1000.0, 2000.0]), "current_A": np.array([0.0, 100.0, 200.0])}
 

@@ -7,10 +7,10 @@ IEE Proc. B 138, 205: a face's temperature over the part's mean, for a unit flux
 import numpy as np
 import pytest
 
-from fem.assembly import assemble
-from fem.grids import ring
-from fem.material import Conductivity
-from lumped.reduction import Recipe, condense
+from fem.matrices.assembly import assemble
+from fem.matrices.grids import ring
+from fem.matrices.material import Conductivity
+from lumped.condensation.reduction import Recipe, condense
 
 ri, ro, L, k_r, k_z = 0.03, 0.05, 0.08, 30.0, 4.0
 

@@ -5,11 +5,11 @@ import pytest
 
 from geom import load_machine
 from geom.errors import InputError
-from lumped.motor_settings import Losses, contact_coefficients, read
-from lumped.reduction import Recipe
-from lumped.simulate import Record, simulate
-from thermoscope.crosscheck import coefficients, crosscheck, steady_state
+from lumped.condensation.reduction import Recipe
+from lumped.integration.simulate import Record, simulate
+from lumped.machine.settings import Losses, contact_coefficients, read
 from thermoscope.pipeline import build
+from thermoscope.verification.crosscheck import coefficients, crosscheck, steady_state
 
 POINT = {"current_A": 200.0, "speed_rpm": 1000.0, "fan_flow_m3h": 138.0}
 

@@ -8,16 +8,16 @@ from bare_networks import means_only
 
 from geom import Machine, load_machine
 from geom.errors import InputError
-from geom.machine import machine_from
-from lumped.hydraulics import pressure_drop
-from lumped.motor import operating_point
-from lumped.motor_air import AIR_HEAT, ducts_of, fan_shares
-from lumped.motor_films import surroundings
-from lumped.network import Network
-from lumped.properties import air
-from lumped.steady import steady
-from thermoscope.crosscheck import coefficients
+from geom.machine_file import machine_from
+from lumped.integration.steady import steady
+from lumped.machine.air import AIR_HEAT, ducts_of, fan_shares
+from lumped.machine.films import surroundings
+from lumped.machine.motor import operating_point
+from lumped.model.network import Network
+from lumped.transfer.hydraulics import pressure_drop
+from lumped.transfer.properties import air
 from thermoscope.pipeline import prepared
+from thermoscope.verification.crosscheck import coefficients
 
 WAYS = ("airgap", "air.interpolar", "air.ducts")
 POINT = {"current_A": 150.0, "speed_rpm": 1000.0, "fan_flow_m3h": 138.0}
@@ -133,7 +133,7 @@ def test_rated_flow_is_that_of_the_file(machine):
 
 def test_imported_machine_is_stirred_by_its_largest_turning_part():
     """No declared gap: the air inside still passes the walls, as fast as a share of the rotor's tip."""
-    from lumped.motor_films import face_films, nominal
+    from lumped.machine.films import face_films, nominal
 
     machine = load_machine("pmsm-m1-no-base")
     inside = tuple(part for part in machine.fluids if part.name != "airgap")

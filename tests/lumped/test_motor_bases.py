@@ -7,11 +7,11 @@ import pytest
 
 from geom import library, load_machine
 from geom.errors import InputError
-from geom.machine import machine_from
-from lumped.balance import balance
-from lumped.motor_bases import Switched
-from lumped.simulate import Record
-from lumped.steady import steady
+from geom.machine_file import machine_from
+from lumped.integration.balance import balance
+from lumped.integration.simulate import Record
+from lumped.integration.steady import steady
+from lumped.machine.bases import Switched
 from thermoscope.pipeline import build
 
 LOAD = {"current_A": 8.0, "speed_rpm": 0.0}

@@ -8,19 +8,19 @@ from bare_networks import means_only
 
 from geom import library, load_machine
 from geom.errors import InputError
-from lumped.motor import operating_point
-from lumped.motor_coolant import channel_of, cooling_of, jacket_film
-from lumped.motor_films import surroundings
-from lumped.motor_losses import _declared, loss_watts
-from lumped.motor_outer import cowl_of, outer_films, outer_of
-from lumped.motor_path import path_of
-from lumped.motor_roles import turning
-from lumped.motor_settings import read_films
-from lumped.motor_shapes import fins_of
-from lumped.motor_zones import motor_zones
-from lumped.multipliers import multipliers
-from lumped.steady import steady
-from lumped.terms_value import temperature_value
+from lumped.integration.steady import steady
+from lumped.machine.coolant import channel_of, cooling_of, jacket_film
+from lumped.machine.films import surroundings
+from lumped.machine.losses import _declared, loss_watts
+from lumped.machine.motor import operating_point
+from lumped.machine.outer import cowl_of, outer_films, outer_of
+from lumped.machine.path import path_of
+from lumped.machine.roles import turning
+from lumped.machine.settings import read_films
+from lumped.machine.shapes import fins_of
+from lumped.machine.zones import motor_zones
+from lumped.model.multipliers import multipliers
+from lumped.transfer.terms_value import temperature_value
 from thermoscope.pipeline import prepared
 
 FAMILIES = ("pmsm-m1", "ipmsm-48s8p-jacket", "tefc-industrial")

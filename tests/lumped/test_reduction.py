@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 
-from fem.assembly import assemble
-from fem.grids import ring
-from fem.material import isotropic, laminated, wound
-from fem.solve import Fluids, Solver, only_fixed, steady
+from fem.matrices.assembly import assemble
+from fem.matrices.grids import ring
+from fem.matrices.material import isotropic, laminated, wound
+from fem.solvers.solve import Fluids, Solver, only_fixed, steady
 from geom.errors import InputError
-from lumped.guard import errors
-from lumped.laws import Fixed
-from lumped.linear import linear, unit_load
-from lumped.reduction import Recipe, Zone, condense
+from lumped.condensation.guard import errors
+from lumped.condensation.linear import linear, unit_load
+from lumped.condensation.reduction import Recipe, Zone, condense
+from lumped.transfer.laws import Fixed
 
 FLUIDS = {"bore": 50.0, "air": 30.0}
 CONTACTS = {"coil|core": 400.0, "coil|yoke": 800.0}

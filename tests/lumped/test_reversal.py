@@ -6,13 +6,13 @@ from numpy.testing import assert_allclose
 from test_circuit import CHANNEL, circuit, closed, network
 
 from geom.errors import InputError
-from lumped.balance import balance
-from lumped.declared import read_network
-from lumped.exchanger import counterflow, parallel_flow
-from lumped.laws import CLOCK
-from lumped.reversal import OneWay
-from lumped.simulate import Record, simulate
-from lumped.steady import steady
+from lumped.declarations.network import read_network
+from lumped.integration.balance import balance
+from lumped.integration.simulate import Record, simulate
+from lumped.integration.steady import steady
+from lumped.transfer.exchanger import counterflow, parallel_flow
+from lumped.transfer.laws import CLOCK
+from lumped.transfer.reversal import OneWay
 
 AROUND = {"ambient": 20.0, "inlet": 20.0}
 FLOW = {"flow_l_min_input": "flow_l_min"}
@@ -82,7 +82,7 @@ def test_what_comes_in_from_behind_must_be_known(made):
 
 def test_jackets_and_fans_of_machine_files_refuse_it():
     from geom import load_machine
-    from lumped.motor_coolant import _rate_law, cooling_of
+    from lumped.machine.coolant import _rate_law, cooling_of
 
     machine = load_machine("ipmsm-48s8p-jacket")
     law = _rate_law(machine, "jacket", cooling_of(machine))

@@ -10,9 +10,9 @@ import pytest
 from jsonschema import Draft202012Validator
 
 from geom.errors import InputError
-from lumped.declared import read_network
-from lumped.keys_page import PAGE, page
-from lumped.schema import FILES, FOLDER, bounded, machine_schema, meanings, schema
+from lumped.declarations.network import read_network
+from lumped.schemas.keys_page import PAGE, page
+from lumped.schemas.schema import FILES, FOLDER, bounded, machine_schema, meanings, schema
 
 ROOT = Path(__file__).resolve().parents[2]
 PATTERNS = {
@@ -86,7 +86,7 @@ def test_what_the_schema_refuses_the_reader_refuses(example, slip):
 
 
 def test_machine_schema_on_disk_is_the_families_own():
-    """After a change of a family's parameters: python -m lumped.schema"""
+    """After a change of a family's parameters: python -m lumped.schemas.schema"""
     assert json.loads((FOLDER / "machine.json").read_text()) == machine_schema()
 
 
@@ -115,10 +115,10 @@ def walked(node):
 
 @pytest.mark.parametrize("kind", [kind for kind in FILES if kind != "machine"])
 def test_schemas_on_disk_have_the_bounds_of_the_table(kind):
-    """After a change of lumped.bounds: python -m lumped.schema"""
+    """After a change of lumped.schemas.bounds: python -m lumped.schemas.schema"""
     assert json.loads((FOLDER / f"{kind}.json").read_text()) == bounded(schema(kind))
 
 
 def test_the_page_of_keys_is_the_schemas():
-    """After a change of keys or bounds: python -m lumped.keys_page"""
+    """After a change of keys or bounds: python -m lumped.schemas.keys_page"""
     assert PAGE.read_text(encoding="utf-8") == page()

@@ -7,11 +7,11 @@ from scipy.linalg import expm
 from small_networks import C1, C2, G2A, G12, boundaries, every_law, inputs, two_masses
 
 from geom.errors import InputError, ThermoscopeError
-from lumped.build import bare_network, node_link, node_source
-from lumped.compiled import compiled
-from lumped.laws import Fixed, InputPower, Law, Linear, Table
-from lumped.simulate import Record, simulate
-from lumped.stages import Steps
+from lumped.integration.compiled import compiled
+from lumped.integration.simulate import Record, simulate
+from lumped.model.build import bare_network, node_link, node_source
+from lumped.numerics.stages import Steps
+from lumped.transfer.laws import Fixed, InputPower, Law, Linear, Table
 
 
 def exact_two_masses(t, loss=100.0, start=20.0, ambient=20.0):

@@ -6,11 +6,11 @@ from numpy.testing import assert_allclose
 from small_networks import boundaries, every_law, inputs, two_masses
 
 from geom.errors import ThermoscopeError
-from lumped.balance import balance
-from lumped.build import bare_network, node_link, node_source, stream
-from lumped.laws import Fixed, Linear
-from lumped.simulate import Record, simulate
-from lumped.steady import steady
+from lumped.integration.balance import balance
+from lumped.integration.simulate import Record, simulate
+from lumped.integration.steady import steady
+from lumped.model.build import bare_network, node_link, node_source, stream
+from lumped.transfer.laws import Fixed, Linear
 
 NETWORK = every_law()
 ROWS = [NETWORK.place(node).mean for node in NETWORK.states]

@@ -7,14 +7,14 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from small_networks import boundaries, every_law, inputs
 
-from lumped.build import node_link
-from lumped.laws import Fixed, InputPower, Power, Radiation
-from lumped.multipliers import multipliers
-from lumped.network import Parameter
-from lumped.simulate import Record, simulate
+from lumped.integration.simulate import Record, simulate
+from lumped.model.build import node_link
+from lumped.model.multipliers import multipliers
+from lumped.model.network import Parameter
+from lumped.transfer.laws import Fixed, InputPower, Power, Radiation
 
 NETWORK = every_law()
-simulating = sys.modules[simulate.__module__]  # `lumped.simulate` itself is the function
+simulating = sys.modules[simulate.__module__]  # `lumped.integration.simulate` itself is the function
 TIME = np.arange(0.0, 1200.0, 10.0)
 RECORD = Record(TIME, inputs(TIME), boundaries(TIME), 35.0)
 ROWS = [NETWORK.place(node).mean for node in NETWORK.states]

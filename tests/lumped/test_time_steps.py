@@ -11,10 +11,10 @@ from random_networks import admissible, built, machine, reference
 from small_networks import two_masses
 
 from geom.errors import ThermoscopeError
-from lumped.build import bare_network, node_link, node_source
-from lumped.declared import read_network
-from lumped.laws import Fixed, InputPower, Linear
-from lumped.simulate import Record, simulate
+from lumped.declarations.network import read_network
+from lumped.integration.simulate import Record, simulate
+from lumped.model.build import bare_network, node_link, node_source
+from lumped.transfer.laws import Fixed, InputPower, Linear
 
 PAGE = Path(__file__).parents[2] / "docs" / "network-toml.md"
 DOCUMENTED = read_network(tomllib.loads(re.findall(r"```toml\n(.*?)```", PAGE.read_text(), re.S)[0]))

@@ -5,7 +5,7 @@ import pytest
 from scipy.sparse import diags
 from scipy.sparse.linalg import spsolve
 
-from geom.mesh import Contact, NamedMesh, Patch
+from geom.meshing.mesh import Contact, NamedMesh, Patch
 from simulated import conduct
 from simulated.conduct import Solid
 

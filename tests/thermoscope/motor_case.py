@@ -14,7 +14,7 @@ sys.path += [str(HERE), str(HERE.parent / "viz")]
 from small_case import small_case  # noqa: E402
 from small_motor import motor  # noqa: E402
 
-from thermoscope.folder import Folder, load_case  # noqa: E402
+from thermoscope.case_folder.folder import Folder, load_case  # noqa: E402
 
 POSITIONS = {"T_winding": (-0.15, 0.0, 0.30), "T_yoke": (-0.16, 0.1, 0.40), "T_flange": (-0.15, 0.06, 0.65)}
 HOME = {"winding": "winding", "flange": "flange"}

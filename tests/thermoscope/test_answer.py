@@ -7,8 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from small_case import small_case
 
-from thermoscope.answer import LINES, Answer, Grid, folded, lay_out
 from thermoscope.cli import main
+from thermoscope.console.answer import LINES, Answer, Grid, folded, lay_out
 
 WORDS = st.text("abcdefgh ", min_size=1, max_size=60).map(str.strip).filter(bool)
 CELLS = st.one_of(WORDS, st.floats(-1e6, 1e6), st.integers(-(10**6), 10**6), st.none())
@@ -69,7 +69,7 @@ def test_rows_that_do_not_fit_are_counted_and_all_shows_them():
 
 def test_commands_print_through_answers_alone(root):
     """None of them prints by itself, so that the rule above holds for each; a question is on stderr."""
-    for file in (root / "thermoscope/commands").glob("*.py"):
+    for file in (root / "thermoscope/commands").rglob("*.py"):
         for node in ast.walk(ast.parse(file.read_text())):
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in ("print", "table"):
                 assert any(k.arg == "file" for k in node.keywords), f"{file.name} line {node.lineno}"

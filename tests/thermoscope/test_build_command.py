@@ -6,8 +6,8 @@ from dataclasses import replace
 import pytest
 
 from geom import Machine, load_machine, read_vtu
-from geom.machine import machine_from
-from thermoscope.commands import build as command
+from geom.machine_file import machine_from
+from thermoscope.commands.model import build as command
 from thermoscope.pipeline import build as pipeline
 
 FEW = {

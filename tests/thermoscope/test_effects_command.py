@@ -4,9 +4,9 @@ import json
 
 import pytest
 
-from thermoscope.commands.effects import effects, quantities
+from thermoscope.commands.explain.effects import effects, quantities
 from thermoscope.quantities_page import PAGE, page
-from thermoscope.units import HELD, QUANTITIES, converted
+from thermoscope.recordings.units import HELD, QUANTITIES, converted
 from validation.effects.registry import kinds
 
 

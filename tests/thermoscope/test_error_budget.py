@@ -8,14 +8,15 @@ import pytest
 from small_case import small_case
 
 from geom import load_machine
-from lumped.reduction import Recipe
-from thermoscope import pipeline, rated_errors
-from thermoscope.commands.compare import compare
-from thermoscope.commands.simulate import simulate
-from thermoscope.error_budget import Looks
-from thermoscope.frozen import rated
+from lumped.condensation.reduction import Recipe
+from thermoscope import pipeline
+from thermoscope.commands.test.compare import compare
+from thermoscope.commands.use.simulate import simulate
 from thermoscope.pipeline import Meshing, build, coefficients_on, meshed
-from thermoscope.rated_errors import HOT, Reader, at_rated_point, kept
+from thermoscope.verification import rated_errors
+from thermoscope.verification.error_budget import Looks
+from thermoscope.verification.frozen import rated
+from thermoscope.verification.rated_errors import HOT, Reader, at_rated_point, kept
 
 MACHINE, SIZE, SEGMENTS, AXIAL = "pmsm-m1-no-base", 0.1, 36, 0.12
 RECIPE = Recipe(tolerance=0.05, shifts=(0.01,), random_points=1, max_states=60)

@@ -5,8 +5,8 @@ import pytest
 from small_case import small_case
 
 from geom.errors import InputError
-from thermoscope.events import Events
-from thermoscope.folder import load_case
+from thermoscope.case_folder.folder import load_case
+from thermoscope.recordings.events import Events
 
 
 def edited(case, old, new):

@@ -7,10 +7,10 @@ import pytest
 from small_case import HEADER, measured, small_case
 
 from geom.errors import InputError
-from thermoscope.commands import revise
-from thermoscope.commands.answer import answer
-from thermoscope.commands.diagnose import diagnose
-from thermoscope.history import load_history
+from thermoscope.case_folder.history import load_history
+from thermoscope.commands.explain.answer import answer
+from thermoscope.commands.explain.diagnose import diagnose
+from thermoscope.commands.model import revise
 
 LID = (1000.0, 1500.0)
 

@@ -6,8 +6,8 @@ import pytest
 from small_case import small_case
 
 from geom.errors import InputError
-from thermoscope.folder import load_case
-from validation.compare import compare
+from thermoscope.case_folder.folder import load_case
+from validation.comparison.compare import compare
 
 R0, COLD, BETA = 0.52, 21.0, 0.3925e-2
 COLUMN = """
@@ -77,8 +77,8 @@ def test_saturation_curve_in_a_sheet(tmp_path):
 
 
 def test_compare_and_calibrate_take_them(tmp_path):
-    from validation.calibrate import calibrated
-    from validation.fitting import working
+    from validation.calibration.calibrate import calibrated
+    from validation.calibration.fitting import working
 
     case = load_case(electrical_case(tmp_path)).case
     rows = {c.channel: c for c in compare(case).tests[0].channels}

@@ -8,12 +8,12 @@ import pytest
 from small_case import HEADER, measured, small_case
 
 from geom.errors import InputError
-from thermoscope.alignment import clock_shift
-from thermoscope.folder import load_case
-from thermoscope.formats import joined, read_frame, recording
-from thermoscope.sheet import read_sheet
-from thermoscope.tables import load_table
-from thermoscope.units import checked_unit, converted
+from thermoscope.case_folder.folder import load_case
+from thermoscope.recordings.alignment import clock_shift
+from thermoscope.recordings.formats import joined, read_frame, recording
+from thermoscope.recordings.sheet import read_sheet
+from thermoscope.recordings.tables import load_table
+from thermoscope.recordings.units import checked_unit, converted
 
 ROWS = measured(0, True, 6.0)
 COLUMNS = HEADER.split(",")
@@ -220,7 +220,7 @@ def test_workbook_holds_input_and_results(tmp_path):
     """What compare says is what the workbook says, and Excel's own reader opens it."""
     import openpyxl
 
-    from thermoscope.workbook import tables, write_csvs, write_xlsx
+    from thermoscope.case_folder.workbook import tables, write_csvs, write_xlsx
 
     folder = load_case(small_case(tmp_path))
     content = tables(folder)

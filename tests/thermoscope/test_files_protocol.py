@@ -7,9 +7,9 @@ import pandas as pd
 import pytest
 
 from geom.errors import InputError
-from thermoscope.answer import within
-from thermoscope.commands.protocol import protocol, read_record
-from validation.procedure.protocol import protocol as judged
+from thermoscope.commands.bench.protocol import protocol, read_record
+from thermoscope.console.answer import within
+from validation.procedure.measuring.protocol import protocol as judged
 
 RECORD = """
 [machine]

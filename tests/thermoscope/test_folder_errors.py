@@ -7,7 +7,7 @@ import pytest
 from small_case import small_case
 
 from geom.errors import InputError
-from thermoscope.folder import find_case, load_case
+from thermoscope.case_folder.folder import find_case, load_case
 
 
 @pytest.fixture(scope="module")

@@ -9,7 +9,7 @@ import pytest
 from small_case import small_case
 
 import thermoscope as ts
-from thermoscope.folder import load_case
+from thermoscope.case_folder.folder import load_case
 from thermoscope.shadowing import ROOMS, hidden_by
 from validation import compare
 from validation.effects import kinds
@@ -121,7 +121,7 @@ def test_what_was_refused_is_not_saved(better):
 
 def test_plot_shows_a_test_that_was_not_fitted(better, tmp_path):
     """One of the lines is the model of the flange, instant by instant."""
-    from thermoscope.runs import readings
+    from thermoscope.case_folder.runs import readings
 
     figure = better.plot(png=tmp_path / "a.png")
     model = readings(better.folder.case, better.tests["town"])["T_flange"]
@@ -138,7 +138,7 @@ def test_effects_are_the_catalogue(case):
 
 
 def test_best_says_why_there_is_none(case):
-    from validation.findings import Diagnosis
+    from validation.diagnosis.findings import Diagnosis
 
     nothing = Diagnosis("adequate", "the model explains all.", (), (), (), (), (), (), 0.1, 0.1, 3.0)
     with pytest.raises(ts.InputError, match="the model explains all"):

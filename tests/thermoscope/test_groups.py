@@ -6,7 +6,7 @@ import pytest
 from typer.testing import CliRunner
 
 from thermoscope.cli import app, main
-from thermoscope.groups import GROUPS, HOME, old_name
+from thermoscope.console.groups import GROUPS, HOME, old_name
 
 RUN = CliRunner()
 TOP = {"demo", "check"}

@@ -5,12 +5,12 @@ import csv
 import pytest
 
 from geom import load_machine
-from lumped.motor_losses import loss_shares
-from lumped.reduction import Recipe
-from thermoscope.commands.crosscheck import save
-from thermoscope.crosscheck import crosscheck
-from thermoscope.hand import hand_rows
+from lumped.condensation.reduction import Recipe
+from lumped.machine.losses import loss_shares
+from thermoscope.commands.model.crosscheck import save
 from thermoscope.pipeline import build
+from thermoscope.verification.crosscheck import crosscheck
+from thermoscope.verification.hand import hand_rows
 
 
 @pytest.fixture(scope="module")

@@ -6,11 +6,11 @@ import json
 import pytest
 from small_case import small_case
 
+from thermoscope.case_folder.history import load_history
 from thermoscope.cli import app
-from thermoscope.commands import improve as command
-from thermoscope.history import load_history
-from validation.climb import offered, singletons
-from validation.findings import Candidate, Diagnosis
+from thermoscope.commands.explain import improve as command
+from validation.diagnosis.findings import Candidate, Diagnosis
+from validation.revision.climb import offered, singletons
 
 
 @pytest.fixture(scope="module")

@@ -6,9 +6,9 @@ import pytest
 from bare_networks import means_only
 
 from geom import load_machine
-from lumped.zone import Zone
-from thermoscope.load_cases import fluid_rises, rated_watts
+from lumped.condensation.zone import Zone
 from thermoscope.pipeline import prepared
+from thermoscope.verification.load_cases import fluid_rises, rated_watts
 
 MACHINE = load_machine("ipmsm-48s8p-jacket")
 

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from fem.solve import Solver
+from fem.solvers.solve import Solver
 from geom import load_machine
-from lumped.motor_losses import loss_shares
-from lumped.reduction import Recipe
-from thermoscope.crosscheck import crosscheck
-from thermoscope.local_laws import copper, radiating, with_local_laws
+from lumped.condensation.reduction import Recipe
+from lumped.machine.losses import loss_shares
 from thermoscope.pipeline import build
+from thermoscope.verification.crosscheck import crosscheck
+from thermoscope.verification.local_laws import copper, radiating, with_local_laws
 
 POINT = {"current_A": 8.0, "speed_rpm": 0.0}
 

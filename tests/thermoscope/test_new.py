@@ -9,16 +9,16 @@ import pytest
 from small_case import HEADER, NETWORK, measured
 
 from geom.errors import InputError, MissingDependency
-from lumped.declared import load_network
-from thermoscope.commands.new import Wishes, new, settings
-from thermoscope.folder import load_case
+from lumped.declarations.network import load_network
+from thermoscope.case_folder.folder import load_case
+from thermoscope.commands.test.new import Wishes, new, settings
 from thermoscope.importing.aligned import column_onset
 from thermoscope.importing.cells import split_unit
 from thermoscope.importing.clock import clock_of
 from thermoscope.importing.guess import guesses
 from thermoscope.importing.source import read_source
 from thermoscope.importing.target import target_of
-from validation.compare import compare
+from validation.comparison.compare import compare
 
 ROWS = measured(0, True, 6.0)
 NAMES = HEADER.split(",")

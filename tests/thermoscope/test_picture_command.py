@@ -3,7 +3,7 @@
 import pytest
 
 from geom.errors import InputError
-from thermoscope.commands.picture import PICTURES, picture
+from thermoscope.commands.show.picture import PICTURES, picture
 
 
 @pytest.mark.parametrize("what", ["curves", "residuals", "losses"])

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from geom.errors import InputError
-from lumped.declared import read_network
-from thermoscope.quantities import with_quantities
-from thermoscope.sheet import read_sheet
+from lumped.declarations.network import read_network
+from thermoscope.recordings.quantities import with_quantities
+from thermoscope.recordings.sheet import read_sheet
 from validation.case import Test
 
 NETWORK = {

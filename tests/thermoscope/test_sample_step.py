@@ -5,14 +5,14 @@ import pytest
 from scipy.integrate import quad
 from small_case import small_case
 
-from lumped.build import bare_network, node_link, node_source
-from lumped.laws import Fixed, InputPower
-from lumped.signals import Signals
-from lumped.simulate import Record, simulate
-from thermoscope.folder import load_case
+from lumped.integration.signals import Signals
+from lumped.integration.simulate import Record, simulate
+from lumped.model.build import bare_network, node_link, node_source
+from lumped.transfer.laws import Fixed, InputPower
+from thermoscope.case_folder.folder import load_case
 from validation import diagnose
-from validation.compare import compare
-from validation.sampling import Modes, apart, sample_step, sampled
+from validation.comparison.compare import compare
+from validation.measurement.sampling import Modes, apart, sample_step, sampled
 
 STEPS = (5.0, 10.0, 30.0)
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from thermoscope.folder import load_case
-from validation.fitting import to_value, working
-from validation.predict import predict
+from thermoscope.case_folder.folder import load_case
+from validation.calibration.fitting import to_value, working
+from validation.comparison.predict import predict
 from viz.live import sensitivity
 from viz.live.influence import influence
 

@@ -3,7 +3,7 @@
 import pytest
 
 from geom.errors import InputError
-from thermoscope.history import History, Revision, load_history, save_history
+from thermoscope.case_folder.history import History, Revision, load_history, save_history
 from thermoscope.workbench.ledger import effective, undone
 
 ONE = Revision(0, "calibrate", values={"a": 1.0}, rmse_K={"t": (3.0, 2.0)})

@@ -7,9 +7,9 @@ from small_motor import motor
 
 from thermoscope.workbench.stage import Stage
 from viz import split
-from viz.cut import cut_away
 from viz.data import Sensor
-from viz.scene import View
+from viz.rendering.cut import cut_away
+from viz.rendering.scene import View
 
 SENSORS = tuple(Sensor(name, xyz, r, 1.0) for (name, xyz), r in zip(POSITIONS.items(), (0.2, 3.0, -4.0), strict=True))
 

@@ -3,8 +3,8 @@
 import pytest
 
 from geom.errors import InputError
-from thermoscope.commands.calibrate import calibrate
-from thermoscope.folder import load_case
+from thermoscope.case_folder.folder import load_case
+from thermoscope.commands.model.calibrate import calibrate
 from validation.doubt import USUAL
 from validation.inference.evidence import candidates
 
@@ -30,7 +30,9 @@ def test_a_catalogue_of_globs(case):
 def test_a_calibration_takes_starts_and_seed(case, monkeypatch, capsys):
     said(case, "[calibration]\nstarts = 3\nseed = 11")
     taken = []
-    monkeypatch.setattr("validation.revise.calibrate", lambda *_, search, **__: taken.append(search) or _stop())
+    monkeypatch.setattr(
+        "validation.revision.revise.calibrate", lambda *_, search, **__: taken.append(search) or _stop()
+    )
     for options, wanted in (({}, (3, 11)), ({"starts": 1, "seed": 5}, (1, 5))):
         with pytest.raises(InputError):
             calibrate(str(case), False, None, **options)

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from geom.errors import InputError
-from lumped.drive import Vehicle
-from thermoscope.commands.simulate import simulate
-from thermoscope.cycle import load_cycle
-from thermoscope.folder import load_case
+from lumped.drives.drive import Vehicle
+from thermoscope.case_folder.cycle import load_cycle
+from thermoscope.case_folder.folder import load_case
+from thermoscope.commands.use.simulate import simulate
 
 DUTY = """
 [cycle]

@@ -2,7 +2,7 @@
 
 import pytest
 
-from thermoscope.stages import Stages, progress
+from thermoscope.console.stages import Stages, progress
 
 
 class Clock:

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 from playground import SENSORS, network, row, stand
 
-from lumped.laws import Fixed
-from lumped.network import Link, Place, Row
+from lumped.model.network import Link, Place, Row
+from lumped.transfer.laws import Fixed
 from validation.case import Channel, Test
 from validation.effects import Scene
 

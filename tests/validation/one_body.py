@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from lumped.laws import Fixed
-from lumped.network import Link, Network, Parameter, Place, Row, Source
+from lumped.model.network import Link, Network, Parameter, Place, Row, Source
+from lumped.transfer.laws import Fixed
 from validation.case import Channel, Test
 
 P, G, C, SIGMA = 50.0, 2.0, 4000.0, 0.3

@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from lumped.laws import Constant, Fixed, InputPower, Linear, Power
-from lumped.network import Link, Network, Parameter, Place, Row, Source
+from lumped.model.network import Link, Network, Parameter, Place, Row, Source
+from lumped.transfer.laws import Constant, Fixed, InputPower, Linear, Power
 from validation.case import Case, Channel, Model, Test
 
 NODES = {  # heat capacity J/K

@@ -4,8 +4,8 @@ import random
 import re
 from dataclasses import replace
 
-from lumped.declared import read_network
-from lumped.quantities import USUAL
+from lumped.declarations.network import read_network
+from lumped.model.quantities import USUAL
 from validation.case import Case, Channel, Model, Test
 
 SECTIONS = ("nodes", "surfaces", "means", "links", "streams", "losses", "parameters", "boundaries", "inputs")

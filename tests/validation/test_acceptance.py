@@ -8,15 +8,15 @@ import pytest
 from one_body import LOSS, measured, one_node
 from playground import Truth, wind
 
-from lumped.network import Parameter
-from validation.acceptance import checks, predicted_without
-from validation.calibrate import minimise, square_of
+from lumped.model.network import Parameter
+from validation.calibration.calibrate import minimise, square_of
+from validation.calibration.fitting import Unknowns
 from validation.case import AddedEffect
+from validation.comparison.sheet import segments
 from validation.effects import effect
-from validation.fitting import Unknowns
 from validation.inference.evidence import diagnosing
-from validation.revise import fitted, start
-from validation.sheet import segments
+from validation.revision.acceptance import checks, predicted_without
+from validation.revision.revise import fitted, start
 
 BIAS = Parameter("bias of body", (("bias:body", 1.0),), value=0.0, low=-9, high=9, prior_sd=0.3, mapping="offset",
                  neutral=0.0)  # fmt: skip

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from lumped.build import bare_network, node_link, node_source
-from lumped.laws import Fixed
-from lumped.network import Parameter, Row
+from lumped.model.build import bare_network, node_link, node_source
+from lumped.model.network import Parameter, Row
+from lumped.transfer.laws import Fixed
 from validation.bands import Place, bands, belief
 from validation.case import Case, Channel, Model, Test
 from validation.doubt import USUAL
-from validation.revise import calibrate
+from validation.revision.revise import calibrate
 
 G, P, C, HOURS = 2.0, 60.0, 4000.0, 10.0
 TIME = np.arange(0.0, 3600.0 * HOURS, 300.0)

@@ -8,16 +8,16 @@ import pytest
 from one_body import C, G, P, measured, one_node
 
 from geom.errors import InputError
-from lumped.simulate import Record, simulate
+from lumped.integration.simulate import Record, simulate
 from validation import diagnose
 from validation.case import Case, Channel, Model, Test
+from validation.comparison.predict import predict
 from validation.conditions.hats import Path, hats
 from validation.conditions.windows import best_stretch, joined, pulses
+from validation.diagnosis.where import scan
 from validation.effects import Scene, effect
 from validation.effects.gate import Event, checked, event, holds, share
 from validation.inference.evidence import calibrated_case, candidates, scored
-from validation.predict import predict
-from validation.where import scan
 
 ONE = Event.of({"day": [(600.0, 900.0)]})
 SEVEN = Event.of({"day one": [(600.0 * k, 600.0 * k + 90.25) for k in range(1, 8)], "night.2": [(0.0, 60.0)]})
@@ -79,7 +79,7 @@ def test_heat_for_a_while_is_the_closed_form():
 )
 def test_a_condition_of_a_test_is_the_effect_itself_there_and_nothing_elsewhere(base):
     """Amplitudes small enough for the copies of laws that bend."""
-    from lumped.laws import InputPower
+    from lumped.transfer.laws import InputPower
 
     bare = one_node()
     bare = replace(bare, sources=(replace(bare.sources[0], law=InputPower(P, (("speed", 10.0, 1.0),))),))
@@ -154,7 +154,7 @@ def bench(held=(("noon", (LID,)),), size=OPEN, seed=0):
 
 
 def two_bodies():
-    from lumped.declared import read_network
+    from lumped.declarations.network import read_network
 
     return read_network({
         "network": {"name": "two", "boundaries": ["ambient"], "settles_s": 2000},

@@ -8,7 +8,7 @@ import pytest
 from playground import Truth, network, wind
 
 from validation import diagnose
-from validation.faults import broken_channels
+from validation.measurement.faults import broken_channels
 
 
 def brush(T, u, t):

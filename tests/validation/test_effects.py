@@ -1,6 +1,6 @@
 """Claims that every effect of the catalogue makes, tested for all."""
 
-from pathlib import Path
+from pkgutil import walk_packages
 
 import numpy as np
 import pytest
@@ -8,9 +8,9 @@ from everything import machine, scene, warm_test
 
 import validation.effects as folder
 from geom.errors import InputError
-from lumped.laws import InputPower
+from lumped.transfer.laws import InputPower
+from validation.comparison.predict import predict
 from validation.effects import catalogue, effect, kinds
-from validation.predict import predict
 
 KINDS = kinds()
 COOLING = [
@@ -26,7 +26,7 @@ COOLING = [
 ]
 HEATING = ["iron", "windage", "bearing.friction", "brush.drop", "brush.friction", "loss.winding", "loss.rotor",
            "loss.constant", "iron.pwm", "copper.ac", "copper.feedback"]  # fmt: skip
-SHARED = {"above", "base", "build", "during", "gate", "registry", "sites", "__init__"}
+SHARED = {f"validation.effects.{name}" for name in ("above", "base", "build", "during", "gate", "registry", "sites")}
 
 
 @pytest.fixture(scope="module")
@@ -50,8 +50,8 @@ def grown(one, net):
 
 
 def test_every_file_is_in_the_catalogue():
-    files = {p.stem for p in Path(folder.__path__[0]).glob("*.py")} - SHARED
-    assert files == {cls.__module__.rsplit(".", 1)[-1] for cls in KINDS.values()}
+    modules = {m.name for m in walk_packages(folder.__path__, "validation.effects.") if not m.ispkg}
+    assert modules - SHARED == {cls.__module__ for cls in KINDS.values()}
     assert len(KINDS) >= 24
 
 

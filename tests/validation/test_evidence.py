@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from playground import Truth, wind
 
-from validation.calibrate import Known, calibrated, minimise, residual_noise
+from validation.calibration.calibrate import Known, calibrated, minimise, residual_noise
+from validation.calibration.fitting import working
 from validation.effects import effect
-from validation.fitting import working
 from validation.inference.evidence import calibrated_case, scored
 
 NAMES = ("convection@flange.right", "loss.constant@yoke", "sensor.bias@yoke", "mass@yoke")

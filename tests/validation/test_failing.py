@@ -7,10 +7,10 @@ import pytest
 from one_body import LOSS, G, P, measured, one_node
 
 from validation.case import Case, Model
+from validation.comparison.residuals import dependence, ljung_box, periodogram
+from validation.comparison.uncertainty import uncertainties
+from validation.diagnosis.failing import failing
 from validation.doubt import USUAL
-from validation.failing import failing
-from validation.residuals import dependence, ljung_box, periodogram
-from validation.uncertainty import uncertainties
 
 RNG = np.random.default_rng(0)
 WHITE = RNG.standard_normal((200, 400))

@@ -3,7 +3,7 @@
 from everything import machine, scene
 
 from validation.effects import catalogue, effect, extended
-from validation.effects.flow import flows
+from validation.effects.streams.flow import flows
 
 
 def test_no_instant_copies_what_another_has_copied():

@@ -8,6 +8,7 @@ import pytest
 from playground import Truth, network, steps
 
 from validation.case import Case, Model
+from validation.comparison.sheet import segments
 from validation.effects import effect
 from validation.inference.evidence import calibrated_case, refit, scored, starts
 from validation.planning.apart import DECISIVE, GAP
@@ -15,7 +16,6 @@ from validation.planning.contenders import Contenders, behind
 from validation.planning.experiments import next_tests
 from validation.planning.foretell import foretold, read_by
 from validation.planning.menu import MENU
-from validation.sheet import segments
 
 RIVALS = ("brush.friction@commutator", "loss.constant@commutator")
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from playground import Truth, network
 
-from lumped.laws import Fixed, InputPower, Power
+from lumped.transfer.laws import Fixed, InputPower, Power
+from validation.calibration.forms import Bend, BendOfDifference, levels, shares, with_forms
+from validation.comparison.predict import predict
 from validation.effects import effect, extended
-from validation.forms import Bend, BendOfDifference, levels, shares, with_forms
-from validation.predict import predict
 
 
 @pytest.fixture(scope="module")

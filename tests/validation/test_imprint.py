@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from lumped.error_budget import ErrorBudget, PlaceError
-from validation.imprint import imprint
+from lumped.condensation.error_budget import ErrorBudget, PlaceError
+from validation.diagnosis.imprint import imprint
 
 BUDGET = ErrorBudget((PlaceError("winding", 1.0, 0.4, 0.1), PlaceError("flange", 0.1, None, None)))
 

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from everything import machine, warm_test
 
-from lumped.laws import InputPower
-from lumped.network import Parameter
+from lumped.model.network import Parameter
+from lumped.transfer.laws import InputPower
+from validation.calibration.fitting import at_level
 from validation.effects import effect
 from validation.effects.build import heat
-from validation.fitting import at_level
 
 
 def with_loss(reference: float):

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from playground import Truth, network
 
-from validation.calibrate import Measure, minimise
+from validation.calibration.calibrate import Measure, minimise
+from validation.calibration.fitting import working
+from validation.comparison.sheet import segments
 from validation.doubt import USUAL
-from validation.fitting import working
 from validation.inference.model_error import bridges, model_error, with_doubts
-from validation.noise import first_noise
-from validation.operators import behind
-from validation.sheet import segments
+from validation.measurement.noise import first_noise
+from validation.measurement.operators import behind
 
 
 @pytest.fixture(scope="module")

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from validation.noise import GRID, fit_noise
-from validation.sheet import Segment
+from validation.comparison.sheet import Segment
+from validation.measurement.noise import GRID, fit_noise
 
 TIME = np.arange(0.0, 3600.0, 20.0)
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from everything import machine, warm_test
 
-from lumped.network import Parameter
-from validation.operators import behind
-from validation.predict import Watch, predict
+from lumped.model.network import Parameter
+from validation.comparison.predict import Watch, predict
+from validation.measurement.operators import behind
 
 TIME = np.arange(0.0, 600.0, 10.0)
 

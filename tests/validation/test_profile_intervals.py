@@ -7,14 +7,14 @@ import pytest
 from one_body import FILM, LOSS, MASS, G, P, measured, one_node
 
 from geom.errors import InputError
-from lumped.network import Parameter
-from validation.calibrate import minimise
+from lumped.model.network import Parameter
+from validation.calibration.calibrate import minimise
+from validation.calibration.fitting import Unknowns, working
+from validation.calibration.intervals import estimates
+from validation.calibration.profile import profiles
+from validation.calibration.staged import Search, stages
 from validation.case import Case, Model
-from validation.fitting import Unknowns, working
-from validation.intervals import estimates
-from validation.profile import profiles
-from validation.revise import calibrate
-from validation.staged import Search, stages
+from validation.revision.revise import calibrate
 
 
 def fitted(*parameters, tests=None):

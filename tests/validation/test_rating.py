@@ -5,10 +5,10 @@ import pytest
 from numpy.testing import assert_allclose
 
 from geom.errors import InputError
-from lumped.build import bare_network, node_link, node_source
-from lumped.laws import Fixed, InputPower
-from lumped.network import Row
-from lumped.steady import steady
+from lumped.integration.steady import steady
+from lumped.model.build import bare_network, node_link, node_source
+from lumped.model.network import Row
+from lumped.transfer.laws import Fixed, InputPower
 from validation.rating.derating import deratings
 from validation.rating.envelope import rated, until
 from validation.rating.loss_grid import loss_grid, with_losses

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from renamed import back, case_of, inputs_of, names_of, new_words, renamed, shuffled
 
-from lumped.build import node_link
-from lumped.declared import read_network
-from lumped.laws import InputPower
-from lumped.simulate import Record, simulate
+from lumped.declarations.network import read_network
+from lumped.integration.simulate import Record, simulate
+from lumped.model.build import node_link
+from lumped.transfer.laws import InputPower
 from validation import diagnose
 from validation.effects import Scene, catalogue
 

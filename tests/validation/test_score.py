@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from validation.calibrate import bounded_step
-from validation.score import Gram, score
+from validation.calibration.calibrate import bounded_step
+from validation.inference.score import Gram, score
 
 
 @pytest.fixture

@@ -6,9 +6,9 @@ import tomllib
 import pytest
 from test_sites import MOTOR
 
-from lumped.declared import read_network
+from lumped.declarations.network import read_network
 from validation.effects import Scene, kinds
-from validation.effects.conduction_shaft import stub
+from validation.effects.conduction.shaft import stub
 
 
 def test_stoutest_shaft_is_k_a_over_l():

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from one_body import FILM, LOSS, MASS, measured, one_node
 
-from validation import sheet
-from validation.blocks import Blocks, groups
+from validation.comparison import sheet
+from validation.measurement.blocks import Blocks, groups
 
 FREE = (LOSS, FILM, MASS)
 

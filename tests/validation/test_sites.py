@@ -4,7 +4,7 @@ import tomllib
 
 import pytest
 
-from lumped.declared import read_network
+from lumped.declarations.network import read_network
 from validation.effects import Scene, kinds
 
 MOTOR = """

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import make_interp_spline
 
-from validation.spline import through
+from validation.measurement.spline import through
 
 
 @pytest.mark.parametrize("n", [2, 3, 4, 5, 50])

@@ -9,7 +9,7 @@ from dataclasses import replace
 import pytest
 from everything import machine, scene, warm_test
 
-from validation.predict import predict
+from validation.comparison.predict import predict
 
 
 @pytest.fixture

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from one_body import measured
 
-from validation.compare import channel_error
-from validation.within import limit_K, rise_K
+from validation.comparison.compare import channel_error
+from validation.comparison.within import limit_K, rise_K
 from viz.colours import LIGHT, VERMILION
-from viz.curves import wrongness
 from viz.data import Comparison, sensors
+from viz.figures.curves import wrongness
 
 
 def channel(sigma):

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from lumped.network import Row
+from lumped.model.network import Row
 from validation.case import Channel, Test
 from viz.data import Comparison
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from geom.identity import identity
-from geom.mesh import NamedMesh
-from geom.roles import Role
+from geom.description.identity import identity
+from geom.description.roles import Role
+from geom.meshing.mesh import NamedMesh
 
 RADII = np.array([0.0, 0.03, 0.09, 0.115, 0.12, 0.155, 0.20, 0.22])
 LEVELS = np.array([0.0, 0.05, 0.10, 0.14, 0.25, 0.38, 0.50, 0.54, 0.60, 0.65, 0.70])

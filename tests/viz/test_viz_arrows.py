@@ -5,11 +5,11 @@ import pytest
 from PIL import Image
 from small_motor import motor
 
-from fem.material import Conductivity, isotropic
+from fem.matrices.material import Conductivity, isotropic
 from geom.errors import InputError
 from viz import flux_arrows, heat_flux, split
-from viz.arrows import on_faces
-from viz.cut import QUARTER
+from viz.machine.arrows import on_faces
+from viz.rendering.cut import QUARTER
 
 NODES = split(motor(24))
 GRADIENT = np.array([30.0, -20.0, 55.0])

@@ -5,9 +5,9 @@ import pytest
 from small_motor import LEVELS, RADII, motor
 
 from geom.errors import InputError
-from viz.cut import HALF, QUARTER, Wedge, cut_away, exposed, section
-from viz.edges import feature_edges
-from viz.nodes import on_nodes, split
+from viz.rendering.cut import HALF, QUARTER, Wedge, cut_away, exposed, section
+from viz.rendering.edges import feature_edges
+from viz.rendering.nodes import on_nodes, split
 
 NODES = split(motor(32))
 

@@ -6,7 +6,7 @@ from fictional import POSITIONS, comparison
 from PIL import Image
 from small_motor import motor
 
-import viz.gl
+import viz.rendering.gl
 from geom.errors import MissingDependency
 from viz import cutaway, pair, sensors, split
 from viz.colours import VERDICT, heat
@@ -74,9 +74,9 @@ def test_colour_scale_rises_evenly_in_lightness():
 
 def test_without_gl_the_error_names_the_command(monkeypatch):
     monkeypatch.setenv("VTK_DEFAULT_OPENGL_WINDOW", "vtkNoSuchWindow")
-    viz.gl.off_screen_window.cache_clear()
+    viz.rendering.gl.off_screen_window.cache_clear()
     try:
         with pytest.raises(MissingDependency, match="apt-get install -y libegl1"):
-            viz.gl.require_gl()
+            viz.rendering.gl.require_gl()
     finally:
-        viz.gl.off_screen_window.cache_clear()
+        viz.rendering.gl.off_screen_window.cache_clear()

@@ -9,9 +9,9 @@ from fictional import HISTORY, candidates, comparison
 from PIL import Image
 
 from geom.errors import InputError
-from viz import candidates as scores
-from viz import curves, errors, paper, screening
 from viz.data import Comparison
+from viz.figures import candidates as scores
+from viz.figures import curves, errors, paper, screening
 from viz.labels import spread
 
 EFFECTS = {

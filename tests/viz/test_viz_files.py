@@ -16,7 +16,7 @@ from small_motor import motor
 from geom.errors import InputError
 from thermoscope.check import findings
 from viz import Report, animate, split, write_pdf, write_recording, write_report
-from viz.snapshots import snapshots
+from viz.recordings.snapshots import snapshots
 
 NODES = split(motor(16))
 FIELDS = np.stack([np.full(NODES.size, T) for T in (25.0, 60.0, 95.0)])
@@ -45,7 +45,7 @@ def test_report_is_printed(tmp_path):
 
 
 def test_without_a_converter_there_is_no_pdf(tmp_path, monkeypatch):
-    monkeypatch.setattr("viz.pdf.find_spec", lambda name: None)
+    monkeypatch.setattr("viz.pages.pdf.find_spec", lambda name: None)
     monkeypatch.setattr(shutil, "which", lambda name, **_: None)
     assert write_pdf(write_report(Report("road-test"), tmp_path / "report.html")) is None
     assert not (tmp_path / "report.pdf").exists()

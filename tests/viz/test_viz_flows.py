@@ -7,13 +7,13 @@ from small_motor import LEVELS, RADII, motor
 
 from geom.errors import InputError
 from lumped import Balance, bare_network, node_link, node_source
-from lumped.laws import Fixed
-from viz import paper
-from viz.animation import animate
-from viz.flows import Flow, Heat, heat_flows
-from viz.network import LABEL, NODE, apart, clear_place, network_in_machine, places
-from viz.nodes import split
-from viz.sankey import sankey_of_losses
+from lumped.transfer.laws import Fixed
+from viz.figures import paper
+from viz.figures.flows import Flow, Heat, heat_flows
+from viz.figures.sankey import sankey_of_losses
+from viz.machine.animation import animate
+from viz.machine.network import LABEL, NODE, apart, clear_place, network_in_machine, places
+from viz.rendering.nodes import split
 
 MESH = motor(24)
 NODES = split(MESH)

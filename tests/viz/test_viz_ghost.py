@@ -6,10 +6,10 @@ from small_motor import motor
 from vtkmodules.vtkCommonCore import mutable
 
 from viz import QUARTER, Sensor, cutaway, split
-from viz.cut import Surface, cut_away, exposed
-from viz.scene import View
-from viz.sight import SLACK, obstacle
-from viz.thermocouples import marked
+from viz.machine.thermocouples import marked
+from viz.rendering.cut import Surface, cut_away, exposed
+from viz.rendering.scene import View
+from viz.rendering.sight import SLACK, obstacle
 
 NODES = split(motor(24))
 VIEWS = {"default": View(), "from the right": View((1.0, 0.4, 0.6)), "from below": View((-1.0, -0.5, -0.4))}
@@ -73,7 +73,9 @@ def flat(surface: Surface, window) -> float:
 
 def test_six_labels_for_those_furthest_beyond_their_uncertainty(monkeypatch):
     written = []
-    monkeypatch.setattr("viz.thermocouples.callouts", lambda p, labels, *_: written.extend(q.text for q in labels))
+    monkeypatch.setattr(
+        "viz.machine.thermocouples.callouts", lambda p, labels, *_: written.extend(q.text for q in labels)
+    )
     sensors = [Sensor(f"s{i}", (0.0, 0.22, 0.1 + 0.05 * i), float(i), 1.0) for i in range(8)]
     cutaway(NODES, np.linspace(20.0, 80.0, NODES.size), sensors=sensors).close()
     assert [text.split()[0] for text in written] == ["s7", "s6", "s5", "s4", "s3", "s2"]

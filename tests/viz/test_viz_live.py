@@ -12,7 +12,7 @@ from PIL import Image
 import viz.live
 from geom.errors import InputError, MissingDependency
 from viz.colours import DARK
-from viz.flows import Heat
+from viz.figures.flows import Heat
 from viz.live import (
     against_input,
     confusion,
@@ -25,7 +25,7 @@ from viz.live import (
     sensor,
     staircase,
 )  # fmt: skip
-from viz.pdf import BROWSERS
+from viz.pages.pdf import BROWSERS
 
 HEAT = Heat({"copper": 300.0, "iron": 100.0}, (), {"fan": 250.0, "base": 90.0})
 ODDS = [

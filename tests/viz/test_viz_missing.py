@@ -8,7 +8,7 @@ from small_motor import motor
 from geom.errors import InputError
 from viz import missing_in_machine, split
 from viz.colours import BLUE, VERMILION
-from viz.missing import mean_heat, placed
+from viz.machine.missing import mean_heat, placed
 
 NODES = split(motor(24))
 

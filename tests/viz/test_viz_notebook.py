@@ -3,10 +3,10 @@
 from fictional import comparison, documents
 
 import viz.notebook
-from lumped.build import bare_network
-from validation.compare import ChannelError, Comparison, TestError
-from validation.findings import Candidate, Diagnosis
-from validation.revise import Change, Revision
+from lumped.model.build import bare_network
+from validation.comparison.compare import ChannelError, Comparison, TestError
+from validation.diagnosis.findings import Candidate, Diagnosis
+from validation.revision.revise import Change, Revision
 from viz import Report
 
 ERROR = ChannelError("T_<b>", "flange", 10, 5.07, -4.0, 7.0, 0.5, 9.0, 1.0)

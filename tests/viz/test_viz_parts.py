@@ -8,11 +8,11 @@ from PIL import Image
 from small_motor import LEVELS, RADII, motor
 
 from geom.errors import InputError
-from viz.cut import cut_away
-from viz.nodes import split
-from viz.parts import assemblies, exploded, regions, shifts
-from viz.scene import Room, View
-from viz.sight import anchors
+from viz.machine.parts import assemblies, exploded, regions, shifts
+from viz.rendering.cut import cut_away
+from viz.rendering.nodes import split
+from viz.rendering.scene import Room, View
+from viz.rendering.sight import anchors
 
 NODES = split(motor(24))
 

@@ -11,8 +11,8 @@ from fictional import HISTORY, PLACES, POSITIONS, TIME, comparison
 from small_motor import motor
 
 from geom.errors import InputError
-from viz.nodes import split
-from viz.recording import verify, write_recording
+from viz.recordings.recording import verify, write_recording
+from viz.rendering.nodes import split
 
 NODES = split(motor(12))
 FRAMES = 7

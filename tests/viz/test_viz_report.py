@@ -7,8 +7,8 @@ import pytest
 from fictional import HISTORY, comparison, documents
 from PIL import Image
 
-from viz.report import Report, render, write_report
-from viz.words import story, verdict
+from viz.pages.report import Report, render, write_report
+from viz.pages.words import story, verdict
 
 
 @pytest.fixture(scope="module")

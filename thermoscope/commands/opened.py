@@ -6,8 +6,8 @@ import shutil
 from pathlib import Path
 
 from geom.errors import InputError
-from thermoscope.folder import Folder, find_case, load_case
-from thermoscope.terminal import Progress, notes
+from thermoscope.case_folder.folder import Folder, find_case, load_case
+from thermoscope.console.terminal import Progress, notes
 
 LOUD = 3  # findings that are said in full; doctor says all
 PACKAGE = Path(__file__).resolve().parents[1]

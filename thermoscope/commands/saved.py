@@ -8,10 +8,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from thermoscope.case_folder.files import write_whole
+from thermoscope.case_folder.folder import Folder
 from thermoscope.commands.opened import PACKAGE
-from thermoscope.files import write_whole
-from thermoscope.folder import Folder
-from thermoscope.terminal import notes, plain
+from thermoscope.console.terminal import notes, plain
 
 NAME = "diagnosis.json"
 SEAL = "sha256"

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 
-from lumped import stages
-from lumped.laws import FILMS, FIRST_C, STEP_K
-from lumped.settle import CONVERGED_K
-from lumped.terms import ENTRIES, POINTS, ROWS
+from lumped.numerics import stages
+from lumped.numerics.settle import CONVERGED_K
+from lumped.numerics.terms import ENTRIES, POINTS, ROWS
+from lumped.transfer.laws import FILMS, FIRST_C, STEP_K
 from thermoscope.export.flat import Flat, flat
 from thermoscope.export.heading import heading
 from thermoscope.export.model import Model

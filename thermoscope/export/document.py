@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from lumped.laws import FILMS, FIRST_C, STEP_K
-from lumped.terms import ENTRIES, FILM, POINTS, Terms
+from lumped.numerics.terms import ENTRIES, FILM, POINTS, Terms
+from lumped.transfer.laws import FILMS, FIRST_C, STEP_K
 from thermoscope.export.heading import heading
 from thermoscope.export.model import Model, Output
 from thermoscope.export.products import Function, Mapped, Positive, Powered, Straight, Sum, Tabulated

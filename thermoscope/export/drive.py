@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import ThermoscopeError
-from lumped.network import Network
-from lumped.simulate import Record, initial_state, simulate
+from lumped.integration.simulate import Record, initial_state, simulate
+from lumped.model.network import Network
 from thermoscope.export.c_code import RUNTIME, c_files
 from thermoscope.export.compilers import here, library
 from thermoscope.export.model import Model

@@ -10,17 +10,17 @@ from itertools import product as pairs
 
 import numpy as np
 
-from lumped.declared_films import POINTS, FilmOver
-from lumped.declared_mixed import Share
-from lumped.laws import Fixed, InputPower, Law
-from lumped.loss_map import MapLoss
-from lumped.loss_measured import MeasuredLoss, Negative
-from lumped.losses import BrushLoss, CopperLoss, IronLoss, PowerLoss
-from lumped.motor_bases import Switched
-from lumped.motor_laws import Interpolated
-from lumped.reversal import Direction, OneWay
+from lumped.declarations.films import POINTS, FilmOver
+from lumped.declarations.mixed import Share
+from lumped.machine.bases import Switched
+from lumped.machine.laws import Interpolated
+from lumped.sources.loss_map import MapLoss
+from lumped.sources.loss_measured import MeasuredLoss, Negative
+from lumped.sources.losses import BrushLoss, CopperLoss, IronLoss, PowerLoss
+from lumped.transfer.laws import Fixed, InputPower, Law
+from lumped.transfer.reversal import Direction, OneWay
 from thermoscope.export.products import Mapped, Positive, Powered, Product, Straight, Sum, Tabulated
-from validation.forms import BendOfDifference, BendOfTemperature
+from validation.calibration.forms import BendOfDifference, BendOfTemperature
 
 
 @dataclass(frozen=True)

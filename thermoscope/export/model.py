@@ -9,20 +9,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
-from lumped.assembly import Assembly, assembly
-from lumped.compiled import ERROR_K, ERROR_SHARE, capacity_multipliers, state_units
-from lumped.multipliers import multipliers
-from lumped.network import Network, Row
-from lumped.reader import known
-from lumped.terms import Terms
-from thermoscope.commands.simulate import looks
-from thermoscope.error_budget import model_of
+from lumped.integration.assembly import Assembly, assembly
+from lumped.integration.compiled import ERROR_K, ERROR_SHARE, capacity_multipliers, state_units
+from lumped.model.multipliers import multipliers
+from lumped.model.network import Network, Row
+from lumped.numerics.terms import Terms
+from lumped.schemas.reader import known
+from thermoscope.case_folder.folder import Folder
+from thermoscope.case_folder.runs import looks
 from thermoscope.export.products import Product, Sum
 from thermoscope.export.tables import Ranges, factors
-from thermoscope.folder import Folder
-from thermoscope.units import QUANTITIES
+from thermoscope.recordings.units import QUANTITIES
+from thermoscope.verification.error_budget import model_of
 from validation.case import RUNNING, Test
-from validation.compare import compare
+from validation.comparison.compare import compare
 
 Array = NDArray[np.float64]
 USUAL_C = 20.0  # where a run starts unless it is told

@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
-from lumped.laws import Inputs, Law
+from lumped.transfer.laws import Inputs, Law
 from thermoscope.export.expansion import Unknown, expanded
 from thermoscope.export.products import Mapped, Product, Sum, Tabulated
-from validation.forms import FARTHEST, Bend
+from validation.calibration.forms import FARTHEST, Bend
 
 Array = NDArray[np.float64]
 Ranges = Mapping[str, tuple[float, float]]

@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
-from thermoscope.formats import TIME
 from thermoscope.importing.cells import is_clock, is_date, unit_of
 from thermoscope.importing.source import BINARY, Source
-from thermoscope.units import QUANTITIES
+from thermoscope.recordings.formats import TIME
+from thermoscope.recordings.units import QUANTITIES
 
 Array = NDArray[np.float64]
 WORDS = frozenset({"time", "zeit", "timestamp", "date", "datum", "uhrzeit", "clock", "elapsed", "datetime",

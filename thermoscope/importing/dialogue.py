@@ -7,14 +7,14 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 
 from geom.errors import InputError
-from lumped.reader import known
+from lumped.schemas.reader import known
 from thermoscope.importing.cells import number, unit_of
 from thermoscope.importing.draft import Draft, coldest_start, missing_boundaries, missing_inputs, squares_of
 from thermoscope.importing.guess import Guess
 from thermoscope.importing.source import Source
 from thermoscope.importing.target import Target
 from thermoscope.importing.words import WANTED, tokens
-from thermoscope.units import QUANTITIES
+from thermoscope.recordings.units import QUANTITIES
 
 
 @dataclass

@@ -11,7 +11,7 @@ from thermoscope.importing.cells import unit_of
 from thermoscope.importing.source import Source
 from thermoscope.importing.target import Target
 from thermoscope.importing.words import READ, WANTED, quantities_of, roles_of, tokens
-from thermoscope.units import QUANTITIES, converted
+from thermoscope.recordings.units import QUANTITIES, converted
 
 KELVIN = (200.0, 500.0)  # medians of temperatures in K of a machine; in degC a machine of 200 is past its insulation
 FIRST = ("temperature", "current", "speed", "torque", "power", "vehicle_speed", "voltage", "share", "water_flow",

@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
-from thermoscope.formats import TIME, opened, read_frame
 from thermoscope.importing.cells import EMPTY, SWITCH, number, split_unit
 from thermoscope.importing.rows import layout
 from thermoscope.importing.text import text_rows
+from thermoscope.recordings.formats import TIME, opened, read_frame
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -11,8 +11,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from geom.description.roles import Role
 from geom.errors import InputError
-from geom.roles import Role
 from thermoscope.importing.guess import Guess, in_memory
 from thermoscope.importing.source import Source
 from thermoscope.importing.words import QUANTITY, WANTED, roles_of, tokens

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
-from geom.roles import Role
-from lumped.network import Network
-from thermoscope.consistency import read_by
+from geom.description.roles import Role
+from lumped.model.network import Network
 from thermoscope.importing.words import INLET, roles_of, tokens
-from thermoscope.units import QUANTITIES
+from thermoscope.recordings.consistency import read_by
+from thermoscope.recordings.units import QUANTITIES
 
 WORD, ROLE, DIGIT, EXTRA = 2.0, 1.5, 1.0, 0.1  # worth of a shared word, of a role, of a number; of a word too many
 LEAST = 0.8

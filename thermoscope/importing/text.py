@@ -10,8 +10,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 from geom.errors import InputError
-from thermoscope.csv_file import CHUNK, LARGEST
 from thermoscope.importing.cells import is_reading
+from thermoscope.recordings.csv_file import CHUNK, LARGEST
 
 DELIMITERS = ("\t", ";", ",", "|")
 SAMPLE = 400  # lines from the middle that tell the delimiter

@@ -16,7 +16,7 @@ from uuid import uuid4
 import numpy as np
 
 from geom.errors import InputError
-from thermoscope.files import write_whole
+from thermoscope.case_folder.files import write_whole
 from thermoscope.importing.aligned import Recording
 from thermoscope.importing.draft import Draft, sample_of
 from thermoscope.importing.guess import Guess

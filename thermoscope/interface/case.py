@@ -8,18 +8,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from geom.errors import InputError
-from thermoscope.folder import Folder, find_case, load_case
-from thermoscope.history import History, save_history
+from thermoscope.case_folder.folder import Folder, find_case, load_case
+from thermoscope.case_folder.history import History, save_history
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from lumped.network import Network
+    from lumped.model.network import Network
     from validation.case import Test
-    from validation.compare import Comparison
+    from validation.comparison.compare import Comparison
+    from validation.diagnosis.findings import Diagnosis
     from validation.effects.base import Effect
-    from validation.findings import Diagnosis
-    from validation.revise import Revision
+    from validation.revision.revise import Revision
 
 Progress = Callable[[str], None]
 
@@ -53,7 +53,7 @@ class Case:
     @property
     def network(self) -> Network:
         """The network with the effects that were added."""
-        from validation.fitting import working
+        from validation.calibration.fitting import working
 
         return working(self.folder.case)[0]
 
@@ -69,14 +69,14 @@ class Case:
 
     def candidates(self) -> tuple[Effect, ...]:
         """Every effect at every place of this network where it can sit."""
+        from validation.calibration.fitting import scene_of
         from validation.effects import catalogue
-        from validation.fitting import scene_of
 
         return catalogue(scene_of(self.folder.case), self.folder.settings.kinds)
 
     def compare(self) -> Comparison:
         """The model against every test: error per sensor (K) against the sensor's uncertainty and 4 % of its rise."""
-        from validation.compare import compare
+        from validation.comparison.compare import compare
 
         return compare(self.folder.case)
 
@@ -85,7 +85,7 @@ class Case:
 
         Source: Kass and Raftery 1995, J. Am. Stat. Assoc. 90, 773 (probabilities from evidence).
         """
-        from thermoscope.commands.diagnose import diagnosed
+        from thermoscope.commands.explain.diagnose import diagnosed
 
         return diagnosed(self.folder, self.progress)[0]
 
@@ -94,20 +94,20 @@ class Case:
 
         Raises InputError for an unknown effect, or one that cannot sit there.
         """
-        from thermoscope.commands.revise import meant
-        from validation.revise import add
+        from thermoscope.commands.model.revise import meant
+        from validation.revision.revise import add
 
         return self._after(add(self.folder.case, meant(self.folder, effect), self.progress))
 
     def remove(self, effect: str) -> Case:
         """Without the effect, calibrated again. Raises InputError if the model does not hold it."""
-        from validation.revise import remove
+        from validation.revision.revise import remove
 
         return self._after(remove(self.folder.case, effect, self.progress))
 
     def calibrate(self) -> Case:
         """With what case.toml leaves free fitted to the calibration tests; intervals are in `steps[-1].parameters`."""
-        from validation.revise import calibrate
+        from validation.revision.revise import calibrate
 
         return self._after(calibrate(self.folder.case, progress=self.progress))
 
@@ -117,7 +117,7 @@ class Case:
         Raises InputError where a step was not accepted, where the case came with the tool, or where another program
         has changed model.toml since.
         """
-        from thermoscope.columns import write_columns
+        from thermoscope.case_folder.columns import write_columns
         from thermoscope.commands.opened import PACKAGE
 
         refused = [s for s in self.steps if not s.accepted and s.action != "remove"]
@@ -136,8 +136,8 @@ class Case:
 
         test : its name; else the first that was never used to fit. Raises InputError for an unknown one.
         """
-        from thermoscope.commands.show import by_interest
-        from thermoscope.runs import held
+        from thermoscope.case_folder.runs import held
+        from thermoscope.commands.show.pages import by_interest
         from viz import measured_and_model
 
         if test is not None and test not in self.tests:
@@ -146,7 +146,7 @@ class Case:
         return measured_and_model(held(self.folder, chosen), png=png)
 
     def _after(self, step: Revision) -> Case:
-        from thermoscope.commands.revise import evidence, recorded
+        from thermoscope.commands.model.revise import evidence, recorded
 
         history = self.folder.history.and_then(recorded(step, evidence(self.folder, step)))
         case = replace(self.folder.case, model=step.model)

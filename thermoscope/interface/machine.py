@@ -12,15 +12,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
-from thermoscope.folder import load_machine_file
+from thermoscope.case_folder.folder import load_machine_file
 
 if TYPE_CHECKING:
     import pyvista
 
     from geom import NamedMesh
-    from lumped.network import Network
-    from thermoscope.crosscheck import CrossCheck, PartCheck
+    from lumped.model.network import Network
     from thermoscope.pipeline import Built
+    from thermoscope.verification.crosscheck import CrossCheck, PartCheck
 
 Array = NDArray[np.float64]
 Progress = Callable[[str], None]
@@ -91,7 +91,7 @@ class Machine:
     @cached_property
     def rated(self) -> Mapping[str, float]:
         """The rated operating point: input -> value, the unit in its name."""
-        from lumped.motor import rated_inputs
+        from lumped.machine.motor import rated_inputs
 
         return rated_inputs(self.built.machine)
 
@@ -101,8 +101,8 @@ class Machine:
         inputs : those of `rated`, for example current_A=20, speed_rpm=1450; those that are not given are rated
         Raises InputError for an unknown input, ThermoscopeError where the machine does not settle.
         """
-        from lumped.motor_losses import loss_shares
-        from thermoscope.crosscheck import crosscheck
+        from lumped.machine.losses import loss_shares
+        from thermoscope.verification.crosscheck import crosscheck
 
         unknown = sorted(set(inputs) - set(self.rated))
         if unknown:
@@ -120,7 +120,7 @@ def build(
     size_m : of the mesh's triangles (m)
     Raises InputError: the key of the file, what is wrong with it, and what would be right.
     """
-    from thermoscope.commands.build import built_from
+    from thermoscope.commands.model.build import built_from
 
     return Machine(built_from(load_machine_file(Path(machine)), accuracy, progress, size_m)[0])
 

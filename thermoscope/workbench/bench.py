@@ -6,14 +6,14 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from geom.errors import MissingDependency
-from thermoscope.folder import Folder
-from thermoscope.history import History
-from thermoscope.runs import at_revision
-from thermoscope.terminal import Progress
+from thermoscope.case_folder.folder import Folder
+from thermoscope.case_folder.history import History
+from thermoscope.case_folder.runs import at_revision
+from thermoscope.console.terminal import Progress
 from thermoscope.workbench.look import Look, look
 
 if TYPE_CHECKING:
-    from viz.cut import Surface
+    from viz.rendering.cut import Surface
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ def _surface(folder: Folder) -> tuple[Surface | None, str]:
     if folder.built is None:
         return None, "This case has a network declared by hand, so there is no machine to show."
     from viz import require_gl, split
-    from viz.cut import cut_away
+    from viz.rendering.cut import cut_away
 
     try:
         require_gl()

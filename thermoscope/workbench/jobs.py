@@ -14,7 +14,8 @@ from geom.errors import ThermoscopeError
 
 Tell = Callable[[str], None]
 PRELOAD = [
-    "thermoscope.workbench.steps", "thermoscope.commands.revise", "validation.inference.diagnose", "validation.revise",
+    "thermoscope.workbench.steps", "thermoscope.commands.model.revise", "validation.inference.diagnose",
+    "validation.revision.revise",
 ]  # fmt: skip
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from thermoscope.history import History, Revision
+from thermoscope.case_folder.history import History, Revision
 
 
 def same(a: Revision, b: Revision) -> bool:

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from thermoscope.folder import Folder
-from thermoscope.runs import fields, held
+from thermoscope.case_folder.folder import Folder
+from thermoscope.case_folder.runs import fields, held
 
 if TYPE_CHECKING:
-    from viz.cut import Surface
     from viz.data import Comparison
+    from viz.rendering.cut import Surface
 
 FRAMES = 25
 Frames = tuple[NDArray[np.float64], NDArray[np.float32]]
@@ -44,7 +44,7 @@ class Look:
 
 def look(folder: Folder, surface: Surface | None) -> Look:
     """Run the model on every test."""
-    from validation.compare import compare
+    from validation.comparison.compare import compare
 
     curves = {test.name: held(folder, test) for test in folder.case.tests}
     frames: dict[str, Frames] = {}

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from thermoscope.history import History
+from thermoscope.case_folder.history import History
 from thermoscope.workbench.look import Look
-from viz.ahead import deciding
-from viz.candidates import amplitude
 from viz.data import Sensor, sensors, short
-from viz.words import verdict
+from viz.figures.candidates import amplitude
+from viz.pages.ahead import deciding
+from viz.pages.words import verdict
 
 Row = dict[str, Any]
 SHOWN = 12

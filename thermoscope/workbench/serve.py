@@ -11,8 +11,8 @@ from collections.abc import AsyncIterator, Callable
 from aiohttp import web
 
 from geom.errors import InputError
-from thermoscope.folder import Folder
-from thermoscope.terminal import Progress
+from thermoscope.case_folder.folder import Folder
+from thermoscope.console.terminal import Progress
 from thermoscope.workbench.bench import bench
 from thermoscope.workbench.gate import Gate
 from thermoscope.workbench.jobs import prepare

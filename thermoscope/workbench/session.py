@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from geom.errors import ThermoscopeError
+from thermoscope.case_folder.folder import Folder
+from thermoscope.case_folder.history import History, Revision, load_history, save_history
 from thermoscope.commands.saved import save_diagnosis, saved_diagnosis
-from thermoscope.folder import Folder
-from thermoscope.history import History, Revision, load_history, save_history
 from thermoscope.workbench import ledger, steps
 from thermoscope.workbench.bench import Bench, at
 from thermoscope.workbench.jobs import FailedError, Job, StoppedError

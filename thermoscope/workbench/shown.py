@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from thermoscope.history import History
+from thermoscope.case_folder.history import History
 from thermoscope.workbench import ledger, rows
 from thermoscope.workbench.bench import Bench
 from thermoscope.workbench.look import Look
 from thermoscope.workbench.stage import Stage
-from viz.candidates import matrix
 from viz.colours import DARK, LIGHT, Theme
+from viz.figures.candidates import matrix
 from viz.live.candidates import confusion
 from viz.live.curves import sensor as sensor_figure
 

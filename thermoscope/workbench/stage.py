@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from viz import scene
-from viz.callouts import HOLLOW, on_top
 from viz.colours import DARK, LIGHT, VERDICT, Theme
-from viz.cut import Surface
 from viz.data import Sensor
-from viz.field import UNIT, paint
-from viz.scene import Room, View
-from viz.sight import covered, obstacle
+from viz.machine.field import UNIT, paint
+from viz.rendering import scene
+from viz.rendering.callouts import HOLLOW, on_top
+from viz.rendering.cut import Surface
+from viz.rendering.scene import Room, View
+from viz.rendering.sight import covered, obstacle
 
 if TYPE_CHECKING:
     import pyvista

@@ -6,14 +6,14 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from thermoscope.folder import Folder
-from thermoscope.history import Revision
-from thermoscope.terminal import Progress
+from thermoscope.case_folder.folder import Folder
+from thermoscope.case_folder.history import Revision
+from thermoscope.console.terminal import Progress
 from thermoscope.workbench.bench import at
 from thermoscope.workbench.look import Look, look
 
 if TYPE_CHECKING:
-    from viz.cut import Surface
+    from viz.rendering.cut import Surface
 
 
 def seen(folder: Folder, surface: Surface | None, tell: Progress) -> Look:
@@ -34,8 +34,8 @@ def stepped(
     folder: Folder, surface: Surface | None, action: str, effect: str, tell: Progress
 ) -> tuple[Revision, Mapping[str, Any], Look]:
     """Add or remove an effect, or calibrate: the step as model.toml keeps it, its document, the model after it."""
-    from thermoscope.commands.revise import evidence, recorded
-    from validation import revise
+    from thermoscope.commands.model.revise import evidence, recorded
+    from validation.revision import revise
 
     if action == "calibrate":
         result = revise.calibrate(folder.case, progress=tell)
@@ -48,6 +48,6 @@ def stepped(
 
 def reported(folder: Folder, tell: Progress) -> Path:
     """Write out/report.html with the last diagnosis there was."""
-    from thermoscope.commands.show import write_page
+    from thermoscope.commands.show.pages import write_page
 
     return write_page(folder, str(folder.settings.path), folder.settings.out, tell)

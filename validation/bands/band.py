@@ -2,25 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.multipliers import values_of
-from lumped.network import Network, Row
-from lumped.quantities import AIR, LIQUID
+from lumped.model.multipliers import values_of
+from lumped.model.network import Row
 from validation.bands.belief import Belief, acting
+from validation.bands.inputs import moved_boundaries, moved_inputs
 from validation.case import Channel, Test
-from validation.doubt import Doubt
-from validation.operators import head
-from validation.predict import Watch, predict
-from validation.sheet import stretch
+from validation.comparison.predict import Watch, predict
+from validation.comparison.sheet import stretch
+from validation.measurement.operators import head
 
 Array = NDArray[np.float64]
 NORMAL_95 = 1.96
-FLOWS = {AIR: "flow of air", LIQUID: "flow of liquid"}
 
 
 @dataclass(frozen=True)
@@ -87,21 +85,3 @@ def _variance(watch: Watch, size: Array, beside: Array, root: Array) -> Array:
 
 def _asked(place: Place, test: Test) -> Channel:
     return Channel(f"at {place.name}", place.name, place.row, np.zeros(test.time.size))
-
-
-def moved_inputs(network: Network, test: Test, doubt: Doubt) -> Iterator[tuple[str, Test]]:
-    """The record with one input at a time off by its standard uncertainty; flows of one kind are off together."""
-    groups: dict[str, list[str]] = {}
-    for name, u in test.inputs.items():
-        if np.any(u):
-            groups.setdefault(FLOWS.get(network.measures(name), f"input {name}"), []).append(name)
-    for group, names in groups.items():
-        share = doubt["flow" if group in FLOWS.values() else "input"]
-        yield group, test.scaled(dict.fromkeys(names, 1.0 + share))
-
-
-def moved_boundaries(test: Test, doubt: Doubt) -> Iterator[tuple[str, Test]]:
-    """The record with one boundary at a time off by what its thermometer may be."""
-    for name, T in test.boundaries.items():
-        off = np.asarray(T, float) + doubt["boundary"]
-        yield f"boundary:{name}", replace(test, boundaries={**test.boundaries, name: off})

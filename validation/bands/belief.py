@@ -16,14 +16,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.network import Network, Parameter
-from validation.calibrate import Fit, Known, minimise, with_model_error
+from lumped.model.network import Network, Parameter
+from validation.bands.inputs import FLOWS, moved_inputs
+from validation.calibration.calibrate import Fit, Known, minimise, with_model_error
+from validation.calibration.fitting import working
 from validation.case import Case, Test
+from validation.comparison.sheet import Segment, segments
 from validation.doubt import Doubt
-from validation.fitting import working
 from validation.inference.model_error import with_cores, with_doubts
-from validation.operators import of_measurement
-from validation.sheet import Segment, segments
+from validation.measurement.operators import of_measurement
 from validation.threads import one_blas_thread
 
 Array = NDArray[np.float64]
@@ -89,8 +90,6 @@ def input_columns(
 
     Flows are among the columns of the model error already.
     """
-    from validation.bands.band import FLOWS, moved_inputs
-
     out: dict[str, list[Array]] = {}
     for test in tests:
         for name, moved in moved_inputs(network, test, doubt):

@@ -14,13 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtri
 
-from lumped.network import Network, Parameter
-from validation.calibrate import Fit
+from lumped.model.network import Network, Parameter
+from validation.calibration.calibrate import Fit
+from validation.calibration.fitting import to_value
 from validation.case import Test
-from validation.fitting import to_value
 from validation.inference.evidence import extended_prior, projected
-from validation.operators import head
-from validation.score import apart, score
+from validation.inference.score import apart, score
+from validation.measurement.operators import head
 
 Array = NDArray[np.float64]
 FALSE = 0.05  # share of consistent cases in which some parameter of some test seems to differ

@@ -13,22 +13,22 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from validation.calibrate import silent
+from validation.calibration.calibrate import silent
+from validation.calibration.fitting import scene_of
 from validation.case import Case
 from validation.conditions.hats import Stretch, hats
 from validation.conditions.menu import of_a_test, passing
 from validation.conditions.refine import columns, refined
 from validation.conditions.windows import ALIKE, distinct, stretches, worth
+from validation.diagnosis.where import Latent, Scan
 from validation.doubt import PRIOR, USUAL
 from validation.effects import Effect, extended
 from validation.effects.during import During
 from validation.effects.gate import Event, event
 from validation.effects.sites import neighbours
-from validation.fitting import scene_of
 from validation.inference.evidence import Evidence, extended_prior, projected, weighed
 from validation.inference.posterior import log_bayes_of
-from validation.score import apart, score, total
-from validation.where import Latent, Scan
+from validation.inference.score import apart, score, total
 
 Array = NDArray[np.float64]
 TESTS, EVENTS, EACH = 16, 4, 6  # conditions of whole tests, events, and explanations of each that join the others

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from validation.diagnosis.findings import Happening
 from validation.effects.during import During
-from validation.findings import Happening
 from validation.inference.posterior import Posterior, probabilities
 
 

@@ -14,14 +14,14 @@ from numpy.typing import NDArray
 from scipy.special import logsumexp
 
 from validation.case import Test
+from validation.diagnosis.where import Scan
 from validation.doubt import SIZES, USUAL
 from validation.effects.build import conductance_scale, power_scale
 from validation.effects.gate import Event, Span
 from validation.inference.evidence import Evidence, extended_prior, projected
 from validation.inference.model_error import nodes
 from validation.inference.posterior import one_size
-from validation.score import Score, apart, score
-from validation.where import Scan
+from validation.inference.score import Score, apart, score
 
 Array = NDArray[np.float64]
 HALF = 0.5  # of the machine's own conductance or power, as effects of the catalogue have it

@@ -7,14 +7,14 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from validation.calibration.forms import is_film
 from validation.conditions.refine import columns
 from validation.doubt import PRIOR, RARE
 from validation.effects import extended
 from validation.effects.above import KIND, Above
-from validation.forms import is_film
 from validation.inference.evidence import Evidence, extended_prior, projected
 from validation.inference.posterior import log_bayes_of
-from validation.score import score, total
+from validation.inference.score import score, total
 
 Array = NDArray[np.float64]
 LEVELS = (0.5, 0.75)  # quantiles of an input at which its law may turn

@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 from scipy.special import logsumexp
 
 from validation.case import Test
+from validation.comparison.sheet import Segment, segments
 from validation.doubt import SIZES, USUAL
 from validation.effects import Effect, extended
 from validation.effects.during import During
 from validation.effects.gate import Event, Span
 from validation.inference.evidence import Evidence, extended_prior, projected
 from validation.inference.posterior import one_size
-from validation.score import score, total
-from validation.sheet import Segment, segments
+from validation.inference.score import score, total
 
 Array = NDArray[np.float64]
 Known = Mapping[str, float]

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from validation.inference.evidence import Evidence, extended_prior, under
-from validation.noise import Noise, fit_noise
-from validation.score import total
+from validation.inference.score import total
+from validation.measurement.noise import Noise, fit_noise
 
 FEWEST = 3  # tests: of two that contradict each other either may be the odd one
 

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validation.conditions.hats import Hats, Path, Stretch, held, log_bayes
+from validation.diagnosis.where import Latent
 from validation.effects.gate import Event, Span
-from validation.where import Latent
 
 Array = NDArray[np.float64]
 Pulse = tuple[Span, float]  # when, and its level (W) against what is usual in the test

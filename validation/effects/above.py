@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from geom.errors import InputError
-from lumped.laws import Array, Inputs
-from lumped.network import Link, Network, Source
+from lumped.model.network import Link, Network, Source
+from lumped.transfer.laws import Array, Inputs
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import Shaped, copy_link, copy_source
 

@@ -7,9 +7,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import ClassVar, Literal
 
-from lumped.laws import CLOCK
-from lumped.network import Network, Parameter
-from lumped.quantities import INPUTS
+from lumped.model.network import Network, Parameter
+from lumped.model.quantities import INPUTS
+from lumped.transfer.laws import CLOCK
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from lumped.laws import CONSTANT, Array, Inputs, Law, TemperatureLaw
-from lumped.network import Link, Network, Parameter, Place, Row, Source
+from lumped.model.network import Link, Network, Parameter, Place, Row, Source
+from lumped.transfer.laws import CONSTANT, Array, Inputs, Law, TemperatureLaw
 from validation.effects.sites import faces
 
 HOUR = 3600.0

@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 
 from geom.errors import InputError
-from lumped.laws import CLOCK, Law
-from lumped.network import Link, Network, Parameter, Source
+from lumped.model.network import Link, Network, Parameter, Source
+from lumped.transfer.laws import CLOCK, Law
 from validation.doubt import USUAL
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import Shaped, copy_link, copy_source

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
-from lumped.laws import CLOCK, Inputs
+from lumped.transfer.laws import CLOCK, Inputs
 from validation.case import RUNNING, Test
 
 Array = NDArray[np.float64]

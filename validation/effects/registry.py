@@ -5,17 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from importlib import import_module
 from importlib.metadata import entry_points
-from pkgutil import iter_modules
+from pathlib import Path
+from pkgutil import walk_packages
 from typing import Any
 
 from geom.errors import InputError
-from lumped.network import Network
+from lumped.model.network import Network
 from validation.effects.above import KIND, Above
 from validation.effects.base import Effect, Scene
 from validation.effects.during import IN, During
 from validation.effects.gate import event
 
 GROUP = "thermoscope.effects"
+HERE = Path(__file__).parent
 
 
 def _concrete(base: type[Effect]) -> Iterable[type[Effect]]:
@@ -26,11 +28,9 @@ def _concrete(base: type[Effect]) -> Iterable[type[Effect]]:
 
 
 def kinds() -> dict[str, type[Effect]]:
-    """Every kind of effect by name: the files of this folder, then entry points of group 'thermoscope.effects'."""
-    import validation.effects as here
-
-    for module in iter_modules(here.__path__):
-        import_module(f"validation.effects.{module.name}")
+    """Every kind of effect by name: the files of this folder, then entry points of 'thermoscope.effects'."""
+    for module in walk_packages([str(HERE)], "validation.effects."):
+        import_module(module.name)
     root: Any = Effect
     found = [c for c in _concrete(root) if hasattr(c, "kind")]  # one that holds for a while has that of another
     own = {c.kind: c for c in found if c.__module__.startswith("validation.effects.")}

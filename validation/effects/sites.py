@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
 
-from geom.identity import Identity
-from geom.roles import Role
-from lumped.network import Link, Network, Place
+from geom.description.identity import Identity
+from geom.description.roles import Role
+from lumped.model.network import Link, Network, Place
 
 AXLE = frozenset({Role.BEARING, Role.SHAFT})
 FIELD = frozenset({Role.IRON, Role.WINDING, Role.MAGNET, Role.ROTOR, Role.CAGE, Role.INSULATION, Role.COMMUTATOR})

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from validation.diagnosis.findings import Verdict
 from validation.doubt import COSTS
-from validation.findings import Verdict
 from validation.inference.evidence import Evidence
 from validation.inference.posterior import Hypothesis, inclusion, probabilities
 

@@ -7,17 +7,17 @@ from types import MappingProxyType
 
 import numpy as np
 
-from validation.calibrate import silent
+from validation.calibration.calibrate import silent
 from validation.case import Case
 from validation.conditions.contradiction import contradiction
 from validation.conditions.found import conditions, joined
 from validation.conditions.laws import laws
 from validation.conditions.question import answered
 from validation.conditions.robust import without
+from validation.diagnosis.findings import Diagnosis
+from validation.diagnosis.imprint import imprint
+from validation.diagnosis.where import scan
 from validation.effects.above import KIND
-from validation.faults import broken_channels
-from validation.findings import Diagnosis
-from validation.imprint import imprint
 from validation.inference.decision import Decision, decide
 from validation.inference.evidence import (
     Evidence,
@@ -41,10 +41,10 @@ from validation.inference.posterior import (
 from validation.inference.refits import refitted
 from validation.inference.several import further
 from validation.inference.tables import tabulate
-from validation.noise import Noise
-from validation.procedure.which_base import bases_tried, wrong_bases
+from validation.measurement.faults import broken_channels
+from validation.measurement.noise import Noise
+from validation.procedure.reduction.which_base import bases_tried, wrong_bases
 from validation.threads import one_blas_thread
-from validation.where import scan
 
 Progress = Callable[[str], None]
 CONTENDERS = 8  # effects whose own noise is looked at: one of them leads under any

@@ -11,15 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
-from lumped.multipliers import values_of
-from lumped.network import Network, Parameter
-from validation.calibrate import Fit, Known, Measure, calibrated, minimise, silent, with_model_error
+from lumped.model.multipliers import values_of
+from lumped.model.network import Network, Parameter
+from validation.calibration.calibrate import Fit, Known, Measure, calibrated, minimise, silent, with_model_error
+from validation.calibration.fitting import Unknowns, at_level, scene_of, widened, working
 from validation.case import Case, Test
+from validation.comparison.sheet import Segment, reach, segments
 from validation.effects import Effect, catalogue, extended
-from validation.fitting import Unknowns, at_level, scene_of, widened, working
-from validation.noise import Noise, fit_noise
-from validation.score import Gram, Score, gram, score, total
-from validation.sheet import Segment, reach, segments
+from validation.inference.score import Gram, Score, gram, score, total
+from validation.measurement.noise import Noise, fit_noise
 
 Array = NDArray[np.float64]
 TWIN = 0.9995  # cosine from which a calibrated parameter does the same as an effect

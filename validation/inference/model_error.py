@@ -14,17 +14,17 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.laws import CONSTANT, Constant, Fixed, Inputs, Law, TemperatureLaw
-from lumped.network import Link, Network, Parameter, Place, Row
-from lumped.quantities import AIR, LIQUID
-from lumped.simulate import simulate
+from lumped.integration.simulate import simulate
+from lumped.model.network import Link, Network, Parameter, Place, Row
+from lumped.model.quantities import AIR, LIQUID
+from lumped.transfer.laws import CONSTANT, Constant, Fixed, Inputs, Law, TemperatureLaw
+from validation.calibration.forms import KNOTS, SETTLE_K, Table, is_film
 from validation.case import Channel, Test
+from validation.comparison.predict import record, thermal
+from validation.comparison.sheet import Segment, segments
 from validation.doubt import USUAL, Doubt
 from validation.effects.build import Shaped, copy_link, exchange, heat
-from validation.forms import KNOTS, SETTLE_K, Table, is_film
-from validation.operators import behind, setting
-from validation.predict import record, thermal
-from validation.sheet import Segment, segments
+from validation.measurement.operators import behind, setting
 
 Array = NDArray[np.float64]
 

@@ -19,15 +19,15 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import log_ndtr, logsumexp
 
-from validation.calibrate import Fit
+from validation.calibration.calibrate import Fit
+from validation.diagnosis.where import Latent
 from validation.doubt import PRIOR, RARE, SIZES, TEMPER
 from validation.effects import Effect
 from validation.effects.above import Above
 from validation.effects.during import During
 from validation.effects.gate import Event
 from validation.inference.evidence import Evidence
-from validation.score import Score
-from validation.where import Latent
+from validation.inference.score import Score
 
 if TYPE_CHECKING:
     from validation.conditions.contradiction import Contradiction

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import logsumexp
 
-from validation.calibrate import Fit, silent
+from validation.calibration.calibrate import Fit, silent
 from validation.doubt import SIZES
 from validation.inference.evidence import Evidence, free_of, refit, refit_beside, starts
 from validation.inference.posterior import Hypothesis, probabilities, told

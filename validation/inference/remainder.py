@@ -8,11 +8,11 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from validation.calibrate import Fit, Measure
-from validation.findings import Remainder
+from validation.calibration.calibrate import Fit, Measure
+from validation.comparison.sheet import Segment
+from validation.diagnosis.findings import Remainder
 from validation.inference.decision import Decision
 from validation.inference.posterior import Hypothesis, Posterior, probabilities
-from validation.sheet import Segment
 
 OFF = 2.0  # deviations of what a sensor and a good model allow, from which a record is called off
 MOST = 3  # are told, worst first

@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from validation.calibrate import silent
+from validation.calibration.calibrate import silent
 from validation.case import Case
 from validation.doubt import PRIOR
 from validation.effects.during import During

@@ -9,14 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtri
 
-from validation.calibrate import Fit, Measure
+from validation.calibration.calibrate import Fit, Measure
 from validation.case import Case, Test
+from validation.comparison.sheet import rmse, segments
 from validation.conditions.happenings import happenings
 from validation.conditions.question import best_question
+from validation.diagnosis.findings import Candidate, Decided, Diagnosis, Hidden, Odds, Verdict
 from validation.doubt import TEMPER
 from validation.effects.above import Above
 from validation.effects.during import During
-from validation.findings import Candidate, Decided, Diagnosis, Hidden, Odds, Verdict
 from validation.inference.decision import Decision
 from validation.inference.detection import smallest, thresholds
 from validation.inference.evidence import Evidence, deviance
@@ -26,8 +27,7 @@ from validation.inference.remainder import remainder
 from validation.planning.contenders import Contenders
 from validation.planning.experiments import next_tests
 from validation.planning.sensors import next_sensors
-from validation.procedure.which_base import Hypothesis as Base
-from validation.sheet import rmse, segments
+from validation.procedure.reduction.which_base import Hypothesis as Base
 
 Array = NDArray[np.float64]
 ROWS, SHOWN = 20, 1e-4  # candidates in the table; odds below one in ten thousand are not listed

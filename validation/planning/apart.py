@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validation.inference.evidence import Evidence, extended_prior
+from validation.inference.score import Gram, score, total
 from validation.planning.contenders import Contenders
-from validation.score import Gram, score, total
 
 Array = NDArray[np.float64]
 Gaps = dict[tuple[int, int], float]

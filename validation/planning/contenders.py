@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from validation.calibrate import Fit
-from validation.noise import Noise
+from validation.calibration.calibrate import Fit
+from validation.measurement.noise import Noise
 
 
 @dataclass(frozen=True)

@@ -8,14 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import ThermoscopeError
-from validation.findings import NextTest
+from validation.comparison.sheet import segments
+from validation.diagnosis.findings import NextTest
 from validation.inference.evidence import Evidence
+from validation.inference.score import gram
 from validation.planning.apart import separation, told_apart
 from validation.planning.contenders import Contenders
 from validation.planning.foretell import Plan, proven, read_by, widened_error
 from validation.planning.menu import possible
-from validation.score import gram
-from validation.sheet import segments
 
 Array = NDArray[np.float64]
 

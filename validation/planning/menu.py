@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from geom.roles import Role
-from lumped.network import Network
+from geom.description.roles import Role
+from lumped.model.network import Network
 from validation.case import Test
 from validation.effects.sites import role
 

@@ -8,17 +8,17 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.network import Network, Place
+from lumped.model.network import Network, Place
 from validation.case import Channel, Test
+from validation.comparison.sheet import Segment, segments
+from validation.diagnosis.findings import NextSensor
 from validation.effects.sites import outside, turns
-from validation.findings import NextSensor
 from validation.inference.evidence import Evidence
-from validation.noise import Noise
+from validation.inference.score import Gram
+from validation.measurement.noise import Noise
 from validation.planning.apart import separation, told_apart
 from validation.planning.contenders import Contenders
 from validation.planning.foretell import Plan, proven, widened_error
-from validation.score import Gram
-from validation.sheet import Segment, segments
 
 Array = NDArray[np.float64]
 SIGMA_K = 0.5

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from geom.errors import InputError
-from lumped.network import Network
+from lumped.model.network import Network
 from validation.rating.envelope import rated
 from validation.rating.operation import Operation, air_boundaries, at_altitude, coolant_boundaries, flows
 from validation.rating.points import Model

@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
-from lumped.laws import Linear
-from lumped.loss_map import MapLoss
-from lumped.network import Network, Source
+from lumped.model.network import Network, Source
+from lumped.sources.loss_map import MapLoss
+from lumped.transfer.laws import Linear
 
 Array = NDArray[np.float64]
 BALANCED = 0.02  # of the input power: what losses and powers may disagree by

@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.description.roles import Role
 from geom.errors import InputError
-from geom.roles import Role
-from lumped.laws import CLOCK, Law, Radiation, TemperatureLaw
-from lumped.network import Link, Network
-from lumped.quantities import AIR, LIQUID
+from lumped.model.network import Link, Network
+from lumped.model.quantities import AIR, LIQUID
+from lumped.transfer.laws import CLOCK, Law, Radiation, TemperatureLaw
 from validation.case import Test
 
 Array = NDArray[np.float64]

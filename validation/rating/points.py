@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import ThermoscopeError
-from lumped.duty import s3
-from lumped.network import Network, Row
-from lumped.simulate import Record, Stand, initial_state, simulate
-from lumped.steady import steady
+from lumped.drives.duty import s3
+from lumped.integration.simulate import Record, Stand, initial_state, simulate
+from lumped.integration.steady import steady
+from lumped.model.network import Network, Row
 from validation.rating.operation import Operation
 
 Array = NDArray[np.float64]

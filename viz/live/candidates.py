@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from viz.candidates import DECISION, SHOWN
 from viz.colours import BLUE, LIGHT, PURPLE, VERMILION, Theme
+from viz.figures.candidates import DECISION, SHOWN
 from viz.live.style import figure, plain
 
 if TYPE_CHECKING:

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geom.errors import InputError
-from validation.within import limit_K
+from validation.comparison.within import limit_K
 from viz.colours import BLUE, LIGHT, ORANGE, Theme
-from viz.curves import wrongness
 from viz.data import Comparison, short
+from viz.figures.curves import wrongness
 from viz.live.style import faded, figure, plain
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ def sensor(comparison: Comparison, channel: str, *, theme: Theme = LIGHT) -> go.
 
 
 def residuals(comparison: Comparison, *, theme: Theme = LIGHT) -> go.Figure:
-    """Measured - modelled of every sensor over time (K); those that are over are coloured (validation.within)."""
+    """Measured - modelled of every sensor over time (K); those that are over are coloured (within.py)."""
     (t, unit), thin = comparison.clock, comparison.thin
     out = figure(theme, title={"text": f"{comparison.test.name}: what the model misses", "x": 0.02})
     for c in comparison.channels:

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from viz.colours import BLUE, LIGHT, Theme
-from viz.errors import PALE, error_paths
+from viz.figures.errors import PALE, error_paths
 from viz.live.style import figure
 
 if TYPE_CHECKING:

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 from geom.errors import InputError
 from viz.colours import LIGHT, VERMILION, Theme
-from viz.flows import Heat
+from viz.figures.flows import Heat
+from viz.figures.sankey import colour_of, exits
 from viz.live.style import faded, figure
-from viz.sankey import colour_of, exits
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from validation.calibration.fitting import working
 from validation.case import Case, Test
-from validation.compare import physical
-from validation.fitting import working
-from validation.operators import of_measurement
-from validation.predict import predict
+from validation.comparison.compare import physical
+from validation.comparison.predict import predict
+from validation.measurement.operators import of_measurement
 from viz.colours import LIGHT, Theme
 from viz.data import short
 from viz.live.style import figure, plain
@@ -20,7 +20,7 @@ from viz.live.style import figure, plain
 if TYPE_CHECKING:
     import plotly.graph_objects as go
 
-    from lumped.network import Parameter
+    from lumped.model.network import Parameter
 
 
 def influence(case: Case, test: Test) -> tuple[Sequence[Parameter], NDArray[np.float64]]:

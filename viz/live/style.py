@@ -59,7 +59,7 @@ def saved(figure: go.Figure, path: str | Path) -> Path:
     except (ImportError, ValueError, RuntimeError) as fault:
         raise MissingDependency(
             "a static picture of a live figure needs kaleido and Chromium (uv pip install kaleido; apt-get install -y "
-            "chromium; a browser elsewhere is found through BROWSER_PATH); viz.curves, viz.errors and viz.candidates "
-            f"draw without: {' '.join(str(fault).split())[:200]}"
+            "chromium; a browser elsewhere is found through BROWSER_PATH); the drawings of viz.figures "
+            f"need none without: {' '.join(str(fault).split())[:200]}"
         ) from None
     return path

@@ -7,7 +7,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from geom import shapes
+from geom.description import shapes
+from geom.description.part import Part, fluid
+from geom.description.roles import Role
 from geom.families.family import Family
 from geom.families.radial_flux import parameters
 from geom.families.radial_flux.checks import check, check_cage, check_magnets
@@ -15,8 +17,6 @@ from geom.families.radial_flux.housing import coolant, enclosure, ports
 from geom.families.radial_flux.layout import Layout
 from geom.families.radial_flux.rotors import cage_rotor, magnet_rotor, shaft
 from geom.families.radial_flux.stator import stator
-from geom.part import Part, fluid
-from geom.roles import Role
 
 _FACES = {
     ("housing", "ambient"): "housing.fins",

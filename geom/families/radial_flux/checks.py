@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from geom.description.parameters import impossible
 from geom.families.nozzles import too_near
 from geom.families.radial_flux.housing import nozzles
 from geom.families.radial_flux.layout import Layout
 from geom.families.radial_flux.rotors import shapes_of_magnets
-from geom.parameters import impossible
 
 Rule = tuple[bool, str, float, str]  # holds, key, value as in the file, what would be right
 mm = 1e3

@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from geom import shapes
+from geom.description import shapes
+from geom.description.part import Made, Part, Port, Prism, fluid
+from geom.description.profile import Profile
+from geom.description.roles import Role
 from geom.families.nozzles import Nozzle, opened_ring, slices
 from geom.families.radial_flux.layout import Layout
 from geom.families.turns import Turns
-from geom.part import Made, Part, Port, Prism, fluid
-from geom.profile import Profile
-from geom.roles import Role
 
 
 def enclosure(g: Any, at: Layout) -> tuple[Part, ...]:

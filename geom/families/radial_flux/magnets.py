@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from geom import shapes
+from geom.description import shapes
 
 Corners = list[tuple[float, float]]
 _STEPS = 200  # widths tried; the widest is known to half a percent of the pole

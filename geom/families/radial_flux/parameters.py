@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from geom.description.parameters import Parameter
 from geom.families.radial_flux import scales
-from geom.parameters import Parameter
 
 P = Parameter
 COMMON = (

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
-from geom import shapes
+from geom.description import shapes
+from geom.description.part import Part, extrude
+from geom.description.profile import Profile
+from geom.description.roles import Role
 from geom.families.radial_flux.layout import Layout
 from geom.families.radial_flux.magnets import corners
-from geom.part import Part, extrude
-from geom.profile import Profile
-from geom.roles import Role
 
 
 def shaft(g: Any, at: Layout) -> Part:

@@ -8,8 +8,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from geom.description.parameters import Scale
 from geom.families.radial_flux.magnets import widest
-from geom.parameters import Scale
 
 
 def outer(low: float, high: float) -> Scale:

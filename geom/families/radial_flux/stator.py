@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from geom import shapes
+from geom.description import shapes
+from geom.description.part import Part, extrude
+from geom.description.profile import Loop, Profile
+from geom.description.roles import Role
 from geom.families.radial_flux.layout import Layout
-from geom.part import Part, extrude
-from geom.profile import Loop, Profile
-from geom.roles import Role
 
 
 def stator(g: Any, at: Layout) -> tuple[Part, ...]:

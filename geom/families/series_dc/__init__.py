@@ -8,7 +8,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from geom import shapes
+from geom.description import shapes
+from geom.description.part import Part, fluid
+from geom.description.roles import Role
 from geom.families.family import Family
 from geom.families.series_dc.checks import check
 from geom.families.series_dc.fan import fan
@@ -18,8 +20,6 @@ from geom.families.series_dc.layout import Axial, Radii
 from geom.families.series_dc.parameters import PARAMETERS
 from geom.families.series_dc.rotor import rotor
 from geom.families.series_dc.stator import stator
-from geom.part import Part, fluid
-from geom.roles import Role
 
 
 def build(g: Any) -> tuple[Part, ...]:

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from geom import shapes
+from geom.description import shapes
+from geom.description.parameters import impossible
 from geom.families.nozzles import too_near
 from geom.families.series_dc.jacket import nozzles
 from geom.families.series_dc.layout import Axial, Radii
 from geom.families.series_dc.rotor import duct_circle
-from geom.parameters import impossible
 
 Rule = tuple[bool, str, float, str]  # holds, key, value as in the file, what would be right
 mm = 1e3

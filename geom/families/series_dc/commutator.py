@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from geom import shapes
+from geom.description import shapes
+from geom.description.part import Part, Prism, extrude
+from geom.description.profile import Profile
+from geom.description.roles import Role
 from geom.families.series_dc.layout import Axial, Radii
-from geom.part import Part, Prism, extrude
-from geom.profile import Profile
-from geom.roles import Role
 
 
 def commutator(g: Any, z: Axial, r: Radii) -> tuple[Part, ...]:

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from geom import shapes
+from geom.description import shapes
+from geom.description.part import Part, fluid
+from geom.description.roles import Role
 from geom.families.series_dc.layout import Axial
-from geom.part import Part, fluid
-from geom.roles import Role
 
 _BLADE = 0.35  # of the pitch, as seen along the axis
 _FREE = 0.02  # of the cowl's radius: blade tip to cowl

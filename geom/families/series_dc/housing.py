@@ -6,13 +6,13 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from geom import shapes
+from geom.description import shapes
+from geom.description.part import Made, Part, Prism
+from geom.description.profile import Profile
+from geom.description.roles import Role
 from geom.families.nozzles import Nozzle
 from geom.families.series_dc.jacket import jacket_ring, jacket_walls, nozzles, turns_of
 from geom.families.series_dc.layout import Axial, Radii
-from geom.part import Made, Part, Prism
-from geom.profile import Profile
-from geom.roles import Role
 
 
 def enclosure(g: Any, z: Axial) -> tuple[Part, ...]:

@@ -6,13 +6,13 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from geom import shapes
+from geom.description import shapes
+from geom.description.part import Part, Port, Prism, fluid
+from geom.description.profile import Profile
+from geom.description.roles import Role
 from geom.families.nozzles import CLEAR, Nozzle, opened_circle, opened_ring, slices
 from geom.families.series_dc.layout import Axial, Radii
 from geom.families.turns import Turns
-from geom.part import Part, Port, Prism, fluid
-from geom.profile import Profile
-from geom.roles import Role
 
 Sector = tuple[float, float]  # angles (rad) at which a channel begins and ends
 

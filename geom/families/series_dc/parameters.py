@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from geom.description.parameters import Parameter
 from geom.families.series_dc import scales
-from geom.parameters import Parameter
 
 P = Parameter
 PARAMETERS = (

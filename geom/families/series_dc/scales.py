@@ -8,8 +8,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from geom.description.parameters import Scale
 from geom.families.series_dc.layout import Radii
-from geom.parameters import Scale
 
 STEEPEST = math.pi / 4  # of the line between two poles, where there are fewer than four
 

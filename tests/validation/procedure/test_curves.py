@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from lumped.build import bare_network, node_link, node_row, node_source
-from lumped.laws import Fixed
+from lumped.model.build import bare_network, node_link, node_row, node_source
+from lumped.transfer.laws import Fixed
 from validation.case import Case, Channel, Model, Test
-from validation.procedure.curves import alike, constant, curve, curves
-from validation.procedure.warming import eq8
+from validation.procedure.measuring.curves import alike, constant, curve, curves
+from validation.procedure.measuring.warming import eq8
 
 MINUTES = np.arange(0.0, 181.0, 1.0)
 AIR = 20.0

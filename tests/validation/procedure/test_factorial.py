@@ -5,10 +5,10 @@ import pytest
 
 from geom import load_machine
 from geom.errors import InputError
-from validation.procedure.factorial import Factor, effects, fractional, full, lenth
-from validation.procedure.pm_network import bundle, filled
-from validation.procedure.screening import RESPONSES, TABLE_I, WITH_GAP, screen, varied
-from validation.procedure.sensitivity import Varied, morris, sobol
+from validation.procedure.factors.factorial import Factor, effects, fractional, full, lenth
+from validation.procedure.factors.screening import RESPONSES, TABLE_I, WITH_GAP, screen, varied
+from validation.procedure.factors.sensitivity import Varied, morris, sobol
+from validation.procedure.reduction.pm_network import bundle, filled
 
 ABC = tuple(Factor(c, c.lower(), -1, 1) for c in "ABC")
 

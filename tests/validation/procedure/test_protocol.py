@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from validation.procedure.protocol import Cold, Hot, Record, protocol
+from validation.procedure.measuring.protocol import Cold, Hot, Record, protocol
 
 BETA, ALPHA, COLD_C = 0.3925e-2, -0.105e-2, 21.0
 COOLING = tuple((t, 0.52 * (1 + BETA * (60.0 + 12.0 * np.exp(-t / 150.0)))) for t in np.arange(25.0, 330.0, 15.0))

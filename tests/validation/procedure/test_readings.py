@@ -6,9 +6,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from geom.errors import InputError
-from validation.procedure.meters import OHMMETER, VOLTMETER, Meter, Range
-from validation.procedure.readings import COPPER, NDFEB, Magnets, Saturation, Winding, magnet_rise, winding_rise
-from validation.procedure.spread import Reading, spread
+from validation.procedure.measuring.meters import OHMMETER, VOLTMETER, Meter, Range
+from validation.procedure.measuring.readings import (
+    COPPER,
+    NDFEB,
+    Magnets,
+    Saturation,
+    Winding,
+    magnet_rise,
+    winding_rise,
+)
+from validation.procedure.measuring.spread import Reading, spread
 
 RISE = 80.0
 

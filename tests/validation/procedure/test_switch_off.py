@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from geom.errors import InputError
-from validation.procedure.switch_off import (
+from validation.procedure.measuring.switch_off import (
     Cooling,
     all_ways,
     allowed_delay,

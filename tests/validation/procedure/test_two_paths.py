@@ -4,9 +4,9 @@ import pytest
 
 from geom import load_machine
 from geom.errors import InputError
-from lumped.declared import read_network
-from validation.procedure.pm_network import PmSettings, pm_network
-from validation.procedure.two_paths import two_paths
+from lumped.declarations.network import read_network
+from validation.procedure.reduction.pm_network import PmSettings, pm_network
+from validation.procedure.reduction.two_paths import two_paths
 
 PAIR = {
     "network": {"name": "pair", "boundaries": ["ambient"]},

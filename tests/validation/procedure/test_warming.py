@@ -6,9 +6,9 @@ import pytest
 from geom.errors import InputError
 from validation.case import Channel
 from validation.case import Test as CaseTest
-from validation.procedure.assemblies import assemblies, assembly, worst
-from validation.procedure.repeats import normalised_error, pooled_curves, repeats
-from validation.procedure.warming import eq8, equilibrium, fit_eq8
+from validation.procedure.measuring.assemblies import assemblies, assembly, worst
+from validation.procedure.measuring.repeats import normalised_error, pooled_curves, repeats
+from validation.procedure.measuring.warming import eq8, equilibrium, fit_eq8
 
 MINUTES = np.arange(0.0, 60.1, 1.0)
 PUBLISHED = (85.0, -0.652, -0.08)

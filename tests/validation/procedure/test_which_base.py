@@ -5,18 +5,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from geom.description.identity import identity
+from geom.description.roles import Role
 from geom.errors import InputError
-from geom.identity import identity
-from geom.roles import Role
-from lumped.build import bare_network, node_link, node_row, node_source
-from lumped.laws import Fixed, Radiation
-from lumped.motor_bases import Switched
-from lumped.network import Parameter
-from lumped.simulate import Record, simulate
+from lumped.integration.simulate import Record, simulate
+from lumped.machine.bases import Switched
+from lumped.model.build import bare_network, node_link, node_row, node_source
+from lumped.model.network import Parameter
+from lumped.transfer.laws import Fixed, Radiation
 from validation import diagnose
 from validation.case import Case, Channel, Model, Test
-from validation.procedure.base_heat import base_heat
-from validation.procedure.which_base import (
+from validation.procedure.reduction.base_heat import base_heat
+from validation.procedure.reduction.which_base import (
     bases_tried,
     declared_base,
     on_base,

@@ -1,0 +1,1 @@
+"""From a mesh to matrices: elements, parts, contacts, surfaces, streams, materials."""

@@ -1,0 +1,110 @@
+"""One part of the machine: its own conduction (nothing flows through its skin) and heat capacity."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from fem.matrices import kernels
+from fem.matrices.elements import Elements, HasTensor, Linear
+from fem.matrices.quadratic import Quadratic
+from geom.errors import InputError
+from geom.meshing.mesh import NamedMesh
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Block:
+    """One part: points (m,) its corners' numbers in the mesh; tets (nt, 4) and volumes (nt,) (m3) in its own numbering.
+
+    elements : what its n unknowns are, the m corners first
+    dofs : its slice of the whole;  K : (n, n) conduction (W/K);  M : (n, n) capacity (J/K);  w : (n,) Int N (m3)
+    conductivity : the tensor field K was made of
+    """
+
+    name: str
+    points: Ints
+    elements: Elements
+    volumes: Floats
+    dofs: slice
+    K: sp.csr_array
+    M: sp.csr_array
+    w: Floats
+    rho_cp: float
+    conductivity: HasTensor
+
+    @property
+    def n(self) -> int:
+        return len(self.elements.xyz)
+
+    @property
+    def xyz(self) -> Floats:
+        """(n, 3) points of its unknowns (m)."""
+        return self.elements.xyz
+
+    @property
+    def tets(self) -> Ints:
+        return self.elements.tets
+
+    @property
+    def volume(self) -> float:
+        """m3"""
+        return float(self.w.sum())
+
+    @property
+    def capacity(self) -> float:
+        """J/K"""
+        return self.rho_cp * self.volume
+
+    @cached_property
+    def pieces(self) -> Ints:
+        """(nt,) number of the connected piece each tetrahedron belongs to (the four coils of one winding)."""
+        return sp.csgraph.connected_components(self.K, directed=False)[1][self.tets[:, 0]].astype(np.int64)
+
+    def at_centres(self, T: Floats) -> Floats:
+        """(nt,) mean over each tetrahedron of T (n,)."""
+        return self.elements.means(T)
+
+    def scaled(self, factor: Floats) -> sp.csr_array:
+        """(n, n) conduction (W/K) with the conductivity of every tetrahedron times factor (nt,)."""
+        return self.elements.conduction(self.conductivity, factor)
+
+    def scaled_slope(self, slope: Floats, T: Floats) -> sp.csr_array:
+        """(n, n) what `scaled(f(T)) @ T` changes by through f alone, f'(T) = slope (nt,); not symmetric."""
+        return self.elements.conduction_slope(self.conductivity, slope, T)
+
+    def mass(self, density: Floats) -> sp.csr_array:
+        """(n, n) Int density N N' for a density (nt,) per m3."""
+        return self.elements.mass(density * self.volumes)
+
+
+def block_of(
+    mesh: NamedMesh, number: int, start: int, conductivity: HasTensor, rho_cp: float, quadratic: bool = False
+) -> Block:
+    """Part `number` of a mesh; its unknowns begin at `start`."""
+    mine = mesh.region == number
+    chosen = mesh.tets if mine.all() else mesh.tets[mine]
+    if len(chosen) == 0:
+        raise InputError("no tetrahedron", f"part '{mesh.parts[number]}'", "a part with a volume")
+    points, tets = renumbered(chosen, len(mesh.points))
+    xyz = np.ascontiguousarray(mesh.points[points])
+    volumes = kernels.volumes(xyz, tets)
+    elements: Elements = Quadratic.on(tets, xyz) if quadratic else Linear(tets, xyz)
+    dofs = slice(start, start + len(elements.xyz))
+    K, M, w = elements.conduction(conductivity), elements.mass(rho_cp * volumes), elements.nodal(volumes)
+    return Block(mesh.parts[number], points, elements, volumes, dofs, K, M, w, rho_cp, conductivity)
+
+
+def renumbered(cells: Ints, n: int) -> tuple[Ints, Ints]:
+    """The point numbers (below n) that cells use, ascending, and the cells in terms of them."""
+    used = np.zeros(n, bool)
+    used[cells] = True
+    if used.all():
+        return np.arange(n), np.ascontiguousarray(cells)
+    return np.flatnonzero(used), (np.cumsum(used) - 1)[cells]

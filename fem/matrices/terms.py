@@ -1,0 +1,112 @@
+"""Heat that depends on temperature, one small object each: what it takes out of the solid, and the derivative."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from fem.matrices.assembly import FieldModel
+from geom.errors import InputError
+
+Floats = NDArray[np.float64]
+SIGMA = 5.670374419e-8  # W/m2/K4
+ZERO_C = 273.15  # K
+
+
+class Term(Protocol):
+    def heat(self, field: FieldModel, T: Floats) -> Floats:
+        """(n,) W taken out at T (n,) in degC."""
+        ...
+
+    def slope(self, field: FieldModel, T: Floats) -> sp.csr_array:
+        """(n, n) W/K, the derivative of `heat`."""
+        ...
+
+
+@dataclass(frozen=True)
+class Radiation:
+    """A grey face that sees black surroundings: emissivity sigma (T^4 - surroundings^4), surroundings in degC.
+
+    emissivity : times the view factor, 0 to 1. The integral over each facet is exact.
+    """
+
+    face: str
+    emissivity: float
+    surroundings: float
+
+    def __post_init__(self) -> None:
+        if not 0 <= self.emissivity <= 1:
+            raise InputError(f"emissivity {self.emissivity}", f"radiation from '{self.face}'", "0 to 1")
+
+    def heat(self, field: FieldModel, T: Floats) -> Floats:
+        trace = field.film(self.face).trace
+        far = (self.surroundings + ZERO_C) ** 4
+        out = np.zeros(field.n)
+        out[trace.dofs] = trace.integrate(T[trace.dofs], lambda t: self._c * ((t + ZERO_C) ** 4 - far), 5)
+        return out
+
+    def slope(self, field: FieldModel, T: Floats) -> sp.csr_array:
+        trace = field.film(self.face).trace
+        local = trace.weighted(T[trace.dofs], lambda t: 4 * self._c * (t + ZERO_C) ** 3, 5)
+        return field.spread(local, trace.dofs)
+
+    @property
+    def _c(self) -> float:
+        return self.emissivity * SIGMA
+
+
+@dataclass(frozen=True)
+class VaryingConductivity:
+    """A part whose conductivity is factor(T) times what it was assembled with; T (degC) is each element's mean.
+
+    derivative : of the factor (1/K)
+    """
+
+    part: str
+    factor: Callable[[Floats], Floats]
+    derivative: Callable[[Floats], Floats]
+
+    def heat(self, field: FieldModel, T: Floats) -> Floats:
+        block, out = field.block(self.part), np.zeros(field.n)
+        mine = T[block.dofs]
+        out[block.dofs] = block.scaled(self._factor(block.at_centres(mine)) - 1.0) @ mine
+        return out
+
+    def slope(self, field: FieldModel, T: Floats) -> sp.csr_array:
+        block = field.block(self.part)
+        mine = T[block.dofs]
+        centre = block.at_centres(mine)
+        local = block.scaled(self._factor(centre) - 1.0) + block.scaled_slope(self.derivative(centre), mine)
+        return field.spread(local, np.arange(block.dofs.start, block.dofs.stop))
+
+    def _factor(self, T: Floats) -> Floats:
+        factor = self.factor(T)
+        if not np.all(factor > 0):
+            raise InputError("conductivity falls to 0 or below", f"part '{self.part}'", "a factor above 0")
+        return factor
+
+
+@dataclass(frozen=True)
+class CopperLoss:
+    """A loss that grows with resistance: watts (1 + alpha (T - reference)), element by element, T in degC.
+
+    watts : at the reference temperature (W), uniform over the part;  alpha : 1/K.  The load itself holds none of it.
+    """
+
+    part: str
+    watts: float
+    alpha: float = 0.00393
+    reference: float = 20.0
+
+    def heat(self, field: FieldModel, T: Floats) -> Floats:
+        return -self.watts * field.load(self.part) + self.slope(field, T) @ (T - self.reference)
+
+    def slope(self, field: FieldModel, T: Floats) -> sp.csr_array:
+        block = field.block(self.part)
+        density = np.full(len(block.tets), self.watts / block.volume)
+        return field.spread(-self.alpha * block.mass(density), np.arange(block.dofs.start, block.dofs.stop))

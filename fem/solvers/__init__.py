@@ -1,0 +1,1 @@
+"""From matrices to temperatures: direct solvers, Newton's method, time steps."""

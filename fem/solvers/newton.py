@@ -1,0 +1,109 @@
+"""Steady heat whose terms depend on temperature: radiation, conductivity, copper loss; by Newton's method.
+
+The Jacobian is symmetric but for conductivity that varies with temperature and for streams. The factor sees its
+symmetric part; GMRES does the rest, in one step where there is no rest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+from scipy.sparse.linalg import LinearOperator, gmres
+
+from fem.matrices.assembly import FieldModel
+from fem.matrices.terms import Term
+from fem.solvers.solve import Fluids, Solve, Steady, film_columns, from_fixed, refuse_unknown_fluid, shed
+from geom.errors import InputError
+
+Floats = NDArray[np.float64]
+START = 20.0  # degC
+ENOUGH = 1e-9  # K
+ROUNDS = 40
+
+
+@dataclass(frozen=True)
+class Settled(Steady):
+    """A steady solution and how it was found: steps (K) are the largest changes of temperature, round by round."""
+
+    steps: tuple[float, ...]
+
+
+def settle(
+    solver: Solve,
+    films: Mapping[str, float],
+    contacts: Mapping[str, float],
+    load: Floats,
+    fluids: Fluids,
+    terms: Sequence[Term],
+    start: Floats | float = START,
+) -> Settled:
+    """Temperatures for films h and contacts g (W/m2/K), a load (n,) in W and terms that depend on temperature.
+
+    start : (n,) or one temperature (degC).  Raises InputError where no steady state is found: a thermal runaway.
+    """
+    field = solver.field
+    refuse_unknown_fluid(field, fluids)
+    K = field.stiffness(films, contacts)
+    B, D = film_columns(field, films, fluids.names)
+    given, G = load + from_fixed(field, films, fluids.fixed), D + fluids.D
+    T = np.array(np.broadcast_to(np.asarray(start, float), field.n))
+    u = np.linalg.solve(G, fluids.s + B.T @ T)
+    steps: list[float] = []
+    while not _done(steps):
+        heat, slope = summed(field, terms, T)
+        left = np.concatenate([given - K @ T + B @ u - heat, fluids.s - G @ u + B.T @ T])
+        change = _linear(solver, sp.csr_array(K + slope), B, G)(left)
+        T, u = T + change[: field.n], u + change[field.n :]
+        steps.append(float(np.abs(change).max()))
+    heats = [float(term.heat(field, T).sum()) for term in terms]
+    injected = float(load.sum()) - sum(q for q in heats if q < 0)
+    removed = shed(field, films, fluids, T, u) + sum(q for q in heats if q > 0)
+    return Settled(T, u, injected, removed, tuple(steps))
+
+
+def summed(field: FieldModel, terms: Sequence[Term], T: Floats) -> tuple[Floats, sp.csr_array]:
+    """(n,) heat (W) that all terms take out at T (n,), and its derivative (n, n) (W/K)."""
+    none = np.zeros(field.n), sp.csr_array((field.n, field.n))
+    return (
+        sum((term.heat(field, T) for term in terms), none[0]),
+        sp.csr_array(sum((term.slope(field, T) for term in terms), none[1])),
+    )
+
+
+def even(J: sp.csr_array) -> sp.csr_array:
+    """The symmetric part."""
+    return sp.csr_array((J + J.T) / 2)
+
+
+def _done(steps: list[float]) -> bool:
+    if len(steps) > ROUNDS or (steps and not np.isfinite(steps[-1])):
+        raise InputError("no steady temperature was found", "newton", "losses that the cooling can carry (no runaway)")
+    # The last step only polishes: Newton's error is the square of the step before.
+    return len(steps) > 1 and steps[-1] < ENOUGH
+
+
+def _linear(solver: Solve, J: sp.csr_array, B: Floats, G: Floats) -> Callable[[Floats], Floats]:
+    """Solves [J, -B; -B', G] for any J whose symmetric part is positive definite."""
+    n = J.shape[0]
+    factor = solver.factor(even(J))
+    Y = factor(B) if B.shape[1] else B
+    schur = G - B.T @ Y
+
+    def symmetric(r: Floats) -> Floats:
+        x = factor(r[:n])
+        u = np.linalg.solve(schur, r[n:] + B.T @ x)
+        return np.concatenate([x + Y @ u, u])
+
+    def whole(x: Floats) -> Floats:
+        return np.concatenate([J @ x[:n] - B @ x[n:], G @ x[n:] - B.T @ x[:n]])
+
+    def solve(r: Floats) -> Floats:
+        whole_, symmetric_ = (LinearOperator((len(r), len(r)), f, dtype=float) for f in (whole, symmetric))
+        x, _ = gmres(whole_, r, rtol=1e-12, M=symmetric_, maxiter=3)
+        return np.asarray(x, float)
+
+    return solve

@@ -1,0 +1,200 @@
+"""Whole-machine solutions to learn from, and what each part's temperature field looks like in them.
+
+A part's field is its mean plus shapes. The shapes are found in the part's own share of the energy (its conduction and
+its sides of contacts and films at nominal coefficients), so the separate pieces of one part are told apart too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from fem.matrices.assembly import Block, FieldModel, Trace
+from fem.solvers.local import local_solutions, of_unit_energy
+from fem.solvers.solve import Solve, Solver
+
+Floats = NDArray[np.float64]
+SHIFTS = (1 / 3, 1 / 20, 1 / 120, 1 / 700)  # 1/s
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """How fine the condensation is.
+
+    tolerance : energy of a snapshot that may be lost, relative; smaller gives more states
+    shifts : Laplace shifts (1/s) at which losses are solved, so that the early minutes are resolved
+    flux_shifts : shifts at which a unit flux through every face is solved too
+    random_points : points with every film and contact times spread ** U(-1, 1): shapes know changed coefficients
+    flux_points : solve the unit fluxes at the random points too
+    local_points : further points at which each part is solved for alone, between neighbours in `local_states` states
+    max_states : largest number of mean nodes and shapes together; parts compete for shapes by energy
+    """
+
+    tolerance: float = 0.01
+    shifts: tuple[float, ...] = SHIFTS
+    flux_shifts: tuple[float, ...] = ()
+    random_points: int = 4
+    flux_points: bool = False
+    local_points: int = 0
+    local_states: int = 40
+    spread: float = 5.0
+    seed: int = 1
+    max_states: int | None = None
+
+
+DEFAULT = Recipe()
+
+
+@dataclass(frozen=True)
+class Basis:
+    """Shapes of one part: Phi (n, k) of mean zero, Phi' M Phi = diag(capacity), Phi' K Phi = diag(conduction)."""
+
+    Phi: Floats
+    capacity: Floats
+    conduction: Floats
+
+
+@dataclass(frozen=True)
+class Principal:
+    """Fields (n, k) of one part, orthonormal in its energy, strongest first, and the energy (k,) each stands for."""
+
+    strength: NDArray[np.floating]
+    fields: NDArray[np.floating]
+
+
+def snapshots(
+    field: FieldModel,
+    films: Mapping[str, float],
+    contacts: Mapping[str, float],
+    loads: Floats,
+    recipe: Recipe,
+    solver: Solve | None = None,
+) -> Floats:
+    """(n, n_snapshot) whole-machine solutions for unit losses `loads` (n, n_zone), each of unit energy at nominal."""
+    solver = solver or Solver(field)
+    nominal = field.stiffness(films, contacts)
+    fluxes = np.column_stack([field.flux(face) for face in field.films])
+    out = [solver.factor(nominal)(np.column_stack([loads, fluxes, *_dipoles(field)]))]
+    out += [solver.factor(nominal, shift)(loads) for shift in recipe.shifts]
+    out += [solver.factor(nominal, shift)(fluxes) for shift in recipe.flux_shifts]
+    rng = np.random.default_rng(recipe.seed)
+    for _ in range(recipe.random_points):
+        h, g = drawn(films, recipe.spread, rng), drawn(contacts, recipe.spread, rng)
+        out.append(
+            solver.factor(field.stiffness(h, g))(np.column_stack([loads, fluxes]) if recipe.flux_points else loads)
+        )
+    return of_unit_energy(np.column_stack(out), nominal)
+
+
+def drawn(coefficients: Mapping[str, float], spread: float, rng: np.random.Generator) -> dict[str, float]:
+    """Every coefficient times spread ** U(-1, 1)."""
+    return {name: value * spread ** rng.uniform(-1, 1) for name, value in coefficients.items()}
+
+
+def _dipoles(field: FieldModel) -> list[Floats]:
+    return [_at(field.n, (t.a, 1.0), (t.b, -1.0)) for t in field.contacts.values()]
+
+
+def _at(n: int, *sides: tuple[Trace, float]) -> Floats:
+    out = np.zeros(n)
+    for trace, sign in sides:
+        out[trace.dofs] += sign * trace.b / trace.area
+    return out
+
+
+def energies(field: FieldModel, films: Mapping[str, float], contacts: Mapping[str, float]) -> dict[str, sp.csr_array]:
+    """Each part's diagonal block (W/K) of the machine's matrix."""
+    K = field.stiffness(films, contacts)
+    return {name: sp.csr_array(K[block.dofs, block.dofs]) for name, block in field.blocks.items()}
+
+
+def alone(
+    field: FieldModel,
+    films: Mapping[str, float],
+    contacts: Mapping[str, float],
+    S: Floats,
+    loads: Floats,
+    recipe: Recipe,
+) -> dict[str, Floats]:
+    """part -> (n_part, k) fields of the part by itself at the recipe's local points; none: (n_part, 0)."""
+    rng = np.random.default_rng([recipe.seed, 2])
+    points = (
+        field.stiffness(drawn(films, recipe.spread, rng), drawn(contacts, recipe.spread, rng))
+        for _ in range(recipe.local_points)
+    )
+    return local_solutions(field, S, loads, points, recipe.local_states, rng)
+
+
+def principals(
+    field: FieldModel, S: Floats, energy: Mapping[str, sp.csr_array], local: Mapping[str, Floats]
+) -> dict[str, Principal]:
+    """What each part's field can look like, by energy, from snapshots S (n, n_snapshot) and the part's own `local`."""
+    return {
+        name: _principal(block, np.hstack([S[block.dofs], local[name]]), energy[name])
+        for name, block in field.blocks.items()
+    }
+
+
+def _principal(block: Block, S: Floats, A: sp.csr_array) -> Principal:
+    S = S - (block.w @ S) / block.volume
+    strength, U = np.linalg.eigh(S.T @ (A @ S))
+    # A Gram matrix keeps half the digits.
+    keep = np.flatnonzero(strength > 1e-13 * strength[-1])[::-1]
+    return Principal(strength[keep], S @ (U[:, keep] / np.sqrt(strength[keep])))
+
+
+def bases(
+    field: FieldModel,
+    found: Mapping[str, Principal],
+    energy: Mapping[str, sp.csr_array],
+    recipe: Recipe,
+    weights: Mapping[str, float] | None = None,
+) -> dict[str, Basis]:
+    """Shapes of every part, as many as the recipe allows; weights above 1 favour a part (on the root of energy)."""
+    favour = {name: (weights or {}).get(name, 1.0) ** 2 for name in found}
+    least = _least(np.concatenate([p.strength * favour[n] for n, p in found.items()]), len(found), recipe)
+    return {
+        name: _shaped(block, found[name].fields[:, found[name].strength * favour[name] > least], energy[name])
+        for name, block in field.blocks.items()
+    }
+
+
+def _least(strength: Floats, parts: int, recipe: Recipe) -> float:
+    """Energy a shape must exceed to be kept."""
+    least = recipe.tolerance**2
+    if recipe.max_states is None or recipe.max_states - parts >= len(strength):
+        return least
+    return max(least, float(np.sort(strength)[::-1][max(recipe.max_states - parts, 0)]))
+
+
+def _shaped(block: Block, Phi: NDArray[np.floating], A: sp.csr_array) -> Basis:
+    """The same span with both matrices diagonal, slowest shape first, every shape of unit energy in A."""
+    Phi = np.asarray(Phi, float)
+    Phi = Phi - (block.w @ Phi) / block.volume
+    L = np.linalg.cholesky(Phi.T @ (block.M @ Phi))
+    inner = np.linalg.solve(L, np.linalg.solve(L, Phi.T @ (block.K @ Phi)).T)
+    rate, R = np.linalg.eigh((inner + inner.T) / 2)
+    Phi = Phi @ np.linalg.solve(L.T, R)
+    scale = 1 / np.sqrt(np.einsum("ij,ij->j", Phi, A @ Phi))
+    return Basis(Phi * scale, scale**2, np.maximum(rate, 0.0) * scale**2)
+
+
+def enriched(
+    field: FieldModel,
+    found: Mapping[str, Principal],
+    S: Floats,
+    films: Mapping[str, float],
+    contacts: Mapping[str, float],
+    energy: Mapping[str, sp.csr_array],
+) -> dict[str, Principal]:
+    """Principal fields with more solutions S (n, k) among the snapshots."""
+    S = of_unit_energy(S, field.stiffness(films, contacts))
+    out = {}
+    for name, block in field.blocks.items():
+        own = np.asarray(found[name].fields, float) * np.sqrt(found[name].strength)
+        out[name] = _principal(block, np.column_stack([own, S[block.dofs]]), energy[name])
+    return out

@@ -1,0 +1,83 @@
+"""A machine: its parts, its fluids, its materials, and the sections others read."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from geom.description.materials import Material, filled, material
+from geom.description.part import Part, Port
+from geom.description.profile import ArcGrid
+from geom.errors import InputError
+
+SECTIONS = (
+    "machine", "ratings", "geometry", "materials", "contacts", "films", "losses", "fans", "cooling", "sensors",
+    "calibration", "bases",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Machine:
+    """Named prismatic parts and fluids, and what the file says beyond geometry.
+
+    parts : solids; fluids : declared fluid spaces ("ambient" is everything else)
+    sections : raw tables of the file, e.g. sections["ratings"]
+    geometry : the family's parameters in SI, as groups (machine.geometry.rotor.stack_length); None if imported
+    ports : inlets and outlets of liquid jackets, by name
+    source : where its numbers were published; assumed : which of them are assumed
+    """
+
+    name: str
+    family: str
+    description: str
+    parts: tuple[Part, ...]
+    fluids: tuple[Part, ...]
+    sections: Mapping[str, Any]
+    geometry: Any
+    face_names: Mapping[tuple[str, str], str]
+    source: str = ""
+    assumed: str = ""
+    ports: tuple[Port, ...] = ()
+
+    def part(self, name: str) -> Part:
+        """The solid or fluid of this name; InputError if there is none."""
+        known = {part.name: part for part in (*self.parts, *self.fluids)}
+        if name not in known:
+            raise InputError(f"unknown part {name!r}", self.name, f"known: {', '.join(known)}")
+        return known[name]
+
+    def material_of(self, name: str) -> Material:
+        """What the part is made of, [materials] overrides and the winding's fill and impregnation included."""
+        part = self.part(name)
+        return material(part.material) if part.filling is None else filled(part.material, *part.filling)
+
+    def conductivity(self, name: str) -> tuple[float, float]:
+        """Conductivity of the part across and along the axis (W/m/K)."""
+        found = self.material_of(name)
+        return found.k_plane, found.k_axial
+
+    def face_name(self, part: str, fluid: str) -> str:
+        """Name of the face where a part meets a fluid, e.g. "flange.right.outer"."""
+        usual = {"ambient": f"{part}.outer", "airgap": f"{part}.gap"}.get(fluid, f"{part}.{fluid}")
+        return self.face_names.get((part, fluid), usual)
+
+    @property
+    def extent(self) -> tuple[float, float, float]:
+        """Overall size (m): along the axis, across it, and high."""
+        import shapely
+
+        profiles = [profile for part in self.parts for profile, _, _ in part.prisms]
+        grid = ArcGrid(profiles, 72)
+        x0, y0, x1, y1 = shapely.total_bounds([profile.to_polygon(grid) for profile in profiles])
+        spans = [part.span for part in self.parts]
+        return max(z1 for _, z1 in spans) - min(z0 for z0, _ in spans), float(x1 - x0), float(y1 - y0)
+
+    def point_in(self, name: str) -> tuple[float, float, float]:
+        """A point (m) well inside the part: in the plane inside its largest prism, at half its length."""
+        import shapely
+
+        prisms = self.part(name).prisms
+        profile, z0, z1 = max(prisms, key=lambda prism: prism[0].area * (prism[2] - prism[1]))
+        inside = shapely.maximum_inscribed_circle(profile.to_polygon(ArcGrid([profile], 72)))
+        return float(inside.coords[0][0]), float(inside.coords[0][1]), (z0 + z1) / 2

@@ -1,0 +1,140 @@
+"""What things are made of: one table, every value with its source and spread."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from geom.errors import InputError
+
+K_AIR = 0.028  # W/m/K at 60 degC
+TABLE = Path(__file__).parent / "materials.toml"
+
+
+@dataclass(frozen=True)
+class Mixture:
+    """Wires in resin: share of conductor in the cross-section, conductivities (W/m/K) of it and of what is between.
+
+    along : share of wire length along the axis;  shape : of the wires, "round" or "flat"
+    """
+
+    fill: float
+    k_conductor: float
+    k_between: float
+    along: float
+    shape: str
+
+
+@dataclass(frozen=True)
+class Material:
+    """Thermal properties near 60 degC.
+
+    k_plane, k_axial : conductivity across and along the machine's axis (W/m/K)
+    rho : density (kg/m3); cp : specific heat (J/kg/K); emissivity : of its usual surface, 0 to 1
+    spreads, sources : of each of these by its name: relative 1-sigma as found in practice, and where from
+    mixture : what a winding is made of; its conductivities here are those of the formula, see fem.matrices.winding
+    """
+
+    name: str
+    k_plane: float
+    k_axial: float
+    rho: float
+    cp: float
+    emissivity: float
+    spreads: Mapping[str, float] = field(hash=False)
+    sources: Mapping[str, str] = field(hash=False)
+    mixture: Mixture | None = None
+
+    @property
+    def spread(self) -> float:
+        """Relative 1-sigma of the conductivity across the axis: what fill, resin and voids move."""
+        return self.spreads["k_plane"]
+
+    @property
+    def source(self) -> str:
+        """Where that conductivity is from."""
+        return self.sources["k_plane"]
+
+
+@cache
+def material_table() -> Mapping[str, Material]:
+    """The whole table by name."""
+    return {name: _read(name, values) for name, values in _table().items()}
+
+
+def material(name: str) -> Material:
+    """One material; InputError names the known ones."""
+    if name not in material_table():
+        raise InputError(f"unknown material {name!r}", "[materials]", f"known: {', '.join(sorted(material_table()))}")
+    return material_table()[name]
+
+
+def filled(name: str, fill: float, impregnation: float) -> Material:
+    """A winding material at another fill and impregnation; a material that is no mixture stays as it is.
+
+    fill : share of conductor in the cross-section; impregnation : share of the rest that resin fills, air the remainder
+    """
+    values = _table()[name]
+    if "mixture" not in values:
+        return material(name)
+    return _read(name, {**values, "mixture": {**values["mixture"], "fill": fill, "impregnation": impregnation}})
+
+
+@cache
+def _table() -> Mapping[str, Any]:
+    return tomllib.loads(TABLE.read_text(encoding="utf-8"))
+
+
+def _read(name: str, values: Mapping[str, Any]) -> Material:
+    numbers = {key: values[key] for key in ("k_plane", "k_axial", "rho", "cp", "emissivity") if key in values}
+    numbers |= _mixed(**values["mixture"]) if "mixture" in values else {}
+    return Material(name=name, **numbers, spreads=_each(values["spread"]), sources=_each(values["source"]))
+
+
+def _each(table: Mapping[str, Any]) -> dict[str, Any]:
+    """The table with "k" given to both conductivities."""
+    both = dict.fromkeys(("k_plane", "k_axial"), table["k"]) if "k" in table else {}
+    return {**both, **{key: value for key, value in table.items() if key != "k"}}
+
+
+def winding_conductivity(fill: float, k_conductor: float, k_resin: float) -> tuple[float, float]:
+    """Conductivity of a bundle of wires in resin, across and along the wires (W/m/K).
+
+    Across: Hashin and Shtrikman 1962, lower bound for parallel round fibres,
+    k = k_r ((1 + v) k_c + (1 - v) k_r) / ((1 - v) k_c + (1 + v) k_r); along: the volume average.
+    fill : share v of conductor in the cross-section, 0 to 1.
+
+    >>> round(winding_conductivity(0.5, 385.0, 0.2)[0], 3)
+    0.599
+    """
+    if not 0.0 <= fill < 1.0:
+        raise InputError(f"fill {fill} is not possible", "winding", "from 0 to below 1")
+    c, r = k_conductor, k_resin
+    across = r * ((1 + fill) * c + (1 - fill) * r) / ((1 - fill) * c + (1 + fill) * r)
+    return across, fill * c + (1 - fill) * r
+
+
+def _mixed(
+    fill: float, k_resin: float, along: float = 1.0, k_conductor: float = 385.0, impregnation: float = 1.0,
+    shape: str = "round",
+) -> dict[str, Any]:  # fmt: skip
+    """Copper wires in resin, with air where the resin is missing."""
+    k_between = k_resin if impregnation >= 1.0 else _with_air(k_resin, impregnation)
+    across, lengthwise = winding_conductivity(fill, k_conductor, k_between)
+    copper, resin = fill * 8930.0, (1 - fill) * impregnation * 1350.0
+    return {
+        "k_plane": across,
+        "k_axial": along * lengthwise + (1 - along) * across,
+        "rho": copper + resin,
+        "cp": (copper * 390.0 + resin * 1500.0) / (copper + resin),
+        "mixture": Mixture(fill, k_conductor, k_between, along, shape),
+    }
+
+
+def _with_air(k_resin: float, impregnation: float) -> float:
+    """Conductivity of resin with air, the resin dispersed in it (W/m/K): Hashin and Shtrikman's lower bound."""
+    return winding_conductivity(impregnation, k_resin, K_AIR)[0]

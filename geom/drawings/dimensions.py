@@ -1,0 +1,61 @@
+"""The dimensions that a drawing shows: diameters, lengths along the axis, and what is counted."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from geom.description.part import Part
+from geom.description.roles import Role
+
+if TYPE_CHECKING:
+    from geom.description.machine import Machine
+
+Diameter = tuple[str, float]  # what, m
+Length = tuple[str, float, float]  # what, from, to (m)
+
+
+def diameters(machine: Machine) -> list[Diameter]:
+    """Round things, smallest first."""
+    known = {part.name: part for part in machine.parts}
+    named = {"shaft": "shaft", "bearing.left": "bearing", "rotor.core": "rotor", "yoke": "yoke",
+             "stator.core": "laminations"}  # fmt: skip
+    found = {word: 2 * _radius(known[name]) for name, word in named.items() if name in known}
+    if "rotor" in found and hasattr(machine.geometry, "stator"):
+        found["bore"] = found["rotor"] + 2 * machine.geometry.stator.air_gap
+    return sorted(found.items(), key=lambda d: d[1])
+
+
+def lengths(machine: Machine) -> list[Length]:
+    """Along the axis, shortest first: stack, over the end windings, over the end-caps, overall."""
+    words = {"stack": Role.ROTOR, "end windings": Role.WINDING, "end-caps": Role.END_SHIELD}
+    spans = {word: _span([p for p in machine.parts if p.role is role]) for word, role in words.items()}
+    spans["overall"] = _span(list(machine.parts))
+    found = [(word, *span) for word, span in spans.items() if span is not None]
+    return sorted(found, key=lambda length: length[2] - length[1])
+
+
+def counts(machine: Machine) -> str:
+    """Slots, poles, bars, fins and the air gap in words."""
+    return ", ".join(_counted(machine.geometry))
+
+
+def _counted(g: Any) -> Iterator[str]:
+    for group in ("stator", "rotor", "commutator", "housing"):
+        for key in ("slots", "poles", "bars", "ducts", "fins"):
+            number = getattr(getattr(g, group, None), key, 0)
+            if number and (key != "fins" or getattr(g.housing, "kind", "axial-fins").endswith("fins")):
+                yield f"{number} {'commutator ' if group == 'commutator' else ''}{key}"
+    if hasattr(g, "stator"):
+        yield f"air gap {g.stator.air_gap * 1e3:g} mm"
+
+
+def _radius(part: Part) -> float:
+    return max(math.hypot(x, y) for profile, _, _ in part.prisms for x, y, _ in profile.outer)
+
+
+def _span(parts: list[Part]) -> tuple[float, float] | None:
+    if not parts:
+        return None
+    return min(p.span[0] for p in parts), max(p.span[1] for p in parts)

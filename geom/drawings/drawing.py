@@ -1,0 +1,137 @@
+"""A dimensioned drawing of a machine (SVG): cross-section and section along the axis, from the same profiles."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from html import escape
+from typing import TYPE_CHECKING
+
+from geom.description.roles import Role
+from geom.drawings.dimensions import counts, diameters, lengths
+from geom.drawings.views import Views, fill
+
+if TYPE_CHECKING:
+    from geom.description.machine import Machine
+
+mm = 1e3
+_THIN = 'stroke="#777" stroke-width="0.5"'
+
+
+@dataclass(frozen=True)
+class Pen:
+    """Draws dimension lines; unit : height of the text (mm)."""
+
+    unit: float
+
+    def level(self, x0: float, x1: float, y: float, top: float, text: str) -> str:
+        """A horizontal dimension at y, its ends carried down from `top`."""
+        ends = "".join(f"M{x:.1f} {top:.1f}V{y + 0.3 * self.unit:.1f}" for x in (x0, x1))
+        return f'<path d="{ends}" {_THIN}/>{self._line(f"M{x0:.1f} {y:.1f}H{x1:.1f}")}' + self.text(
+            (x0 + x1) / 2, y - 0.3 * self.unit, text, "middle"
+        )
+
+    def upright(self, y0: float, y1: float, x: float, left: float, text: str) -> str:
+        """A vertical dimension at x, its ends carried over from `left`."""
+        ends = "".join(f"M{left:.1f} {y:.1f}H{x + 0.3 * self.unit:.1f}" for y in (y0, y1))
+        place = f'transform="translate({x - 0.3 * self.unit:.1f} {(y0 + y1) / 2:.1f}) rotate(-90)"'
+        return (
+            f'<path d="{ends}" {_THIN}/>{self._line(f"M{x:.1f} {y0:.1f}V{y1:.1f}")}'
+            f'<text {place} text-anchor="middle">{escape(text)}</text>'
+        )
+
+    def text(self, x: float, y: float, text: str, anchor: str = "start") -> str:
+        return f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}">{escape(text)}</text>'
+
+    def _line(self, d: str) -> str:
+        return f'<path d="{d}" stroke="black" stroke-width="0.7" marker-start="url(#tip)" marker-end="url(#tip)"/>'
+
+
+def drawing_of(machine: Machine, at_z: float | None = None) -> str:
+    """SVG text; the cross-section is cut at at_z (m), the middle of the machine if None.
+
+    Left: section normal to the axis. Right: section along the axis, x = 0. Dimensions in mm; a legend of materials.
+    """
+    views = Views(machine, _middle(machine) if at_z is None else at_z)
+    z0, z1 = views.span
+    low, high = views.heights
+    unit = max(views.width + z1 - z0, high - low) / 65
+    pen, gap = Pen(unit), (2 * len(diameters(machine)) + 6) * unit
+    shift = views.width / 2 + gap - z0
+    body = [
+        *views.across(),
+        f'<g transform="translate({shift:.1f} 0)">', *views.along(), *_along(machine, views, pen), "</g>",
+        pen.level(-views.width / 2, views.width / 2, 2.2 * unit - low, -low, f"{views.width:.0f}"),
+        pen.upright(-high, -low, views.width / 2 + 2 * unit, views.width / 2, f"{high - low:.0f}"),
+    ]  # fmt: skip
+    left, top, bottom = -views.width / 2 - 2 * unit, -high - 2 * unit, -low + (2.2 * len(lengths(machine)) + 2) * unit
+    legend = list(_legend(machine, views, pen, left + 2 * unit, bottom))
+    width, height = views.width + gap + z1 - z0 + 5 * unit, bottom + 1.6 * unit * len(legend) - top
+    return "\n".join([
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{left:.1f} {top:.1f} {width:.1f} {height:.1f}" '
+        f'font-family="sans-serif" font-size="{unit:.1f}">',
+        f"<title>{escape(machine.name)}: section at z = {views.z * mm:.0f} mm, and along the axis; mm</title>",
+        '<marker id="tip" viewBox="-10 -3 10 6" markerWidth="9" markerHeight="5" orient="auto-start-reverse">'
+        '<path d="M-10 -2.5L0 0L-10 2.5Z"/></marker>',
+        f'<rect x="{left:.1f}" y="{top:.1f}" width="100%" height="100%" fill="white"/>',
+        *body,
+        *legend,
+        "</svg>\n",
+    ])  # fmt: skip
+
+
+def _middle(machine: Machine) -> float:
+    """In the middle of the rotor's stack, or of the machine."""
+    spans = [p.span for p in machine.parts if p.role is Role.ROTOR] or [p.span for p in machine.parts]
+    return (min(a for a, _ in spans) + max(b for _, b in spans)) / 2
+
+
+def _along(machine: Machine, views: Views, pen: Pen) -> Iterator[str]:
+    """Dimensions of the section along the axis: diameters to its left, lengths below."""
+    low, (z0, _) = views.heights[0], views.span
+    for i, (word, diameter) in enumerate(diameters(machine)):
+        r, x = diameter * mm / 2, z0 - (1.5 + 2 * i) * pen.unit
+        yield pen.upright(-r, r, x, z0, f"{word} \N{DIAMETER SIGN} {diameter * mm:.4g}")
+    for i, (word, a, b) in enumerate(lengths(machine)):
+        yield pen.level(a * mm, b * mm, -low + 2.2 * (i + 1) * pen.unit, -low, f"{word} {(b - a) * mm:.4g}")
+
+
+def _legend(machine: Machine, views: Views, pen: Pen, x: float, y: float) -> Iterator[str]:
+    """What is counted, then every material with its parts."""
+    made: dict[str, list[str]] = {}
+    for part in views.parts:
+        made.setdefault(part.material, []).append(part.name)
+    rows = [("", counts(machine)), *((material, f"{material}: {', '.join(names)}") for material, names in made.items())]
+    for i, (material, text) in enumerate(row for row in rows if row[1]):
+        at = y + 1.6 * pen.unit * i
+        box = f'<rect x="{x:.1f}" y="{at:.1f}" width="{1.6 * pen.unit:.1f}" height="{pen.unit:.1f}" stroke="#333" '
+        swatch = f'{box}stroke-width="0.4" fill="{fill(material)}"/>' if material else ""
+        yield swatch + pen.text(x + (2.2 * pen.unit if material else 0), at + 0.85 * pen.unit, text)
+
+
+def thumbnail_of(machine: Machine) -> str:
+    """A small SVG of the section across the axis and the section along it, without dimensions.
+
+    Framed on the machine; a base plate that reaches further is cut off.
+    """
+    views = Views(machine, _middle(machine))
+    framed = Views(replace(machine, parts=tuple(part for part in machine.parts if part.role is not Role.BASE)), views.z)
+    margin = 0.04 * framed.width
+    low, high, z0, z1 = (end + side * margin for end, side in zip((*views.heights, *framed.span), (-1, 1, -1, 1)))
+    wide = framed.width + 2 * margin
+    text = "\n".join([
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {wide + margin + z1 - z0:.1f} {high - low:.1f}" '
+        'width="320" height="160">',
+        f"<title>{escape(machine.name)}</title>",
+        *_window(0.0, -wide / 2, -high, wide, high - low, views.across()),
+        *_window(wide + margin, z0, -high, z1 - z0, high - low, views.along()),
+        "</svg>\n",
+    ])  # fmt: skip
+    return re.sub(r"(\.\d)\d+", r"\1", text)
+
+
+def _window(at: float, x: float, y: float, width: float, height: float, shapes: list[str]) -> list[str]:
+    """What of the shapes lies in a rectangle, drawn from `at` on."""
+    sides = f'x="{at:.1f}" width="{width:.1f}" height="{height:.1f}" viewBox="{x:.1f} {y:.1f} {width:.1f} {height:.1f}"'
+    return [f"<svg {sides}>", *shapes, "</svg>"]

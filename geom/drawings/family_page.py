@@ -1,0 +1,82 @@
+"""A family's page for the docs: the drawing of its default machine and the table of its parameters."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from geom.description.parameters import Parameter
+from geom.description.reading import usual_geometry
+from geom.drawings.drawing import drawing_of
+from geom.families import families
+from geom.families.family import Family
+from geom.machine_file import library, load_machine, machine_from
+
+_JACKETS = (
+    "Jackets in the mesh and in CAD files: channels around the axis are rings in the mesh, in the table of "
+    "areas and in the drawing, and a helix of the same pitch, width, ribs and volume in STEP, STL and GLB; its "
+    "wetted area is within 2 % of the rings'. It widens against the end walls where it begins and ends, and "
+    "takes up to 0.8 ribs from them. Ports are square in the mesh and round in CAD files, with bores of the "
+    "same cross-section. `NAME-prisms.step` holds what is meshed; `build` reads it back.",
+    "",
+)
+_MEASURED = (
+    "These lengths are measured in others. A file gives the ratio, or the length itself with `_mm`, or neither: then "
+    "it has the default machine's proportion, so that what is not given follows what is. Any ratios within their "
+    "bounds, with any of the parameters above, make a machine that fits; a length that does not fit is refused with "
+    "its key and what it must be. `geom.description.draws.random_geometry` draws machines, "
+    "`benchmarks/families.py` checks them.",
+    "",
+)
+
+
+def family_page(family: Family, picture: str) -> str:
+    """Markdown; `picture` is the path of the drawing as seen from the page."""
+    shipped = [name for name in library() if load_machine(name).family == family.name]
+    free, measured = (_rows(family, scaled) for scaled in (False, True))
+    return "\n".join([
+        f"# Family `{family.name}`",
+        "",
+        f"{family.doc}. Machines in the library: {', '.join(f'`{name}`' for name in shipped)}.",
+        "",
+        f"![Sections across and along the axis of the default machine, mm]({picture})",
+        "",
+        *(_JACKETS if any(p.name == "port_mm" for p in family.parameters) else ()),
+        "A key ending in `_mm` or `_deg` carries that unit; one without is a count, a share or a word.",
+        "",
+        "| parameter | default | allowed | meaning |",
+        "|---|---|---|---|",
+        *free,
+        "",
+        *_MEASURED,
+        "| ratio | default | allowed | or | default | allowed | meaning |",
+        "|---|---|---|---|---|---|---|",
+        *measured,
+        "",
+    ])  # fmt: skip
+
+
+def _rows(family: Family, measured: bool) -> list[str]:
+    usual = usual_geometry(family.parameters)
+    chosen = [p for p in family.parameters if (p.of is not None) == measured]
+    return [_measured(p, usual) if measured else f"| `{p.key}` | {p.default} | {p.allowed} | {p.doc} |" for p in chosen]
+
+
+def _measured(p: Parameter, usual: Any) -> str:
+    assert p.of is not None
+    ratio = (p.usual - p.of.start(usual)) / p.of.span(usual) if p.default else 0.0
+    return (f"| `{p.group}.{p.ratio_name}` | {ratio:.3g} | {p.allowed_ratio} | `{p.name}` | {p.default} | {p.allowed} "
+            f"| {p.doc} |")  # fmt: skip
+
+
+def write_pages(folder: Path | str) -> list[Path]:
+    """One page and one drawing per family; returns the pages."""
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    pages = []
+    for name, family in families().items():
+        (folder / f"{name}.svg").write_text(drawing_of(machine_from({"machine": {"family": name}}, name)))
+        page = folder / f"{name}.md"
+        page.write_text(family_page(family, f"{name}.svg"))
+        pages.append(page)
+    return pages

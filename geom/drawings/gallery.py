@@ -1,0 +1,87 @@
+"""The library at a glance: what every shipped machine is, weighs and measures, how it is cooled, where it is from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from geom.description.machine import Machine
+from geom.drawings.drawing import thumbnail_of
+from geom.machine_file import library, load_machine
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One machine: number of parts, mass (kg), envelope (length, width, height, m), cooling and source in words."""
+
+    name: str
+    family: str
+    description: str
+    parts: int
+    mass: float
+    envelope: tuple[float, float, float]
+    cooling: str
+    source: str
+    assumed: str
+
+
+def catalogue() -> list[Entry]:
+    """All machines of the library, by name."""
+    return [entry_of(load_machine(name)) for name in library()]
+
+
+def entry_of(machine: Machine) -> Entry:
+    mass = sum(part.volume * machine.material_of(part.name).rho for part in machine.parts)
+    return Entry(
+        machine.name, machine.family, machine.description, len(machine.parts), mass, machine.extent,
+        cooling_of(machine), machine.source, machine.assumed,
+    )  # fmt: skip
+
+
+def cooling_of(machine: Machine) -> str:
+    """How the machine loses its heat, in words."""
+    said, ways = machine.sections.get("cooling", {}), []
+    jackets = [fluid for fluid in machine.fluids if fluid.material != "air"]
+    if jackets:
+        flow = f", {said['flow_L_per_min']:g} L/min" if "flow_L_per_min" in said else ""
+        ways.append(f"{' and '.join(jacket.name for jacket in jackets)} with {jackets[0].material}{flow}")
+    flow = machine.sections.get("fans", {}).get("flow_m3_h")
+    ways += [f"fan, {flow:g} m3/h through the machine"] if flow else []
+    housing = getattr(machine.geometry, "housing", None)
+    fins = getattr(housing, "fins", 0)
+    kind = getattr(housing, "kind", "axial-fins" if fins else "none")
+    ways += [f"{fins} {kind.replace('-', ' ')}"] if kind.endswith("fins") else []
+    base = getattr(getattr(machine.geometry, "base", None), "kind", "")
+    ways += ["base plate"] if base == "plate" else []
+    return "; ".join(ways) or "still air"
+
+
+def write_library(folder: Path | str) -> Path:
+    """`library.md` and a thumbnail per machine; returns the page."""
+    folder = Path(folder)
+    (folder / "thumbnails").mkdir(parents=True, exist_ok=True)
+    rows = []
+    for entry in catalogue():
+        (folder / "thumbnails" / f"{entry.name}.svg").write_text(thumbnail_of(load_machine(entry.name)))
+        rows.append(_row(entry))
+    page = folder / "library.md"
+    page.write_text("\n".join([*_HEAD, *rows, ""]))
+    return page
+
+
+_HEAD = [
+    "# Machines of the library",
+    "",
+    "Written by `geom.write_library`. `thermoscope model build NAME` builds one.",
+    "",
+    "| | machine | parts | mass (kg) | length x width x height (mm) | cooling | numbers |",
+    "|---|---|---|---|---|---|---|",
+]
+
+
+def _row(entry: Entry) -> str:
+    size = " x ".join(f"{1e3 * length:.0f}" for length in entry.envelope)
+    numbers = f"{entry.source}; assumed: {entry.assumed}"
+    name = f"`{entry.name}` ([{entry.family}]({entry.family}.md)): {entry.description}"
+    picture = f"![{entry.name}](thumbnails/{entry.name}.svg)"
+    return f"| {picture} | {name} | {entry.parts} | {entry.mass:.1f} | {size} | {entry.cooling} | {numbers} |"

@@ -1,0 +1,108 @@
+"""Machine files: the library, and from a file's tables to a machine."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from geom.description.bases import based
+from geom.description.machine import SECTIONS, Machine
+from geom.description.materials import material
+from geom.description.names import checked_name
+from geom.description.part import Part
+from geom.description.reading import read_geometry
+from geom.description.toml_file import read_toml
+from geom.errors import InputError
+from geom.families import Family, families
+from geom.solids.step import import_step
+
+LIBRARY = Path(__file__).parent / "machines"
+_HEADER = ("name", "family", "description", "source", "assumed")
+
+
+def library() -> dict[str, Path]:
+    """The machines that come with the tool, by name."""
+    return {path.stem: path for path in sorted(LIBRARY.glob("*.toml"))}
+
+
+def load_machine(source: str | Path) -> Machine:
+    """The machine described by a file, one of the library by name, or the one in a STEP file (see geom.solids.step).
+
+    Raises InputError for a missing file, broken TOML, unknown sections or keys, missing units, values out
+    of range, and geometry that does not fit.
+    """
+    path = library().get(str(source), Path(source))
+    if path.suffix.lower() in (".step", ".stp"):
+        return import_step(path)
+    if path.suffix != ".toml" or not path.is_file():
+        raise InputError(f"no machine {str(source)!r}", "", f"a .toml or .step file, or one of: {', '.join(library())}")
+    return machine_from(read_toml(path, "a machine file with [machine] and [geometry]"), path.name)
+
+
+def machine_from(sections: Mapping[str, Any], where: str = "machine") -> Machine:
+    """The machine described by the tables of a machine file; `where` names it in errors."""
+    for section, table in sections.items():
+        if section not in SECTIONS:
+            raise InputError(f"unknown section [{section}]", where, f"known: {', '.join(SECTIONS)}")
+        if not isinstance(table, Mapping):
+            raise InputError(f"{section!r} is not a section", where, f"write [{section}]")
+    header = sections.get("machine", {})
+    family = _family(header, where)
+    values = read_geometry(family.parameters, sections.get("geometry", {}), where)
+    try:
+        built = family.build(values)
+    except InputError as error:
+        raise InputError(error.what, f"{where} {error.where}", error.right) from error
+    built = _with_materials(built, sections.get("materials", {}), where)
+    machine = Machine(
+        name=checked_name(header.get("name", Path(where).stem), f"{where} [machine] name"),
+        family=family.name,
+        description=header.get("description", family.doc),
+        parts=tuple(part for part in built if part.solid),
+        fluids=tuple(part for part in built if not part.solid),
+        sections={name: table for name, table in sections.items() if name not in ("machine", "geometry")},
+        geometry=values,
+        face_names=family.face_names,
+        source=header.get("source", ""),
+        assumed=header.get("assumed", ""),
+        ports=family.ports(values),
+    )
+    _refuse_outside_envelope(machine, where)
+    return based(machine, load_machine, where)
+
+
+def _refuse_outside_envelope(machine: Machine, where: str) -> None:
+    """[ratings] envelope_mm = [length, width, height], where given, holds the whole machine."""
+    allowed = machine.sections.get("ratings", {}).get("envelope_mm")
+    if allowed is None:
+        return
+    place = f"{where} [ratings] envelope_mm"
+    if not isinstance(allowed, list) or len(allowed) != 3 or not all(isinstance(v, (int, float)) for v in allowed):
+        raise InputError(f"{allowed!r} is not an envelope", place, "write [length, width, height]")
+    for word, size, limit in zip(("length", "width", "height"), machine.extent, allowed):
+        if size * 1e3 > limit + 1e-6:
+            raise InputError(
+                f"the machine's {word} of {size * 1e3:.4g} mm exceeds {limit:.4g} mm", place, "make it fit"
+            )
+
+
+def _family(header: Mapping[str, Any], where: str) -> Family:
+    for key in header:
+        if key not in _HEADER:
+            raise InputError(f"unknown key {key!r}", f"{where} [machine]", f"known: {', '.join(_HEADER)}")
+    known = families()
+    if header.get("family") not in known:
+        where = f"{where} [machine] family"
+        raise InputError(f"{header.get('family')!r} is no family", where, f"known: {', '.join(known)}")
+    return known[header["family"]]
+
+
+def _with_materials(parts: tuple[Part, ...], chosen: Mapping[str, Any], where: str) -> tuple[Part, ...]:
+    names = [part.name for part in parts]
+    for part, name in chosen.items():
+        if part not in names:
+            raise InputError(f"unknown part {part!r}", f"{where} [materials]", f"known: {', '.join(names)}")
+        material(name)
+    return tuple(replace(part, material=chosen.get(part.name, part.material)) for part in parts)

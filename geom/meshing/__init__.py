@@ -1,0 +1,1 @@
+"""From prisms to a named tetrahedral mesh."""

@@ -1,0 +1,79 @@
+"""A machine's named mesh: partition the plane once, triangulate once, extrude."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from geom.description.machine import Machine
+from geom.description.part import Part
+from geom.meshing.blocks import Block, Column, find_blocks, find_columns
+from geom.meshing.extrude import extrude
+from geom.meshing.mesh import NamedMesh
+from geom.meshing.meshio_io import read_npz, write_npz
+from geom.meshing.partition import Partition, partition
+from geom.meshing.triangulate import triangulate
+from geom.meshing.voids import filled
+
+COARSE: dict[str, Any] = {"size_m": 0.06, "segments": 44, "across": 1}
+FINE: dict[str, Any] = {"size_m": 0.012, "segments": 72, "across": 4}
+
+
+def build_mesh(
+    machine: Machine,
+    size_m: float = 0.03,
+    segments: int = 48,
+    across: float = 2,
+    axial_m: float | None = None,
+    cache: Path | str | None = None,
+) -> NamedMesh:
+    """Conformal tetrahedra of the machine's solids, with named regions, faces and contacts.
+
+    size_m : largest triangle in the plane (m)
+    segments : chords per turn of an arc; 36 loses 0.5 % of a circle's area, 72 an eighth of a per cent
+    across : elements over the width of a compact face, such as the winding in a slot
+    axial_m : largest element along the axis (m), 1.5 * size_m if None
+    cache : folder of meshes by content; None for no cache
+    `build_mesh(machine, **COARSE)` is quick, `**FINE` converged.
+    Raises InputError where solids overlap or a closed void is not declared as a fluid.
+    """
+    axial = 1.5 * size_m if axial_m is None else axial_m
+    kept = _kept(machine, (size_m, segments, across, axial), cache)
+    known = {part.name: said for part in machine.parts if (said := part.identity) is not None}
+    if kept is not None and kept.exists():
+        return replace(read_npz(kept), identities=known)
+    plan = _planned((*machine.parts, *machine.fluids), segments)
+    flat = triangulate(plan.columns, size_m, across)
+    mesh = extrude(plan.cut, plan.blocks, plan.columns, flat, axial, machine.face_name)
+    if kept is not None:
+        write_npz(mesh, kept)
+    return replace(mesh, identities=known)
+
+
+@dataclass(frozen=True)
+class _Plan:
+    """What a mesh of any size starts from."""
+
+    cut: Partition
+    blocks: list[Block]
+    columns: list[Column]
+
+
+@lru_cache(maxsize=4)
+def _planned(parts: tuple[Part, ...], segments: int) -> _Plan:
+    """The plane partition and its columns; kept, so that refining does not partition again."""
+    cut = filled(partition(parts, segments))
+    blocks = find_blocks(cut)
+    return _Plan(cut, blocks, find_columns(cut, blocks))
+
+
+def _kept(machine: Machine, settings: tuple[float, ...], cache: Path | str | None) -> Path | None:
+    """Named by what a mesh depends on: shapes and names, not materials."""
+    if cache is None:
+        return None
+    shapes = [(part.name, part.prisms, part.solid) for part in (*machine.parts, *machine.fluids)]
+    content = repr((shapes, sorted(machine.face_names.items()), settings)).encode()
+    return Path(cache) / f"mesh-{hashlib.sha256(content).hexdigest()[:20]}.npz"

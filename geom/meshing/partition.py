@@ -1,0 +1,125 @@
+"""The plane partition: all profiles of a machine overlaid, every face labelled at every axial slab."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from geom.description.part import Part
+from geom.description.profile import ArcGrid, Profile
+from geom.errors import InputError
+from geom.meshing.noding import GRID, noded
+
+_OVERLAP = 1e-8  # m2; a common area below this is rounding
+AMBIENT = -1
+
+
+@dataclass(frozen=True)
+class Partition:
+    """Faces of the plane and what fills each of them between neighbouring levels.
+
+    levels : (n_slab + 1,) axial positions where anything begins or ends (m)
+    faces : (n_face,) shapely polygons that tile a box around the machine
+    labels : (n_face, n_slab) index into parts; AMBIENT where nothing is declared
+    left, right : (n_edge,) faces on either side of each border edge, -1 beyond the box
+    length : (n_edge,) of each border edge (m)
+    parts : solids and fluids in the order of the labels
+    """
+
+    levels: NDArray[np.float64]
+    faces: NDArray[np.object_]
+    labels: NDArray[np.int64]
+    left: NDArray[np.int64]
+    right: NDArray[np.int64]
+    length: NDArray[np.float64]
+    parts: tuple[Part, ...]
+
+    @property
+    def solid(self) -> NDArray[np.bool_]:
+        """(n_face, n_slab) True where a solid part is."""
+        is_solid = np.array([part.solid for part in self.parts] + [False])
+        return is_solid[self.labels]
+
+    def area(self) -> NDArray[np.float64]:
+        return shapely.area(self.faces)
+
+
+def partition(parts: Sequence[Part], segments: int = 72) -> Partition:
+    """Overlay the profiles of all parts and label the pieces.
+
+    Raises InputError where two solids overlap.
+    """
+    profiles = list(dict.fromkeys(profile for part in parts for profile, _, _ in part.prisms))
+    grid = ArcGrid(profiles, segments)
+    exact = np.array([profile.to_polygon(grid) for profile in profiles], dtype=object)
+    polygons = shapely.set_precision(exact, GRID, mode="pointwise")  # equal corners become equal to the bit
+    faces = _tile(polygons)
+    levels = axial_levels(parts)
+    labels = _label(parts, profiles, polygons, faces, levels)
+    return Partition(levels, faces, labels, *_neighbours(faces), tuple(parts))
+
+
+def axial_levels(parts: Sequence[Part]) -> NDArray[np.float64]:
+    """Sorted distinct end planes of all prisms (m)."""
+    return np.unique(np.round([z for part in parts for _, z0, z1 in part.prisms for z in (z0, z1)], 7))
+
+
+def _tile(polygons: NDArray[np.object_]) -> NDArray[np.object_]:
+    box = shapely.box(*shapely.total_bounds(polygons)).buffer(0.02, join_style="mitre")
+    lines = noded([*shapely.boundary(polygons), box.exterior])
+    faces = np.array(shapely.get_parts(shapely.polygonize(lines)), dtype=object)
+    return shapely.orient_polygons(faces)
+
+
+def _label(
+    parts: Sequence[Part],
+    profiles: list[Profile],
+    polygons: NDArray[np.object_],
+    faces: NDArray[np.object_],
+    levels: NDArray[np.float64],
+) -> NDArray[np.int64]:
+    inside = shapely.STRtree(shapely.point_on_surface(faces))
+    which, members = inside.query(polygons, predicate="contains")
+    faces_of = {profile: members[which == i] for i, profile in enumerate(profiles)}
+    labels = np.full((len(faces), len(levels) - 1), AMBIENT, dtype=np.int64)
+    order = sorted(range(len(parts)), key=lambda i: (not parts[i].solid, i))
+    for index in order:
+        for profile, z0, z1 in parts[index].prisms:
+            slabs = slice(*np.searchsorted(levels, np.round([z0, z1], 7)))
+            block = labels[faces_of[profile], slabs]
+            if parts[index].solid:
+                _refuse_overlap(parts, index, block, faces[faces_of[profile]])
+            labels[faces_of[profile], slabs] = np.where(block == AMBIENT, index, block)
+    return labels
+
+
+def _refuse_overlap(parts: Sequence[Part], index: int, block: NDArray[np.int64], faces: NDArray[np.object_]) -> None:
+    taken = block != AMBIENT
+    if not taken.any() or shapely.area(faces)[taken.any(axis=1)].sum() < _OVERLAP:
+        return
+    other = parts[block[taken][0]].name
+    raise InputError(f"{parts[index].name} and {other} overlap", "geometry", "parts may touch, not overlap")
+
+
+def half_edges(faces: NDArray[np.object_]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Points (n, 2), and (3, m) start, end (point numbers) and face of every directed border edge, face on its left."""
+    rings, owner = shapely.get_rings(faces, return_index=True)
+    xy, ring = shapely.get_coordinates(rings, return_index=True)
+    keys, number = np.unique(np.round(xy / GRID).astype(np.int64), axis=0, return_inverse=True)
+    follows = ring[1:] == ring[:-1]
+    return keys * GRID, np.array([number[:-1][follows], number[1:][follows], owner[ring[:-1][follows]]])
+
+
+def _neighbours(faces: NDArray[np.object_]) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
+    """Pairs of faces with a common edge, -1 is the plane beyond the box; and the length of that edge (m)."""
+    points, (start, end, face) = half_edges(faces)
+    forward = start < end
+    edges, which = np.unique(np.sort(np.column_stack([start, end]), axis=1), axis=0, return_inverse=True)
+    left, right = np.full(len(edges), -1), np.full(len(edges), -1)
+    left[which[forward]] = face[forward]
+    right[which[~forward]] = face[~forward]
+    return left, right, np.linalg.norm(points[edges[:, 1]] - points[edges[:, 0]], axis=1)

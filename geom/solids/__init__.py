@@ -1,0 +1,1 @@
+"""Solids: made for CAD, read from STEP files, checked against the formulas."""

@@ -1,0 +1,228 @@
+"""A STEP assembly with named solids becomes a machine like any other: sliced into prisms, meshed, condensed.
+
+Beside `motor.step` may lie `motor.step.toml`:
+
+    [machine]
+    name = "motor"                      # default: the file's name
+    [import]
+    axis = "x"                          # of the machine in the STEP file, default "z"
+    origin_mm = [0.0, 0.0, 120.0]       # a point on the axis, default the STEP file's origin
+    leave_out = ["bolt*"]               # solids to ignore
+    [materials]
+    "winding*" = "winding"              # a solid's name, or a pattern; else what parts of that name are made of here
+    [fluids]
+    coolant = "glycol-50"               # solids that stand for fluids
+    [roles]
+    "winding*" = "winding"              # its role (geom.description.roles); else guessed from material and place
+    "armature" = { role = "winding", turns = true }
+
+and the sections that machine files have besides (ratings, contacts, films, losses, fans, cooling, sensors ...).
+Closed voids between the solids become the fluid "air.inside".
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterable, Mapping
+from fnmatch import fnmatchcase
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from geom.description.identity import Identity
+from geom.description.machine import SECTIONS, Machine
+from geom.description.materials import material
+from geom.description.part import Part, Prism
+from geom.description.reading import read_geometry
+from geom.description.roles import Role
+from geom.errors import InputError
+from geom.solids.slicing import sliced
+
+if TYPE_CHECKING:
+    import cadquery as cq
+
+INSIDE = "air.inside"
+NOTHING = Identity()
+_ROTATIONS = {"x": ((0, 1, 0), -90.0), "y": ((1, 0, 0), 90.0), "z": ((0, 0, 1), 0.0)}  # axis and angle (deg) onto z
+_ALLOWED = {"machine": ("name", "description"), "import": ("axis", "origin_mm", "leave_out")}
+
+
+def import_step(path: str | Path) -> Machine:
+    """The machine in a STEP file, with what the TOML file beside it says.
+
+    Raises InputError for a file that is missing or has no solids, a solid that is not prismatic along the axis, a
+    solid without a known material, and for faults in the TOML file.
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise InputError("no such file", str(path), "a STEP file with named solids")
+    beside = step_sidecar(path)
+    said = _read_sidecar(beside)
+    solids = _left_in(_solids(path, said.get("import", {}), str(beside)), said, str(beside))
+    prisms = _all_sliced(solids, path)
+    fluids = said.get("fluids", {})
+    _refuse_unused({**said.get("materials", {}), **fluids, **said.get("roles", {})}, prisms, str(beside))
+    what = _said(said.get("roles", {}), prisms, f"{beside} [roles]")
+    made_of = {name: _material(name, said.get("materials", {}), str(beside)) for name in prisms if name not in fluids}
+    header = said.get("machine", {})
+    return Machine(
+        name=header.get("name", path.stem),
+        family="step",
+        description=header.get("description", f"imported from {path.name}"),
+        parts=tuple(
+            Part(
+                name,
+                made_of[name],
+                prisms[name],
+                role=what.get(name, NOTHING).role,
+                turns=what.get(name, NOTHING).turns,
+            )
+            for name in prisms
+            if name not in fluids
+        ),
+        fluids=(
+            *(
+                Part(name, kind, prisms[name], solid=False, role=what.get(name, NOTHING).role or _space(kind))
+                for name, kind in fluids.items()
+            ),
+            Part(INSIDE, "air", (), solid=False, role=Role.INNER_AIR),
+        ),
+        sections={name: table for name, table in said.items() if name in SECTIONS and name != "machine"},
+        geometry=None,
+        face_names={},
+    )
+
+
+def _space(material_: str) -> Role:
+    """What a declared fluid is where nothing else is said: a liquid cools, air is inside."""
+    return Role.INNER_AIR if material_ == "air" else Role.COOLANT
+
+
+def _said(patterns: Mapping[str, Any], names: Iterable[str], where: str) -> dict[str, Identity]:
+    """Solid -> what [roles] says it is; a full name goes before a pattern."""
+    out = {}
+    for name in names:
+        fitting = [name] if name in patterns else [p for p in patterns if fnmatchcase(name, p)]
+        if fitting:
+            out[name] = _role(patterns[fitting[0]], f"{where} {fitting[0]!r}")
+    return out
+
+
+def _role(entry: Any, where: str) -> Identity:
+    table = {"role": entry} if isinstance(entry, str) else entry
+    words = [role.value for role in Role]
+    fine = isinstance(table, Mapping) and set(table) <= {"role", "turns"} and table.get("role", words[0]) in words
+    if not fine or not isinstance(table.get("turns", True), bool):
+        right = f"one of {', '.join(words)}; or {{ role = ..., turns = true }}"
+        raise InputError(f"{entry!r} is no role", where, right)
+    turns = table.get("turns")
+    return Identity(Role(table["role"]) if "role" in table else None, None if turns is None else bool(turns))
+
+
+def step_sidecar(path: Path | str) -> Path:
+    """Where materials and other sections of a STEP file stand."""
+    return Path(f"{path}.toml")
+
+
+def _read_sidecar(path: Path) -> dict[str, Any]:
+    if not path.is_file():
+        return {}
+    try:
+        said = tomllib.loads(path.read_text(encoding="utf-8"))
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise InputError(f"not valid TOML: {error}", str(path)) from error
+    known = ("import", "fluids", "roles", *(section for section in SECTIONS if section != "geometry"))
+    for section, table in said.items():
+        if section not in known or not isinstance(table, Mapping):
+            raise InputError(f"unknown section [{section}]", str(path), f"known: {', '.join(known)}")
+        for key in table:
+            if key not in _ALLOWED.get(section, (key,)):
+                raise InputError(
+                    f"unknown key {key!r}", f"{path} [{section}]", f"known: {', '.join(_ALLOWED[section])}"
+                )
+    return said
+
+
+def _solids(path: Path, said: Mapping[str, Any], where: str) -> dict[str, list[cq.Solid]]:
+    """Solids (mm) by name, turned and moved so that the machine's axis is z."""
+    import cadquery as cq
+
+    axis, origin = said.get("axis", "z"), said.get("origin_mm", [0.0, 0.0, 0.0])
+    if axis not in _ROTATIONS:
+        raise InputError(f"{axis!r} is no axis", f"{where} [import] axis", f"one of {', '.join(_ROTATIONS)}")
+    if not (isinstance(origin, list) and len(origin) == 3 and all(isinstance(x, (int, float)) for x in origin)):
+        raise InputError(f"{origin!r} is no point", f"{where} [import] origin_mm", "write [x, y, z]")
+    turned = cq.Location(cq.Vector(), cq.Vector(*_ROTATIONS[axis][0]), _ROTATIONS[axis][1])
+    moved = cq.Location(cq.Vector(*(-float(x) for x in origin)))
+    found: dict[str, list[cq.Solid]] = {}
+    for shape, name, place, _ in _assembly(path):
+        placed = shape.moved(turned * moved * place)
+        if placed.Solids():
+            found.setdefault(name.split("/")[-1].replace("|", "_"), []).extend(placed.Solids())
+    if not found:
+        raise InputError("no solids", str(path), "a STEP assembly of named solids")
+    return found
+
+
+def _assembly(path: Path) -> Any:
+    import cadquery as cq
+
+    with path.open("rb") as file:
+        if b"ISO-10303-21" not in file.read(200):  # OpenCASCADE would say so on stdout
+            raise InputError("not a STEP file", str(path), "a STEP assembly of named solids")
+    try:
+        return list(cq.Assembly.load(str(path)))
+    except Exception as error:  # OpenCASCADE's readers raise whatever comes to hand
+        raise InputError(f"not readable: {error}", str(path), "a STEP assembly of named solids") from error
+
+
+def _left_in(solids: dict[str, list[cq.Solid]], said: Mapping[str, Any], where: str) -> dict[str, list[cq.Solid]]:
+    patterns = said.get("import", {}).get("leave_out", [])
+    for pattern in patterns:
+        if not any(fnmatchcase(name, pattern) for name in solids):
+            raise _no_solid(pattern, solids, f"{where} [import] leave_out")
+    return {name: found for name, found in solids.items() if not any(fnmatchcase(name, p) for p in patterns)}
+
+
+def _all_sliced(solids: Mapping[str, list[cq.Solid]], path: Path) -> dict[str, tuple[Prism, ...]]:
+    """Prisms by name; one error that names every solid that cannot be sliced."""
+    prisms, faults = {}, []
+    for name, found in solids.items():
+        try:
+            prisms[name] = tuple(prism for solid in found for prism in sliced(solid, name))
+        except InputError as fault:
+            faults.append(fault)
+    if faults:
+        what = "; ".join(f"{fault.where}: {fault.what}" for fault in faults)
+        raise InputError(what, str(path), f"{faults[0].right} ([import] leave_out in {step_sidecar(path).name})")
+    return prisms
+
+
+def _refuse_unused(patterns: Mapping[str, Any], prisms: Mapping[str, Any], where: str) -> None:
+    for pattern in patterns:
+        if not any(fnmatchcase(name, pattern) for name in prisms):
+            raise _no_solid(pattern, prisms, where)
+
+
+def _no_solid(pattern: str, names: Mapping[str, Any], where: str) -> InputError:
+    return InputError(f"no solid is called {pattern!r}", where, f"the file has: {', '.join(names)}")
+
+
+def _material(name: str, chosen: Mapping[str, str], where: str) -> str:
+    """Material of a solid: the table's entry of that name, its first pattern that fits, or the library's habit."""
+    fitting = [chosen[name]] if name in chosen else [m for pattern, m in chosen.items() if fnmatchcase(name, pattern)]
+    if fitting:
+        return material(fitting[0]).name
+    if name not in _habits():
+        raise InputError(f"no material for the solid {name!r}", where, f'write [materials] "{name}" = "steel"')
+    return _habits()[name]
+
+
+@cache
+def _habits() -> Mapping[str, str]:
+    """Part name -> material, where all families agree on it."""
+    from geom.families import families
+
+    default = [family.build(read_geometry(family.parameters, {}, name)) for name, family in families().items()]
+    parts = [part for built in default for part in built if part.solid]
+    return {a.name: a.material for a in parts if all(b.material == a.material for b in parts if b.name == a.name)}

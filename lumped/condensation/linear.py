@@ -1,0 +1,61 @@
+"""A condensed network at given coefficients, as dense matrices: for training, checks and steady questions."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from lumped.model.network import Array, Link, Network
+from lumped.transfer.laws import CONSTANT, Fixed
+
+
+@dataclass(frozen=True)
+class Linear:
+    """Solid states only: C dx/dt = -A x + B u + loads;  A (n, n) W/K, B (n, n_fluid) W/K.
+
+    solid (n,), fluid (n_fluid,) : columns of the network's z = [states; boundaries]
+    """
+
+    A: Array
+    B: Array
+    C: Array
+    solid: Array
+    fluid: Array
+
+
+def linear(
+    network: Network,
+    films: Mapping[str, float],
+    contacts: Mapping[str, float],
+    conductivity: Mapping[str, float] | None = None,
+) -> Linear:
+    """The solids of a condensed network with every fluid given; h and g in W/m2/K, factors on the conductivities."""
+    factors = conductivity or {}
+    P = np.zeros((len(network.states), network.size))
+    for link in network.links:
+        key = link.name.removeprefix(f"{link.kind}:")
+        if link.kind == "contact":
+            _add(P, link, contacts[key])
+        elif link.kind == "conduction":
+            _add(P, link, factors.get(key, 1.0))
+    for place in network.places.values():
+        if place.kind == "surface" and place.fluid:
+            _add(P, network.surface_link("", "film", place.name, place.fluid, Fixed(1.0, CONSTANT)), films[place.name])
+    fluids = {p.states[0] for p in network.places.values() if p.kind == "fluid"}
+    solid = np.array([i for i in range(len(network.states)) if i not in fluids])
+    fluid = np.array([i for i in range(network.size) if i not in set(solid.tolist())])
+    return Linear(P[np.ix_(solid, solid)], -P[np.ix_(solid, fluid)], network.C[solid], solid, fluid)
+
+
+def _add(P: Array, link: Link, factor: float) -> None:
+    np.add.at(P, (link.rows, link.cols), factor * link.vals)
+
+
+def unit_load(network: Network, place: str, solid: Array) -> Array:
+    """(n,) 1 W at a part or loss zone, on the solid states."""
+    p = network.place(place)
+    out = np.zeros(network.size)
+    out[p.states] = p.b
+    return out[solid]

@@ -1,0 +1,190 @@
+"""From field to network: each part becomes a mean node with its true heat capacity, plus shapes of its own.
+
+Whole-machine solutions (snapshots) are restricted to each part, their mean is taken off, and what is left is
+compressed in the part's own energy. Contacts and films stay links of their own, linear in their coefficients; every
+one of them may change afterwards at no cost. This is the only file of the room that knows `fem`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+import scipy.sparse as sp
+
+from fem.matrices.assembly import FieldModel
+from fem.solvers.snapshots import (
+    DEFAULT,
+    Principal,
+    Recipe,
+    alone,
+    bases,
+    drawn,
+    energies,
+    enriched,
+    principals,
+    snapshots,
+)
+from fem.solvers.solve import Solve, Solver, film_columns
+from lumped.condensation.condensed import network_in
+from lumped.condensation.shelf import Centre, Shelf
+from lumped.condensation.zone import Zone
+from lumped.model.network import Array, Network
+
+__all__ = ["FullPoint", "Recipe", "Reduction", "Zone", "condense", "reduce"]
+
+
+@dataclass(frozen=True)
+class FullPoint:
+    """The field at one set of coefficients: X (n, n_load) for 1 W in every zone, then for 1 K in every fluid."""
+
+    name: str
+    films: Mapping[str, float]
+    contacts: Mapping[str, float]
+    X: Array
+
+
+@dataclass(frozen=True)
+class Reduction:
+    """A field with what its parts can look like around a nominal point: networks of any size come from it.
+
+    films, contacts : nominal coefficients (W/m2/K), by face and by contact
+    zones : losses that may vary alone, one uniform loss per part among them
+    fluids : fluid node -> heat capacity (J/K);  boundaries : fluids whose temperature is given
+    found : part -> principal fields
+    """
+
+    field: FieldModel
+    films: Mapping[str, float]
+    contacts: Mapping[str, float]
+    zones: Mapping[str, Zone]
+    fluids: Mapping[str, float]
+    boundaries: tuple[str, ...]
+    name: str
+    recipe: Recipe
+    found: Mapping[str, Principal]
+
+    @cached_property
+    def loads(self) -> dict[str, Array]:
+        return unit_loads(self.field, self.zones)
+
+    @cached_property
+    def energy(self) -> dict[str, sp.csr_array]:
+        return energies(self.field, self.films, self.contacts)
+
+    @cached_property
+    def solver(self) -> Solver:
+        return Solver(self.field)
+
+    @property
+    def washing(self) -> tuple[str, ...]:
+        """Fluids and boundaries that wash a face."""
+        return self.field.fluids
+
+    def network(
+        self, tolerance: float | None = None, max_states: int | None = None, weights: Mapping[str, float] | None = None
+    ) -> Network:
+        """Conduction and contacts as links, faces, parts and zones as places; no films yet. Costs no solve."""
+        fine = self.recipe.tolerance if tolerance is None else tolerance
+        recipe = replace(self.recipe, tolerance=fine, max_states=max_states)
+        shapes = bases(self.field, self.found, self.energy, recipe, weights)
+        whole = frozenset(key for key, zone in self.zones.items() if key == zone.part and zone.density is None)
+        return network_in(self.field, shapes, self.contacts, self.loads, whole, self.fluids, self.boundaries, self.name)
+
+    def at(self, name: str, films: Mapping[str, float], contacts: Mapping[str, float]) -> FullPoint:
+        """Solve the whole field at other coefficients."""
+        factor = self.solver.factor(self.field.stiffness(films, contacts))
+        heated = film_columns(self.field, films, self.washing)[0]
+        return FullPoint(name, films, contacts, factor(np.column_stack([*self.loads.values(), heated])))
+
+    def nominal_point(self) -> FullPoint:
+        return self.at("nominal", self.films, self.contacts)
+
+    def random_point(self, seed: int) -> FullPoint:
+        """Every film and contact times spread ** U(-1, 1)."""
+        rng, spread = np.random.default_rng([self.recipe.seed, seed]), self.recipe.spread
+        return self.at(f"random {seed}", drawn(self.films, spread, rng), drawn(self.contacts, spread, rng))
+
+    def joined_point(self, factor: float) -> FullPoint:
+        """All contacts times a factor."""
+        return self.at(f"contacts x{factor:g}", self.films, {name: factor * g for name, g in self.contacts.items()})
+
+    def extreme_point(self, seed: int) -> FullPoint:
+        """A third of the films x10, a third of the contacts x5 and a third x0.2: what one change alone can reach."""
+        rng = np.random.default_rng([self.recipe.seed, seed, 1])
+        films = {face: h * rng.choice([1.0, 1.0, 10.0]) for face, h in self.films.items()}
+        contacts = {name: g * rng.choice([1.0, 5.0, 0.2]) for name, g in self.contacts.items()}
+        return self.at(f"extreme {seed}", films, contacts)
+
+    def enriched(self, points: Sequence[FullPoint]) -> Reduction:
+        """The same with the solutions of these points among its snapshots."""
+        S = np.column_stack([p.X for p in points])
+        return replace(self, found=enriched(self.field, self.found, S, self.films, self.contacts, self.energy))
+
+
+def reduce(
+    field: FieldModel,
+    films: Mapping[str, float],
+    contacts: Mapping[str, float],
+    fluids: Mapping[str, float],
+    boundaries: tuple[str, ...] = ("ambient",),
+    recipe: Recipe = DEFAULT,
+    name: str = "machine",
+    cache: Path | None = None,
+    zones: Mapping[str, Zone] | None = None,
+    solver: Solve | None = None,
+) -> Reduction:
+    """Solve for what the parts of a field can look like, or take it from the cache.
+
+    films, contacts : coefficients (W/m2/K) the shapes are centred on, by face and by contact
+    fluids : fluid node -> heat capacity (J/K), 0 allowed;  boundaries : fluids whose temperature is given
+    zones : losses that vary alone, by name, beside one uniform loss per part; each becomes a place
+    cache : folder. Shapes found for the same mesh around other coefficients, not further away than the recipe's
+        spread, serve as they are: a changed film, contact or conductivity costs no solve.
+    solver : of the snapshots; None: the free one of fem.solvers.solve
+    """
+    places = {**{part: Zone(part) for part in field.blocks}, **(zones or {})}
+    loads = unit_loads(field, places)
+    shelf = Shelf(cache, _geometry(field, loads, recipe))
+    centre = Centre({**films}, {**contacts}, {p: float(b.K.diagonal().sum()) for p, b in field.blocks.items()})
+    taken = shelf.find(centre, recipe.spread)
+    if taken is None:
+        unit = np.column_stack([*loads.values()])
+        S = snapshots(field, films, contacts, unit, recipe, solver)
+        local = alone(field, films, contacts, S, unit, recipe)
+        taken = shelf.keep(centre, principals(field, S, energies(field, films, contacts), local), recipe.tolerance**2)
+    kept = {part: Principal(*pair) for part, pair in taken.items()}
+    return Reduction(field, films, contacts, places, fluids, boundaries, name, recipe, kept)
+
+
+def condense(
+    field: FieldModel,
+    films: Mapping[str, float],
+    contacts: Mapping[str, float],
+    fluids: Mapping[str, float],
+    boundaries: tuple[str, ...] = ("ambient",),
+    recipe: Recipe = DEFAULT,
+    name: str = "machine",
+    cache: Path | None = None,
+    zones: Mapping[str, Zone] | None = None,
+) -> Network:
+    """The network of a field at the recipe's own tolerance and size; arguments as for `reduce`."""
+    reduction = reduce(field, films, contacts, fluids, boundaries, recipe, name, cache, zones)
+    return reduction.network(max_states=recipe.max_states)
+
+
+def unit_loads(field: FieldModel, zones: Mapping[str, Zone]) -> dict[str, Array]:
+    """(n,) 1 W in every zone."""
+    return {key: field.load(zone.part, zone.density) for key, zone in zones.items()}
+
+
+def _geometry(field: FieldModel, loads: Mapping[str, Array], recipe: Recipe) -> list[bytes]:
+    """What the shapes depend on besides coefficients: points, parts, zones, heat capacities, recipe."""
+    own = replace(recipe, tolerance=0.0, max_states=None)
+    out = [repr((own, list(field.blocks), list(loads), list(field.films), list(field.contacts))).encode()]
+    out.append(np.ascontiguousarray(field.xyz).tobytes())
+    out += [block.tets.tobytes() + repr(block.rho_cp).encode() for block in field.blocks.values()]
+    return out + [load.tobytes() for load in loads.values()]

@@ -1,0 +1,1 @@
+"""Networks declared by hand: network.toml, table by table."""

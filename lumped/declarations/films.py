@@ -1,0 +1,211 @@
+"""Films of known surfaces in network.toml by correlation: still air, moving air and coolant, contacts."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from lumped.correlations import Info, RangeWarning, film_tabulated, tabulated
+from lumped.schemas.reader import Table
+from lumped.transfer.laws import Array, FilmTable, Fixed, Inputs, Law
+from lumped.transfer.laws import Table as TableLaw
+from lumped.transfer.properties import Fluid, air
+
+POINTS = 97
+Film = Callable[[float], tuple[float, Info]]
+Still = Callable[[float, float], tuple[float, Info]]
+Of = Callable[[float], Fluid]
+
+
+@dataclass(frozen=True)
+class FilmOver(Law):
+    """A film (W/m2/K) over |input|, tabulated from `film` up to `top`; warns where the correlation itself would.
+
+    The grid is denser towards 0, where films start as roots; above `top` the film is held and the warning says so.
+    """
+
+    of: str
+    film: Film
+    top: float
+
+    @property
+    def reads(self) -> tuple[str, ...]:  # type: ignore[override]
+        return (self.of,)
+
+    def factor(self, inputs: Inputs) -> Array:
+        x = np.abs(np.asarray(inputs[self.of], float))
+        largest = float(x.max(initial=0.0))
+        self.film(min(largest, self.top))
+        if largest > self.top:
+            said = f"film over {self.of}: {self.of} = {largest:.4g} outside 0 to {self.top:g}"
+            warnings.warn(said, RangeWarning, stacklevel=2)
+        at = self.top * np.linspace(0.0, 1.0, POINTS) ** 2
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", RangeWarning)
+            return np.interp(x, at, [self.film(v)[0] for v in at])
+
+
+def natural(table: Table) -> Law:
+    """Still air, tabulated over the temperature difference."""
+    film, factor = natural_film(table)
+    return Fixed(factor, film)
+
+
+def natural_film(table: Table) -> tuple[FilmTable | TableLaw, float]:
+    """The film of still air, and the factor on it. The air's properties follow its film temperature, or, where the
+    table says `fluid_degC`, are those of surfaces in air of that temperature."""
+    film, factor = NATURAL[table.word("surface", None, NATURAL)](table, _air(table)), table.number("factor", 1.0)
+    if "fluid_degC" not in table:
+        return film_tabulated(film), factor
+    return tabulated(film, fluid_temperature=table.number("fluid_degC")), factor
+
+
+def _air(table: Table) -> Callable[[float], Fluid]:
+    return partial(air, altitude_m=table.number("altitude_m", 0.0))
+
+
+def film_air(table: Table, usual_degC: float) -> Fluid:
+    """The air at `fluid_degC` and `altitude_m`."""
+    return _air(table)(table.number("fluid_degC", usual_degC))
+
+
+def _size(table: Table) -> float:
+    return table.number("size_m")
+
+
+def millimetres(table: Table, key: str) -> float:
+    return 1e-3 * table.number(key)
+
+
+def _cylinder(table: Table, of: Of) -> Still:
+    from lumped.correlations.natural import churchill_chu_cylinder
+
+    return partial(churchill_chu_cylinder, _size(table), of=of)
+
+
+def _plate(table: Table, of: Of) -> Still:
+    from lumped.correlations.natural import churchill_chu_plate
+
+    return partial(churchill_chu_plate, _size(table), of=of)
+
+
+def _level(upward: bool, table: Table, of: Of) -> Still:
+    from lumped.correlations.natural import mcadams_plate
+
+    return partial(mcadams_plate, _size(table), upward=upward, of=of)
+
+
+def _upright(table: Table, of: Of) -> Still:
+    from lumped.correlations.natural import popiel_cylinder
+
+    return partial(popiel_cylinder, _size(table), millimetres(table, "diameter_mm"), of=of)
+
+
+def _vertical_fins(table: Table, of: Of) -> Still:
+    from lumped.correlations.fins import van_de_pol_tierney
+
+    depth, spacing = millimetres(table, "depth_mm"), millimetres(table, "spacing_mm")
+    return partial(van_de_pol_tierney, depth, spacing, _size(table), of=of)
+
+
+def _horizontal_fins(table: Table, of: Of) -> Still:
+    from lumped.correlations.fins import jones_smith
+
+    return partial(jones_smith, millimetres(table, "spacing_mm"), of=of)
+
+
+def _plates(table: Table, of: Of) -> Still:
+    from lumped.correlations.fins import elenbaas
+
+    return partial(elenbaas, millimetres(table, "spacing_mm"), _size(table), of=of)
+
+
+NATURAL: dict[str, Callable[[Table, Of], Still]] = {
+    "horizontal cylinder": _cylinder, "vertical plate": _plate, "plate facing up": partial(_level, True),
+    "plate facing down": partial(_level, False), "vertical cylinder": _upright, "vertical fins": _vertical_fins,
+    "horizontal fins": _horizontal_fins, "parallel plates": _plates,
+}  # fmt: skip
+
+
+def _duct(table: Table, fluid: Fluid) -> Film:
+    from lumped.correlations.ducts import duct_film
+
+    return partial(duct_film, diameter=millimetres(table, "diameter_mm"), length=_size(table), fluid=fluid)
+
+
+def _fin_channel(table: Table, fluid: Fluid) -> Film:
+    from lumped.correlations.fins import heiles_decaying
+
+    end, turbulence = table.number("speed_at_end", 1.0), table.number("turbulence", 1.7)
+    return partial(
+        heiles_decaying, diameter=millimetres(table, "diameter_mm"), length=_size(table), decay=partial(_line, end),
+        turbulence=turbulence, fluid=fluid,
+    )  # fmt: skip
+
+
+def _line(end: float, x: float) -> float:
+    return 1.0 + (end - 1.0) * x
+
+
+def _flat(table: Table, fluid: Fluid) -> Film:
+    from lumped.correlations.forced import flat_plate
+
+    return partial(flat_plate, length=_size(table), fluid=fluid)
+
+
+def _across(table: Table, fluid: Fluid) -> Film:
+    from lumped.correlations.forced import churchill_bernstein
+
+    return partial(churchill_bernstein, diameter=_size(table), fluid=fluid)
+
+
+def _end_space(table: Table, fluid: Fluid) -> Film:
+    from lumped.correlations.end_space import end_space
+
+    return partial(end_space, k1=table.number("k1", 15.0), k2=table.number("k2", 0.4), k3=table.number("k3", 0.9))
+
+
+def _helix(table: Table, fluid: Fluid) -> Film:
+    from lumped.correlations.ducts import schmidt_helical
+
+    inner, coil = millimetres(table, "diameter_mm"), millimetres(table, "coil_diameter_mm")
+    return partial(schmidt_helical, diameter=inner, coil_diameter=coil, fluid=fluid)
+
+
+FORCED: dict[str, Callable[[Table, Fluid], Film]] = {
+    "plate": _flat, "cylinder": _across, "fin channel": _fin_channel, "duct": _duct, "helical pipe": _helix,
+    "end space": _end_space,
+}  # fmt: skip
+
+
+def over(table: Table) -> FilmOver:
+    """Air, or a coolant, moving over a known surface; its speed is `m_s_per_unit` times an input."""
+    fluid = _coolant(table) if "coolant" in table else film_air(table, 30.0)
+    film = FORCED[table.word("surface", None, FORCED)](table, fluid)
+    scale = table.number("m_s_per_unit", 1.0)
+    return FilmOver(table.word("speed"), partial(_scaled, film, scale), table.number("up_to_m_s", 50.0) / scale)
+
+
+def _coolant(table: Table) -> Fluid:
+    from lumped.declarations.coolant import read_coolant
+
+    return read_coolant(table)(table.number("fluid_degC", 40.0))
+
+
+def _scaled(film: Film, scale: float, x: float) -> tuple[float, Info]:
+    return film(scale * x)
+
+
+def contact(table: Table) -> Law:
+    """A joint: an effective gap of still air, a gap from the table of joints, or a pair of pressed materials."""
+    from lumped.correlations.contacts import GAPS, PRESSED, contact_film, gap_film
+
+    if "gap_mm" in table:
+        return Fixed(gap_film(millimetres(table, "gap_mm")))
+    if "pair" in table:
+        return Fixed(contact_film(table.word("pair", None, PRESSED))[0])
+    return Fixed(gap_film(GAPS[table.word("joint", None, GAPS)]))

@@ -1,0 +1,159 @@
+"""The laws of a link and of a stream in network.toml; correlations of known surfaces are in declarations/films.py."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import pairwise
+
+from lumped.declarations.films import contact, natural, over
+from lumped.declarations.mixed import mixed
+from lumped.declarations.rotor import gap, rotating
+from lumped.model.quantities import AIR, LIQUID
+from lumped.schemas.reader import Table, powers
+from lumped.transfer.laws import Fixed, InputPower, Law, Power, Radiation
+from lumped.transfer.laws import Table as TableLaw
+from lumped.transfer.shaft_fan import shaft_fan
+
+Mechanism = tuple[str, Law, bool]
+
+
+def _coefficient(table: Table, has_area: bool, needed: bool = True) -> tuple[float, bool] | None:
+    """The number of a mechanism and whether it is per area."""
+    given = [key for key in ("G_W_K", "R_K_W", "h_W_m2K") if key in table]
+    if len(given) > 1:
+        raise table.error(f"{' and '.join(given)} both given", "one of G_W_K, R_K_W, h_W_m2K")
+    if not given:
+        if needed:
+            raise table.error("no coefficient", "one of G_W_K, R_K_W, h_W_m2K")
+        return None
+    value = table.number(given[0])
+    if given[0] == "h_W_m2K" and not has_area:
+        raise table.error("h_W_m2K without an area", "area_m2 = ... in the link, or a surface as its first end")
+    return (1.0 / value if given[0] == "R_K_W" else value), given[0] == "h_W_m2K"
+
+
+def _needs_area(table: Table, has_area: bool) -> None:
+    if not has_area:
+        raise table.error("this mechanism needs an area", "area_m2 = ... in the link, or a surface as its first end")
+
+
+def _fixed(table: Table, has_area: bool) -> tuple[Law, bool] | None:
+    found, of = _coefficient(table, has_area, needed=False), powers(table)
+    if found is None:
+        return None
+    return (InputPower(found[0], of) if of else Fixed(found[0])), found[1]
+
+
+def _radiation(table: Table, has_area: bool) -> tuple[Law, bool]:
+    _needs_area(table, has_area)
+    return Fixed(table.number("emissivity") * table.number("view_factor", 1.0), Radiation()), True
+
+
+def _natural(table: Table, has_area: bool) -> tuple[Law, bool]:
+    _needs_area(table, has_area)
+    return natural(table), True
+
+
+def _gap(table: Table, has_area: bool) -> tuple[Law, bool]:
+    _needs_area(table, has_area)
+    return gap(table), True
+
+
+def _rotating(table: Table, has_area: bool) -> tuple[Law, bool]:
+    _needs_area(table, has_area)
+    return rotating(table), True
+
+
+def _contact(table: Table, has_area: bool) -> tuple[Law, bool]:
+    _needs_area(table, has_area)
+    return contact(table), True
+
+
+def _forced(table: Table, has_area: bool) -> tuple[Law, bool]:
+    if "surface" in table:
+        _needs_area(table, has_area)
+        return over(table), True
+    found, of = _coefficient(table, has_area), powers(table)
+    if not of:
+        right = 'surface = ... with speed = "INPUT", or of = { input = "speed_rpm", at = 1000, exponent = 0.8 }'
+        raise table.error("forced without an input", right)
+    assert found is not None
+    return InputPower(found[0], of), found[1]
+
+
+def _fan(table: Table, has_area: bool) -> tuple[Law, bool]:
+    _needs_area(table, has_area)
+    return shaft_fan(table), True
+
+
+def _power(table: Table, has_area: bool) -> tuple[Law, bool]:
+    found, law = _coefficient(table, has_area), Power(table.number("exponent", 0.25, of="power.exponent"))
+    assert found is not None
+    return InputPower(found[0], powers(table), law), found[1]
+
+
+def _tabled(table: Table, has_area: bool) -> tuple[Law, bool]:
+    difference, per_area = table.numbers("difference_K"), "h_W_m2K" in table
+    value = table.numbers("h_W_m2K" if per_area else "G_W_K")
+    rising = all(b > a for a, b in pairwise(difference))
+    if len(value) != len(difference) or not rising or not value:
+        raise table.error("difference_K and its values do not match", "two lists of one length, differences rising")
+    if per_area:
+        _needs_area(table, has_area)
+    return InputPower(1.0, powers(table), TableLaw(difference, value)), per_area
+
+
+MECHANISMS = {
+    "natural": _natural, "radiation": _radiation, "forced": _forced, "gap": _gap, "rotating": _rotating,
+    "contact": _contact, "fan": _fan, "power": _power, "table": _tabled,
+}  # fmt: skip
+
+
+def mechanisms(table: Table, has_area: bool) -> list[Mechanism]:
+    """(suffix of the link's name, law, whether in W/m2/K) for every mechanism of a link; they act in parallel."""
+    fixed = _fixed(table, has_area)
+    out: list[Mechanism] = [] if fixed is None else [("", *fixed)]
+    for word, read in MECHANISMS.items():
+        if word in table:
+            inner = Table(table.raw(word), f"{table.where} {word}")
+            out.append((f":{word}", *read(inner, has_area)))
+            inner.close()
+    if "mixed" in table:
+        out += _mixed(table, has_area)
+    if not out:
+        table.raw("prior_sd")
+        table.close()
+        raise table.error("a link without a mechanism", f"G_W_K, R_K_W, h_W_m2K, {', '.join(MECHANISMS)}, mixed")
+    return out
+
+
+def _mixed(table: Table, has_area: bool) -> list[Mechanism]:
+    inner = Table(table.raw("mixed"), f"{table.where} mixed")
+    _needs_area(inner, has_area)
+    laws = mixed(inner)
+    inner.close()
+    return [(f":mixed:{k + 1}", law, True) for k, law in enumerate(laws)]
+
+
+FLOW_INPUTS = {"flow_l_min_input": 1 / 60000.0, "flow_m3_h_input": 1 / 3600.0}
+
+
+def flow_column(table: Table, measures: Callable[[str], str]) -> str | None:
+    """The input that carries a stream's flow with its direction; a fan on a shaft blows one way however it turns."""
+    of = [name for name, _, exponent in powers(table) if exponent == 1.0 and measures(name) in (AIR, LIQUID)]
+    return next((table.word(key) for key in FLOW_INPUTS if key in table), of[0] if len(of) == 1 else None)
+
+
+def flow_law(table: Table) -> Law:
+    """Heat capacity rate (W/K) of a stream: fixed, or proportional to a flow input."""
+    if "mcp_W_K" in table:
+        return InputPower(table.number("mcp_W_K"), powers(table))
+    rate = table.number("density_kg_m3") * table.number("cp_J_kgK")
+    if "flow_l_min" in table:
+        return Fixed(rate * table.number("flow_l_min") / 60000.0)
+    for key, scale in FLOW_INPUTS.items():
+        if key in table:
+            return InputPower(rate * scale, ((table.word(key), 1.0, 1.0),))
+    raise table.error(
+        "no flow", "mcp_W_K, or density_kg_m3 and cp_J_kgK with flow_l_min, flow_l_min_input or flow_m3_h_input"
+    )

@@ -1,0 +1,165 @@
+"""The losses of network.toml, by kind."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Collection, Mapping
+from functools import partial
+from itertools import pairwise
+
+from lumped.model.quantities import USUAL
+from lumped.schemas.reader import Table, powers
+from lumped.sources.loss_map import MapLoss
+from lumped.sources.loss_measured import MeasuredLoss
+from lumped.sources.losses import ALPHA_CU, BrushLoss, CopperLoss, IronLoss, PowerLoss, RippleLoss
+from lumped.transfer.laws import CONSTANT, Law, Linear, TemperatureLaw
+
+COLDEST, HOTTEST = -60.0, 300.0  # degC: from the coldest place a machine stands in to beyond what insulation bears
+
+
+def _coefficient(table: Table, reference: float, default: float | None = None) -> float:
+    """alpha (1/K) of 1 + alpha (T - reference), which must not turn a loss into cooling between COLDEST and HOTTEST."""
+    alpha = table.number("alpha_1_K", default, low=-1.0 if default is None else 0.0)
+    zero = reference - 1.0 / alpha if alpha else math.inf
+    if COLDEST <= zero <= HOTTEST:
+        side, end = ("above", HOTTEST) if alpha < 0 else ("below", COLDEST)
+        most = 1.0 / (reference - end)
+        raise table.error(
+            f"alpha_1_K = {alpha:g} makes heat negative {side} {zero:.4g} degC",
+            f"{'more' if alpha < 0 else 'less'} than {most:.4g} 1/K; copper has {ALPHA_CU}",
+        )
+    return alpha
+
+
+def _copper(table: Table) -> Law:
+    given = [key for key in ("R20_ohm", "R_ohm") if key in table]
+    if len(given) != 1:
+        raise table.error("resistance is not given once", "R20_ohm, or R_ohm with reference_degC")
+    reference = 20.0 if given[0] == "R20_ohm" else table.number("reference_degC")
+    ac = table.raw("ac")
+    speed, at, coefficients = _ac(Table(ac, f"{table.where} ac")) if ac is not None else (None, 1.0, (1.0,))
+    return CopperLoss(
+        table.number(given[0]), table.words("currents"), table.number("factor", 1.0),
+        _coefficient(table, reference, ALPHA_CU), reference, coefficients, speed, at,
+    )  # fmt: skip
+
+
+def _ac(table: Table) -> tuple[str, float, tuple[float, ...]]:
+    out = table.word("input"), table.number("at", 1.0), table.numbers("coefficients")
+    table.close()
+    return out
+
+
+def _temperature(table: Table) -> TemperatureLaw:
+    if "alpha_1_K" not in table:
+        return CONSTANT
+    reference = table.number("reference_degC")
+    return Linear(_coefficient(table, reference), reference)
+
+
+def _iron(table: Table) -> Law:
+    excitation = table.word("excitation", "") or None
+    return IronLoss(
+        table.number("hysteresis_W", 0.0), table.number("eddy_W", 0.0), table.word("speed", "speed_rpm"),
+        table.number("speed_at"), excitation, table.number("excitation_at", 1.0),
+        table.number("flux_exponent", 2.0), _temperature(table), table.number("excess_W", 0.0),
+        table.number("frequency_exponent", 1.0),
+    )  # fmt: skip
+
+
+def _terms(table: Table) -> Law:
+    if "P_W" in table:
+        return PowerLoss(((table.number("P_W"), powers(table)),), _temperature(table))
+    terms = tuple((item.number("P_W"), powers(item)) for item in table.listed("terms"))
+    if not terms:
+        raise table.error(
+            "no power", "P_W = ... with of = { input, at, exponent }, or terms = [{ P_W = ..., of = ... }]"
+        )
+    return PowerLoss(terms, _temperature(table))
+
+
+def _brush(table: Table) -> Law:
+    friction = table.number("friction_W", 0.0)
+    speed = table.word("speed", "speed_rpm") if friction else None
+    at = table.number("speed_at") if friction else 1.0
+    return BrushLoss(table.number("drop_V"), table.word("current", "current_A"), friction, speed, at)
+
+
+def _measured(table: Table, speeds: Collection[str]) -> Law:
+    table.words("less", [])
+    return MeasuredLoss(_electrical(table) + _mechanical(table, speeds))
+
+
+def taken_off(table: Table, kinds: Mapping[str, str]) -> tuple[str, ...]:
+    """The losses that a measured one leaves to the model."""
+    less = table.words("less", [])
+    others = [name for name, kind in kinds.items() if kind != MEASURED]
+    for name in less:
+        if name not in others:
+            raise table.error(f"less = '{name}' is no loss", f"a loss that is not measured: {', '.join(others)}")
+    return less
+
+
+def _ripple(table: Table) -> Law:
+    return RippleLoss(
+        table.number("supply_V"), table.word("voltage", "voltage_V"), table.number("L_H"),
+        table.number("switching_Hz"), table.number("R20_ohm"), table.number("factor", 1.0),
+        _coefficient(table, 20.0, ALPHA_CU),
+    )  # fmt: skip
+
+
+def _map(table: Table) -> Law:
+    speed, torque = table.numbers("at_speed"), table.numbers("at_torque")
+    watts = tuple(table.rows("P_W"))
+    rising = all(b > a for at in (speed, torque) for a, b in pairwise(at))
+    if not rising or min(len(speed), len(torque)) < 2 or {len(row) for row in watts} != {len(torque)}:
+        raise table.error("the map is not a grid", "at_speed and at_torque rising, P_W = [[per torque], per speed]")
+    if len(watts) != len(speed):
+        raise table.error(f"P_W has {len(watts)} rows", f"one per speed: {len(speed)}")
+    return MapLoss(speed, torque, watts, table.word("speed", "speed_rpm"), table.word("torque", "torque_Nm"),
+                   _temperature(table))  # fmt: skip
+
+
+Products = tuple[tuple[float, tuple[str, ...]], ...]
+
+
+def _electrical(table: Table) -> Products:
+    out = []
+    for item in table.listed("electrical"):
+        out.append((item.number("factor", 1.0, of="electrical.factor"), item.words("product")))
+        item.close()
+    return tuple(out)
+
+
+def _mechanical(table: Table, speeds: Collection[str]) -> Products:
+    """Taken off. speeds : inputs in 1/min, which come with pi/30; a product of several without one needs its factor."""
+    out = []
+    for item in table.listed("mechanical"):
+        names = item.words("product")
+        turning = [name for name in names if name in speeds]
+        if "factor" not in item and not turning and len(names) > 1:
+            raise item.error(
+                "none of these inputs is known as a speed", 'factor = ..., or [inputs.NAME] quantity = "speed"'
+            )
+        out.append((-item.number("factor", math.pi / 30 if turning else 1.0, of="mechanical.factor"), names))
+        item.close()
+    return tuple(out)
+
+
+LOSSES = {
+    "copper": _copper, "iron": _iron, "brush": _brush, "ripple": _ripple, "map": _map,
+}  # fmt: skip
+MEASURED = "measured"
+PLAIN = ("friction", "windage", "stray", "magnet", "switching", "bearing", "constant")
+
+
+def loss_kinds(tables: Mapping[str, Table]) -> dict[str, str]:
+    """Name -> kind."""
+    return {name: table.word("kind", None, (*LOSSES, MEASURED, *PLAIN)) for name, table in tables.items()}
+
+
+def loss_laws(tables: Mapping[str, Table], quantities: Mapping[str, str] | None = None) -> dict[str, Law]:
+    """Name -> law.  quantities : input -> what it measures"""
+    speeds = [name for name, quantity in {**USUAL, **(quantities or {})}.items() if quantity == "speed"]
+    read: dict[str, Callable[[Table], Law]] = {**LOSSES, MEASURED: partial(_measured, speeds=speeds)}
+    return {name: read.get(kind, _terms)(tables[name]) for name, kind in loss_kinds(tables).items()}

@@ -1,0 +1,208 @@
+"""Networks declared by hand in network.toml. Every key is described in docs/network-toml.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from geom.description.toml_file import read_toml
+from geom.errors import InputError
+from lumped.declarations.links import flow_column, flow_law, mechanisms
+from lumped.declarations.losses import loss_kinds, loss_laws, taken_off
+from lumped.declarations.parameters import read_parameters
+from lumped.declarations.roles import read_identities, read_quantities
+from lumped.model.build import bare_network, node_link, node_source, stream, surface_place
+from lumped.model.network import Link, Network, Place, Source
+from lumped.model.soundness import checked_network, checked_path
+from lumped.schemas.reader import Table, known
+from lumped.sources.loss_measured import Negative
+from lumped.transfer.laws import Law
+from lumped.transfer.reversal import Direction, OneWay
+
+if TYPE_CHECKING:
+    from lumped.transfer.circuit import Circuit
+
+RIGHT = "a network.toml (docs/network-toml.md)"
+
+
+def load_network(path: str | Path) -> Network:
+    """The network of a TOML file.
+
+    Raises InputError that names the file, the table, the key and what would be right.
+    """
+    return read_network(read_toml(Path(path), RIGHT), Path(path).name)
+
+
+def load_circuits(path: str | Path) -> dict[str, Circuit]:
+    """The coolant circuits of a network.toml, for pressure drop and pump power."""
+    top = Table(read_toml(Path(path), RIGHT), Path(path).name)
+    return _circuits(top, top.tables("nodes"), top.table("network").words("boundaries"))
+
+
+def read_network(data: Mapping[str, Any], where: str = "network.toml") -> Network:
+    """The network of a TOML document already read."""
+    top = Table(data, where)
+    head, nodes = top.table("network"), top.tables("nodes")
+    if not nodes:
+        raise top.error("no nodes", "[nodes.NAME] with C_J_K = ...")
+    name, boundaries, settles = head.word("name"), head.words("boundaries"), head.number("settles_s", 3600.0)
+    head.close()
+    circuits = _circuits(top, nodes, boundaries)
+    cells = {n: C for c in circuits.values() for n, C in c.capacities().items()}
+    network = bare_network(name, {n: _capacity(t) for n, t in nodes.items()} | cells, boundaries)
+    clash = set(nodes) & set(boundaries)
+    if clash:
+        raise head.error(f"'{min(clash)}' is a node and a boundary", "one or the other")
+    declared = read_identities(top, nodes, boundaries, cells)
+    network = replace(network, places=_places(network, top, nodes, cells), settles_s=settles, declared=declared,
+                      quantities=read_quantities(top))  # fmt: skip
+    loops = [link for circuit in circuits.values() for link in circuit.links(network)]
+    links = [*_links(network, top), *_streams(network, top), *loops]
+    network = replace(network, links=tuple(links), sources=tuple(_sources(network, top)))
+    network = replace(network, parameters=read_parameters(network, top, nodes))
+    for table in nodes.values():
+        table.close()
+    top.close()
+    return _checked(network, where)
+
+
+def _circuits(top: Table, nodes: Iterable[str], boundaries: Iterable[str]) -> dict[str, Circuit]:
+    """Loaded only where a file has some: the libraries behind their films take a while to load."""
+    if "circuits" not in top:
+        return {}
+    from lumped.declarations.circuit import read_circuits
+
+    return read_circuits(top, nodes, boundaries)
+
+
+def _capacity(table: Table) -> float:
+    if "C_J_K" in table and "mass_kg" in table:
+        raise table.error("C_J_K and mass_kg both given", "C_J_K, or mass_kg with cp_J_kgK")
+    if "mass_kg" in table:
+        return table.number("mass_kg") * table.number("cp_J_kgK")
+    return table.number("C_J_K", 0.0)
+
+
+def _places(network: Network, top: Table, nodes: Mapping[str, Table], cells: Iterable[str]) -> dict[str, Place]:
+    places = dict(network.places) | {c: replace(network.places[c], kind="fluid") for c in cells}
+    for i, (name, table) in enumerate(nodes.items()):
+        kind = table.word("kind", "node", ("node", "part", "fluid"))
+        places[name] = replace(places[name], kind=kind)  # type: ignore[arg-type]
+        if "area_m2" in table:
+            face = f"{name}.outer"
+            fluid = _end(network, table, table.word("washed_by"))
+            places[face] = surface_place(face, name, i, table.number("area_m2"), fluid)
+    for name, table in top.tables("surfaces").items():
+        node, fluid = table.word("of", None, network.states), _end(network, table, table.word("washed_by"))
+        places[name] = surface_place(name, node, network.column(node), table.number("area_m2"), fluid)
+        table.close()
+    for name, table in top.tables("means").items():
+        places[name] = _mean(network, name, table)
+    return places
+
+
+def _mean(network: Network, name: str, table: Table) -> Place:
+    """A sensor place that averages nodes, e.g. a winding's resistance."""
+    shares = table.shares("of")
+    states = np.array([network.column(_end(network, table, node)) for node in shares])
+    weights = np.array(list(shares.values()))
+    if abs(weights.sum() - 1.0) > 1e-9 or states.max() >= len(network.states):
+        raise table.error(f"shares sum to {weights.sum():g}", "shares of nodes that sum to 1")
+    table.close()
+    return Place(name, "node", max(shares, key=lambda node: shares[node]), states, np.diag(weights), weights)
+
+
+def _end(network: Network, table: Table, name: str) -> str:
+    names = [*network.states, *network.boundaries]
+    if name not in names:
+        raise table.error(f"joins unknown node '{name}'", known(name, names))
+    return name
+
+
+def _links(network: Network, top: Table) -> list[Link]:
+    out: list[Link] = []
+    for name, table in top.tables("links").items():
+        ends = table.words("between")
+        if len(ends) != 2:
+            raise table.error(f"between = {list(ends)}", "two names")
+        face = network.places.get(ends[0])
+        surface = face if face is not None and face.kind == "surface" else None
+        a = surface.part if surface is not None else _end(network, table, ends[0])
+        b = _end(network, table, ends[1])
+        area = surface.area if surface is not None and surface.area is not None else table.number("area_m2", 0.0)
+        for suffix, law, per_area in mechanisms(table, area > 0.0):
+            full = f"link:{name}{suffix}"
+            kind = "film" if surface is not None else "link"
+            link = node_link(network, full, kind, a, b, law, area if per_area else 1.0)
+            out.append(replace(link, places=(ends[0], b)))
+        table.raw("prior_sd")
+        table.close()
+    return out
+
+
+def _streams(network: Network, top: Table) -> list[Link]:
+    out = []
+    for name, table in top.tables("streams").items():
+        path = [_end(network, table, node) for node in checked_path(table.words("path"), table.where)]
+        out += _both_ways(network, name, path, table)
+        table.raw("prior_sd")
+        table.close()
+    return out
+
+
+def _both_ways(network: Network, name: str, path: list[str], table: Table) -> list[Link]:
+    """A stream; where a column carries its flow and the file says what comes in from behind, backwards too."""
+    law, column, behind = flow_law(table), flow_column(table, network.measures), table.word("backwards_from", "")
+    if column is None:
+        return [stream(network, f"stream:{name}", path, law)]
+    if not behind and path[0] != path[-1]:
+        right = f'backwards_from = "NODE": what comes in behind {path[-1]} when the flow turns round'
+        return [stream(network, f"stream:{name}", path, OneWay(law, column, table.where, right))]
+    back = [_end(network, table, behind), *path[:0:-1]] if behind else path[::-1]
+    return [
+        stream(network, f"stream:{name}", path, Direction(law, column, 1)),
+        stream(network, f"stream:{name}:back", back, Direction(law, column, -1)),
+    ]
+
+
+def _sources(network: Network, top: Table) -> list[Source]:
+    tables = top.tables("losses")
+    kinds, laws = loss_kinds(tables), loss_laws(tables, network.quantities)
+    out = {name: _source(network, name, table, laws[name]) for name, table in tables.items()}
+    taken = [
+        _taken_off(out[name], out[other])
+        for name, kind in kinds.items() if kind == "measured" for other in taken_off(tables[name], kinds)
+    ]  # fmt: skip
+    for table in tables.values():
+        table.raw("prior_sd")
+        table.close()
+    return [*out.values(), *taken]
+
+
+def _source(network: Network, name: str, table: Table, law: Law) -> Source:
+    shares = {_end(network, table, node): share for node, share in table.shares("at").items()}
+    if abs(sum(shares.values()) - 1.0) > 1e-9:
+        raise table.error(f"shares of 'at' sum to {sum(shares.values()):g}", "shares that sum to 1")
+    probe = _end(network, table, table.word("temperature_of", max(shares, key=lambda node: shares[node])))
+    return node_source(network, f"loss:{name}", table.word("kind"), shares, law, probe)
+
+
+def _taken_off(measured: Source, other: Source) -> Source:
+    """What the model injects elsewhere leaves the measured total, at its own temperature, watt for watt."""
+    name = f"{measured.name}:less:{other.name.removeprefix('loss:')}"
+    return replace(measured, name=name, law=Negative(other.law), probe=other.probe)
+
+
+def _checked(network: Network, where: str) -> Network:
+    """Names that parameters act on exist, and the network can be a machine."""
+    items: list[Link | Source] = [*network.links, *network.sources]
+    names = {i.name for i in items} | {f"capacity:{s}" for s in network.states}
+    for p in network.parameters:
+        for target, _ in p.targets:
+            if target not in names and not target.startswith(("bias:", "gain:", "lag:")):
+                raise InputError(f"acts on unknown '{target}'", f"{where} [parameters.{p.name}]", known(target, names))
+    return checked_network(network, where)

@@ -1,0 +1,96 @@
+"""What calibration may move in network.toml: prior_sd inside tables, and [parameters.NAME]."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from lumped.model.network import Link, Network, Parameter, Source
+from lumped.schemas.reader import Table
+
+MAPPINGS = {
+    "log": (1.0, 1e-3, 1e3),
+    "amplitude": (0.0, -1e6, 1e6),
+    "relative": (0.0, -1.0, 1e3),
+    "offset": (0.0, -1e3, 1e3),
+}
+
+
+def read_parameters(network: Network, top: Table, nodes: Mapping[str, Table]) -> tuple[Parameter, ...]:
+    """All parameters of a file."""
+    declared = (*_inline(network, top, nodes), *_of_circuits(network, top), *_parameters(top))
+    return tuple(replace(p, targets=(*p.targets, *_companions(network, p))) for p in declared)
+
+
+def _companions(network: Network, parameter: Parameter) -> list[tuple[str, float]]:
+    """What a measured total leaves out grows with what the model injects instead."""
+    pairs = [(s.name, s.name.partition(":less:")[2]) for s in network.sources if ":less:" in s.name]
+    return [(own, e) for own, of in pairs for target, e in parameter.targets if target == f"loss:{of}"]
+
+
+def _inline(network: Network, top: Table, nodes: Mapping[str, Table]) -> list[Parameter]:
+    """One parameter for every table that carries prior_sd: the multiplier of what it declares."""
+    out = []
+    items: list[Link | Source] = [*network.links, *network.sources]
+    for section, prefix, target in (
+        ("links", "link", "link:"),
+        ("streams", "stream", "stream:"),
+        ("losses", "loss", "loss:"),
+    ):
+        for name, table in top.tables(section).items():
+            if "prior_sd" in table:
+                own = f"{target}{name}"
+                mine = [i.name for i in items if i.name == own or i.name.startswith(f"{own}:")]
+                acts = tuple((n, 1.0) for n in mine if ":less:" not in n)
+                sd, flow = table.number("prior_sd"), section == "streams"
+                out.append(Parameter(f"{prefix}.{name}", acts, prior_sd=sd, flow=flow))
+    for name, table in nodes.items():
+        if "prior_sd" in table:
+            sd = table.number("prior_sd")
+            out.append(Parameter(f"capacity.{name}", ((f"capacity:{name}", 1.0),), prior_sd=sd))
+    return out
+
+
+def _of_circuits(network: Network, top: Table) -> list[Parameter]:
+    """prior_sd scales a circuit's flow of heat, film_prior_sd all its films."""
+    out = []
+    for name, table in top.tables("circuits").items():
+        films = tuple((x.name, 1.0) for x in network.links if x.name.startswith(f"film:{name}."))
+        streams = tuple((x.name, 1.0) for x in network.links if x.name in (f"stream:{name}", f"stream:{name}:back"))
+        acts = {"prior_sd": (f"circuit.{name}", streams), "film_prior_sd": (f"film.{name}", films)}
+        out += [
+            Parameter(*acts[key], prior_sd=table.number(key), flow=key == "prior_sd")
+            for key in acts if key in table
+        ]  # fmt: skip
+    return out
+
+
+def _parameters(top: Table) -> list[Parameter]:
+    return [_parameter(name, table) for name, table in top.tables("parameters").items()]
+
+
+def _parameter(name: str, table: Table) -> Parameter:
+    mapping = table.word("mapping", "log", MAPPINGS)
+    neutral, low, high = MAPPINGS[mapping]
+    listed = isinstance(table.raw("acts_on"), list)
+    targets = dict.fromkeys(table.words("acts_on"), 1.0) if listed else table.shares("acts_on", of="acts_on")
+    found = Parameter(
+        name, tuple(targets.items()), table.number("value", neutral), table.word("unit", "1"),
+        table.number("low", low), table.number("high", high), table.number("prior_sd", 0.3, of="parameters.prior_sd"),
+        mapping, neutral, int(table.number("sign", 0)), table.word("source", ""),  # type: ignore[arg-type]
+        table.flag("flow", False),
+    )  # fmt: skip
+    table.close()
+    return _checked(found, table)
+
+
+def _checked(p: Parameter, table: Table) -> Parameter:
+    """low < high, both positive for a factor, with the declared and the neutral value between them."""
+    if p.mapping == "log" and p.low <= 0.0:
+        raise table.error(f"low = {p.low:g} of a factor is not possible", "a number above 0")
+    if not p.low < p.high:
+        raise table.error(f"low = {p.low:g} and high = {p.high:g} leave nothing between them", "low below high")
+    for key, value in (("value", p.value), ("the neutral value", p.neutral)):
+        if not p.low <= value <= p.high:
+            raise table.error(f"{key} = {value:g} is outside low = {p.low:g} to high = {p.high:g}", "bounds around it")
+    return p

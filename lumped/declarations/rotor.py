@@ -1,0 +1,59 @@
+"""Films of what turns, in network.toml: the gap round the rotor, its end faces, the shaft; over the speed in 1/min."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import partial
+
+from lumped.correlations import Info
+from lumped.declarations.films import Film, FilmOver, film_air, millimetres
+from lumped.schemas.reader import Table
+from lumped.transfer.laws import Law
+from lumped.transfer.properties import Fluid
+
+RPM = math.pi / 30.0
+
+
+def gap(table: Table) -> Law:
+    """From rotor to stator through the air between them, over the rotor's surface."""
+    radius, width = millimetres(table, "rotor_radius_mm"), millimetres(table, "gap_mm")
+    law = table.word("law", "taylor", ("taylor", "becker-kaye"))
+    return _over_speed(table, partial(_gap_film, law, radius, width, film_air(table, 80.0)))
+
+
+def rotating(table: Table) -> Law:
+    """A disc or a shaft that turns in open air."""
+    film = ROTATING[table.word("surface", None, ROTATING)]
+    return _over_speed(table, film(millimetres(table, "diameter_mm"), film_air(table, 50.0)))
+
+
+def _over_speed(table: Table, film: Film) -> Law:
+    return FilmOver(table.word("speed", "speed_rpm"), film, table.number("up_to_rpm", 20000.0))
+
+
+def _gap_film(law: str, radius: float, width: float, fluid: Fluid, rpm: float) -> tuple[float, Info]:
+    from lumped.correlations.air_gap import becker_kaye, taylor_film
+
+    if law == "becker-kaye":
+        return becker_kaye(rpm * RPM, radius, width, fluid)
+    one, info = taylor_film(rpm * RPM, radius, width, fluid)
+    return 0.5 * one, info
+
+
+def _disc_film(diameter: float, fluid: Fluid, rpm: float) -> tuple[float, Info]:
+    from lumped.correlations.rotating import rotating_disc
+
+    return rotating_disc(rpm * RPM, 0.5 * diameter, fluid)
+
+
+def _shaft_film(diameter: float, fluid: Fluid, rpm: float) -> tuple[float, Info]:
+    from lumped.correlations.rotating import rotating_shaft
+
+    return rotating_shaft(rpm * RPM, diameter, fluid)
+
+
+ROTATING: dict[str, Callable[[float, Fluid], Film]] = {
+    "disc": lambda diameter, fluid: partial(_disc_film, diameter, fluid),
+    "shaft": lambda diameter, fluid: partial(_shaft_film, diameter, fluid),
+}

@@ -1,0 +1,96 @@
+"""A drive whose currents depend on the temperatures that they cause: run both in turn until they agree."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geom.errors import ThermoscopeError
+from lumped.drives.drive import Controller, Cycle, SeriesMachine, Vehicle, drive_cycle
+from lumped.drives.permanent_magnet import PMMachine
+from lumped.integration.simulate import Record, Run, initial_state, simulate
+from lumped.model.network import Network, Row
+from lumped.sources.losses import ALPHA_CU
+
+Array = NDArray[np.float64]
+Drive = Callable[[Mapping[str, Array]], Mapping[str, Array]]
+
+
+@dataclass(frozen=True)
+class Coupled:
+    """The converged run, the inputs it ran on, and the largest change (K) of a watched temperature in every round."""
+
+    run: Run
+    inputs: Mapping[str, Array | float]
+    residuals: tuple[float, ...]
+
+
+def coupled(
+    network: Network,
+    record: Record,
+    drive: Drive,
+    watched: Mapping[str, str],
+    values: Mapping[str, float] | None = None,
+    rows: Sequence[Row] = (),
+    tolerance: float = 1e-3,
+    most: int = 30,
+) -> Coupled:
+    """Waveform iteration: drive(temperatures over the record) -> inputs, network -> temperatures, and again.
+
+    watched : name the drive knows -> place of the network;  record.inputs: what the drive does not give
+    tolerance : K, largest change of a watched temperature over the whole record between two rounds
+    """
+    looks = [network.place(place).mean for place in watched.values()]
+    start = np.concatenate([initial_state(network, record.initial), np.zeros(len(network.boundaries))])
+    T = {n: np.full(record.time.size, r.weights @ start[r.index]) for n, r in zip(watched, looks, strict=True)}
+    residuals: list[float] = []
+    for _ in range(most):
+        inputs = {**record.inputs, **drive(T)}
+        run = simulate(network, replace(record, inputs=inputs), values, [*looks, *rows], keep_states=True)
+        new = {name: run.y[:, k] for k, name in enumerate(watched)}
+        residuals.append(max((float(np.abs(new[n] - T[n]).max()) for n in watched), default=0.0))
+        T = new
+        if residuals[-1] < tolerance:
+            return Coupled(_without(run, len(looks)), inputs, tuple(residuals))
+    shown = ", ".join(f"{r:.3g}" for r in residuals[-4:])
+    raise ThermoscopeError(
+        f"drive and network '{network.name}' do not agree after {most} rounds (last changes {shown} K): thermal "
+        "runaway, or a drive at its limit that jumps with temperature"
+    )
+
+
+def _without(run: Run, first: int) -> Run:
+    """The run without its first rows."""
+    return replace(run, y=run.y[:, first:], time_error_K=run.time_error_K[first:])
+
+
+def series_drive(
+    machine: SeriesMachine, vehicle: Vehicle, controller: Controller, time: Array, wanted_mps: Array, slope: Array,
+    reference_degC: float = 20.0, alpha: float = ALPHA_CU,
+) -> Drive:  # fmt: skip
+    """The vehicle's series machine; R = R(reference) (1 + alpha (T - reference)) with T["winding"]."""
+
+    def drive(T: Mapping[str, Array]) -> Mapping[str, Array]:
+        warm = machine.R * (1.0 + alpha * (T["winding"] - reference_degC))
+        cycle: Cycle = drive_cycle(machine, vehicle, controller, time, wanted_mps, slope, resistance=warm)
+        return cycle.inputs() | {"vehicle_speed_wanted_mps": np.asarray(wanted_mps, float)}
+
+    return drive
+
+
+def pm_drive(machine: PMMachine, torque: Array, speed_rpm: Array) -> Drive:
+    """Currents of a permanent-magnet machine for torque (N m) and speed; watches "winding" and "magnet"."""
+
+    def drive(T: Mapping[str, Array]) -> Mapping[str, Array]:
+        i_d, i_q = machine.currents(torque, speed_rpm, T["winding"], T["magnet"])
+        given = machine.torque(i_d, i_q, T["magnet"])
+        volts = machine.voltage(i_d, i_q, speed_rpm, T["winding"], T["magnet"])
+        return {
+            "id_A": i_d, "iq_A": i_q, "current_A": np.hypot(i_d, i_q), "torque_Nm": given, "voltage_V": volts,
+            "speed_rpm": np.asarray(speed_rpm, float), "torque_wanted_Nm": np.asarray(torque, float),
+        }  # fmt: skip
+
+    return drive

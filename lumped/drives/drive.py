@@ -1,0 +1,177 @@
+"""The series-wound direct-current machine, its current-limited controller and the vehicle it moves.
+
+V = (R_a + R_f) i + (L_a + L_f) di/dt + L_af w i        (1-3)
+J dw/dt = L_af i^2 - B w - T_load                        (4-6)
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.numerics.jit import entry
+
+Array = NDArray[np.float64]
+RPM = math.pi / 30.0
+GRAVITY = 9.80665
+
+
+@dataclass(frozen=True)
+class SeriesMachine:
+    """L_af: mutual inductance (H), R = R_a + R_f (ohm), L = L_a + L_f (H), J: rotor inertia (kg m2), B (N m s/rad)."""
+
+    L_af: float
+    R: float
+    L: float = 2e-3
+    J: float = 2.0
+    B: float = 0.0
+
+    @classmethod
+    def from_ratings(
+        cls, power: float, speed_rpm: float, voltage: float, current: float, **others: float
+    ) -> SeriesMachine:
+        """From shaft power (W), speed (1/min), voltage (V), current (A): T = L_af I^2 and V = R I + w L_af I."""
+        omega = speed_rpm * RPM
+        L_af = power / omega / current**2
+        return cls(L_af, (voltage - omega * L_af * current) / current, **others)
+
+    def torque(self, current: Array | float) -> Array | float:
+        """N m (eq. 5)."""
+        return self.L_af * np.asarray(current) ** 2
+
+    def current(self, torque: Array | float) -> Array | float:
+        """A that gives a torque (N m); none below 0."""
+        return np.sqrt(np.maximum(torque, 0.0) / self.L_af)
+
+    def voltage(self, current: Array | float, speed_rpm: Array | float) -> Array | float:
+        """Steady terminal voltage (V)."""
+        return (self.R + self.L_af * RPM * np.asarray(speed_rpm)) * np.asarray(current)
+
+    def speed(self, current: Array | float, voltage: float) -> Array | float:
+        """Steady speed (1/min) at a terminal voltage: the torque-current-speed curves of the machine."""
+        i = np.asarray(current)
+        return (voltage - self.R * i) / (self.L_af * i) / RPM
+
+    def losses(self, current: Array | float) -> Array | float:
+        """Copper loss (W)."""
+        return self.R * np.asarray(current) ** 2
+
+
+@dataclass(frozen=True)
+class Vehicle:
+    """mass (kg), wheel_radius (m), gear: motor over wheel speed, its efficiency, rolling (1), drag_area cw A (m2)."""
+
+    mass: float
+    wheel_radius: float
+    gear: float
+    efficiency: float = 0.95
+    rolling: float = 0.01
+    drag_area: float = 3.0
+    air_density: float = 1.2
+
+    def motor_speed_rpm(self, speed_mps: Array | float) -> Array | float:
+        return np.asarray(speed_mps) / self.wheel_radius * self.gear / RPM
+
+    def load_torque(self, speed_mps: Array | float, slope: Array | float) -> Array | float:
+        """At the motor shaft, steady (N m); slope: rise over run."""
+        angle = np.arctan(slope)
+        weight = self.mass * GRAVITY * (np.sin(angle) + self.rolling * np.cos(angle))
+        drag = 0.5 * self.air_density * self.drag_area * np.asarray(speed_mps) ** 2
+        return (weight + drag) * self.wheel_radius / self.gear / self.efficiency
+
+    def inertia(self) -> float:
+        """Of the vehicle, seen from the motor shaft (kg m2)."""
+        return self.mass * (self.wheel_radius / self.gear) ** 2
+
+
+@dataclass(frozen=True)
+class Controller:
+    """Speed loop gives the current wanted, current loop the mean PWM voltage; both are limited.
+
+    Kp (A s/rad), Ki (A/rad) of the speed loop; the current loop has the time constant `current_lag` (s).
+    """
+
+    Kp: float = 40.0
+    Ki: float = 4.0
+    current_limit: float = 511.0
+    voltage_limit: float = 220.0
+    current_lag: float = 0.02
+
+
+@dataclass(frozen=True)
+class Cycle:
+    """What the drive does at the record's times: mean-square current is kept, so that the heat is right.
+
+    current_A: root of the mean square since the time before; the others at the instant.
+    """
+
+    time: Array
+    current_A: Array
+    speed_rpm: Array
+    voltage_V: Array
+    torque_Nm: Array
+    vehicle_speed_mps: Array
+
+    def inputs(self) -> dict[str, Array]:
+        """As inputs of a network's laws."""
+        names = ("current_A", "speed_rpm", "voltage_V", "torque_Nm", "vehicle_speed_mps")
+        return {name: getattr(self, name) for name in names}
+
+
+def drive_cycle(
+    machine: SeriesMachine,
+    vehicle: Vehicle,
+    controller: Controller,
+    time: Array,
+    wanted_mps: Array,
+    slope: Array,
+    step: float = 5e-3,
+    resistance: Array | None = None,
+) -> Cycle:
+    """Drive a speed profile: time (nt,) s, wanted_mps and slope (nt,) linear between the times; starts at rest.
+
+    resistance: (nt,) ohm where it changes with temperature, else the machine's R
+    step: of the inner integration (s); current by its exact exponential over the step, speed by the midpoint.
+    """
+    out = np.zeros((len(time), 5))
+    wheel = vehicle.wheel_radius / vehicle.gear
+    load0, load2 = vehicle.load_torque(0.0, np.asarray(slope, float)), float(vehicle.load_torque(1.0, 0.0))
+    drag = load2 - float(vehicle.load_torque(0.0, 0.0))
+    plant = np.array([machine.L_af, machine.L, machine.J + vehicle.inertia(), machine.B, wheel, drag])
+    control = np.array([getattr(controller, f) for f in controller.__dataclass_fields__])
+    R = np.full(len(time), machine.R) if resistance is None else resistance
+    given = (np.ascontiguousarray(x, float) for x in (time, wanted_mps, load0, R))
+    _march(*given, plant, control, step, out)
+    return Cycle(time, out[:, 0], out[:, 1] / RPM, out[:, 2], out[:, 3], out[:, 4])
+
+
+@entry
+def _march(time, wanted, load, resistance, plant, control, step, out):
+    L_af, L, J, B, wheel, drag = plant
+    Kp, Ki, i_max, v_max, lag = control
+    i, w, integral = 0.0, 0.0, 0.0
+    for t in range(1, time.size):
+        span = time[t] - time[t - 1]
+        count = max(1, int(np.ceil(span / step)))
+        h, square, V, R = span / count, 0.0, 0.0, 0.5 * (resistance[t - 1] + resistance[t])
+        for s in range(count):
+            share = (s + 0.5) / count
+            target = (wanted[t - 1] + share * (wanted[t] - wanted[t - 1])) / wheel
+            resist = load[t - 1] + share * (load[t] - load[t - 1])
+            asked = Kp * (target - w) + integral
+            i_ref = min(max(asked, 0.0), i_max)
+            if asked == i_ref:
+                integral += Ki * (target - w) * h
+            V = min(max((R + L_af * w) * i_ref + L / lag * (i_ref - i), 0.0), v_max)
+            drop = R + L_af * w
+            end = V / drop + (i - V / drop) * np.exp(-drop / L * h)
+            middle = 0.5 * (i + end)
+            square += h * (i * i + i * end + end * end) / 3.0
+            against = (resist + drag * (wheel * w) ** 2 + B * w) if w > 0.0 else min(resist, L_af * middle * middle)
+            w = max(w + h / J * (L_af * middle * middle - against), 0.0)
+            i = max(end, 0.0)
+        out[t, 0] = np.sqrt(square / span) if span > 0.0 else i
+        out[t, 1], out[t, 2], out[t, 3], out[t, 4] = w, V, L_af * i * i, w * wheel

@@ -1,0 +1,172 @@
+"""All links and sources of a network as the kernel follows them: flat arrays, made once for each set of live terms."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.model.network import Link, Network, Row, Source
+from lumped.numerics.terms import CONSTANT, FILM, LINEAR, POWER, RADIATION, TABLE, Terms
+from lumped.transfer import laws
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+NOTHING = Row(np.empty(0, np.int64), np.empty(0))
+
+
+@dataclass(frozen=True)
+class Pattern:
+    """A link or source over z+ = [x; u; 1], without multiplier and input factor; row: its distinct rows, `to` which of
+    them an entry stands in; touches: whether any entry stands in a state's column."""
+
+    name: str
+    cols: NDArray[np.int64]
+    vals: Array
+    row: NDArray[np.int64]
+    to: NDArray[np.int64]
+    law: laws.Law
+    hot: Row
+    cold: Row
+    touches: bool
+
+    @property
+    def bends(self) -> bool:
+        return not isinstance(self.law.temperature, laws.Constant)
+
+    @cached_property
+    def monotone(self) -> bool:
+        """Whether at a positive coefficient it only draws its nodes towards others: their maximum principle."""
+        P = np.zeros((self.row.size, int(self.cols.max(initial=0)) + 1))
+        np.add.at(P, (self.to, self.cols), self.vals)
+        own = (np.arange(self.row.size), self.row)
+        small = 1e-9 * float(np.abs(self.vals).max(initial=0.0))
+        if np.any(self.row >= P.shape[1]) or np.any(np.abs(P.sum(axis=1)) > small):
+            return False
+        P[own] = np.minimum(P[own], 0.0)
+        return bool(np.all(small >= P))
+
+    @property
+    def heats(self) -> bool:
+        return not self.touches
+
+    @property
+    def stiff(self) -> bool:
+        return self.bends or self.touches
+
+
+class Assembly:
+    """The patterns of all links, then of all sources."""
+
+    def __init__(self, links: Sequence[Link], sources: Sequence[Source], n: int, size: int) -> None:
+        self.patterns = (*(_link(x, n) for x in links), *(_source(x, size) for x in sources))
+        self.names = tuple(p.name for p in self.patterns)
+        self.bends = np.array([p.bends for p in self.patterns], bool)
+        self._shape = n, size + 1
+        self._owner = np.repeat(np.arange(len(self.patterns)), [p.cols.size for p in self.patterns])
+        self._flat = ints(p.row[p.to] * (size + 1) + p.cols for p in self.patterns)
+        self._vals = floats(p.vals for p in self.patterns)
+        self._packed: dict[bytes, Terms] = {}
+
+    def matrix(self, coefficient: Array) -> Array:
+        """(n, size + 1): the sum of all patterns, each by its coefficient (ne,); zeros change nothing, to the bit."""
+        n, width = self._shape
+        return np.asarray(np.bincount(self._flat, coefficient[self._owner] * self._vals, n * width), float).reshape(
+            n, width
+        )
+
+    def packed(self, live: Mask, steady: Mask) -> Terms:
+        """The live terms without multipliers and factors; a steady one stands in the constant matrix (dynamic 0)."""
+        key = live.tobytes() + steady.tobytes()
+        if key not in self._packed:
+            chosen = [p for p, alive in zip(self.patterns, live, strict=True) if alive]
+            self._packed[key] = _pack(chosen, steady[live])
+        return self._packed[key]
+
+
+_LAST: deque[tuple[tuple[Link, ...], tuple[Source, ...], tuple[int, int], Assembly]] = deque(maxlen=32)
+
+
+def assembly(network: Network) -> Assembly:
+    """Of the network's links and sources; networks that differ in parameters alone share one."""
+    shape = len(network.states), network.size
+    for links, sources, size, made in tuple(_LAST):
+        if links is network.links and sources is network.sources and size == shape:
+            return made
+    out = Assembly(network.links, network.sources, *shape)
+    _LAST.append((network.links, network.sources, shape, out))
+    return out
+
+
+def _link(link: Link, n: int) -> Pattern:
+    row, to = np.unique(link.rows, return_inverse=True)
+    touches = bool(np.any(link.cols < n))
+    return Pattern(link.name, link.cols, link.vals, row, to, link.law, link.hot, link.cold, touches)
+
+
+def _source(source: Source, size: int) -> Pattern:
+    row, to = np.unique(source.index, return_inverse=True)
+    cols = np.full(len(source.index), size, np.int64)
+    return Pattern(source.name, cols, -source.weights, row, to, source.law, source.probe, NOTHING, False)
+
+
+def _code(law: laws.TemperatureLaw) -> tuple[int, float, float]:
+    if isinstance(law, laws.Power):
+        return POWER, law.exponent, 0.0
+    if isinstance(law, laws.Radiation):
+        return RADIATION, 0.0, 0.0
+    if isinstance(law, laws.Linear):
+        return LINEAR, law.alpha, law.reference
+    if isinstance(law, laws.FilmTable):
+        return FILM, float(len(law.difference)), 0.0
+    return (TABLE if isinstance(law, laws.Table) else CONSTANT), 0.0, 0.0
+
+
+def _table(law: laws.TemperatureLaw) -> Array:
+    points: list[tuple[float, ...]] = [(), ()]
+    if isinstance(law, laws.Table):
+        points = [law.difference, law.value]
+    if isinstance(law, laws.FilmTable):
+        points = [law.difference * laws.FILMS, law.value]
+    return np.ascontiguousarray(np.array(points, float).T)
+
+
+def starts(parts: Sequence[Sequence | NDArray]) -> NDArray[np.int64]:
+    return np.concatenate([[0], np.cumsum([len(p) for p in parts])]).astype(np.int64)
+
+
+def floats(parts: Iterable[Sequence | NDArray]) -> Array:
+    return np.concatenate([np.empty(0), *(np.asarray(p, float) for p in parts)])
+
+
+def ints(parts: Iterable[Sequence | NDArray]) -> NDArray[np.int64]:
+    return np.concatenate([np.empty(0, np.int64), *(np.asarray(p, np.int64) for p in parts)])
+
+
+def _pack(patterns: Sequence[Pattern], steady: Mask) -> Terms:
+    tables = [_table(p.law.temperature) for p in patterns]
+    codes = [_code(p.law.temperature) for p in patterns]
+    rows = starts([p.row for p in patterns])
+    seen = [(p.hot, p.cold) if p.bends else (NOTHING, NOTHING) for p in patterns]
+    at = [ints([p.cols, hot.index, cold.index]) for p, (hot, cold) in zip(patterns, seen, strict=True)]
+    to = [
+        ints([rows[e] + p.to, np.repeat(rows[-1] + 2 * e + np.arange(2), [x.index.size for x in seen[e]])])
+        for e, p in enumerate(patterns)
+    ]
+    weight = [x for p, (hot, cold) in zip(patterns, seen, strict=True) for x in (p.vals, hot.weights, cold.weights)]
+    kind = [(c[0], not s, p.stiff, p.bends, p.heats) for c, p, s in zip(codes, patterns, steady, strict=True)]
+    return Terms(
+        start=np.column_stack([starts(at), rows, starts(tables)]),
+        to=ints(to),
+        at=ints(at),
+        weight=floats(weight),
+        row=ints(p.row for p in patterns),
+        kind=np.array(kind, np.int64).reshape(-1, 5),
+        par=np.array([c[1:] for c in codes], float).reshape(-1, 2),
+        point=np.concatenate([np.empty((0, 2)), *tables]),
+        m=np.empty(0),
+    )

@@ -1,0 +1,156 @@
+"""Where the heat goes: through every link and out of every source."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.integration.compiled import Compiled, compiled
+from lumped.integration.record import Record
+from lumped.integration.simulate import Run, march
+from lumped.model.network import Link, Network
+from lumped.numerics.count import count
+from lumped.numerics.stages import Steps, stages, work
+from lumped.numerics.terms import ROWS
+
+Array = NDArray[np.float64]
+# Radau's quadrature of order five over a step, which does not look at its start (Hairer and Wanner 1996, sec. IV.5)
+NODES = np.array([(4.0 - np.sqrt(6.0)) / 10.0, (4.0 + np.sqrt(6.0)) / 10.0, 1.0])
+WEIGHTS = np.array([(16.0 - np.sqrt(6.0)) / 36.0, (16.0 + np.sqrt(6.0)) / 36.0, 1.0 / 9.0])
+
+
+@dataclass(frozen=True)
+class Balance:
+    """Heat since the start of the record (J), at every time.
+
+    through : link -> (nt,) from its first place to its second; for a stream what it carries out of the network
+    injected : source -> (nt,)
+    out : (nt,) all heat that left the network;  stored : (nt,) sum of C (T - T at the start)
+    """
+
+    time: Array
+    through: Mapping[str, Array]
+    injected: Mapping[str, Array]
+    out: Array
+    stored: Array
+
+    @property
+    def residual(self) -> Array:
+        """(nt,) injected - out - stored over the largest of them: what the time steps leave."""
+        total = np.sum([*self.injected.values(), np.zeros_like(self.out)], axis=0)
+        scale = max(np.abs(total).max(), np.abs(self.out).max(), np.abs(self.stored).max(), 1e-300)
+        return (total - self.out - self.stored) / scale
+
+    def power(self, name: str) -> Array:
+        """(nt - 1,) mean heat flow of a link or source over every step (W); 0 over a jump."""
+        heat = self.through[name] if name in self.through else self.injected[name]
+        dt = np.diff(self.time)
+        return np.divide(np.diff(heat), dt, out=np.zeros_like(dt), where=dt > 0)
+
+
+def balance(network: Network, record: Record, values: Mapping[str, float] | None = None) -> Balance:
+    """Run the record and count the heat along it: a few times the cost of a run.
+
+    Stored is what the run prints. What flowed is Radau's quadrature over every step of that run, of the heat flows on
+    the way: the run is gone through again in finer steps that end at the nodes. So what does not close is the error of
+    the run.
+    """
+    core = compiled(network, record, values, all_terms=True)
+    run = march(network, record, core, keep_states=True)
+    return counted(network, core, run, walk(network, record, core, run))
+
+
+def counted(network: Network, core: Compiled, run: Run, way: Walk) -> Balance:
+    """The balance of a run that was walked along; core with all terms."""
+    mean = np.array(["#" not in s for s in network.states], float)
+    assert run.z is not None
+    through = np.stack([_through(network, core, mean), mean[core.terms.row]])
+    heat, left = _counted(core, way, through, run.time.size)
+    links, n = len(network.links), len(network.states)
+    return Balance(
+        run.time,
+        {name: heat[:, e] for e, name in enumerate(core.names[:links])},
+        {name: -left[:, links + s] for s, name in enumerate(core.names[links:])},
+        left[:, :links].sum(axis=1),
+        (run.z[:, :n] - run.z[0, :n]) @ (core.C * mean),
+    )
+
+
+@dataclass(frozen=True)
+class Walk:
+    """Instants of Radau's quadrature along a run.  steps : finer ones that end there;  x (ni, n) degC;  weight (ni,) s
+
+    row (ni,) : the sample that ends the interval they lie in;  at (ni,) : their position, a sample's index plus a share
+    """
+
+    steps: Steps
+    x: Array
+    weight: Array
+    row: NDArray[np.int64]
+    at: Array
+
+
+def walk(network: Network, record: Record, core: Compiled, run: Run) -> Walk:
+    """The run once more, in three steps for every one that it took."""
+    forcing = core.forcing
+    finer, weight = _nodes(run.steps, forcing.time)
+    x = march(network, record, core, steps=finer, keep_path=True).path
+    assert x is not None
+    samples = np.flatnonzero(forcing.sample >= 0)
+    row = np.searchsorted(samples, finer.knot)
+    before = forcing.time[finer.knot - 1]
+    time = before + finer.share * (forcing.time[finer.knot] - before)
+    left, right = run.time[row - 1], run.time[row]
+    return Walk(finer, x, weight, row, row - 1 + (time - left) / (right - left))
+
+
+def _counted(core: Compiled, way: Walk, through: Array, nt: int) -> Array:
+    """(nw, nt, n_terms) J; `through` (nw, rows of all terms) says which rows count as the heat through a term."""
+    forcing, n, ne = core.forcing, core.C.size, core.terms.m.size
+    out, u = np.zeros((len(through), nt, ne)), forcing.u
+    arrays = stages(np.zeros(n), u[0], core.terms), work(n, u.shape[1], core.terms, 0)
+    count(forcing, core.K0, core.terms, through, way.steps, way.x, way.weight, way.row, *arrays, out)
+    return np.cumsum(out, axis=1)
+
+
+def _nodes(steps: Steps, time: Array) -> tuple[Steps, Array]:
+    """Every step in three that end at the nodes of Radau's quadrature, and their weights (s)."""
+    same = np.append(False, steps.knot[1:] == steps.knot[:-1])
+    start = np.where(same, np.append(0.0, steps.share[:-1]), 0.0)
+    width = (steps.share - start)[:, None]
+    share = start[:, None] + width * NODES
+    share[:, -1] = steps.share
+    weight = width * (time[steps.knot] - time[steps.knot - 1])[:, None] * WEIGHTS
+    return Steps(np.repeat(steps.knot, 3), share.ravel(), np.repeat(steps.kind, 3)), weight.ravel()
+
+
+def _through(network: Network, core: Compiled, mean: Array) -> Array:
+    """(rows of all terms,) +1 on the first place's rows, or -1 on the second's where the first is outside."""
+    out = np.zeros(core.terms.row.size)
+    for e, link in enumerate(network.links):
+        span = slice(*core.terms.start[e : e + 2, ROWS])
+        out[span] = mean[core.terms.row[span]] * _side(network, link)[core.terms.row[span]]
+    return out
+
+
+def _side(network: Network, link: Link) -> Array:
+    n = len(network.states)
+    if link.kind == "stream":
+        return np.ones(n)
+    for place, sign in zip(link.places, (1.0, -1.0), strict=True):
+        states = _states(network, place)
+        if states.size:
+            side = np.zeros(n)
+            side[states] = sign
+            return side
+    return np.zeros(n)
+
+
+def _states(network: Network, place: str) -> NDArray[np.int64]:
+    if place in network.places:
+        states = network.places[place].states
+        return states[states < len(network.states)]
+    return np.array([i for i, s in enumerate(network.states) if s == place], np.int64)

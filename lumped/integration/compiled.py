@@ -1,0 +1,134 @@
+"""From a Network, a set of values and the inputs of a record to the flat arrays of the kernel."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.integration.assembly import Assembly, assembly, floats, ints, starts
+from lumped.integration.forcing import boundary_table, checked_time, forcing
+from lumped.integration.record import Record
+from lumped.integration.signals import Signals
+from lumped.model.multipliers import multipliers, slopes
+from lumped.model.network import Network, Parameter, Row
+from lumped.numerics.kernel import Control, Rows
+from lumped.numerics.tangents import Tangents
+from lumped.numerics.terms import BENDS, DYNAMIC, STIFF, Forcing, Terms
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+ERROR_K, ERROR_SHARE = 1e-2, 1e-4  # of a step: K, and of the range of temperatures
+HOTTEST = 3000.0  # degC: beyond, no part of a machine exists
+
+
+@dataclass(frozen=True)
+class Compiled:
+    """What the kernel takes: capacities, constant matrix, terms (named by `names`), what drives them, ..."""
+
+    C: Array
+    K0: Array
+    names: tuple[str, ...]
+    terms: Terms
+    forcing: Forcing
+    tangents: Tangents
+    rows: Rows
+    control: Control
+
+    @property
+    def stiff(self) -> NDArray[np.bool_]:
+        """(ne,) which terms are dynamic and touch the matrix."""
+        return self.terms.kind[:, DYNAMIC] * self.terms.kind[:, STIFF] == 1
+
+    @property
+    def curved(self) -> bool:
+        """Whether any dynamic term touches the matrix."""
+        return bool(np.any(self.stiff))
+
+
+def capacity_multipliers(network: Network, m: Mapping[str, float]) -> Array:
+    groups = network.capacity_group or network.states
+    return np.array([m.get(f"capacity:{g}", 1.0) for g in groups])
+
+
+def pack_rows(rows: Sequence[Row]) -> Rows:
+    return Rows(starts([r.index for r in rows]), ints([r.index for r in rows]), floats([r.weights for r in rows]))
+
+
+def _pack_tangents(network: Network, slope: Sequence[Mapping[str, float]], names: Sequence[str]) -> Tangents:
+    moved = [(j, names.index(t), s) for j, d in enumerate(slope) for t, s in d.items() if t in names and s != 0.0]
+    dC = (
+        np.stack([network.C * capacity_slopes(network, d) for d in slope], axis=1)
+        if slope
+        else np.zeros((len(network.C), 0))
+    )
+    return Tangents(
+        np.array([x[0] for x in moved], np.int64), np.array([x[1] for x in moved], np.int64),
+        np.array([x[2] for x in moved], float), np.ascontiguousarray(dC),
+    )  # fmt: skip
+
+
+def capacity_slopes(network: Network, slope: Mapping[str, float]) -> Array:
+    groups = network.capacity_group or network.states
+    return np.array([slope.get(f"capacity:{g}", 0.0) for g in groups])
+
+
+def compiled(
+    network: Network,
+    record: Record,
+    values: Mapping[str, float] | None = None,
+    rows: Sequence[Row] = (),
+    tangents: Sequence[Parameter] = (),
+    all_terms: bool = False,
+) -> Compiled:
+    """The kernel's view. Terms that are steady and that no tangent moves exist in the constant matrix only."""
+    time = checked_time(record.time)
+    inputs, u = record.inputs, boundary_table(network, record.boundaries, time.size)
+    every, signals = assembly(network), inputs if isinstance(inputs, Signals) else Signals(inputs, time.size)
+    acting, slope = multipliers(network, values), slopes(network, values, tangents)
+    m = np.array([acting.get(name, 1.0) for name in every.names])
+    factors = [signals.factor(p.name, p.law) for p in every.patterns]
+    steady = ~every.bends & np.array([f.ndim == 0 for f in factors], bool)
+    watched = {target for d in slope for target in d}
+    live = all_terms | np.array([name in watched for name in every.names], bool) | ~(steady | (m == 0.0))
+    constant = np.array([float(f) if s else 0.0 for f, s in zip(factors, steady, strict=True)])
+    alive = np.flatnonzero(live)
+    names, patterns = tuple(every.names[k] for k in alive), [every.patterns[k] for k in alive]
+    terms = every.packed(live, steady)._replace(m=m[live])
+    moving = (m[live] != 0.0) & ~steady[live]
+    stiff = moving & (terms.kind[:, STIFF] == 1)
+    driven = forcing(time, u, signals, patterns, moving, stiff, bool(np.any(terms.kind[stiff, BENDS])))
+    return Compiled(
+        network.C * capacity_multipliers(network, acting),
+        every.matrix(m * constant),
+        names,
+        terms,
+        driven,
+        _pack_tangents(network, slope, names),
+        pack_rows(rows),
+        control(network, every, m, factors),
+    )
+
+
+def control(network: Network, every: Assembly, m: Array, factors: Sequence[Array]) -> Control:
+    """What a step has to pass. The maximum principle holds where every acting link has positive coefficients alone."""
+    hidden = np.array(["#" in s for s in network.states], bool)
+    acts = [(p, x, f) for p, x, f in zip(every.patterns, m, factors, strict=True) if x != 0.0 and not p.heats]
+    holds = not hidden.any() and all(p.monotone and np.min(x * f) >= 0.0 for p, x, f in acts)
+    return Control(
+        state_units(network, hidden), (~hidden).astype(np.int64), np.array([ERROR_K, ERROR_SHARE]),
+        np.array([holds], np.int64), np.array([HOTTEST]), np.zeros(1, np.int64),
+    )  # fmt: skip
+
+
+def state_units(network: Network, hidden: Mask) -> Array:
+    """(n,) K that a unit of every state makes: for a shape the largest mean square over the faces it touches."""
+    out = np.where(hidden, 0.0, 1.0)
+    for place in network.places.values() if hidden.any() else ():
+        inside = place.states < hidden.size
+        mean_square = np.diag(place.K) / (place.area if place.kind == "surface" and place.area else 1.0)
+        at = place.states[inside]
+        out[at] = np.where(hidden[at], np.maximum(out[at], np.sqrt(np.maximum(mean_square[inside], 0.0))), out[at])
+    return out

@@ -1,0 +1,57 @@
+"""Why a run could not go on: the node, the time and the input, in words."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from lumped.integration.compiled import Compiled
+from lumped.model.network import Network
+from lumped.numerics.kernel import HOT, KNOT, NODE, OUTSIDE, SHARE, STATUS, Position
+from lumped.numerics.terms import Forcing
+
+
+def failure(network: Network, core: Compiled, forcing: Forcing, at: Position) -> str:
+    """What to say of where the run stands."""
+    status, t, hottest = int(at.at[STATUS]), _instant(forcing, at), core.control.hottest[0]
+    node, where = network.states[int(at.at[NODE])], f"network '{network.name}': "
+    if status == HOT and (growing := _growing(network)):
+        tables = ", ".join(f"[losses.{name}]" for name in growing)
+        why = f"{tables} grow faster with temperature than its cooling"
+        return f"{where}thermal runaway at t = {t:g} s: '{node}' passes {hottest:g} degC; {why}"
+    if status == HOT:
+        return f"{where}'{node}' passes {hottest:g} degC at t = {t:g} s: more heat than its links carry away"
+    if status == OUTSIDE:
+        what = f"no step keeps '{node}' within what boundaries, start and sources allow at t = {t:g} s"
+        return f"{where}{what}{_moving(network, core, forcing, at)}"
+    return f"{where}no finite solution at t = {t:g} s; {_hint(network, core)}"
+
+
+def _instant(forcing: Forcing, at: Position) -> float:
+    j = min(int(at.at[KNOT]), forcing.time.size - 1)
+    before = forcing.time[max(j - 1, 0)]
+    return float(before + at.clock[SHARE] * (forcing.time[j] - before))
+
+
+def _growing(network: Network) -> list[str]:
+    """Losses that grow with temperature."""
+    own = [s for s in network.sources if not s.origin and getattr(s.law.temperature, "alpha", 0.0) > 0.0]
+    return list(dict.fromkeys(s.name.removeprefix("loss:") for s in own))
+
+
+def _moving(network: Network, core: Compiled, forcing: Forcing, at: Position) -> str:
+    """The input behind the coefficient that moves most over the interval."""
+    j = min(int(at.at[KNOT]), forcing.time.size - 1)
+    step = np.abs(forcing.factor[j] - forcing.factor[max(j - 1, 0)])
+    scale = np.abs(forcing.factor).max(axis=0, initial=1e-300)
+    if not step.size or not np.any(step > 0.0):
+        return ""
+    name = core.names[int(np.argmax(step / np.maximum(scale, 1e-300)))]
+    laws = {x.name: x.law for x in network.links} | {x.name: x.law for x in network.sources}
+    return f", where input '{', '.join(laws[name].reads)}' moves '{name}'"
+
+
+def _hint(network: Network, core: Compiled) -> str:
+    floating = [s for s, c, row in zip(network.states, core.C, core.K0, strict=True) if c == 0.0 and not np.any(row)]
+    if floating:
+        return f"states without capacity and constant links: {', '.join(floating)}"
+    return "check the links' signs"

@@ -1,0 +1,38 @@
+"""What to say when temperatures leave all bounds: where, when, and which law feeds itself."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geom.errors import ThermoscopeError
+from lumped.model.network import Network
+from lumped.transfer.laws import Linear
+
+Array = NDArray[np.float64]
+LIMIT_C = 1e4  # no machine; a run that passes it has no meaning, though its numbers are finite
+
+
+def checked_run(T: Array, time: Array, names: tuple[str, ...], network: Network) -> Array:
+    """Temperatures (n_time, n) of a run; ThermoscopeError names the first that is not finite or beyond LIMIT_C."""
+    wild = ~(np.abs(T) < LIMIT_C)
+    if wild.any():
+        row = int(np.argmax(wild.any(axis=1)))
+        raise ThermoscopeError(told(network, names[int(np.argmax(wild[row]))], float(time[row])))
+    return T
+
+
+def told(network: Network, place: str, t: float) -> str:
+    """The message of a run that went astray at `place` (a node, a place or a sensor) after t (s)."""
+    return f"network '{network.name}': '{place}' runs away from all bounds at t = {t:g} s; {_cause(network)}"
+
+
+def _cause(network: Network) -> str:
+    growing = [s.name.removeprefix("loss:") for s in network.sources
+               if isinstance(law := s.law.temperature, Linear) and law.alpha > 0.0]  # fmt: skip
+    if not growing:
+        return "check its capacity, its links and the losses at it"
+    tables = ", ".join(f"[losses.{name}]" for name in growing)
+    grow = "grow with temperature faster than the links carry heat off"
+    cure = "check their resistance and currents, and the conductances from there to the surroundings"
+    return f"a thermal runaway: {tables} {grow}; {cure}"

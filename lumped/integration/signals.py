@@ -1,0 +1,176 @@
+"""The inputs of a record, checked, and what the laws make of them, worked out once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any, NamedTuple
+from weakref import ref
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geom.errors import InputError
+from lumped.integration.curve import NONE, Between, Curve, between, curve, parabolas, straight
+from lumped.integration.projection import crowded, projected
+from lumped.transfer.laws import Law
+
+Array = NDArray[np.float64]
+LONG = 200_000  # samples: factors of longer records are not kept, whose runs take far longer than their factors
+
+
+class Source(NamedTuple):
+    """Of signals that are looked at on other instants: the samples as recorded, their times and ours (s)."""
+
+    signals: Signals
+    time: Array
+    at: Array
+
+    def between(self, at: Array) -> Between:
+        """The recorded inputs at positions of ours (index plus share)."""
+        return Between(self.signals, np.interp(between(self.at, at), self.time, np.arange(self.time.size)))
+
+    def part(self, at: Array) -> Source:
+        """The recorded samples from before the first to after the last of some times, with these as ours."""
+        first, last = np.searchsorted(self.time, [at[0], at[-1]], "right") - 1
+        some = slice(max(int(first), 0), min(int(last) + 2, self.time.size))
+        return Source(self.signals.part(some), self.time[some], at)
+
+
+class Signals(dict[str, Array]):
+    """Input -> finite array (nt,); a factor of a record that is not LONG stays known as long as its law.
+
+    Laws and signals never change, so the runs of a fit, which differ in multipliers alone, share them. On instants
+    wider apart than the samples were recorded, factors are still made of these and keep their integrals.
+
+    source : the samples as recorded, of signals that are looked at on other instants
+    """
+
+    def __init__(self, inputs: Mapping[str, Any], nt: int) -> None:
+        super().__init__({name: _checked(name, value, nt) for name, value in inputs.items()})
+        self.nt = nt
+        self._around: tuple[Signals, Array] | None = None
+        self.source: Source | None = None
+        self._known: dict[int, tuple[ref[Law], Curve]] = {}
+        self._finer: dict[bytes, Signals] = {}
+
+    @classmethod
+    def recorded(cls, inputs: Mapping[str, Any], time: Array, at: Array) -> Signals:
+        """Inputs (n,) recorded at some times (s), to be looked at on instants `at` (nt,) within these."""
+        source = Source(cls(inputs, time.size), time, at)
+        out = cls(dict(source.between(np.arange(at.size, dtype=float))), at.size)
+        out.source = source
+        return out
+
+    def part(self, some: slice) -> Signals:
+        """The signals of a stretch of the record; all of it is itself."""
+        if (some.start, some.stop) == (0, self.nt):
+            return self
+        out = Signals({name: value[some] for name, value in self.items()}, some.stop - some.start)
+        out._around = self, np.arange(some.start, some.stop, dtype=float)
+        out.source = self.source and self.source.part(self.source.at[some])
+        return out
+
+    def finer(self, at: Array) -> Signals:
+        """The signals at positions (index of a sample plus share), kept for the next time."""
+        key = at.tobytes()
+        if key not in self._finer:
+            self._finer[key] = self._at(at)
+        return self._finer[key]
+
+    def _at(self, at: Array) -> Signals:
+        source = self.source
+        out = Signals(dict(source.between(at) if source else Between(self, at)), at.size)
+        out._around, out.source = (self, at), source and source._replace(at=between(source.at, at))
+        return out
+
+    def __reduce__(self) -> Any:
+        if self.source:
+            return Signals.recorded, (dict(self.source.signals), self.source.time, self.source.at)
+        return Signals, (dict(self), self.nt)
+
+    def factor(self, name: str, law: Law) -> Array:
+        """The input factor of the law of a link or source: a number (), or (nt,) where it varies."""
+        return self.curve(name, law).value
+
+    def curve(self, name: str, law: Law) -> Curve:
+        """The same, and how it runs between the samples."""
+        found = self._known.get(id(law))
+        if found is not None and found[0]() is law:
+            return found[1]
+        made = self._made(name, law)
+        if self.nt <= LONG:
+            self._known[id(law)] = ref(law, _forgetting(self, id(law))), made
+        return made
+
+    def forget(self, key: int) -> None:
+        """The factor of a law that is gone."""
+        self._known.pop(key, None)
+
+    def along(self, name: str, law: Law, at: Array) -> Array:
+        """A factor at positions: its law there, or parabolas that keep its integral where more is known."""
+        if self.source is None:
+            return self.finer(at).factor(name, law)
+        knots = np.union1d(np.arange(self.nt, dtype=float), self.curve(name, law).inserted)
+        c = self.finer(knots).curve(name, law)
+        return c.value if c.value.ndim == 0 else parabolas(c, knots, at)
+
+    def _made(self, name: str, law: Law) -> Curve:
+        missing = [x for x in law.reads if x not in self]
+        if missing:
+            raise InputError(
+                f"input '{missing[0]}' is missing", f"'{name}'", f"given: {', '.join(sorted(self)) or 'none'}"
+            )
+        source = self.source
+        if not law.looks_at_all:
+            full = crowded(source.at, source.time) if source else None
+            near = curve(lambda at: self._factor(name, law, at), self.nt, self._turns(law.reads), full)
+            return projected(near, source.at, source.signals.curve(name, law), source.time) if source else near
+        if self._around:
+            whole, at = self._around
+            value = whole.factor(name, law)
+            return straight(value if value.ndim == 0 else between(value, at))
+        if source:
+            value = source.signals.factor(name, law)
+            return straight(value if value.ndim == 0 else np.interp(source.at, source.time, value))
+        value = self._factor(name, law, None)
+        constant = value.ndim == 1 and bool(np.all(value == value[0]))
+        return straight(np.asarray(value[0]) if constant else value)
+
+    def _turns(self, names: Iterable[str]) -> Array:
+        """Positions at which one of the inputs passes through zero between two samples."""
+        out = [NONE]
+        for x in (self[name] for name in names):
+            left = np.flatnonzero(x[:-1] * x[1:] < 0.0)
+            out.append(left + x[left] / (x[left] - x[left + 1]))
+        return np.concatenate(out)
+
+    def _factor(self, name: str, law: Law, at: Array | None) -> Array:
+        """The factor at positions, or at the samples of the whole record."""
+        size = self.nt if at is None else at.size
+        given = self if at is None else self.source.between(at) if self.source else Between(self, at)
+        value = np.asarray(law.factor(given), float)
+        if value.shape not in ((), (size,)) or not np.all(np.isfinite(value)):
+            raise InputError(
+                f"the input factor is not finite or has shape {value.shape}", f"'{name}'", f"finite, () or ({size},)"
+            )
+        return value
+
+
+def _forgetting(signals: Signals, law: int) -> Callable[[Any], None]:
+    """Called when the law is gone. It must not hold the signals: they would wait for the collector of cycles."""
+    kept = ref(signals)
+
+    def forget(_: Any) -> None:
+        if (alive := kept()) is not None:
+            alive.forget(law)
+
+    return forget
+
+
+def _checked(name: str, value: Any, nt: int) -> Array:
+    array = np.asarray(value, float)
+    if array.shape not in ((), (nt,)):
+        raise InputError(f"input '{name}' has shape {array.shape}", "record", f"a number or ({nt},)")
+    if not np.all(np.isfinite(array)):
+        raise InputError(f"input '{name}' is not finite everywhere", "record", "fill its gaps first")
+    return np.broadcast_to(array, (nt,))

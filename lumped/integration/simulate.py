@@ -1,0 +1,230 @@
+"""Run a network over a record, with exact tangents of the discrete scheme.
+
+run = simulate(network, Record(time, inputs, boundaries, initial), values, rows, tangents)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geom.errors import InputError, ThermoscopeError
+from lumped.integration.compiled import Compiled, compiled
+from lumped.integration.failure import failure
+from lumped.integration.record import Record
+from lumped.model.network import Network, Parameter, Row
+from lumped.numerics.kernel import DONE, FACTORED, FULL, KNOT, LOW, NEXT, STATUS, Control, Position, Trace, integrate
+from lumped.numerics.settle import settle
+from lumped.numerics.stages import EULER, GAMMA, Steps, stages, work
+from lumped.numerics.tangents import differentiate
+from lumped.numerics.terms import Forcing
+
+Array = NDArray[np.float64]
+PORTION = 4096  # steps whose states are kept for their tangents
+
+
+@dataclass(frozen=True)
+class Stand:
+    """Where a run stands at its end, and another may begin: x (n_states,) degC, D (n_states, n_tangents).
+
+    error : (n_states,) the estimated error of x;  step : the step wanted next (s);  coldest : of all so far (degC)
+    """
+
+    x: Array
+    D: Array
+    error: Array
+    step: float
+    coldest: float
+
+
+@dataclass(frozen=True)
+class Run:
+    """time (nt,); z (nt, n_states + n_boundaries) degC if kept; y (nt, n_rows); dy (nt, n_rows, n_tangents).
+
+    end : for a run that goes on;  steps : those it took;  path : (n_steps, n_states) where each ended, if kept
+    time_error_K : (n_rows,) estimate of the largest error of every output that the time steps leave (K). It adds up the
+        errors of the steps as far as they last; those are estimated from above.
+    """
+
+    time: Array
+    z: Array | None
+    y: Array
+    dy: Array | None
+    end: Stand
+    time_error_K: Array
+    steps: Steps
+    path: Array | None = None
+
+
+def initial_state(network: Network, initial: float | Mapping[str, float]) -> Array:
+    """Mean nodes and fluids at the given temperature, hidden shapes "PART#k" at 0 (they have no mean).
+
+    Nodes without heat capacity then take the temperature at which they balance.
+
+    Per place: nodes by name (or by a place on them), the others at the mean of the given ones.
+    """
+    hidden = np.array(["#" in s for s in network.states], bool)
+    if not isinstance(initial, Mapping):
+        return np.where(hidden, 0.0, float(initial))
+    given: dict[int, list[float]] = {}
+    for name, value in initial.items():
+        node = network.places[name].part if name not in network.states and name in network.places else name
+        column = network.column(node)
+        if column < len(network.states):
+            given.setdefault(column, []).append(float(value))
+    if not given:
+        raise InputError("no state has an initial temperature", "record.initial", "a number, or at least one node")
+    x = np.where(hidden, 0.0, np.mean([np.mean(v) for v in given.values()]))
+    for column, values in given.items():
+        x[column] = np.mean(values)
+    return x
+
+
+def simulate(
+    network: Network,
+    record: Record,
+    values: Mapping[str, float] | None = None,
+    rows: Sequence[Row] = (),
+    tangents: Sequence[Parameter] = (),
+    keep_states: bool = False,
+    begin: Stand | None = None,
+    steps: Steps | None = None,
+) -> Run:
+    """Integrate the network over the record.
+
+    values : parameter name -> value; parameters of the network that are not listed stand at their declared value
+    rows : linear outputs of z = [x; u] (sensors, before bias, gain and lag)
+    tangents : parameters of the network with respect to which y is differentiated: d y / d value for
+        mappings "amplitude", "relative" and "offset", d y / d log(value) for "log"
+    begin : where another run of the same network, values and tangents ended, at this record's first time
+    steps : those of another run over the same record, to be taken here too whatever their errors are
+
+    Raises ThermoscopeError where a node runs away or no step keeps what physics allows.
+    """
+    return march(network, record, compiled(network, record, values, rows, tangents), keep_states, begin, steps)
+
+
+def march(
+    network: Network, record: Record, core: Compiled, keep_states: bool = False, begin: Stand | None = None,
+    steps: Steps | None = None, keep_path: bool = False,
+) -> Run:  # fmt: skip
+    """Run the kernel, from rest of the states without capacity: at the start and wherever a time is given twice."""
+    course = _Course(network, record, core, keep_states, begin, steps)
+    course.path = [] if keep_path else None
+    for part in _parts(core.forcing.time, core.C):
+        course.over(part, part.start > 0 or begin is None)
+    return course.run()
+
+
+class _Course:
+    """A run in the making: the arrays that the kernel writes, portion after portion."""
+
+    def __init__(
+        self, network: Network, record: Record, core: Compiled, keep_states: bool, begin: Stand | None,
+        steps: Steps | None,
+    ) -> None:  # fmt: skip
+        self.network, self.core, self.given, self.taken = network, core, steps, 0
+        self.time = np.asarray(record.time, float)
+        nt, n, nb, nr = self.time.size, core.C.size, core.forcing.u.shape[1], core.rows.start.size - 1
+        p = core.tangents.dC.shape[1]
+        self.z, self.y = np.zeros((nt if keep_states else 0, n + nb)), np.zeros((nt, nr))
+        self.dy, self.late = np.zeros((nt, nr, p)), np.zeros(nr)
+        x0, u0 = begin.x if begin else initial_state(network, record.initial), core.forcing.u[0]
+        self.both, self.scratch = stages(x0, u0, core.terms), work(n, nb, core.terms, 0)
+        self.moved = (stages(x0, u0, core.terms), work(n, nb, core.terms, p)) if p else (self.both, self.scratch)
+        self.trace = _trace(min(core.forcing.time.size * 2 if steps is None else steps.knot.size, PORTION), n, nb)
+        self.position = Position(np.zeros(5, np.int64), np.array([0.0, -1.0, 1e300, 1e300]))
+        self.position.clock[LOW] = np.append(x0[core.control.node == 1], u0).min()
+        self.steps: list[Steps] = []
+        self.path: list[Array] | None = None
+        if begin:
+            self.moved[1].D[:], self.scratch.error[1] = begin.D, begin.error
+            self.position.clock[[NEXT, LOW]] = begin.step, min(begin.coldest, self.position.clock[LOW])
+
+    def over(self, part: slice, rests: bool) -> None:
+        """The knots of a part of the record, from a balance of the states without capacity if so asked."""
+        Q = self.core.forcing
+        forcing = Forcing(Q.time[part], Q.u[part], Q.factor[part], Q.bulge[part], Q.renew[part], Q.sample[part])
+        self.position.at[:] = 0
+        self.both.z[0, self.core.C.size : -1] = forcing.u[0]
+        self.position.clock[FACTORED] = -1.0
+        if rests and np.any(self.core.C == 0.0):
+            self._rest(forcing)
+        while self._portion(forcing, part.start):
+            pass
+
+    def _rest(self, forcing: Forcing) -> None:
+        core, own = self.core, self.moved[1]
+        scratch = self.scratch._replace(D=own.D, R=own.R)
+        if not settle(core.C, core.K0, core.terms, core.tangents, forcing.factor[0], self.both, scratch):
+            raise ThermoscopeError(failure(self.network, core, forcing, self.position))
+
+    def _portion(self, forcing: Forcing, first: int) -> bool:
+        """As many steps as the trace holds; whether there are more."""
+        core, at, knot = self.core, self.position.at, int(self.position.at[KNOT])
+        control = core.control if self.given is None else self._follow(first)
+        shared = (core.rows, control, self.trace, self.position, self.both, self.scratch)
+        integrate(forcing, core.C, core.K0, core.terms, *shared, self.z, self.y, self.late)
+        if at[STATUS] not in (0, FULL):
+            raise ThermoscopeError(failure(self.network, core, forcing, self.position))
+        done, X = int(at[DONE]), self.trace
+        self.taken += done
+        self.steps.append(Steps(X.knot[:done] + first, X.share[:done].copy(), X.kind[:done].copy()))
+        if self.path is not None:
+            self.path.append(ends(X, done))
+        if self.dy.shape[2]:
+            given = (core.rows, core.curved, X, done, knot, int(at[KNOT]), *self.moved, self.dy)
+            differentiate(forcing, core.C, core.K0, core.terms, core.tangents, *given)
+        return bool(at[STATUS] == FULL)
+
+    def _follow(self, first: int) -> Control:
+        """The next of the given steps into the trace."""
+        assert self.given is not None
+        some = slice(self.taken, self.taken + self.trace.h.size)
+        for name, values in self.given._asdict().items():
+            part = values[some] - (first if name == "knot" else 0)
+            getattr(self.trace, name)[: part.size] = part
+        return self.core.control._replace(follow=np.ones(1, np.int64))
+
+    def run(self) -> Run:
+        """What came of it."""
+        n, (_, own), clock = self.core.C.size, self.moved, self.position.clock
+        error = self.scratch.error[1].copy()
+        end = Stand(self.both.z[0, :n].copy(), own.D.copy(), error, float(clock[NEXT]), float(clock[LOW]))
+        steps = Steps(*(np.concatenate(x) for x in zip(*self.steps, strict=True)))
+        dy = self.dy if self.dy.shape[2] else None
+        return Run(
+            self.time,
+            self.z if len(self.z) else None,
+            self.y,
+            dy,
+            end,
+            self.late,
+            steps,
+            np.concatenate(self.path) if self.path else None,
+        )
+
+
+def ends(X: Trace, done: int) -> Array:
+    """(done, n) states at the ends of the steps in a trace."""
+    inner = np.where(X.kind[:done, None] == EULER, X.U[:done, 0], X.U[:done, 0] / GAMMA)
+    return np.asarray(X.x[:done, : inner.shape[1]] + inner + X.U[:done, 2])
+
+
+def _trace(ns: int, n: int, nb: int) -> Trace:
+    def whole() -> NDArray[np.int64]:
+        return np.zeros(ns, np.int64)
+
+    return Trace(
+        whole(), np.zeros(ns), np.zeros(ns), whole(), np.zeros((ns, n + nb)), np.zeros((ns, 3, n)), np.zeros(ns)
+    )
+
+
+def _parts(time: Array, C: Array) -> list[slice]:
+    """The record between its jumps, if any state has no capacity: there such states start from a new balance."""
+    jumps = np.flatnonzero(np.diff(time, prepend=-np.inf) == 0.0) if np.any(C == 0.0) else np.empty(0, int)
+    return [slice(a, b) for a, b in pairwise([0, *jumps, time.size])]

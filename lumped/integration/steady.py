@@ -1,0 +1,62 @@
+"""Where a network comes to rest under constant inputs, with exact tangents."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geom.errors import ThermoscopeError
+from lumped.integration.compiled import compiled
+from lumped.integration.record import Record
+from lumped.model.network import Network, Parameter, Row
+from lumped.numerics.settle import settle
+from lumped.numerics.stages import stages, work
+
+Array = NDArray[np.float64]
+ABOVE_K = 30.0  # still air takes nothing without a difference: a start without one would leave the nodes unheld
+
+
+@dataclass(frozen=True)
+class Steady:
+    """z (n_states + n_boundaries) degC; y (n_rows,); dy (n_rows, n_tangents)."""
+
+    names: tuple[str, ...]
+    z: Array
+    y: Array
+    dy: Array | None
+
+    def __getitem__(self, name: str) -> float:
+        """Temperature (degC) of a named state or boundary."""
+        return float(self.z[self.names.index(name)])
+
+
+def steady(
+    network: Network,
+    inputs: Mapping[str, Array | float],
+    boundaries: Mapping[str, Array | float],
+    values: Mapping[str, float] | None = None,
+    rows: Sequence[Row] = (),
+    tangents: Sequence[Parameter] = (),
+) -> Steady:
+    """Newton's method on F(x) = 0 from above the mean boundary temperature: one instant without heat capacities.
+
+    Arguments as for `simulate`.
+
+    Raises ThermoscopeError where there is no rest: a node that nothing holds, or losses that grow faster with
+    temperature than the cooling does (thermal runaway).
+    """
+    core = compiled(network, Record(np.zeros(1), inputs, boundaries), values, rows, tangents)
+    n, p, u = len(network.states), core.tangents.dC.shape[1], core.forcing.u[0]
+    hidden = np.array(["#" in s for s in network.states], bool)
+    x0 = np.where(hidden, 0.0, ABOVE_K + (u.mean() if u.size else 20.0))
+    both, scratch = stages(x0, u, core.terms), work(n, u.size, core.terms, p)
+    rests = settle(np.zeros(n), core.K0, core.terms, core.tangents, core.forcing.factor[0], both, scratch)
+    if not rests or np.linalg.eigvals(scratch.G).real.min() <= 0:
+        why = "a node nothing holds, or thermal runaway"
+        raise ThermoscopeError(f"network '{network.name}' does not come to rest: {why}")
+    z, dz = both.z[0, :-1], np.vstack([scratch.D, np.zeros((u.size, p))])
+    y, dy = [r.weights @ z[r.index] for r in rows], [r.weights @ dz[r.index] for r in rows]
+    return Steady((*network.states, *network.boundaries), z, np.array(y), np.reshape(dy, (len(rows), p)) if p else None)

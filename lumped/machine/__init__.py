@@ -1,0 +1,1 @@
+"""The network of a machine built from geometry: films, streams, losses and priors around the condensed conduction."""

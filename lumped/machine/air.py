@@ -1,0 +1,128 @@
+"""The air inside: a fan's stream through the machine, and what the walls it passes feel of it and of the rotor.
+
+    ambient -> [space of the fan] -> left end -> gap, space between the poles, ducts of the rotor -> right end -> out
+
+The gap takes the share that [fans] gives it. The rest divides so that all ways drop the same pressure between the two
+ends: friction, entrance and exit of each. The air in a duct of the rotor is spun up at the shaft's cost: the dynamic
+pressure of its turning, as it comes in relative to the duct, is taken as lost at the inlet, neither more nor less.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from lumped.correlations.air_gap import taylor_film
+from lumped.correlations.ducts import duct_film
+from lumped.correlations.end_space import end_space
+from lumped.machine.laws import Interpolated
+from lumped.machine.settings import Fan, Films
+from lumped.machine.shapes import Gap
+from lumped.model.network import Link, Network, Row
+from lumped.transfer.hydraulics import parallel_shares
+from lumped.transfer.laws import InputPower, Law
+from lumped.transfer.properties import air
+from lumped.transfer.reversal import OneWay
+
+AIR_HEAT = 1.205 * 1006.0  # rho cp of the air the fan takes in at 20 degC, J/m3/K
+BETWEEN_POLES, IN_ROTOR, AT_FAN = "air.interpolar", "air.ducts", "air.fan"
+STEPS = 121
+
+
+@dataclass(frozen=True)
+class Duct:
+    """Equal straight passages along the axis: section and perimeter of all together (m2, m), length (m)."""
+
+    section: float
+    perimeter: float
+    length: float
+    bends: int = 0
+    coil: float = 0.0
+
+    @property
+    def diameter(self) -> float:
+        """Hydraulic diameter of each (m)."""
+        return 4 * self.section / self.perimeter
+
+
+def ducts_of(machine: Any) -> dict[str, Duct]:
+    """The ways along the axis beside the air gap, by the fluid's name; none where the geometry is not known."""
+    makers = {BETWEEN_POLES: _between_poles, IN_ROTOR: _in_rotor} if machine.geometry is not None else {}
+    there = {part.name for part in machine.fluids}
+    return {name: make(machine.geometry) for name, make in makers.items() if name in there}
+
+
+def _between_poles(g: Any) -> Duct:
+    bore = g.rotor.outer_diameter / 2 + g.stator.air_gap
+    poles, body = g.stator.poles, g.stator.body_width
+    depth = g.stator.yoke_inner_diameter / 2 - bore
+    coils = 2 * poles * g.field.coil_width * g.field.coil_height
+    area = np.pi * (bore + depth) ** 2 - np.pi * bore**2 - poles * body * depth - coils
+    perimeter = 2 * np.pi * (2 * bore + depth) + 2 * poles * (depth - body)
+    return Duct(area, perimeter, g.rotor.stack_length)
+
+
+def _in_rotor(g: Any) -> Duct:
+    number, d = g.rotor.ducts, g.rotor.duct_diameter
+    return Duct(number * np.pi * d**2 / 4, number * np.pi * d, g.rotor.stack_length)
+
+
+def fan_shares(machine: Any, fan: Fan) -> dict[str, float]:
+    """What each way along the axis takes of the fan's air at its rated flow; together 1."""
+    ducts = ducts_of(machine)
+    if not ducts:
+        return {"airgap": 1.0}
+    beside = 1.0 - fan.gap_share
+    split = parallel_shares([[duct] for duct in ducts.values()], beside * fan.flow_m3_h / 3600.0, air(fan.air_C))
+    shares = {"airgap": fan.gap_share, **{name: beside * share for name, share in zip(ducts, split, strict=True)}}
+    return {name: share for name, share in shares.items() if share > 0.0}
+
+
+def stirred(share: float, films: Films, radius: float, top_rpm: float) -> Law:
+    """Walls of air that a rotor of this radius (m) stirs; `share` of its tip speed passes the wall."""
+    speed = np.linspace(0.0, top_rpm, STEPS)
+    tip = speed * 2 * np.pi / 60 * radius * share
+    h = end_space(tip, films.end_space_k1_W_m2K, films.end_space_k2, films.end_space_k3)[0]
+    return Interpolated("speed_rpm", tuple(speed), tuple(np.asarray(h)))
+
+
+def gap_film(gap: Gap, top_rpm: float) -> Law:
+    """One wall of the air gap."""
+    speed = np.linspace(0.0, top_rpm, STEPS)
+    h = [taylor_film(n * 2 * np.pi / 60, gap.rotor_radius, gap.width)[0] for n in speed]
+    return Interpolated("speed_rpm", tuple(speed), tuple(h))
+
+
+def channel_film(duct: Duct, share: float = 1.0) -> Law:
+    """Walls along the axis that `share` of the fan's air passes; a turning duct is taken to stand still."""
+    flow = np.linspace(0.0, 600.0, 61)
+    h = [duct_film(share * q / 3600 / duct.section, duct.diameter, duct.length)[0] for q in flow]
+    return Interpolated("fan_flow_m3h", tuple(flow), tuple(h))
+
+
+def fan_streams(network: Network, shares: Mapping[str, float], usual: float) -> list[Link]:
+    """The fan's air, cell by cell; shares : way along the axis -> its part of the flow;  usual : flow (m3/h)."""
+    inlet = {AT_FAN: {"ambient": 1.0}} if AT_FAN in network.states else {}
+    feeds = {
+        **inlet,
+        "air.left": dict.fromkeys(inlet or ("ambient",), 1.0),
+        **{way: {"air.left": share} for way, share in shares.items()},
+        "air.right": dict(shares),
+    }
+    right = "a flow from left to right: what comes in at the right is not known"
+    law = OneWay(InputPower(AIR_HEAT / 3600.0, (("fan_flow_m3h", 1.0, 1.0),)), "fan_flow_m3h", "[fans]", right, usual)
+    return [_cell(network, cell, upstream, law) for cell, upstream in feeds.items()]
+
+
+def _cell(network: Network, cell: str, upstream: Mapping[str, float], law: Law) -> Link:
+    """An upwind cell: it takes up flow x heat capacity x (own temperature - what flows in)."""
+    own = network.column(cell)
+    cols = np.array([own, *(network.column(name) for name in upstream)])
+    vals = np.array([sum(upstream.values()), *(-share for share in upstream.values())])
+    inflow = -vals[1:] / vals[0]
+    rows, first = np.full(len(cols), own), next(iter(upstream))
+    hot, cold = Row(np.array([own]), np.array([1.0])), Row(cols[1:], inflow)
+    return Link(f"stream:fan:{cell}", "stream", (first, cell), rows, cols, vals, law, hot, cold)

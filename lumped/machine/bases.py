@@ -1,0 +1,100 @@
+"""Bases that a machine stands on in some tests only: [bases] of a machine file, see geom.description.bases.
+
+The input "on_NAME" is 1 while the machine stands on that base. Then its foot conducts; while it is 0 the footprint on
+the machine meets the surroundings as the face around it does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from geom.description.roles import Role
+from lumped.model.network import Link, Network, Parameter, Place
+from lumped.transfer.laws import Array, Inputs, Law, TemperatureLaw
+
+OWN = "own"
+
+
+@dataclass(frozen=True)
+class Switched(Law):
+    """Another law, in force while an input is 1 (closed) or while it is 0 (not closed)."""
+
+    base: Law
+    switch: str
+    closed: bool
+
+    @property
+    def temperature(self) -> TemperatureLaw:  # type: ignore[override]
+        return self.base.temperature
+
+    @property
+    def reads(self) -> tuple[str, ...]:  # type: ignore[override]
+        return (*self.base.reads, self.switch)
+
+    def factor(self, inputs: Inputs) -> Array | float:
+        on = np.asarray(inputs[self.switch], float)
+        return np.asarray(self.base.factor(inputs) * (on if self.closed else 1.0 - on))
+
+
+def on_all(machine: Any) -> Any:
+    """The machine standing on all its bases at once, as its mesh has it: what its field is compared with."""
+    return replace(machine, sections={k: v for k, v in machine.sections.items() if k != "bases"})
+
+
+def switches(machine: Any) -> dict[str, str]:
+    """Input -> the foot it couples."""
+    said = machine.sections.get("bases", {})
+    return {f"on_{name}": "foot" if machine_ == OWN else f"foot.{name}" for name, machine_ in said.items()}
+
+
+def switched(machine: Any, network: Network) -> Network:
+    """The network with every base coupled by its input."""
+    for switch, foot in switches(machine).items():
+        network = _coupled(network, switch, foot)
+    return network
+
+
+def _coupled(network: Network, switch: str, foot: str) -> Network:
+    joint = next(
+        x for x in network.links if x.kind == "contact" and foot in x.places and not _of_base(network, x.places)
+    )
+    body = next(place for place in joint.places if place != foot)
+    links = [replace(x, law=Switched(x.law, switch, True)) if x is joint else x for x in network.links]
+    print_ = footprint(network, joint, body, foot)
+    grown = replace(network, links=tuple(links), places={**network.places, print_.name: print_})
+    films = [x for x in network.links if x.name.startswith(f"film:{body}.outer") and x.places[1] == "ambient"]
+    bare = [_bare(grown, film, print_, switch) for film in films]
+    moved = {film.name: link.name for film, link in zip(films, bare, strict=True)}
+    own = tuple(_also(p, moved) for p in network.parameters)
+    return replace(grown.extended(bare), parameters=own)
+
+
+def _of_base(network: Network, places: tuple[str, str]) -> bool:
+    return any(network.declared[place].role is Role.BASE for place in places)
+
+
+def footprint(network: Network, joint: Link, body: str, foot: str) -> Place:
+    """The body's side of the joint as a face of its own."""
+    own = [i for i, state in enumerate(network.states) if state == body or state.startswith(f"{body}#")]
+    at = {state: k for k, state in enumerate(own)}
+    K = np.zeros((len(own), len(own)))
+    for row, col, value in zip(joint.rows, joint.cols, joint.vals, strict=True):
+        if int(row) in at and int(col) in at:
+            K[at[int(row)], at[int(col)]] += value
+    return Place(f"{foot}.print", "surface", body, np.array(own), K, K[:, 0].copy(), float(K[0, 0]), "ambient")
+
+
+def _bare(network: Network, film: Link, face: Place, switch: str) -> Link:
+    """The film of the face around it on the footprint while no foot is there."""
+    name = film.name.replace(film.places[0], face.name)
+    return network.surface_link(name, "contact", face.name, "ambient", Switched(film.law, switch, False))
+
+
+def _also(parameter: Parameter, moved: Mapping[str, str]) -> Parameter:
+    """What acts on a film acts on its share of the footprint too."""
+    more = tuple((moved[target], exponent) for target, exponent in parameter.targets if target in moved)
+    return replace(parameter, targets=(*parameter.targets, *more))

@@ -1,0 +1,189 @@
+"""Liquid jackets: the channel's film, and the coolant as a stream that picks up heat along its path.
+
+[cooling] in a machine file: coolant, flow_L_per_min, and JACKET = { inlet = ..., outlet = ... }; a jacket whose inlet
+is another's outlet is fed by it, all others share the flow of the inlet, boundary "coolant", evenly. Each jacket is a
+row of cells, see path.py.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from lumped.correlations.ducts import duct_film, schmidt_helical
+from lumped.machine.laws import Interpolated
+from lumped.machine.path import cells_of, stem
+from lumped.machine.shapes import radius
+from lumped.model.network import Link, Network, Place, Row
+from lumped.schemas.reader import Table
+from lumped.transfer.laws import Law
+from lumped.transfer.properties import Fluid, ethylene_glycol, propylene_glycol, water
+from lumped.transfer.reversal import OneWay
+
+INLET, FLOW = "coolant", "flow_l_min"
+LIQUIDS = ("water", "glycol-50", "propylene-glycol-50")
+RANGE = 4.0  # the tables reach up to this times the declared flow
+MOST_UNITS = 5.0  # of one cell: the coolant then leaves it at its walls' temperature, to 1 %
+
+
+@dataclass(frozen=True)
+class Cooling:
+    """feeds : jacket -> INLET or the jacket whose outlet feeds it;  property_C: where the liquid's properties hold"""
+
+    coolant: str
+    flow_l_min: float
+    property_C: float
+    feeds: Mapping[str, str]
+
+    @property
+    def liquid(self) -> Fluid:
+        return liquid(self.coolant, self.property_C)
+
+    def before(self, jacket: str) -> list[str]:
+        """Where its coolant comes from, backwards as far as the inlet; a circle ends where it closes."""
+        out = [self.feeds[jacket]]
+        while out[-1] != INLET and self.feeds[out[-1]] not in out:
+            out.append(self.feeds[out[-1]])
+        return out
+
+    def share(self, jacket: str) -> float:
+        """Of the inlet's flow."""
+        first = sum(feed == INLET for feed in self.feeds.values())
+        return 1.0 / first if self.feeds[jacket] == INLET else self.share(self.feeds[jacket])
+
+
+@cache
+def liquid(name: str, T: float) -> Fluid:
+    """Properties at T (degC); mixtures by mass."""
+    if name == "water":
+        return water(T)
+    return ethylene_glycol(T, 0.5) if name == "glycol-50" else propylene_glycol(T, 0.5)
+
+
+def cooling_of(machine: Any) -> Cooling | None:
+    """[cooling], if the machine has jackets."""
+    jackets = [part.name for part in machine.fluids if part.material != "air"]
+    if not jackets:
+        return None
+    t = Table(machine.sections.get("cooling", {}), f"{machine.name} [cooling]")
+    ports = {name: Table(t.raw(name, {}), f"{t.where} {name}") for name in jackets}
+    outlets = {port.word("outlet", f"{name}.outlet"): name for name, port in ports.items()}
+    inlet = t.number("inlet_C", 20.0)
+    found = Cooling(
+        t.word("coolant", "glycol-50", LIQUIDS), t.number("flow_L_per_min"),
+        t.number("property_C", inlet + 20.0),
+        {name: outlets.get(port.word("inlet", f"{name}.inlet"), INLET) for name, port in ports.items()},
+    )  # fmt: skip
+    t.number("pressure_bar", 1.0)
+    for jacket in jackets:
+        if INLET not in found.before(jacket):
+            raise t.error(f"{jacket} is fed by itself", "an inlet that no jacket feeds")
+    for table in (*ports.values(), t):
+        table.close()
+    return found
+
+
+@dataclass(frozen=True)
+class Channel:
+    """One duct: cross-section (m2), hydraulic diameter, length along it, diameter of its coil (m), 0: straight."""
+
+    area: float
+    diameter: float
+    length: float
+    coil: float
+
+    def film(self, flow_l_min: float, fluid: Fluid) -> float:
+        """W/m2/K"""
+        speed = flow_l_min / 60000.0 / self.area
+        if self.coil:
+            return schmidt_helical(speed, self.diameter, self.coil, fluid)[0]
+        return duct_film(speed, self.diameter, self.length, fluid)[0]
+
+
+def channel_of(machine: Any, jacket: str) -> Channel:
+    """Rings are the turns of a helix, other profiles axial channels one after the other."""
+    profile, z0, z1 = machine.part(jacket).prisms[0]
+    if profile.holes:
+        outer, inner = radius(profile.outer), radius(profile.holes[0])
+        high, wide = outer - inner, z1 - z0
+        turn = math.pi * (outer + inner)
+        return Channel(high * wide, 2 * high * wide / (high + wide), turn, outer + inner)
+    return Channel(profile.area, 4 * profile.area / _perimeter(profile.outer), z1 - z0, 0.0)
+
+
+def _perimeter(loop: Any) -> float:
+    """m; the edge that leaves a vertex with bulge b is an arc of 4 atan(b)."""
+    total = 0.0
+    for (x, y, bulge), (u, v, _) in zip(loop, (*loop[1:], loop[0]), strict=True):
+        half = 2 * math.atan(bulge)
+        total += math.hypot(u - x, v - y) * (half / math.sin(half) if abs(half) > 1e-9 else 1.0)
+    return total
+
+
+def _flows(cooling: Cooling) -> tuple[float, ...]:
+    return tuple(cooling.flow_l_min * np.concatenate([[0.0], np.geomspace(0.02, RANGE, 80)]))
+
+
+def jacket_film(machine: Any, jacket: str, cooling: Cooling) -> Law:
+    """W/m2/K over the inlet's flow (l/min)."""
+    channel, share, fluid, at = channel_of(machine, jacket), cooling.share(jacket), cooling.liquid, _flows(cooling)
+    return Interpolated(FLOW, at, tuple(channel.film(share * q, fluid) for q in at))
+
+
+def outlet_film(machine: Any, network: Network, cell: str, cooling: Cooling) -> Law:
+    """W/m2/K over the inlet's flow, onto the temperature at which the coolant leaves a cell."""
+    at = np.array(_flows(cooling))
+    film, rate = np.array(jacket_film(machine, stem(cell), cooling).factor({FLOW: at})), _rate(stem(cell), cooling)
+    wet = sum(p.area or 0.0 for p in network.places.values() if p.kind == "surface" and p.fluid == cell)
+    units = np.minimum(np.divide(film * wet, rate, out=np.zeros_like(rate), where=rate > 0), MOST_UNITS)
+    return Interpolated(FLOW, tuple(at), tuple(film * grown(units)))
+
+
+def grown(units: np.ndarray) -> np.ndarray:
+    """(e^N - 1) / N for N transfer units, 1 without."""
+    return np.where(units > 0, np.expm1(units) / np.where(units > 0, units, 1.0), 1.0)
+
+
+def coolant_streams(machine: Any, network: Network, cooling: Cooling) -> list[Link]:
+    """Every cell takes up m cp (T - T of the cell before); before a jacket's first is the inlet or another jacket."""
+    cells = {jacket: cells_of(machine, jacket) for jacket in cooling.feeds}
+    last = {jacket: own[-1] for jacket, own in cells.items()} | {INLET: INLET}
+    return [
+        _stream(network, feed, cell, _rate_law(machine, jacket, cooling))
+        for jacket, own in cells.items()
+        for feed, cell in zip((last[cooling.feeds[jacket]], *own), own)
+    ]
+
+
+def _rate_law(machine: Any, jacket: str, cooling: Cooling) -> Law:
+    rate = Interpolated(FLOW, _flows(cooling), tuple(_rate(jacket, cooling)))
+    right = "a flow from inlet to outlet: what comes in at the outlet is not known"
+    return OneWay(rate, FLOW, f"{machine.name} [cooling]", right, cooling.flow_l_min)
+
+
+def _stream(network: Network, feed: str, cell: str, law: Law) -> Link:
+    own, before, one = network.column(cell), network.column(feed), np.array([1.0])
+    return Link(
+        f"stream:{cell}", "stream", (feed, cell), np.array([own, own]), np.array([own, before]), np.array([1.0, -1.0]),
+        law, Row(np.array([own]), one), Row(np.array([before]), one),
+    )  # fmt: skip
+
+
+def outlets(machine: Any, network: Network, cooling: Cooling) -> dict[str, Place]:
+    """ "JACKET.outlet": where a thermocouple reads the coolant that leaves."""
+    last = {jacket: network.column(cells_of(machine, jacket)[-1]) for jacket in cooling.feeds}
+    return {
+        f"{jacket}.outlet": Place(f"{jacket}.outlet", "fluid", jacket, np.array([k]), np.ones((1, 1)), np.ones(1))
+        for jacket, k in last.items()
+    }
+
+
+def _rate(jacket: str, cooling: Cooling) -> np.ndarray:
+    """Heat capacity rate m cp (W/K) at the flows of the tables."""
+    fluid = cooling.liquid
+    return fluid.rho * fluid.cp * np.array(_flows(cooling)) * cooling.share(jacket) / 60000.0

@@ -1,0 +1,108 @@
+"""Which film washes which face of a motor, as coefficient laws by mechanism."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from geom.description.roles import Role
+from lumped.machine.air import BETWEEN_POLES, IN_ROTOR, Duct, channel_film, ducts_of, fan_shares, gap_film, stirred
+from lumped.machine.coolant import Cooling, cooling_of, jacket_film
+from lumped.machine.outer import outer_films
+from lumped.machine.path import stem
+from lumped.machine.roles import turning
+from lumped.machine.settings import Fan, Films, read_fan, read_films
+from lumped.machine.shapes import Gap, gap_of, radius
+from lumped.transfer.laws import Inputs, Law
+from lumped.transfer.terms_value import temperature_value
+
+TOP_RPM = 3000.0  # films of speed are tabulated at least this far
+
+
+@dataclass(frozen=True)
+class Surroundings:
+    """What the films of one machine depend on. contacts : names "a|b", which tell what turns."""
+
+    machine: Any
+    contacts: tuple[str, ...]
+
+    @cached_property
+    def films(self) -> Films:
+        return read_films(self.machine)
+
+    @cached_property
+    def fan(self) -> Fan | None:
+        return read_fan(self.machine)
+
+    @cached_property
+    def gap(self) -> Gap | None:
+        return gap_of(self.machine)
+
+    @cached_property
+    def gaps(self) -> frozenset[str]:
+        """Fluids that are the air gap."""
+        return frozenset(part.name for part in self.machine.fluids if part.role is Role.AIR_GAP)
+
+    @cached_property
+    def ducts(self) -> dict[str, Duct]:
+        return ducts_of(self.machine)
+
+    @cached_property
+    def shares(self) -> dict[str, float]:
+        """Of the fan's air, along each way; empty without a fan."""
+        return {} if self.fan is None else fan_shares(self.machine, self.fan)
+
+    @cached_property
+    def cooling(self) -> Cooling | None:
+        return cooling_of(self.machine)
+
+    @cached_property
+    def turning(self) -> frozenset[str]:
+        return turning(self.machine, self.contacts)
+
+    @cached_property
+    def tip_radius(self) -> float:
+        """Of the rotor (m), or where no air gap is known, as in an imported machine, of the largest part that turns."""
+        if self.gap is not None:
+            return self.gap.rotor_radius
+        turned = [part for part in self.machine.parts if part.name in self.turning]
+        return max((radius(profile.outer) for part in turned for profile, _, _ in part.prisms), default=0.0)
+
+    @cached_property
+    def top_rpm(self) -> float:
+        return max(TOP_RPM, 2.0 * float(self.machine.sections.get("ratings", {}).get("speed_rpm", 0.0)))
+
+
+def surroundings(machine: Any, contacts: Iterable[str]) -> Surroundings:
+    return Surroundings(machine, tuple(contacts))
+
+
+def face_films(part: str, fluid: str, around: Surroundings) -> dict[str, Law]:
+    """Mechanism -> law for one face; mechanisms act in parallel."""
+    films, gap = around.films, around.gap
+    if fluid == "ambient":
+        return outer_films(around.machine, part, films)
+    if around.cooling is not None and stem(fluid) in around.cooling.feeds:
+        return {"": jacket_film(around.machine, stem(fluid), around.cooling)}
+    if gap is not None and fluid in around.gaps:
+        return {"": gap_film(gap, around.top_rpm)}
+    if fluid == IN_ROTOR and fluid in around.shares:
+        return {"axial": channel_film(around.ducts[fluid], around.shares[fluid])}
+    if fluid == BETWEEN_POLES and fluid in around.ducts:
+        past = 1.0 - around.shares.get(IN_ROTOR, 0.0)  # the gap's air mixes with that between the poles
+        axial = {} if around.fan is None else {"axial": channel_film(around.ducts[fluid], past)}
+        return {**axial, "stirred": stirred(films.channel_wall_share, films, around.tip_radius, around.top_rpm)}
+    share = films.moving_wall_share if part in around.turning else films.still_wall_share
+    return {"": stirred(share, films, around.tip_radius, around.top_rpm)}
+
+
+def nominal(laws: Mapping[str, Law], inputs: Inputs, difference: float = 30.0) -> float:
+    """What all mechanisms add up to (W/m2/K) at an operating point, `difference` (K) above 20 degC."""
+    return sum(
+        float(np.mean(law.factor(inputs))) * temperature_value(law.temperature, 20.0 + difference, 20.0)
+        for law in laws.values()
+    )

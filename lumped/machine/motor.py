@@ -1,0 +1,118 @@
+"""The network of a motor built from geometry: condensed conduction plus films, streams, losses and priors.
+
+    films, contacts = nominal_coefficients(machine, faces, contact_names)  # what the condensation is centred on
+    condensed = condense(field, films, contacts, fluids(machine), boundaries(machine), ...)
+    network = motor_network(machine, condensed)          # or thermoscope.pipeline.motor_model(machine) for all of it
+
+What comes out, for every family and for imported machines alike (the machine file decides, no names do):
+
+    states      every part's mean ("winding", "magnets", ...), its shapes "winding#1", ..., the fluids ("airgap", ...;
+                "jacket@0", "jacket@1", ...: the coolant as it leaves each cell of a jacket)
+    boundaries  "ambient", and "coolant" where the machine has jackets (the temperature of the coolant's inlet)
+    inputs      "current_A", "speed_rpm", "fan_flow_m3h" (open machines), "flow_l_min" (jackets); `operating_point`
+                gives their rated values. With three phases current_A is the rms of each phase, which direct current
+                through the phases in series also is: DC heating is current_A = I, speed_rpm = 0.
+    places      every part, every face ("housing.fins"), every fluid, "JACKET.outlet", and the means declared in
+                [sensors], such as "winding.copper": the mean over all copper, what a resistance measurement sees
+    parameters  "h.PART" outer faces, "h.FLUID" inner ones, "contact.A|B", "loss.NAME", "capacity.machine", "fan.flow",
+                "coolant.flow", and "k.GROUP" for conductivities declared in [calibration]
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from lumped.machine.air import fan_streams
+from lumped.machine.bases import switched
+from lumped.machine.coolant import FLOW, INLET, coolant_streams, outlet_film, outlets
+from lumped.machine.films import Surroundings, face_films, nominal, surroundings
+from lumped.machine.losses import sources
+from lumped.machine.means import means
+from lumped.machine.parameters import parameters
+from lumped.machine.path import cells_of, stem
+from lumped.machine.roles import declared, with_channels
+from lumped.machine.settings import contact_coefficients
+from lumped.model.network import Link, Network, Place
+
+AIR_IN_SPACE = 60.0  # J/K, a few tens of litres of air with a part of its walls' skin
+
+
+def fluids(machine: Any) -> dict[str, float]:
+    """Fluid nodes and their heat capacities (J/K)."""
+    out: dict[str, float] = {}
+    for part in machine.fluids:
+        out |= {part.name: AIR_IN_SPACE} if part.material == "air" else _cells(machine, part)
+    return out
+
+
+def _cells(machine: Any, jacket: Any) -> dict[str, float]:
+    liquid = surroundings(machine, ()).cooling.liquid  # type: ignore[union-attr]
+    names = cells_of(machine, jacket.name)
+    return dict.fromkeys(names, liquid.rho * liquid.cp * jacket.volume / len(names))
+
+
+def boundaries(machine: Any) -> tuple[str, ...]:
+    """Temperatures given from outside."""
+    return ("ambient", INLET) if surroundings(machine, ()).cooling is not None else ("ambient",)
+
+
+def operating_point(machine: Any) -> dict[str, np.ndarray]:
+    """The rated point as inputs of the laws; a rating that the file does not give is 0."""
+    around, ratings = surroundings(machine, ()), machine.sections.get("ratings", {})
+    values = {name: ratings.get(name, 0.0) for name in ("current_A", "speed_rpm")}
+    if around.fan is not None:
+        values["fan_flow_m3h"] = around.fan.flow_m3_h
+    if around.cooling is not None:
+        values[FLOW] = around.cooling.flow_l_min
+    return {name: np.array([float(value)]) for name, value in values.items()}
+
+
+def rated_inputs(machine: Any) -> dict[str, float]:
+    """The same, a number each."""
+    return {name: float(value[0]) for name, value in operating_point(machine).items()}
+
+
+def nominal_coefficients(
+    machine: Any, faces: Mapping[str, tuple[str, str]], contacts: Iterable[str]
+) -> tuple[dict[str, float], dict[str, float]]:
+    """Film coefficient per face and contact coefficient per contact (W/m2/K), at the rated point.
+
+    faces : face -> (part, fluid);  contacts : names "a|b"
+    """
+    names = sorted(contacts)
+    around, inputs = surroundings(machine, names), operating_point(machine)
+    h = {face: nominal(face_films(*where, around), inputs) for face, where in faces.items()}
+    g = contact_coefficients(machine.sections.get("contacts", {}), names, f"{machine.name} [contacts]")
+    return h, g
+
+
+def motor_network(machine: Any, condensed: Network) -> Network:
+    """The condensed network of a motor, completed to a model that can run a test."""
+    around = surroundings(machine, (_contact(link) for link in condensed.links if link.kind == "contact"))
+    ports = {} if around.cooling is None else outlets(machine, condensed, around.cooling)
+    network = replace(condensed, places={**condensed.places, **ports, **means(machine, condensed)})
+    network = replace(with_channels(network), declared=declared(machine, network, around.contacts))
+    faces = [place for place in network.places.values() if place.kind == "surface" and place.fluid]
+    films = [link for face in faces for link in _film_links(network, face, around)]
+    streams = [] if around.fan is None else fan_streams(network, around.shares, around.fan.flow_m3_h)
+    if around.cooling is not None:
+        streams += coolant_streams(machine, network, around.cooling)
+    losses = sources(machine, network)
+    own = parameters(machine, network, faces, films, streams, losses)
+    return switched(machine, network.extended([*films, *streams], losses, own))
+
+
+def _contact(link: Link) -> str:
+    return link.name.removeprefix("contact:")
+
+
+def _film_links(network: Network, face: Place, around: Surroundings) -> list[Link]:
+    laws = face_films(face.part, str(face.fluid), around)
+    if around.cooling is not None and stem(str(face.fluid)) in around.cooling.feeds:
+        laws = {"": outlet_film(around.machine, network, str(face.fluid), around.cooling)}
+    name = {mechanism: f"film:{face.name}" + (f":{mechanism}" if mechanism else "") for mechanism in laws}
+    return [network.surface_link(name[m], "film", face.name, str(face.fluid), law) for m, law in laws.items()]

@@ -1,0 +1,185 @@
+"""Outer faces: still air, radiation, and the air a shaft fan blows along the housing.
+
+[films.outer] in a machine file: PART = { surface = "vertical plate", size_mm = 480, emissivity = 0.03, factor = 0.8,
+fan = { h_W_m2K = 40, at_rpm = 1460 } }; the part's own fan stands in the place of what [fans.cowl] gives it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from geom.description.roles import Role
+from lumped.correlations.fins import elenbaas, heiles, mean_of_decay
+from lumped.correlations.forced import flat_plate
+from lumped.correlations.info import Info
+from lumped.correlations.natural import churchill_chu_cylinder, churchill_chu_plate, mcadams_plate
+from lumped.correlations.tabulate import film_tabulated
+from lumped.machine.laws import Interpolated
+from lumped.machine.settings import Films
+from lumped.machine.shapes import Extent, Fins, extent, fins_of
+from lumped.schemas.reader import Table
+from lumped.transfer.laws import FILMS, FilmTable, Fixed, Law, Radiation
+from lumped.transfer.shaft_fan import shaft_fan
+
+SURFACES = ("horizontal cylinder", "vertical plate", "horizontal plate", "radial fins")
+STILL_AIR_K = tuple(np.concatenate([[0.0], [0.5], np.geomspace(1.0, 200.0, 30)]))
+CROWDED = 0.8  # still air along axial fins, over the bare cylinder's film (assumed)
+END_SHIELD = 0.35  # a turned body shorter than this share of its diameter is a vertical plate
+
+
+@dataclass(frozen=True)
+class Outer:
+    """How a part meets the surroundings.
+
+    surface : one of SURFACES;  size (m): diameter, height, or area over perimeter
+    emissivity times view radiates;  factor on the film of still air;  fan : film of a shaft fan's air, if any
+    """
+
+    surface: str
+    size: float
+    emissivity: float
+    view: float = 1.0
+    factor: float = 1.0
+    spacing: float = 0.0
+    fan: Law | None = None
+
+
+@dataclass(frozen=True)
+class Cowl:
+    """A shaft fan that blows along the housing: air speed (m/s) leaving the cowl at `at_rpm`, and what is left of it.
+
+    end_share: at the far end of the fins; rear_share, front_share: over the end shields (of `rear` and the other
+    side). Shares: Motor-CAD's defaults; turbulence: the factor of Heiles (Staton and Cavagnino 2008).
+    """
+
+    air_speed: float
+    at_rpm: float
+    end_share: float
+    rear_share: float
+    front_share: float
+    turbulence: float
+    rear: str
+
+
+def cowl_of(machine: Any) -> Cowl | None:
+    """[fans.cowl], if the machine has one."""
+    data = machine.sections.get("fans", {}).get("cowl")
+    if data is None:
+        return None
+    t = Table(data, f"{machine.name} [fans.cowl]")
+    found = Cowl(
+        t.number("air_speed_m_s"), t.number("at_rpm"), t.number("end_share", 0.2),
+        t.number("rear_share", 0.774), t.number("front_share", 0.205),
+        t.number("turbulence", 1.7), t.word("rear", "left", ("left", "right")),
+    )  # fmt: skip
+    t.close()
+    return found
+
+
+def outer_films(machine: Any, part: str, films: Films) -> dict[str, Law]:
+    """Mechanism -> law (W/m2/K) of a part's outer face; they act in parallel."""
+    outer, cowl = outer_of(machine, part, films), cowl_of(machine)
+    laws: dict[str, Law] = {
+        "natural": Fixed(outer.factor, still_air(outer)),
+        "radiation": Fixed(outer.emissivity * outer.view, Radiation()),
+    }
+    blown = _blown(machine, part, cowl) if outer.fan is None and cowl is not None else outer.fan
+    return laws if blown is None else {**laws, "blown": blown}
+
+
+def outer_of(machine: Any, part: str, films: Films) -> Outer:
+    """What the machine file says of a part's outer face, and for the rest what its shape suggests."""
+    usual = _usual(machine, part, films)
+    said = machine.sections.get("films", {}).get("outer", {})
+    if part not in said and "default" not in said:
+        return usual
+    t = Table(said.get(part, said.get("default")), f"{machine.name} [films.outer] {part}")
+    surface = t.word("surface", usual.surface, SURFACES)
+    size = t.number("size_mm") / 1e3 if "size_mm" in t or surface != usual.surface else usual.size
+    found = Outer(
+        surface, size, t.number("emissivity", usual.emissivity), t.number("view", usual.view),
+        t.number("factor", usual.factor), usual.spacing, _own_fan(t),
+    )  # fmt: skip
+    t.close()
+    return found
+
+
+def _own_fan(table: Table) -> Law | None:
+    if "fan" not in table:
+        return None
+    inner = Table(table.raw("fan"), f"{table.where} fan")
+    law = shaft_fan(inner)
+    inner.close()
+    return law
+
+
+def _usual(machine: Any, part: str, films: Films) -> Outer:
+    emissivity = machine.material_of(part).emissivity if films.emissivity is None else films.emissivity
+    fins = fins_of(machine) if part == "housing" else None
+    surface, size = _stands(extent(machine.part(part)))
+    if fins is None:
+        return Outer(surface, size, emissivity)
+    # Between fins only the envelope radiates.
+    if fins.axial:
+        return Outer("horizontal cylinder", 2 * fins.root, emissivity, 1 / fins.area_ratio, CROWDED)
+    return Outer("radial fins", 2 * (fins.root + fins.height), emissivity, 1 / fins.area_ratio, 1.0, fins.spacing)
+
+
+def _stands(e: Extent) -> tuple[str, float]:
+    wide, high, long = e.size
+    if e.turned:
+        return ("vertical plate" if long < END_SHIELD * high else "horizontal cylinder"), high
+    if high < 0.25 * min(wide, long):
+        return "horizontal plate", wide * long / (2 * (wide + long))
+    return "vertical plate", high
+
+
+def still_air(outer: Outer) -> FilmTable:
+    """Film of still air (W/m2/K) over difference and film temperature; none without a difference."""
+    size = outer.size
+
+    def plate(surface: float, air: float) -> tuple[float, Info]:
+        up, info = mcadams_plate(size, surface, air, upward=True)
+        return 0.5 * (up + mcadams_plate(size, surface, air, upward=False)[0]), info
+
+    of: dict[str, Callable[[float, float], tuple[float, Info]]] = {
+        SURFACES[0]: lambda s, a: churchill_chu_cylinder(size, s, a),
+        SURFACES[1]: lambda s, a: churchill_chu_plate(size, s, a),
+        SURFACES[2]: plate,
+        SURFACES[3]: lambda s, a: elenbaas(outer.spacing, size, s, a),
+    }
+    law = film_tabulated(of[outer.surface], STILL_AIR_K)
+    each = np.reshape(law.value, (FILMS, -1))
+    each[:, 0] = 0.0
+    return replace(law, value=tuple(each.ravel()))
+
+
+def _blown(machine: Any, part: str, cowl: Cowl) -> Law | None:
+    """Films of the fan's air: fin channels by Heiles, end shields as flat plates."""
+    e, fins = extent(machine.part(part)), fins_of(machine)
+    if part == "housing" and fins is not None:
+        share, diameter = mean_of_decay(cowl.end_share), fins.hydraulic_diameter
+        length = fins.length if fins.axial else np.pi * (fins.root + fins.height)
+        return _of_speed(cowl, share, lambda v: heiles(v, diameter, length, cowl.turbulence)[0])
+    if e.turned and e.size[2] < END_SHIELD * e.size[1]:
+        share = cowl.rear_share if _on_left(machine, e) is (cowl.rear == "left") else cowl.front_share
+        return _of_speed(cowl, share, lambda v: flat_plate(v, e.size[1])[0])
+    return None
+
+
+def _on_left(machine: Any, e: Extent) -> bool:
+    """Does it lie before the middle of the machine's body along the axis?"""
+    spans = [part.span for part in machine.parts if part.role in (Role.END_SHIELD, Role.HOUSING)] or [(e.z0, e.z1)]
+    return e.z0 + e.z1 < min(a for a, _ in spans) + max(b for _, b in spans)
+
+
+def _of_speed(cowl: Cowl, share: float, film: Callable[[float], float]) -> Law:
+    speed = np.linspace(0.0, 2.0 * cowl.at_rpm, 61)
+    return Interpolated("speed_rpm", tuple(speed), tuple(film(share * cowl.air_speed * n / cowl.at_rpm) for n in speed))
+
+
+__all__ = ["Cowl", "Fins", "Outer", "cowl_of", "outer_films", "outer_of", "still_air"]

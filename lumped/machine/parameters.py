@@ -1,0 +1,102 @@
+"""What calibration may move in a motor's network, each with its prior."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from geom.errors import InputError
+from lumped.machine.air import BETWEEN_POLES
+from lumped.machine.path import stem
+from lumped.model.network import Link, Network, Parameter, Place, Source
+from lumped.schemas.reader import known
+
+LOSS_SPREAD = {
+    "copper": 0.05, "iron": 0.25, "friction": 0.25, "bearing": 0.25, "brush": 0.15, "windage": 0.3, "magnet": 0.5,
+    "stray": 0.5, "switching": 0.3, "constant": 0.3, "measured": 0.1,
+}  # fmt: skip
+FLOW_EXPONENT = 0.8  # of films in turbulent flow
+
+
+def parameters(
+    machine: Any, network: Network, faces: Sequence[Place], films: Sequence[Link], streams: Sequence[Link],
+    losses: Sequence[Source],
+) -> list[Parameter]:  # fmt: skip
+    """Films 0.3, contacts 0.3, losses by kind, capacity 0.05, flows 0.04 (log-sd), conductivities as declared."""
+    return [
+        *_films(faces, films),
+        *_contacts(network),
+        *_losses(losses),
+        _capacity(network),
+        *_flows(films, streams),
+        *_conductivities(machine, network),
+    ]
+
+
+def _films(faces: Sequence[Place], films: Sequence[Link]) -> list[Parameter]:
+    """Outer faces part by part, inner faces by the fluid that washes them."""
+    groups: dict[str, list[tuple[str, float]]] = {}
+    for face in faces:
+        group = face.part if face.fluid == "ambient" else stem(str(face.fluid))
+        groups.setdefault(group, []).extend((link.name, 1.0) for link in films if link.places[0] == face.name)
+    return [
+        Parameter(f"h.{group}", tuple(acts), prior_sd=0.3, low=0.1, high=10.0, source="spread of film correlations")
+        for group, acts in groups.items()
+        if acts
+    ]
+
+
+def _contacts(network: Network) -> list[Parameter]:
+    return [
+        Parameter(link.name.replace(":", ".", 1), ((link.name, 1.0),), prior_sd=0.3, low=0.02, high=50.0,
+                  source="spread of published contact gaps")
+        for link in network.links if link.kind == "contact"
+    ]  # fmt: skip
+
+
+def _losses(losses: Sequence[Source]) -> list[Parameter]:
+    return [
+        Parameter(source.name.replace(":", ".", 1), ((source.name, 1.0),), prior_sd=LOSS_SPREAD[source.kind], low=0.1,
+                  high=10.0, source="spread of published loss formulas")
+        for source in losses
+    ]  # fmt: skip
+
+
+def _capacity(network: Network) -> Parameter:
+    acts = tuple((f"capacity:{group}", 1.0) for group in dict.fromkeys(network.capacity_group) if group)
+    return Parameter("capacity.machine", acts, prior_sd=0.05, low=0.5, high=2.0, source="alloys and fill factors")
+
+
+def _flows(films: Sequence[Link], streams: Sequence[Link]) -> list[Parameter]:
+    """A flow moves its streams, and the films of the channels it fills."""
+    out = []
+    for name, own in (("fan.flow", True), ("coolant.flow", False)):
+        moved = [s for s in streams if s.name.startswith("stream:fan:") == own]
+        cells = {BETWEEN_POLES} if own else {s.places[1] for s in moved}
+        washed = [(f.name, FLOW_EXPONENT) for f in films if f.places[1] in cells]
+        acts = (*((s.name, 1.0) for s in moved), *washed)
+        if moved:
+            out.append(Parameter(name, acts, prior_sd=0.04, low=0.2, high=5.0, source="flow meter, +-3 %", flow=True))
+    return out
+
+
+def _conductivities(machine: Any, network: Network) -> list[Parameter]:
+    """[calibration] conductivity = { GROUP = [parts] }: impregnation, liners; prior from the materials' spread."""
+    section = machine.sections.get("calibration", {})
+    groups = section.get("conductivity", {})
+    inner = {link.places[0]: link.name for link in network.links if link.kind == "conduction"}
+    where = f"{machine.name} [calibration]"
+    if unknown := [key for key in section if key != "conductivity"] or not isinstance(groups, Mapping):
+        raise InputError(f"{unknown} is not possible", where, "conductivity = { GROUP = [parts] }")
+    out = []
+    for group, parts in groups.items():
+        for part in parts:
+            if part not in network.places:
+                raise InputError(f"no part '{part}'", where, known(part, [p.name for p in machine.parts]))
+        spread = max(machine.material_of(part).spread for part in parts)
+        acts = tuple((inner[part], 1.0) for part in parts if part in inner)
+        if acts:
+            out.append(
+                Parameter(f"k.{group}", acts, prior_sd=spread, low=0.05, high=20.0, source="spread of materials")
+            )
+    return out

@@ -1,0 +1,84 @@
+"""What the parts, fluids and boundaries of a motor are: as declared, else by what they are made of."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import Any
+
+from geom.description.identity import Identity, identity
+from geom.description.profile import ArcGrid
+from geom.description.roles import Role
+from lumped.machine.path import stem
+from lumped.machine.shapes import wound
+from lumped.model.network import Network
+
+BOUNDARIES = {"ambient": Role.AMBIENT, "coolant": Role.COOLANT}  # the names that lumped.machine.motor gives them
+OF_MATERIAL = {
+    "bearing": Role.BEARING, "commutator": Role.COMMUTATOR, "electrical-steel": Role.IRON, "magnet-ndfeb": Role.MAGNET,
+    "mica": Role.INSULATION, "insulation": Role.INSULATION, "slot-liner": Role.INSULATION,
+}  # fmt: skip
+
+
+def declared(machine: Any, network: Network, contacts: Iterable[str]) -> dict[str, Identity]:
+    """By name.  contacts : "a|b", which tell what hangs on the shaft"""
+    spaces = {part.name: part.role for part in machine.fluids if part.role is not None}
+    fluids = {state: identity(spaces[stem(state)], False) for state in network.states if stem(state) in spaces}
+    around = {name: identity(BOUNDARIES[name], False) for name in network.boundaries}
+    return {**part_identities(machine, contacts), **fluids, **around}
+
+
+def part_identities(machine: Any, contacts: Iterable[str]) -> dict[str, Identity]:
+    """Part -> what it is; imported parts by their material, the shaft by the axis inside it, if nothing is said."""
+    known = {part.name: part.identity or _by_material(machine, part) for part in machine.parts}
+    hung = _hung(known, contacts)
+    return {
+        name: known[name] if known[name].turns is not None else _turned(known[name], name in hung) for name in known
+    }
+
+
+def _turned(known: Identity, turns: bool) -> Identity:
+    role = Role.ROTOR if known.role is Role.IRON and turns else known.role
+    return replace(known, role=role, turns=turns, why=f"{known.why}, {'hangs on the shaft' if turns else 'stands'}")
+
+
+def _by_material(machine: Any, part: Any) -> Identity:
+    role = OF_MATERIAL.get(part.material)
+    if role is not None:
+        stands = None if role in (Role.IRON, Role.INSULATION) else role.turns
+        return Identity(role, stands, f"made of {part.material}")
+    if wound(machine, part.name):
+        return Identity(Role.WINDING, None, "made of wires along the axis")
+    if _on_axis(part):
+        return Identity(Role.SHAFT, True, "the axis runs through it")
+    return Identity(None, None, "nothing tells")
+
+
+def _on_axis(part: Any) -> bool:
+    """Is the machine's axis inside all of its prisms?"""
+    import shapely
+
+    grid = ArcGrid([profile for profile, _, _ in part.prisms], 24)
+    return all(profile.to_polygon(grid).contains(shapely.Point(0.0, 0.0)) for profile, _, _ in part.prisms)
+
+
+def _hung(known: dict[str, Identity], contacts: Iterable[str]) -> frozenset[str]:
+    """All that hangs on what turns through contacts, without a bearing or a standing part between."""
+    pairs = [tuple(name.split("|")) for name in contacts]
+    held = [pair for pair in pairs if all(p in known and known[p].turns is not False for p in pair)]
+    found, reached = {name for name, i in known.items() if i.turns}, -1
+    while len(found) > reached:
+        reached = len(found)
+        found |= {part for pair in held if found & set(pair) for part in pair}
+    return frozenset(found)
+
+
+def turning(machine: Any, contacts: Iterable[str]) -> frozenset[str]:
+    """Parts that turn."""
+    return frozenset(name for name, i in part_identities(machine, contacts).items() if i.turns)
+
+
+def with_channels(network: Network) -> Network:
+    """The network in which every cell of a jacket says which jacket it belongs to."""
+    cells = {name: place for name, place in network.places.items() if place.kind == "fluid" and stem(name) != name}
+    return replace(network, places={**network.places, **{n: replace(p, channel=stem(n)) for n, p in cells.items()}})

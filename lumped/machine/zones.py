@@ -1,0 +1,78 @@
+"""Loss zones of a motor: teeth and back of a slotted core, halves of a slot, shoe and body of a pole, field coils."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from geom.description.shapes import evenly
+from lumped.condensation.zone import Zone
+from lumped.machine.shapes import laminated, radius, wound
+from lumped.model.network import Array
+
+MANY = 6  # prisms: a winding with this many bars lies in slots
+
+
+def motor_zones(machine: Any) -> dict[str, Zone]:
+    """Zone -> where; "PART.WORD", as [losses] of a machine file may name them."""
+    return {**_slots(machine), **_poles(machine), **_coils(machine)}
+
+
+def _slots(machine: Any) -> dict[str, Zone]:
+    out: dict[str, Zone] = {}
+    for winding in machine.parts:
+        if not wound(machine, winding.name) or not _in_slots(winding):
+            continue
+        low, high = _reach(winding)
+        out |= _split(winding.name, (low + high) / 2, "inner", "outer")
+        for core in machine.parts:
+            near, far = _reach(core)
+            if laminated(machine, core.name) and near < high and low < far:
+                teeth_outside = far - high < low - near
+                words = ("back", "teeth") if teeth_outside else ("teeth", "back")
+                out |= _split(core.name, low if teeth_outside else high, *words)
+    return out
+
+
+def _in_slots(winding: Any) -> bool:
+    """Many bars of one and the same length."""
+    return len(winding.prisms) >= MANY and len({(z0, z1) for _, z0, z1 in winding.prisms}) == 1
+
+
+def _poles(machine: Any) -> dict[str, Zone]:
+    """Salient poles: the shoe lies at the air gap."""
+    shoe = getattr(getattr(machine.geometry, "stator", None), "shoe", None)
+    poles = [part for part in machine.parts if part.name == "poles"]
+    return _split("poles", _reach(poles[0])[0] + shoe, "shoe", "body") if poles and shoe is not None else {}
+
+
+def _coils(machine: Any) -> dict[str, Zone]:
+    """One field coil per pole."""
+    if machine.geometry is None or "winding.field" not in [part.name for part in machine.parts]:
+        return {}
+    axes = np.array(evenly(machine.geometry.stator.poles, np.pi / 2))
+    return {f"winding.field.{k + 1}": Zone("winding.field", _nearest(axes, k)) for k in range(len(axes))}
+
+
+def _nearest(axes: Array, k: int) -> Callable[[Array], Array]:
+    def inside(x: Array) -> Array:
+        off = np.abs(np.angle(np.exp(1j * (np.arctan2(x[:, 1], x[:, 0])[:, None] - axes))))
+        return (np.argmin(off, axis=1) == k).astype(float)
+
+    return inside
+
+
+def _split(part: str, at: float, inner: str, outer: str) -> dict[str, Zone]:
+    """Two zones of a part, below and above a radius (m)."""
+    return {
+        f"{part}.{inner}": Zone(part, lambda x: (np.hypot(x[:, 0], x[:, 1]) < at).astype(float)),
+        f"{part}.{outer}": Zone(part, lambda x: (np.hypot(x[:, 0], x[:, 1]) >= at).astype(float)),
+    }
+
+
+def _reach(part: Any) -> tuple[float, float]:
+    """Least and largest distance of a part's corners from the axis (m)."""
+    corners = [np.hypot(x, y) for profile, _, _ in part.prisms for loop in profile.loops for x, y, _ in loop]
+    return float(min(corners)), max(radius(profile.outer) for profile, _, _ in part.prisms)

@@ -1,0 +1,1 @@
+"""What a thermal network is, and what can be read from its links alone."""

@@ -1,0 +1,59 @@
+"""Whether a declared network can be a machine: heat can leave every node, something is warm, streams go somewhere."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from geom.errors import InputError
+from lumped.model.network import Network
+
+
+def checked_network(network: Network, where: str) -> Network:
+    """The network; InputError names the nodes that no heat can leave, and a network that stores none."""
+    for island in islands(network):
+        nodes = ", ".join(f"'{name}'" for name in island)
+        raise InputError(f"no heat can leave {nodes}: nothing joins {'it' if len(island) == 1 else 'them'} to "
+                         f"{' or '.join(network.boundaries) or 'a boundary'}", where,
+                         "a link, stream or surface to a boundary")  # fmt: skip
+    if not np.any(network.C > 0.0):
+        raise InputError("no node has a heat capacity", where, "[nodes.NAME] C_J_K = ..., or mass_kg with cp_J_kgK")
+    return network
+
+
+def islands(network: Network) -> Iterator[list[str]]:
+    """Groups of nodes that are joined to each other but to no boundary."""
+    joined: dict[int, set[int]] = {i: set() for i in range(network.size)}
+    groups = [sorted({int(i) for i in (*link.rows, *link.cols)}) for link in network.links]
+    for place in network.places.values():
+        if place.kind == "surface" and place.fluid:  # what washes it may be joined by an effect
+            groups.append([*map(int, place.states), network.column(place.fluid)])
+    for group in groups:
+        for i in group:
+            joined[i] |= set(group)
+    left = set(range(len(network.states))) - _reached(joined, range(len(network.states), network.size))
+    while left:
+        island = _reached(joined, [min(left)])
+        yield [network.states[i] for i in sorted(island)]
+        left -= island
+
+
+def _reached(joined: dict[int, set[int]], start: Sequence[int]) -> set[int]:
+    out, ahead = set(start), list(start)
+    while ahead:
+        new = joined[ahead.pop()] - out
+        out |= new
+        ahead += new
+    return out
+
+
+def checked_path(path: Sequence[str], where: str) -> Sequence[str]:
+    """A stream's way; InputError where it passes a node twice, or goes nowhere."""
+    if len(path) < 2:
+        raise InputError(f"path = {list(path)} leads nowhere", where, "two or more nodes, the inlet first")
+    for name in path:
+        if list(path).count(name) > 1:
+            raise InputError(f"path passes '{name}' {list(path).count(name)} times", where, "each node once; a loop "
+                             "that returns is [circuits.NAME] with a reservoir")  # fmt: skip
+    return path

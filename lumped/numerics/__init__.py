@@ -1,0 +1,1 @@
+"""The compiled kernel: stages, steps, linear algebra, tangents."""

@@ -1,0 +1,67 @@
+"""Rest: the states without heat capacity at their balance, the others as they are. Compiled on its own."""
+
+from __future__ import annotations
+
+from lumped.numerics.dense import copy, lu, solve, solve_many
+from lumped.numerics.jit import entry, pasted
+from lumped.numerics.stages import finite
+from lumped.numerics.terms import ROWS, clear, flow, jacobian
+
+MOST_ITERATIONS, CONVERGED_K = 50, 1e-9
+
+
+@pasted
+def _newton(T, K0, C, f, a, q):
+    """Bring the states without capacity to their balance at fixed others (Newton); q.G is left as -dF/dx there.
+
+    States with capacity stay: the identity stands in their rows.
+    """
+    n = C.size
+    for _ in range(MOST_ITERATIONS):
+        flow(T, K0, a.z[0], f, a.tau[0], a.v[0], q.F[0])
+        jacobian(T, K0, f, a.tau[0], a.v[0], q.G)
+        for i in range(n):
+            copy(q.G[i], q.W[i])
+            if C[i] > 0.0:
+                q.F[0, i] = 0.0
+                clear(q.W[i : i + 1])
+                q.W[i, i] = 1.0
+        if not lu(q.W, q.pivot):
+            return False
+        solve(q.W, q.pivot, q.F[0])
+        largest = 0.0
+        for i in range(n):
+            a.z[0, i] += q.F[0, i]
+            largest = max(largest, abs(q.F[0, i]))
+        if largest < CONVERGED_K:
+            return finite(a.z[0])
+    return False
+
+
+@pasted
+def _tangents(T, S, C, f, a, q):
+    """q.D: tangents of the states without capacity, at the balance found just before."""
+    clear(q.R[0])
+    for i in range(S.term.size):
+        e = S.term[i]
+        for s in range(T.start[e, ROWS], T.start[e + 1, ROWS]):
+            q.R[0, T.row[s], S.tangent[i]] -= S.slope[i] * f[e] * a.tau[0, e, 0] * a.v[0, s]
+    for i in range(C.size):
+        if C[i] > 0.0:
+            copy(q.D[i], q.R[0, i])
+    solve_many(q.W, q.pivot, q.R[0])
+    for i in range(C.size):
+        copy(q.R[0, i], q.D[i])
+
+
+@entry
+def settle(C, K0, T, S, f, a, q):
+    """Bring a.z[0] and its tangents q.D to the balance at input factors f (ne,); False if there is none.
+
+    C, K0, T, S, a, q as for the kernel; without any capacity this is where the whole network comes to rest.
+    """
+    if not _newton(T, K0, C, f, a, q):
+        return False
+    if q.D[0].size > 0:
+        _tangents(T, S, C, f, a, q)
+    return True

@@ -1,0 +1,194 @@
+"""How the readings of a run answer to its multipliers: exact tangents of the scheme. Compiled on its own.
+
+They differentiate exactly the equations of stages.py, second derivatives of the temperature laws included, along the
+steps that the kernel took: those are the same, whatever the multipliers.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from lumped.numerics.dense import axpy, copy, inverse, lu, product, shifted, solve_many
+from lumped.numerics.jit import entry, inner, pasted
+from lumped.numerics.stages import C21, C31, C32, EULER, GAMMA, forced, restored, slope_of, taken
+from lumped.numerics.terms import (
+    BENDS,
+    DYNAMIC,
+    ROWS,
+    STIFF,
+    Floats,
+    Ints,
+    bend,
+    clear,
+    conductances,
+    flow,
+    jacobian,
+    patterns,
+    seen,
+    spread,
+)  # fmt: skip
+
+
+class Tangents(NamedTuple):
+    """Which multiplier each tangent moves: d m[term] / d theta[tangent] = slope; dC (n, p) for the capacities."""
+
+    tangent: Ints
+    term: Ints
+    slope: Floats
+    dC: Floats
+
+
+@inner
+def _moved(T, S, stage, a, q, h, out):
+    """out -= d m times what a stage takes out, for every multiplier a tangent moves."""
+    for i in range(S.term.size):
+        e, j, slope = S.term[i], S.tangent[i], S.slope[i]
+        for s in range(T.start[e, ROWS], T.start[e + 1, ROWS]):
+            out[T.row[s], j] -= slope * taken(T, e, s, stage, a, q, h)
+
+
+@inner
+def _earlier(C, S, c, U, dU, out):
+    """out += c d(C U), with C moving too."""
+    for i in range(C.size):
+        axpy(c * C[i], dU[i], out[i])
+        axpy(c * U[i], S.dC[i], out[i])
+
+
+@inner
+def _solved(q, out):
+    """out = W^-1 out."""
+    if 3 * out[0].size < len(out):  # an inverse would cost more than it saves
+        solve_many(q.W, q.pivot, out)
+        return
+    product(q.X, out, q.factors, 0, q.R[3])
+    for i in range(len(out)):
+        copy(q.R[3, i], out[i])
+
+
+@inner
+def _drawn(q, c, keep, out):
+    """out = -c G D, or that added to out."""
+    for i in range(len(q.G)):
+        for j in range(len(q.G)):
+            q.M[i, j] = -c * q.G[i, j]
+    product(q.M, q.D, q.factors, keep, out)
+
+
+@inner
+def _rosenbrock(T, S, K0, C, h, curved, a, q):
+    """Move the tangents q.D over a step whose stages are restored and whose matrix is factored."""
+    n, gh = C.size, GAMMA * h
+    if curved:
+        seen(T, q.D, q.V)
+    for stage in range(3):
+        clear(q.R[stage])
+        if curved:
+            bend(T, q.f[0], q.df, slope_of(stage) * h, a.tau[0], a.v[0], a.vw[stage], gh, q.V, q.R[stage])
+        _moved(T, S, stage, a, q, h, q.R[stage])
+        for i in range(n):
+            axpy(-a.w[stage, i], S.dC[i], q.R[stage, i])
+    _drawn(q, gh, 1, q.R[0])
+    _solved(q, q.R[0])
+    for i in range(n):
+        axpy(1.0 / GAMMA, q.R[0, i], q.D[i])
+    if curved:
+        jacobian(T, K0, q.f[1], a.tau[1], a.v[1], q.G)
+    _drawn(q, gh, 0, q.R[3])
+    for stage in range(1, 3):
+        for i in range(n):
+            axpy(1.0, q.R[3, i], q.R[stage, i])
+    for stage in range(1, 3):
+        _earlier(C, S, GAMMA * (C21 if stage == 1 else C31), a.w[0], q.R[0], q.R[stage])
+        if stage == 2:
+            _earlier(C, S, GAMMA * C32, a.w[1], q.R[1], q.R[stage])
+        _solved(q, q.R[stage])
+    for i in range(n):
+        axpy(1.0, q.R[2, i], q.D[i])
+
+
+@inner
+def _euler(T, S, K0, C, h, x0, U, a, q):
+    """Move the tangents over a step of implicit Euler with the coefficients of its start."""
+    n = C.size
+    for i in range(n):
+        a.z[1, i], a.w[0, i] = x0[i], U[0, i]
+    for i in range(n, a.w[0].size):
+        a.w[0, i] = 0.0
+    flow(T, K0, a.z[1], q.f[1], a.tau[1], a.v[1], q.F[1])
+    patterns(T, a.w[0], a.vw[0])
+    conductances(T, K0, q.f[1], a.tau[1], q.G)
+    shifted(q.G, h, C, q.W)
+    lu(q.W, q.pivot)
+    jacobian(T, K0, q.f[1], a.tau[1], a.v[1], q.G)
+    clear(q.H)
+    for e in range(T.m.size):
+        if T.kind[e, DYNAMIC] and T.kind[e, STIFF] and T.kind[e, BENDS] and T.m[e] != 0.0:
+            c = T.m[e] * q.f[1, e]
+            spread(T, e, 0.0, a.vw[0], c * a.tau[1, e, 1], c * a.tau[1, e, 2], q.H)
+    for i in range(n):
+        for j in range(n):
+            q.M[i, j] = -h * (q.G[i, j] + q.H[i, j])
+    product(q.M, q.D, q.factors, 0, q.R[0])
+    for i in range(S.term.size):
+        e, j, c = S.term[i], S.tangent[i], h * S.slope[i]
+        c *= q.f[1, e] * a.tau[1, e, 0]
+        for s in range(T.start[e, ROWS], T.start[e + 1, ROWS]):
+            q.R[0, T.row[s], j] -= c * (a.v[1, s] + a.vw[0, s])
+    for i in range(n):
+        axpy(-a.w[0, i], S.dC[i], q.R[0, i])
+    solve_many(q.W, q.pivot, q.R[0])
+    for i in range(n):
+        axpy(1.0, q.R[0, i], q.D[i])
+
+
+@pasted
+def _outputs(R, D, dy):
+    clear(dy)
+    for r in range(len(dy)):
+        for i in range(R.start[r], R.start[r + 1]):
+            if R.at[i] < len(D):
+                axpy(R.weight[i], D[R.at[i]], dy[r])
+
+
+@inner
+def _printed(Q, R, knot, until, D, dy):
+    """The tangents of the outputs at knots up to, not including, `until`; that knot."""
+    while knot < until:
+        if Q.sample[knot] >= 0:
+            _outputs(R, D, dy[Q.sample[knot]])
+        knot += 1
+    return knot
+
+
+@entry
+def differentiate(Q, C, K0, T, S, R, curved, X, steps, knot, until, a, q, dy):
+    """dy (nt, nr, p): how the outputs of a run answer to what S moves; filled here from `knot` to before `until`.
+
+    curved : whether any dynamic term touches the matrix
+    X, steps : the trace of the run and how many steps it holds;  all else as for the kernel
+    a, q : the tangents of the states start at q.D and are left there at the end
+    """
+    last = -1.0
+    for k in range(steps):
+        j, h = X.knot[k], X.h[k]
+        knot = _printed(Q, R, knot, j, q.D, dy)
+        for i in range(a.z[0].size - 1):
+            a.z[0, i] = X.x[k, i]
+        forced(Q, j, X.start[k], X.share[k], a, q)
+        if X.kind[k] == EULER:
+            _euler(T, S, K0, C, h, X.x[k], X.U[k], a, q)
+            last = -1.0
+        else:
+            restored(T, K0, X.x[k], X.U[k], h, a, q)
+            if Q.renew[j] == 2 or (Q.renew[j] == 1 and X.start[k] == 0.0) or h != last:
+                jacobian(T, K0, q.f[0], a.tau[0], a.v[0], q.G)
+                shifted(q.G, GAMMA * h, C, q.W)
+                lu(q.W, q.pivot)
+                if 3 * q.D[0].size >= C.size:
+                    inverse(q.W, q.pivot, q.X)
+            last = h
+            _rosenbrock(T, S, K0, C, h, curved, a, q)
+        if X.share[k] == 1.0:
+            knot = _printed(Q, R, knot, j + 1, q.D, dy)
+    _printed(Q, R, knot, until, q.D, dy)

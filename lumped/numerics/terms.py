@@ -1,0 +1,271 @@
+"""Terms of a network as the compiled kernel follows them, and their temperature laws.
+
+Every link and source is a *term*: it takes m c(t, T) P z+ out of the states, z+ = [x; u; 1]; a source has its
+pattern in the last column, with minus signs.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.numerics.dense import axpy
+from lumped.numerics.jit import inner, pasted
+from lumped.transfer.laws import FILMS, FIRST_C, STEP_K
+
+SIGMA = 5.670374419e-8
+ZERO_C = 273.15
+SMOOTH = 0.01  # K: |dT| ** p is smoothed below this difference, where its derivative would be unbounded
+CONSTANT, POWER, RADIATION, LINEAR, TABLE, FILM = range(6)
+ENTRIES, ROWS, POINTS = range(3)
+CODE, DYNAMIC, STIFF, BENDS, SOURCE = range(5)
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+class Terms(NamedTuple):
+    """The terms the kernel follows one by one, as flat arrays.
+
+    start (ne + 1, 3) : where each term begins: ENTRIES in (to, at, weight), ROWS in row, POINTS in point
+    to, at, weight : v[to] += weight z+[at] makes v = [P z+ of all terms; then hot and cold of each in turn]
+    row (nv,) : the state each row of P takes from
+    kind (ne, 5) : CODE of the temperature law; DYNAMIC: assembled every step, else it stands in the constant matrix;
+        STIFF: touches the matrix; BENDS: its law depends on temperature; SOURCE: puts heat in
+    par (ne, 2), point (np, 2) : of the temperature law: its numbers, its table (x, y)
+    m : multipliers
+    """
+
+    start: Ints
+    to: Ints
+    at: Ints
+    weight: Floats
+    row: Ints
+    kind: Ints
+    par: Floats
+    point: Floats
+    m: Floats
+
+
+class Forcing(NamedTuple):
+    """What drives a network from knot to knot: between two of them input factors are parabolas, boundaries are linear.
+
+    time (nk,) s; u (nk, nb) boundaries; factor (nk, ne) without multipliers
+    bulge (nk, ne) : how far the factor is above the mean of both ends in the middle of the interval that ends there
+    renew (nk,) : the matrix over that interval is as before (0), other than before (1), varies within it (2)
+    sample (nk,) : which time of the record it is, -1 for none
+    """
+
+    time: Floats
+    u: Floats
+    factor: Floats
+    bulge: Floats
+    renew: Ints
+    sample: Ints
+
+
+@pasted
+def _segment(points, start, end, at):
+    """Index k of the piece of a table that holds `at`: x[k] <= at < x[k + 1]."""
+    while end - start > 1:
+        middle = (start + end) // 2
+        if points[middle, 0] <= at:
+            start = middle
+        else:
+            end = middle
+    return start
+
+
+@pasted
+def _tabulated(points, first, last, d, out):
+    """Piecewise linear in |d| between two indices, flat outside."""
+    at = abs(d)
+    out[1] = 0.0
+    if at >= points[last, 0]:
+        out[0] = points[last, 1]
+    elif at <= points[first, 0]:
+        out[0] = points[first, 1]
+    else:
+        k = _segment(points, first, last, at)
+        slope = (points[k + 1, 1] - points[k, 1]) / (points[k + 1, 0] - points[k, 0])
+        out[0] = points[k, 1] + slope * (at - points[k, 0])
+        out[1] = slope if d >= 0.0 else -slope
+    out[2] = -out[1]
+
+
+@pasted
+def _filmed(points, first, nd, hot, cold, out):
+    """Bilinear in |hot - cold| and the film temperature; nd differences at each of the film temperatures."""
+    side, at = (1.0 if hot >= cold else -1.0), 0.5 * (hot + cold)
+    d = min(abs(hot - cold), points[first + nd - 1, 0])
+    place = min(max((at - FIRST_C) / STEP_K, 0.0), FILMS - 1.0)
+    j = min(int(place), FILMS - 2)
+    k = _segment(points, first, first + nd - 1, d)
+    low, high = k + j * nd, k + (j + 1) * nd
+    wide = points[k + 1, 0] - points[k, 0]
+    cool = (points[low + 1, 1] - points[low, 1]) / wide
+    warm = (points[high + 1, 1] - points[high, 1]) / wide
+    one = points[low, 1] + cool * (d - points[k, 0])
+    two = points[high, 1] + warm * (d - points[k, 0])
+    share = place - j
+    by_film = (two - one) / STEP_K if 0.0 < place < FILMS - 1.0 else 0.0
+    by_d, both = cool + share * (warm - cool), (warm - cool) / STEP_K
+    if abs(hot - cold) >= points[first + nd - 1, 0]:
+        by_d, both = 0.0, 0.0
+    out[0] = one + share * (two - one)
+    out[1] = side * by_d + 0.5 * by_film
+    out[2] = -side * by_d + 0.5 * by_film
+    out[3] = side * both
+    out[5] = -out[3]
+
+
+@pasted
+def law(code, a, b, hot, cold, out):
+    """Temperature law: value, its derivatives by hot and cold, and the second ones hh, hc, cc, into out (6,)."""
+    if code == POWER:
+        d = hot - cold
+        s = d * d + SMOOTH * SMOOTH
+        out[0] = s ** (0.5 * a)
+        out[1] = a * out[0] / s * d
+        out[2] = -out[1]
+        out[3] = a * out[0] / s * (1.0 + (a - 2.0) * d * d / s)
+        out[4] = -out[3]
+        out[5] = out[3]
+    elif code == RADIATION:
+        h, c = hot + ZERO_C, cold + ZERO_C
+        out[0] = SIGMA * (h * h + c * c) * (h + c)
+        out[1] = SIGMA * (3.0 * h * h + 2.0 * h * c + c * c)
+        out[2] = SIGMA * (3.0 * c * c + 2.0 * h * c + h * h)
+        out[3] = SIGMA * (6.0 * h + 2.0 * c)
+        out[4] = 2.0 * SIGMA * (h + c)
+        out[5] = SIGMA * (6.0 * c + 2.0 * h)
+    elif code == LINEAR:
+        out[0] = 1.0 + a * (hot - b)
+        out[1] = a
+
+
+@inner
+def clear(A):
+    for i in range(len(A)):
+        for j in range(A[0].size):
+            A[i, j] = 0.0
+
+
+@inner
+def patterns(T, z, out):
+    """Rows of all terms at z+, and the two temperatures of their laws."""
+    for s in range(out.size):
+        out[s] = 0.0
+    for i in range(T.at.size):
+        out[T.to[i]] += T.weight[i] * z[T.at[i]]
+
+
+@pasted
+def _evaluate(T, v, tau):
+    """Temperature laws of all terms: tau (ne, 6) = value, d/dhot, d/dcold, hh, hc, cc."""
+    for e in range(T.m.size):
+        if T.kind[e, BENDS]:
+            hot, cold = v[T.row.size + 2 * e], v[T.row.size + 2 * e + 1]
+            if T.kind[e, CODE] == TABLE:
+                _tabulated(T.point, T.start[e, POINTS], T.start[e + 1, POINTS] - 1, hot - cold, tau[e])
+            elif T.kind[e, CODE] == FILM:
+                _filmed(T.point, T.start[e, POINTS], int(T.par[e, 0]), hot, cold, tau[e])
+            else:
+                law(T.kind[e, CODE], T.par[e, 0], T.par[e, 1], hot, cold, tau[e])
+
+
+@inner
+def flow(T, K0, z, f, tau, v, out):
+    """out = F = -K0 z - sum of the dynamic terms at z, whose tau and v = P z are left; f (ne,) input factors."""
+    patterns(T, z, v)
+    _evaluate(T, v, tau)
+    for i in range(out.size):
+        acc = 0.0
+        for j in range(z.size):
+            acc += K0[i, j] * z[j]
+        out[i] = -acc
+    for e in range(T.m.size):
+        if T.kind[e, DYNAMIC] and T.m[e] != 0.0:
+            c = T.m[e] * f[e] * tau[e, 0]
+            for s in range(T.start[e, ROWS], T.start[e + 1, ROWS]):
+                out[T.row[s]] -= c * v[s]
+
+
+@inner
+def spread(T, e, c, v, by_hot, by_cold, A):
+    """A += c P + v (by_hot hot + by_cold cold)' on the states, for term e."""
+    first = T.row.size + 2 * e
+    for i in range(T.start[e, ENTRIES], T.start[e + 1, ENTRIES]):
+        if T.at[i] < len(A):
+            if T.to[i] < first:
+                A[T.row[T.to[i]], T.at[i]] += c * T.weight[i]
+            else:
+                by = T.weight[i] * (by_hot if T.to[i] == first else by_cold)
+                for s in range(T.start[e, ROWS], T.start[e + 1, ROWS]):
+                    A[T.row[s], T.at[i]] += v[s] * by
+
+
+@inner
+def jacobian(T, K0, f, tau, v, G):
+    """G = -dF/dx (n, n)."""
+    for i in range(len(G)):
+        for j in range(len(G)):
+            G[i, j] = K0[i, j]
+    for e in range(T.m.size):
+        if T.kind[e, DYNAMIC] and T.kind[e, STIFF] and T.m[e] != 0.0:
+            mf = T.m[e] * f[e]
+            spread(T, e, mf * tau[e, 0], v, mf * tau[e, 1], mf * tau[e, 2], G)
+
+
+@inner
+def conductances(T, K0, f, tau, K):
+    """K (n, n): every term at its coefficient, without how that turns with temperature."""
+    for i in range(len(K)):
+        for j in range(len(K)):
+            K[i, j] = K0[i, j]
+    for e in range(T.m.size):
+        if T.kind[e, DYNAMIC] and T.kind[e, STIFF] and T.m[e] != 0.0:
+            c = T.m[e] * f[e] * tau[e, 0]
+            for i in range(T.start[e, ENTRIES], T.start[e + 1, ENTRIES]):
+                if T.at[i] < len(K) and T.to[i] < T.row.size:
+                    K[T.row[T.to[i]], T.at[i]] += c * T.weight[i]
+
+
+@inner
+def directional(e, f, df, tau, v_dot, rows):
+    """d/ds of the coefficient c (without m) of term e along v_dot, and along time with df = df/dt."""
+    turn = tau[e, 1] * v_dot[rows + 2 * e] + tau[e, 2] * v_dot[rows + 2 * e + 1]
+    return f * turn + df * tau[e, 0]
+
+
+@inner
+def seen(T, D, V):
+    """V = P D of all dynamic terms that touch the matrix, then what their laws see: rows of v, a column per tangent."""
+    clear(V)
+    for e in range(T.m.size):
+        if T.kind[e, DYNAMIC] and T.kind[e, STIFF] and T.m[e] != 0.0:
+            for i in range(T.start[e, ENTRIES], T.start[e + 1, ENTRIES]):
+                if T.at[i] < len(D):
+                    axpy(T.weight[i], D[T.at[i]], V[T.to[i]])
+
+
+@inner
+def bend(T, f, df, late, tau, v, v_dot, scale, V, out):
+    """out -= scale times how G changes along v_dot and over `late` seconds, times D.
+
+    df (ne,) slopes of the factors;  V : of `seen`
+    """
+    rows = T.row.size
+    for e in range(T.m.size):
+        if T.kind[e, DYNAMIC] and T.kind[e, STIFF] and T.m[e] != 0.0:
+            m, slope, hot, cold = scale * T.m[e], late * df[e], rows + 2 * e, rows + 2 * e + 1
+            by_hot = slope * tau[e, 1] + f[e] * (tau[e, 3] * v_dot[hot] + tau[e, 4] * v_dot[cold])
+            by_cold = slope * tau[e, 2] + f[e] * (tau[e, 4] * v_dot[hot] + tau[e, 5] * v_dot[cold])
+            turn = directional(e, f[e], slope, tau, v_dot, rows)
+            for s in range(T.start[e, ROWS], T.start[e + 1, ROWS]):
+                axpy(-m * turn, V[s], out[T.row[s]])
+                if T.kind[e, BENDS]:
+                    axpy(-m * (by_hot * v[s] + f[e] * tau[e, 1] * v_dot[s]), V[hot], out[T.row[s]])
+                    axpy(-m * (by_cold * v[s] + f[e] * tau[e, 2] * v_dot[s]), V[cold], out[T.row[s]])

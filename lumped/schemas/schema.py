@@ -1,0 +1,141 @@
+"""JSON Schemas of all TOML files: for editors, and for what error messages say a key means.
+
+python -m lumped.schemas.schema    writes the bounds of bounds.py into all of them, and machine.json from
+                                   the machine families' own parameters
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from lumped.schemas.bounds import bounds
+
+FOLDER = Path(__file__).parent
+FILES = ("network", "case", "sheet", "model", "cycle", "machine")
+Schema = dict[str, Any]
+
+
+@cache
+def schema(name: str) -> Schema:
+    """The schema of one kind of file, one of FILES."""
+    return json.loads((FOLDER / f"{name}.json").read_text(encoding="utf-8"))
+
+
+@cache
+def meanings() -> dict[str, str]:
+    """Key -> what it is, for keys that mean the same wherever they stand."""
+    found: dict[str, set[str]] = {}
+    for name in FILES:
+        for key, text in _described(schema(name)):
+            found.setdefault(key, set()).add(text)
+    return {key: next(iter(texts)) for key, texts in found.items() if len(texts) == 1}
+
+
+def _described(node: Any) -> Iterator[tuple[str, str]]:
+    if isinstance(node, Mapping):
+        for key, inner in node.get("properties", {}).items():
+            if isinstance(inner, Mapping) and "description" in inner:
+                yield key, inner["description"]
+        for inner in node.values():
+            yield from _described(inner)
+    elif isinstance(node, list):
+        for inner in node:
+            yield from _described(inner)
+
+
+def meaning(key: str) -> str:
+    """' (what the key is)' for an error message, or nothing."""
+    text = meanings().get(key)
+    return f" ({text})" if text else ""
+
+
+def machine_schema() -> Schema:
+    """The machine file: header and geometry from the families' parameters, the other sections as tables."""
+    from geom.description.machine import SECTIONS
+    from geom.families import families
+
+    groups: dict[str, dict[str, Schema]] = {}
+    for family in families().values():
+        for p in family.parameters:
+            known = groups.setdefault(p.group, {})
+            for name, own in _keys(p).items():
+                known[name] = _widest(known[name], own) if name in known else own
+    geometry = {g: {"type": "object", "properties": keys, "additionalProperties": False} for g, keys in groups.items()}
+    tables: dict[str, Schema] = {s: {"type": "object"} for s in SECTIONS}
+    header = {"family": {"description": "family of machines", "enum": list(families())}}
+    tables["machine"] = {"type": "object", "properties": header, "required": ["family"]}
+    tables["geometry"] = {"type": "object", "properties": geometry, "additionalProperties": False}
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "machine.toml: a machine by its dimensions", "type": "object", "properties": tables,
+        "required": ["machine"], "additionalProperties": False,
+    }  # fmt: skip
+
+
+def _parameter(p: Any) -> Schema:
+    unit = f" ({p.unit})" if p.unit else ""
+    if p.choices:
+        return {"description": p.doc, "enum": list(p.choices)}
+    kind = "integer" if isinstance(p.default, int) else "number"
+    return {"description": f"{p.doc}{unit}", "type": kind, "minimum": 0 if p.off else p.low, "maximum": p.high}
+
+
+def _keys(p: Any) -> dict[str, Schema]:
+    """Of a length also its ratio."""
+    if p.of is None:
+        return {p.name: _parameter(p)}
+    low = 0 if p.off else p.of.low
+    ratio = {"description": f"{p.doc}, over {p.of.name}", "type": "number", "minimum": low, "maximum": p.of.high}
+    return {p.name: _parameter(p), p.ratio_name: ratio}
+
+
+def _widest(a: Schema, b: Schema) -> Schema:
+    """One key that two families declare: what either allows."""
+    if "enum" in a or "enum" in b:
+        return {**a, "enum": sorted({*a.get("enum", ()), *b.get("enum", ())})}
+    return {**a, "minimum": min(a["minimum"], b["minimum"]), "maximum": max(a["maximum"], b["maximum"])}
+
+
+def bounded(node: Any, key: str = "", table: str = "") -> Any:
+    """A schema with the bounds of bounds.py on every number; `key` is the property it describes, in `table`."""
+    if isinstance(node, list):
+        return [bounded(inner, key, table) for inner in node]
+    if not isinstance(node, Mapping):
+        return node
+    if node.get("type") in ("number", "integer"):
+        allowed = bounds(key, table)
+        kind = "integer" if allowed.whole else "number"
+        return {**node, "type": kind, "minimum": allowed.low, "maximum": allowed.high}
+    out = {name: bounded(inner, key, table) for name, inner in node.items() if name not in INNER}
+    if "properties" in node:
+        out["properties"] = {name: bounded(inner, name, key) for name, inner in node["properties"].items()}
+    if "additionalProperties" in node:  # under names of the user's own: shares, constants, values
+        out["additionalProperties"] = bounded(node["additionalProperties"], *_owned(key, table))
+    return {name: out[name] for name in node}
+
+
+INNER = ("properties", "additionalProperties")
+SHARED = ("at", "of", "wall", "winding", "magnet")  # tables of name -> share of one whole
+
+
+def _owned(key: str, table: str) -> tuple[str, str]:
+    return ("shares" if key in SHARED else key), table
+
+
+def wanted() -> Iterator[tuple[Path, Schema]]:
+    """Every schema file and what it should hold."""
+    for name in FILES:
+        yield FOLDER / f"{name}.json", machine_schema() if name == "machine" else bounded(schema(name))
+
+
+def write_schemas() -> None:
+    for path, document in wanted():
+        path.write_text(json.dumps(document, indent=1) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    write_schemas()

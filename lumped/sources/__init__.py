@@ -1,0 +1,1 @@
+"""Losses as heat sources of a network."""

@@ -1,0 +1,55 @@
+"""Losses from a map over speed and torque."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.transfer.laws import CONSTANT, Array, Inputs, Law, TemperatureLaw
+
+
+@dataclass(frozen=True)
+class MapLoss(Law):
+    """A measured or computed map (W) over |speed| and |torque|, bilinear; warns outside and takes the nearest edge.
+
+    at_speed (ns,) and at_torque (nt,) rise; watts (ns, nt), row by row; speed, torque: names of the inputs.
+    """
+
+    at_speed: tuple[float, ...]
+    at_torque: tuple[float, ...]
+    watts: tuple[tuple[float, ...], ...]
+    speed: str = "speed_rpm"
+    torque: str = "torque_Nm"
+    temperature: TemperatureLaw = CONSTANT
+
+    @property
+    def reads(self) -> tuple[str, ...]:  # type: ignore[override]
+        return (self.speed, self.torque)
+
+    def factor(self, inputs: Inputs) -> Array:
+        n = self._within(self.speed, inputs, self.at_speed)
+        T = self._within(self.torque, inputs, self.at_torque)
+        i, a = _cell(n, self.at_speed)
+        j, b = _cell(T, self.at_torque)
+        P = np.asarray(self.watts)
+        low, high = (1 - b) * P[i, j] + b * P[i, j + 1], (1 - b) * P[i + 1, j] + b * P[i + 1, j + 1]
+        return (1 - a) * low + a * high
+
+    def _within(self, name: str, inputs: Inputs, at: tuple[float, ...]) -> Array:
+        from lumped.correlations.info import RangeWarning
+
+        x = np.abs(np.asarray(inputs[name], float))
+        if x.size and not at[0] <= x.min() <= x.max() <= at[-1]:
+            said = f"loss map: {name} = {x.min():.4g} to {x.max():.4g} outside {at[0]:g} to {at[-1]:g}"
+            warnings.warn(said, RangeWarning, stacklevel=4)
+        return np.clip(x, at[0], at[-1])
+
+
+def _cell(x: Array, at: tuple[float, ...]) -> tuple[NDArray[np.int64], Array]:
+    """Index of the grid cell that holds x, and the share of the way through it."""
+    grid = np.asarray(at)
+    k = np.clip(np.searchsorted(grid, x, side="right") - 1, 0, grid.size - 2)
+    return k, (x - grid[k]) / (grid[k + 1] - grid[k])

@@ -1,0 +1,182 @@
+"""Losses as laws: an input factor (W) times, for resistance, 1 + alpha (T - reference).
+
+What a law declares is what the network injects: the source's weights sum to 1 and nothing is clipped.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from geom.errors import InputError
+from lumped.transfer.laws import CONSTANT, Array, Inputs, Law, Linear, TemperatureLaw
+
+ALPHA_CU = 0.00393  # 1/K at 20 degC, IEC 60028
+
+Power = tuple[str, float, float]
+
+
+def product(inputs: Inputs, terms: tuple[Power, ...]) -> Array | float:
+    """prod |input / at| ** exponent over terms (input, at, exponent)."""
+    out: Array | float = 1.0
+    for name, at, exponent in terms:
+        out = out * np.abs(np.asarray(inputs[name], float) / at) ** exponent
+    return out
+
+
+@dataclass(frozen=True)
+class CopperLoss(Law):
+    """factor * R * sum I^2 * (c0 + c1 f + c2 f^2 + ...) * (1 + alpha (T - reference)) (W).
+
+    resistance (ohm) at reference (degC); currents: inputs (A); factor: 1.5 for peak dq currents and phase resistance,
+    3 for rms phase current, 1 for direct current; ac: coefficients of the resistance factor in f = |speed / speed_at|.
+    The AC share is taken to grow with temperature like the DC resistance, which overstates it by a few percent.
+    Source: Joule; AC factor as a polynomial in frequency: Liu et al. 2024, doi 10.1109/TPEL.2024.3409388.
+    """
+
+    resistance: float
+    currents: tuple[str, ...]
+    factor_: float = 1.0
+    alpha: float = ALPHA_CU
+    reference: float = 20.0
+    ac: tuple[float, ...] = (1.0,)
+    speed: str | None = None
+    speed_at: float = 1.0
+
+    @property
+    def temperature(self) -> TemperatureLaw:  # type: ignore[override]
+        return Linear(self.alpha, self.reference)
+
+    @property
+    def reads(self) -> tuple[str, ...]:  # type: ignore[override]
+        return (*self.currents, *([self.speed] if self.speed else []))
+
+    def factor(self, inputs: Inputs) -> Array | float:
+        squares = sum(np.asarray(inputs[name], float) ** 2 for name in self.currents)
+        return self.factor_ * self.resistance * squares * self.resistance_factor(inputs)
+
+    def resistance_factor(self, inputs: Inputs) -> Array | float:
+        """AC over DC resistance."""
+        if self.speed is None:
+            return self.ac[0]
+        f = np.abs(np.asarray(inputs[self.speed], float) / self.speed_at)
+        out = np.asarray(np.polynomial.polynomial.polyval(f, self.ac), float)
+        if np.any(out < 0.0):
+            raise self._negative(np.ravel(out), np.ravel(f))
+        return out
+
+    def _negative(self, factor: Array, f: Array) -> InputError:
+        worst = int(np.argmin(factor))
+        return InputError(
+            f"the resistance factor is {factor[worst]:.3g} at {self.speed} = {f[worst] * self.speed_at:.4g}",
+            f"copper loss of {', '.join(self.currents)}, ac coefficients {list(self.ac)}",
+            "coefficients that keep c0 + c1 f + c2 f^2 ... above 0: resistance makes heat",
+        )
+
+
+@dataclass(frozen=True)
+class PowerLoss(Law):
+    """sum of watts * prod |input / at| ** exponent (W): friction, windage, stray, magnet, switching, mapped iron loss.
+
+    terms : (watts, ((input, at, exponent), ...))
+    """
+
+    terms: tuple[tuple[float, tuple[Power, ...]], ...]
+    temperature: TemperatureLaw = CONSTANT
+
+    @property
+    def reads(self) -> tuple[str, ...]:  # type: ignore[override]
+        return tuple(dict.fromkeys(name for _, powers in self.terms for name, _, _ in powers))
+
+    def factor(self, inputs: Inputs) -> Array | float:
+        return sum(watts * product(inputs, powers) for watts, powers in self.terms)
+
+
+@dataclass(frozen=True)
+class IronLoss(Law):
+    """(hysteresis f^a + eddy f^2 + excess f^1.5) B^b (W), f = |speed / speed_at|, B = |excitation / excitation_at|.
+
+    hysteresis, eddy, excess : watts at speed_at and excitation_at; frequency_exponent a: of the first, 1 for Bertotti's
+    split (1988, IEEE Trans. Magn. 24, 621), 1.3 to 1.7 when it stands for all (Steinmetz 1892); flux_exponent b: 1.6
+    to 2. excitation: the input that sets the flux, e.g. the current of a series machine, or None. Yoke and teeth are
+    two losses, each with its own watts, exponents and nodes.
+    """
+
+    hysteresis: float
+    eddy: float
+    speed: str
+    speed_at: float
+    excitation: str | None = None
+    excitation_at: float = 1.0
+    flux_exponent: float = 2.0
+    temperature: TemperatureLaw = CONSTANT
+    excess: float = 0.0
+    frequency_exponent: float = 1.0
+
+    @property
+    def reads(self) -> tuple[str, ...]:  # type: ignore[override]
+        return (self.speed, *([self.excitation] if self.excitation else []))
+
+    def factor(self, inputs: Inputs) -> Array | float:
+        f = np.abs(np.asarray(inputs[self.speed], float) / self.speed_at)
+        loss = self.hysteresis * f**self.frequency_exponent + self.eddy * f * f + self.excess * f**1.5
+        if self.excitation is None:
+            return loss
+        return loss * product(inputs, ((self.excitation, self.excitation_at, self.flux_exponent),))
+
+
+@dataclass(frozen=True)
+class BrushLoss(Law):
+    """drop |I| + friction |n / speed_at| (W): drop (V) of both brushes together, about 2 V for carbon.
+
+    Source: IEC 60034-2-1 (brush loss as a fixed voltage drop); friction as Coulomb friction, mu p A v.
+    """
+
+    drop: float
+    current: str
+    friction: float = 0.0
+    speed: str | None = None
+    speed_at: float = 1.0
+
+    @property
+    def reads(self) -> tuple[str, ...]:  # type: ignore[override]
+        return (self.current, *([self.speed] if self.speed else []))
+
+    def factor(self, inputs: Inputs) -> Array | float:
+        loss = self.drop * np.abs(np.asarray(inputs[self.current], float))
+        if self.speed is None:
+            return loss
+        return loss + self.friction * product(inputs, ((self.speed, self.speed_at, 1.0),))
+
+
+@dataclass(frozen=True)
+class RippleLoss(Law):
+    """factor R dI^2 / 12 (W): copper loss of the ripple of a chopper, dI = Vs D (1 - D) / (L f), D = |V| / Vs.
+
+    supply: Vs (V); voltage: input with the mean voltage (V); L (H); frequency (Hz); R (ohm) at reference (degC);
+    factor: resistance at the switching frequency over that of direct current.
+    Source: triangular ripple of a buck converter (Mohan, Undeland, Robbins 2003, ch. 7).
+    """
+
+    supply: float
+    voltage: str
+    L: float
+    frequency: float
+    R: float
+    factor_: float = 1.0
+    alpha: float = ALPHA_CU
+    reference: float = 20.0
+
+    @property
+    def temperature(self) -> TemperatureLaw:  # type: ignore[override]
+        return Linear(self.alpha, self.reference)
+
+    @property
+    def reads(self) -> tuple[str, ...]:  # type: ignore[override]
+        return (self.voltage,)
+
+    def factor(self, inputs: Inputs) -> Array | float:
+        D = np.minimum(np.abs(np.asarray(inputs[self.voltage], float)) / self.supply, 1.0)
+        ripple = self.supply * D * (1.0 - D) / (self.L * self.frequency)
+        return self.factor_ * self.R * ripple**2 / 12.0

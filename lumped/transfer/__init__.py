@@ -1,0 +1,1 @@
+"""Coefficient laws of links, coolants and their circuits."""

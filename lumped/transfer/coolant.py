@@ -1,0 +1,41 @@
+"""Coolants by name: water, glycol mixtures with a stated share, oil, air."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+from geom.errors import InputError
+from lumped.transfer.properties import Fluid, air, ethylene_glycol, mass_fraction_of, oil, propylene_glycol, water
+
+Coolant = Callable[[float], Fluid]
+
+
+def glycol(kind: str, mass_percent: float | None = None, volume_percent: float | None = None) -> Coolant:
+    """Water with "ethylene" or "propylene" glycol; its share either by mass or by volume of the parts before mixing.
+
+    Motor data sheets often mean volume and property tables mass: 50 % by volume is 53 % by mass.
+    """
+    if (mass_percent is None) == (volume_percent is None):
+        raise InputError("share of glycol not stated once", f"{kind} glycol", "mass_percent or volume_percent")
+    share = mass_percent / 100 if mass_percent is not None else mass_fraction_of((volume_percent or 0.0) / 100, kind)
+    if not 0.0 <= share <= 0.6:
+        raise InputError(f"{100 * share:.3g} % by mass", f"{kind} glycol", "0 to 60 % by mass")
+    mixture = {"ethylene": ethylene_glycol, "propylene": propylene_glycol}[kind]
+    return partial(mixture, mass_fraction=share)
+
+
+PLAIN: dict[str, Coolant] = {"water": water, "oil": oil, "air": air}
+MIXED = {"ethylene glycol": "ethylene", "propylene glycol": "propylene"}
+NAMES = (*PLAIN, *MIXED)
+
+
+def coolant(
+    name: str, mass_percent: float | None = None, volume_percent: float | None = None, altitude_m: float = 0.0
+) -> Coolant:
+    """T (degC) -> Fluid, by name; a share for glycols only, an altitude for air only."""
+    if name in MIXED:
+        return glycol(MIXED[name], mass_percent, volume_percent)
+    if mass_percent is not None or volume_percent is not None:
+        raise InputError("a share was given", name, f"a share only for {' and '.join(MIXED)}")
+    return partial(air, altitude_m=altitude_m) if name == "air" else PLAIN[name]

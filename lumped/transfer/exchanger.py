@@ -1,0 +1,129 @@
+"""Heat exchangers by effectiveness and number of transfer units, as laws of a network."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from lumped.transfer.laws import CONSTANT, Array, Inputs, Law, TemperatureLaw
+
+Effectiveness = Callable[[Array, Array], Array]
+
+
+def counterflow(N: Array, ratio: Array) -> Array:
+    """(1 - exp(-N (1 - r))) / (1 - r exp(-N (1 - r))); N / (1 + N) at r = 1. Kays and London 1964."""
+    even = np.abs(1.0 - ratio) < 1e-6
+    gap = np.where(even, 1.0, 1.0 - ratio)
+    e = np.exp(-N * gap)
+    return np.where(even, N / (1.0 + N), (1.0 - e) / (1.0 - ratio * e))
+
+
+def parallel_flow(N: Array, ratio: Array) -> Array:
+    """(1 - exp(-N (1 + r))) / (1 + r). Kays and London 1964."""
+    return -np.expm1(-N * (1.0 + ratio)) / (1.0 + ratio)
+
+
+def crossflow(N: Array, ratio: Array) -> Array:
+    """Both fluids unmixed, as in a radiator: 1 - exp((exp(-r N^0.78) - 1) N^0.22 / r). Incropera et al. 2007, 11.32."""
+    r = np.maximum(ratio, 1e-12)
+    return -np.expm1(np.expm1(-r * N**0.78) * N**0.22 / r)
+
+
+ARRANGEMENTS: dict[str, Effectiveness] = {
+    "crossflow": crossflow, "counterflow": counterflow, "parallel flow": parallel_flow,
+}  # fmt: skip
+BACKWARDS: dict[Effectiveness, Effectiveness] = {counterflow: parallel_flow, parallel_flow: counterflow}
+
+
+@dataclass(frozen=True)
+class Flow:
+    """Heat capacity rate (W/K): `rate` per unit of an input, or `rate` itself where there is no input."""
+
+    rate: float
+    of: str | None = None
+
+    def at(self, inputs: Inputs) -> Array:
+        return self.rate * (np.abs(np.asarray(inputs[self.of], float)) if self.of else np.ones(1))
+
+    @property
+    def reads(self) -> tuple[str, ...]:
+        return (self.of,) if self.of else ()
+
+
+@dataclass(frozen=True)
+class Rate(Law):
+    """m cp of a stream (W/K)."""
+
+    flow: Flow
+
+    @property
+    def reads(self) -> tuple[str, ...]:  # type: ignore[override]
+        return self.flow.reads
+
+    def factor(self, inputs: Inputs) -> Array | float:
+        return _single(self.flow.at(inputs))
+
+
+@dataclass(frozen=True)
+class Exchanger(Law):
+    """effectiveness * least rate (W/K): heat over the difference of both inlet temperatures.
+
+    UA (W/K); hot, cold: the rates of both streams; effectiveness of (N = UA / least rate, least / largest rate).
+    """
+
+    UA: float
+    hot: Flow
+    cold: Flow
+    effectiveness: Effectiveness = crossflow
+
+    @property
+    def reads(self) -> tuple[str, ...]:  # type: ignore[override]
+        return (*self.hot.reads, *self.cold.reads)
+
+    def factor(self, inputs: Inputs) -> Array | float:
+        a, b = np.broadcast_arrays(self.hot.at(inputs), self.cold.at(inputs))
+        least, most = np.minimum(a, b), np.maximum(a, b)
+        moving = least > 0.0
+        N = self.UA / np.where(moving, least, 1.0)
+        ratio = np.where(moving, least / np.where(most > 0.0, most, 1.0), 0.0)
+        return _single(np.where(moving, self.effectiveness(N, ratio) * least, 0.0))
+
+
+@dataclass(frozen=True)
+class CellFilm(Law):
+    """From a wall to one upwind cell of a stream (W/K): exact for the exponential along a wall of one temperature.
+
+    A cell's node is what leaves it, so the conductance m cp (exp(N) - 1), N = h A / (m cp), gives the cell what a
+    wall of even temperature gives the flow. Where a cell has N > 1 (little flow) it is h A (e - 1).
+    h : film (W/m2/K) over the flow `at` (unit of the input, or of `flow` without one), piecewise linear
+    area : this wall's share (m2) of the cell;  whole : all its walls (m2)
+    temperature : how the conductance changes with the coolant's temperature, 1 where h holds
+    """
+
+    at: tuple[float, ...]
+    h: tuple[float, ...]
+    stream: Flow
+    area: float
+    whole: float
+    temperature: TemperatureLaw = CONSTANT
+
+    @property
+    def reads(self) -> tuple[str, ...]:  # type: ignore[override]
+        return self.stream.reads
+
+    def factor(self, inputs: Inputs) -> Array | float:
+        rate = self.stream.at(inputs)
+        return self.conductance(rate, np.interp(rate / self.stream.rate, self.at, self.h))
+
+    def conductance(self, rate: Array, h: Array | float) -> Array | float:
+        """W/K at a heat capacity rate (W/K) and a film (W/m2/K)."""
+        N = h * self.whole / np.maximum(rate, 1e-300)
+        stretch = np.where(N < 1.0, np.expm1(np.minimum(N, 1.0)) / np.maximum(np.minimum(N, 1.0), 1e-300), np.e - 1.0)
+        return _single(h * self.area * stretch)
+
+
+def _single(values: Array) -> Array | float:
+    """A number where nothing varies."""
+    return float(values[0]) if values.shape == (1,) else values

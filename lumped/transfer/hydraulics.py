@@ -1,0 +1,143 @@
+"""Pressure along coolant paths, and the power that pumps and fans take."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+from lumped.correlations.ducts import LAMINAR, TURBULENT
+from lumped.transfer.properties import Fluid
+
+ROUGHNESS = 2.5e-6  # m, drawn or die-cast channel
+
+
+class Passage(Protocol):
+    """What pressure needs to know: section of all parallel ones (m2), hydraulic diameter of each, length (m),
+    bends of 90 degrees, diameter of a helix (m) or 0."""
+
+    @property
+    def section(self) -> float: ...
+    @property
+    def diameter(self) -> float: ...
+    @property
+    def length(self) -> float: ...
+    @property
+    def bends(self) -> int: ...
+    @property
+    def coil(self) -> float: ...
+
+
+@dataclass(frozen=True)
+class Duct:
+    """Rectangular channel: width, height, length (m); bends of 90 degrees; coil: diameter of a helix (m) or 0.
+
+    parallel : equal channels side by side that share the flow
+    """
+
+    width: float
+    height: float
+    length: float
+    bends: int = 0
+    coil: float = 0.0
+    parallel: int = 1
+
+    @property
+    def diameter(self) -> float:
+        """Hydraulic diameter (m)."""
+        return 2 * self.width * self.height / (self.width + self.height)
+
+    @property
+    def section(self) -> float:
+        """Of all parallel channels (m2)."""
+        return self.parallel * self.width * self.height
+
+    @property
+    def volume(self) -> float:
+        """m3"""
+        return self.section * self.length
+
+    @property
+    def wall(self) -> float:
+        """Wetted area on all four sides (m2)."""
+        return 2 * self.parallel * (self.width + self.height) * self.length
+
+
+def friction(Re: float, relative_roughness: float = 0.0) -> float:
+    """Darcy factor: 64/Re up to Re 2300, Clamond's solution of Colebrook's equation above 4000, linear between.
+
+    Source: Colebrook 1939, solved by Clamond 2009 (fluids); the bridge is the one of the film (Gnielinski 2013).
+    """
+    import fluids
+
+    share = min(max((Re - LAMINAR) / (TURBULENT - LAMINAR), 0.0), 1.0)
+    out = (1.0 - share) * fluids.friction.friction_laminar(max(min(Re, LAMINAR), 1e-12))
+    return out + (share * fluids.friction.Clamond(max(Re, TURBULENT), relative_roughness) if share > 0.0 else 0.0)
+
+
+def helical_friction(Re: float, diameter: float, coil: float, relative_roughness: float = 0.0) -> float:
+    """Darcy factor of a coiled channel, by Schmidt 1967 (fluids): laminar, and turbulent above his critical Re."""
+    import fluids
+
+    critical = fluids.helical_transition_Re_Schmidt(diameter, coil)
+    if critical >= Re:
+        return fluids.friction.helical_laminar_fd_Schmidt(max(Re, 1e-12), diameter, coil)
+    top = 1.2 * critical  # his branches do not meet; they are bridged over a fifth of the critical Re
+    share = min((Re - critical) / (top - critical), 1.0)
+    low = fluids.friction.helical_laminar_fd_Schmidt(critical, diameter, coil)
+    high = fluids.friction.helical_turbulent_fd_Schmidt(max(Re, top), diameter, coil, relative_roughness)
+    return (1.0 - share) * low + share * high
+
+
+def pressure_drop(duct: Passage, flow: float, fluid: Fluid, roughness: float = ROUGHNESS) -> float:
+    """Along a duct (Pa), with a sharp entrance, its bends and its exit; flow (m3/s) through all parallel channels."""
+    import fluids
+
+    speed = abs(flow) / duct.section
+    Re = speed * duct.diameter / fluid.nu
+    if Re == 0.0:
+        return 0.0
+    relative = roughness / duct.diameter
+    f = helical_friction(Re, duct.diameter, duct.coil, relative) if duct.coil else friction(Re, relative)
+    bend = fluids.fittings.bend_miter_Miller(Di=duct.diameter, angle=90.0, Re=max(Re, 1e4), roughness=roughness)
+    loss = f * duct.length / duct.diameter + duct.bends * bend + fluids.entrance_sharp() + fluids.exit_normal()
+    return fluids.dP_from_K(loss, fluid.rho, speed)
+
+
+def parallel_shares(branches: Sequence[Sequence[Passage]], flow: float, fluid: Fluid) -> tuple[float, ...]:
+    """How a flow (m3/s) splits between branches of ducts in series so that all drop the same pressure."""
+    from scipy.optimize import brentq
+
+    def drop(branch: Sequence[Passage], q: float) -> float:
+        return sum(pressure_drop(duct, q, fluid) for duct in branch)
+
+    def taken(branch: Sequence[Passage], p: float) -> float:
+        return 0.0 if p <= 0.0 else float(brentq(lambda q: drop(branch, q) - p, 0.0, flow, xtol=1e-14, rtol=1e-12))
+
+    top = min(drop(branch, flow) for branch in branches)
+    if len(branches) == 1 or flow == 0.0:
+        return (1.0 / len(branches),) * len(branches)
+    p = float(brentq(lambda p: sum(taken(b, p) for b in branches) - flow, 0.0, top, rtol=1e-12))
+    total = sum(taken(b, p) for b in branches)
+    return tuple(taken(b, p) / total for b in branches)
+
+
+def pumping_power(pressure: float, flow: float, efficiency: float = 0.5) -> float:
+    """Power taken (W): pressure (Pa) times flow (m3/s) over the efficiency of pump or fan with its motor."""
+    return pressure * flow / efficiency
+
+
+def fan_law(speed: float, flow: float, pressure: float, power: float) -> tuple[float, float, float]:
+    """Flow, pressure and power of a fan at `speed` times the speed for which they are given: n, n^2, n^3 (affinity).
+
+    Any units. Range: geometrically the same fan and Re > 1e5 (efficiency unchanged).
+    """
+    s = abs(speed)
+    return flow * s, pressure * s * s, power * s**3
+
+
+def fan_point(shut_off: float, free_flow: float, resistance: float) -> tuple[float, float]:
+    """(flow m3/s, pressure Pa) where p = shut_off (1 - (Q/free_flow)^2) meets p = resistance Q^2 (Pa s2/m6)."""
+    flow = math.sqrt(shut_off / (resistance + shut_off / free_flow**2))
+    return flow, resistance * flow * flow

@@ -1,0 +1,60 @@
+"""Flows that turn round: a stream as one law per direction, or refused where nothing says what comes in from behind."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from geom.errors import InputError
+from lumped.transfer.laws import CLOCK, Array, Inputs, Law
+
+SLACK = 0.02  # of the largest flow: a meter's zero, read as such
+
+
+@dataclass(frozen=True)
+class OneWay(Law):
+    """Another law of a flow whose column must not turn negative: its stream has one direction.
+
+    column : the input that carries the flow;  where, right : what is declared one-way, and what to do about it
+    usual : size of the flow in the column's unit, besides the largest of the record
+    """
+
+    base: Law
+    column: str
+    where: str
+    right: str
+    usual: float = 0.0
+    reads: tuple[str, ...] = field(init=False, default=())
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "reads", self.base.reads)
+
+    def factor(self, inputs: Inputs) -> Array | float:
+        flow = np.ravel(np.asarray(inputs[self.column], float))
+        back = flow < -SLACK * max(self.usual, float(np.abs(flow).max(initial=0.0)))
+        if np.any(back):
+            raise self._backwards(inputs, int(np.argmax(back)), flow)
+        return self.base.factor(inputs)
+
+    def _backwards(self, inputs: Inputs, at: int, flow: Array) -> InputError:
+        time = np.ravel(np.asarray(inputs[CLOCK], float)) if CLOCK in inputs else np.empty(0)
+        when = f"t = {time[at]:.6g} s" if at < time.size else f"sample {at + 1}"
+        return InputError(f"the flow turns round: {self.column} = {flow[at]:.4g} at {when}", self.where, self.right)
+
+
+@dataclass(frozen=True)
+class Direction(Law):
+    """Another law of a flow, in one of its two directions only: `way` +1 as declared, -1 backwards."""
+
+    base: Law
+    column: str
+    way: int
+    reads: tuple[str, ...] = field(init=False, default=())
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "reads", self.base.reads)
+
+    def factor(self, inputs: Inputs) -> Array | float:
+        flow = np.asarray(inputs[self.column], float)
+        return np.asarray(self.base.factor(inputs) * (self.way * flow > 0.0))

@@ -1,0 +1,27 @@
+"""Temperature laws in ordinary NumPy, for what looks at a network from outside the compiled kernel."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from lumped.transfer.laws import FILMS, FIRST_C, STEP_K, FilmTable, Linear, Power, Radiation, Table, TemperatureLaw
+
+SIGMA, ZERO_C = 5.670374419e-8, 273.15
+
+
+def temperature_value(law: TemperatureLaw, hot: float, cold: float) -> float:
+    """The law at two temperatures (degC)."""
+    if isinstance(law, Power):
+        return float(abs(hot - cold) ** law.exponent)
+    if isinstance(law, Radiation):
+        h, c = hot + ZERO_C, cold + ZERO_C
+        return SIGMA * (h * h + c * c) * (h + c)
+    if isinstance(law, Linear):
+        return 1.0 + law.alpha * (hot - law.reference)
+    if isinstance(law, Table):
+        return float(np.interp(abs(hot - cold), law.difference, law.value))
+    if isinstance(law, FilmTable):
+        films = np.reshape(law.value, (FILMS, -1))
+        along = [np.interp(abs(hot - cold), law.difference, row) for row in films]
+        return float(np.interp(0.5 * (hot + cold), FIRST_C + STEP_K * np.arange(FILMS), along))
+    return 1.0

@@ -1,0 +1,51 @@
+"""Accepted events as columns beside the test they held in: tests/NAME.derived.csv, never the recording itself.
+
+The file follows the model: it is written anew after every step, and goes when no effect of the model holds for a while.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Sequence
+from pathlib import Path
+
+from geom.errors import InputError
+from thermoscope.case_folder.files import write_whole
+from thermoscope.case_folder.folder import Folder
+from thermoscope.recordings.formats import stem_of
+from validation.effects import effect
+from validation.effects.during import During
+from validation.effects.gate import event, holds
+
+TIME = "time_s"
+
+
+def write_columns(folder: Folder, effects: Sequence[str]) -> list[Path]:
+    """A column of 0 to 1 for each event of some effects, beside each test it held in."""
+    held = [one.gate for name in effects if isinstance(one := effect(name), During) and one.event]
+    tests, written = {t.name: t for t in folder.case.tests}, []
+    for entry in folder.settings.tests:
+        file, test = entry.file.with_name(f"{stem_of(entry.file)}.derived.csv"), tests[entry.name]
+        own = [gate for gate in dict.fromkeys(held) if (found := event(gate)) and test.name in found.spans]
+        ours(file)
+        if own:
+            text = io.StringIO()
+            rows = csv.writer(text, lineterminator="\n")
+            rows.writerow([TIME, *own])
+            columns = [test.time, *(holds(gate, test) for gate in own)]
+            rows.writerows([f"{x:.10g}" for x in row] for row in zip(*columns, strict=True))
+            written.append(write_whole(file, text.getvalue()))
+        elif file.exists():
+            file.unlink()
+    return written
+
+
+def ours(file: Path) -> None:
+    """A file of that name is one of these, or it stays."""
+    if not file.exists():
+        return
+    with file.open(encoding="utf-8", newline="") as lines:
+        header = next(csv.reader(lines), [])
+    if header[:1] != [TIME] or not all(event(name) for name in header[1:]):
+        raise InputError("is there already and is no column of an event: it stays", str(file), "another name for it")

@@ -1,0 +1,213 @@
+"""A drive cycle, cycles/NAME.toml: what the machine is to do, by columns, by a standard duty, or by a vehicle."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geom.description.toml_file import read_toml
+from geom.errors import InputError
+from lumped.drives.coupled import Drive, pm_drive, series_drive
+from lumped.drives.drive import Controller, SeriesMachine, Vehicle
+from lumped.drives.duty import s1, s2, s3, s6
+from lumped.drives.permanent_magnet import PMMachine
+from lumped.integration.signals import Signals
+from lumped.integration.simulate import Record
+from lumped.model.network import Network
+from lumped.schemas.reader import Table, known
+from thermoscope.recordings.sheet import read_sheet
+from thermoscope.recordings.tables import load_table
+
+Array = NDArray[np.float64]
+WINDING, MAGNET = "winding", "magnet"
+
+
+@dataclass(frozen=True)
+class Cycle:
+    """record : what is known beforehand;  drive : gives the rest from the temperatures of the places it watches"""
+
+    name: str
+    record: Record
+    drive: Drive | None = None
+    watched: Mapping[str, str] = field(default_factory=dict)
+
+
+def find_cycle(case: Path, name: str) -> Path:
+    """A cycle by its file, or by its name in the case's folder cycles/."""
+    if Path(name).is_file():
+        return Path(name)
+    here = {p.stem: p for p in sorted((case / "cycles").glob("*.toml"))}
+    if name not in here:
+        raise InputError("no such cycle", name, known(name, here or ["a file, or cycles/NAME.toml in the case"]))
+    return here[name]
+
+
+def load_cycle(path: Path, network: Network, ratings: Mapping[str, float]) -> Cycle:
+    """A cycle for a network; ratings: of the machine file, for what the cycle does not say of a series machine."""
+    top = Table(read_toml(path, "a cycle: [cycle], and [columns.NAME] or [duty]"), str(path))
+    head = top.table("cycle")
+    head.word("description", "")
+    step = head.number("step_s", 1.0)
+    columns = None if "duty" in top else _columns(path, top, head)
+    time, inputs, boundaries = _duty(top) if columns is None else columns.every(step)
+    inputs |= {n: np.full(time.size, v) for n, v in top.table("inputs").constants("inputs").items()}
+    boundaries |= {n: np.full(time.size, v) for n, v in top.table("boundaries").constants("boundaries").items()}
+    start = head.number("initial_degC", _usual(network, boundaries, str(path)))
+    drive, watched = _drive(top, network, ratings, time, inputs)
+    head.close()
+    top.close()
+    if columns is not None and drive is None:
+        inputs = columns.signals(inputs, time)
+    cycle = Cycle(path.stem, Record(time, inputs, boundaries, start), drive, watched)
+    _complete(network, cycle, str(path))
+    return cycle
+
+
+def _usual(network: Network, boundaries: Mapping[str, Array], where: str) -> float:
+    for name in network.boundaries:
+        if name not in boundaries:
+            right = f'[boundaries] {name} = ..., or a temperature column with place = "{name}"'
+            raise InputError(f"nothing gives the boundary '{name}'", where, right)
+    return float(np.mean([boundaries[name][0] for name in network.boundaries]))
+
+
+@dataclass(frozen=True)
+class Columns:
+    """A cycle's table as recorded: time (n,) s, inputs and boundaries (n,)."""
+
+    time: Array
+    inputs: dict[str, Array]
+    boundaries: dict[str, Array]
+
+    def every(self, step: float) -> tuple[Array, dict[str, Array], dict[str, Array]]:
+        """Time, inputs and boundaries at steps (s)."""
+        time = np.arange(0.0, self.time[-1] + 1e-9, step)
+
+        def at(of: dict[str, Array]) -> dict[str, Array]:
+            return {n: np.interp(time, self.time, u) for n, u in of.items()}
+
+        return time, at(self.inputs), at(self.boundaries)
+
+    def signals(self, inputs: Mapping[str, Array], time: Array) -> Signals:
+        """Inputs at some times that keep what was recorded between these; those that were not recorded are constant."""
+        fine = {n: self.inputs.get(n, np.full(self.time.size, u[0])) for n, u in inputs.items()}
+        return Signals.recorded(fine, self.time, time)
+
+
+def _columns(path: Path, top: Table, head: Table) -> Columns:
+    """Inputs and boundaries of the cycle's table."""
+    keys = {key: head.raw(key) for key in ("time", "time_unit", "period_s", "worksheet") if key in head}
+    sheet = read_sheet({"test": keys, "columns": top.raw("columns", {})}, str(path), path.parent)
+    samples = load_table(path.parent / head.word("file", f"{path.stem}.csv"), sheet)
+    inputs: dict[str, Array] = {}
+    boundaries: dict[str, Array] = {}
+    for c in sheet.columns:
+        seen = np.isfinite(samples.values[c.name])
+        values = np.interp(samples.time, samples.time[seen], samples.values[c.name][seen])
+        (boundaries if c.is_temperature else inputs)[c.place if c.is_temperature else c.feeds] = values
+    return Columns(samples.time, inputs, boundaries)
+
+
+def _duty(top: Table) -> tuple[Array, dict[str, Array], dict[str, Array]]:
+    """IEC 60034-1 duty types: every input of [load] times the load."""
+    t, load = top.table("duty"), top.table("load")
+    kind, step = t.word("type", None, ("S1", "S2", "S3", "S6")), t.number("step_s", 10.0)
+    if kind == "S1":
+        time, share = s1(t.number("duration_s"), step)
+    elif kind == "S2":
+        time, share = s2(t.number("on_s"), t.number("rest_s"), step)
+    else:
+        of = t.number("period_s"), t.number("duty_percent") / 100, int(t.number("cycles"))
+        time, share = s3(*of, step) if kind == "S3" else s6(*of, t.number("no_load"), step)
+    inputs = {name: share * full for name, full in load.constants("load").items()}
+    if not inputs:
+        raise load.error("no input follows the duty", "[load] current_A = ... at full load")
+    t.close()
+    return time, inputs, {}
+
+
+def _drive(
+    top: Table, network: Network, ratings: Mapping[str, float], time: Array, inputs: dict[str, Array]
+) -> tuple[Drive | None, dict[str, str]]:
+    if "vehicle" in top:
+        return _series(top, network, ratings, time, inputs)
+    return _permanent(top, network, inputs) if "pm-machine" in top else (None, {})
+
+
+def _series(
+    top: Table, network: Network, ratings: Mapping[str, float], time: Array, inputs: dict[str, Array]
+) -> tuple[Drive, dict[str, str]]:
+    m, v, c = top.table("series-machine"), top.table("vehicle"), top.table("controller")
+    rated = [m.number(k, ratings.get(k)) for k in ("power_W", "speed_rpm", "voltage_V", "current_A")]
+    machine = SeriesMachine.from_ratings(
+        *rated, L=m.number("inductance_H", 2e-3), J=m.number("inertia_kg_m2", 2.0), B=m.number("friction_Nms", 0.0)
+    )
+    vehicle = Vehicle(
+        v.number("mass_kg"), v.number("wheel_radius_m"), v.number("gear"), v.number("efficiency", 0.95),
+        v.number("rolling", 0.01), v.number("drag_area_m2", 3.0), v.number("air_density_kg_m3", 1.2),
+    )  # fmt: skip
+    control = Controller(
+        c.number("Kp", 40.0), c.number("Ki", 4.0), c.number("current_limit_A", rated[3]),
+        c.number("voltage_limit_V", rated[2]), c.number("current_lag_s", 0.02),
+    )  # fmt: skip
+    places = _places(m, network, "winding", WINDING)
+    reference = m.number("reference_degC", 20.0)
+    for t in (m, v, c):
+        t.close()
+    for name in ("vehicle_speed_mps", "slope_percent"):
+        if name not in inputs:
+            raise v.error(f"nothing gives '{name}'", f'a column with input = "{name}", or [inputs] {name} = ...')
+    slope = inputs["slope_percent"] / 100
+    wanted = inputs.pop("vehicle_speed_mps")
+    drive = series_drive(machine, vehicle, control, time, wanted, slope, reference)
+    return _mixed(drive, {WINDING: places}), {p: p for p in places}
+
+
+def _permanent(top: Table, network: Network, inputs: dict[str, Array]) -> tuple[Drive, dict[str, str]]:
+    m = top.table("pm-machine")
+    machine = PMMachine(
+        int(m.number("pole_pairs")), m.number("R20_ohm"), m.number("Ld_H"),
+        m.number("Lq_H"), m.number("psi_Vs"), m.number("current_limit_A"),
+        m.number("voltage_limit_V"), alpha_B=m.number("alpha_B_1_K", -1.1e-3),
+    )  # fmt: skip
+    places = {WINDING: _places(m, network, "winding", WINDING), MAGNET: _places(m, network, "magnet", "rotor")}
+    m.close()
+    for name in ("torque_Nm", "speed_rpm"):
+        if name not in inputs:
+            raise m.error(f"nothing gives '{name}'", f'a column with input = "{name}", or [inputs] {name} = ...')
+    drive = pm_drive(machine, inputs.pop("torque_Nm"), inputs.pop("speed_rpm"))
+    return _mixed(drive, places), {p: p for shares in places.values() for p in shares}
+
+
+def _places(table: Table, network: Network, key: str, usual: str) -> dict[str, float]:
+    shares = table.shares(key) if key in table else {usual: 1.0}
+    for place in shares:
+        if place not in network.places:
+            raise table.error(f"{key} at unknown place '{place}'", known(place, network.places))
+    if abs(sum(shares.values()) - 1.0) > 1e-9:
+        raise table.error(f"shares of {key} sum to {sum(shares.values()):g}", "shares that sum to 1")
+    return shares
+
+
+def _mixed(drive: Drive, groups: Mapping[str, Mapping[str, float]]) -> Drive:
+    """The drive, fed with weighted means of places."""
+    return lambda T: drive({g: np.asarray(sum(s * T[p] for p, s in shares.items())) for g, shares in groups.items()})
+
+
+def _complete(network: Network, cycle: Cycle, where: str) -> None:
+    """Every input that a law reads is there."""
+    have = set(cycle.record.inputs) | {"time_s"}
+    if cycle.drive is not None:
+        steady = {p: np.full(cycle.record.time.size, 20.0) for p in cycle.watched}
+        have |= set(cycle.drive(steady))
+    items: Sequence[Any] = (*network.links, *network.sources)
+    for item in items:
+        for name in item.law.reads:
+            if name not in have:
+                right = f'a column with input = "{name}", or [inputs] {name} = ...'
+                raise InputError(f"nothing gives the input '{name}', which '{item.name}' needs", where, right)

@@ -1,0 +1,185 @@
+"""A case folder: case.toml, tests/NAME.csv with tests/NAME.toml, model.toml -> the case the rooms work on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from geom.errors import InputError
+from lumped.machine.losses import ASSUMED_W
+from lumped.model.network import Network, Parameter
+from lumped.schemas.reader import known
+from thermoscope.case_folder.doctor import Finding, Patient, examined
+from thermoscope.case_folder.history import History, checked_values, load_history
+from thermoscope.case_folder.settings import Entry, Settings, read_settings
+from thermoscope.recordings.quantities import with_quantities
+from thermoscope.recordings.readings import read_test
+from thermoscope.recordings.sheet import Sheet, load_sheet
+from thermoscope.recordings.tables import load_table
+from validation.calibration.fitting import matching
+from validation.case import AddedEffect, Case, Model, Test
+from validation.measurement.sampling import SampleStep
+
+if TYPE_CHECKING:
+    from geom import Machine
+    from thermoscope.pipeline import Built
+
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Folder:
+    """An open case.  positions : channel -> (x, y, z) m where the sheet gives them;  notes : doubts about the data
+
+    findings : what looks wrong in the files, see `thermoscope test doctor`;  steps : test -> its sample step
+    """
+
+    settings: Settings
+    case: Case
+    history: History
+    notes: tuple[str, ...]
+    positions: dict[str, tuple[float, ...]]
+    built: Built | None = None
+    findings: tuple[Finding, ...] = ()
+    steps: Mapping[str, SampleStep] = field(default_factory=dict)
+
+
+def _once(settings: Settings, files: Mapping[str, Path]) -> None:
+    """A recording is one test: the same twice would count double, or hold out what was fitted."""
+    seen: dict[Path, Entry] = {}
+    for entry in settings.tests:
+        first = seen.setdefault(files[entry.name].resolve(), entry)
+        if first is not entry:
+            what = f"[tests.{first.name}] ({first.role}) and [tests.{entry.name}] ({entry.role}) are one recording"
+            raise InputError(what, str(settings.path / "case.toml"), "another file for one of them")
+
+
+def load_case(
+    path: str | Path, progress: Progress = lambda message: None, bare: bool = False, untested: bool = False
+) -> Folder:
+    """Open a case. All files are read and checked before anything is computed.
+
+    bare : skip model.toml;  untested : a model alone will do, to run it over a drive cycle
+    """
+    settings = read_settings(Path(path), untested)
+    history = History() if bare else load_history(settings.model_file)
+    patients: dict[str, Patient] = {}
+    for entry in settings.tests:
+        progress(f"reading {entry.name}")
+        patients[entry.name] = patient_of(entry)
+    _once(settings, {name: one.samples.file for name, one in patients.items()})
+    network, built = network_of(settings, progress)
+    read = [
+        read_test(e.name, e.role, patients[e.name].samples, patients[e.name].sheet, network, settings.sample_s)
+        for e in settings.tests
+    ]
+    findings = examined(list(patients.values()), network)
+    notes = tuple(dict.fromkeys([*_assumed(built), *(note for one in read for note in one.notes)]))
+    frees = {e.name: e.frees for e in settings.tests}
+    tests = tuple(replace(_allowing(r.test, settings.model_K), frees=frees[r.test.name]) for r in read)
+    sheets = [one.sheet for one in patients.values()]
+    network = with_quantities(network, sheets, tests)
+    case = Case(settings.name, _model(network, history), tests, _free(network, settings), settings.doubt,
+                history.last.answers)  # fmt: skip
+    steps = {r.test.name: r.step for r in read}
+    return Folder(settings, _checked(case, history), history, notes, _positions(sheets), built, findings, steps)
+
+
+def patient_of(entry: Entry) -> Patient:
+    """A test as its files have it."""
+    sheet = load_sheet(entry.sheet)
+    return Patient(entry.name, sheet, load_table(entry.file, sheet))
+
+
+def _assumed(built: Built | None) -> list[str]:
+    """Losses that nobody declared."""
+    if built is None or built.machine.sections.get("losses"):
+        return []
+    return [f"{built.machine.name} declares no losses: {ASSUMED_W:g} W in its windings are assumed ([losses.NAME])"]
+
+
+def _allowing(test: Test, model_K: float) -> Test:
+    """The test with the model's own expected error on every channel."""
+    return replace(test, channels=tuple(replace(c, model_K=model_K) for c in test.channels))
+
+
+def _positions(sheets: Iterable[Sheet]) -> dict[str, tuple[float, ...]]:
+    columns = [c for sheet in sheets for c in sheet.columns if c.position_mm]
+    return {c.name: tuple(1e-3 * x for x in c.position_mm) for c in columns}
+
+
+def find_case(name: str | Path) -> Path:
+    """A case folder by its path, or by the name of a case that comes with the tool."""
+    path = Path(name)
+    if path.is_dir():
+        return path
+    shipped = {p.parent.name: p.parent for home in _homes() for p in sorted(home.glob("*/case.toml"))}
+    if str(name) in shipped:
+        return shipped[str(name)]
+    if path.exists():
+        raise InputError("is a file", str(path), "a folder with a case.toml")
+    raise InputError("no such case folder", str(path), known(str(name), shipped or ["no case came along"]))
+
+
+def _homes() -> list[Path]:
+    """Where shipped cases lie: in the wheel inside this package, in a checkout beside it; the latter wins."""
+    here = Path(__file__).resolve().parents[1]
+    return [home for home in (here / "cases", here.parent / "cases") if home.is_dir()]
+
+
+def _free(network: Network, settings: Settings) -> tuple[Parameter, ...]:
+    """The parameters that calibration may move; a pattern that matches nothing is an error."""
+    for pattern in settings.free:
+        if not matching(network, [pattern]):
+            right = known(pattern, [p.name for p in network.parameters])
+            raise InputError(
+                f"'{pattern}' matches no parameter", f"{settings.path / 'case.toml'} [calibration] free", right
+            )
+    return matching(network, settings.free)
+
+
+def network_of(settings: Settings, progress: Progress) -> tuple[Network, Built | None]:
+    """The network of a case, and how it was built where it comes from a machine."""
+    if settings.network is not None:
+        from lumped.declarations.network import load_network
+
+        return load_network(settings.network), None
+    from thermoscope.pipeline import build
+
+    machine = load_machine_file(settings.machine)  # type: ignore[arg-type]
+    built = build(machine, progress=progress, axial_m=settings.axial_m)
+    return built.network, built
+
+
+def load_machine_file(path: Path) -> Machine:
+    """A machine by its file, or by the name of a machine that comes with the tool."""
+    from geom import library, load_machine
+
+    if path.exists():
+        return load_machine(path)
+    shipped = library()
+    name = path.name.removesuffix(".toml")
+    if name in shipped:
+        return load_machine(name)
+    raise InputError(
+        "no such machine file", str(path), f"a file, or one of the machines that come along: {', '.join(shipped)}"
+    )
+
+
+def _model(network: Network, history: History) -> Model:
+    last = history.last
+    effects = tuple(AddedEffect(*name.partition("@")[::2]) for name in last.effects)
+    return Model(network, effects, dict(last.values), last.number)
+
+
+def _checked(case: Case, history: History) -> Case:
+    """The model's effects can sit where model.toml has them, and its values belong to parameters."""
+    from validation.calibration.fitting import scene_of, working
+    from validation.effects import effect
+
+    for one in case.model.effects:
+        effect(one.name, scene_of(case))
+    checked_values(history.last, working(case)[0].parameters, "model.toml")
+    return case

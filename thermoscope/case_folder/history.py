@@ -1,0 +1,169 @@
+"""model.toml: the model as it stands, revision by revision. Revisions are only ever added; the last one counts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import tomlkit
+
+from geom.description.toml_file import read_toml
+from geom.errors import InputError
+from lumped.model.network import Parameter
+from lumped.schemas.reader import Table, known
+from thermoscope.case_folder.files import locked, write_whole
+
+ACTIONS = ("calibrate", "add", "remove", "answer", "step back")
+HEADER = "Written by thermoscope: one [[revision]] per step, the last one counts. Delete this file to start again."
+Pair = tuple[float, float]
+ROUNDED = 1e-6  # of a bound: values are written with eight digits
+
+
+@dataclass(frozen=True)
+class Revision:
+    """One step of the model.
+
+    effects : in the model after this step;  values : parameter -> value;  intervals : parameter -> (low, high) 95 %
+    rmse_K : test -> (before, after);  evidence : what spoke for the step
+    answers : what the user was asked and said so far
+    """
+
+    number: int
+    action: str
+    effects: tuple[str, ...] = ()
+    effect: str = ""
+    values: Mapping[str, float] = field(default_factory=dict)
+    intervals: Mapping[str, Pair] = field(default_factory=dict)
+    rmse_K: Mapping[str, Pair] = field(default_factory=dict)
+    why: str = ""
+    evidence: Mapping[str, float | str] = field(default_factory=dict)
+    answers: Mapping[str, bool] = field(default_factory=dict)
+
+    def document(self) -> dict[str, Any]:
+        """As model.toml holds it."""
+        out: dict[str, Any] = {"number": self.number, "action": self.action}
+        if self.effect:
+            out["effect"] = self.effect
+        out["effects"], out["why"] = list(self.effects), self.why
+        out["values"] = {k: float(f"{v:.8g}") for k, v in self.values.items()}
+        out["intervals"] = {k: [float(f"{x:.5g}") for x in pair] for k, pair in self.intervals.items()}
+        out["rmse_K"] = {t: {"before": round(a, 4), "after": round(b, 4)} for t, (a, b) in self.rmse_K.items()}
+        more = {"evidence": dict(self.evidence), "answers": dict(self.answers)}
+        return {**out, **{key: table for key, table in more.items() if table}}
+
+
+@dataclass(frozen=True)
+class History:
+    """All revisions, numbered from 1; revision 0 is the model as declared."""
+
+    revisions: tuple[Revision, ...] = ()
+
+    @property
+    def last(self) -> Revision:
+        return self.revisions[-1] if self.revisions else Revision(0, "calibrate")
+
+    def and_then(self, revision: Revision) -> History:
+        """One revision more; what the user answered stays."""
+        answers = {**self.last.answers, **revision.answers}
+        return self._longer(replace(revision, answers=answers))
+
+    def _longer(self, revision: Revision) -> History:
+        return History((*self.revisions, replace(revision, number=self.last.number + 1)))
+
+    def back_to(self, number: int) -> History:
+        """One more revision, equal to an earlier one."""
+        found = {0: Revision(0, "step back"), **{r.number: r for r in self.revisions}}
+        if number not in found:
+            raise InputError(f"no revision {number}", "model.toml", f"0 to {self.last.number}")
+        again, now = found[number], {test: after for test, (_, after) in self.last.rmse_K.items()}
+        rmse = {t: (now.get(t, after), after) for t, (_, after) in again.rmse_K.items()}
+        return self._longer(replace(again, action="step back", effect="", rmse_K=rmse, why=f"as in revision {number}"))
+
+
+def load_history(path: Path) -> History:
+    """The history of a case; none when there is no model.toml yet."""
+    if not path.exists():
+        return History()
+    top = Table(read_toml(path, "a model.toml written by thermoscope"), str(path))
+    revisions = tuple(_revision(t) for t in top.listed("revision"))
+    top.close()
+    if [r.number for r in revisions] != list(range(1, len(revisions) + 1)):
+        raise top.error("revisions are not numbered 1, 2, 3, ...", "the file as thermoscope wrote it")
+    return History(revisions)
+
+
+def save_history(path: Path, history: History, known: History) -> History:
+    """Write `history` over `known`, and return it as the file has it.
+
+    Raises InputError when the file holds something else by now: another command or tab was quicker.
+    """
+    with locked(path.parent):
+        standing = load_history(path)
+        if standing != known:
+            what = f"the model was changed by another tab or command: it is at revision {standing.last.number}, this "
+            raise InputError(f"{what}step began at {known.last.number}", str(path),
+                             "the step again (in the workbench 'take over' first)")  # fmt: skip
+        write_whole(path, _text(history))
+        return load_history(path)
+
+
+def _text(history: History) -> str:
+    document, revisions = tomlkit.document(), tomlkit.aot()
+    document.add(tomlkit.comment(HEADER))
+    for revision in history.revisions:
+        revisions.append(tomlkit.item(revision.document()))
+    document.add("revision", revisions)
+    return tomlkit.dumps(document)
+
+
+def checked_values(revision: Revision, parameters: Iterable[Parameter], where: str) -> None:
+    """Every value belongs to a parameter the model has, and lies within that parameter's bounds."""
+    have, place = {p.name: p for p in parameters}, f"{where} revision {revision.number}"
+    for name, value in revision.values.items():
+        if name not in have:
+            raise InputError(f"unknown parameter '{name}'", place, known(name, have))
+        low, high = have[name].low, have[name].high
+        slack = ROUNDED * max(abs(low), abs(high))
+        if not low - slack <= value <= high + slack:
+            right = f"{low:g} to {high:g}; undo the step, or calibrate again"
+            raise InputError(f"values {name} = {value:g} is out of its bounds", place, right)
+
+
+def _revision(table: Table) -> Revision:
+    out = Revision(
+        int(table.number("number")), table.word("action", None, ACTIONS), table.words("effects", []),
+        table.word("effect", ""), _inner(table, "values").constants("values"), _pairs(_inner(table, "intervals")),
+        _before_after(_inner(table, "rmse_K")), table.word("why", ""), _evidence(_inner(table, "evidence")),
+        _answers(_inner(table, "answers")),
+    )  # fmt: skip
+    table.close()
+    return out
+
+
+def _inner(table: Table, key: str) -> Table:
+    return Table(table.raw(key, {}), f"{table.where} {key}")
+
+
+def _evidence(table: Table) -> dict[str, float | str]:
+    return {k: table.word(k) if isinstance(v, str) else table.number(k, of="value") for k, v in table.data.items()}
+
+
+def _answers(table: Table) -> dict[str, bool]:
+    return {about: table.flag(about) for about in table.data}
+
+
+def _pairs(table: Table) -> dict[str, Pair]:
+    out = {}
+    for name in table.data:
+        pair = table.numbers(name, of="intervals")
+        if len(pair) != 2:
+            raise table.error(f"{name} has {len(pair)} numbers", "[low, high]")
+        out[name] = (pair[0], pair[1])
+    return out
+
+
+def _before_after(table: Table) -> dict[str, Pair]:
+    tests = {name: _inner(table, name) for name in table.data}
+    return {name: (t.number("before"), t.number("after")) for name, t in tests.items()}

@@ -1,0 +1,115 @@
+"""The model as it stands, run for pictures: readings per sensor, temperature fields, and the steps that led there."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.integration.simulate import simulate
+from lumped.model.network import Network, Row
+from thermoscope.case_folder.folder import Folder
+from thermoscope.case_folder.history import Revision
+from validation.calibration.fitting import effects_of, to_value, working
+from validation.case import AddedEffect, Case, Channel, Test
+from validation.comparison.compare import physical
+from validation.comparison.predict import predict, record, thermal
+from validation.effects.during import During
+
+if TYPE_CHECKING:
+    from viz.data import Comparison
+    from viz.rendering.nodes import SplitMesh
+
+Array = NDArray[np.float64]
+BLIND = 0.9  # an interval this wide, compared with the one expected before, taught nothing
+
+
+def at_revision(folder: Folder, revision: Revision) -> Case:
+    """The case with the model of an earlier revision."""
+    effects = tuple(AddedEffect(*name.partition("@")[::2]) for name in revision.effects)
+    model = replace(folder.case.model, effects=effects, values=dict(revision.values), revision=revision.number)
+    return replace(folder.case, model=model, answers=revision.answers)
+
+
+def before_last(folder: Folder) -> Case | None:
+    """The case before the last step; None when there was none."""
+    steps = folder.history.revisions
+    return at_revision(folder, steps[-2] if len(steps) > 1 else Revision(0, "calibrate")) if steps else None
+
+
+def readings(case: Case, test: Test) -> dict[str, Array]:
+    """Channel -> (n_time,) degC, what its sensor would read; sensors' fitted biases are left out."""
+    y = predict(working(case)[0], test, physical(case)).y
+    return {channel.name: y[:, j] for j, channel in enumerate(test.channels)}
+
+
+def held(folder: Folder, test: Test) -> Comparison:
+    """A test against the model, and against the model before its last step."""
+    from viz.data import Comparison
+
+    earlier = before_last(folder)
+    before = None if earlier is None else readings(earlier, test)
+    return Comparison(test, readings(folder.case, test), before, accepted(folder.case, test))
+
+
+def accepted(case: Case, test: Test) -> tuple[tuple[float, float], ...]:
+    """When something was different in a test, by the model's effects: from and to (s)."""
+    own = [effect.event for effect in effects_of(case) if isinstance(effect, During) and effect.event]
+    return tuple(span for event in own for span in event.spans.get(test.name, ()))
+
+
+def fields(case: Case, test: Test, nodes: SplitMesh, frames: int) -> tuple[Array, Array]:
+    """Times (n,) s and temperatures (n, n_nodes) degC on the parts' own nodes; the network needs a recovery."""
+    network = thermal(working(case)[0])
+    known = {p.name for p in network.parameters}
+    values = {k: v for k, v in case.model.values.items() if k in known}
+    run = simulate(network, record(test, {}), values, keep_states=True)
+    recovery: Any = network.recovery
+    chosen = np.unique(np.linspace(run.time.size - 1, 0, frames).astype(int))
+    states = np.asarray(run.z)[chosen, : len(network.states)]
+    T = [np.concatenate([recovery.of_part(part, x) for part in nodes.parts]) for x in states]
+    return run.time[chosen], np.array(T)
+
+
+def steps(folder: Folder) -> list[dict[str, Any]]:
+    """The revisions as pictures and the report want them: number, action, effect, tests."""
+    roles = {t.name: t.role for t in folder.case.tests}
+    return [
+        {
+            "number": r.number, "action": r.action, "effect": r.effect, "effects": list(r.effects), "why": r.why,
+            "tests": [
+                {"name": name, "role": roles[name], "rmse_K": {"before": before, "after": after}}
+                for name, (before, after) in r.rmse_K.items() if name in roles
+            ],
+        }
+        for r in folder.history.revisions
+    ]  # fmt: skip
+
+
+def parameters(folder: Folder) -> list[dict[str, Any]]:
+    """The values of the last revision with their intervals, as `calibrate` lists them."""
+    last = folder.history.last
+    out = []
+    for p in working(folder.case)[1].parameters:
+        if p.name not in last.intervals:
+            continue
+        low, high = (max(p.low, min(p.high, to_value(p, s * 1.96 * p.prior_sd))) for s in (-1.0, 1.0))
+        a, b = last.intervals[p.name]
+        out.append({
+            "name": p.name, "value": last.values[p.name], "unit": p.unit, "ci95": [a, b],
+            "prior": {"from": low, "to": high}, "identified": b - a < BLIND * (high - low),
+        })  # fmt: skip
+    return out
+
+
+def sensors(folder: Folder) -> dict[str, Channel]:
+    """Every sensor of the case once, by its column's name."""
+    return {c.name: c for test in folder.case.tests for c in test.channels}
+
+
+def looks(network: Network, folder: Folder) -> dict[str, Row]:
+    """Named temperatures: the means of parts and nodes, then where the sensors of the case sit."""
+    means = {n: p.mean for n, p in network.places.items() if p.kind != "surface" and "#" not in n}
+    return means | {f"sensor {name}": c.row for name, c in sensors(folder).items()}

@@ -1,0 +1,119 @@
+"""case.toml: which model, which tests in which role, and how the commands go about them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from fnmatch import fnmatchcase
+from pathlib import Path
+
+from geom.description.names import checked_name
+from geom.description.toml_file import read_toml
+from geom.errors import InputError
+from lumped.schemas.reader import Table, known
+from thermoscope.recordings.formats import stem_of
+from validation.case import Role
+from validation.doubt import USUAL, Doubt, widened
+
+ROLES = ("calibrate", "validate", "hold-out")
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A test as case.toml lists it.  frees : globs of the parameters it is to fix before the others are fitted"""
+
+    name: str
+    role: Role
+    file: Path
+    sheet: Path
+    frees: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Settings:
+    """case.toml.  machine or network is set, the other None;  free : globs of what calibration may move, () for all
+
+    model_K : slow misfit (K) the model is not expected to get right, see validation.case.Channel
+    sample_s : coarsest step (s) at which tests are looked at; None: as coarse as their sensors do not feel
+    axial_m : thickest layer of the mesh along the axis (m), for long stacks; None: the usual one
+    kinds : of effects that a diagnosis looks for, None for all;  starts, seed : of a calibration, see Search
+    doubt : the table of doubt with the lines that the case widens
+    """
+
+    path: Path
+    name: str
+    description: str
+    machine: Path | None
+    network: Path | None
+    sample_s: float | None
+    model_K: float
+    tests: tuple[Entry, ...]
+    free: tuple[str, ...] = ()
+    axial_m: float | None = None
+    kinds: tuple[str, ...] | None = None
+    starts: int = 1
+    seed: int = 0
+    doubt: Doubt = field(default_factory=lambda: USUAL)
+
+    @property
+    def out(self) -> Path:
+        return self.path / "out"
+
+    @property
+    def model_file(self) -> Path:
+        return self.path / "model.toml"
+
+
+def read_settings(path: Path, untested: bool = False) -> Settings:
+    """What case.toml says; `untested` allows it to name no tests."""
+    file = path / "case.toml"
+    if path.is_file():
+        raise InputError("is a file", str(path), "a folder with a case.toml")
+    top = Table(read_toml(file, "a case folder with a case.toml"), str(file))
+    head, tests, calibration = top.table("case"), top.tables("tests"), top.table("calibration")
+    diagnosis, doubt = top.table("diagnosis"), top.table("doubt").constants("doubt")
+    top.close()
+    name, description = head.word("name", path.name), head.word("description", "")
+    machine, network = (path / head.word(key) if key in head else None for key in ("machine", "network"))
+    if (machine is None) == (network is None):
+        raise head.error(
+            "neither or both of machine and network given", 'machine = "NAME.toml" or network = "network.toml"'
+        )
+    sample, free = head.number("sample_s") if "sample_s" in head else None, calibration.words("free", [])
+    model_K = head.number("model_error_K", 0.0)
+    axial_m = head.number("axial_mm") / 1e3 if "axial_mm" in head else None
+    starts, seed = int(calibration.number("starts", 1)), int(calibration.number("seed", 0))
+    kinds = _kinds(diagnosis)
+    for table in (head, calibration, diagnosis):
+        table.close()
+    if not tests and not untested:
+        raise InputError("no tests", str(file), '[tests.NAME] with role = "calibrate"')
+    entries = tuple(_entry(path, n, t) for n, t in tests.items())
+    return Settings(
+        path, name, description, machine, network, sample, model_K, entries, free,
+        axial_m, kinds, starts, seed, widened(doubt, f"{file} [doubt]"),
+    )  # fmt: skip
+
+
+def _kinds(table: Table) -> tuple[str, ...] | None:
+    """The kinds of effects that the globs of `catalogue` mean; a glob that means none is an error."""
+    if "catalogue" not in table:
+        return None
+    from validation.effects import kinds
+
+    found: dict[str, None] = {}
+    for glob in table.words("catalogue"):
+        matched = [kind for kind in kinds() if fnmatchcase(kind, glob)]
+        if not matched:
+            raise table.error(f"catalogue: '{glob}' is no kind of effect", known(glob, kinds()))
+        found |= dict.fromkeys(matched)
+    return tuple(found)
+
+
+def _entry(path: Path, name: str, table: Table) -> Entry:
+    file = path / table.word("file", f"tests/{checked_name(name, table.where)}")
+    role, beside = table.word("role", None, ROLES), file.with_name(f"{stem_of(file)}.toml")
+    sheet, frees = path / table.word("sheet") if "sheet" in table else beside, table.words("frees", [])
+    if frees and role != "calibrate":
+        raise table.error(f"frees parameters though its role is {role}", 'role = "calibrate"')
+    table.close()
+    return Entry(name, role, file, sheet, tuple(frees))  # type: ignore[arg-type]

@@ -1,0 +1,47 @@
+"""thermoscope bench bases CASE"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from thermoscope.commands.opened import opened
+from thermoscope.console.answer import Answer, Grid
+from thermoscope.console.terminal import give, progress
+
+
+def bases(case: str, target: str | None) -> int:
+    """Exit code 1 when the readings of a test exclude the base that its sheet says."""
+    from validation.procedure.reduction.which_base import which_base
+
+    with progress() as tell:
+        folder = opened(case, tell)
+        found = which_base(folder.case, progress=tell)
+    wrong = [h for h in found if h.declared and h.excluded]
+    document = {"case": folder.case.name, "revision": folder.case.model.revision,
+                "wrong": [h.test for h in wrong], "hypotheses": [h.document() for h in found]}  # fmt: skip
+    give(document, target, lambda: answer(document))
+    return 1 if wrong else 0
+
+
+def answer(document: Mapping[str, Any]) -> Answer:
+    """Every base for every test, with what it carries off by mechanism, and which test was elsewhere."""
+    words = []
+    for test in document["wrong"]:
+        better = [h["base"] for h in document["hypotheses"] if h["test"] == test and not h["excluded"]]
+        words.append(f"{test} did not stand on the base its sheet says; the readings allow: {', '.join(better)}")
+    sentence = "; ".join(words) or "No test's readings exclude the base that its sheet says"
+    return Answer(f"{sentence}.", [bases_tried(document["hypotheses"])])
+
+
+def bases_tried(hypotheses: Sequence[Mapping[str, Any]]) -> Grid:
+    """Each with its deviance over the best, all tests calibrated together for each."""
+    headers = ["test", "base", "said", "deviance", "verdict", "conduction (W)", "convection (W)", "radiation (W)",
+               "W/K", "body W/K"]  # fmt: skip
+    rows = []
+    for h in hypotheses:
+        heat, verdict = h["heat_W"], "excluded" if h["excluded"] else "possible"
+        numbers = [heat[k] for k in ("conduction", "convection", "radiation", "path_W_K", "body_W_K")]
+        rows.append([h["test"], h["base"], "sheet" if h["declared"] else "", h["deviance"], verdict, *numbers])
+    keep = ["base", "verdict", "deviance", "said"]
+    return Grid("Which base: deviance over the best of each test", headers, rows, ["excluded"], keep)

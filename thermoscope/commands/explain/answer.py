@@ -1,0 +1,55 @@
+"""thermoscope answer CASE yes|no"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from geom.errors import InputError
+from thermoscope.case_folder.folder import Folder
+from thermoscope.case_folder.history import save_history
+from thermoscope.commands.opened import opened_to_write
+from thermoscope.commands.saved import last_diagnosis
+from thermoscope.console.answer import Answer
+from thermoscope.console.terminal import give, progress
+from validation.effects.gate import checked, event
+
+WORDS = {"yes": True, "y": True, "no": False, "n": False}
+
+
+def answer(case: str, word: str, about: str | None, target: str | None) -> int:
+    """The answer as a step of the model's history; effects and values stay as they are."""
+    if word.lower() not in WORDS:
+        raise InputError(f"'{word}' is no answer", "thermoscope answer", "yes or no")
+    with progress() as tell:
+        folder = opened_to_write(case, tell)
+    yes, subject = WORDS[word.lower()], known(folder, about or asked(folder))
+    why = f"{subject}: {'yes' if yes else 'no'}"
+    step = replace(folder.history.last, action="answer", effect="", why=why, rmse_K={}, answers={subject: yes})
+    history = folder.history.and_then(step)
+    save_history(folder.settings.model_file, history, folder.history)
+    document = {"case": folder.case.name, "revision": history.last.number, "answers": dict(history.last.answers)}
+    sentence = f"Revision {history.last.number}: {why}. The next diagnosis takes it as evidence."
+    give(document, target, lambda: Answer(sentence, more=f"Next: thermoscope diagnose {case}"))
+    return 0
+
+
+def asked(folder: Folder) -> str:
+    """What the last diagnosis asked about."""
+    question = (last_diagnosis(folder) or {}).get("question")
+    if not question:
+        raise InputError("the last diagnosis asked nothing", f"case '{folder.case.name}'",
+                         "thermoscope diagnose first, or --about a test, an event or a fault")  # fmt: skip
+    return str(question["about"])
+
+
+def known(folder: Folder, about: str) -> str:
+    """A test, an event inside the tests, a fault, or an input."""
+    tests, found = {t.name: t for t in folder.case.tests}, event(about)
+    if found:
+        for test in found.tests:
+            if test not in tests:
+                raise InputError(f"unknown test '{test}'", f"--about {about}", f"known: {', '.join(tests)}")
+            checked(found, test, float(tests[test].time[0]), float(tests[test].time[-1]), f"--about {about}")
+    elif about not in tests and "@" not in about and not any(about in t.inputs for t in tests.values()):
+        raise InputError(f"'{about}' is no test, event or fault", "--about", f"one of {', '.join(tests)}, or as asked")
+    return about

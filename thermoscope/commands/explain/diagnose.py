@@ -1,0 +1,122 @@
+"""thermoscope explain diagnose CASE"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from thermoscope.commands.bench.bases import bases_tried
+from thermoscope.commands.explain.ahead import ahead
+from thermoscope.commands.model.error_budget import budget, in_short, sampling
+from thermoscope.commands.opened import opened
+from thermoscope.commands.saved import save_diagnosis
+from thermoscope.commands.test.compare import contradiction
+from thermoscope.console.answer import Answer, Grid, cell
+from thermoscope.console.terminal import Progress, give, notes, progress, sized
+
+if TYPE_CHECKING:
+    from thermoscope.case_folder.folder import Folder
+    from validation.diagnosis.findings import Diagnosis
+
+ODDS, ROWS = 5, 10  # shown of hypotheses and of candidates
+SHOWN = 0.005  # probabilities below half a per cent are in --json
+
+
+def diagnose(case: str, target: str | None, older: bool = False) -> int:
+    """Exit code 1 when no effect is named.  older : an option of older versions was given"""
+    if older:
+        notes(["--draws is no longer needed: nothing is drawn"])
+    with progress() as tell:
+        found, document = diagnosed(opened(case, tell), tell)
+    give(document, target, lambda: answer(document))
+    return 0 if found.verdict in ("named", "group", "several") else 1
+
+
+def diagnosed(folder: Folder, tell: Progress) -> tuple[Diagnosis, dict[str, Any]]:
+    """What is missing in an open case, and the document of it, which is kept in the case's out/."""
+    from lumped.condensation.error_budget import ErrorBudget
+    from thermoscope.verification.error_budget import budgets_of_tests, documents
+    from validation import diagnose as search
+
+    budgets = budgets_of_tests(folder, tell)
+    found = search(folder.case, folder.settings.kinds, tell, budget=ErrorBudget.worst(budgets.values()).total_K)
+    named = {"case": folder.case.name, "revision": folder.case.model.revision}
+    document = {**named, **found.document(), "error_budget": documents(budgets), **sampling(folder)}
+    save_diagnosis(folder, document)
+    return found, document
+
+
+def answer(document: Mapping[str, Any]) -> Answer:
+    """The verdict; of a wrong base only that, for it comes first."""
+    sentence, case = f"{document['verdict']}: {document['words']}", document.get("case", "CASE")
+    bases, steps = document.get("bases", []), document.get("sampling", {})
+    if any(h["declared"] and h["excluded"] for h in bases):
+        return Answer(sentence, [bases_tried(bases)], f"--json FILE; thermoscope bench bases {case}")
+    named = document.get("named", [])
+    step = f"Next: thermoscope model add {case} {named[0]}" if named else f"Next: thermoscope explain effects {case}"
+    hidden = [f"{h['effect']} below {cell(h['smallest_detectable'])} {h['unit']}" for h in document["cannot_see"]]
+    unseen = f"{len(hidden)} effects could be there unseen: {', '.join(hidden[:2])}, ..." if hidden else ""
+    remaining = " ".join(row["words"] for row in document.get("remainder", []))
+    found = document["candidates"]
+    parts = [_odds(document), remaining, _candidates(found), *events(document), *_leader(found),
+             *contradiction(document.get("contradiction")), ahead(document),
+             in_short(document.get("error_budget", {}), steps), unseen, question(document)]  # fmt: skip
+    rest = [*budget(document.get("error_budget", {}), steps), *hidden]
+    return Answer(sentence, parts, f"{step}; --json FILE; thermoscope show report {case}", rest)
+
+
+def question(document: Mapping[str, Any]) -> str:
+    """What to ask the user, if an answer would tell more than a guess."""
+    found = document.get("question")
+    if not found:
+        return ""
+    return f"One question: {found['words']} Then: thermoscope answer {document.get('case', 'CASE')} yes|no"
+
+
+def _odds(document: Mapping[str, Any]) -> Grid:
+    """Every hypothesis with its probability."""
+    rows = [[o["hypothesis"], f"{100 * o['probability']:.1f}"] for o in document["odds"] if o["probability"] > SHOWN]
+    return Grid("What the readings say", ["hypothesis", "probability (%)"], rows[:ODDS])
+
+
+def _candidates(found: Sequence[Mapping[str, Any]]) -> Grid:
+    """Size with interval and detection limit, and what it buys."""
+    headers = ["effect", "%", "size (95 %)", "unit", "seen from", "error (K)", "held out (K)", "decision"]
+    keep = ["size (95 %)", "%", "unit", "error (K)"]
+    rows = [_row(c) for c in found if c["probability"] > SHOWN or c["decision"] != "no"] or [_row(c) for c in found[:1]]
+    return Grid("Candidates", headers, rows[:ROWS], ["named", "group"], keep)
+
+
+def _leader(found: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Why the rivals lost, what the leader looks like, and the experiment that proves it."""
+    if not found or found[0]["probability"] <= SHOWN:
+        return []
+    first = found[0]
+    lines = [f"Proof: {first['isolating_test']}."] if first["isolating_test"] else []
+    if first["confused_with"]:
+        lines.append(f"{first['effect']} looks like {', '.join(first['confused_with'])} to these tests and sensors.")
+    lost = [f"Against {c['effect']}: it {c['note']} than {first['effect']}." for c in found[1:ROWS]
+            if c["note"] and c["probability"] > SHOWN]  # fmt: skip
+    return [*lines, *lost]
+
+
+def events(document: Mapping[str, Any]) -> list[Grid]:
+    """When something may have been different, every stretch that was tried."""
+    rows = [
+        [f"event@{i}", e["words"], f"{100 * e['probability']:.1f}", e["effect"].split(" in ")[0], e["value"],
+         "" if e["unit"] == "1" else e["unit"]] for i, e in enumerate(document.get("events", []), 1)
+    ]  # fmt: skip
+    headers = ["to add", "when", "%", "most likely", "size", "unit"]
+    return [Grid("What may have differed for a while", headers, rows)] if rows else []
+
+
+def _row(c: Mapping[str, Any]) -> list[Any]:
+    size, share = c["amplitude"], f"{100 * c['probability']:.1f}"
+    return [
+        c["effect"], share, sized(size["value"], *size["ci95"]), "" if size["unit"] == "1" else size["unit"],
+        cell(c["smallest_detectable"]), _arrow(c["rmse_K"]), _arrow(c["holdout_rmse_K"]), c["decision"],
+    ]  # fmt: skip
+
+
+def _arrow(pair: Mapping[str, float] | None) -> str:
+    return f"{pair['before']:.2f} -> {pair['after']:.2f}" if pair else "-"

@@ -1,0 +1,91 @@
+"""thermoscope explain improve CASE"""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from thermoscope.case_folder.columns import write_columns
+from thermoscope.case_folder.folder import Folder
+from thermoscope.case_folder.history import History, save_history
+from thermoscope.commands.explain.ahead import ahead
+from thermoscope.commands.model.revise import recorded
+from thermoscope.commands.opened import opened_to_write
+from thermoscope.commands.saved import save_diagnosis
+from thermoscope.console.answer import Answer, Grid
+from thermoscope.console.terminal import give, progress, sized
+from viz.pages.ahead import deciding
+
+if TYPE_CHECKING:
+    from validation.diagnosis.findings import Candidate, Diagnosis
+    from validation.revision.revise import Revision
+
+
+def improve(case: str, yes: bool, most: int, target: str | None) -> int:
+    """Exit code 0 when the model ends adequate, 1 when it stops before. Every step is in model.toml at once."""
+    from validation.revision.climb import Guide, climb, singletons
+
+    with progress() as tell:
+        folder = opened_to_write(case, tell)
+        ledger = Ledger(folder)
+        guide = Guide(singletons if yes else asked, ledger.keep)
+        done = climb(folder.case, guide, most, tell, folder.settings.kinds)
+    found = {"case": folder.case.name, "revision": ledger.history.last.number, **done.diagnosis.document()}
+    save_diagnosis(folder, json.loads(json.dumps(found, default=float)))
+    document = {"case": folder.case.name, **done.document(), "written": ledger.written}
+    give(document, target, lambda: answer(document, folder))
+    return 0 if done.adequate else 1
+
+
+class Ledger:
+    """model.toml, one revision longer after every step; none of the earlier ones is touched."""
+
+    def __init__(self, folder: Folder) -> None:
+        self.folder, self.file, self.written = folder, folder.settings.model_file, 0
+        self.history: History = folder.history
+
+    def keep(self, step: Revision, evidence: Mapping[str, float | str]) -> None:
+        self.history = save_history(self.file, self.history.and_then(recorded(step, evidence)), self.history)
+        self.written += 1
+        write_columns(self.folder, self.history.last.effects)
+
+
+def asked(found: Diagnosis, choice: Sequence[Candidate]) -> str | None:
+    """The user's word, on stderr and stdin: a number of the list, or nothing to stop."""
+    lines = [f"  {i + 1}  {offer(c)}" for i, c in enumerate(choice)]
+    print(f"{found.words}\n" + "\n".join(lines), file=sys.stderr)
+    for further in deciding(found.document())[:3]:
+        print(f"  would decide: {further.kind} {further.what} ({further.hours:.3g} h)", file=sys.stderr)
+    print("add which? (number, or Enter to stop) ", end="", file=sys.stderr, flush=True)
+    word = sys.stdin.readline().strip()
+    return choice[int(word) - 1].effect if word.isdigit() and 1 <= int(word) <= len(choice) else None
+
+
+def offer(c: Candidate) -> str:
+    """A candidate as the question shows it."""
+    size = f"{sized(c.value, *c.ci95)} {c.unit}".removesuffix(" 1")
+    fell = f", error {c.rmse_K[0]:.2f} -> {c.rmse_K[1]:.2f} K" if c.rmse_K else ""
+    return f"{c.effect}: {c.title}, {size}, probability {100 * c.probability:.0f} %{fell}"
+
+
+def answer(document: Mapping[str, Any], folder: Folder) -> Answer:
+    """Why it ended, the error step by step, and what would decide if it stopped."""
+    steps = document["stairs"]
+    headers = ["step", *(f"{t['name']} ({t['role']}, K)" for t in steps[0]["tests"]), "all (K)", "probability"]
+    rows = [
+        [
+            s["effect"] or s["step"],
+            *(t["rmse_K"] for t in s["tests"]),
+            s["rmse_K"],
+            s["evidence"].get("probability", ""),
+        ]
+        for s in steps
+    ]
+    errors = Grid("Error, step by step (rms)", headers, rows, keep=["all (K)", "probability"])
+    written = f"{document['written']} revisions written to {folder.settings.model_file}"
+    kept = written if document["written"] else "nothing written"
+    further = "" if document["adequate"] else ahead(document["diagnosis"])
+    more = f"thermoscope model undo {document['case']} takes a step back; thermoscope show report {document['case']}"
+    return Answer(f"{document['verdict']}: {document['why']}; {kept}.", [errors, further], more)

@@ -1,0 +1,143 @@
+"""thermoscope model build MACHINE"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from geom.errors import InputError
+from thermoscope.case_folder.folder import load_machine_file
+from thermoscope.commands.model import crosscheck
+from thermoscope.console.answer import Answer, Grid
+from thermoscope.console.terminal import give, progress
+
+if TYPE_CHECKING:
+    from geom import Machine
+    from geom.meshing.mesh import NamedMesh
+    from geom.solids.surfaces import CadCheck
+    from thermoscope.console.terminal import Progress
+    from thermoscope.pipeline import Built
+    from thermoscope.verification.sized import Sized
+
+ERRORS = ("mean", "hot", "point")
+
+
+def build(machine: str, out: Path | None, target: str | None, accuracy: float | None = None) -> int:
+    """Solids, mesh and network of a machine to a folder, and the network against the field.
+
+    accuracy : percent of a part's own rise; the smallest network that meets it is kept. None: the size a case runs.
+    """
+    from geom import check_cad, export_cad, write_vtu
+
+    described = load_machine_file(Path(machine))
+    folder = out or Path("out") / described.name
+    if Path(machine).is_file() and folder.resolve() == Path(machine).resolve().parent:
+        raise InputError("the machine file lies there: a result could take its name", f"--out {folder}", "out/NAME")
+    with progress() as tell:
+        built, found = built_from(described, accuracy, tell)
+        checked = crosscheck.checked(built, found, tell)
+        tell("solids")
+        solids = check_cad(described)
+        tell(f"writing {folder}")
+        export_cad(described, folder)
+        write_vtu(built.mesh, folder / f"{described.name}.vtu")
+        document = {**described_as(built, solids), **checked, **({} if found is None else {"sizes": found.document()})}
+        crosscheck.save(document, folder)
+    give(document, target, lambda: answer(document, folder))
+    return 0 if found is None or found.met else 1
+
+
+def built_from(
+    described: Machine, accuracy: float | None, tell: Progress, size_m: float = 0.06
+) -> tuple[Built, Sized | None]:
+    """At the size a case runs, or at the smallest that is accurate enough.  size_m : of the mesh's triangles (m)"""
+    from lumped.machine.bases import on_all
+    from thermoscope.pipeline import build as usual
+    from thermoscope.verification.sized import sized
+
+    if accuracy is None:
+        return usual(on_all(described), size_m, progress=tell), None
+    found = sized(described, accuracy, size_m, progress=tell)
+    return found.built, found
+
+
+def described_as(built: Built, solids: list[CadCheck]) -> dict[str, Any]:
+    """The document of the command; surfaces, mesh and formula volumes in m3, areas in m2."""
+    from geom.description.areas import part_table
+
+    meshed = mesh_volumes(built.mesh)
+    rows = {row.name: row for row in part_table(built.machine)}
+    parts = [
+        {
+            "name": s.part, "material": built.machine.part(s.part).material, "volume_m3": s.volume,
+            "mesh_volume_m3": meshed[s.part], "solid_volume_m3": s.solid_volume, "watertight": s.watertight,
+            "mass_kg": rows[s.part].mass, "faces_m2": dict(rows[s.part].faces),
+            "contacts_m2": dict(rows[s.part].contacts),
+        }
+        for s in solids
+    ]  # fmt: skip
+    return {
+        "machine": built.machine.name,
+        "parts": parts,
+        "mesh": {"nodes": len(built.mesh.points), "tets": len(built.mesh.tets)},
+        "network": {"nodes": len(built.network.states), "links": len(built.network.links)},
+    }
+
+
+def mesh_volumes(mesh: NamedMesh) -> dict[str, float]:
+    """Volume of every part in the mesh (m3): its tetrahedra summed."""
+    corners = mesh.points[mesh.tets]
+    sizes = np.abs(np.linalg.det(corners[:, 1:] - corners[:, :1])) / 6.0
+    return dict(zip(mesh.parts, np.bincount(mesh.region, sizes, len(mesh.parts)).tolist(), strict=True))
+
+
+def answer(document: Mapping[str, Any], folder: Path) -> Answer:
+    """How well the network agrees with the field, part by part, and where the files are."""
+    mesh, network = document["mesh"], document["network"]
+    worst = crosscheck.worst(document)
+    off = abs(worst["percent_of_rise"])
+    sentence = (f"{document['machine']}: a network of {network['nodes']} states from {mesh['tets']} tetrahedra; "
+                f"means within {off:.2g} % of the rise (worst: {worst['place']}).")  # fmt: skip
+    headers = ["part", "material", "volume (l)", "in the mesh (l)", "mass (kg)", "to fluids (m2)", "to parts (m2)",
+               "watertight"]  # fmt: skip
+    parts = Grid("Parts", headers, [_row(part) for part in document["parts"]], ["NO"], ["mass (kg)", "watertight"])
+    sizes = _sizes(document["sizes"]) if "sizes" in document else []
+    shown = [*sizes, crosscheck.parts(document), parts]
+    rest = [crosscheck.links(document), crosscheck.hand(document)]
+    return Answer(sentence, shown, f"solids, mesh and tables in {folder}; --json FILE", rest)
+
+
+def _row(part: Mapping[str, Any]) -> list[Any]:
+    litres = [1e3 * part["volume_m3"], 1e3 * part["mesh_volume_m3"]]
+    areas = [sum(part["faces_m2"].values()), sum(part["contacts_m2"].values())]
+    return [part["name"], part["material"], *litres, part["mass_kg"], *areas, "yes" if part["watertight"] else "NO"]
+
+
+def _sizes(sizes: Mapping[str, Any]) -> list[Grid | str]:
+    """Error against number of states, and what the guard saw at points nothing was fitted to."""
+    wish = sizes["wish_percent"]
+    rows = [["means only" if not s["asked"] else f"up to {s['asked']}", *_errors(s)] for s in sizes["sizes"]]
+    rows += [
+        ["learned", g["states"], "-", "-", "-", *(g["random"][k] for k in ERRORS), _word(g)] for g in sizes["guard"]
+    ]
+    title = f"Error in % of a part's rise (wish: means {wish['mean']:g}, hot spots and points {wish['hot']:g})"
+    headers = ["network", "states", "mean", "hot spot", "point", "mean, random", "hot, random", "point, random", "met"]
+    missed: list[Grid | str] = []
+    if not sizes["met"]:
+        bad = sizes["guard"][-1]["random"]
+        missed = [
+            f"The wish is missed: mean {bad['mean_part']}, hot spot {bad['hot_part']}, point {bad['point_part']}."
+        ]
+    return [Grid(title, headers, rows, keep=["states", "mean, random", "hot, random", "met"]), *missed]
+
+
+def _errors(size: Mapping[str, Any]) -> Sequence[Any]:
+    values = [size[at][kind] for at in ("nominal", "random") for kind in ERRORS]
+    return [size["states"], *values, _word(size)]
+
+
+def _word(row: Mapping[str, Any]) -> str:
+    return "yes" if row["met"] else "no"

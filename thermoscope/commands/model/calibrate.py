@@ -1,0 +1,69 @@
+"""thermoscope model calibrate CASE"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from thermoscope.case_folder.folder import Folder
+from thermoscope.commands.model.revise import revised
+from thermoscope.commands.saved import fingerprint, keep, kept
+from thermoscope.console.terminal import Progress
+
+if TYPE_CHECKING:
+    from validation.revision.revise import Revision
+
+NAME = "calibration.json"
+
+
+def calibrate(
+    case: str,
+    anyway: bool,
+    target: str | None,
+    profile: tuple[str, ...] = (),
+    starts: int | None = None,
+    seed: int | None = None,
+) -> int:
+    """Exit code 1, and nothing written, when the fit does not converge. An interrupted fit goes on where it was.
+
+    starts, seed : None for what case.toml says
+    """
+    from validation.calibration.staged import Search
+    from validation.revision.revise import calibrate as fitted
+
+    def step(folder: Folder, tell: Progress) -> Revision:
+        unfinished = Unfinished(folder)
+        usual = folder.settings
+        many, drawn = usual.starts if starts is None else starts, usual.seed if seed is None else seed
+        search = Search(many, drawn, unfinished.values(tell), unfinished.keep)
+        result = fitted(folder.case, progress=tell, profiled=profile, search=search)
+        unfinished.done()
+        return result
+
+    return revised(case, step, anyway, target)
+
+
+class Unfinished:
+    """The values a calibration has reached so far, in out/, until it is done."""
+
+    def __init__(self, folder: Folder) -> None:
+        self.path: Path = folder.settings.out / NAME
+        self.of = fingerprint(folder.settings.path)
+        self.reached: dict[str, float] = {}
+
+    def values(self, tell: Progress) -> dict[str, float]:
+        """Those of an interrupted calibration of this very case, else none."""
+        found = kept(self.path)
+        if found is None or found.get("fingerprint") != self.of:
+            return {}
+        tell("going on with the calibration that was interrupted")
+        self.reached = found["values"]
+        return dict(self.reached)
+
+    def keep(self, values: Mapping[str, float]) -> None:
+        self.reached |= values
+        keep(self.path, {"fingerprint": self.of, "values": self.reached})
+
+    def done(self) -> None:
+        self.path.unlink(missing_ok=True)

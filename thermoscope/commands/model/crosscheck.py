@@ -1,0 +1,150 @@
+"""thermoscope model crosscheck MACHINE"""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from geom.errors import ThermoscopeError
+from thermoscope.case_folder.files import write_whole
+from thermoscope.case_folder.folder import load_machine_file
+from thermoscope.console.answer import Answer, Grid
+from thermoscope.console.terminal import give, plain, progress
+
+if TYPE_CHECKING:
+    from thermoscope.console.terminal import Progress
+    from thermoscope.pipeline import Built
+    from thermoscope.verification.sized import Sized
+
+HOT = 200.0  # degC, what insulation bears
+SHOWN = 12  # rows of a long table on the screen; the files hold all
+
+
+def crosscheck(machine: str, out: Path | None, accuracy: float, target: str | None) -> int:
+    """Where network and field disagree, which link is responsible, and every hand formula beside the field's value."""
+    from thermoscope.verification.sized import sized
+
+    described = load_machine_file(Path(machine))
+    folder = out or Path("out") / described.name
+    with progress() as tell:
+        found = sized(described, accuracy, progress=tell)
+        document = {"machine": described.name, **checked(found.built, found, tell)}
+        save(document, folder)
+    give(document, target, lambda: answer(document, folder))
+    return 0 if found.met else 1
+
+
+def checked(built: Built, found: Sized | None, tell: Progress) -> dict[str, Any]:
+    """Part by part and link by link at a point where the machine settles, and the hand formulas there."""
+    from lumped.machine.losses import loss_shares
+    from thermoscope.verification.crosscheck import crosscheck as compare
+    from thermoscope.verification.hand import hand_rows
+    from thermoscope.verification.local_laws import with_local_laws
+
+    tell("field against network")
+    point = bearable(built)
+    loads = None if found is None else found.reduction.loads
+    solver = None if found is None else found.reduction.solver
+    shares = loss_shares(built.machine, built.network)
+    check = compare(built.field, built.network, point, solver=solver, loads=loads, shares=shares)
+    tell("laws point by point")
+    local = with_local_laws(built.field, built.network, point, check, shares, loads, solver).T
+    tell("hand formulas")
+    hand = hand_rows(built.machine, built.field, check)
+    responsible = {part.place: check.responsible(part.place) for part in check.parts}
+    return {
+        "operating_point": point,
+        "crosscheck": [
+            {
+                **vars(part),
+                "local_max_C": float(local[built.field.blocks[part.place].dofs].max()),
+                "responsible": None if link is None else link.link,
+            }
+            for part, link in zip(check.parts, responsible.values(), strict=True)
+        ],
+        "links": [vars(link) for link in check.links],
+        "hand": [row.document() for row in hand],
+        "energy_balance": check.energy_balance,
+    }
+
+
+def bearable(built: Built) -> dict[str, float]:
+    """The rated point with its current lowered until the machine settles: a short-time rating has no steady state.
+
+    Raises ThermoscopeError where it settles at no current: its other losses alone overheat it, or nothing cools it.
+    """
+    from lumped.machine.motor import rated_inputs
+    from thermoscope.verification.crosscheck import steady_state
+
+    point = rated_inputs(built.machine)
+    named = [i for i, state in enumerate(built.network.states) if "#" not in state]
+    rated = point["current_A"]
+    while True:
+        with suppress(ThermoscopeError):  # thermal runaway: copper's losses grow faster than its cooling
+            T = steady_state(built.network, point, 20.0)[named]
+            if T.min() > 0.0 and T.max() < HOT:
+                return point
+        point = {**point, "current_A": 0.8 * point["current_A"]}
+        if point["current_A"] <= 0.01 * rated:
+            break
+    raise ThermoscopeError(f"'{built.machine.name}' does not settle below {HOT:g} degC, even with next to no current")
+
+
+def save(document: Mapping[str, Any], folder: Path) -> None:
+    """crosscheck.json, and its tables as CSV."""
+    write_whole(folder / "crosscheck.json", json.dumps(plain(document), indent=2, ensure_ascii=False) + "\n")
+    for name in ("crosscheck", "links", "hand"):
+        file = folder / ("crosscheck.csv" if name == "crosscheck" else f"crosscheck-{name}.csv")
+        write_whole(file, _csv(document[name]))
+
+
+def _csv(rows: Sequence[Mapping[str, Any]]) -> str:
+    text = io.StringIO()
+    if rows:
+        writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(plain(row) for row in rows)
+    return text.getvalue()
+
+
+def answer(document: Mapping[str, Any], folder: Path) -> Answer:
+    """Parts, the links that differ most, and the hand formulas furthest off."""
+    off = worst(document)
+    sentence = (f"Steady at the rated point, network and field differ by {abs(off['percent_of_rise']):.2g} % of "
+                f"the rise at most ({off['place']}); its energy balance {document['energy_balance']:.1e}.")  # fmt: skip
+    point = ", ".join(f"{name} {value:.4g}" for name, value in document["operating_point"].items())
+    shown = [parts(document), links(document), hand(document)]
+    return Answer(sentence, shown, f"all rows in {folder}/crosscheck*.csv; --json FILE", [f"Operating point: {point}"])
+
+
+def worst(document: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The part that is furthest off."""
+    rows: Sequence[Mapping[str, Any]] = document["crosscheck"]
+    return max(rows, key=lambda part: abs(part["percent_of_rise"]))
+
+
+def parts(document: Mapping[str, Any]) -> Grid:
+    """Temperatures by field and network, the largest difference first."""
+    headers = ["part", "field mean", "network mean", "field max", "network max", "off (% of rise)",
+               "field max, laws local", "link that differs most"]  # fmt: skip
+    rows = sorted(document["crosscheck"], key=lambda part: -abs(part["percent_of_rise"]))
+    title, keep = "Temperatures (degC), 20 degC around", ["off (% of rise)", "field mean", "network mean"]
+    return Grid(title, headers, [list(part.values()) for part in rows], keep=keep)
+
+
+def links(document: Mapping[str, Any]) -> Grid:
+    """Heat through links, the largest difference first."""
+    rows = [[link["link"], link["fem_W"], link["network_W"], link["percent_of_heat"]] for link in document["links"]]
+    return Grid("Heat through links (W)", ["link", "field", "network", "off (% of all heat)"], rows[:SHOWN])
+
+
+def hand(document: Mapping[str, Any]) -> Grid:
+    """Hand formulas, the furthest off first."""
+    rows = sorted(document["hand"], key=lambda row: -abs(row["ratio"] - 1.0))
+    body = [list(row.values()) for row in rows[:SHOWN]]
+    return Grid("Hand formulas (K/W)", ["link", "formula", "textbook", "field", "ratio"], body, keep=["ratio", "field"])

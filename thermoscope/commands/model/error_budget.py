@@ -1,0 +1,70 @@
+"""The error budget as a table: place by place the run in which most is left."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from thermoscope.console.answer import Grid
+
+if TYPE_CHECKING:
+    from thermoscope.case_folder.folder import Folder
+
+Places = Sequence[Mapping[str, Any]]
+Steps = Mapping[str, Mapping[str, Any]]
+KEYS = ("place", "mesh_K", "condensation_K", "time_K", "total_K")
+HEADERS = ["place", "mesh (K)", "condensation (K)", "time steps (K)", "sum (K)"]
+
+
+def sampling(folder: Folder) -> dict[str, dict[str, Any]]:
+    """The step at which every test is looked at, and what that leaves, for a document."""
+    return {"sampling": {name: step.document() for name, step in folder.steps.items()}}
+
+
+def budget(budgets: Mapping[str, Places], steps: Steps) -> list[Grid | str]:
+    """budgets : run -> places;  steps : test -> sample step, both as in the documents"""
+    rows = sorted(worst(budgets), key=_total, reverse=True)
+    if not rows:
+        return _sampled(steps)
+    shown = [["-" if row[key] is None else row[key] for key in KEYS] for row in rows]
+    return [Grid("Error budget: what the model's own numbers may be wrong by", HEADERS, shown, keep=["sum (K)"]),
+            words(rows), *_sampled(steps)]  # fmt: skip
+
+
+def _sampled(steps: Steps) -> list[Grid | str]:
+    from validation.measurement.sampling import SampleStep, sampled
+
+    return [sampled({name: SampleStep(**step) for name, step in steps.items()})] if steps else []
+
+
+def in_short(budgets: Mapping[str, Places], steps: Steps) -> str:
+    """The largest sum and the sample steps in a sentence."""
+    rows, every = worst(budgets), sorted({step["step_s"] for step in steps.values()})
+    said = f"compared every {' to '.join(f'{h:.3g}' for h in dict.fromkeys((every[0], every[-1])))} s" if every else ""
+    if not rows:
+        return f"Readings and model are {said}." if said else ""
+    most = max(rows, key=_total)
+    good = f"The model's own numbers are good to {_total(most):.2g} K (worst at {most['place']})"
+    return f"{good}, {said}." if said else f"{good}."
+
+
+def worst(budgets: Mapping[str, Places]) -> list[Mapping[str, Any]]:
+    """Of every place the run with the largest sum."""
+    found: dict[str, Mapping[str, Any]] = {}
+    for row in (row for places in budgets.values() for row in places):
+        if row["place"] not in found or _total(row) > _total(found[row["place"]]):
+            found[row["place"]] = row
+    return list(found.values())
+
+
+def _total(row: Mapping[str, Any]) -> float:
+    return float(row["total_K"] or 0.0)
+
+
+def words(rows: Places) -> str:
+    """What a missing number means."""
+    declared = all(row["mesh_K"] is None for row in rows)
+    field = "a declared network has no mesh and nothing is condensed; " if declared else ""
+    timed = any(row["time_K"] is not None for row in rows)
+    time = "time steps as the integrator estimates them" if timed else "nothing estimates the time steps here"
+    return f"error budget: {field}{time}; an effect that changes no sensor by more cannot be told from it"

@@ -1,0 +1,157 @@
+"""thermoscope model add | remove CASE EFFECT@PLACE, thermoscope model undo CASE"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from geom.errors import InputError
+from thermoscope.case_folder.columns import write_columns
+from thermoscope.case_folder.folder import Folder
+from thermoscope.case_folder.history import Revision, save_history
+from thermoscope.case_folder.runs import at_revision
+from thermoscope.commands.opened import opened_to_write
+from thermoscope.commands.saved import saved_diagnosis
+from thermoscope.console.answer import Answer, Grid, cell
+from thermoscope.console.terminal import give, progress
+from validation.comparison.compare import compare
+
+if TYPE_CHECKING:
+    from validation.revision import revise
+
+FEW = 4  # parameters named in a sentence
+
+
+def add(case: str, effect: str, anyway: bool, target: str | None) -> int:
+    """Exit code 1, and nothing written, when a check fails: bounds, or tests left out in turn.
+
+    "event@N" is the likeliest explanation of the N-th event of the last diagnosis
+    """
+    from validation.revision.revise import add as added
+
+    return revised(case, lambda folder, tell: added(folder.case, meant(folder, effect), tell), anyway, target)
+
+
+def meant(folder: Folder, effect: str) -> str:
+    """The effect itself, or of "event@N" and "event@NAME" what the last diagnosis thinks it was."""
+    kind, _, which = effect.partition("@")
+    if kind != "event":
+        return effect
+    found = (saved_diagnosis(folder) or {}).get("events", [])
+    names = {name: e["effect"] for i, e in enumerate(found) for name in (str(i + 1), e["event"])}
+    if which not in names:
+        right = f"event@1 to event@{len(found)}" if found else "thermoscope diagnose first: it found no event in these"
+        raise InputError(f"no event '{which}'", f"effect '{effect}'", right)
+    return str(names[which])
+
+
+def remove(case: str, effect: str, target: str | None) -> int:
+    """Whatever the error does: taking a step back is the user's right."""
+    from validation.revision.revise import remove as removed
+
+    return revised(case, lambda folder, tell: removed(folder.case, effect, tell), True, target)
+
+
+def undo(case: str, number: int | None, target: str | None) -> int:
+    """One revision more, equal to the one before the last, or to `number`; nothing is forgotten."""
+    with progress() as tell:
+        folder = opened_to_write(case, tell)
+        last = folder.history.last.number
+        if number is None and last == 0:
+            raise InputError("there is no step to undo", str(folder.settings.model_file), "a case that was revised")
+        history = folder.history.back_to(last - 1 if number is None else number)
+        after = at_revision(folder, history.last)
+        tell("running the model")
+        errors = {t.name: t.rmse_K for t in compare(after).tests}
+    save_history(folder.settings.model_file, history, folder.history)
+    write_columns(folder, history.last.effects)
+    model = {"case": folder.case.name, "revision": history.last.number, "why": history.last.why}
+    document = {**model, "effects": list(history.last.effects), "rmse_K": errors}
+    sentence, rows = f"Revision {history.last.number}: {history.last.why}.", list(errors.items())
+    give(document, target, lambda: Answer(sentence, [Grid("", ["test", "rms (K)"], rows)]))
+    return 0
+
+
+def revised(case: str, step: Callable[..., revise.Revision], anyway: bool, target: str | None) -> int:
+    """Open, take the step, keep it if it is accepted, show it. `step` is given folder and progress."""
+    with progress() as tell:
+        folder = opened_to_write(case, tell)
+        result = step(folder, tell)
+    keep = result.accepted or anyway
+    if keep:
+        longer = folder.history.and_then(recorded(result, evidence(folder, result)))
+        save_history(folder.settings.model_file, longer, folder.history)
+        write_columns(folder, longer.last.effects)
+    document = {**result.document(), "case": folder.case.name, "written": keep}
+    give(document, target, lambda: answer(document, folder))
+    return 0 if keep else 1
+
+
+def recorded(result: revise.Revision, evidence: Mapping[str, float | str]) -> Revision:
+    """A step as model.toml keeps it."""
+    return Revision(
+        0, result.action, tuple(e.name for e in result.model.effects), result.effect or "",
+        dict(result.model.values), {p.name: p.ci95 for p in result.parameters},
+        {t.name: (t.before, t.after) for t in result.tests}, result.why, dict(evidence),
+    )  # fmt: skip
+
+
+def evidence(folder: Folder, result: revise.Revision) -> dict[str, float | str]:
+    """What the last diagnosis of this very model said about the effect; empty when there was none."""
+    found = saved_diagnosis(folder) if result.action == "add" else None
+    rows = [c for c in (found or {}).get("candidates", []) if c["effect"] == result.effect]
+    return {key: rows[0][key] for key in ("probability", "score", "threshold", "decision")} if rows else {}
+
+
+def telling(p: Mapping[str, Any]) -> tuple[bool, float]:
+    """Sorts the effects' own amplitudes first, then what lies farthest from the middle of its prior."""
+    low, high = p["prior"][1:]
+    return "@" not in p["name"], -abs(p["value"] - p["prior"][0]) / max(high - low, 1e-300)
+
+
+def named(p: Mapping[str, Any]) -> str:
+    """A parameter the data cannot fix, with the one it trades with."""
+    return f"{p['name']} (trades with {p['partner']})" if p["partner"] else str(p["name"])
+
+
+def profiled(p: Mapping[str, Any]) -> str:
+    """The profile's interval; an end in brackets is only the bound."""
+    if p["profile"] is None:
+        return ""
+    ends = zip(p["profile"]["ci95"], p["profile"]["open"], strict=True)
+    return " ... ".join(f"({cell(x)})" if is_open else cell(x) for x, is_open in ends)
+
+
+def note(p: Mapping[str, Any]) -> str:
+    return "at its bound" if p["at_bound"] else f"trades with {p['partner']}" if p["partner"] else ""
+
+
+def answer(document: Mapping[str, Any], folder: Folder) -> Answer:
+    """Whether it stands, the error before and after, and the values that the data fixed."""
+    name = f"{document['action']} {document['effect'] or ''}".strip()
+    verdict = "accepted" if document["accepted"] else "not accepted"
+    where = f"written to {folder.settings.model_file} as revision {document['revision']}"
+    kept = where if document["written"] else "nothing written (--anyway writes it)"
+    rows = [[t["name"], t["role"], t["rmse_K"]["before"], t["rmse_K"]["after"]] for t in document["tests"]]
+    errors = Grid("", ["test", "role", "error before (K)", "after (K)"], rows, ["hold-out"])
+    checks = [f"{'passed' if c['passed'] else 'FAILED'}  {c['check']}: {c['words']}" for c in document["checks"]]
+    step = "explain diagnose" if document["action"] == "calibrate" else "test compare"
+    parts: list[Grid | str] = [errors, *checks, _fixed(document["parameters"]), _blind(document["parameters"])]
+    return Answer(
+        f"{name}: {verdict}; {document['why']}; {kept}.",
+        parts,
+        f"Next: thermoscope {step} {document['case']}; --json FILE",
+    )
+
+
+def _fixed(parameters: Sequence[Mapping[str, Any]]) -> Grid:
+    seen = sorted((p for p in parameters if p["identified"] and not p["of_measurement"]), key=telling)
+    rows = [[p["name"], p["value"], p["unit"], *p["ci95"], profiled(p), *p["prior"][1:], note(p)] for p in seen]
+    headers = ["parameter", "value", "unit", "from", "to", "by profile", "prior from", "prior to", "note"]
+    return Grid("What the data fixed (95 %)", headers, rows, keep=["value", "unit", "from", "to"])
+
+
+def _blind(parameters: Sequence[Mapping[str, Any]]) -> str:
+    blind = [named(p) for p in parameters if not p["identified"] and not p["of_measurement"]]
+    few = f"{', '.join(blind[:FEW])}{', ...' if len(blind) > FEW else ''}"
+    return f"The data do not fix {len(blind)} parameters: {few}" if blind else ""

@@ -1,0 +1,220 @@
+"""thermoscope show report CASE, thermoscope show render CASE"""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Mapping
+from dataclasses import replace
+from datetime import datetime
+from importlib.metadata import version
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from geom.errors import MissingDependency
+from thermoscope.case_folder.folder import Folder
+from thermoscope.case_folder.history import Revision
+from thermoscope.case_folder.runs import at_revision, before_last, fields, held, parameters, readings, steps
+from thermoscope.commands.opened import opened_to_write
+from thermoscope.commands.saved import last_diagnosis, saved_diagnosis
+from thermoscope.console.answer import Answer
+from thermoscope.console.terminal import Progress, give, notes, progress
+from validation.case import Case, Test
+from validation.measurement.sampling import sampled
+
+if TYPE_CHECKING:
+    from viz.data import Comparison
+    from viz.rendering.nodes import SplitMesh
+
+FRAMES = 61
+LIKELY = 0.5  # probability from which an event is drawn
+ORDER = {"hold-out": 0, "validate": 1, "calibrate": 2}
+
+
+def report(case: str, out: Path | None, target: str | None) -> int:
+    """One page, as PDF too where this computer can. Its diagnosis is the last one there was; none is started here."""
+    from viz import write_pdf
+
+    with progress() as tell:
+        folder = opened_to_write(case, tell)
+        path = write_page(folder, case, out or folder.settings.out, tell)
+        tell("printing")
+        pdf = write_pdf(path)
+    document = {"case": folder.case.name, "revision": folder.case.model.revision, "report": str(path)}
+    printed = [f"As PDF: {pdf}"] if pdf else []
+    if not (folder.settings.out / "diagnosis.json").exists():
+        printed.append(f"It has no diagnosis yet: thermoscope explain diagnose {case}")
+    give({**document, "pdf": pdf and str(pdf)}, target, lambda: Answer(f"The report is {path}.", printed))
+    return 0
+
+
+def write_page(folder: Folder, case: str, into: Path, tell: Progress) -> Path:
+    """Write into/report.html with its pictures; `case` is what the commands on it call the case."""
+    from thermoscope.verification.error_budget import budgets_of_tests, documents
+    from validation.comparison.compare import compare
+    from viz.pages.report import Report, write_report
+
+    tell("running the model")
+    result, (diagnosis, earlier) = compare(folder.case), _diagnosis(folder)
+    curves = [marked(held(folder, test), diagnosis) for test in by_interest(folder)]
+    budgets = budgets_of_tests(folder, tell)
+    tell("drawing")
+    page = Report(
+        folder.case.name, folder.settings.description, result.document(), diagnosis, steps(folder),
+        parameters(folder), curves, _pictures(folder, into, None if earlier else diagnosis), assumptions(folder),
+        commands(folder, case), made(), earlier, documents(budgets),
+    )  # fmt: skip
+    return write_report(page, into / "report.html")
+
+
+def marked(comparison: Comparison, diagnosis: Mapping[str, Any] | None) -> Comparison:
+    """The comparison with the events that a diagnosis finds likely."""
+    likely = [e for e in (diagnosis or {}).get("events", []) if e["probability"] > LIKELY]
+    spans = [(s["begin_s"], s["end_s"]) for e in likely for s in e["spans"] if s["test"] == comparison.test.name]
+    return replace(comparison, events=(*comparison.events, *spans))
+
+
+def render(case: str, out: Path | None, target: str | None) -> int:
+    """Curves and errors always; the field and the recording where the geometry is known."""
+    with progress() as tell:
+        folder = opened_to_write(case, tell)
+        into = out or folder.settings.out
+        into.mkdir(parents=True, exist_ok=True)
+        tell("drawing curves")
+        files = [*_plots(folder, into), *_pictures(folder, into, saved_diagnosis(folder)).values()]
+        if folder.built is not None:
+            tell("writing the recording")
+            files.append(_recording(folder, into))
+    if folder.built is None:
+        notes(["this case has no geometry (a hand-declared network): no field and no recording"])
+    document = {"case": folder.case.name, "files": [str(f) for f in files]}
+    give(document, target, lambda: Answer(f"{len(files)} files in {into}.", [str(f.name) for f in files]))
+    return 0
+
+
+def by_interest(folder: Folder) -> list[Test]:
+    """Tests with the never-used ones first."""
+    return sorted(folder.case.tests, key=lambda test: ORDER[test.role])
+
+
+def _diagnosis(folder: Folder) -> tuple[Mapping[str, Any] | None, bool]:
+    """What the page shows, and whether it is of the model before its last step."""
+    kept = saved_diagnosis(folder)
+    if kept is not None:
+        return kept, False
+    last = last_diagnosis(folder)
+    return last, last is not None
+
+
+def _plots(folder: Folder, into: Path) -> list[Path]:
+    from viz.figures import curves, errors
+
+    written = []
+    for test in by_interest(folder):
+        comparison = marked(held(folder, test), saved_diagnosis(folder))
+        for name, draw in (("curves", curves.measured_and_model), ("residuals", curves.residuals)):
+            written.append(into / f"{name}-{test.name}.png")
+            draw(comparison, png=written[-1])
+    if folder.history.revisions:
+        written.append(into / "error.png")
+        errors.staircase(steps(folder), png=written[-1])
+    return written
+
+
+def _pictures(folder: Folder, into: Path, diagnosis: Mapping[str, Any] | None) -> dict[str, Path]:
+    """Caption -> picture of the field at the end of the most telling test, alone or beside the model before.
+
+    diagnosis : of this model; it says where heat is missing
+    """
+    if folder.built is None:
+        return {}
+    from viz import cutaway, pair, require_gl, sensors, split
+
+    try:
+        require_gl()
+    except MissingDependency as fault:
+        notes([str(fault)])
+        return {}
+    into.mkdir(parents=True, exist_ok=True)
+    nodes, test = split(folder.built.mesh), by_interest(folder)[0]
+    now, file = fields(folder.case, test, nodes, 1)[1][-1], into / "field.png"
+    seen = sensors(held(folder, test), folder.positions)
+    title = f"{test.name} at {test.time[-1] / 60:.0f} min: temperature of the model"
+    cutaway(nodes, now, sensors=seen, title=title, png=file)
+    out = {f"Temperature at the end of {test.name}; labels: measured minus modelled.": file}
+    out |= _missing_heat(diagnosis, nodes, into)
+    earlier = before_last(folder)
+    if earlier is not None:
+        both = into / "field-before-after.png"
+        pair(nodes, fields(earlier, test, nodes, 1)[1][-1], now, titles=("before the last step", "now"), png=both)
+        out[f"End of {test.name} before and after the last step of the model."] = both
+    return out
+
+
+def _missing_heat(diagnosis: Mapping[str, Any] | None, nodes: SplitMesh, into: Path) -> dict[str, Path]:
+    """Caption -> picture of where a diagnosis puts the missing heat; none where it cannot tell."""
+    from viz import missing_in_machine
+    from viz.machine.missing import placed
+
+    if diagnosis is None or not placed(diagnosis):
+        return {}
+    where = diagnosis["where"]
+    test, file = list(where[0]["heat"])[-1], into / "missing-heat.png"
+    missing_in_machine(nodes, where, test, png=file).close()
+    return {f"Heat that would have to enter (or leave, below zero) during {test}; unlikely places are grey.": file}
+
+
+def _recording(folder: Folder, into: Path) -> Path:
+    from viz import split, write_recording
+
+    assert folder.built is not None
+    nodes, test = split(folder.built.mesh), by_interest(folder)[0]
+    frames = fields(folder.case, test, nodes, FRAMES)
+    path = into / f"{test.name}.rrd"
+    ends = np.array([fields(case, test, nodes, 1)[1][-1] for case in every_revision(folder)])
+    return write_recording(
+        path, nodes, held(folder, test), frames, folder.positions, history=steps(folder), revision_fields=ends,
+        revision_residuals=[residual_at_end(case, test) for case in every_revision(folder)],
+    )  # fmt: skip
+
+
+def every_revision(folder: Folder) -> list[Case]:
+    """The case with each model of its history, as declared first."""
+    return [at_revision(folder, r) for r in (Revision(0, "calibrate"), *folder.history.revisions)]
+
+
+def residual_at_end(case: Case, test: Test) -> dict[str, float]:
+    """Sensor -> measured - modelled (K) over the last fifth of a test, where the machine is warm."""
+    model, late = readings(case, test), slice(int(0.8 * len(test.time)), None)
+    return {c.name: float(np.nanmean((c.y - model[c.name])[late])) for c in test.channels if np.isfinite(c.y).any()}
+
+
+def assumptions(folder: Folder) -> list[str]:
+    """What the numbers of the page rest on."""
+    s, case = folder.settings, folder.case
+    kind = "a network declared by hand" if s.machine is None else "a network condensed from the machine's field"
+    roles = {role: [t.name for t in case.tests if t.role == role] for role in ORDER}
+    used = "; ".join(f"{role}: {', '.join(names)}" for role, names in roles.items() if names)
+    sigma = sorted({c.sigma_K for t in case.tests for c in t.channels})
+    return [
+        f"The model is {kind} with {len(case.model.network.parameters)} adjustable parameters.",
+        f"Tests by role: {used}.",
+        *([f"Sample steps: {sampled(folder.steps)}."] if folder.steps else []),
+        f"Sensors are taken to be right within {sigma[0]:g} to {sigma[-1]:g} K (one standard deviation).",
+        *folder.notes,
+    ]
+
+
+def commands(folder: Folder, case: str) -> list[str]:
+    """What leads from the declared model to this page."""
+    known = [r for r in folder.history.revisions if r.action in ("calibrate", "add", "remove")]
+    done = [f"thermoscope model {r.action} {case} {r.effect}".strip() for r in known]
+    return [*done, f"thermoscope show report {case}"]
+
+
+def made() -> str:
+    """Date, versions, computer."""
+    now = datetime.now().astimezone().strftime("%Y-%m-%d %H:%M %Z")
+    parts = [f"thermoscope {version('thermoscope')}", f"Python {platform.python_version()}", f"NumPy {np.__version__}"]
+    return f"{now}; {', '.join(parts)}; {platform.system()} {platform.machine()}"

@@ -1,0 +1,178 @@
+"""thermoscope show picture CASE WHAT"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geom.errors import InputError
+from lumped.integration.balance import balance
+from lumped.integration.simulate import simulate
+from lumped.schemas.reader import known
+from thermoscope.case_folder.folder import Folder
+from thermoscope.case_folder.runs import before_last, fields, held, steps
+from thermoscope.commands.opened import opened
+from thermoscope.commands.show.pages import by_interest
+from thermoscope.console.answer import Answer
+from thermoscope.console.terminal import give, progress
+from validation.calibration.fitting import working
+from validation.case import Case, Test
+from validation.comparison.predict import record, thermal
+
+if TYPE_CHECKING:
+    from thermoscope.pipeline import Built
+    from viz.figures.flows import Heat
+    from viz.rendering.nodes import SplitMesh
+
+Array = NDArray[np.float64]
+
+
+def picture(case: str, what: str, out: Path | None, target: str | None) -> int:
+    """One picture of a case, at the end of its most telling test, as a PNG file."""
+    if what not in PICTURES:
+        raise InputError(f"unknown picture '{what}'", "show picture", known(what, PICTURES))
+    if out is not None and (out.suffix != ".png" or out.is_dir()):
+        raise InputError("is no name of a picture", f"--out {out}", "a file NAME.png")
+    with progress() as tell:
+        subject = Subject(opened(case, tell))
+        file = out or Path("out") / f"{subject.folder.case.name}-{what}.png"
+        tell(f"drawing {file}")
+        PICTURES[what](subject, file)
+    give({"case": subject.folder.case.name, "picture": what, "file": str(file)}, target, lambda: Answer(f"{file}"))
+    return 0
+
+
+@dataclass(frozen=True)
+class Subject:
+    """What pictures are drawn of: a case, and the test that tells most, a never-used one if there is one."""
+
+    folder: Folder
+
+    @cached_property
+    def test(self) -> Test:
+        return by_interest(self.folder)[0]
+
+    @property
+    def when(self) -> str:
+        return f"{self.test.name} at {self.test.time[-1] / 60:.0f} min"
+
+    @property
+    def built(self) -> Built:
+        if self.folder.built is None:
+            right = f"a case with a machine, or one of: {', '.join(FLAT)}"
+            raise InputError("has a network declared by hand, and so no geometry", self.folder.case.name, right)
+        return self.folder.built
+
+    @cached_property
+    def nodes(self) -> SplitMesh:
+        from viz import split
+
+        return split(self.built.mesh)
+
+    def field(self, case: Case | None = None) -> Array:
+        """(n_nodes,) degC at the end of the test."""
+        return np.asarray(fields(case or self.folder.case, self.test, self.nodes, 1)[1][-1])
+
+    def heat(self) -> tuple[Heat, dict[str, float]]:
+        """Heat flows, and node -> degC, at the end of the test."""
+        from viz import heat_flows
+
+        network, test = thermal(working(self.folder.case)[0]), record(self.test, {})
+        names = {p.name for p in network.parameters}
+        values = {k: v for k, v in self.folder.case.model.values.items() if k in names}
+        z = np.asarray(simulate(network, test, values, keep_states=True).z)[-1]
+        flows = heat_flows(network, balance(network, test, values), z=z)
+        return flows, dict(zip([*network.states, *network.boundaries], z.tolist(), strict=True))
+
+
+def _field(s: Subject, png: Path) -> None:
+    from viz import cutaway, sensors
+
+    seen = sensors(held(s.folder, s.test), s.folder.positions)
+    cutaway(s.nodes, s.field(), sensors=seen, title=f"{s.when}: temperature of the model", png=png).close()
+
+
+def _difference(s: Subject, png: Path) -> None:
+    from viz import difference
+
+    earlier = before_last(s.folder)
+    if earlier is None:
+        what = "has a model that was not changed yet, so there is no difference"
+        raise InputError(what, s.folder.case.name, "a case with a revision: thermoscope calibrate or add")
+    difference(
+        s.nodes, s.field(earlier), s.field(), title=f"{s.when}: after minus before the last step", png=png
+    ).close()
+
+
+def _exploded(s: Subject, png: Path) -> None:
+    from viz import exploded
+
+    exploded(s.nodes, s.field(), title=f"{s.when}: pulled apart", png=png).close()
+
+
+def _parts(s: Subject, png: Path) -> None:
+    from viz import regions
+
+    regions(s.nodes, title=f"{s.built.machine.name}: its parts", png=png).close()
+
+
+def _mesh(s: Subject, png: Path) -> None:
+    from viz import regions
+
+    regions(s.nodes, mesh=True, title=f"{s.built.machine.name}: its mesh", png=png).close()
+
+
+def _flux(s: Subject, png: Path) -> None:
+    from thermoscope.pipeline import conductivity_of
+    from viz import flux_arrows
+
+    machine = s.built.machine
+    k: dict[str, Any] = {part.name: conductivity_of(machine.material_of(part.name)) for part in machine.parts}
+    flux_arrows(s.nodes, s.field(), k, title=f"{s.when}: heat flux;", png=png).close()
+
+
+def _network(s: Subject, png: Path) -> None:
+    from viz import network_in_machine
+
+    mesh = s.built.mesh
+    flows, means = s.heat()
+    network_in_machine(mesh, means, flows, title=f"{s.when}: heat flows;", png=png).close()
+
+
+def _losses(s: Subject, png: Path) -> None:
+    from viz import sankey_of_losses
+
+    sankey_of_losses(s.heat()[0], png=png)
+
+
+def _curves(s: Subject, png: Path) -> None:
+    from viz import measured_and_model
+
+    measured_and_model(held(s.folder, s.test), png=png)
+
+
+def _residuals(s: Subject, png: Path) -> None:
+    from viz import residuals
+
+    residuals(held(s.folder, s.test), png=png)
+
+
+def _errors(s: Subject, png: Path) -> None:
+    from viz import staircase
+
+    staircase(steps(s.folder), png=png)
+
+
+FLAT: dict[str, Callable[[Subject, Path], None]] = {
+    "curves": _curves, "residuals": _residuals, "errors": _errors, "losses": _losses,
+}  # fmt: skip
+PICTURES: dict[str, Callable[[Subject, Path], None]] = {
+    "field": _field, "difference": _difference, "exploded": _exploded, "parts": _parts, "mesh": _mesh, "flux": _flux,
+    "network": _network, **FLAT,
+}  # fmt: skip

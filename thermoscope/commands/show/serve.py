@@ -1,0 +1,21 @@
+"""thermoscope show serve CASE"""
+
+from __future__ import annotations
+
+import os
+
+from thermoscope.commands.opened import opened_to_write
+from thermoscope.console.terminal import progress, say
+
+
+def serve(case: str, host: str, port: int) -> int:
+    """The workbench in the browser, until Ctrl-C."""
+    from thermoscope.workbench.gate import Gate
+    from thermoscope.workbench.serve import application, token_for
+    from thermoscope.workbench.serve import serve as run
+
+    gate = Gate(host, token_for(os.environ.get("THERMOSCOPE_TOKEN")))
+    with progress() as tell:
+        app = application(opened_to_write(case, tell), gate, tell)
+    run(app, gate, port, lambda url: say(f"open {url}  (Ctrl-C ends)"))
+    return 0

@@ -1,0 +1,154 @@
+"""thermoscope test compare CASE"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from thermoscope.commands.model.error_budget import budget, in_short, sampling
+from thermoscope.commands.opened import opened
+from thermoscope.console.answer import Answer, Grid
+from thermoscope.console.terminal import give, progress
+from validation.comparison.within import WORDS
+
+EVIDENT = 10.0  # nats
+WHITE = 0.01
+DIFFERENCES = 12  # shown
+TURNS = {True: "yes", False: "no", None: ""}
+
+
+def compare(case: str, target: str | None, why: bool = False, sure: bool | None = None) -> int:
+    """Exit code 1 when a sensor is outside its uncertainty and outside the 4 % rule."""
+    from thermoscope.bands import of_tests, wanted
+    from thermoscope.verification.error_budget import budgets_of_tests, documents
+    from validation.comparison.compare import compare as held_against
+    from validation.diagnosis.failing import failing
+
+    with progress() as tell:
+        folder = opened(case, tell)
+        tell("running the model")
+        result = held_against(folder.case)
+        more = failing(folder.case, tell).document() if why else {}
+        budgets = budgets_of_tests(folder, tell)
+        bands = {"bands": of_tests(folder, tell)} if wanted(folder.case.model.network, sure) else {}
+    document = {**result.document(), **more, "error_budget": documents(budgets), **sampling(folder), **bands}
+    give(document, target, lambda: answer(document))
+    return 0 if result.agrees else 1
+
+
+def answer(document: Mapping[str, Any]) -> Answer:
+    """How many sensors are over, which, and what the rest looks like."""
+    records = [{"test": t["name"], **c} for t in document["tests"] for c in t["channels"]]
+    over = sorted((r for r in records if r["verdict"] == "over"), key=lambda r: -r["rmse_K"] / r["limit_K"])
+    model = document["model"]
+    effects = f" with {', '.join(model['effects'])}" if model["effects"] else ""
+    found = f"{len(over)} of {len(records)} sensor records are over" if over else f"all {len(records)} sensors within"
+    sentence = (f"{document['case']}, revision {model['revision']}{effects}: {found}; rms {document['rmse_K']:.2f} K, "
+                f"the sensors' own uncertainty explains {document['floor_K']:.2f} K.")  # fmt: skip
+    why = _why(document) if "patterns" in document else []
+    parts = [*why, tests(document["tests"]), records_of("Over: error is measured - model", over),
+             in_short(document["error_budget"], document["sampling"]), roles_in_short(document["roles"])]  # fmt: skip
+    rest = [*(records_of(f"{t['name']} ({t['role']})", [{"test": t["name"], **c} for c in t["channels"]])
+              for t in document["tests"]), roles(document["roles"]),
+             *budget(document["error_budget"], document["sampling"]), bands_of(document.get("bands", ()))]  # fmt: skip
+    return Answer(sentence, parts, f"{WORDS}; --why, --json FILE; thermoscope show report {document['case']}", rest)
+
+
+def tests(found: Sequence[Mapping[str, Any]]) -> Grid:
+    """A row per test."""
+    rows = [[t["name"], t["role"], len(t["channels"]), sum(c["verdict"] == "over" for c in t["channels"]), t["rmse_K"]]
+            for t in found]  # fmt: skip
+    return Grid("", ["test", "role", "sensors", "over", "rms (K)"], rows, keep=["rms (K)", "over"])
+
+
+def records_of(title: str, records: Sequence[Mapping[str, Any]]) -> Grid:
+    """A row per sensor."""
+    headers = ["sensor", "test", "place", "n", "rms (K)", "bias (K)", "largest (K)", "limit (K)", "1 sigma (K)",
+               "% of rise", "verdict"]  # fmt: skip
+    keys = ["channel", "test", "place", "n", "rmse_K", "bias_K", "max_abs_K", "limit_K", "sigma_K", "percent_of_rise",
+            "verdict"]  # fmt: skip
+    keep = ["test", "rms (K)", "bias (K)", "limit (K)", "verdict"]
+    return Grid(title, headers, [[r[k] for k in keys] for r in records], ["over"], keep)
+
+
+def bands_of(rows: Sequence[Mapping[str, Any]]) -> Grid:
+    """How sure each place is, least sure first; of all tests the one in which it is least sure."""
+    worst: dict[str, Mapping[str, Any]] = {}
+    for r in rows:
+        if r["place"] not in worst or r["widest_ci95_K"] > worst[r["place"]]["widest_ci95_K"]:
+            worst[r["place"]] = r
+    found = sorted(worst.values(), key=lambda r: -r["widest_ci95_K"])
+    body = [[r["place"], r["widest_ci95_K"], r["test"], r.get("inside")] for r in found]
+    return Grid("95 % bands of the model", ["place", "widest (K)", "in", "readings inside"], body)
+
+
+def roles_in_short(found: Sequence[Mapping[str, Any]]) -> str:
+    """How many roles nobody declares; "" where all are."""
+    guessed = [r["name"] for r in found if r["known"] == "guessed"]
+    if not guessed:
+        return ""
+    unknown = sum(r["role"] is None for r in found if r["known"] == "guessed")
+    how = 'say role = "..." in network.toml'
+    return f"{len(guessed)} roles are guessed, {unknown} of them unknown; effects are placed by them: {how}."
+
+
+def roles(found: Sequence[Mapping[str, Any]]) -> Grid:
+    """What was guessed, with its evidence."""
+    rows = [[r["name"], r["role"] or "?", TURNS[r["turns"]], r["evidence"]] for r in found if r["known"] == "guessed"]
+    return Grid("Roles that nobody declares", ["name", "role", "turns", "evidence"], rows)
+
+
+def _why(document: Mapping[str, Any]) -> list[Grid | str]:
+    """The error against the uncertainty of readings, inputs and arithmetic; what it follows; where heat is missing."""
+    headers = ["sensor", "test", "error (K)", "u reading", "u inputs", "u numeric", "explained", "white", "follows"]
+    left = {(p["test"], p["channel"]): p for p in document["patterns"]}
+    rows = []
+    for u in sorted(document["uncertainty"], key=lambda u: bool(u["explained"])):
+        numbers = [u[k] for k in ("error_K", "reading_K", "input_K", "numeric_K")]
+        p = left.get((u["test"], u["channel"]))
+        rows.append([u["channel"], u["test"], *numbers, "yes" if u["explained"] else "no", *_pattern(p)])
+    title = "Against all uncertainties (ASME V&V 20, standard uncertainties in K)"
+    keep = ["test", "error (K)", "explained", "follows"]
+    differing = contradiction(document["contradiction"])
+    return [*differing[:1], Grid(title, headers, rows, ["no"], keep), *differing[1:], *_missing(document["where"])]
+
+
+def _missing(places: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Where heat is missing, and how much at most."""
+    found = [h for h in places if h["evidence_nats"] > EVIDENT]
+    lines = [f"Heat missing at {h['place']} ({h['evidence_nats']:.0f} nats): {_pulses(h)}." for h in found[:3]]
+    return lines or ["No place where heat is clearly missing (beyond what calibration mends)."]
+
+
+def contradiction(found: Mapping[str, Any] | None) -> list[Grid | str]:
+    """What would have to differ between tests: in a sentence, then as a table."""
+    if not found:
+        return []
+    rows = [
+        [d["test"], d["parameter"], d["others"], d["here"], "" if d["unit"] == "1" else d["unit"], abs(d["sd"]),
+         "yes" if d["possible"] else "no"] for d in found["differences"][:DIFFERENCES]
+    ]  # fmt: skip
+    headers = ["test", "parameter", "other tests", "this test", "unit", "deviations", "can it differ?"]
+    keep = ["parameter", "this test", "deviations", "can it differ?"]
+    title = "What would have to differ between tests (by tangents)"
+    return [found["words"], *([Grid(title, headers, rows, ["no"], keep)] if rows else [])]
+
+
+def _pulses(h: Mapping[str, Any]) -> str:
+    """Every pulse of a missing-heat curve; of one without any its largest value."""
+    if h["pulses"]:
+        told = [
+            f"{p['heat_W']:+.3g} W from {p['begin_s']:.0f} to {p['end_s']:.0f} s of {p['test']}" for p in h["pulses"]
+        ]
+        return ", ".join(told)
+    name, series = max(h["heat"].items(), key=lambda kv: max(map(abs, kv[1]["heat_W"])))
+    k = max(range(len(series["heat_W"])), key=lambda i: abs(series["heat_W"][i]))
+    return f"{series['heat_W'][k]:+.3g} W after {series['time_s'][k]:.0f} s of {name}"
+
+
+def _pattern(p: Mapping[str, Any] | None) -> list[str]:
+    if p is None:
+        return ["", ""]
+    ranked = sorted(p["follows"].items(), key=lambda kv: -kv[1])
+    white = min(p["ljung_box_p"], p["periodogram_p"]) > WHITE
+    return ["yes" if white else "no", ", ".join(name for name, ratio in ranked[:2] if ratio > 1.0)]

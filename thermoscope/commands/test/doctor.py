@@ -1,0 +1,56 @@
+"""thermoscope test doctor CASE"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from geom.errors import InputError
+from thermoscope.case_folder.doctor import Finding, examined
+from thermoscope.case_folder.folder import find_case, network_of, patient_of
+from thermoscope.case_folder.history import load_history
+from thermoscope.case_folder.settings import Entry, Settings, read_settings
+from thermoscope.console.answer import Answer
+from thermoscope.console.terminal import Progress, give, progress
+from thermoscope.recordings.readings import read_test
+
+
+def doctor(case: str, target: str | None) -> int:
+    """Exit code 1 when something looks wrong, 2 when a file would be refused."""
+    with progress() as tell:
+        path = find_case(case)
+        wrong, doubts = looked(path, tell)
+    document = {"case": path.resolve().name, "wrong": [f.document() for f in wrong],
+                "doubts": [f.document() for f in doubts]}  # fmt: skip
+    give(document, target, lambda: answer(wrong, doubts, case))
+    return 2 if wrong else 1 if doubts else 0
+
+
+def looked(path: Path, tell: Progress) -> tuple[list[Finding], tuple[Finding, ...]]:
+    """What would be refused, test by test, and what is only doubtful."""
+    settings = read_settings(path)
+    load_history(settings.model_file)
+    network, _ = network_of(settings, tell)
+    wrong, good = [], []
+    for entry in settings.tests:
+        tell(f"looking at {entry.name}")
+        try:
+            one = patient_of(entry)
+            read_test(entry.name, entry.role, one.samples, one.sheet, network, settings.sample_s)
+            good.append(one)
+        except InputError as fault:
+            wrong.append(_fault(settings, entry, fault))
+    return wrong, examined(good, network)
+
+
+def _fault(settings: Settings, entry: Entry, fault: InputError) -> Finding:
+    return Finding(entry.name, fault.where.removeprefix(f"{settings.path}/"), fault.what, fault.right)
+
+
+def answer(wrong: Sequence[Finding], doubts: Sequence[Finding], case: str) -> Answer:
+    """What would be refused first; a line for each finding and its cure."""
+    found = len(wrong) + len(doubts)
+    sentence = f"{len(wrong)} things would be refused, {len(doubts)} look wrong." if found else "Nothing looks wrong."
+    lines = [f"{word}{', '.join(filter(None, (f.test, f.where))) or 'all'}: {f.what}. Cure: {f.cure}"
+             for word, rows in (("REFUSED ", wrong), ("", doubts)) for f in rows]  # fmt: skip
+    return Answer(sentence, lines, f"--json FILE; next: thermoscope test compare {case}")

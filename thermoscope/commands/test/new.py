@@ -1,0 +1,244 @@
+"""thermoscope test new FILE... [--machine M | --network N] [--yes]"""
+
+from __future__ import annotations
+
+import shutil
+import tomllib
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from geom.errors import InputError
+from thermoscope.case_folder.files import write_whole
+from thermoscope.console.answer import Answer, Grid
+from thermoscope.console.terminal import Progress, give, progress
+from thermoscope.importing.aligned import Recording, grouped, shift
+from thermoscope.importing.cells import number
+from thermoscope.importing.clock import Clock, clock_of
+from thermoscope.importing.dialogue import Dialogue
+from thermoscope.importing.draft import Draft, test_name
+from thermoscope.importing.guess import Guess, guesses
+from thermoscope.importing.source import Source, read_source, signature
+from thermoscope.importing.starter import starter
+from thermoscope.importing.target import Target, target_of
+from thermoscope.importing.written import folder_whole, quoted, write_case
+
+if TYPE_CHECKING:
+    from lumped.model.network import Network
+    from viz.figures.columns import Panel
+
+PICTURE = "columns.png"
+
+
+@dataclass(frozen=True)
+class Wishes:
+    """The options of the command.  constants : NAME=VALUE of what was not recorded;  period_s : between rows
+
+    window_s : the part of each recording that is the test
+    """
+
+    machine: str | None = None
+    network: Path | None = None
+    out: Path | None = None
+    yes: bool = False
+    constants: Mapping[str, float] | None = None
+    period_s: float | None = None
+    window_s: tuple[float, float | None] = (0.0, None)
+
+
+@dataclass(frozen=True)
+class Model:
+    """What the tests are held against.  put : copies it into a case and returns its line of case.toml"""
+
+    network: Network
+    target: Target
+    put: Callable[[Path], str]
+    invented: bool = False
+
+
+def new(files: Sequence[Path], wishes: Wishes, target: str | None) -> int:
+    """A case from recordings; nothing is written where anything is wrong."""
+    if wishes.machine and wishes.network:
+        raise InputError("a machine and a network are both given", "--machine, --network", "one of the two")
+    folder = wishes.out or Path(test_name(files[0], []))
+    with progress() as tell:
+        read = [_read(file, wishes, tell) for file in dict.fromkeys(files)]
+        model = _model(wishes, read, tell)
+    drafts = _drafts(read, model, wishes)
+    with progress() as tell:
+        document = _written(folder, model, drafts, tell)
+    give(document, target, lambda: answer(document))
+    return 0
+
+
+def settings(words: Sequence[str]) -> dict[str, float]:
+    """NAME=VALUE of --set."""
+    out = {}
+    for word in words:
+        name, sign, value = word.partition("=")
+        if not sign or not np.isfinite(number(value)):
+            raise InputError(f"'{word}' is no NAME=VALUE", "--set", "such as ambient=21.5")
+        out[name.strip()] = number(value)
+    return out
+
+
+def _read(file: Path, wishes: Wishes, tell: Progress) -> tuple[Source, Clock]:
+    tell(f"reading {file.name}")
+    source = read_source(file)
+    return source, clock_of(source, wishes.period_s)
+
+
+def _model(wishes: Wishes, read: Sequence[tuple[Source, Clock]], tell: Progress) -> Model:
+    """The model that was asked for, or a first one made from the columns."""
+    if wishes.network:
+        from lumped.declarations.network import load_network
+
+        network = load_network(wishes.network)
+        return Model(network, target_of(network), _copied("network", wishes.network, "network.toml"))
+    return _machine(wishes.machine, tell) if wishes.machine else _started(read)
+
+
+def _machine(machine: str, tell: Progress) -> Model:
+    from geom import library
+    from thermoscope.case_folder.folder import load_machine_file
+    from thermoscope.pipeline import build
+
+    network = build(load_machine_file(Path(machine)), progress=tell).network
+    path = Path(machine)
+    if not path.exists():
+        name = path.name.removesuffix(".toml")
+        assert name in library(), "load_machine_file has found it"
+        return Model(network, target_of(network), lambda folder: f"machine = {quoted(name)}")
+    if path.suffix == ".toml":
+        return Model(network, target_of(network), _copied("machine", path, "machine.toml"))
+    return Model(network, target_of(network), lambda folder: f"machine = {quoted(str(path.resolve()))}")
+
+
+def _copied(kind: str, path: Path, name: str) -> Callable[[Path], str]:
+    def put(folder: Path) -> str:
+        shutil.copyfile(path, folder / name)
+        return f"{kind} = {quoted(name)}"
+
+    return put
+
+
+def _started(read: Sequence[tuple[Source, Clock]]) -> Model:
+    from lumped.declarations.network import read_network
+
+    columns = [(source, g) for source, clock in read for g in guesses(source, clock.columns, Target())]
+    text = starter(columns, test_name(read[0][0].file, []), float(read[0][1].seconds[-1]))
+    network = read_network(tomllib.loads(text), "network.toml")
+
+    def put(folder: Path) -> str:
+        write_whole(folder / "network.toml", text)
+        return 'network = "network.toml"'
+
+    return Model(network, target_of(network), put, True)
+
+
+def _drafts(read: Sequence[tuple[Source, Clock]], model: Model, wishes: Wishes) -> list[Draft]:
+    """Files into tests, columns into places; what is missing is asked for once."""
+    dialogue = Dialogue(model.target, not wishes.yes, dict(wishes.constants or {}))
+    records = [
+        Recording(source, clock, dialogue.settled(source, guesses(source, clock.columns, model.target)))
+        for source, clock in read
+    ]
+    out: list[Draft] = []
+    for first, *others in grouped(records, [signature(r.source) for r in records]):
+        moved = [replace(r, shift_s=s, how=how) for r in others for s, how in [shift(first, r)]]
+        draft = Draft(test_name(first.source.file, [d.name for d in out]), (first, *moved),
+                      window_s=wishes.window_s)  # fmt: skip
+        out.append(dialogue.completed(draft))
+    return out
+
+
+def _written(folder: Path, model: Model, drafts: Sequence[Draft], tell: Progress) -> dict[str, Any]:
+    """Write the case, read it as compare would, draw its columns; the document of the command."""
+    from thermoscope.case_folder.doctor import examined
+    from thermoscope.case_folder.folder import patient_of
+    from thermoscope.case_folder.settings import read_settings
+    from thermoscope.recordings.readings import read_test
+    from viz.figures.columns import columns
+
+    with folder_whole(folder) as partial:
+        tell("writing the case")
+        write_case(partial, folder.name, model.put, drafts)
+        settings = read_settings(partial)
+        patients = [patient_of(entry) for entry in settings.tests]
+        for entry, one in zip(settings.tests, patients, strict=True):
+            read_test(entry.name, entry.role, one.samples, one.sheet, model.network, settings.sample_s)
+        findings = [f for f in examined(patients, model.network) if not f.remark]
+        tell("drawing the columns")
+        columns(panels(drafts[0]), f"{drafts[0].name}: what each column was taken for", png=partial / "out" / PICTURE)
+    return {
+        "case": folder.name, "folder": str(folder), "invented_network": model.invented,
+        "sample_s": settings.sample_s, "findings": [f.document() for f in findings],
+        "tests": [_document(d, e.role) for d, e in zip(drafts, settings.tests, strict=True)],
+    }  # fmt: skip
+
+
+def _document(draft: Draft, role: str) -> dict[str, Any]:
+    files = [{"file": str(r.source.file), "clock": r.clock.words, "rows": r.source.rows, "shift_s": r.shift_s,
+              "aligned_by": r.how, "notes": list(r.source.notes)} for r in draft.records]  # fmt: skip
+    return {"name": draft.name, "role": role, "duration_s": draft.span_s, "files": files, "notes": list(draft.notes),
+            "columns": [vars(g) for g in draft.guesses], "inputs": dict(draft.constants),
+            "boundaries": dict(draft.boundaries), "squares": dict(draft.squares)}  # fmt: skip
+
+
+def panels(draft: Draft) -> list[Panel]:
+    """The columns of numbers of a test as the picture wants them."""
+    from viz.figures.columns import Panel
+
+    return [
+        Panel(g.column, r.clock.seconds + r.shift_s, r.source.numbers(g.column), meaning(g), bool(g.place))
+        for r in draft.records for g in r.guesses if r.source.is_numeric(g.column)
+    ]  # fmt: skip
+
+
+def meaning(g: Guess) -> str:
+    """Where a column goes, with its unit; "" where it is left out."""
+    return f"{g.place or g.feeds} ({g.unit})" if g.used else ""
+
+
+def answer(document: Mapping[str, Any]) -> Answer:
+    """What became of each column of the first test, what was assumed, and the next command."""
+    tests, folder = document["tests"], document["folder"]
+    columns = sorted(tests[0]["columns"], key=lambda c: (not _goes(c), not c["doubt"]))
+    used = sum(bool(_goes(c)) for c in columns)
+    sentence = (f"{folder}: {len(tests)} {'test' if len(tests) == 1 else 'tests'}, {used} of {len(columns)} columns "
+                "used. All of this is guessed: change it in tests/*.toml.")  # fmt: skip
+    rows = [[c["column"], _goes(c) or "left out", c["unit"], c["quantity"], c["doubt"]] for c in columns]
+    guessed = Grid("", ["column", "goes to", "unit", "quantity", "doubt"], rows, keep=["goes to", "unit", "doubt"])
+    parts: list[Grid | str] = [*_moved(tests), *_said(document), guessed, _files(tests)]
+    return Answer(sentence, parts, f"picture: {folder}/out/{PICTURE}; next: thermoscope test compare {folder}")
+
+
+def _goes(column: Mapping[str, Any]) -> str:
+    return str(column["place"] or column["feeds"])
+
+
+def _files(tests: Sequence[Mapping[str, Any]]) -> Grid:
+    rows = [
+        [Path(f["file"]).name, t["role"], t["duration_s"], f["rows"], f["clock"]] for t in tests for f in t["files"]
+    ]
+    return Grid("Files", ["file", "role", "seconds", "rows", "clock"], rows)
+
+
+def _moved(tests: Sequence[Mapping[str, Any]]) -> list[str]:
+    return [f"{Path(f['file']).name} moved by {f['shift_s']:+.6g} s: {f['aligned_by']}."
+            for t in tests for f in t["files"] if f["aligned_by"]]  # fmt: skip
+
+
+def _said(document: Mapping[str, Any]) -> list[str]:
+    """What was assumed, and what looks wrong."""
+    tests = document["tests"]
+    said = [note for t in tests for note in (*t["notes"], *(m for f in t["files"] for m in f["notes"]))]
+    if document["invented_network"]:
+        said.append("no machine and no network was given: network.toml is made from the columns, its numbers are "
+                    "orders of magnitude")  # fmt: skip
+    if document["findings"]:
+        said.append(f"{len(document['findings'])} things look wrong: thermoscope test doctor {document['folder']}")
+    return [f"Note: {note}." for note in dict.fromkeys(said)]

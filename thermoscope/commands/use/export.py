@@ -1,0 +1,133 @@
+"""thermoscope use export CASE: a workbook of results, or the model itself to run elsewhere."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from geom.errors import InputError, MissingDependency, ThermoscopeError
+from lumped.schemas.reader import known
+from thermoscope.case_folder.files import write_whole
+from thermoscope.case_folder.folder import Folder
+from thermoscope.case_folder.workbook import tables, write_csvs, write_xlsx
+from thermoscope.commands.opened import opened
+from thermoscope.console.answer import Answer
+from thermoscope.console.terminal import Progress, give, plain, progress
+
+WORKBOOKS = ("xlsx", "csv")
+MODELS = ("c", "fmu", "json", "matlab")
+VERSIONS = (2, 3)
+
+
+def export(case: str, out: Path | None, form: str, limits: Sequence[str], version: int, target: str | None) -> int:
+    """A workbook, CSV files, or the model as C, FMU, JSON or MAT file."""
+    if form not in (*WORKBOOKS, *MODELS):
+        raise InputError(f"'{form}' is no form to export", "--as", known(form, (*WORKBOOKS, *MODELS)))
+    if version not in VERSIONS:
+        raise InputError(f"FMI {version} is not written", "--fmi", "2 or 3")
+    if form in MODELS:
+        return _model(case, out, form, read_limits(limits), version, target)
+    with progress() as tell:
+        folder = opened(case, tell)
+        tell("running the model")
+        content = tables(folder)
+    where, name = out or folder.settings.out, folder.settings.path.resolve().name
+    written = write_csvs(where, content) if form == "csv" else [write_xlsx(where / f"{name}.xlsx", content)]
+    document = {"case": folder.case.name, "files": [str(p) for p in written], "worksheets": list(content)}
+    give(document, target, lambda: Answer(f"{len(written)} files written.", [str(p) for p in written]))
+    return 0
+
+
+def read_limits(said: Sequence[str]) -> dict[str, float]:
+    """PLACE=DEGC, ..."""
+    out = {}
+    for one in said:
+        place, equals, value = one.rpartition("=")
+        try:
+            out[place] = float(value)
+        except ValueError:
+            equals = ""
+        if not (equals and place) or not -273.15 < out[place] < 3000.0:
+            raise InputError(f"'{one}' is no limit", "--limit", "PLACE=DEGC, for example winding=155")
+    return out
+
+
+def _model(
+    case: str, out: Path | None, form: str, limits: Mapping[str, float], version: int, target: str | None
+) -> int:
+    from thermoscope.export.heading import state_bytes, step_operations
+    from thermoscope.export.model import exported
+
+    with progress() as tell:
+        folder = opened(case, tell, untested=True)
+        tell("collecting the network")
+        model = exported(folder, limits)
+        apart = _differences(folder, model, tell) if form in ("c", "fmu") else {}
+        files, platforms = _files(model, form, version, tell)
+    where = out or folder.settings.out / form
+    written = [write_whole(where / name, content) for name, content in files.items()]
+    document = {
+        "case": folder.case.name, "revision": model.revision, "as": form, "files": [str(p) for p in written],
+        "platforms": platforms, "states": len(model.states), "state_bytes": state_bytes(model),
+        "step_multiplications": step_operations(model), "inputs": [vars(s) for s in model.signals],
+        "outputs": [{"name": o.name, "limit_degC": o.limit, "error_K": o.error_K, "role": o.role}
+                    for o in model.outputs],
+        "difference_K": apart,
+    }  # fmt: skip
+    give(document, target, lambda: answer(document))
+    return 0
+
+
+def _differences(folder: Folder, model: Any, tell: Progress) -> dict[str, float]:
+    """Test -> largest difference (K) between the code and the simulation; empty where nothing can compile here.
+
+    Raises ThermoscopeError where they disagree.
+    """
+    from thermoscope.export.drive import AGREES_K, Compiled, difference, sampled
+    from thermoscope.verification.error_budget import model_of
+    from validation.comparison.predict import record
+
+    tell("holding the code against the simulation")
+    try:
+        code = Compiled(model)
+    except MissingDependency as fault:
+        tell(f"not held against the simulation: {fault}")
+        return {}
+    network, values = model_of(folder)
+    out = {t.name: difference(code, network, sampled(record(t, {})), values) for t in folder.case.tests}
+    for test, apart in out.items():
+        if not apart <= AGREES_K:
+            raise ThermoscopeError(f"the exported code differs from the simulation of '{test}' by {apart:.3g} K")
+    return out
+
+
+def _files(model: Any, form: str, version: int, tell: Progress) -> tuple[dict[str, str | bytes], list[str]]:
+    """File name -> content; the platforms that compiled code in them runs on."""
+    import json
+
+    from thermoscope.export.c_code import RUNTIME, c_files
+    from thermoscope.export.document import document, mat
+    from thermoscope.export.fmu import fmu, identifier
+
+    if form == "c":
+        return {**c_files(model)}, []
+    if form == "fmu":
+        tell("compiling (the first time for other platforms: some minutes)")
+        content, platforms = fmu(model, version)
+        return {f"{identifier(model)}.fmu": content}, platforms
+    beside = "reference_solver.py" if form == "json" else "thermal_solve.m"
+    solver = {beside: (RUNTIME / beside).read_text(encoding="utf-8")}
+    if form == "json":
+        return {"model.json": json.dumps(plain(document(model)), ensure_ascii=False), **solver}, []
+    return {"model.mat": mat(model), **solver}, []
+
+
+def answer(document: Mapping[str, Any]) -> Answer:
+    """What was written and how well it agrees."""
+    sentence = f"{document['states']} states, {document['state_bytes']} bytes from step to step."
+    lines = [f"Compiled for {', '.join(document['platforms'])}."] if document["platforms"] else []
+    if apart := document["difference_K"]:
+        test = max(apart, key=lambda t: apart[t])
+        lines.append(f"Largest difference from simulate over {len(apart)} tests: {apart[test]:.2g} K ({test}).")
+    return Answer(sentence, [*lines, *document["files"]], "--json FILE")

@@ -1,0 +1,195 @@
+"""thermoscope use simulate CASE: inputs in, temperatures out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geom.errors import InputError, ThermoscopeError
+from lumped.drives.coupled import coupled
+from lumped.integration.audit import Audit, audit
+from lumped.integration.runaway import checked_run
+from lumped.integration.simulate import Record
+from lumped.integration.simulate import simulate as integrated
+from lumped.model.network import Network, Row
+from thermoscope.bands import along, belief_of, documents, wanted
+from thermoscope.case_folder.cycle import Cycle, find_cycle, load_cycle
+from thermoscope.case_folder.files import write_whole
+from thermoscope.case_folder.folder import Folder
+from thermoscope.case_folder.runs import looks, sensors
+from thermoscope.commands.model.error_budget import budget, in_short
+from thermoscope.commands.opened import PACKAGE, opened
+from thermoscope.commands.use.simulate_readings import readings, short_of
+from thermoscope.console.answer import Answer, Grid
+from thermoscope.console.terminal import Progress, give, progress
+from validation.bands import Bands, Belief
+
+Array = NDArray[np.float64]
+MISMATCH = 0.01  # of all losses: parabolas miss a hundredth of that; more means that heat went astray
+
+
+def simulate(case: str, cycle: str | None, out: Path | None, target: str | None, sure: bool | None = None) -> int:
+    """All tests of the case, or one cycle.  sure : with 95 % bands; None: where they cost little"""
+    with progress() as tell:
+        folder = opened(case, tell, untested=True)
+        network, values = _model(folder)
+        into = out or _out(folder)
+        known = belief_of(folder, tell) if wanted(network, sure) else None
+        runs = [_ran(network, values, one, folder, into, tell, known) for one in _cycles(folder, network, cycle)]
+        circuits = _circuits(folder)
+    document = {
+        "case": folder.case.name, "revision": folder.case.model.revision, "runs": runs, "circuits": circuits,
+    }  # fmt: skip
+    give(document, target, lambda: answer(document))
+    return 0
+
+
+def _out(folder: Folder) -> Path:
+    inside = PACKAGE in folder.settings.path.resolve().parents
+    return Path("out") / folder.settings.path.name if inside else folder.settings.out
+
+
+def _model(folder: Folder) -> tuple[Network, dict[str, float]]:
+    """The network with the effects added, and the values of the parameters that act on heat."""
+    from validation.calibration.fitting import working
+    from validation.comparison.predict import thermal
+
+    network = working(folder.case)[0]
+    mine = {p.name for p in thermal(network).parameters}
+    return network, {k: v for k, v in folder.case.model.values.items() if k in mine}
+
+
+def _cycles(folder: Folder, network: Network, cycle: str | None) -> Iterable[Cycle]:
+    from validation.comparison.predict import record
+
+    if cycle is None and not folder.case.tests:
+        raise InputError("nothing to run", str(folder.settings.path), "--cycle NAME, or [tests.NAME] in case.toml")
+    if cycle is None:
+        return [Cycle(test.name, record(test, {})) for test in folder.case.tests]
+    ratings = folder.built.machine.sections.get("ratings", {}) if folder.built is not None else {}
+    return [load_cycle(find_cycle(folder.settings.path, cycle), network, ratings)]
+
+
+def _ran(
+    network: Network, values: Mapping[str, float], cycle: Cycle, folder: Folder, into: Path, tell: Progress,
+    known: Belief | None,
+) -> dict[str, Any]:  # fmt: skip
+    tell(f"running {cycle.name}")
+    from thermoscope.verification.error_budget import error_budgets
+    from validation.comparison.predict import thermal
+
+    rows, record, whole = looks(network, folder), cycle.record, network
+    network = thermal(network)
+    residuals: tuple[float, ...] = ()
+    if cycle.drive is None:
+        run = integrated(network, record, values, list(rows.values()))
+    else:
+        found = coupled(network, record, cycle.drive, cycle.watched, values, list(rows.values()))
+        run, record, residuals = found.run, replace(record, inputs=found.inputs), found.residuals
+    inside = len(rows) - len(sensors(folder))
+    y = np.column_stack([run.y[:, :inside], readings(whole, folder, cycle.name, record, run.y[:, inside:])])
+    checked_run(y, record.time, tuple(rows), network)
+    heat = audit(network, record, values)
+    if heat.mismatch > MISMATCH:
+        raise ThermoscopeError(f"{cycle.name}: injected and declared losses differ by {100 * heat.mismatch:.3g} %")
+    band = None if known is None else along(known, cycle.name, record, rows)
+    file = write_whole(into / f"simulate-{cycle.name}.csv", _csv(record, rows, y, band))
+    budget = error_budgets(folder, {cycle.name: record}, tell)[cycle.name]
+    document = _document(cycle, record, rows, y, heat, residuals, file)
+    if band is not None:
+        fields = documents(band)
+        document["places"] = [{**p, **fields[p["place"]]} for p in document["places"]]
+    return {**document, "error_budget": budget.document()}
+
+
+def _csv(record: Record, rows: Mapping[str, Row], y: Array, band: Bands | None) -> str:
+    inputs = {n: np.broadcast_to(v, record.time.shape) for n, v in {**record.inputs, **record.boundaries}.items()}
+    head = ["time_s", *inputs, *(f"T {name} (degC)" for name in rows)]
+    body = np.column_stack([record.time, *inputs.values(), y])
+    if band is not None:
+        head += [f"95 % T {name} (+- K)" for name in rows]
+        body = np.column_stack([body, band.half95])
+    return "\n".join([",".join(head), *(",".join(f"{x:.7g}" for x in line) for line in body)]) + "\n"
+
+
+def _document(
+    cycle: Cycle, record: Record, rows: Mapping[str, Row], y: Array, heat: Audit, residuals: tuple[float, ...],
+    file: Path,
+) -> dict[str, Any]:  # fmt: skip
+    span = float(record.time[-1] - record.time[0]) or 1.0
+    hottest = np.argmax(y, axis=0)
+    return {
+        "name": cycle.name, "file": str(file), "duration_s": span,
+        "places": [
+            {"place": name, "start_C": y[0, k], "max_C": y[hottest[k], k], "max_at_s": record.time[hottest[k]],
+             "end_C": y[-1, k]}
+            for k, name in enumerate(rows)
+        ],
+        "losses": [
+            {"loss": n, "declared_J": J, "injected_J": heat.injected_J[n], "mean_W": J / span}
+            for n, J in heat.declared_J.items()
+        ],
+        "energy_balance": heat.residual, "loss_mismatch": heat.mismatch,
+        "short_of": short_of(record), "coupling": {"rounds": len(residuals), "residuals_K": list(residuals)},
+    }  # fmt: skip
+
+
+def _circuits(folder: Folder) -> list[dict[str, Any]]:
+    """Pressure drop and pump power of declared coolant circuits at their usual flow."""
+    if folder.settings.network is None:
+        return []
+    from lumped.declarations.network import load_circuits
+
+    found = load_circuits(folder.settings.network)
+    return [
+        {"circuit": n, "flow_m3_s": c.flow, "pressure_drop_Pa": c.pressure_drop(), "pump_W": c.pump_power()}
+        for n, c in found.items()
+    ]
+
+
+def answer(document: Mapping[str, Any]) -> Answer:
+    """The hottest place of each run; per run temperatures, losses, and how well it closed."""
+    runs = document["runs"]
+    hottest = [(p["max_C"], p["place"], r["name"]) for r in runs for p in r["places"]]
+    top = max(hottest)
+    sentence = f"Hottest: {top[1]}, {top[0]:.1f} degC in {top[2]}; {len(runs)} {'run' if len(runs) == 1 else 'runs'}."
+    budgets, closing = {run["name"]: run["error_budget"] for run in runs}, [x for run in runs for x in _closing(run)]
+    parts: list[Grid | str] = [_places(runs), *closing, in_short(budgets, {}), *map(_circuit, document["circuits"])]
+    rest = [*(_losses(run) for run in runs), *budget(budgets, {})]
+    return Answer(sentence, parts, f"temperatures in {runs[0]['file']}{' ...' if len(runs) > 1 else ''}", rest)
+
+
+def _places(runs: Sequence[Mapping[str, Any]]) -> Grid:
+    """Temperatures, the hottest first."""
+    rows = [[p["place"], r["name"], p["start_C"], p["max_C"], round(p["max_at_s"]), p["end_C"]]
+            for r in runs for p in sorted(r["places"], key=lambda p: -p["max_C"])]  # fmt: skip
+    headers = ["place", "run", "start (degC)", "largest (degC)", "at (s)", "end (degC)"]
+    if all("widest_ci95_K" in p for r in runs for p in r["places"]):
+        widths = [p["widest_ci95_K"] for r in runs for p in sorted(r["places"], key=lambda p: -p["max_C"])]
+        rows, headers = [[*row, w] for row, w in zip(rows, widths, strict=True)], [*headers, "95 % band (K)"]
+    return Grid("", headers, rows, keep=["largest (degC)", "95 % band (K)", "run", "end (degC)"])
+
+
+def _losses(run: Mapping[str, Any]) -> Grid:
+    watts = [[x["loss"], x["mean_W"]] for x in run["losses"] if x["mean_W"]]
+    return Grid(f"Losses in {run['name']}", ["loss", "mean (W)"], sorted(watts, key=lambda row: -row[1]))
+
+
+def _closing(run: Mapping[str, Any]) -> list[str]:
+    """What the drive could not do, whether it agrees with the temperatures, and the balance of heat."""
+    lines = [f"{name}: for {100 * share:.3g} % of the time short of what was wanted by more than 1 %, at the limits."
+             for name, share in run["short_of"].items()]  # fmt: skip
+    if rounds := run["coupling"]["residuals_K"]:
+        lines.append(f"Drive and temperatures agree after {len(rounds)} rounds (last change {rounds[-1]:.2g} K).")
+    return [*lines, f"{run['name']}: heat in - out - stored {run['energy_balance']:.1e} of the heat, losses injected "
+            f"against declared {run['loss_mismatch']:.1e}."]  # fmt: skip
+
+
+def _circuit(c: Mapping[str, Any]) -> str:
+    return (f"Circuit {c['circuit']}: {c['flow_m3_s'] * 6e4:.3g} l/min, {c['pressure_drop_Pa'] / 1e3:.3g} kPa, "
+            f"pump {c['pump_W']:.3g} W.")  # fmt: skip

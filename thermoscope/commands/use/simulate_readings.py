@@ -1,0 +1,40 @@
+"""What the sensors of a case would read in a simulated run: their lag, and what calibration found of bias and gain."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.integration.simulate import Record
+from lumped.model.network import Network
+from thermoscope.case_folder.folder import Folder
+from thermoscope.case_folder.runs import sensors
+
+Array = NDArray[np.float64]
+
+
+def readings(network: Network, folder: Folder, name: str, record: Record, T: Array) -> Array:
+    """From the temperatures T (n_time, n_sensor) at the sensors, in the order of `sensors`."""
+    from validation.measurement.operators import observe, setting
+
+    if not folder.case.tests:
+        return T
+    channels = tuple(replace(c, y=np.full(record.time.size, np.nan)) for c in sensors(folder).values())
+    air = {n: np.broadcast_to(u, record.time.shape) for n, u in record.boundaries.items()}
+    run = replace(folder.case.tests[0], name=name, time=record.time, inputs={}, boundaries=air, channels=channels)
+    return observe(network, run, T, setting(network.parameters, folder.case.model.values))
+
+
+def short_of(record: Record, share: float = 0.01) -> dict[str, float]:
+    """What the drive could not deliver: quantity -> share of the time at which it was short by more than `share`.
+
+    Of the torque or speed wanted, against the largest wanted.
+    """
+    out = {}
+    for name, wanted in record.inputs.items():
+        if (given := record.inputs.get(name.replace("_wanted", ""))) is not None and "_wanted" in name:
+            missing = np.abs(wanted) - np.abs(given) > share * np.abs(wanted).max(initial=1e-12)
+            out[name.replace("_wanted", "")] = float(np.mean(missing))
+    return {name: of for name, of in out.items() if of > 0.0}

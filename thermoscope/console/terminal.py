@@ -1,0 +1,69 @@
+"""What a command shows: progress and notes on stderr, tables or one JSON document on stdout."""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from thermoscope.case_folder.files import write_whole
+from thermoscope.console.answer import Answer, Grid, printed
+from thermoscope.console.stages import Progress, progress
+
+STDOUT = "-"
+__all__ = ["Progress", "give", "notes", "plain", "progress", "say", "sized", "table"]
+
+
+def _line(message: str) -> None:
+    print(message, file=sys.stderr, flush=True)
+
+
+def notes(messages: Iterable[str]) -> None:
+    """Doubts about the data."""
+    for message in messages:
+        _line(f"note: {message}")
+
+
+def plain(value: Any) -> Any:
+    """Any document as JSON can hold it: arrays become lists, what is not finite becomes null."""
+    if isinstance(value, Mapping):
+        return {str(k): plain(v) for k, v in value.items()}
+    if hasattr(value, "tolist"):
+        return plain(value.tolist())
+    if isinstance(value, list | tuple | set):
+        return [plain(v) for v in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return str(value) if isinstance(value, Path) else value
+
+
+def give(document: Mapping[str, Any], target: str | None, show: Callable[[], Answer | None]) -> None:
+    """The document to a file or to stdout, and the answer, except when stdout belongs to the document."""
+    text = json.dumps(plain(document), indent=2, ensure_ascii=False) + "\n"
+    if target == STDOUT:
+        sys.stdout.write(text)
+        return
+    if target is not None:
+        write_whole(Path(target), text)
+    answer = show()
+    if answer is not None:
+        printed(answer)
+
+
+def table(title: str, headers: Sequence[str], rows: Iterable[Sequence[Any]], marked: Sequence[str] = ()) -> None:
+    """A table on stdout, as wide as the terminal; rows that hold a `marked` word stand out."""
+    printed(Answer("", [Grid(title, headers, [list(row) for row in rows], marked)]))
+
+
+def say(message: str) -> None:
+    """A sentence on stdout."""
+    printed(Answer(message))
+
+
+def sized(value: float | None, low: float | None, high: float | None) -> str:
+    """A value with its interval: three digits tell what an interval leaves sure."""
+    one, *two = (f"{x:.3g}" if x is not None and math.isfinite(x) else "-" for x in (value, low, high))
+    return f"{one} ({' ... '.join(two)})"

@@ -1,0 +1,1 @@
+"""Recordings and their sheets: formats, units, clocks, grids."""

@@ -1,0 +1,41 @@
+"""What the inputs of a case measure, and which of several currents or speeds is the machine's own."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from lumped.model.network import Network
+from lumped.model.quantities import INPUTS
+from thermoscope.recordings.sheet import Sheet
+from validation.case import Test
+
+
+def with_quantities(network: Network, sheets: Iterable[Sheet], tests: Sequence[Test]) -> Network:
+    """The network with what its sheets say of the inputs; what network.toml says of them stands."""
+    said: dict[str, str] = {}
+    for sheet in sheets:
+        columns = {c.name: c.quantity for c in sheet.columns}
+        said |= {c.feeds: c.quantity for c in sheet.columns if c.feeds}
+        said |= {name: columns[of[0]] for name, of in sheet.squares.items() if of}
+    network = replace(network, quantities={**said, **network.quantities})
+    fitted = [t for t in tests if t.role != "hold-out"] or list(tests)
+    return replace(network, signals={q: own for q in INPUTS if (own := _own(network, fitted, q)) is not None})
+
+
+def _own(network: Network, tests: Sequence[Test], quantity: str) -> str | None:
+    """Of the inputs of a quantity those that a loss follows, else all; of these the largest by root mean square.
+
+    The machine's current is never smaller than its components, and a film may follow the speed of another fan.
+    """
+    found = [n for t in tests for n in t.inputs if network.measures(n) == quantity]
+    lossy = {name for source in network.sources for name in source.law.reads}
+    level = {n: _level(tests, n) for n in found if n in lossy} or {n: _level(tests, n) for n in found}
+    return max(level, key=lambda n: level[n]) if level else None
+
+
+def _level(tests: Sequence[Test], name: str) -> float:
+    record = np.concatenate([np.atleast_1d(t.inputs[name]) for t in tests if name in t.inputs])
+    return float(np.sqrt(np.nanmean(np.square(record))))

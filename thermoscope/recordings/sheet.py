@@ -1,0 +1,205 @@
+"""The sheet beside a recording: what each column is. tests/NAME.toml, read key by key."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import inf
+from pathlib import Path
+from typing import Any
+
+from geom.description.toml_file import read_toml
+from geom.errors import InputError
+from lumped.schemas.reader import Table
+from thermoscope.recordings.electrical import QUANTITIES as ELECTRICAL
+from thermoscope.recordings.electrical import Electrical, read_electrical
+from thermoscope.recordings.events import Events, read_events
+from thermoscope.recordings.once import declared_once
+from thermoscope.recordings.units import QUANTITIES, checked_input, checked_unit, held_as
+
+FIRST = "first-readings"
+MAX_GAP_S = 120.0
+SENSORS = {"thermocouple": 0.5, "pt100": 0.3, "ntc": 0.5, "resistance": 2.0, "infrared": 2.0}  # usual 1-sigma, K
+
+
+@dataclass(frozen=True)
+class Column:
+    """One column of the recording; `feeds` is the network input it drives, "" for a temperature.
+
+    sigma_K, lag_s : of the sensor;  position_mm : (x, y, z) on the machine where known;  where : its table in the file
+    written : its name in the recording;  electrical : how a resistance or a voltage becomes a temperature
+    """
+
+    name: str
+    quantity: str
+    unit: str
+    place: str
+    feeds: str
+    sigma_K: float
+    lag_s: float
+    position_mm: tuple[float, ...]
+    where: str
+    written: str = ""
+    electrical: Electrical | None = None
+
+    @property
+    def is_temperature(self) -> bool:
+        return self.quantity == "temperature" or self.electrical is not None
+
+    @property
+    def header(self) -> str:
+        """The column's name in the recording."""
+        return self.written or self.name
+
+
+@dataclass(frozen=True)
+class Mean:
+    """A channel that averages columns, e.g. a winding from two thermocouples."""
+
+    name: str
+    of: tuple[str, ...]
+    place: str
+    sigma_K: float
+    lag_s: float
+    where: str
+
+
+@dataclass(frozen=True)
+class Recorder:
+    """A second recording of the same test: its file, its time column, and how its clock stands to the first one's.
+
+    shift_s : to add to its times;  align : (column here, column there) that show the same and so give the shift
+    """
+
+    file: Path
+    time: str
+    time_unit: str
+    worksheet: str
+    shift_s: float
+    align: tuple[str, ...]
+    limit_s: float
+    where: str
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """time : column of the times, or "" when rows are `period_s` apart;  initial : degC, per place, or "first-readings"
+
+    squares : input -> columns of which it is the root of the sum of squares, e.g. a current from its dq components
+    inputs, boundaries : what stayed constant and was not recorded
+    events : input -> when it was switched;  from_s, to_s : the part of the recording that is the test
+    [test] filter_s, the time constant of a filter in the recorder, is added to the lag of every temperature
+    """
+
+    where: str
+    time: str
+    time_unit: str
+    period_s: float
+    description: str
+    initial: float | Mapping[str, float] | str
+    max_gap_s: float
+    columns: tuple[Column, ...]
+    means: tuple[Mean, ...] = ()
+    squares: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    inputs: Mapping[str, float] = field(default_factory=dict)
+    boundaries: Mapping[str, float] = field(default_factory=dict)
+    worksheet: str = ""
+    recorders: Mapping[str, Recorder] = field(default_factory=dict)
+    events: Mapping[str, Events] = field(default_factory=dict)
+    from_s: float = 0.0
+    to_s: float = inf
+
+
+def load_sheet(path: Path) -> Sheet:
+    """A sheet; with `columns_of` its columns and means are those of another sheet in the same folder."""
+    data = read_toml(path, "a sheet with [test] and [columns.NAME]")
+    other = Table(data.get("test", {}), f"{path} [test]").word("columns_of", "")
+    if other:
+        shared = read_toml(path.parent / other, f"the sheet that {path} takes its columns from")
+        data = {**{key: shared[key] for key in ("columns", "means", "root_sum_square") if key in shared}, **data}
+    return read_sheet(data, str(path), path.parent)
+
+
+def read_sheet(data: Mapping[str, Any], where: str, folder: Path = Path()) -> Sheet:
+    """A sheet; InputError for unknown keys, forgotten units and contradictions."""
+    top = Table(data, where)
+    test, columns, means = top.table("test"), top.tables("columns"), top.tables("means")
+    inputs, boundaries = top.table("inputs").constants("inputs"), top.table("boundaries").constants("boundaries")
+    squares, recorders, events = top.table("root_sum_square"), top.tables("recorders"), top.tables("events")
+    top.close()
+    period = test.number("period_s") if "period_s" in test else 0.0
+    test.word("columns_of", "")
+    filtered = test.number("filter_s", 0.0)
+    time_unit = checked_unit("time", test.raw("time_unit", "s"), test.where)
+    sheet = Sheet(
+        where, "" if period else test.word("time"), time_unit, period,
+        test.word("description", ""), _initial(test), test.number("max_gap_s", MAX_GAP_S),
+        tuple(c for name, table in columns.items() if (c := _column(name, table, filtered, folder)) is not None),
+        tuple(_mean(name, table, filtered) for name, table in means.items()),
+        {name: squares.words(name) for name in squares.data}, inputs, boundaries, test.word("worksheet", ""),
+        {name: _recorder(table, folder) for name, table in recorders.items()},
+        {name: read_events(name, table, folder) for name, table in events.items()}, *_window(test),
+    )  # fmt: skip
+    test.close()
+    if not sheet.columns:
+        raise InputError("no columns", where, "[columns.NAME] with quantity, unit and place")
+    declared_once(sheet)
+    return sheet
+
+
+def _window(test: Table) -> tuple[float, float]:
+    """From and to (s from the recording's first row)."""
+    start, end = test.number("from_s", 0.0), test.number("to_s") if "to_s" in test else inf
+    if start >= end:
+        raise test.error(f"from_s = {start:g} is not before to_s = {end:g}", "from_s below to_s")
+    return start, end
+
+
+def _initial(test: Table) -> float | Mapping[str, float] | str:
+    given = test.raw("initial", FIRST)
+    if isinstance(given, Mapping):
+        return test.shares("initial", of="initial")
+    return test.word("initial", FIRST, [FIRST]) if isinstance(given, str) else test.number("initial")
+
+
+def _column(name: str, table: Table, filtered: float, folder: Path) -> Column | None:
+    if not table.flag("use", True):
+        return None
+    of = table.kind("quantity", None, QUANTITIES)
+    unit, hot = checked_unit(of, table.raw("unit"), table.where), of == "temperature" or of in ELECTRICAL
+    electrical = read_electrical(of, name, table, folder) if of in ELECTRICAL else None
+    kind = table.kind("sensor", "resistance" if electrical else "thermocouple", SENSORS)
+    place, feeds = table.word("place", None if hot else ""), "" if hot else table.word("input", QUANTITIES[of].feeds)
+    of = of if hot else held_as(of, checked_input(of, feeds, table.where))
+    usual = 0.0 if electrical else SENSORS[kind]
+    sigma = table.number("sigma_K") if "sigma_K" in table else usual
+    lag, written = table.number("lag_s", 0.0) + filtered, table.word("column", name)
+    position = table.numbers("position_mm", [])
+    if len(position) not in (0, 3):
+        raise table.error(f"position_mm has {len(position)} numbers", "position_mm = [x, y, z]")
+    table.close()
+    return Column(name, of, unit, place, feeds, sigma, lag, position, table.where, written, electrical)
+
+
+def _recorder(table: Table, folder: Path) -> Recorder:
+    align = table.words("align", [])
+    if len(align) not in (0, 2):
+        raise table.error(
+            f"align = {list(align)}", "align = [a column of the test, one of this recorder that shows the same]"
+        )
+    recorder = Recorder(
+        folder / table.word("file"), table.word("time", "time_s"),
+        checked_unit("time", table.raw("time_unit", "s"), table.where), table.word("worksheet", ""),
+        table.number("shift_s", 0.0), align, table.number("limit_s", 120.0), table.where,
+    )  # fmt: skip
+    table.close()
+    return recorder
+
+
+def _mean(name: str, table: Table, filtered: float) -> Mean:
+    of, place = table.words("of"), table.word("place")
+    sigma, lag = table.number("sigma_K", 0.5), table.number("lag_s", 0.0) + filtered
+    table.close()
+    if not of:
+        raise table.error("of = [] averages nothing", "of = [two or more columns]")
+    return Mean(name, of, place, sigma, lag, table.where)

@@ -1,0 +1,186 @@
+"""Recordings into clean arrays: every fault is one message with file, column and line; every doubt is a note."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geom.errors import InputError
+from lumped.schemas.bounds import COLDEST, HOTTEST
+from lumped.schemas.reader import known
+from thermoscope.recordings.alignment import clock_shift
+from thermoscope.recordings.codes import code_note, coded
+from thermoscope.recordings.formats import HEADER, cell, merged, numbers, read_frame, recording
+from thermoscope.recordings.sheet import Column, Recorder, Sheet
+from thermoscope.recordings.units import converted
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Array = NDArray[np.float64]
+GAP = 3.5  # times the usual step
+FROZEN_SHARE, FROZEN_MOVE_K = 0.2, 2.0
+LEAST = 3  # rows of a test
+LARGEST = 1e9  # of anything that is no temperature, in the unit of memory
+
+
+@dataclass(frozen=True)
+class Samples:
+    """time (n,) s from 0;  values : column -> (n,), NaN where nothing was read;  gaps : (from, to) s
+
+    sigma_K : channel -> 1-sigma that follows from its readings, for sensors whose sheet gives none
+    start_s : where the test begins in its recording, if that was cropped
+    """
+
+    file: Path
+    time: Array
+    values: Mapping[str, Array]
+    gaps: tuple[tuple[float, float], ...] = ()
+    notes: tuple[str, ...] = field(default=())
+    sigma_K: Mapping[str, float] = field(default_factory=dict)
+    start_s: float = 0.0
+
+
+def load_table(path: Path, sheet: Sheet) -> Samples:
+    """The columns the sheet uses, checked and converted."""
+    file = recording(path)
+    table = _frame(file, sheet)
+    for name in [*([sheet.time] if sheet.time else []), *(c.header for c in sheet.columns)]:
+        if name not in table.columns:
+            here = [str(c) for c in table.columns]
+            raise InputError(
+                f"column '{name}' is not in the file", f"{file} (asked for by {sheet.where})", known(name, here)
+            )
+    time = _times(table, replace(sheet, time_unit="s") if sheet.recorders else sheet, file)
+    rows = _window(time, sheet, file)
+    time = time[rows]
+    start, time = float(time[0]), time - time[0]
+    gaps = _gaps(time)
+    values, sigma, notes = {}, {}, [_gap_note(file, a, b) for a, b in gaps]
+    for column in sheet.columns:
+        raw = numbers(table, column.header, file)[rows]
+        if (codes := coded(raw)).any():
+            notes.append(code_note(f"{file.name} column '{column.header}'", raw, codes, HEADER + rows.start))
+            raw = np.where(codes, np.nan, raw)
+        read = converted(raw, column.quantity, column.unit)
+        values[column.name] = read if column.electrical is None else column.electrical.temperature(read)
+        if column.electrical is not None and not column.sigma_K:
+            sigma[column.name] = column.electrical.sigma(read)
+        notes += _look(column, values[column.name], file, rows.start)
+    return Samples(file, time, values, gaps, (*notes, *_frozen(sheet.columns, time, values, file)), sigma, start)
+
+
+def _frame(file: Path, sheet: Sheet) -> pd.DataFrame:
+    """The recording, and those of other recorders moved to its clock."""
+    main = read_frame(file, sheet.worksheet)
+    if not sheet.recorders:
+        return main
+    time = sheet.time or "time_s"
+    main = main.assign(**{time: _times(main, sheet, file)})
+    return merged(main, time, {name: _beside(main, time, r) for name, r in sheet.recorders.items()})
+
+
+def _beside(main: pd.DataFrame, time: str, recorder: Recorder) -> tuple[pd.DataFrame, str, float]:
+    """Table, time column and shift (s) of a second recorder."""
+    file = recording(recorder.file)
+    table, shift = read_frame(file, recorder.worksheet), recorder.shift_s
+    _has(table, [recorder.time, *recorder.align[1:]], recorder.where)
+    _has(main, recorder.align[:1], recorder.where)
+    seconds = converted(numbers(table, recorder.time, file), "time", recorder.time_unit)
+    if recorder.align:
+        here, there = recorder.align
+        shift = clock_shift(main[time].to_numpy(float), main[here].to_numpy(float), seconds,
+                            table[there].to_numpy(float), recorder.limit_s, recorder.where)  # fmt: skip
+        table = table.drop(columns=[there] if there == here else [])
+    return table.assign(**{recorder.time: seconds}), recorder.time, shift
+
+
+def _has(table: pd.DataFrame, names: Sequence[str], where: str) -> None:
+    for name in names:
+        if name not in table.columns:
+            right = known(name, [str(c) for c in table.columns])
+            raise InputError(f"column '{name}' is not in the file", where, right)
+
+
+def _times(table: pd.DataFrame, sheet: Sheet, file: Path) -> Array:
+    if not sheet.time:
+        return np.asarray(np.arange(len(table)) * sheet.period_s, float)
+    t: Array = converted(numbers(table, sheet.time, file), "time", sheet.time_unit)
+    missing = np.flatnonzero(np.isnan(t))
+    if missing.size:
+        raise InputError("a time is missing", cell(file, sheet.time, int(missing[0])), "a time in every row")
+    wrong = np.flatnonzero(np.diff(t) <= 0)
+    if wrong.size:
+        row, written = int(wrong[0]) + 1, table[sheet.time]
+        what = "is given twice" if t[row] == t[row - 1] else f"comes after {written.iloc[row - 1]}"
+        count = f" ({wrong.size} such rows)" if wrong.size > 1 else ""
+        raise InputError(f"time {written.iloc[row]} {what}{count}", cell(file, sheet.time, row),
+                         "times that rise from row to row: sort the file by time and delete repeated rows")  # fmt: skip
+    return np.asarray(t - t[0], float)
+
+
+def _gaps(time: Array) -> tuple[tuple[float, float], ...]:
+    step = np.diff(time)
+    long = np.flatnonzero(step > GAP * np.median(step))
+    return tuple((float(time[i]), float(time[i + 1])) for i in long)
+
+
+def _gap_note(file: Path, a: float, b: float) -> str:
+    return f"{file.name}: no rows from {a:g} s to {b:g} s; inputs are drawn straight across, nothing is compared there"
+
+
+def _window(time: Array, sheet: Sheet, file: Path) -> slice:
+    """The rows from from_s to to_s."""
+    inside = np.flatnonzero((time >= sheet.from_s) & (time <= sheet.to_s))
+    if inside.size < LEAST:
+        raise InputError(f"{inside.size} rows lie from {sheet.from_s:g} to {sheet.to_s:g} s", f"{sheet.where} [test]",
+                         f"from_s and to_s within the recording, 0 to {time[-1]:g} s")  # fmt: skip
+    return slice(int(inside[0]), int(inside[-1]) + 1)
+
+
+def _look(column: Column, values: Array, file: Path, first: int) -> list[str]:
+    """Missing readings and impossible temperatures of one column; first : row at which the test begins."""
+    missing = np.flatnonzero(np.isnan(values))
+    if missing.size == values.size:
+        raise InputError(
+            "the column holds no number", f"{file} column '{column.name}'", "readings, or use = false in the sheet"
+        )
+    low, high = (COLDEST, HOTTEST) if column.is_temperature else (-LARGEST, LARGEST)
+    out = np.flatnonzero(~((values >= low) & (values <= high)) & ~np.isnan(values))
+    if out.size:
+        what, row = "is below absolute zero" if values[out[0]] < -273.15 else "cannot be", int(out[0])
+        unit = " degC" if column.is_temperature else ""
+        raise InputError(f"{values[row]:g}{unit} {what if column.is_temperature else 'cannot be'}",
+                         cell(file, column.name, row + first), f"{low:g} to {high:g}{unit}: check the unit in the "
+                         "sheet, or leave the cell empty where nothing was read")  # fmt: skip
+    if missing.size and column.electrical is None:
+        line = missing[0] + HEADER + first
+        return [f"{file.name} column '{column.name}': {missing.size} missing readings, first in line {line}"]
+    return []
+
+
+def _frozen(columns: tuple[Column, ...], time: Array, values: Mapping[str, Array], file: Path) -> list[str]:
+    """Temperatures that stand still for long while the others move."""
+    hot = [c.name for c in columns if c.is_temperature]
+    notes = []
+    for name in hot:
+        a, b = _longest_run(values[name])
+        others = [
+            np.nanmax(v[a:b]) - np.nanmin(v[a:b]) for o in hot if o != name and np.isfinite(v := values[o])[a:b].any()
+        ]
+        if others and time[b - 1] - time[a] > FROZEN_SHARE * time[-1] and np.median(others) > FROZEN_MOVE_K:
+            notes.append(f"{file.name} column '{name}': stands at {values[name][a]:g} degC from {time[a]:g} s to "
+                         f"{time[b - 1]:g} s while the others move; is the sensor frozen?")  # fmt: skip
+    return notes
+
+
+def _longest_run(v: Array) -> tuple[int, int]:
+    """Start and end of the longest run of equal values."""
+    edges = np.concatenate([[0], np.flatnonzero(np.diff(v) != 0) + 1, [v.size]])
+    longest = int(np.argmax(np.diff(edges)))
+    return int(edges[longest]), int(edges[longest + 1])

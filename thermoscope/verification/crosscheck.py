@@ -1,0 +1,230 @@
+"""The network against the field it came from, on the same mesh, with the same coefficients: where do they differ?"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from fem.matrices.assembly import FieldModel
+from fem.solvers.solve import Fluids, Solver, Steady, steady
+from lumped.integration.simulate import Record, simulate
+from lumped.model.multipliers import multipliers
+from lumped.model.network import Array, Network, Source
+from lumped.transfer.laws import Law
+from lumped.transfer.terms_value import temperature_value
+
+Shares = Mapping[str, Mapping[str, float]]
+FLOOR = 0.1  # of the machine's largest rise: below it a percentage of a part's own rise means nothing
+
+
+@dataclass(frozen=True)
+class PartCheck:
+    """Mean and hottest temperature (degC) of a part in the field and in the network."""
+
+    place: str
+    fem_mean_C: float
+    network_mean_C: float
+    fem_max_C: float
+    network_max_C: float
+    percent_of_rise: float
+
+
+@dataclass(frozen=True)
+class LinkCheck:
+    """Heat (W) through a contact, from its first part to its second, or out of a face; percent of all heat.
+
+    parts : whose it is
+    """
+
+    link: str
+    parts: tuple[str, ...]
+    fem_W: float
+    network_W: float
+    percent_of_heat: float
+
+
+@dataclass(frozen=True)
+class CrossCheck:
+    """parts, links : all of them;  energy_balance : |in - out| / in of the field solution
+
+    state (n,) of the network with its boundaries; field (n,) degC
+    at : what every link amounts to there;  heat : all losses (W)
+    """
+
+    parts: tuple[PartCheck, ...]
+    energy_balance: float
+    state: Array
+    field: Array
+    links: tuple[LinkCheck, ...]
+    at: Coefficients
+    heat: float
+
+    @property
+    def worst(self) -> PartCheck:
+        return max(self.parts, key=lambda p: p.percent_of_rise)
+
+    def responsible(self, part: str) -> LinkCheck | None:
+        """Of the links of a part the one whose heat differs most between field and network."""
+        own = [link for link in self.links if part in link.parts]
+        return max(own, key=lambda link: link.percent_of_heat, default=None)
+
+
+@dataclass(frozen=True)
+class Coefficients:
+    """What every link and source amounts to at one operating point and temperature state."""
+
+    films: dict[str, float]
+    contacts: dict[str, float]
+    conductivity: dict[str, float]
+    watts: dict[str, float]
+    streams: Array
+    inflow: Array
+
+
+def steady_state(
+    network: Network, inputs: Mapping[str, float], ambient: float, values: Mapping[str, float] | None = None
+) -> Array:
+    """(n + n_boundary,) temperatures the network settles at (degC)."""
+    time = np.concatenate([[0.0], np.cumsum(np.geomspace(10.0, 1e6, 80))])
+    signals = {name: np.full(time.size, float(value)) for name, value in inputs.items()}
+    boundaries = {name: np.full(time.size, ambient) for name in network.boundaries}
+    run = simulate(network, Record(time, signals, boundaries, ambient), values, keep_states=True)
+    assert run.z is not None
+    return run.z[-1]
+
+
+def coefficients(
+    network: Network,
+    inputs: Mapping[str, float],
+    z: Array,
+    values: Mapping[str, float] | None = None,
+    shares: Shares | None = None,
+) -> Coefficients:
+    """Film h and contact g (W/m2/K), losses (W) by place, and the streams' matrix among the fluid nodes.
+
+    shares : source -> share of its watts per part, zone or fluid; None: by the mean nodes it heats
+    """
+    m = multipliers(network, values)
+    signals = {name: np.array([float(value)]) for name, value in inputs.items()}
+    films: dict[str, float] = {}
+    contacts: dict[str, float] = {}
+    conductivity: dict[str, float] = {}
+    watts: dict[str, float] = {}
+    fluids = fluid_nodes(network)
+    n, ambient = len(network.states), z[len(network.states) :]
+    D, s = np.zeros((len(fluids), len(fluids))), np.zeros(len(fluids))
+
+    def value(law: Law, name: str, hot: float, cold: float) -> float:
+        return m.get(name, 1.0) * float(np.mean(law.factor(signals))) * temperature_value(law.temperature, hot, cold)
+
+    for link in network.links:
+        g = value(link.law, link.name, _at(z, link.hot), _at(z, link.cold))
+        key = link.name.split(":")[1]
+        if link.kind == "film":
+            films[key] = films.get(key, 0.0) + g
+        elif link.kind == "contact":
+            contacts[key] = contacts.get(key, 0.0) + g
+        elif link.kind == "conduction":
+            conductivity[key] = g
+        else:
+            for row, col, v in zip(link.rows, link.cols, link.vals, strict=True):
+                if col < n:
+                    D[fluids.index(network.states[row]), fluids.index(network.states[col])] += g * v
+                else:
+                    s[fluids.index(network.states[row])] -= g * v * ambient[col - n]
+    for source in network.sources:
+        q = value(source.law, source.name, _at(z, source.probe), 0.0)
+        for place, share in _heated(network, source, shares).items():
+            watts[place] = watts.get(place, 0.0) + q * share
+    for k, name in enumerate(fluids):
+        s[k] += watts.pop(name, 0.0)
+    return Coefficients(films, contacts, conductivity, watts, D, s)
+
+
+def _heated(network: Network, source: Source, shares: Shares | None) -> Mapping[str, float]:
+    if shares is not None:
+        return shares[source.name]
+    out: dict[str, float] = {}
+    for i, w in zip(source.index, source.weights, strict=True):
+        if "#" not in network.states[i]:
+            out[network.states[i]] = out.get(network.states[i], 0.0) + float(w)
+    return out
+
+
+def _at(z: Array, row: object) -> float:
+    return float(row.weights @ z[row.index])  # type: ignore[attr-defined]
+
+
+def fluid_nodes(network: Network) -> tuple[str, ...]:
+    return tuple(p.name for p in network.places.values() if p.kind == "fluid" and p.name in network.states)
+
+
+def crosscheck(
+    field: FieldModel,
+    network: Network,
+    inputs: Mapping[str, float],
+    ambient: float = 20.0,
+    solver: Solver | None = None,
+    loads: Mapping[str, Array] | None = None,
+    shares: Shares | None = None,
+) -> CrossCheck:
+    """Steady state of both at one operating point, with the coefficients the network settles at.
+
+    loads : zone -> (n,) unit loss on the field;  shares : source -> zones, see `coefficients`
+    """
+    z = steady_state(network, inputs, ambient)
+    c = coefficients(network, inputs, z, shares=shares)
+    load = sum(
+        (q * (loads or {}).get(place, _uniform(field, place)) for place, q in c.watts.items()), np.zeros(field.n)
+    )
+    fluids = Fluids(fluid_nodes(network), c.streams, c.inflow, dict.fromkeys(network.boundaries, ambient))
+    full = steady(solver or Solver(field), c.films, c.contacts, load, fluids, c.conductivity)
+    parts = compared(field, network, full, z[: len(network.states)], ambient)
+    u = {**dict(zip(fluids.names, full.u, strict=True)), **fluids.fixed}
+    return CrossCheck(parts, full.energy_balance, z, full.T, through(field, network, full, z, u, c), c, full.injected)
+
+
+def _uniform(field: FieldModel, place: str) -> Array:
+    return field.load(place) if place in field.blocks else np.zeros(field.n)
+
+
+def through(
+    field: FieldModel, network: Network, full: Steady, z: Array, u: Mapping[str, float], c: Coefficients
+) -> tuple[LinkCheck, ...]:
+    """Heat through every contact and film of the field, beside the network's, largest difference first."""
+    scale, out = max(full.injected, 1e-300), []
+
+    def kept(name: str, parts: tuple[str, ...], fem: float, own: float) -> None:
+        out.append(LinkCheck(name, parts, fem, own, 100.0 * abs(fem - own) / scale))
+
+    for link in network.links:
+        if link.kind == "contact":
+            key = link.name.removeprefix("contact:")
+            touch, g = field.contacts[key], c.contacts[key]
+            fem = g * float(touch.a.b @ full.T[touch.a.dofs] - touch.b.b @ full.T[touch.b.dofs])
+            kept(link.name, link.places, fem, g * touch.area * (_at(z, link.hot) - _at(z, link.cold)))
+    for face, film in field.films.items():
+        place, h, t = network.places[face], c.films.get(face, 0.0), film.trace
+        fem = h * float(t.b @ full.T[t.dofs] - t.area * u[film.fluid])
+        own = h * t.area * (_at(z, place.mean) - float(z[network.column(film.fluid)]))
+        kept(f"film:{face}", (t.part,), fem, own)
+    return tuple(sorted(out, key=lambda link: -link.percent_of_heat))
+
+
+def compared(field: FieldModel, network: Network, full: Steady, x: Array, ambient: float) -> tuple[PartCheck, ...]:
+    """Part by part; the percentage is of the part's own rise, of at least a tenth of the machine's largest."""
+    assert network.recovery is not None
+    T = network.recovery.field(x)
+    largest = float(full.T.max()) - ambient
+    out = []
+    for part, block in field.blocks.items():
+        mean, hot = float(field.mean(part) @ full.T), float(full.T[block.dofs].max())
+        seen, peak = float(x[network.states.index(part)]), float(T[block.dofs].max())
+        off = max(
+            abs(seen - mean) / max(abs(mean - ambient), FLOOR * largest),
+            abs(peak - hot) / max(hot - ambient, FLOOR * largest),
+        )
+        out.append(PartCheck(part, mean, seen, hot, peak, 100.0 * off))
+    return tuple(out)

@@ -1,0 +1,89 @@
+"""The error budget of a case's runs: mesh by a coarser second mesh, condensation by the field, time by the integrator.
+
+Mesh and condensation are looked at once, at the machine's rated point, and kept; in a run they grow with its rise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from lumped.condensation.error_budget import ErrorBudget, PlaceError
+from lumped.condensation.recovery import Shapes
+from lumped.integration.simulate import Record, simulate
+from lumped.model.network import Array, Network, Row
+from thermoscope.case_folder.folder import Folder, Progress
+from validation.calibration.fitting import working
+from validation.case import Channel, Test
+from validation.comparison.predict import record, thermal
+
+if TYPE_CHECKING:
+    from thermoscope.verification.rated_errors import Rated
+
+
+@dataclass(frozen=True)
+class Looks:
+    """Where a budget looks. rows : sensor -> row over the network's z; points : sensor -> (part, xyz m) where known."""
+
+    rows: Mapping[str, Row]
+    places: Mapping[str, str]
+    points: Mapping[str, Array]
+
+    @classmethod
+    def of(cls, folder: Folder) -> Looks:
+        channels: dict[str, Channel] = {c.name: c for test in folder.case.tests for c in test.channels}
+        at = {name: np.array(xyz) for name, xyz in folder.positions.items() if name in channels}
+        return cls({n: c.row for n, c in channels.items()}, {n: c.place for n, c in channels.items()}, at)
+
+
+def error_budgets(folder: Folder, records: Mapping[str, Record], progress: Progress) -> dict[str, ErrorBudget]:
+    """Run -> what its temperatures may be wrong by, for the model as it stands."""
+    looks, found = Looks.of(folder), None
+    network, values = model_of(folder)
+    rows = dict(looks.rows)
+    if folder.built is not None and isinstance(network.recovery, Shapes):  # only then the field's packages are loaded
+        from thermoscope.verification.rated_errors import hot_rows, kept
+
+        progress("error of mesh and condensation")
+        found = kept(folder.built, looks)
+        rows |= hot_rows(network, found)
+    return {name: _of_run(network, values, run, rows, found) for name, run in records.items()}
+
+
+def budgets_of_tests(folder: Folder, progress: Progress) -> dict[str, ErrorBudget]:
+    """Test -> its budget."""
+    return error_budgets(folder, {test.name: _record(test) for test in folder.case.tests}, progress)
+
+
+def _record(test: Test) -> Record:
+    return record(test, {})
+
+
+def model_of(folder: Folder) -> tuple[Network, dict[str, float]]:
+    """The network with the effects added, and the values of the parameters that act on heat."""
+    network = thermal(working(folder.case)[0])
+    mine = {p.name for p in network.parameters}
+    return network, {k: v for k, v in folder.case.model.values.items() if k in mine}
+
+
+def _of_run(
+    network: Network, values: Mapping[str, float], run: Record, rows: Mapping[str, Row], found: Rated | None
+) -> ErrorBudget:
+    done = simulate(network, run, values, list(rows.values()))
+    time_K = getattr(done, "time_error_K", None)
+    late = dict.fromkeys(rows) if time_K is None else dict(zip(rows, np.asarray(time_K, float).tolist(), strict=True))
+    if found is None:
+        return ErrorBudget(tuple(PlaceError(name, None, None, late[name]) for name in rows))
+    around = np.min([np.broadcast_to(u, run.time.shape) for u in run.boundaries.values()], axis=0)
+    warm = float(np.abs(done.y - around[:, None]).max()) / found.rise_K
+    return ErrorBudget(tuple(
+        PlaceError(name, warm * found.mesh_K[name], warm * found.condensation_K[name], late[name]) for name in rows
+    ))  # fmt: skip
+
+
+def documents(budgets: Mapping[str, ErrorBudget]) -> dict[str, Any]:
+    """As the commands write it: place by place, run by run."""
+    return {name: budget.document() for name, budget in budgets.items()}

@@ -1,0 +1,143 @@
+"""Errors of mesh and condensation at a machine's rated point, looked at once and kept."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from itertools import chain
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fem.matrices.assembly import FieldModel
+from lumped.condensation.recovery import PartShape, Shapes, locate
+from lumped.model.network import Array, Network, Row
+from thermoscope.caches import cache_folder
+from thermoscope.case_folder.files import write_whole
+from thermoscope.pipeline import Built, coefficients_on, meshed
+from thermoscope.verification.frozen import Frozen, rated
+
+if TYPE_CHECKING:
+    from thermoscope.verification.error_budget import Looks
+
+SPREAD = 2.0  # every film and contact is multiplied by up to this in one further look: what a calibration may do
+HOT = "hot spot of "
+
+
+@dataclass(frozen=True)
+class Rated:
+    """At the rated point: place -> error of mesh and of condensation (K); the hottest rise (K); hot spots' nodes."""
+
+    mesh_K: Mapping[str, float]
+    condensation_K: Mapping[str, float]
+    rise_K: float
+    nodes: Mapping[str, int]
+
+
+def hot_rows(network: Network, found: Rated) -> dict[str, Row]:
+    """The hot spots as rows over the network's z."""
+    shapes = network.recovery
+    assert isinstance(shapes, Shapes)
+    return {name: _at_node(shapes.parts[name.removeprefix(HOT)], node) for name, node in found.nodes.items()}
+
+
+def _at_node(shape: PartShape, node: int) -> Row:
+    return Row(shape.states, shape.V[node])
+
+
+def kept(built: Built, looks: Looks) -> Rated:
+    """From the cache, where this network was looked at before in the same places."""
+    file = cache_folder() / f"budget-{_key(built, looks)}.json"
+    if not file.exists():
+        write_whole(file, json.dumps(vars(at_rated_point(built, looks))))
+    return Rated(**json.loads(Path(file).read_text(encoding="utf-8")))
+
+
+def _key(built: Built, looks: Looks) -> str:
+    shapes = built.network.recovery
+    assert isinstance(shapes, Shapes)
+    content = hashlib.sha256(repr((built.meshing, built.machine.sections, looks.places)).encode())
+    for block, shape in zip(built.field.blocks.values(), shapes.parts.values(), strict=True):
+        content.update(np.ascontiguousarray(block.K.data).tobytes())
+        content.update(np.ascontiguousarray(shape.V).tobytes())
+    for name, xyz in sorted(looks.points.items()):
+        content.update(repr((name, xyz.tolist())).encode())
+    return content.hexdigest()[:20]
+
+
+def at_rated_point(built: Built, looks: Looks) -> Rated:
+    """Mesh: the difference to elements twice as large, which for two meshes is Roache's grid convergence index of
+    order 2 with his factor of 3. Condensation: the largest difference from the field on the same mesh, steady and after
+    a step of loss, at nominal coefficients and at other ones.
+
+    Source: Roache 1994, J. Fluids Eng. 116, 405.
+    """
+    field, network = built.field, built.network
+    films, contacts = coefficients_on(built.machine, built.mesh)
+    asked = rated(built.machine, network, films, contacts)
+    coarse = meshed(built.machine, built.meshing.coarser).field
+    reader, rough = (Reader(f, network, asked, looks) for f in (field, coarse))
+    T = asked.of_field(field)
+    fine, other = reader.read(T), rough.read(asked.of_field(coarse))
+    left = {name: 0.0 for name in fine}
+    for exact, own in chain([(T, asked.of_network(network, field))], _elsewhere(asked, field, network)):
+        for name, off in reader.apart(exact, own).items():
+            left[name] = max(left[name], off)
+    nodes = {f"{HOT}{p}": int(np.argmax(T[field.blocks[p].dofs])) for p in asked.watts}
+    return Rated({n: abs(fine[n] - other[n]) for n in fine}, left, max(map(abs, fine.values())), nodes)
+
+
+def _elsewhere(asked: Frozen, field: FieldModel, network: Network) -> Iterator[tuple[Array, Array]]:
+    """The step of loss, and a steady state at other coefficients; field and network."""
+    yield from zip(asked.steps_of_field(field), asked.steps_of_network(network, field), strict=True)
+    moved = asked.moved(SPREAD)
+    yield moved.of_field(field), moved.of_network(network, field)
+
+
+@dataclass(frozen=True)
+class Reader:
+    """Sensors and hot spots of heated parts in a field's answer (n + n_fluid,)."""
+
+    field: FieldModel
+    network: Network
+    asked: Frozen
+    looks: Looks
+
+    def read(self, T: Array) -> dict[str, float]:
+        """name -> K"""
+        sensors = {name: float(row @ T) for name, row in self.rows.items()}
+        return sensors | {f"{HOT}{p}": float(T[self.field.blocks[p].dofs].max()) for p in self.asked.watts}
+
+    def apart(self, one: Array, other: Array) -> dict[str, float]:
+        """name -> K between two answers on the same mesh"""
+        a, b = self.read(one), self.read(other)
+        return {name: abs(a[name] - b[name]) for name in a}
+
+    @property
+    def rows(self) -> dict[str, Array]:
+        return {name: self._row(name, place) for name, place in self.looks.places.items()}
+
+    def _row(self, name: str, place: str) -> Array:
+        out, p = np.zeros(self.field.n + len(self.asked.fluids)), self.network.places[place]
+        if name in self.looks.points and p.part in self.field.blocks:
+            block = self.field.blocks[p.part]
+            shape = PartShape(block.points, block.elements, np.zeros((block.n, 0)), block.w, np.zeros(0, np.int64))
+            nodes, weights = locate(shape, self.looks.points[name], p.part)
+            out[block.dofs.start + nodes] = weights
+        elif p.kind == "surface":
+            out[: self.field.n] = self.field.face_mean(self.field.film(place).trace)
+        else:
+            self._add_means(out, p.mean)
+        return out
+
+    def _add_means(self, out: Array, mean: Row) -> None:
+        """A place that is a sum of means of parts and of fluids; shapes of a zone are left out."""
+        for i, weight in zip(mean.index, mean.weights, strict=True):
+            name = self.network.states[i]
+            if name in self.field.blocks:
+                out[: self.field.n] += weight * self.field.mean(name)
+            elif name in self.asked.fluids:
+                out[self.field.n + self.asked.fluids.index(name)] += weight

@@ -1,0 +1,1 @@
+"""Fitting parameters under priors, and how sure the fitted values are."""

@@ -1,0 +1,372 @@
+"""Maximum a posteriori calibration: Levenberg-Marquardt on whitened residuals with Gaussian priors and hard bounds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import cho_factor, cho_solve
+
+from lumped.model.network import Network
+from validation.calibration.fitting import Unknowns
+from validation.case import Test
+from validation.comparison.sheet import Segment, segments
+from validation.doubt import USUAL, Doubt
+from validation.inference.model_error import ModelError, model_error
+from validation.measurement.noise import Noise, first_noise, fit_noise
+
+Array = NDArray[np.float64]
+Progress = Callable[[str], None]
+Keep = Callable[[Mapping[str, float]], None]
+STATIONARY = 0.1  # of a posterior standard deviation
+WORTH = 0.1  # nats: the error of time steps moves an objective by about as much, so that no fit can settle closer
+ROUGH = 1.0  # nats: a fit under a noise that is only guessed
+FORETOLD = 0.5  # of the predicted gain: a Jacobian that delivers less is made anew
+
+
+def silent(message: str) -> None:
+    """No progress."""
+
+
+def forgets(values: Mapping[str, float]) -> None:
+    """Nothing is kept between steps."""
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A calibrated state.
+
+    theta : (p,) fitted coordinates;  H : (p, p) curvature of the posterior (J'Sigma^-1 J + prior);  parts : residual
+    and Jacobian at theta;  gradient : largest |gradient| in units of the posterior sd (0 at the exact optimum)
+    error : the model error that the noise was widened by, marginalised in H and the objective
+    foretold : least share of its foretold gain that a step of weight brought; 1 where the model is linear
+    """
+
+    network: Network
+    unknowns: Unknowns
+    theta: Array
+    H: Array
+    parts: tuple[Segment, ...]
+    noise: Noise
+    objective: float
+    converged: bool
+    gradient: float
+    error: ModelError | None = None
+    foretold: float = 1.0
+
+    @property
+    def values(self) -> dict[str, float]:
+        return self.unknowns.values(self.theta)
+
+    @property
+    def covariance(self) -> Array:
+        return np.asarray(np.linalg.inv(self.H), float)
+
+    @property
+    def sd(self) -> Array:
+        return np.asarray(np.sqrt(np.diag(self.covariance)))
+
+    @property
+    def at_bound(self) -> NDArray[np.bool_]:
+        low, high = self.unknowns.bounds
+        return (self.theta <= low + 1e-9) | (self.theta >= high - 1e-9)
+
+
+@dataclass(frozen=True)
+class Known:
+    """Segments from before a fit, whose Jacobian serves as its first.
+
+    parts : of the very state where the fit begins, or else (`nearby`) of one close by, whose residuals are made anew
+    renewed : where steps fail, a Jacobian from nearby is made anew; if not, it is never
+    stale : residuals are of the very state, the Jacobian may be from before the last steps
+    """
+
+    parts: Sequence[Segment]
+    nearby: bool = True
+    renewed: bool = False
+    stale: bool = False
+
+    @property
+    def borrowed(self) -> bool:
+        return self.nearby and not self.renewed
+
+
+def normal(parts: Sequence[Segment], noise: Noise) -> tuple[Array, Array, float]:
+    """J'Sigma^-1 J, J'Sigma^-1 r and r'Sigma^-1 r, summed over segments."""
+    p = parts[0].J.shape[1]
+    G = np.zeros((p + 1, p + 1))
+    for s in parts:
+        X = noise.whiten(s, np.column_stack([s.J, s.r]))
+        G += X.T @ X
+    return G[:p, :p], G[:p, p], float(G[p, p])
+
+
+def bounded_step(H: Array, g: Array, theta: Array, low: Array, high: Array) -> Array:
+    """Minimiser of the quadratic model inside the bounds: clip the worst offender and solve again for the others."""
+    new, free = theta.copy(), np.ones(theta.size, bool)
+    for _ in range(theta.size + 1):
+        step = np.zeros_like(theta)
+        step[~free] = new[~free] - theta[~free]
+        rhs = g[free] - H[np.ix_(free, ~free)] @ step[~free]
+        step[free] = np.linalg.solve(H[np.ix_(free, free)], rhs)
+        over = np.maximum(theta + step - high, low - theta - step)
+        if not free.any() or np.max(over[free]) <= 1e-12:
+            return np.clip(theta + step, low, high)
+        worst = np.flatnonzero(free)[np.argmax(over[free])]
+        free[worst] = False
+        new[worst] = high[worst] if theta[worst] + step[worst] > high[worst] else low[worst]
+    return new
+
+
+def minimise(
+    network: Network,
+    tests: Sequence[Test],
+    unknowns: Unknowns,
+    theta: Array,
+    noise: Noise | None = None,
+    fixed: Mapping[str, float] | None = None,
+    iterations: int = 12,
+    known: Known | None = None,
+    draft: bool = False,
+    centre: Array | None = None,
+    worth: float = WORTH,
+    progress: Progress = silent,
+    keep: Keep = forgets,
+    error: ModelError | None = None,
+) -> Fit:
+    """Fit `unknowns` to the tests from `theta` under a given noise (by default that of uncalibrated sensors).
+
+    The Jacobian costs ten times a run, so it is held as long as steps do what it foretells, and made anew before the
+    end (unless `draft`); `known`: one to begin with; `centre`: prior mean (p,), 0 by default; `worth`: gain (nats) for
+    which one more step is made; `keep` is told the values after every step, so that an interrupted fit can go on;
+    `error`: the covariance of the model error, added to that of the noise.
+    """
+    fixed = dict(fixed or {})
+    climb = Climb(network, tests, unknowns, fixed, theta, noise, known, draft, centre, worth, error)
+    for iteration in range(iterations):
+        progress(f"calibration step {iteration + 1}, objective {climb.objective:.4g}")
+        done = climb.step()
+        keep(unknowns.values(climb.theta))
+        if done:
+            break
+    return climb.fit()
+
+
+class Climb:
+    """State of a fit between its steps."""
+
+    def __init__(
+        self, network: Network, tests: Sequence[Test], unknowns: Unknowns, fixed: dict[str, float], theta: Array,
+        noise: Noise | None, known: Known | None, draft: bool, centre: Array | None, worth: float,
+        error: ModelError | None,
+    ) -> None:  # fmt: skip
+        near = known is not None and known.nearby
+        self.network, self.tests, self.unknowns, self.fixed = network, tests, unknowns, fixed
+        self.draft, self.borrowed, self.worth = draft or near, known is not None and known.borrowed, worth
+        self.centre = np.zeros_like(theta) if centre is None else centre
+        self.low, self.high = unknowns.bounds
+        self.weight, self.damping, self.fresh, self.done = (
+            unknowns.sd**-2.0,
+            0.0,
+            not (near or (known is not None and known.stale)),
+            False,
+        )
+        self.foretold = 1.0
+        self.theta = np.clip(theta, self.low, self.high)
+        self.parts = self.begun(known)
+        self.noise = noise or first_noise(self.parts)
+        self.error, self.measure = error, Measure(self.parts, self.noise, error)
+        self.weigh()
+
+    def begun(self, known: Known | None) -> list[Segment]:
+        """Residuals and Jacobian where the fit begins."""
+        if known is None:
+            return self.tangents(self.theta)
+        return self.residuals(self.theta, known.parts) if known.nearby else list(known.parts)
+
+    def tangents(self, x: Array) -> list[Segment]:
+        now = {**self.fixed, **self.unknowns.values(x)}
+        return segments(self.network, self.tests, now, self.unknowns.parameters)
+
+    def residuals(self, x: Array, like: Sequence[Segment]) -> list[Segment]:
+        """Residuals at x with the Jacobian of other segments."""
+        plain = segments(self.network, self.tests, {**self.fixed, **self.unknowns.values(x)}, ())
+        return [replace(new, J=old.J) for new, old in zip(plain, like, strict=True)]
+
+    @property
+    def enough(self) -> float:
+        """Gain in objective below which a step is not worth making."""
+        return self.worth * (1.0 + 1e-3 * self.objective)
+
+    def weigh(self) -> None:
+        """After a new Jacobian."""
+        self.white = self.measure.white([s.J for s in self.parts])
+        self.A = self.measure.product(self.white, self.white)
+        self.read()
+
+    def read(self) -> None:
+        """After new residuals."""
+        r = self.measure.white([s.r[:, None] for s in self.parts])
+        self.b = self.measure.product(self.white, r)[:, 0]
+        self.objective = 0.5 * (float(self.measure.product(r, r)[0, 0]) + self.strain(self.theta))
+
+    def strain(self, x: Array) -> float:
+        """Squared distance from the prior mean, in prior deviations."""
+        return float((x - self.centre) @ (self.weight * (x - self.centre)))
+
+    def slope(self) -> tuple[Array, Array]:
+        """Curvature and steepest descent of the objective."""
+        return self.A + np.diag(self.weight), self.b - self.weight * (self.theta - self.centre)
+
+    def renew(self) -> None:
+        """The Jacobian where the fit stands."""
+        self.parts, self.fresh = self.tangents(self.theta), True
+        self.weigh()
+
+    def step(self) -> bool:
+        """One step; True when there is nothing more to gain."""
+        H, g = self.slope()
+        new = bounded_step(H + self.damping * np.diag(np.diag(H)), g, self.theta, self.low, self.high)
+        predicted = float(g @ (new - self.theta) - 0.5 * (new - self.theta) @ H @ (new - self.theta))
+        if predicted < self.enough:
+            return self.stop()
+        trial = self.residuals(new, self.parts)
+        value = 0.5 * (self.measure.square(trial) + self.strain(new))
+        gained = self.objective - value
+        if predicted > ROUGH:
+            self.foretold = min(self.foretold, gained / predicted)
+        if not gained > 0.0:
+            return self.back()
+        self.theta, self.parts, self.fresh = new, trial, False
+        self.damping = self.damping / 10.0 if self.damping > 1e-3 else 0.0
+        if gained < FORETOLD * predicted and not self.borrowed:
+            self.renew()
+        else:
+            self.read()
+        return gained < self.enough and self.stop()
+
+    def stop(self) -> bool:
+        """Done with a true Jacobian; otherwise look once more."""
+        if not (self.fresh or self.draft):
+            self.renew()
+            return False
+        self.done = True
+        return True
+
+    def back(self) -> bool:
+        """A step that made things worse: a true Jacobian first, then a shorter step."""
+        if not (self.fresh or self.borrowed):
+            self.renew()
+        else:
+            self.damping = max(10.0 * self.damping, 0.01)
+        return self.damping > 1e6
+
+    def fit(self) -> Fit:
+        if not (self.fresh or self.draft):
+            self.renew()
+        H, g = self.slope()
+        inside = ~((self.theta <= self.low + 1e-9) & (g < 0) | (self.theta >= self.high - 1e-9) & (g > 0))
+        slack = float(np.max(np.abs(g / np.sqrt(np.diag(H)))[inside], initial=0.0))
+        return Fit(
+            self.network, self.unknowns, self.theta, H, tuple(self.parts), self.noise, self.objective,
+            self.done or slack < STATIONARY, slack, self.error, self.foretold,
+        )  # fmt: skip
+
+
+class Measure:
+    """x' S^-1 y over the instants of some segments, S = noise + model error.
+
+    With whitened columns D of the model error, S^-1 = 1 - D (1 + D'D)^-1 D' (Woodbury).
+    """
+
+    def __init__(self, parts: Sequence[Segment], noise: Noise, error: ModelError | None) -> None:
+        self.parts, self.noise = list(parts), noise
+        self.D = self.white([error.of(s) for s in parts]) if error else []
+        self.factor = cho_factor(np.eye(error.size) + sum(d.T @ d for d in self.D)) if error else None
+
+    def white(self, columns: Sequence[Array]) -> list[Array]:
+        """Columns (n, k) of each segment under its noise alone."""
+        return [self.noise.whiten(s, X) for s, X in zip(self.parts, columns, strict=True)]
+
+    def product(self, X: Sequence[Array], Y: Sequence[Array]) -> Array:
+        """X' S^-1 Y of whitened columns."""
+        plain = np.asarray(sum(x.T @ y for x, y in zip(X, Y, strict=True)))
+        if self.factor is None:
+            return plain
+        return plain - self.along(X).T @ cho_solve(self.factor, self.along(Y))
+
+    def along(self, X: Sequence[Array]) -> Array:
+        """D' X of whitened columns."""
+        return np.asarray(sum(d.T @ x for d, x in zip(self.D, X, strict=True)))
+
+    def square(self, parts: Sequence[Segment]) -> float:
+        """r' S^-1 r."""
+        r = self.white([s.r[:, None] for s in parts])
+        return float(self.product(r, r)[0, 0])
+
+    def explained(self, parts: Sequence[Segment], error: ModelError | None) -> list[Segment]:
+        """The segments without what the model error explains of their residuals."""
+        if self.factor is None or error is None:
+            return list(parts)
+        d = self.doubts(parts)
+        return [replace(s, r=s.r - error.of(s) @ d) for s in parts]
+
+    def doubts(self, parts: Sequence[Segment]) -> Array:
+        """(d,) deviations of the doubts that explain residuals best."""
+        if self.factor is None:
+            return np.zeros(0)
+        return np.asarray(cho_solve(self.factor, self.along(self.white([s.r[:, None] for s in parts])))[:, 0])
+
+
+def residual_noise(fit: Fit) -> Noise:
+    """The noise of what a fit and its model error leave."""
+    return fit_noise(Measure(fit.parts, fit.noise, fit.error).explained(fit.parts, fit.error))
+
+
+def square_of(parts: Sequence[Segment], noise: Noise) -> float:
+    """r'Sigma^-1 r, summed over segments."""
+    return sum(float(np.sum(noise.whiten(s, s.r[:, None]) ** 2)) for s in parts)
+
+
+def calibrated(
+    network: Network,
+    tests: Sequence[Test],
+    unknowns: Unknowns,
+    values: Mapping[str, float],
+    rounds: int = 2,
+    progress: Progress = silent,
+    noise: Noise | None = None,
+    keep: Keep = forgets,
+    rough: bool = False,
+) -> Fit:
+    """Calibrate, estimate the noise from the residual, calibrate again under it; `rounds` times.
+
+    Only the last needs a Jacobian of its own end; `rough`: nor does that, since another fit goes on from there.
+    """
+    held = {p.name: values.get(p.name, p.value) for p in network.parameters}
+    fit = minimise(network, tests, unknowns, unknowns.coordinates(values), noise, held, progress=progress, keep=keep,
+                   draft=rough or rounds > 0, worth=ROUGH if rounds else WORTH)  # fmt: skip
+    for i in range(rounds):
+        fit = minimise(
+            network, tests, unknowns, fit.theta, fit_noise(fit.parts), held, 10,
+            Known(fit.parts, nearby=False, stale=True), draft=rough or i + 1 < rounds, progress=progress, keep=keep,
+        )  # fmt: skip
+    return fit
+
+
+def with_model_error(
+    fit: Fit, tests: Sequence[Test], values: Mapping[str, float], doubt: Doubt = USUAL, iterations: int = 0,
+    draft: bool = False,
+) -> Fit:  # fmt: skip
+    """The fit where it stands, or gone on, with what a model of this kind gets wrong added to the noise.
+
+    values : of what is not free.  Predictions are best by the parameters that follow the readings; how sure these are,
+    and what is missing beside them, depends on the model error.
+    """
+    held = {**values, **fit.values}
+    error = model_error(fit.network, tests, held, doubt)
+    noise = fit_noise(Measure(fit.parts, fit.noise, error).explained(fit.parts, error))
+    return minimise(fit.network, tests, fit.unknowns, fit.theta, noise, held, iterations,
+                    Known(fit.parts, nearby=False, stale=iterations > 0), draft, error=error)  # fmt: skip

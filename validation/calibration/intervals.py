@@ -1,0 +1,97 @@
+"""Fitted values with their intervals: what the data fixed, what they could not, and with whom it trades."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.model.network import Parameter
+from validation.calibration.calibrate import Fit
+from validation.calibration.fitting import to_value
+from validation.measurement.operators import of_measurement
+
+Array = NDArray[np.float64]
+UNSEEN = 0.9
+TRADES = 0.7
+NORMAL_95 = 1.96
+
+
+@dataclass(frozen=True)
+class Profile:
+    """Central 95 % by profile likelihood; `open` says which ends are only the parameter's bounds."""
+
+    low: float
+    high: float
+    open: tuple[bool, bool]
+
+    def document(self) -> dict:
+        return {"ci95": [self.low, self.high], "open": list(self.open)}
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A fitted parameter. prior : (median, low, high) of its central 95 %; identified: the data narrowed the prior.
+
+    partner : the parameter it trades with, where their correlation exceeds 0.7;  at_bound : it sticks to a bound
+    of_measurement : a sensor's, a boundary's, a start's or a clock's, not the machine's
+    """
+
+    name: str
+    value: float
+    unit: str
+    ci95: tuple[float, float]
+    prior: tuple[float, float, float]
+    identified: bool
+    partner: str | None = None
+    at_bound: bool = False
+    profile: Profile | None = None
+    of_measurement: bool = False
+
+    def document(self) -> dict:
+        profile = self.profile.document() if self.profile else None
+        return {**vars(self), "ci95": list(self.ci95), "prior": list(self.prior), "profile": profile}
+
+
+def estimates(fit: Fit, profiles: Mapping[str, Profile] | None = None) -> tuple[Estimate, ...]:
+    """Values with intervals from the covariance, model error in it, never wider than the prior's."""
+    correlation = correlations(fit)
+    partner = np.argmax(np.abs(correlation), axis=1)
+    known = profiles or {}
+    out = []
+    for i, p in enumerate(fit.unknowns.parameters):
+        trades = abs(correlation[i, partner[i]]) > TRADES
+        out.append(
+            Estimate(
+                p.name, to_value(p, float(fit.theta[i])), p.unit, interval(fit, i), prior_of(p),
+                bool(fit.sd[i] <= UNSEEN * p.prior_sd), fit.unknowns.names[partner[i]] if trades else None,
+                bool(fit.at_bound[i]), known.get(p.name), of_measurement(p),
+            )
+        )  # fmt: skip
+    return tuple(out)
+
+
+def correlations(fit: Fit) -> Array:
+    """Posterior correlations with an empty diagonal, (p, p)."""
+    sd = fit.sd
+    out = fit.covariance / np.outer(sd, sd)
+    np.fill_diagonal(out, 0.0)
+    return np.asarray(out, float)
+
+
+def interval(fit: Fit, i: int) -> tuple[float, float]:
+    """Central 95 % of a parameter inside its bounds."""
+    p = fit.unknowns.parameters[i]
+    half = NORMAL_95 * min(float(fit.sd[i]), p.prior_sd)
+    low, high = (to_value(p, float(fit.theta[i] + s * half)) for s in (-1.0, 1.0))
+    return max(low, p.low), min(high, p.high)
+
+
+def prior_of(p: Parameter) -> tuple[float, float, float]:
+    """Median and central 95 % of the prior inside the bounds."""
+    median, low, high = (
+        float(np.clip(to_value(p, s * NORMAL_95 * p.prior_sd), p.low, p.high)) for s in (0.0, -1.0, 1.0)
+    )
+    return median, low, high

@@ -1,0 +1,193 @@
+"""What the sensors of a test would read: the network's run, seen through each channel's operator (operators.py).
+
+Long tests are looked at in stretches, so that their tangents are never in memory as a whole.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.integration.simulate import Record, Run, Stand, simulate
+from lumped.model.network import Network, Parameter
+from validation.case import Test
+from validation.measurement.operators import (
+    OPERATORS,
+    SHIFTS,
+    STEP,
+    Memory,
+    Stretch,
+    head,
+    moved,
+    setting,
+    shifted,
+    stretch_of,
+)
+
+Array = NDArray[np.float64]
+MARGIN = 40  # samples on either side of a stretch after which a spline no longer feels where it was cut
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """y : (n_time, n_channel) degC;  J : (n_time, n_channel, n_parameter), see simulate() for its coordinates."""
+
+    y: Array
+    J: Array
+
+
+def thermal(network: Network) -> Network:
+    """The network with only the parameters that act on heat."""
+    return replace(network, parameters=tuple(p for p in network.parameters if head(p) == "thermal"))
+
+
+def predict(
+    network: Network, test: Test, values: Mapping[str, float], tangents: Sequence[Parameter] = ()
+) -> Prediction:
+    """Readings of every channel of a test and their derivatives with respect to `tangents`."""
+    return Watch(network, test, values, tangents).until(len(test.time))
+
+
+def record(test: Test, shift: Mapping[str, float]) -> Record:
+    """The test's inputs, its time, and that it is this test; offsets of boundaries and start applied."""
+    return stretch_of_record(test, shift, slice(0, len(test.time)))
+
+
+def stretch_of_record(test: Test, shift: Mapping[str, float], some: slice) -> Record:
+    """The samples of the record from some.start to some.stop, beginning as the whole does."""
+    air = {n: np.broadcast_to(np.asarray(u, float), test.time.shape)[some] for n, u in test.boundaries.items()}
+    boundaries = {n: u + shift.get(f"boundary:{n}", 0.0) + shift.get(here(test, n), 0.0) for n, u in air.items()}
+    move, initial = shift.get(f"initial:{test.name}", 0.0), test.initial
+    start = {k: v + move for k, v in initial.items()} if isinstance(initial, Mapping) else initial + move
+    return Record(test.time[some], test.signals.part(some), boundaries, start)
+
+
+def here(test: Test, boundary: str) -> str:
+    """What acts on a boundary in one test alone."""
+    return f"boundary:{boundary} in {test.name}"
+
+
+class Course:
+    """A run of the network over a test, as far as it was asked for."""
+
+    def __init__(
+        self, network: Network, test: Test, heat: Mapping[str, float], shift: Mapping[str, float],
+        tangents: Sequence[Parameter] = (),
+    ) -> None:  # fmt: skip
+        self.network, self.test, self.heat, self.tangents = network, test, heat, tangents
+        self.shift, self.kept = shift, slice(0, 0)
+        self.end: Stand | None = None
+        self.T, self.dT = np.empty((0, 0)), np.empty((0, 0, 0))
+
+    def over(self, some: slice) -> tuple[Array, Array]:
+        """Temperatures (n, n_channel) at the sensors and their tangents (n, n_channel, n_tangent) of some samples.
+
+        What was asked for last is kept, so the next may begin, and end, anywhere from its beginning, and end, on.
+        """
+        first = some.start - self.kept.start
+        T, dT = self.T, self.dT = self.T[first:].copy(), self.dT[first:].copy()
+        if some.stop > self.kept.stop:
+            run = self._run(slice(max(self.kept.stop - 1, 0), some.stop))
+            new = run.dy if run.dy is not None else np.empty((*run.y.shape, 0))
+            T, dT = (np.concatenate([T, run.y[1:]]), np.concatenate([dT, new[1:]])) if self.end else (run.y, new)
+            self.end = run.end
+        self.T, self.dT, self.kept = T, dT, some
+        return T, dT
+
+    def _run(self, some: slice) -> Run:
+        part, rows = stretch_of_record(self.test, self.shift, some), [c.row for c in self.test.channels]
+        return simulate(self.network, part, self.heat, rows, self.tangents, begin=self.end)
+
+
+class Watch:
+    """A test as its sensors read it under some values, from its beginning on, as far as it was asked for.
+
+    tangents : parameters with respect to which the readings are differentiated
+    """
+
+    def __init__(
+        self, network: Network, test: Test, values: Mapping[str, float], tangents: Sequence[Parameter] = ()
+    ) -> None:
+        self.network, self.test, self.tangents = network, test, tangents
+        self.now, self.done, self.memory = setting(network.parameters, values), 0, Memory()
+        bare, self.heads = thermal(network), [head(p) for p in tangents]
+        known = {p.name for p in bare.parameters}
+        heat = {k: v for k, v in values.items() if k in known}
+        hot = [p for p, kind in zip(tangents, self.heads, strict=True) if kind == "thermal"]
+        self.course = Course(bare, test, heat, self.now, hot)
+        self.shifted = {
+            i: Course(bare, test, heat, moved(self.now, p)[0])
+            for i, (p, kind) in enumerate(zip(tangents, self.heads, strict=True))
+            if kind in SHIFTS and _felt(test, p)
+        }
+        self.late_s, self.spread = abs(self.now.get(f"delay:{test.name}", 0.0)), test.spread
+
+    def until(self, stop: int) -> Prediction:
+        """Readings and derivatives from where the last look ended to sample `stop`."""
+        some = slice(max(self.done - 1, 0), stop)
+        self.around = self._around(some)
+        look = stretch_of(self.network, self.test, some, self.memory)
+        T, dT = self.course.over(self.around)
+        late = self._late(T, some, self.now)
+        y = look.read(late, self.now)
+        J = np.zeros((*y.shape, len(self.tangents)))
+        hot = [i for i, kind in enumerate(self.heads) if kind == "thermal"]
+        if hot:
+            J[:, :, hot] = look.read(self._late(dT, some, self.now), self.now, "heat", linear=True)
+        for i, shift in self.shifted.items():
+            rise = (shift.over(self.around)[0] - T) / STEP[self.heads[i]]
+            J[:, :, i] = look.read(self._late(rise, some, self.now), self.now, f"shift {i}", linear=True)
+        for i, kind in enumerate(self.heads):
+            if kind in OPERATORS:
+                J[:, :, i] = self._operator(look, T, late, y, some, i)
+        fresh, self.done = self.done - some.start, stop
+        return Prediction(y[fresh:], J[fresh:])
+
+    def _around(self, some: slice) -> slice:
+        """The samples that a late clock makes those depend on."""
+        time = self.test.time
+        if not (self.late_s or "delay" in self.heads):
+            beside = 1 if self.spread else 0
+            return slice(max(some.start - beside, 0), min(some.stop + beside, time.size))
+        low, high = np.searchsorted(time, [time[some.start] - self.late_s, time[some.stop - 1] + self.late_s])
+        return slice(max(int(low) - MARGIN, 0), min(int(high) + MARGIN, time.size))
+
+    def _late(self, T: Array, some: slice, now: Mapping[str, float]) -> Array:
+        """Temperatures as the samples have them, out of those around: means over a step, a late recorder's clock."""
+        delay, time = now.get(f"delay:{self.test.name}", 0.0), self.test.time
+        T = softened(T, self.spread)
+        if not delay:
+            return T[some.start - self.around.start : some.stop - self.around.start]
+        return shifted(time[self.around], T, delay, time[some], (float(time[0]), float(time[-1])))
+
+    def _operator(self, look: Stretch, T: Array, late: Array, y: Array, some: slice, i: int) -> Array:
+        """Tangent by a step of what the i-th parameter acts on. T: around, late: with the delay, y: as read."""
+        now, step = moved(self.now, self.tangents[i])
+        if self.heads[i] == "delay":
+            return (look.read(self._late(T, some, now), now, f"step {i}") - y) / step
+        if any(key.startswith("swap:") for key in now):
+            return (look.read(late, now, f"step {i}") - y) / step
+        out, name = np.zeros_like(y), self.tangents[i].targets[0][0].split(":", 1)[1]
+        for j, c in enumerate(look.channels):
+            if c.name == name:
+                out[:, j] = (look.through([c], late[:, j : j + 1], now, f"step {i}")[:, 0] - y[:, j]) / step
+        return out
+
+
+def softened(T: Array, spread: float) -> Array:
+    """(n, ...) means over a sample step from the instants in their middles; both ends as they are."""
+    if not spread:
+        return T
+    out = T.copy()
+    out[1:-1] += spread * (T[2:] - 2.0 * T[1:-1] + T[:-2])
+    return out
+
+
+def _felt(test: Test, p: Parameter) -> bool:
+    """Is the boundary one of this test's, or the start this test's?"""
+    target = p.targets[0][0]
+    name = target.split(":", 1)[1]
+    return name in test.boundaries or name == test.name or target in {here(test, b) for b in test.boundaries}

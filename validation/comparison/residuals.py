@@ -1,0 +1,95 @@
+"""Where a residual fails: is it white in time, and does it follow an input?
+
+A residual that is not white has something left to explain; one that follows an input says which input it comes from.
+Sources: Ljung and Box 1978; Bartlett 1955 (cumulated periodogram); Ljung 1999, 16.6 (independence of past inputs).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import kolmogorov
+
+from validation.case import Test
+from validation.comparison.sheet import Segment
+from validation.measurement.blocks import groups
+
+Array = NDArray[np.float64]
+LAGS = 20
+NORMAL_95 = 1.96
+
+
+@dataclass(frozen=True)
+class Pattern:
+    """What is left in one sensor's residual.
+
+    ljung_box_p, periodogram_p : probability of as much structure in white noise
+    follows : input -> largest cross-correlation over the level that chance reaches in 5 % of cases; above 1 it follows
+    """
+
+    test: str
+    channel: str
+    ljung_box_p: float
+    periodogram_p: float
+    follows: Mapping[str, float]
+
+    def document(self) -> dict:
+        return {**vars(self), "follows": dict(self.follows)}
+
+
+def pattern(segment: Segment, test: Test) -> Pattern:
+    """Whiteness of a segment's residual, and its dependence on the inputs of its test."""
+    inputs = {name: averaged(segment, test, u) for name, u in {**test.inputs, **test.boundaries}.items()}
+    follows = {name: dependence(segment.r, u) for name, u in inputs.items() if np.ptp(u) > 1e-9}
+    return Pattern(segment.test, segment.channel, ljung_box(segment.r), periodogram(segment.r), follows)
+
+
+def averaged(segment: Segment, test: Test, u: Array) -> Array:
+    """An input over the same instants as the residual."""
+    start = groups(len(test.time))
+    size = np.diff(np.append(start, len(test.time)))
+    full = np.broadcast_to(np.asarray(u, float), test.time.shape)
+    time = np.add.reduceat(test.time, start) / size
+    return np.asarray(np.interp(segment.time, time, np.add.reduceat(full, start) / size), float)
+
+
+def autocorrelation(x: Array, lags: int) -> Array:
+    """(lags + 1,) of a centred series, 1 at lag 0."""
+    x = x - np.mean(x)
+    square = float(x @ x)
+    return np.array([float(x[k:] @ x[: x.size - k]) for k in range(lags + 1)]) / max(square, 1e-300)
+
+
+def ljung_box(r: Array) -> float:
+    """Probability of autocorrelations as large in white noise."""
+    from statsmodels.stats.diagnostic import acorr_ljungbox
+
+    return float(acorr_ljungbox(r, lags=[min(LAGS, r.size // 4)])["lb_pvalue"].iloc[0])
+
+
+def periodogram(r: Array) -> float:
+    """Probability that the cumulated periodogram of white noise strays as far from the diagonal."""
+    power = np.abs(np.fft.rfft(r - np.mean(r)))[1:] ** 2
+    share = np.cumsum(power) / max(float(np.sum(power)), 1e-300)
+    line = np.arange(1, power.size + 1) / power.size
+    return float(kolmogorov(np.sqrt(power.size) * np.max(np.abs(share - line))))
+
+
+def dependence(r: Array, u: Array) -> float:
+    """Largest |R_eu(k)| over lags 0 to 20, over 1.96 sqrt(P / n), P = sum of R_e R_u over all lags."""
+    e, v, n = r - np.mean(r), u - np.mean(u), r.size
+    lags = min(LAGS, n // 4)
+    scale = np.sqrt(float(e @ e) * float(v @ v))
+    cross = [abs(float(e[k:] @ v[: n - k])) / max(scale, 1e-300) for k in range(lags + 1)]
+    together = autocorrelation(e, lags) * autocorrelation(v, lags)
+    spread = max(float(together[0] + 2.0 * np.sum(together[1:])), 1.0)
+    return max(cross) / (NORMAL_95 * np.sqrt(spread / n))
+
+
+def patterns(parts: Sequence[Segment], tests: Sequence[Test]) -> list[Pattern]:
+    """One per sensor and test."""
+    by_name = {t.name: t for t in tests}
+    return [pattern(s, by_name[s.test]) for s in parts]

@@ -1,0 +1,106 @@
+"""Residuals and Jacobians of all tests, channel by channel, averaged to a few hundred instants."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.model.network import Network, Parameter
+from validation.case import Channel, Test
+from validation.comparison.predict import Watch
+from validation.doubt import USUAL
+from validation.measurement.blocks import INSTANTS, Blocks, groups
+
+Array = NDArray[np.float64]
+NUMBERS = 2**22  # of a Jacobian looked at together: 34 MB, and some copies
+SHORTEST = 500  # samples of a stretch
+WORTH_A_THREAD = 3000  # states times instants below which starting threads costs more than it saves
+
+
+@dataclass(frozen=True)
+class Segment:
+    """One channel of one test.
+
+    time : (n,) s;  r : (n,) measured minus predicted (K);  J : (n, p) d predicted / d parameter
+    """
+
+    test: str
+    channel: str
+    time: Array
+    r: Array
+    J: Array
+    sigma_K: float
+    model_K: float = 0.0
+
+    @property
+    def weight(self) -> float:
+        """How large a residual may be expected here (K), relative to the same channel in other tests."""
+        return float(np.hypot(self.sigma_K, self.model_K))
+
+
+def segments(
+    network: Network,
+    tests: Sequence[Test],
+    values: Mapping[str, float],
+    tangents: Sequence[Parameter] = (),
+    instants: int = INSTANTS,
+) -> list[Segment]:
+    """Every channel of every test with residual and derivatives; tests run side by side (the kernel frees the GIL)."""
+
+    def look(test: Test) -> list[Segment]:
+        return _of_test(network, test, values, tangents, instants)
+
+    if len(tests) < 2 or len(tests[0].time) * network.size < WORTH_A_THREAD:
+        return [s for test in tests for s in look(test)]
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        return [s for found in pool.map(look, tests) for s in found]
+
+
+def _of_test(
+    network: Network, test: Test, values: Mapping[str, float], tangents: Sequence[Parameter], instants: int
+) -> list[Segment]:
+    n, length = len(test.time), stretch(len(test.channels), len(tangents))
+    watch, start = Watch(network, test, values, tangents), groups(n, instants)
+    means = [Blocks(start, 2 + len(tangents)) for _ in test.channels]
+    for first in range(0, n, length):
+        own = slice(first, min(first + length, n))
+        seen = watch.until(own.stop)
+        for j, c in enumerate(test.channels):
+            r = np.nan_to_num(c.y[own]) - seen.y[:, j]
+            means[j].add(first, np.column_stack([test.time[own], r, seen.J[:, j]]), np.isfinite(c.y[own]).astype(float))
+        del seen  # before the next stretch takes as much
+    read = [(c, b.means()) for c, b in zip(test.channels, means, strict=True) if np.isfinite(c.y).sum() >= 3]
+    return [Segment(test.name, c.name, m[:, 0], m[:, 1], m[:, 2:], c.sigma_K, allowed(c)) for c, m in read]
+
+
+def stretch(channels: int, tangents: int) -> int:
+    """Samples looked at together, so that a long test needs no more memory than a short one."""
+    return int(max(NUMBERS // (max(channels, 1) * (tangents + 1)), SHORTEST))
+
+
+def allowed(c: Channel) -> float:
+    """Slow misfit (K) that a model of this kind may have at a channel: what the sensor wanders, or what the case says,
+    and a share of the rise."""
+    first = c.y[np.argmax(np.isfinite(c.y))]
+    rise = max(float(np.nanmax(c.y) - first), float(first - np.nanmin(c.y)))
+    return float(np.hypot(max(c.model_K, USUAL["wander"] * c.sigma_K), USUAL["slow"] * rise))
+
+
+def stacked(parts: Sequence[Segment]) -> Array:
+    """All residuals one after the other."""
+    return np.concatenate([s.r for s in parts]) if parts else np.zeros(0)
+
+
+def reach(parts: Sequence[Segment]) -> Array:
+    """(p,) largest change of any reading (K) by one unit of each parameter."""
+    return np.asarray(np.max([np.max(np.abs(s.J), axis=0) for s in parts], axis=0))
+
+
+def rmse(parts: Sequence[Segment]) -> float:
+    """Root mean square residual (K) over all channels and tests."""
+    return float(np.sqrt(np.mean(stacked(parts) ** 2))) if parts else float("nan")

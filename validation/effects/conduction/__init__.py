@@ -1,0 +1,1 @@
+"""Heat that leaves or crosses by conduction, and heat capacity."""

@@ -1,0 +1,53 @@
+"""A joint worse than assumed."""
+
+from dataclasses import dataclass
+
+from lumped.model.network import Link, Network
+from lumped.transfer.laws import CONSTANT
+from validation.effects.base import Effect, Scene, with_parameter
+from validation.effects.sites import across_gap, own_links, solids
+
+
+def joints(network: Network) -> list[Link]:
+    """Contacts, and hand-declared links between two solids whose conductance follows nothing: a film is no joint."""
+    inner = [link for link in own_links(network) if not set(link.places) & set(network.boundaries)]
+    return [link for link in inner if link.kind == "contact" or (link.kind == "link" and _solid(network, link))]
+
+
+def _solid(network: Network, link: Link) -> bool:
+    """A shaft's link, bearing and all, is solid; what lies between parts of the field, one of which turns, is air."""
+    follows = bool(link.law.reads) or link.law.temperature is not CONSTANT
+    return (
+        not follows and not across_gap(network, *link.places) and set(link.places) <= {p.name for p in solids(network)}
+    )
+
+
+def label(link: Link) -> str:
+    return link.name.split(":", 1)[-1]
+
+
+@dataclass(frozen=True)
+class ContactResistance(Effect):
+    """A contact, fit or liner that conducts less than assumed: g = g0 (1 + a), -0.95 <= a <= 0."""
+
+    kind = "contact"
+    title = "contact resistance larger than assumed"
+    sits = "a contact between two parts"
+    unit = "1"
+    source = "interface gap, R = gap / k_air (Motor-CAD default gaps, Staton 2005)"
+    isolating_test = "DC heating at standstill with sensors on both sides of the joint"
+    typical = (-0.8, -0.2)
+    sign = -1
+    prior_sd = 0.4
+    low = -0.95
+    high = 0.0
+    mapping = "relative"
+    confused_with = ("contact", "loss.winding", "mass")
+
+    @classmethod
+    def where(cls, scene: Scene) -> list[str]:
+        return [label(link) for link in joints(scene.network)]
+
+    def extend(self, network: Network) -> Network:
+        hit = [link.name for link in joints(network) if label(link) == self.place]
+        return with_parameter(network, self.parameter(*hit))

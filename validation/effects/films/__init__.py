@@ -1,0 +1,1 @@
+"""Convection, radiation and the surroundings."""

@@ -1,0 +1,35 @@
+"""Films weaker than assumed."""
+
+from dataclasses import dataclass
+
+from lumped.model.network import Network
+from validation.effects.base import Effect, Scene, with_parameter
+from validation.effects.sites import part_of
+from validation.effects.streams.fouling import films
+
+
+@dataclass(frozen=True)
+class Blockage(Effect):
+    """Outer films of a part are weaker than assumed: h = h0 (1 + a), -0.95 <= a <= 0 (dirt, shelter, blocked fins)."""
+
+    kind = "blockage"
+    title = "cooling of a face is blocked"
+    sits = "a part with a film to air or coolant"
+    unit = "1"
+    source = "definition; open fin channels lose flow along their length (Valenzuela and Tapia 2008)"
+    isolating_test = "clean the fins; cool-down with the face freely exposed"
+    typical = (-0.7, -0.1)
+    sign = -1
+    prior_sd = 0.3
+    low = -0.95
+    high = 0.0
+    mapping = "relative"
+    confused_with = ("fouling", "flow")
+
+    @classmethod
+    def where(cls, scene: Scene) -> list[str]:
+        parts = dict.fromkeys(part_of(scene.network, p) for link in scene.network.links for p in link.places)
+        return [p for p in parts if p not in scene.network.boundaries and films(scene.network, p)]
+
+    def extend(self, network: Network) -> Network:
+        return with_parameter(network, self.parameter(*(link.name for link in films(network, self.place))))

@@ -1,0 +1,59 @@
+"""Air gap that carries more heat when the rotor turns."""
+
+from dataclasses import dataclass
+
+from geom.description.roles import Role
+from lumped.model.network import Network
+from lumped.transfer.laws import InputPower
+from validation.effects.base import Effect, Scene, with_parameter
+from validation.effects.build import conductance_scale, exchange, films
+from validation.effects.sites import across_air, faces, fluids, solids, turns
+
+
+def gaps(network: Network) -> list[str]:
+    """Fluids that are the air gap; else what turns and what stands beside it, joined by a link: 'rotor|stator'.
+
+    Where nothing is known to turn, any two solids that a link joins.
+    """
+    known = {p.name for p in solids(network)}
+    joined = [link.places for link in network.links if set(link.places) <= known and len(set(link.places)) == 2]
+    apart = [(a, b) if turns(network, a) else (b, a) for a, b in joined if across_air(network, a, b)]
+    untold = [] if any(turns(network, name) for name in known) else joined
+    return fluids(network, Role.AIR_GAP) or ["|".join(pair) for pair in apart or untold]
+
+
+def speed_law(network: Network) -> InputPower:
+    return InputPower(1.0, ((network.signal("speed"), 1000.0, 0.5),))
+
+
+@dataclass(frozen=True)
+class GapConvection(Effect):
+    """Extra exchange across the air gap with speed: h = a (n / 1000 rpm)^0.5 (W/m2/K; W/K between bare nodes)."""
+
+    kind = "gap.convection"
+    title = "air-gap convection with speed"
+    sits = "a fluid with role air gap"
+    unit = "W/m2/K"
+    at = "1000 rpm"
+    source = "Becker and Kaye 1962: Nu ~ Ta^0.48 beyond the critical Taylor number"
+    isolating_test = "cool down at several speeds; rotor temperature from back-EMF or resistance"
+    typical = (5.0, 60.0)
+    prior_sd = 30.0
+    high = 600.0
+    confused_with = ("loss.rotor", "sensor.lag")
+    needs = ("speed",)
+
+    @classmethod
+    def where(cls, scene: Scene) -> list[str]:
+        return list(dict.fromkeys(gaps(scene.network)))
+
+    def extend(self, network: Network) -> Network:
+        if "|" in self.place:
+            a, b = self.place.split("|")
+            link = exchange(network, self.name, a, b, speed_law(network))
+            parameter = self.parameter(link.name, scale=conductance_scale(network) / 20.0, unit="W/K")
+            return with_parameter(network.extended(links=[link]), parameter)
+        parts = dict.fromkeys(p.part for p in network.places.values() if p.fluid == self.place)
+        wet = [face for part in parts for face in faces(network, part, self.place)]
+        links = films(network, self.name, wet, self.place, speed_law(network))
+        return with_parameter(network.extended(links=links), self.parameter(*(link.name for link in links)))

@@ -1,0 +1,1 @@
+"""Losses: copper, iron, friction, brushes, air."""

@@ -1,0 +1,58 @@
+"""Copper that heats more when it is hot."""
+
+from dataclasses import dataclass
+
+from lumped.model.network import Network, Source
+from lumped.sources.losses import ALPHA_CU
+from lumped.transfer.laws import CONSTANT, Linear
+from validation.effects.base import Effect, Scene, with_parameter
+from validation.effects.build import Shaped, copy_source
+from validation.effects.sites import windings
+
+REFERENCE = 20.0  # degC, of losses that name no temperature at which they hold
+UNSAID = ("constant", "stray")  # kinds that say nothing of how a loss comes about: in a winding it is copper's
+
+
+@dataclass(frozen=True)
+class CopperFeedback(Effect):
+    """Missing temperature feedback of a copper loss: P = P0 (1 + a (T - T0)), a in 1/K.
+
+    T0 is the temperature at which the loss was declared, 20 degC where it says none.
+    """
+
+    kind = "copper.feedback"
+    title = "copper resistance does not follow its temperature"
+    sits = "a copper loss that follows a temperature, or says its reference"
+    unit = "1/K"
+    source = "IEC 60034-1: copper, 0.00393 1/K at 20 degC"
+    isolating_test = "log the winding resistance during a constant-current run"
+    typical = (0.0035, 0.0042)
+    prior_sd = ALPHA_CU
+    high = 0.0125  # 1/K: above, the loss would be negative below -60 degC
+    confused_with = ("copper.ac", "loss.winding")
+
+    @classmethod
+    def where(cls, scene: Scene) -> list[str]:
+        wound = set(windings(scene.network))
+        copper = [s for s in scene.network.sources if not s.origin and _copper(s, wound)]
+        return [s.name.split(":", 1)[-1] for s in copper if _reference(s) is not None]
+
+    def extend(self, network: Network) -> Network:
+        (source,) = [s for s in network.sources if s.name.split(":", 1)[-1] == self.place]
+        rising, constant = f"{self.name}:rise", f"{self.name}:base"
+        law = Shaped(source.law, lambda inputs: 1.0, Linear(1.0, _reference(source) or REFERENCE))
+        network = copy_source(network, source, rising, law)
+        network = copy_source(network, source, constant, Shaped(source.law, lambda inputs: -1.0))
+        return with_parameter(network, self.parameter(rising, constant))
+
+
+def _copper(source: Source, wound: set[str]) -> bool:
+    return source.kind == "copper" or (source.kind in UNSAID and source.place in wound)
+
+
+def _reference(source: Source) -> float | None:
+    """Where the loss holds as declared (degC); None if it follows its temperature already."""
+    law = source.law.temperature
+    if isinstance(law, Linear):
+        return law.reference if law.alpha == 0.0 else None
+    return REFERENCE if law == CONSTANT else None

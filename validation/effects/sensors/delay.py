@@ -1,0 +1,33 @@
+"""Temperatures and inputs logged on two clocks."""
+
+from dataclasses import dataclass
+
+from lumped.model.network import Network
+from validation.effects.base import Effect, Scene, with_parameter
+
+
+@dataclass(frozen=True)
+class SensorDelay(Effect):
+    """All readings of one test come a seconds late."""
+
+    kind = "time.offset"
+    title = "clock of the temperatures is off"
+    sits = "a test"
+    unit = "s"
+    source = "definition"
+    isolating_test = "a loss step that both loggers see"
+    typical = (-60.0, 60.0)
+    sign = 0
+    prior_sd = 30.0
+    low = -3600.0
+    high = 3600.0
+    mapping = "offset"
+    confused_with = ("sensor.lag",)
+    fault = True
+
+    @classmethod
+    def where(cls, scene: Scene) -> tuple[str, ...]:
+        return scene.tests
+
+    def extend(self, network: Network) -> Network:
+        return with_parameter(network, self.parameter(f"delay:{self.place}"))

@@ -1,0 +1,1 @@
+"""Coolant and cooling air: how much flows, and how far it reaches."""

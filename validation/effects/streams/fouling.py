@@ -1,0 +1,51 @@
+"""Cooling that fades during the test."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from lumped.model.network import Link, Network
+from lumped.transfer.laws import Inputs
+from validation.effects.base import Effect, Scene, with_parameter
+from validation.effects.build import HOUR, Shaped, copy_link
+from validation.effects.sites import cell, own_links, part_of
+
+
+def films(network: Network, part: str) -> list[Link]:
+    """Films of a part to any boundary."""
+    outer = [link for link in own_links(network) if set(link.places) & set(network.boundaries)]
+    outer = [link for link in outer if not any(cell(network, place) for place in link.places)]
+    return [link for link in outer if part in {part_of(network, p) for p in link.places} | set(link.places)]
+
+
+def hours(inputs: Inputs) -> np.ndarray:
+    return -(np.asarray(inputs["time_s"], float) - np.asarray(inputs["time_s"], float).flat[0]) / HOUR
+
+
+@dataclass(frozen=True)
+class Fouling(Effect):
+    """Films of a part fade linearly with time: h = h0 (1 - a t / 1 h), a the fraction lost in one hour."""
+
+    kind = "fouling"
+    title = "cooling fades during the test"
+    sits = "a part with a film to air or coolant"
+    unit = "1/h"
+    source = "definition: dust, icing, a loosening duct, a fan that slows down"
+    isolating_test = "repeat the same test after cleaning; the first and last test of the day at the same load"
+    typical = (0.05, 0.5)
+    prior_sd = 0.2
+    high = 0.95
+    confused_with = ("mass", "sensor.drift")
+    needs = ("time",)
+
+    @classmethod
+    def where(cls, scene: Scene) -> list[str]:
+        parts = dict.fromkeys(part_of(scene.network, p) for link in scene.network.links for p in link.places)
+        return [p for p in parts if p not in scene.network.boundaries and films(scene.network, p)]
+
+    def extend(self, network: Network) -> Network:
+        names = []
+        for link in films(network, self.place):
+            names.append(f"{self.name}:{link.name}")
+            network = copy_link(network, link, names[-1], Shaped(link.law, hours, link.law.temperature, ("time_s",)))
+        return with_parameter(network, self.parameter(*names))

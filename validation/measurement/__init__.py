@@ -1,0 +1,1 @@
+"""What a measurement adds: sensors' answers, sampling, noise, faults."""

@@ -1,0 +1,1 @@
+"""Which of many factors move a temperature: factorial designs, screening, Morris and Sobol."""

@@ -1,0 +1,1 @@
+"""Hand networks of permanent-magnet machines, their bases, and what carries over to other machines."""

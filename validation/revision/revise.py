@@ -1,0 +1,226 @@
+"""Add an effect, take it out, calibrate: a new model and a report of what it did to the error of every test."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from geom.errors import InputError
+from lumped.model.network import Parameter
+from validation.calibration.calibrate import Fit, silent, with_model_error
+from validation.calibration.fitting import FREE, scene_of, working
+from validation.calibration.intervals import Estimate, Profile, estimates
+from validation.calibration.profile import profiles
+from validation.calibration.staged import Search, belongs, fitted, merged
+from validation.case import AddedEffect, Case, Model, Test
+from validation.comparison.compare import Comparison, compare
+from validation.effects import Effect, effect
+from validation.effects.during import During
+from validation.effects.gate import checked
+from validation.measurement.operators import of_measurement
+from validation.revision.acceptance import Check, checks, failures
+from validation.threads import one_blas_thread
+
+Progress = Callable[[str], None]
+GETS_WORSE = 1.05  # a fit under priors may lose so much on single tests
+TRAINING = ("calibrate", "validate")
+
+
+@dataclass(frozen=True)
+class Change:
+    """Error of one test (K) before and after."""
+
+    name: str
+    role: str
+    before: float
+    after: float
+
+    def document(self) -> dict:
+        return {"name": self.name, "role": self.role, "rmse_K": {"before": self.before, "after": self.after}}
+
+
+@dataclass(frozen=True)
+class Revision:
+    """What a revision did. accepted says whether the error fell where it should; the new model is given either way."""
+
+    action: str
+    effect: str | None
+    model: Model
+    accepted: bool
+    why: str
+    tests: tuple[Change, ...]
+    parameters: tuple[Estimate, ...]
+    before: Comparison
+    after: Comparison
+    converged: bool
+    checks: tuple[Check, ...] = ()
+
+    @property
+    def revision(self) -> int:
+        return self.model.revision
+
+    def document(self) -> dict:
+        return {
+            "action": self.action,
+            "effect": self.effect,
+            "revision": self.revision,
+            "accepted": self.accepted,
+            "why": self.why,
+            "converged": self.converged,
+            "tests": [t.document() for t in self.tests],
+            "parameters": [p.document() for p in self.parameters],
+            "checks": [c.document() for c in self.checks],
+        }
+
+
+def calibrate(
+    case: Case,
+    roles: Sequence[str] = ("calibrate",),
+    progress: Progress = silent,
+    profiled: Sequence[str] = (),
+    search: Search | None = None,
+) -> Revision:
+    """Fit the free parameters to the tests of the given roles, stage by stage where tests free their own.
+
+    profiled : globs of parameters to profile
+    """
+    return _revised(case, case.model, "calibrate", None, roles, progress, profiled, search)
+
+
+def add(case: Case, name: str, progress: Progress = silent) -> Revision:
+    """Add effect 'kind@place' and calibrate on all tests but the held-out ones.
+
+    What was never calibrated is calibrated first: an effect is compared with the best model without it.
+    """
+    one = effect(name, scene_of(case))
+    inside(one, case)
+    if name in {e.name for e in case.model.effects}:
+        raise InputError(
+            f"'{name}' is in the model already", f"case '{case.name}'", "another effect, or `remove` it first"
+        )
+    if not case.model.values:
+        progress("calibrating without the effect")
+        bare = calibrate(case, TRAINING, progress).model
+        case = replace(case, model=replace(bare, revision=case.model.revision))
+    model = replace(case.model, effects=(*case.model.effects, AddedEffect(one.kind, one.place)))
+    return _revised(case, model, "add", name, TRAINING, progress)
+
+
+def inside(one: Effect, case: Case) -> None:
+    """An event lies inside the records of its tests."""
+    if isinstance(one, During) and one.event:
+        for test in [t for t in case.tests if t.name in one.event.spans]:
+            checked(one.event, test.name, float(test.time[0]), float(test.time[-1]), f"effect '{one.name}'")
+
+
+def remove(case: Case, name: str, progress: Progress = silent) -> Revision:
+    """Take an effect out and calibrate on all tests but the held-out ones."""
+    left = tuple(e for e in case.model.effects if e.name != name)
+    if len(left) == len(case.model.effects):
+        known = ", ".join(e.name for e in case.model.effects) or "none"
+        raise InputError(f"'{name}' is not in the model", f"case '{case.name}'", f"its effects: {known}")
+    values = {k: v for k, v in case.model.values.items() if k != name and not k.startswith(f"{name}^")}
+    model = replace(case.model, effects=left, values=values)
+    return _revised(case, model, "remove", name, TRAINING, progress)
+
+
+@one_blas_thread
+def _revised(
+    case: Case, model: Model, action: str, name: str | None, roles: Sequence[str], progress: Progress,
+    profiled: Sequence[str] = (), search: Search | None = None,
+) -> Revision:  # fmt: skip
+    before = compare(case)
+    tests = [t for t in case.tests if t.role in roles]
+    if not tests:
+        raise InputError(
+            f"no test has the role {' or '.join(roles)}", f"case '{case.name}'", "give at least one that role"
+        )
+    grown = replace(case.training(), model=model)
+    fits = fitted(grown, tests if action == "calibrate" else _plain(tests), start(grown), search, progress)
+    new = replace(model, values=_values(model, fits), revision=case.model.revision + 1)
+    after = compare(replace(case, model=new))
+    changes = tuple(Change(b.name, b.role, b.rmse_K, a.rmse_K) for b, a in zip(before.tests, after.tests, strict=True))
+    sure = [_sure(fit, tests, new, case) for fit in fits]
+    made = checks(sure[-1], name) if action == "add" and name else ()
+    accepted, why = judge(action, changes, fits, made)
+    rows = merged(sure, lambda fit: estimates(fit, _profiled(fit, tests, new, profiled, progress)))
+    converged = all(fit.converged for fit in fits)
+    return Revision(action, name, new, accepted, why, changes, tuple(rows), before, after, converged, made)
+
+
+def _plain(tests: Sequence[Test]) -> list[Test]:
+    """The tests without stages: an effect is judged on all of them together."""
+    return [replace(t, frees=()) for t in tests]
+
+
+def _values(model: Model, fits: Sequence[Fit]) -> dict[str, float]:
+    """The model's values with those of every stage."""
+    out = dict(model.values)
+    for fit in fits:
+        out |= fit.values
+    return out
+
+
+def _sure(fit: Fit, tests: Sequence[Test], model: Model, case: Case) -> Fit:
+    """A stage's fit with the model error in its covariance."""
+    own = [t for t in tests if t.name in {s.test for s in fit.parts}]
+    held = {p.name: model.values.get(p.name, p.value) for p in fit.network.parameters}
+    return with_model_error(fit, own, held, case.doubt)
+
+
+def _profiled(
+    fit: Fit, tests: Sequence[Test], model: Model, globs: Sequence[str], progress: Progress
+) -> dict[str, Profile]:  # fmt: skip
+    """Profile intervals of a stage's own parameters that match a glob."""
+    names = [
+        p.name for p in fit.unknowns.parameters if not of_measurement(p) and any(belongs(p.name, g) for g in globs)
+    ]
+    own = [t for t in tests if t.name in {s.test for s in fit.parts}]
+    held = {p.name: model.values.get(p.name, p.value) for p in fit.network.parameters}
+    return profiles(fit, own, held, names, progress)
+
+
+def start(case: Case) -> dict[str, float]:
+    """Where the model stands; a new effect a little inside its bounds."""
+    values, (_, unknowns) = dict(case.model.values), working(case)
+    for e in case.model.effects:
+        values.setdefault(e.name, nudge(next(p for p in unknowns.parameters if p.name == e.name)))
+    return values
+
+
+def nudge(p: Parameter) -> float:
+    """A start a little inside the bounds, on the side the sign allows: a third of the usual size."""
+    return float(np.clip(p.neutral + 0.3 * (p.sign or 1) * p.prior_sd / FREE, p.low, p.high))
+
+
+def judge(action: str, changes: Sequence[Change], fits: Sequence[Fit], made: Sequence[Check]) -> tuple[bool, str]:
+    """Accept what converges, passes its checks and lowers the error of the tests it was fitted to.
+
+    An effect that foretells tests left out of its fit better than the refitted model without it may leave the plain
+    error as it was: that weighs all sensors alike. The held-out tests have no say; what became of them is told after.
+    """
+    seen = [c for c in changes if c.role != "hold-out"]
+    was, now = mean_square(seen, "before"), mean_square(seen, "after")
+    converged = all(fit.converged for fit in fits)
+    foretells = any(c.check == "left out" and c.value > c.limit for c in made)
+    fell = now <= (GETS_WORSE * was if action == "calibrate" or foretells else was)
+    told = [failures(made), "" if converged else "not converged", f"error {was:.3g} -> {now:.3g} K", *unseen(changes)]
+    return bool(fell and converged and not failures(made)), "; ".join(filter(None, told))
+
+
+def unseen(changes: Sequence[Change]) -> list[str]:
+    """What became of the tests that were not fitted, in words."""
+    own = [c for c in changes if c.role == "hold-out"]
+    if not own:
+        return ["no held-out test"]
+    was, now = mean_square(own, "before"), mean_square(own, "after")
+    told = f"held-out tests {was:.3g} -> {now:.3g} K"
+    worst = max(own, key=lambda c: c.after - c.before)
+    return [f"{told}: {worst.name} got worse, the fit follows what only the fitted tests show" if now > was else told]
+
+
+def mean_square(changes: Sequence[Change], side: str) -> float:
+    values = [getattr(c, side) for c in changes]
+    return float(np.sqrt(np.mean(np.square(values)))) if values else float("nan")

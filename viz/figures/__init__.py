@@ -1,0 +1,1 @@
+"""Plots on paper: curves, errors, candidates, heat flows, screening."""

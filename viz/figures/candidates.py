@@ -1,0 +1,99 @@
+"""What might be missing: the odds, the evidence of the candidate effects, and which of them cannot be told apart."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from viz.colours import BLUE, LIGHT, ORANGE, PURPLE, VERMILION
+from viz.figures import paper
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+SHOWN = 0.005  # probabilities below half a per cent are not drawn
+DECISION = {"named": VERMILION, "group": ORANGE, "cannot-tell": PURPLE, "no": LIGHT.faint}
+
+
+@paper.styled
+def scores(candidates: Sequence[Mapping[str, Any]], *, most: int = 12, png: str | Path | None = None) -> Figure:
+    """The highest log evidence as bars with each candidate's threshold, coloured by decision."""
+    best = sorted(candidates, key=lambda c: c["score"], reverse=True)[:most][::-1]
+    figure, (ax,) = paper.subplots(8.4, 0.3 * len(best) + 1.2)
+    for y, c in enumerate(best):
+        ax.barh(y, c["score"], height=0.62, color=DECISION[c["decision"]])
+        ax.plot([c["threshold"]] * 2, [y - 0.42, y + 0.42], color=LIGHT.ink, lw=1.4)
+        note = amplitude(c) if c["decision"] != "no" else ""
+        ax.text(max(c["score"], c["threshold"], 0), y, f"\u00a0{note}", va="center", fontsize=8.5)
+    ax.set_yticks(range(len(best)), [c["effect"] for c in best])
+    for label, c in zip(ax.get_yticklabels(), best, strict=True):
+        label.set_fontweight("bold" if c["decision"] == "named" else "normal")
+    ax.grid(False, axis="y")
+    ax.margins(x=0.2, y=0.02)
+    ax.set(xlabel="log evidence against nothing missing (nats); black mark: as probable as nothing")
+    return paper.saved(figure, png)
+
+
+@paper.styled
+def posterior(odds: Sequence[Mapping[str, Any]], *, most: int = 10, png: str | Path | None = None) -> Figure:
+    """The probability of every hypothesis that carries weight as bars, most probable first.  odds : of a diagnosis"""
+    best = [o for o in odds if o["probability"] >= SHOWN][:most][::-1]
+    figure, (ax,) = paper.subplots(8.4, 0.3 * len(best) + 1.2)
+    colours = [BLUE if o["hypothesis"] == "nothing" else VERMILION if o["effects"] else PURPLE for o in best]
+    ax.barh(range(len(best)), [100.0 * o["probability"] for o in best], height=0.62, color=colours)
+    for y, o in enumerate(best):
+        ax.text(100.0 * o["probability"], y, f"\u00a0{100.0 * o['probability']:.0f} %", va="center", fontsize=8.5)
+    ax.set_yticks(range(len(best)), [o["hypothesis"] for o in best])
+    ax.grid(False, axis="y")
+    ax.set(xlabel="probability (%)", xlim=(0.0, 112.0))
+    return paper.saved(figure, png)
+
+
+@paper.styled
+def confusion(names: Sequence[str], cosine: NDArray[np.float64], *, png: str | Path | None = None) -> Figure:
+    """|cosine| between the signatures of candidate effects: 1 cannot be told apart with these sensors and tests.
+
+    cosine : (n, n)
+    """
+    c = np.abs(np.asarray(cosine, float))
+    side = 0.34 * len(names) + 2.4
+    figure, (ax,) = paper.subplots(side + 0.6, side)
+    ax.imshow(c, cmap="Blues", vmin=0, vmax=1)
+    for i, j in np.ndindex(c.shape):
+        if i != j and c[i, j] >= 0.5:
+            ax.text(j, i, f"{c[i, j]:.2f}".lstrip("0"), ha="center", va="center", fontsize=7.5,
+                    color="white" if c[i, j] > 0.6 else "black")  # fmt: skip
+    ax.set_xticks(range(len(names)), names, rotation=60, ha="right", rotation_mode="anchor")
+    ax.set_yticks(range(len(names)), names)
+    ax.grid(False)
+    ax.set_title("Signatures in common (1: cannot be told apart)")
+    return paper.saved(figure, png)
+
+
+def size(candidate: Mapping[str, Any]) -> str:
+    """'12.3 W/m2/K'; empty where it has none."""
+    a = candidate["amplitude"]
+    if a["value"] is None or not np.isfinite(a["value"]):
+        return ""
+    return f"{a['value']:.3g} {a['unit']}".removesuffix(" 1")
+
+
+def interval(candidate: Mapping[str, Any]) -> str:
+    """'8.1 ... 16.5', 95 %; empty where it is not known."""
+    ci95 = candidate["amplitude"].get("ci95")
+    return f"{ci95[0]:.3g} … {ci95[1]:.3g}" if ci95 and np.isfinite(ci95).all() else ""
+
+
+def amplitude(candidate: Mapping[str, Any]) -> str:
+    """'12.3 W/m2/K (95 %: 8.1 ... 16.5)'; empty where it has none."""
+    text, between = size(candidate), interval(candidate)
+    return f"{text} (95 %: {between})" if text and between else text
+
+
+def matrix(cosines: Mapping[str, Mapping[str, float]], names: Sequence[str]) -> NDArray[np.float64]:
+    """(n, n) |cosine| of the named effects from a diagnosis' `confusion`; what it leaves out counts as 0."""
+    return np.array([[1.0 if a == b else abs(cosines.get(a, {}).get(b, 0.0)) for b in names] for a in names])

@@ -1,0 +1,52 @@
+"""The columns of a recording, one small panel each, as they were understood."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from viz.colours import BLUE, LIGHT, ORANGE
+from viz.figures import paper
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+ACROSS, MOST = 4, 48  # panels in a row; and in all, more cannot be read
+POINTS = 2000  # of a curve: more do not show
+SHORT = 30  # characters of a title
+
+
+@dataclass(frozen=True)
+class Panel:
+    """time (n,) s;  values (n,) as written;  meaning : what the column is taken for, "" if it is left out"""
+
+    name: str
+    time: NDArray[np.float64]
+    values: NDArray[np.float64]
+    meaning: str
+    is_temperature: bool
+
+
+@paper.styled
+def columns(panels: Sequence[Panel], title: str, *, png: str | Path | None = None) -> Figure:
+    """Temperatures are blue, inputs orange, what is left out grey; the meaning stands under the name."""
+    shown = panels[:MOST]
+    across = min(ACROSS, len(shown))
+    rows = -(-len(shown) // across)
+    figure, axes = paper.subplots(3.0 * across, 1.8 * rows + 0.5, rows, across)
+    for ax, panel in zip(axes, shown, strict=False):
+        thin = slice(None, None, max(1, panel.time.size // POINTS))
+        colour = LIGHT.faint if not panel.meaning else BLUE if panel.is_temperature else ORANGE
+        ax.plot(panel.time[thin], panel.values[thin], color=colour, lw=1.0)
+        ax.set_title(panel.name[:SHORT], fontsize=8.5)
+        ax.set_xlabel(panel.meaning or "left out", fontsize=8)
+        ax.margins(x=0)
+    for ax in axes[len(shown) :]:
+        ax.set_visible(False)
+    figure.suptitle(title, fontsize=10)
+    return paper.saved(figure, png)

@@ -1,0 +1,115 @@
+"""Measured against modelled over time, sensor by sensor.
+
+Measured is ink, the model is blue, an earlier model is dashed orange; nothing else has a colour unless it is wrong.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from geom.errors import InputError
+from validation.comparison.within import limit_K
+from viz.colours import BLUE, LIGHT, ORANGE, VERMILION
+from viz.data import Comparison, short
+from viz.figures import paper
+from viz.labels import beside
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from validation.case import Channel
+
+
+@paper.styled
+def measured_and_model(comparison: Comparison, *, columns: int = 3, png: str | Path | None = None) -> Figure:
+    """One small panel per sensor: readings with their 2-sigma band, the model, and the earlier model if given."""
+    channels = _read(comparison)
+    columns = min(columns, len(channels))
+    rows = -(-len(channels) // columns)
+    figure, axes = paper.subplots(3.4 * columns, 2.2 * rows + 0.4, rows, columns)
+    for ax, channel in zip(axes, channels, strict=False):
+        _panel(ax, comparison, channel)
+    for ax in axes[len(channels) :]:
+        ax.set_visible(False)
+    _name_lines(axes[0], comparison)
+    figure.supxlabel(f"time ({comparison.clock[1]})", fontsize=9.5, color=LIGHT.ink)
+    figure.supylabel("temperature (°C)", fontsize=9.5, color=LIGHT.ink)
+    return paper.saved(figure, png)
+
+
+@paper.styled
+def residuals(comparison: Comparison, *, png: str | Path | None = None) -> Figure:
+    """Measured - modelled per sensor over time; those that are over (see within.py) are coloured, named in bold."""
+    figure, (ax,) = paper.subplots(8.4, 3.8)
+    (t, unit), thin = comparison.clock, comparison.thin
+    channels = _read(comparison)
+    band = 2 * max(c.sigma_K for c in channels)
+    ax.axhspan(-band, band, color=LIGHT.faint, alpha=0.25, lw=0)
+    shade(ax, comparison)
+    colours = []
+    for channel in channels:
+        r = comparison.residual(channel)
+        colours.append(wrongness(r, limit_K(channel)))
+        ax.plot(t[thin], r[thin], color=colours[-1], lw=1.6 if colours[-1] != LIGHT.faint else 1.0)
+    ends = [float(r[np.isfinite(r)][-1]) for r in map(comparison.residual, channels)]
+    beside(ax, ends, [short(c.name) for c in channels], [LIGHT.ink if c == LIGHT.faint else c for c in colours])
+    ax.axhline(0, color=LIGHT.ink, lw=0.8)
+    ax.margins(x=0)
+    ax.set(
+        xlabel=f"time ({unit})", ylabel="measured − model (K)", title=f"{comparison.test.name}: what the model misses"
+    )
+    ax.set_title("grey: within 2 sigma, or 4 % of the rise", loc="right", fontweight="normal", fontsize=8.5)
+    return paper.saved(figure, png)
+
+
+def _read(comparison: Comparison) -> tuple[Channel, ...]:
+    if not comparison.channels:
+        raise InputError("no channel was ever read", f"test '{comparison.test.name}'", "at least one with readings")
+    return comparison.channels
+
+
+def _panel(ax: Axes, comparison: Comparison, channel: Channel) -> None:
+    thin = comparison.thin
+    t, y = comparison.clock[0][thin], np.asarray(channel.y, float)[thin]
+    shade(ax, comparison)
+    ax.fill_between(t, y - 2 * channel.sigma_K, y + 2 * channel.sigma_K, color=LIGHT.faint, alpha=0.45, lw=0)
+    ax.plot(t, y, color=LIGHT.ink, lw=1.0)
+    if comparison.before is not None:
+        ax.plot(t, comparison.before[channel.name][thin], color=ORANGE, lw=1.4, ls=(0, (4, 2)))
+    ax.plot(t, comparison.model[channel.name][thin], color=BLUE)
+    ax.set_title(short(channel.name))
+    ax.margins(x=0)
+    over = comparison.rmse(channel) > limit_K(channel)
+    colour = VERMILION if over else LIGHT.ink
+    ax.set_title(
+        f"rms {comparison.rmse(channel):.1f} K", loc="right", color=colour, fontweight="bold" if over else "normal"
+    )
+
+
+def _name_lines(ax: Axes, comparison: Comparison) -> None:
+    """Names written once, top left of the first panel, in the colour of their lines."""
+    lines = [("measured ± 2σ", LIGHT.ink), ("model", BLUE)] + [("earlier model", ORANGE)] * (
+        comparison.before is not None
+    )
+    for i, (text, colour) in enumerate(lines):
+        ax.text(0.03, 0.97 - 0.12 * i, text, transform=ax.transAxes, va="top", color=colour, fontsize=8.5)
+
+
+def shade(ax: Axes, comparison: Comparison) -> None:
+    """When something was different."""
+    unit_s = 60.0 if comparison.clock[1] == "min" else 3600.0
+    for begin, end in comparison.events:
+        ax.axvspan(begin / unit_s, end / unit_s, color=ORANGE, alpha=0.15, lw=0)
+
+
+def wrongness(residual: np.ndarray, limit: float) -> str:
+    """Faint where the rms of the test is within the limit; else by sign: vermilion where the machine, once warm, is
+    hotter than the model, blue where it is colder."""
+    seen = residual[np.isfinite(residual)]
+    if not seen.size or np.sqrt(np.mean(seen**2)) <= limit:
+        return LIGHT.faint
+    return VERMILION if seen[len(seen) // 2 :].mean() > 0 else BLUE

@@ -1,0 +1,108 @@
+"""The error falling: before and after per test, and over the revisions of a model."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from geom.errors import InputError
+from viz.colours import BLUE, LIGHT, ORANGE
+from viz.figures import paper
+from viz.labels import beside
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+PALE = "#8DB9DB"
+
+
+@paper.styled
+def before_after(
+    tests: Sequence[Mapping[str, Any]], *, floor_K: float | None = None, title: str = "", png: str | Path | None = None
+) -> Figure:
+    """Error of every test before and after, as an `add` document lists them; held-out tests in bold.
+
+    tests : [{"name", "role", "rmse_K": {"before", "after"}}]
+    """
+    if not tests:
+        raise InputError("no tests to draw", "before_after", "the `tests` list of an add, remove or calibrate result")
+    figure, (ax,) = paper.subplots(8.4, 0.55 * len(tests) + 1.3)
+    for y, test in enumerate(reversed(tests)):
+        before, after = test["rmse_K"]["before"], test["rmse_K"]["after"]
+        ax.barh(y + 0.19, before, height=0.34, color=ORANGE)
+        ax.barh(y - 0.19, after, height=0.34, color=BLUE)
+        ax.text(
+            before,
+            y + 0.19,
+            f"\u00a0{before:.2f} K{' before' if y == len(tests) - 1 else ''}",
+            va="center",
+            fontsize=8.5,
+        )
+        ax.text(
+            after, y - 0.19, f"\u00a0{after:.2f} K{' after' if y == len(tests) - 1 else ''}", va="center", fontsize=8.5
+        )
+    ax.set_yticks(range(len(tests)), [f"{t['name']}\n({t['role']})" for t in reversed(tests)])
+    for label, test in zip(ax.get_yticklabels(), reversed(tests), strict=True):
+        label.set_fontweight("bold" if test["role"] == "hold-out" else "normal")
+    if floor_K is not None:
+        ax.axvline(floor_K, color=LIGHT.faint, lw=0.9, ls=":", zorder=0)
+        ax.text(floor_K, 1.0, "sensors' uncertainty", transform=ax.get_xaxis_transform(), fontsize=8, va="bottom")
+    ax.grid(False, axis="y")
+    ax.set(xlabel="rms error (K)", title=title)
+    ax.margins(x=0.12)
+    return paper.saved(figure, png)
+
+
+@paper.styled
+def staircase(
+    history: Sequence[Mapping[str, Any]], *, floor_K: float | None = None, png: str | Path | None = None
+) -> Figure:
+    """Error of every test over the revisions: a step per revision, held-out tests drawn strong.
+
+    history : [{"number", "action", "effect", "tests": [{"name", "role", "rmse_K": {"before", "after"}}]}]
+    """
+    if not history:
+        raise InputError("no revisions to draw", "staircase", "a model with at least one revision")
+    figure, (ax,) = paper.subplots(8.4, 4.2)
+    paths = error_paths(history)
+    ends, names, colours = [], [], []
+    for (name, role), errors in paths.items():
+        strong = role == "hold-out"
+        colour, width = (BLUE, 2.4) if strong else (PALE, 1.4)
+        ax.step(range(len(errors)), errors, where="post", color=colour, lw=width)
+        ax.plot(
+            [len(errors) - 1, len(errors) - 0.5],
+            [errors[-1]] * 2,
+            color=BLUE if strong else PALE,
+            lw=2.4 if strong else 1.4,
+        )
+        ends.append(errors[-1])
+        names.append(f"{name} ({role})")
+        colours.append(BLUE if strong else LIGHT.ink)
+    ax.set_ylim(0, 1.12 * max(max(e) for e in paths.values()))
+    ax.set_xlim(-0.1, len(history) + 0.5)
+    beside(ax, ends, names, colours)
+    if floor_K is not None:
+        ax.axhline(floor_K, color=LIGHT.ink, lw=0.9, ls=":")
+        ax.text(0, floor_K, "sensors' uncertainty", fontsize=8, va="bottom")
+    ax.set_xticks([0, *(i + 1 for i in range(len(history)))], ["start", *(_step_name(r) for r in history)])
+    ax.grid(False, axis="x")
+    ax.set(ylabel="rms error (K)")
+    return paper.saved(figure, png)
+
+
+def error_paths(history: Sequence[Mapping[str, Any]]) -> dict[tuple[str, str], list[float]]:
+    """(test, role) -> error before the first revision and after each (K)."""
+    paths: dict[tuple[str, str], list[float]] = {}
+    for revision in history:
+        for test in revision["tests"]:
+            path = paths.setdefault((test["name"], test["role"]), [test["rmse_K"]["before"]])
+            path.append(test["rmse_K"]["after"])
+    return paths
+
+
+def _step_name(revision: Mapping[str, Any]) -> str:
+    words = {"add": "+ ", "remove": "− "}.get(revision["action"])
+    effect = str(revision.get("effect") or "").replace("@", "\n@ ")
+    return f"{revision['number']}\n{words}{effect}" if words else f"{revision['number']}\n{revision['action']}"

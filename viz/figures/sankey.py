@@ -1,0 +1,87 @@
+"""Where the heat comes from and where it goes, as ribbons whose width is power."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from geom.errors import InputError
+from viz.colours import BLUE, LIGHT, ORANGE, SKY, VERMILION
+from viz.figures import paper
+from viz.figures.flows import Heat
+from viz.labels import spread
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+SMALL = 0.01  # of the total: smaller exits are drawn as one
+WARMS, ELSEWHERE = "warms the machine", "elsewhere"
+LOW, HIGH = 0.3, 1.3  # of the total: the drawing reaches below and above the trunk
+
+
+@paper.styled
+def sankey_of_losses(heat: Heat, *, png: str | Path | None = None) -> Figure:
+    """Losses on the left, exits and what is stored on the right (W)."""
+    left = {k: v for k, v in sorted(heat.losses.items(), key=lambda kv: -kv[1]) if v > 0}
+    right = exits(heat)
+    total = sum(left.values())
+    if total <= 0:
+        raise InputError("no losses to draw", "sankey", "a machine that is running")
+    figure, (ax,) = paper.subplots(8.4, 4.4)
+    _side(ax, left, 0.0, 0.46, dict.fromkeys(left, VERMILION), total)
+    _side(ax, right, 1.0, 0.54, {k: colour_of(k, heat) for k in right}, total)
+    ax.fill_between([0.46, 0.54], 0, total, color=LIGHT.ink, lw=0)
+    ax.text(0.5, total * 1.04, f"{total:.0f} W", ha="center", weight="bold", fontsize=10)
+    ax.set(xlim=(-0.32, 1.32), ylim=(-LOW * total, HIGH * total))
+    ax.axis("off")
+    return paper.saved(figure, png)
+
+
+def exits(heat: Heat) -> dict[str, float]:
+    """Exits by size: parallel streams as one, small ones as 'elsewhere', then what warms the machine."""
+    out: dict[str, float] = {}
+    for name, watts in heat.out.items():
+        name = name.partition(":")[0]
+        out[name] = out.get(name, 0.0) + watts
+    least = SMALL * sum(heat.losses.values())
+    large = {k: v for k, v in sorted(out.items(), key=lambda kv: -kv[1]) if v >= least}
+    rest = sum(v for k, v in out.items() if k not in large)
+    tail = {ELSEWHERE: rest, WARMS: heat.stored}
+    return large | {k: v for k, v in tail.items() if v >= least}
+
+
+def colour_of(name: str, heat: Heat) -> str:
+    """What a stream carries off is darker than what faces give up."""
+    streams = {stream.partition(":")[0] for stream in heat.streams}
+    return {WARMS: ORANGE, ELSEWHERE: LIGHT.faint}.get(name, BLUE if name in streams else SKY)
+
+
+def _side(ax: Axes, parts: dict[str, float], outer: float, inner: float, colours: dict[str, str], total: float) -> None:
+    """Ribbons from a column at `outer`, spread out so that names fit, to the trunk at `inner`."""
+    gap = 0.065 * total
+    room = sum(parts.values()) + gap * (len(parts) - 1)
+    y, at = total, (total + room) / 2 if room > total else total
+    middles, sign = [], -1 if outer < inner else 1
+    for name, watts in parts.items():
+        _ribbon(ax, (outer, at), (inner, y), watts, colours[name])
+        middles.append(at - watts / 2)
+        y, at = y - watts, at - watts - gap
+    heights = spread(middles[::-1], -LOW * total, HIGH * total, 0.075 * total)[::-1]
+    for (name, watts), height in zip(parts.items(), heights, strict=True):
+        ax.text(
+            outer + 0.02 * sign, height, f"{name}  {watts:.0f} W", ha="right" if sign < 0 else "left", va="center",
+            fontsize=9,
+        )  # fmt: skip
+
+
+def _ribbon(ax: Axes, a: tuple[float, float], b: tuple[float, float], width: float, colour: str) -> None:
+    """A band whose upper edge runs from a to b."""
+    from matplotlib.patches import PathPatch
+    from matplotlib.path import Path as Line
+
+    mid = (a[0] + b[0]) / 2
+    upper = [a, (mid, a[1]), (mid, b[1]), b]
+    lower = [(x, y - width) for x, y in reversed(upper)]
+    codes = [Line.MOVETO, *[Line.CURVE4] * 3, Line.LINETO, *[Line.CURVE4] * 3, Line.CLOSEPOLY]
+    ax.add_patch(PathPatch(Line([*upper, *lower, upper[0]], codes), facecolor=colour, alpha=0.75, lw=0))

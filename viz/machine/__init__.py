@@ -1,0 +1,1 @@
+"""Pictures of the machine: field, parts, network, missing heat, arrows, animation."""

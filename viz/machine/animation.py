@@ -1,0 +1,85 @@
+"""The machine warming up, as a moving picture."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geom.errors import InputError, MissingDependency
+from viz.colours import LIGHT, Theme
+from viz.machine import field
+from viz.rendering import scene
+from viz.rendering.cut import QUARTER, Wedge, cut_away
+from viz.rendering.nodes import SplitMesh, on_nodes
+from viz.rendering.scene import Room, View
+
+Array = NDArray[np.float64]
+
+
+def animate(
+    nodes: SplitMesh,
+    times: Sequence[float],
+    fields: Array,
+    path: str | Path,
+    *,
+    wedge: Wedge | None = QUARTER,
+    view: View | None = None,
+    theme: Theme = LIGHT,
+    frames_per_second: float = 12.0,
+) -> Path:
+    """Write a .gif or .mp4 of fields (n_times, n_nodes) degC on one colour scale, the minute of the test in the corner.
+
+    An .mp4 needs imageio-ffmpeg (the extra [video]), which brings an encoder of its own, under the GPL.
+    """
+    path, T = Path(path), on_nodes(nodes, fields)
+    if path.suffix not in WRITERS:
+        raise InputError(f"cannot write '{path.suffix}'", str(path), f"a file name that ends in {' or '.join(WRITERS)}")
+    if len(T) != len(times) or not len(T):
+        raise InputError(f"{len(times)} times but {len(T)} fields", "animation", "one field per time")
+    p, view = scene.plotter(theme, (960, 600)), view or View()
+    surface = cut_away(nodes, wedge)
+    data = field.paint(p, surface, T[0], (float(T.min()), float(T.max())), theme)
+    scene.colour_bar(p, field.UNIT, theme)
+    scene.look(p, surface.points, view, Room(right=0.12, top=scene.TITLE))
+    pictures = []
+    for time, values in zip(times, T, strict=True):
+        data.point_data["T"] = surface.values(values)
+        scene.headline(p, f"{time / 60:.0f} min", theme)
+        pictures.append(np.asarray(p.screenshot(return_img=True)))
+    p.close()
+    path.parent.mkdir(parents=True, exist_ok=True)
+    return WRITERS[path.suffix](path, pictures, frames_per_second)
+
+
+def _gif(path: Path, pictures: list[NDArray[np.uint8]], frames_per_second: float) -> Path:
+    """A looping GIF with one palette, taken from the last and most colourful picture."""
+    from PIL import Image
+
+    palette = Image.fromarray(pictures[-1]).quantize(255)
+    frames = [Image.fromarray(one).quantize(palette=palette, dither=Image.Dither.NONE) for one in pictures]
+    pause = round(1000 / frames_per_second)
+    frames[0].save(path, save_all=True, append_images=frames[1:], duration=pause, loop=0, optimize=False)
+    return path
+
+
+def _mp4(path: Path, pictures: list[NDArray[np.uint8]], frames_per_second: float) -> Path:
+    """H.264 that browsers and slide programs play."""
+    try:
+        from imageio_ffmpeg import write_frames
+    except ImportError:
+        raise MissingDependency(
+            "an .mp4 needs an encoder; write a .gif, or: pip install 'thermoscope[video]'"
+        ) from None
+    height, width = pictures[0].shape[:2]
+    writer = write_frames(str(path), (width, height), fps=frames_per_second, macro_block_size=2)
+    writer.send(None)
+    for picture in pictures:
+        writer.send(np.ascontiguousarray(picture))
+    writer.close()
+    return path
+
+
+WRITERS = {".gif": _gif, ".mp4": _mp4}

@@ -1,0 +1,104 @@
+"""Heat flux in the solid parts: arrows on the cut faces, computed tetrahedron by tetrahedron."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geom.errors import InputError
+from viz.colours import LIGHT, Theme
+from viz.machine.field import UNIT, paint
+from viz.rendering import scene
+from viz.rendering.callouts import on_top
+from viz.rendering.cut import QUARTER, Wedge, cut_away
+from viz.rendering.nodes import SplitMesh, on_nodes
+from viz.rendering.scene import TITLE, Room, View
+
+if TYPE_CHECKING:
+    import pyvista
+
+Array = NDArray[np.float64]
+SPACING = 0.045  # of the machine's length, between arrows
+LONGEST = 0.075  # of the machine's length
+SHORTEST = 0.02  # of the largest flux: smaller ones are left out
+
+
+class HasTensor(Protocol):
+    """A conductivity: tensor(x) is (n, 3, 3) W/m/K at points x (n, 3) m."""
+
+    def tensor(self, x: Array) -> Array: ...
+
+
+def heat_flux(nodes: SplitMesh, T: Array, conductivity: Mapping[str, HasTensor]) -> Array:
+    """-k grad T (n_tets, 3) W/m2 from temperatures (n_nodes,) degC; exact for a field linear in each tetrahedron."""
+    missing = [part for part in nodes.parts if part not in conductivity]
+    if missing:
+        raise InputError(f"no conductivity for {', '.join(missing)}", "flux", "one per part, as for fem.assemble")
+    corners, values = nodes.points[nodes.tets], on_nodes(nodes, T)[nodes.tets]
+    edges, rises = corners[:, 1:] - corners[:, :1], values[:, 1:] - values[:, :1]
+    gradient = np.linalg.solve(edges, rises[..., None])
+    out, middle = np.empty((len(nodes.tets), 3)), corners.mean(axis=1)
+    for i, part in enumerate(nodes.parts):
+        mine = nodes.region == i
+        out[mine] = -(conductivity[part].tensor(middle[mine]) @ gradient[mine])[..., 0]
+    return out
+
+
+def flux_arrows(
+    nodes: SplitMesh,
+    T: Array,
+    conductivity: Mapping[str, HasTensor],
+    *,
+    wedge: Wedge = QUARTER,
+    title: str = "",
+    view: View | None = None,
+    theme: Theme = LIGHT,
+    png: str | Path | None = None,
+) -> pyvista.Plotter:
+    """The field cut open, with arrows along the heat flux in both cut faces; their length grows with its root."""
+    p, view, T = scene.plotter(theme), view or View(), on_nodes(nodes, T)
+    surface = cut_away(nodes, wedge)
+    paint(p, surface, T, None, theme)
+    at, flux = on_faces(nodes, heat_flux(nodes, T, conductivity), wedge)
+    scene.colour_bar(p, UNIT, theme)  # of what was added last, so before the arrows
+    _arrows(p, at, flux, float(np.ptp(nodes.points[:, 2])), theme)
+    largest = float(np.linalg.norm(flux, axis=1).max(initial=0.0))
+    scene.headline(p, f"{title}  longest arrow {largest / 1000:.1f} kW/m²".strip(), theme)
+    scene.look(p, surface.points, view, Room(0.0, 0.1, TITLE))
+    scene.save(p, png)
+    return p
+
+
+def on_faces(nodes: SplitMesh, flux: Array, wedge: Wedge) -> tuple[Array, Array]:
+    """Points (n, 3) m in both cut faces, one per cell of a grid, and the mean flux there (n, 3) W/m2, in the face."""
+    step = SPACING * float(np.ptp(nodes.points[:, 2]))
+    points: list[Array] = []
+    arrows: list[Array] = []
+    middle = nodes.points[nodes.tets].mean(axis=1)
+    for edge in wedge.edges():
+        normal = np.cross(edge, [0.0, 0.0, 1.0])
+        near = (np.abs(middle @ normal) < step / 2) & (middle @ edge > 0)
+        cell = np.floor(np.stack([middle[near] @ edge, middle[near, 2]], 1) / step).astype(int)
+        _, group = np.unique(np.column_stack([cell, nodes.region[near]]), axis=0, return_inverse=True)
+        count = np.bincount(group.ravel())
+        for values, out in ((middle[near], points), (flux[near], arrows)):
+            mean = np.stack([np.bincount(group.ravel(), values[:, k]) / count for k in range(3)], axis=1)
+            out.append(mean - (mean @ normal)[:, None] * normal)
+    return np.concatenate(points), np.concatenate(arrows)
+
+
+def _arrows(p: pyvista.Plotter, at: Array, flux: Array, length: float, theme: Theme) -> None:
+    import pyvista
+
+    size = np.linalg.norm(flux, axis=1)
+    kept = size > SHORTEST * size.max(initial=0.0)
+    cloud = pyvista.PolyData(at[kept])
+    cloud["flux"] = flux[kept] / size[kept][:, None]
+    cloud["length"] = np.sqrt(size[kept] / size.max(initial=1.0))
+    arrow = pyvista.Arrow(shaft_radius=0.06, tip_radius=0.16, tip_length=0.35)
+    shapes = cloud.glyph(orient="flux", scale="length", factor=LONGEST * length, geom=arrow)
+    on_top(p.add_mesh(shapes, color=theme.ink, lighting=False, show_scalar_bar=False), 1)

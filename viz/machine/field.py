@@ -1,0 +1,163 @@
+"""The temperature field of a machine, cut open.
+
+field.cutaway(split(mesh), T, sensors=sensors, png="field.png")
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from viz.colours import LIGHT, Theme, heat, missing
+from viz.data import Sensor
+from viz.machine.thermocouples import LABELS, marked
+from viz.rendering import scene
+from viz.rendering.callouts import on_top
+from viz.rendering.cut import QUARTER, Surface, Wedge, cut_away
+from viz.rendering.ghost import OPACITY, Ghosted
+from viz.rendering.nodes import SplitMesh, on_nodes
+from viz.rendering.scale import rounded
+from viz.rendering.scene import TITLE, Room, View
+
+if TYPE_CHECKING:
+    import pyvista
+    from matplotlib.colors import Colormap
+
+Array = NDArray[np.float64]
+UNIT = "°C"
+
+
+def cutaway(
+    nodes: SplitMesh,
+    T: Array,
+    *,
+    wedge: Wedge | None = QUARTER,
+    sensors: Sequence[Sensor] = (),
+    labels: int = LABELS,
+    title: str = "",
+    limits: tuple[float, float] | None = None,
+    view: View | None = None,
+    theme: Theme = LIGHT,
+    png: str | Path | None = None,
+) -> pyvista.Plotter:
+    """The machine with a wedge taken out, coloured by temperature (degC), 1280 x 800.
+
+    T : (n_nodes,) per node of every part, or one per point of the conformal mesh
+    labels : of so many sensors, those furthest beyond their uncertainty first; the others are dots
+    limits : colour scale (degC), from the field itself if not given; widened to round numbers
+    """
+    p, view = scene.plotter(theme), view or View()
+    surface = cut_away(nodes, wedge)
+    scene.look(p, surface.points, view, _room(bool(sensors), title))
+    seen = marked(surface, sensors, labels, np.array(p.camera.position))
+    paint_cut(p, surface, seen.cut, on_nodes(nodes, T), limits, theme)
+    scene.colour_bar(p, UNIT, theme)
+    scene.headline(p, title, theme)
+    seen.draw(p, surface, view, theme)
+    scene.save(p, png)
+    return p
+
+
+def difference(
+    nodes: SplitMesh,
+    before: Array,
+    after: Array,
+    *,
+    title: str = "",
+    wedge: Wedge | None = QUARTER,
+    view: View | None = None,
+    theme: Theme = LIGHT,
+    png: str | Path | None = None,
+) -> pyvista.Plotter:
+    """After minus before (K): vermilion where it became hotter, blue where colder."""
+    change = on_nodes(nodes, after) - on_nodes(nodes, before)
+    p, view, surface = scene.plotter(theme), view or View(), cut_away(nodes, wedge)
+    most = float(np.abs(change).max())
+    paint(p, surface, change, (-most, most), theme, colours=missing())
+    scene.colour_bar(p, "K", theme)
+    scene.headline(p, title, theme)
+    scene.look(p, surface.points, view, _room(False, title))
+    scene.save(p, png)
+    return p
+
+
+def pair(
+    nodes: SplitMesh,
+    before: Array,
+    after: Array,
+    *,
+    titles: tuple[str, str] = ("before", "after"),
+    wedge: Wedge | None = QUARTER,
+    view: View | None = None,
+    theme: Theme = LIGHT,
+    png: str | Path | None = None,
+) -> pyvista.Plotter:
+    """Two fields side by side on one colour scale."""
+    fields = [on_nodes(nodes, before), on_nodes(nodes, after)]
+    limits = min(f.min() for f in fields), max(f.max() for f in fields)
+    p, view = scene.plotter(theme, (1280, 600), (1, 2)), view or View()
+    surface = cut_away(nodes, wedge)
+    for i, field in enumerate(fields):
+        p.subplot(0, i)
+        paint(p, surface, field, limits, theme)
+        scene.headline(p, titles[i], theme)
+        scene.look(p, surface.points, view, Room(0.0, 0.16))
+    scene.colour_bar(p, UNIT, theme, position_x=0.84, width=0.09)
+    scene.save(p, png)
+    return p
+
+
+def paint(
+    p: pyvista.Plotter,
+    surface: Surface,
+    T: Array,
+    limits: tuple[float, float] | None,
+    theme: Theme,
+    *,
+    outlined: Surface | None = None,
+    colours: Colormap | None = None,
+) -> pyvista.PolyData:
+    """Add the surface coloured by nodal values; its point data "T" may be changed afterwards.
+
+    outlined : whose edges are drawn, if not the surface's own
+    """
+    data = scene.polydata(surface)
+    data.point_data["T"] = surface.values(T)
+    scene.outline(p, data if outlined is None else scene.polydata(outlined), theme)
+    p.add_mesh(
+        data, scalars="T", cmap=colours or heat(), clim=rounded(*(limits or (float(T.min()), float(T.max())))),
+        show_scalar_bar=False, ambient=0.8, diffuse=0.28, specular=0.0, interpolate_before_map=True, culling="back",
+    )  # fmt: skip
+    return data
+
+
+def paint_cut(
+    p: pyvista.Plotter, surface: Surface, cut: Ghosted, T: Array, limits: tuple[float, float] | None, theme: Theme
+) -> list[tuple[Surface, pyvista.PolyData]]:
+    """Add a surface with its windows; what was painted, to be repainted."""
+    import pyvista
+
+    limits, out = limits or (float(T.min()), float(T.max())), []
+    for one in cut.windows:
+        rim = pyvista.lines_from_points(np.concatenate([one.rim, one.rim[:1]]))
+        on_top(p.add_mesh(rim, color=theme.ink, line_width=1.5, lighting=False), 1)
+    if cut.ghost is not None:
+        clear = scene.polydata(cut.ghost)
+        clear.point_data["T"] = cut.ghost.values(T)
+        p.add_mesh(
+            clear, scalars="T", cmap=heat(), clim=rounded(*limits), show_scalar_bar=False, opacity=OPACITY,
+            lighting=False, culling="back",
+        )  # fmt: skip
+        out.append((cut.ghost, clear))
+    out.append((cut.solid, paint(p, cut.solid, T, limits, theme, outlined=surface)))  # last: a colour bar is of this
+    p.renderer.ResetCameraClippingRange()
+    return out
+
+
+def _room(labels: bool, title: str) -> Room:
+    top = TITLE if title else 0.0
+    return Room(0.16, 0.24, top) if labels else Room(0.0, 0.1, top)

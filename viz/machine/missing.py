@@ -1,0 +1,89 @@
+"""Where heat is missing, on the machine: what the latent scan of a diagnosis would put into each part."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from geom.errors import InputError
+from validation.diagnosis.where import located
+from viz.colours import BLUE, LIGHT, VERMILION, Theme, missing
+from viz.rendering import scene
+from viz.rendering.callouts import Label, callouts, width
+from viz.rendering.cut import QUARTER, Wedge, cut_away
+from viz.rendering.nodes import SplitMesh
+from viz.rendering.scale import rounded
+from viz.rendering.scene import TITLE, Room, View
+from viz.rendering.sight import anchors
+
+if TYPE_CHECKING:
+    import pyvista
+
+BEHIND = 10.0  # nats behind the likeliest place from which a place stays grey
+SMALL = 13  # size of the labels
+FAINT = 0.02  # of the largest heat: less is not labelled
+
+
+def mean_heat(where: Sequence[Mapping[str, Any]], test: str) -> dict[str, float]:
+    """Place -> mean missing heat (W) over a test, for the places within 10 nats of the likeliest."""
+    if not where or test not in where[0]["heat"]:
+        right = f"known: {', '.join(where[0]['heat'])}" if where else "a diagnosis made with `plan`"
+        raise InputError(f"no missing heat for test '{test}'", "diagnosis", right)
+    best = max(w["evidence_nats"] for w in where)
+    near = [w for w in where if w["evidence_nats"] > best - BEHIND]
+    return {w["place"]: float(np.mean(w["heat"][test]["heat_W"])) for w in near}
+
+
+def placed(diagnosis: Mapping[str, Any]) -> bool:
+    """Does the scan of a `diagnose` document put the missing heat somewhere, or could it be anywhere?"""
+    best = max((w["evidence_nats"] for w in diagnosis.get("where", [])), default=0.0)
+    return located(best)
+
+
+def missing_in_machine(
+    nodes: SplitMesh,
+    where: Sequence[Mapping[str, Any]],
+    test: str,
+    *,
+    wedge: Wedge | None = QUARTER,
+    view: View | None = None,
+    theme: Theme = LIGHT,
+    png: str | Path | None = None,
+) -> pyvista.Plotter:
+    """Parts coloured by the heat (W) that would have to enter them, below zero leave them; unlikely places are grey.
+
+    Each place by itself, not together; its label says how much speaks for it (nats). The headline says when that is too
+    little to locate the heat.
+
+    where : as in a `diagnose` document;  test : whose mean is drawn
+    """
+    p, view, heat = scene.plotter(theme), view or View(), mean_heat(where, test)
+    surface = cut_away(nodes, wedge)
+    data, top = scene.polydata(surface), max(map(abs, heat.values()))
+    watts = np.array([heat.get(part, np.nan) for part in nodes.parts])
+    data.cell_data["W"] = watts[surface.part]
+    scene.outline(p, data, theme)
+    p.add_mesh(
+        data, scalars="W", cmap=missing(), clim=rounded(-top, top), nan_color="#E4E8EC", show_scalar_bar=False,
+        ambient=0.8, diffuse=0.28, culling="back",
+    )  # fmt: skip
+    scene.colour_bar(p, "W", theme)
+    unsure = "" if placed({"where": where}) else " (too little evidence to locate it)"
+    scene.headline(p, f"Heat that the model misses, mean over {test}{unsure}", theme)
+    scene.footnote(p, "at each place by itself; nats: evidence for it", theme)
+    nats = {w["place"]: w["evidence_nats"] for w in where}
+    words = {n: f"{n}  {q:+.0f} W, {nats[n]:.0f} nats" for n, q in heat.items() if abs(q) > FAINT * top}
+    wide = width(max(words.values(), key=len), SMALL)
+    room = Room(0.02 + wide, 0.12 + wide, TITLE)
+    scene.look(p, surface.points, view, room)
+    seen = {nodes.parts[i]: xyz for i, xyz in anchors(surface, view, room).items()}
+    labels = [
+        Label(tuple(seen[n]), text, VERMILION if heat[n] > 0 else BLUE)  # type: ignore[arg-type]
+        for n, text in words.items() if n in seen
+    ]  # fmt: skip
+    callouts(p, labels, surface.points, view, theme, size=SMALL)
+    scene.save(p, png)
+    return p

@@ -1,0 +1,178 @@
+"""The thermal network drawn into the machine it stands for."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geom.errors import InputError
+from geom.meshing.mesh import NamedMesh
+from viz.colours import LIGHT, Theme, heat, power
+from viz.figures.flows import Heat
+from viz.rendering import scene
+from viz.rendering.callouts import Label, callouts, on_top, text
+from viz.rendering.cut import HALF, cut_away
+from viz.rendering.nodes import SplitMesh, split
+from viz.rendering.scale import rounded
+from viz.rendering.scene import Room, View
+
+if TYPE_CHECKING:
+    import pyvista
+    from matplotlib.colors import Colormap
+
+Array = NDArray[np.float64]
+SIDE = View(direction=(-1.0, 0.0, 0.0), angle=4.0)
+CLOSEST = 0.075  # distance of two nodes, share of the machine's length
+SMALL = 0.01  # of the largest flow: thinner lines are left out
+LABELLED = 10  # flows whose watts are written
+LABEL = 0.018, 0.045  # half height and width of such a label, share of the machine's length in a picture 1280 wide
+NODE = 0.02  # radius of a node, the same
+SHARES = (0.5, 0.42, 0.58, 0.34, 0.66, 0.26, 0.74)  # of a line: where its label may stand, the middle first
+BELOW: dict[str, Any] = {
+    "vertical": False, "position_x": 0.28, "position_y": 0.04, "width": 0.36, "height": 0.1, "unit": "W",
+}  # fmt: skip
+
+
+def network_in_machine(
+    mesh: NamedMesh,
+    temperatures: Mapping[str, float],
+    flow: Heat,
+    *,
+    title: str = "",
+    theme: Theme = LIGHT,
+    png: str | Path | None = None,
+) -> pyvista.Plotter:
+    """The upper half of the section: nodes where their parts are, coloured by temperature; a line per flow, as wide as
+    its conductance and coloured by its heat.
+
+    Nodes off the axis (feet, base) and flows below 1 % of the largest are left out.
+
+    temperatures : node -> degC;  flow : from viz.figures.flows.heat_flows, made with the states `z`
+    """
+    p, nodes = scene.plotter(theme), split(mesh)
+    surface = cut_away(nodes, HALF).clipped(np.array([0.0, 1.0, 0.0]))
+    data = scene.polydata(surface)
+    p.add_mesh(data, color="#E4E8EC" if theme == LIGHT else "#2A323B", ambient=0.9, diffuse=0.1)
+    scene.outline(p, data, theme, opacity=0.35)
+    at = places(mesh, nodes)
+    front = np.array([surface.points[:, 0].min() - 0.02, 0.0, 0.0])
+    at = {name: xyz + front for name, xyz in at.items() if xyz[1] > 0 and name in temperatures}
+    low, high = surface.points.min(axis=0), surface.points.max(axis=0)
+    length = float(np.ptp(nodes.points[:, 2]))
+    at = apart(at, CLOSEST * length)
+    frame = front + np.array([[0, -0.2 * high[1], low[2]], [0, high[1], high[2]]])
+    widest = _lines(p, at, flow, power() if theme == LIGHT else power().reversed(), length)
+    _nodes(p, at, temperatures)
+    names = [Label(tuple(xyz), f"{name}  {temperatures[name]:.0f} °C", LIGHT.ink) for name, xyz in at.items()]  # type: ignore[arg-type]
+    scene.colour_bar(p, "°C", theme, mapper=p.actors["nodes"].mapper)
+    if "link 0" in p.actors:
+        scene.colour_bar(p, "", theme, mapper=p.actors["link 0"].mapper, **BELOW)
+    scene.headline(p, f"{title}  widest line {float(f'{widest:.2g}'):g} W/K".strip(), theme)
+    scene.look(p, frame, SIDE, Room(0.18, 0.27, scene.TITLE))
+    callouts(p, names, frame, SIDE, theme, size=13, dots=False)
+    scene.save(p, png)
+    return p
+
+
+def places(mesh: NamedMesh, nodes: SplitMesh) -> dict[str, Array]:
+    """Name of part or fluid -> (0, y, z) m: mean radius in the upper half, or its own middle if off the axis."""
+    volume = _volumes(nodes)
+    middle = nodes.points[nodes.tets].mean(axis=1)
+    at = {}
+    for i, part in enumerate(nodes.parts):
+        mine = nodes.region == i
+        at[part] = _in_plane(middle[mine], volume[mine])
+    fluids = sorted({patch.fluid for patch in mesh.patches.values()} - {"ambient"})
+    for fluid in fluids:
+        faces = np.concatenate([p.facets for p in mesh.patches.values() if p.fluid == fluid])
+        a, b, c = mesh.points[faces].transpose(1, 0, 2)
+        at[fluid] = _in_plane((a + b + c) / 3, np.linalg.norm(np.cross(b - a, c - a), axis=1))
+    return at
+
+
+def _in_plane(points: Array, weight: Array) -> Array:
+    """Mean of points folded into the upper half of the section."""
+    mean = np.average(points, axis=0, weights=weight)
+    radius = np.average(np.hypot(points[:, 0], points[:, 1]), weights=weight)
+    off_axis = np.hypot(mean[0], mean[1]) > 0.5 * radius
+    return np.array([0.0, mean[1] if off_axis else radius, mean[2]])
+
+
+def apart(at: Mapping[str, Array], least: float) -> dict[str, Array]:
+    """Points that lie closer than `least` (m) pushed apart along the axis, so that lines between them can be seen."""
+    names, xyz = list(at), np.array(list(at.values()))
+    for _ in range(100):
+        step = xyz[:, None] - xyz[None]
+        near = np.triu(np.linalg.norm(step, axis=2) < least, 1)
+        if not near.any():
+            break
+        for i, j in np.argwhere(near):
+            push = least / 8 * (1 if step[i, j, 2] > 0 else -1)
+            xyz[i, 2] += push
+            xyz[j, 2] -= push
+    return dict(zip(names, xyz, strict=True))
+
+
+def _volumes(nodes: SplitMesh) -> Array:
+    corners = nodes.points[nodes.tets]
+    edges = corners[:, 1:] - corners[:, :1]
+    return np.abs(np.einsum("ij,ij->i", np.cross(edges[:, 0], edges[:, 1]), edges[:, 2])) / 6
+
+
+def _lines(p: pyvista.Plotter, at: Mapping[str, Array], flow: Heat, colours: Colormap, length: float) -> float:
+    """A line per flow; the largest carry their watts where there is room. The widest line's W/K."""
+    import pyvista
+
+    inner = [replace(f, watts=abs(f.watts)) for f in flow.flows if f.start in at and f.end in at]
+    most = max((f.watts for f in inner), default=1.0)
+    drawn = sorted((f for f in inner if f.watts >= SMALL * most), key=lambda f: -f.watts)
+    widest = max((f.conductance for f in drawn), default=0.0)
+    if drawn and not widest > 0:
+        raise InputError("heat flows without conductances", "network", "heat_flows(network, balance, z=...)")
+    taken: list[Array] = []
+    for i, f in enumerate(drawn):
+        a, b = at[f.start], at[f.end]
+        line = pyvista.Line(a, b)
+        line.point_data["W"] = np.full(line.n_points, f.watts)
+        actor = p.add_mesh(
+            line, scalars="W", cmap=colours, clim=rounded(0.0, most), lighting=False, show_scalar_bar=False,
+            name=f"link {i}", line_width=max(2.0, 24 * np.sqrt(f.conductance / widest)),
+        )  # fmt: skip
+        on_top(actor, 1)
+        place = clear_place(a, b, list(at.values()), taken, length) if len(taken) < LABELLED else None
+        if place is not None:
+            p.add_actor(text(f"{f.watts:.0f} W", place, "#6B2A12", 0, 11), reset_camera=False)
+            taken.append(place)
+    return widest
+
+
+def clear_place(a: Array, b: Array, nodes: Sequence[Array], taken: Sequence[Array], length: float) -> Array | None:
+    """Where a label on the line from a to b (m) covers no node and no other label, near its middle; None: nowhere.
+
+    length : of the machine (m), which the sizes of labels and nodes go by
+    """
+    half, dot = length * np.array(LABEL), length * NODE
+
+    def clear(at: Array) -> bool:
+        near = [np.abs(at - other)[1:] < half + dot for other in nodes] + [np.abs(at - o)[1:] < 2 * half for o in taken]
+        return not any(one.all() for one in near)
+
+    return next((at for at in (a + share * (b - a) for share in SHARES) if clear(at)), None)
+
+
+def _nodes(p: pyvista.Plotter, at: Mapping[str, Array], T: Mapping[str, float]) -> None:
+    import pyvista
+
+    cloud = pyvista.PolyData(np.array(list(at.values())))
+    cloud.point_data["T"] = [T[name] for name in at]
+    style: dict[str, Any] = {"render_points_as_spheres": True, "lighting": False, "show_scalar_bar": False}
+    halo = p.add_mesh(cloud.copy(), color="white", point_size=50, **style)
+    limits = rounded(min(T[name] for name in at), max(T[name] for name in at))
+    dots = p.add_mesh(cloud, scalars="T", cmap=heat(), clim=limits, point_size=42, name="nodes", **style)
+    on_top(halo, 4)
+    on_top(dots, 5)

@@ -1,0 +1,149 @@
+"""What the machine is made of: its parts in their own colours, whole, cut open, or pulled apart."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geom.description.identity import Identity
+from geom.description.roles import Role
+from viz.colours import LIGHT, Theme, heat, part_colours
+from viz.rendering import scene
+from viz.rendering.callouts import Label, callouts, text
+from viz.rendering.cut import QUARTER, Surface, Wedge, cut_away, exposed
+from viz.rendering.nodes import SplitMesh, on_nodes
+from viz.rendering.scale import rounded
+from viz.rendering.scene import TITLE, Room, View
+from viz.rendering.sight import anchors
+
+if TYPE_CHECKING:
+    import pyvista
+
+Array = NDArray[np.float64]
+GAP = 0.25  # between assemblies pulled apart, share of the machine's length
+ASIDE = View(direction=(-1.0, 0.3, 0.22))
+
+
+def regions(
+    nodes: SplitMesh,
+    *,
+    wedge: Wedge | None = QUARTER,
+    view: View | None = None,
+    mesh: bool = False,
+    theme: Theme = LIGHT,
+    title: str = "",
+    png: str | Path | None = None,
+) -> pyvista.Plotter:
+    """The parts, each in its colour and with its name.
+
+    mesh : draw the edges of the mesh too; where it is cut, those of the cut tetrahedra
+    """
+    p, view = scene.plotter(theme), view or View()
+    surface = cut_away(nodes, wedge)
+    _paint(p, surface, None, theme, mesh=mesh)
+    scene.headline(p, title, theme)
+    room = Room(0.2, 0.2, TITLE if title else 0.0)
+    scene.look(p, surface.points, view, room)
+    seen = anchors(surface, view, room)
+    labels = [Label(tuple(xyz), nodes.parts[i], LIGHT.ink) for i, xyz in seen.items()]  # type: ignore[arg-type]
+    callouts(p, labels, surface.points, view, theme, size=13)
+    scene.save(p, png)
+    return p
+
+
+def exploded(
+    nodes: SplitMesh,
+    T: Array | None = None,
+    *,
+    groups: Sequence[Sequence[str]] | None = None,
+    view: View | None = None,
+    theme: Theme = LIGHT,
+    title: str = "",
+    png: str | Path | None = None,
+) -> pyvista.Plotter:
+    """The machine pulled apart along its axis, each group under its names; coloured by temperature (degC) if given.
+
+    groups : parts that stay together, from left to right; by what they are if not given
+    """
+    p = scene.plotter(theme)
+    view, groups = view or ASIDE, groups or assemblies(nodes)
+    shift = shifts(nodes, groups)
+    surface = exposed(nodes, contacts=True)
+    field = None if T is None else on_nodes(nodes, T)
+    _paint(p, surface, field, theme, shift)
+    if T is not None:
+        scene.colour_bar(p, "°C", theme)
+    moved = nodes.points + shift[nodes.owner]
+    for group in groups:
+        _title(p, moved[np.concatenate([nodes.of(part) for part in group])], group)
+    scene.headline(p, title, theme)
+    scene.look(p, moved, view, Room(right=0.1 if T is not None else 0.0, top=0.25))
+    scene.save(p, png)
+    return p
+
+
+def _title(p: pyvista.Plotter, points: Array, group: Sequence[str]) -> None:
+    """The names of a group above its middle."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    at = np.array([(low[0] + high[0]) / 2, high[1] + 0.1 * (high[1] - low[1]), (low[2] + high[2]) / 2])
+    names = text(" \n ".join(group), at, LIGHT.ink, 0, 12)
+    names.GetTextProperty().SetVerticalJustificationToBottom()
+    p.add_actor(names, reset_camera=False, pickable=False)
+
+
+def assemblies(nodes: SplitMesh) -> list[list[str]]:
+    """Left end, housing, stator, rotor, right end, from what the parts are; empty groups are left out."""
+    groups: list[list[str]] = [[] for _ in range(5)]
+    for part in nodes.parts:
+        groups[_assembly(nodes, part)].append(part)
+    return [group for group in groups if group]
+
+
+def _assembly(nodes: SplitMesh, part: str) -> int:
+    known = nodes.identities.get(part, Identity())
+    if known.role in (Role.END_SHIELD, Role.BEARING):
+        z = nodes.points[:, 2]
+        return 0 if z[nodes.of(part)].mean() < (z.min() + z.max()) / 2 else 4
+    if known.role in (Role.HOUSING, Role.FOOT, Role.BASE):
+        return 1
+    return 3 if known.turns else 2
+
+
+def shifts(nodes: SplitMesh, groups: Sequence[Sequence[str]]) -> Array:
+    """(n_parts, 3) m: how far each part moves along the axis so that the groups stand one after the other."""
+    shift = np.zeros((len(nodes.parts), 3))
+    gap, end = GAP * np.ptp(nodes.points[:, 2]), None
+    for group in groups:
+        z = np.concatenate([nodes.points[nodes.of(part), 2] for part in group])
+        move = 0.0 if end is None else end + gap - z.min()
+        shift[[nodes.parts.index(part) for part in group], 2] = move
+        end = z.max() + move
+    return shift
+
+
+def _paint(
+    p: pyvista.Plotter, surface: Surface, T: Array | None, theme: Theme, shift: Array | None = None, mesh: bool = False
+) -> None:  # fmt: skip
+    data = scene.polydata(surface, shift)
+    scene.outline(p, data, theme)
+    light: dict[str, Any] = {"ambient": 0.55, "diffuse": 0.5, "specular": 0.0, "culling": "back"}
+    light |= {"show_edges": mesh, "edge_color": theme.ink, "edge_opacity": 0.45, "line_width": 1.0}
+    if T is None:
+        rgb = np.array(
+            [_rgb(colour) for colour in part_colours(surface.nodes.parts, surface.nodes.identities).values()], np.uint8
+        )
+        data.cell_data["colour"] = rgb[surface.part]
+        p.add_mesh(data, scalars="colour", rgb=True, **light)
+    else:
+        data.point_data["T"] = surface.values(T)
+        p.add_mesh(
+            data, scalars="T", cmap=heat(), clim=rounded(float(T.min()), float(T.max())), show_scalar_bar=False, **light
+        )
+
+
+def _rgb(colour: str) -> tuple[int, ...]:
+    return tuple(int(colour[i : i + 2], 16) for i in (1, 3, 5))

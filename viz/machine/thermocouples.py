@@ -1,0 +1,67 @@
+"""Thermocouples on the machine: which get a label, and what must become transparent for the label to be true."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from viz.colours import VERDICT, Theme
+from viz.data import Sensor, short
+from viz.rendering import scene
+from viz.rendering.callouts import Label, callouts, dot
+from viz.rendering.cut import Surface
+from viz.rendering.ghost import Ghosted, ghosted
+from viz.rendering.scene import View
+from viz.rendering.sight import SLACK, covered, distance, obstacle
+
+if TYPE_CHECKING:
+    import pyvista
+
+LABELS = 6  # sensors with a label: more hide the machine
+PLAIN = 0.6  # size of a dot without a label
+
+
+@dataclass(frozen=True)
+class Marked:
+    """labelled, others : sensors with and without a label;  hidden : of both, in this order, what something covers
+
+    cut : the surface with a window to each labelled sensor that is hidden or was cut off with the wedge
+    """
+
+    labelled: tuple[Sensor, ...]
+    others: tuple[Sensor, ...]
+    hidden: NDArray[np.bool_]
+    cut: Ghosted
+
+    def draw(self, p: pyvista.Plotter, surface: Surface, view: View, theme: Theme) -> None:
+        """Dots, some with labels; those inside or behind something are hollow, and the picture says so."""
+        sensors = (*self.labelled, *self.others)
+        labels = [_label(s, bool(h)) for s, h in zip(sensors, self.hidden, strict=True)]
+        n = len(self.labelled)
+        callouts(p, labels[:n], surface.points, view, theme)
+        for label in labels[n:]:
+            dot(p, label, PLAIN)
+        says = ["hollow dots lie inside or behind"] if self.hidden.any() else []
+        says += [f"{len(self.others)} without a label"] if self.others else []
+        if says:
+            scene.footnote(p, "; ".join(says), theme)
+
+
+def marked(surface: Surface, sensors: Sequence[Sensor], labels: int, eye: NDArray[np.float64]) -> Marked:
+    """The sensors as seen from `eye` (m); labels for those furthest beyond their uncertainty."""
+    ranked = sorted(sensors, key=lambda s: -s.weight)
+    places, solid = np.array([s.xyz for s in ranked]).reshape(-1, 3), obstacle(surface)
+    hidden = covered(solid, places, eye)
+    afloat = distance(solid, places) > SLACK
+    mine = places[:labels]
+    cut = ghosted(surface, mine, (hidden | afloat)[:labels], eye)
+    return Marked(tuple(ranked[:labels]), tuple(ranked[labels:]), hidden, cut)
+
+
+def _label(sensor: Sensor, hidden: bool) -> Label:
+    value = "" if sensor.residual_K is None else f"  {round(sensor.residual_K, 1) + 0.0:+.1f} K"
+    return Label(sensor.xyz, f"{short(sensor.name)}{value}", VERDICT[sensor.verdict], hidden)

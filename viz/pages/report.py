@@ -1,0 +1,279 @@
+"""One self-contained page to hand on: verdict first, pictures, numbers with uncertainty, how to repeat it.
+
+Plots are inline SVG and pictures inline PNG, so the page is about 1 MB, opens without a network or scripts, prints, and
+follows the reader's light or dark theme. (plotly's script alone would be 4.8 MB.)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from html import escape
+from pathlib import Path
+from typing import Any
+
+from geom.kept import written_whole
+from validation.comparison.within import WORDS
+from viz.data import Comparison
+from viz.figures import candidates, curves, errors, heat
+from viz.machine.missing import placed
+from viz.pages import html, words
+from viz.pages.ahead import deciding, undecided
+
+Document = Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Report:
+    """What the page is made from; every part but the case's name may be missing.
+
+    comparison, diagnosis : documents of `compare` and `diagnose`; earlier : the diagnosis is of the model before its
+        last step, and the verdict is that of the comparison
+    history : revisions, each with number, action, effect and tests as in `add`
+    parameters : as in `add` and `calibrate`
+    curves : one Comparison per test, the most telling first
+    pictures : caption -> PNG (path or bytes)
+    error_budget : test -> places, as in `compare`
+    assumptions : one sentence each;  commands : what repeats the result;  made : date, versions, computer
+    """
+
+    case: str
+    description: str = ""
+    comparison: Document | None = None
+    diagnosis: Document | None = None
+    history: Sequence[Document] = ()
+    parameters: Sequence[Document] = ()
+    curves: Sequence[Comparison] = ()
+    pictures: Mapping[str, str | Path | bytes] = field(default_factory=dict)
+    assumptions: Sequence[str] = ()
+    commands: Sequence[str] = ()
+    made: str = ""
+    earlier: bool = False
+    error_budget: Mapping[str, Sequence[Document]] = field(default_factory=dict)
+
+
+def write_report(report: Report, path: str | Path) -> Path:
+    """Write the page and return its path."""
+    path, page = Path(path), render(report)
+    with written_whole(path) as partial:
+        partial.write_text(page, encoding="utf-8")
+    return path
+
+
+def render(report: Report) -> str:
+    """The page as text."""
+    parts = [_top(report), _error(report), _pictures(report), _curves(report), _missing(report), _hidden(report)]
+    parts += [_values(report), _sensors(report), _numerical(report), _assumed(report), _repeat(report)]
+    return html.page(f"thermoscope: {report.case}", parts)
+
+
+def _top(r: Report) -> str:
+    diagnosis = None if r.earlier else r.diagnosis
+    tone, sentence = words.verdict(diagnosis, r.comparison)
+    head = f"<h1>thermoscope show report: {escape(r.case)}</h1>"
+    head += f'<p class="verdict"><span class="{tone}">{escape(sentence)}</span></p>'
+    return head + html.text(words.story(r.history), words.detail(diagnosis), r.description) + _cards(r)
+
+
+def _cards(r: Report) -> str:
+    items = []
+    for (name, role), path in errors.error_paths(r.history).items():
+        if role == "hold-out":
+            items.append((f"{path[0]:.2f} → {path[-1]:.2f} K", f"error on {name}, never used to fit or choose"))
+    if r.comparison is not None:
+        items.append((f"{r.comparison['rmse_K']:.2f} K", "rms error over all tests, model as it stands"))
+        items.append((f"{r.comparison['floor_K']:.2f} K", "what the sensors' own uncertainty explains"))
+    return html.cards(items) if items else ""
+
+
+def _error(r: Report) -> str:
+    if not r.history:
+        return ""
+    floor = None if r.comparison is None else float(r.comparison["floor_K"])
+    last = r.history[-1]
+    bars = errors.before_after(last["tests"], floor_K=floor)
+    title = f"Last step ({last['action']} {last.get('effect') or ''}".strip() + "): tests in bold were never used."
+    stairs = errors.staircase(r.history, floor_K=floor)
+    return html.section(
+        "The error, step by step",
+        html.plot(stairs, "stairs", "Rms error of every test over the revisions of the model."),
+        html.plot(bars, "bars", title),
+    )
+
+
+def _pictures(r: Report) -> str:
+    return html.section("The machine", *(html.picture(png, caption) for caption, png in r.pictures.items()))
+
+
+def _curves(r: Report) -> str:
+    parts = []
+    for i, c in enumerate(r.curves):
+        name = f"{c.test.name} ({c.test.role})"
+        both = html.plot(curves.residuals(c), f"residual{i}", f"{name}: measured − model per sensor.")
+        both += html.plot(
+            curves.measured_and_model(c), f"curves{i}", f"{name}: readings, their 2σ band, and the model."
+        )
+        parts.append(html.more(name, both, opened=i == 0))
+    return html.section("Measured and modelled", *parts)
+
+
+def _missing(r: Report) -> str:
+    if r.diagnosis is None or not r.diagnosis["candidates"]:
+        return ""
+    ranked = sorted(r.diagnosis["candidates"], key=lambda c: c["score"], reverse=True)
+    parts = [
+        html.plot(candidates.scores(ranked), "scores", "Candidates by score; beyond the black mark is not chance.")
+    ]
+    parts.append(html.table(_HEADERS, [_row(c) for c in ranked[:12]], [c["decision"] == "named" for c in ranked]))
+    parts.append(_events(r.diagnosis))
+    parts.append(_contradiction(r.diagnosis))
+    if placed(r.diagnosis) and r.diagnosis["where"][0].get("heat"):
+        caption = "Heat that would have to enter (or leave, below zero) at the likeliest place, with its 2σ band."
+        drawn = heat.missing_heat(r.diagnosis["where"], events=r.diagnosis.get("events", []))
+        parts.append(html.plot(drawn, "heat", caption))
+    parts.append(html.text("Errors: without the effect → with it, all else fitted anew each time."))
+    alike = [(c["effect"], ", ".join(c["confused_with"])) for c in ranked[:12] if c["confused_with"]]
+    likeness = html.table(["effect", "looks like"], alike)
+    names = [c["effect"] for c in ranked[:10]]
+    if r.diagnosis.get("confusion"):
+        likely = candidates.confusion(names, candidates.matrix(r.diagnosis["confusion"], names))
+        likeness += html.plot(likely, "confusion", "Likeness of their traces.")
+    if likeness:
+        parts.append(html.more("Which of them look alike", likeness))
+    return html.section("What was missing before the last step" if r.earlier else "What is missing", *parts)
+
+
+def _events(diagnosis: Document) -> str:
+    """When something may have been different for a while."""
+    rows: list[list[html.Cell]] = [
+        [e["words"], f"{100 * e['probability']:.0f} %", e["title"], e["effect"], _number(e["value"]), e["unit"]]
+        for e in diagnosis.get("events", [])
+    ]
+    headers = ["when", "probability", "most likely", "effect", "size", "unit"]
+    return "<h3>What may have differed for a while</h3>" + html.table(headers, rows) if rows else ""
+
+
+def _contradiction(diagnosis: Document) -> str:
+    """Which test stands against the others, and what it would need."""
+    found = diagnosis.get("contradiction")
+    if not found or not found["differences"]:
+        return ""
+    rows: list[list[html.Cell]] = [
+        [d["test"], d["parameter"], _number(d["others"]), _number(d["here"]), "" if d["unit"] == "1" else d["unit"],
+         _number(abs(d["sd"])), "yes" if d["possible"] else "no"] for d in found["differences"][:12]
+    ]  # fmt: skip
+    headers = ["test", "parameter", "other tests", "this test", "unit", "standard deviations", "can it differ?"]
+    table = html.table(headers, rows, [d["possible"] is False for d in found["differences"][:12]])
+    return f"<h3>Tests that contradict each other</h3>{html.text(found['words'])}{html.more('In numbers', table)}"
+
+
+_HEADERS = ["effect", "decision", "score", "threshold", "size", "95 % interval", "error (K)", "held-out (K)"]
+
+
+def _row(c: Document) -> list[html.Cell]:
+    """Errors: all else fitted anew, without it and with it."""
+    errors = [f"{e['before']:.2f} → {e['after']:.2f}" if e else "" for e in (c.get("rmse_K"), c.get("holdout_rmse_K"))]
+    return [c["effect"], c["decision"], c["score"], c["threshold"], candidates.size(c), candidates.interval(c), *errors]
+
+
+def _hidden(r: Report) -> str:
+    """What these tests cannot see, and which test would show more."""
+    if r.diagnosis is None:
+        return ""
+    hidden = [(b["effect"], _number(b["smallest_detectable"]), b["unit"]) for b in r.diagnosis.get("cannot_see", [])]
+    blind = [(name, "none that physics allows" if size is None else size, unit) for name, size, unit in hidden]
+    seen = html.table(["effect", "smallest that would be seen", "unit"], blind)
+    return html.section(
+        "What these tests cannot see, and what would help",
+        seen and html.more("Effects that could be there unseen", seen),
+        _ahead(r.diagnosis),
+    )
+
+
+def _ahead(diagnosis: Document) -> str:
+    """Tests and sensors that would tell a group apart, or that no test would."""
+    rows = [(o.kind, o.what, ", ".join(o.separates), _number(o.gain), _number(o.hours), o.why)
+            for o in deciding(diagnosis)]  # fmt: skip
+    if not rows:
+        return html.text(undecided(diagnosis))
+    headers = ["kind", "what", "separates", "gain (20 decides)", "hours", "why"]
+    return "<h3>What would decide</h3>" + html.table(headers, rows)
+
+
+def _values(r: Report) -> str:
+    """What the data fix is in sight; what they leave as it was expected opens on a click."""
+    fixed = [_value(p) for p in r.parameters if p.get("identified", True) or "@" in p["name"]]
+    left = [_value(p) for p in r.parameters if not p.get("identified", True) and "@" not in p["name"]]
+    headers = ["parameter", "value", "unit", "95 % interval", "expected before"]
+    rest = html.more(f"{len(left)} values that the data do not fix", html.table(headers, left)) if left else ""
+    return html.section("Calibrated values", html.table(headers, fixed), rest)
+
+
+def _value(p: Document) -> list[html.Cell]:
+    unit = "" if p["unit"] == "1" else p["unit"]
+    return [p["name"], _number(p["value"]), unit, _interval(p.get("ci95")), _prior(p.get("prior"))]
+
+
+def _sensors(r: Report) -> str:
+    if r.comparison is None:
+        return ""
+    parts = []
+    for test in r.comparison["tests"]:
+        rows = [
+            (
+                c["channel"], c["place"], c["n"], _number(c["rmse_K"]), _number(c["bias_K"]), _number(c["max_abs_K"]),
+                _number(c.get("limit_K")), _number(c["sigma_K"]), _number(c["percent_of_rise"]), c["verdict"],
+            )
+            for c in test["channels"]
+        ]  # fmt: skip
+        headers = [
+            "sensor",
+            "place",
+            "readings",
+            "rms (K)",
+            "bias (K)",
+            "largest (K)",
+            "limit (K)",
+            "1σ (K)",
+            "% of rise",
+            "verdict",
+        ]
+        name = f"{test['name']} ({test['role']}), rms {test['rmse_K']:.2f} K"
+        parts.append(html.more(name, html.table(headers, rows), opened=test["role"] == "hold-out"))
+    rule = f"<p>Error is measured − model; {WORDS}.</p>"
+    return html.section("Every sensor", rule, *parts)
+
+
+def _numerical(r: Report) -> str:
+    """What mesh, condensation and time steps leave in every temperature, test by test."""
+    keys = ("mesh_K", "condensation_K", "time_K", "total_K")
+    headers = ["place", "mesh (K)", "condensation (K)", "time steps (K)", "sum (K)"]
+    tests = {name: [(p["place"], *(_number(p[k]) for k in keys)) for p in at] for name, at in r.error_budget.items()}
+    parts = [html.more(name, html.table(headers, rows)) for name, rows in tests.items()]
+    return html.section("Error budget: what the model's own numbers may be wrong by", *parts)
+
+
+def _assumed(r: Report) -> str:
+    items = "".join(f"<li>{escape(a)}</li>" for a in r.assumptions)
+    return html.section("What was assumed", f"<ul>{items}</ul>" if items else "")
+
+
+def _repeat(r: Report) -> str:
+    commands = f"<pre>{escape(chr(10).join(r.commands))}</pre>" if r.commands else ""
+    return html.section("How to repeat this", commands) + (f"<footer>{escape(r.made)}</footer>" if r.made else "")
+
+
+def _number(value: Any) -> float | None:
+    return None if value is None else float(value)
+
+
+def _interval(ci95: Sequence[float] | None) -> str:
+    return f"{ci95[0]:.3g} … {ci95[1]:.3g}" if ci95 else ""
+
+
+def _prior(prior: Any) -> str:
+    if isinstance(prior, Mapping) and set(prior) == {"from", "to"}:
+        return _interval([prior["from"], prior["to"]])
+    if isinstance(prior, Mapping):
+        return ", ".join(f"{k} {v:.3g}" if isinstance(v, float) else f"{k} {v}" for k, v in prior.items())
+    return "" if prior is None else str(prior)

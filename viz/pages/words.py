@@ -1,0 +1,87 @@
+"""The verdict in one sentence, from the result documents."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from viz.figures.candidates import amplitude
+
+Document = Mapping[str, Any]
+TONE = {"adequate": "good", "named": "warn", "group": "warn", "several": "warn", "outside": "warn"}
+
+
+def verdict(diagnosis: Document | None, comparison: Document | None) -> tuple[str, str]:
+    """(tone, sentence): what a manager should read first."""
+    if diagnosis is None:
+        return _agreement(comparison)
+    code = diagnosis["verdict"]
+    names = [c["effect"] for c in diagnosis["candidates"] if c["decision"] in ("named", "group")]
+    sentences = {
+        "adequate": "The model agrees with the measurements; nothing is found missing.",
+        "named": f"Missing from the model: {spoken(names[:1])}.",
+        "group": f"Missing from the model: one of {spoken(names, 'or')}. These tests cannot tell them apart.",
+        "several": f"Missing from the model: {spoken(names)}.",
+        "outside": f"Heat is missing or in excess{_where(diagnosis)}; no known effect explains it.",
+        "absorbed": "A calibrated value lies far from what is physically expected; it hides something.",
+        "data": _elsewhere(diagnosis) or "Check the sensors and inputs first; the error looks like theirs.",
+    }
+    return TONE.get(code, "info"), sentences[code]
+
+
+def _elsewhere(diagnosis: Document) -> str:
+    """Tests that stood on another base than their sheets say."""
+    rows = diagnosis.get("bases", [])
+    wrong = [h for h in rows if h["declared"] and h["excluded"]]
+    parts = [
+        f"{w['test']} did not stand on the base its sheet says ({w['base']}), but on "
+        f"{spoken([h['base'] for h in rows if h['test'] == w['test'] and not h['excluded']], 'or')}"
+        for w in wrong
+    ]
+    return f"{'; '.join(parts)}: look at the sheet before the model." if parts else ""
+
+
+def story(history: Sequence[Document]) -> str:
+    """What the last addition that still counts did to the tests that were never used; empty without one."""
+    added = [r for r in history if r["action"] == "add" and r["effect"] in history[-1].get("effects", [r["effect"]])]
+    if not added:
+        return ""
+    held = [t for t in added[-1]["tests"] if t["role"] == "hold-out"]
+    parts = [f"{t['rmse_K']['before']:.2f} K to {t['rmse_K']['after']:.2f} K on {t['name']}" for t in held]
+    effect = spoken([added[-1]["effect"]])
+    if not parts:
+        return f"The model was extended by {effect}."
+    return f"Extending the model by {effect} brought the error from {' and from '.join(parts)}, never used to fit it."
+
+
+def detail(diagnosis: Document | None) -> str:
+    """Amplitude and gain of the best named candidate; empty when nothing is named."""
+    best = next((c for c in (diagnosis or {}).get("candidates", []) if c["decision"] == "named"), None)
+    if best is None:
+        return ""
+    name, held = spoken([best["effect"]]), best.get("holdout_rmse_K")
+    rmse, tests = held or best.get("rmse_K"), "tests never used" if held else "the tests used"
+    without = f" All else fitted anew, the error on {tests} is {rmse['before']:.2f} K without it" if rmse else ""
+    gain = f"{without} and {rmse['after']:.2f} K with it." if rmse else ""
+    return f"{name[0].upper()}{name[1:]}: {amplitude(best)}.{gain}"
+
+
+def spoken(effects: Sequence[str], last: str = "and") -> str:
+    """'convection@flange.right' -> 'convection at flange.right'; several joined by commas and `last`."""
+    words = [e.replace("@", " at ").replace("_", " ") for e in effects] or ["nothing that can be named"]
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} {last} {words[-1]}"
+
+
+def _agreement(comparison: Document | None) -> tuple[str, str]:
+    over = (
+        [] if comparison is None else [c for t in comparison["tests"] for c in t["channels"] if c["verdict"] == "over"]
+    )
+    if comparison is None or not over:
+        return "good", "The model agrees with the measurements within the sensors' uncertainty."
+    places = sorted({c["place"] for c in over})
+    return "warn", f"The model disagrees with the measurements at {spoken(places)}."
+
+
+def _where(diagnosis: Document) -> str:
+    places = [w["place"] for w in diagnosis.get("where", [])[:2]]
+    return f" near {spoken(places, 'or')}" if places else ""

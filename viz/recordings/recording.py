@@ -1,0 +1,208 @@
+"""A recording of a test for the rerun viewer: the machine warming up, its sensors, curves, and the error falling.
+
+Two timelines: `test_time` runs through the test, `revision` through the model's history. Written to a file only:
+nothing listens on the network. Open it with `rerun FILE.rrd`.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geom.errors import InputError, MissingDependency
+from validation.comparison.within import limit_K
+from viz.colours import BLUE, LIGHT, ORANGE, VERDICT, heat
+from viz.data import Comparison, Sensor, short
+from viz.figures.curves import wrongness
+from viz.figures.errors import PALE, error_paths
+from viz.recordings.arrangement import blueprint
+from viz.rendering.cut import QUARTER, Surface, Wedge, cut_away
+from viz.rendering.edges import outline_strips
+from viz.rendering.nodes import SplitMesh, on_nodes
+from viz.rendering.scale import rounded
+
+if TYPE_CHECKING:
+    import rerun as rr
+
+    from validation.case import Channel
+
+Array = NDArray[np.float64]
+TIME, REVISION = "test_time", "revision"
+
+
+def write_recording(
+    path: str | Path,
+    nodes: SplitMesh,
+    comparison: Comparison,
+    frames: tuple[Array, Array],
+    positions: Mapping[str, Sequence[float]],
+    *,
+    history: Sequence[Mapping[str, Any]] = (),
+    revision_fields: Array | None = None,
+    revision_residuals: Sequence[Mapping[str, float]] = (),
+    wedge: Wedge | None = QUARTER,
+) -> Path:
+    """Write an .rrd file and return its path.
+
+    frames : times (n_frames,) s and fields (n_frames, n_nodes) degC
+    positions : channel name -> (x, y, z) m; channels without one appear as curves only
+    history : revisions as in viz.figures.errors.staircase
+    revision_fields : (n_revisions + 1, n_nodes) degC, the field at the end of the test, start first
+    revision_residuals : for each of these channel -> measured - modelled (K) then
+    """
+    import rerun as rr
+
+    times, fields = np.asarray(frames[0], float), on_nodes(nodes, frames[1])
+    if fields.shape[:1] != times.shape:
+        raise InputError(f"{len(times)} times but {len(fields)} fields", "recording", "one field per time")
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    stream = rr.RecordingStream("thermoscope", recording_id=f"{comparison.test.name}", send_properties=False)
+    worst = max(comparison.channels, key=comparison.rmse).name
+    surface = cut_away(nodes, wedge)
+    stream.save(path, default_blueprint=blueprint(comparison, worst, surface.points, bool(history)))
+    _machine(stream, surface, times, fields, revision_fields)
+    _sensors(stream, comparison, times, positions, revision_residuals)
+    _curves(stream, comparison)
+    _revisions(stream, history)
+    stream.flush()
+    stream.disconnect()
+    return path
+
+
+def verify(path: str | Path) -> None:
+    """Check a recording with rerun's own tool, its usage statistics switched off for this call."""
+    program = shutil.which("rerun", path=str(Path(sys.executable).parent)) or shutil.which("rerun")
+    if program is None:
+        raise MissingDependency("the rerun program is missing; install it with: uv pip install rerun-sdk")
+    with TemporaryDirectory() as home:
+        alone = {**os.environ, "HOME": home, "XDG_CONFIG_HOME": home}
+        subprocess.run([program, "analytics", "disable"], env=alone, capture_output=True, check=False)
+        done = subprocess.run([program, "rrd", "verify", str(path)], env=alone, capture_output=True, text=True)
+    if done.returncode:
+        raise InputError(
+            f"not a valid recording: {done.stderr.strip()[-300:]}", str(path), "a file written by this version"
+        )
+
+
+def _machine(
+    stream: rr.RecordingStream, surface: Surface, times: Array, fields: Array, revisions: Array | None
+) -> None:
+    import rerun as rr
+
+    low, high = rounded(float(fields.min()), float(fields.max()))
+    stream.log("machine", rr.ViewCoordinates.RIGHT_HAND_Y_UP, static=True)
+    mesh = rr.Mesh3D(vertex_positions=surface.points, triangle_indices=surface.triangles)
+    stream.log("machine/field", mesh, static=True)
+    lines = rr.LineStrips3D(list(outline_strips(surface)), colors=[31, 41, 51, 150], radii=rr.Radius.ui_points(0.6))
+    stream.log("machine/edges", lines, static=True)
+    scale = f"# Colours\n\nblue {low:.0f} °C … magenta {(low + high) / 2:.0f} °C … yellow {high:.0f} °C"
+    stream.log("legend", rr.TextDocument(scale + _LEGEND, media_type="text/markdown"), static=True)
+    _colours(stream, surface, rr.TimeColumn(TIME, duration=times), fields, (low, high))
+    if revisions is not None:
+        steps = rr.TimeColumn(REVISION, sequence=range(len(revisions)))
+        _colours(stream, surface, steps, on_nodes(surface.nodes, revisions), (low, high))
+
+
+def _colours(
+    stream: rr.RecordingStream, surface: Surface, index: Any, fields: Array, limits: tuple[float, float]
+) -> None:
+    """Vertex colours for every entry of `index`; the geometry is not repeated."""
+    import rerun as rr
+
+    share = (surface.values(fields.T).T - limits[0]) / max(limits[1] - limits[0], 1e-9)
+    rgba = heat()(share, bytes=True)
+    columns = rr.Mesh3D.columns(vertex_colors=rgba.reshape(-1, 4)).partition([rgba.shape[1]] * len(rgba))
+    stream.send_columns("machine/field", indexes=[index], columns=columns)
+
+
+def _sensors(
+    stream: rr.RecordingStream, c: Comparison, times: Array, positions: Mapping[str, Sequence[float]],
+    revisions: Sequence[Mapping[str, float]],
+) -> None:  # fmt: skip
+    import rerun as rr
+
+    placed = [channel for channel in c.channels if channel.name in positions]
+    if not placed:
+        return
+    points = rr.Points3D(
+        [positions[channel.name] for channel in placed], labels=[short(channel.name) for channel in placed],
+        radii=rr.Radius.ui_points(5.0), show_labels=True,
+    )  # fmt: skip
+    stream.log("machine/sensors", points, static=True)
+    residual = np.stack([np.interp(times, c.test.time, c.residual(channel)) for channel in placed], axis=1)
+    _markers(stream, placed, rr.TimeColumn(TIME, duration=times), residual)
+    if revisions:
+        ends = np.array([[row.get(channel.name, np.nan) for channel in placed] for row in revisions])
+        _markers(stream, placed, rr.TimeColumn(REVISION, sequence=range(len(ends))), ends)
+
+
+def _markers(stream: rr.RecordingStream, placed: Sequence[Channel], index: Any, residual: Array) -> None:
+    """Colours of the sensors for every entry of `index`, from residuals (n, n_sensors) K."""
+    import rerun as rr
+
+    colours = [
+        _rgba(VERDICT[Sensor(channel.name, (0, 0, 0), r, limit_K(channel)).verdict])
+        for row in residual
+        for channel, r in zip(placed, row, strict=True)
+    ]
+    columns = rr.Points3D.columns(colors=colours).partition([len(placed)] * len(residual))
+    stream.send_columns("machine/sensors", indexes=[index], columns=columns)
+
+
+def _curves(stream: rr.RecordingStream, c: Comparison) -> None:
+    for channel in c.channels:
+        _series(stream, f"curves/{channel.name}/measured", c.test.time, channel.y, LIGHT.faint, "measured")
+        _series(stream, f"curves/{channel.name}/model", c.test.time, c.model[channel.name], BLUE, "model")
+        if c.before is not None:
+            earlier = c.before[channel.name]
+            _series(stream, f"curves/{channel.name}/earlier", c.test.time, earlier, ORANGE, "earlier model")
+        colour = wrongness(c.residual(channel), limit_K(channel))
+        _series(stream, f"residual/{channel.name}", c.test.time, c.residual(channel), colour, short(channel.name))
+
+
+def _series(stream: rr.RecordingStream, path: str, time: Array, values: Array, colour: str, name: str) -> None:
+    import rerun as rr
+
+    seen = np.isfinite(values)
+    stream.log(path, rr.SeriesLines(colors=_rgba(colour), widths=2.0, names=name), static=True)
+    index = rr.TimeColumn(TIME, duration=np.asarray(time, float)[seen])
+    stream.send_columns(path, indexes=[index], columns=rr.Scalars.columns(scalars=np.asarray(values)[seen]))
+
+
+def _revisions(stream: rr.RecordingStream, history: Sequence[Mapping[str, Any]]) -> None:
+    import rerun as rr
+
+    for (name, role), errors in error_paths(history).items():
+        path, (colour, width) = f"error/{name}", (BLUE, 4.0) if role == "hold-out" else (PALE, 2.0)
+        name = f"{name} ({role})"
+        style = rr.SeriesLines(colors=_rgba(colour), widths=width, names=name, interpolation_mode="StepAfter")
+        stream.log(path, style, static=True)
+        index = rr.TimeColumn(REVISION, sequence=range(len(errors)))
+        stream.send_columns(path, indexes=[index], columns=rr.Scalars.columns(scalars=errors))
+    for i, text in enumerate(["as built", *(f"{r['action']} {r.get('effect') or ''}" for r in history)]):
+        if history:
+            stream.set_time(REVISION, sequence=i)
+            stream.log("step", rr.TextDocument(f"# Revision {i}\n\n{text}", media_type="text/markdown"))
+
+
+def _rgba(colour: str) -> int:
+    """'#rrggbb' as rerun's 0xRRGGBBAA."""
+    return int(colour[1:] + "ff", 16)
+
+
+_LEGEND = """
+
+Sensors: green within their uncertainty, vermilion where the machine is hotter than the model, blue where it is colder.
+
+Timelines (chosen at the bottom left): **test_time** runs through the test; for the tab *revisions* choose **revision**.
+"""

@@ -1,0 +1,1 @@
+"""The stage of pictures in space: surfaces cut open, camera, scale, labels."""

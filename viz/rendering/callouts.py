@@ -1,0 +1,111 @@
+"""Markers on the machine, each with a label beside the machine at the end of a leader line."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from viz.colours import LIGHT, Theme
+from viz.labels import spread
+from viz.rendering.scene import SIZE, View, set_font
+
+if TYPE_CHECKING:
+    import pyvista
+
+Array = NDArray[np.float64]
+HOLLOW = 0.42  # of the diameter of a dot that something covers is left white
+
+
+@dataclass(frozen=True)
+class Label:
+    """A text at the end of a leader line that starts at `xyz` (m), at a hollow dot if that is covered."""
+
+    xyz: tuple[float, float, float]
+    text: str
+    colour: str
+    covered: bool = False
+
+
+def callouts(
+    p: pyvista.Plotter, labels: Sequence[Label], points: Array, view: View, theme: Theme = LIGHT, size: int = 15,
+    dots: bool = True,
+) -> None:  # fmt: skip
+    """Markers on the machine with labels beside it, in the order of their heights so that lines seldom cross.
+
+    points : (n, 3) m that the labels stand beside;  dots : draw the markers too
+    """
+    towards, right, up = view.axes()
+    across, above = points @ right, points @ up
+    front = (points @ towards).max()
+    middle = (across.max() + across.min()) / 2
+    for side in (-1, 1):
+        mine = sorted(
+            (q for q in labels if (np.dot(q.xyz, right) > middle) == (side > 0)), key=lambda q: np.dot(q.xyz, up)
+        )
+        heights = spread([float(np.dot(q.xyz, up)) for q in mine], above.min(), above.max(), 0.075 * np.ptp(above))
+        edge = middle + side * (0.5 + 0.03) * np.ptp(across)
+        for q, height in zip(mine, heights, strict=True):
+            _callout(p, q, edge * right + height * up + front * towards, side, theme, size)
+            if dots:
+                dot(p, q)
+
+
+def dot(p: pyvista.Plotter, label: Label, size: float = 1.0) -> None:
+    """A marker without a label, `size` times as large as one with a label."""
+    import pyvista
+
+    flat: dict[str, Any] = {"lighting": False, "render_points_as_spheres": True}
+    here = pyvista.PolyData(np.array([label.xyz]))
+    on_top(p.add_mesh(here, color="white", point_size=26 * size, **flat), 2)
+    on_top(p.add_mesh(here.copy(), color=label.colour, point_size=19 * size, **flat), 3)
+    if label.covered:
+        on_top(p.add_mesh(here.copy(), color="white", point_size=HOLLOW * 19 * size, **flat), 4)
+
+
+def _callout(p: pyvista.Plotter, label: Label, end: Array, side: int, theme: Theme, size: int) -> None:
+    import pyvista
+
+    line = p.add_mesh(pyvista.Line(label.xyz, end), color=theme.ink, line_width=2.0, opacity=0.8, lighting=False)
+    on_top(line, 1)
+    p.add_actor(text(label.text, end, label.colour, side, size), reset_camera=False, pickable=False)
+
+
+def width(text: str, size: int) -> float:
+    """Share of the picture's width that a label of that size takes, about."""
+    return 0.55 * size * (len(text) + 1) / SIZE[0]
+
+
+def text(text: str, at: Array, colour: str, side: int, size: int) -> Any:
+    """White text on a coloured ground, pinned to a point in space."""
+    import pyvista
+    from vtkmodules.vtkRenderingCore import vtkTextActor
+
+    actor, ground = vtkTextActor(), pyvista.Color(colour).float_rgb
+    actor.SetInput(f" {text} ")
+    actor.GetPositionCoordinate().SetCoordinateSystemToWorld()
+    actor.GetPositionCoordinate().SetValue(*at)
+    style = actor.GetTextProperty()
+    set_font(style)
+    style.SetFontSize(size)
+    style.SetColor(1.0, 1.0, 1.0)
+    style.SetBackgroundColor(*ground)
+    style.SetBackgroundOpacity(1.0)
+    style.SetFrame(True)
+    style.SetFrameColor(*ground)
+    style.SetFrameWidth(4)
+    style.SetVerticalJustificationToCentered()
+    (style.SetJustificationToRight, style.SetJustificationToCentered, style.SetJustificationToLeft)[side + 1]()
+    return actor
+
+
+def on_top(actor: Any, order: int) -> None:
+    """Draw the actor over everything else: a thermocouple inside the machine must be seen."""
+    mapper = actor.GetMapper()
+    mapper.SetResolveCoincidentTopologyToPolygonOffset()
+    mapper.SetRelativeCoincidentTopologyLineOffsetParameters(0, -22000 * order)
+    mapper.SetRelativeCoincidentTopologyPointOffsetParameter(-22000 * order)
+    mapper.SetRelativeCoincidentTopologyPolygonOffsetParameters(0, -22000 * order)

@@ -1,0 +1,110 @@
+"""Ghosted material: what hides a sensor is made transparent in a small window, down to a section at its depth.
+
+The sides of a window are planes through the eye, so only its bottom is seen: the section at the sensor's own place.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from viz.rendering.cut import Surface, joined, section
+
+Array = NDArray[np.float64]
+SIDES = 20  # of a window: round to the eye
+OPACITY = 0.16  # of ghosted material: it is there, and what is behind it keeps its colour
+RADIUS = 0.028  # of the machine's diagonal: three times a dot, so that what is around the sensor can be told
+
+
+@dataclass(frozen=True)
+class Window:
+    """normals : (SIDES, 3) into the window, of planes through the eye (m);  bottom : the sensor's place (m)
+
+    towards : unit vector from there to the eye;  rim : (SIDES, 3) m around the bottom
+    """
+
+    eye: Array
+    normals: Array
+    bottom: Array
+    towards: Array
+    rim: Array
+
+    def split(self, pieces: list[Surface]) -> tuple[list[Surface], list[Surface]]:
+        """What the window takes away of some surfaces, and what stays."""
+        taken, stays = list[Surface](), list[Surface]()
+        planes = [*((n, float(n @ self.eye)) for n in self.normals), (self.towards, float(self.towards @ self.bottom))]
+        for piece in pieces:
+            near = self._near(piece)
+            stays.append(piece.only(~near))
+            inside = piece.only(near).compact()  # small: each plane then costs little
+            for normal, offset in planes if near.any() else ():
+                stays.append(inside.clipped(-normal, -offset))
+                inside = inside.clipped(normal, offset)
+            taken.append(inside)
+        return [t for t in taken if len(t.triangles)], [s for s in stays if len(s.triangles)]
+
+    def cropped(self, surface: Surface) -> Surface:
+        """What lies within the window's sides."""
+        surface = surface.only(self._near(surface)).compact()
+        for n in self.normals:
+            surface = surface.clipped(n, float(n @ self.eye))
+        return surface
+
+    def _near(self, surface: Surface) -> NDArray[np.bool_]:
+        """(n,) triangles with no side of the window between them and it."""
+        outside = (surface.points - self.eye) @ self.normals.T < 0
+        return ~np.any(np.all(outside[surface.triangles], axis=1), axis=1)
+
+
+@dataclass(frozen=True)
+class Ghosted:
+    """A surface with windows in it.
+
+    solid : what still hides;  ghost : what has become transparent, None without a window
+    """
+
+    solid: Surface
+    ghost: Surface | None = None
+    windows: tuple[Window, ...] = ()
+
+
+def ghosted(surface: Surface, places: Array, chosen: NDArray[np.bool_], eye: Array) -> Ghosted:
+    """The surface with a window to each chosen one of the places (n, 3) m, as seen from `eye` (m); the deepest last.
+
+    Windows keep off the other places, chosen or not: each must show its own part.
+    """
+    size = float(np.linalg.norm(np.ptp(surface.nodes.points, axis=0)))
+    rows = np.flatnonzero(chosen).tolist()
+    windows = [window(places[i], eye, min(RADIUS * size, _free(places, i, eye))) for i in rows]
+    windows.sort(key=lambda w: float(np.linalg.norm(w.bottom - eye)))
+    if not windows:
+        return Ghosted(surface)
+    solid, floors, ghosts = [surface], list[Surface](), list[Surface]()
+    for one in windows:
+        taken, solid = one.split(solid)
+        ghosts += taken
+        floor = one.cropped(section(surface.nodes, one.towards, float(one.towards @ one.bottom)))
+        floors = [*one.split(floors)[1], floor]
+    return Ghosted(joined([*solid, *floors]), joined(ghosts) if ghosts else None, tuple(windows))
+
+
+def _free(places: Array, i: int, eye: Array) -> float:
+    """Half the distance from a place to the nearest other line of sight (m)."""
+    sight = (places - eye) / np.linalg.norm(places - eye, axis=1, keepdims=True)
+    apart = np.linalg.norm(np.cross(np.delete(sight, i, axis=0), places[i] - eye), axis=1)
+    return float(apart.min(initial=np.inf)) / 2
+
+
+def window(at: Array, eye: Array, radius: float) -> Window:
+    """A window of `radius` (m) around a place, its bottom across the line of sight."""
+    towards = (eye - at) / np.linalg.norm(eye - at)
+    right = np.cross([0.0, 1.0, 0.0], towards)
+    right /= np.linalg.norm(right)
+    angle = 2 * np.pi * np.arange(SIDES) / SIDES
+    rim = at + radius * (np.cos(angle)[:, None] * right + np.sin(angle)[:, None] * np.cross(towards, right))
+    normals = np.cross(rim - eye, np.roll(rim, -1, axis=0) - eye)
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    normals *= np.sign(normals @ (at - eye))[:, None]
+    return Window(eye, normals, at, towards, rim)

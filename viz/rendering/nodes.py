@@ -1,0 +1,91 @@
+"""From the conformal mesh to one whose parts own their nodes: temperatures jump where a contact resists."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geom.description.identity import Identity
+from geom.errors import InputError
+from geom.meshing.mesh import NamedMesh
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class SplitMesh:
+    """A mesh in which no two parts share a node; parts follow one another, each with its points in rising order.
+
+    points : (n_nodes, 3) m;  tets : (n_tets, 4);  region : (n_tets,);  parts : names
+    original : (n_nodes,) point number in the conformal mesh
+    owner : (n_nodes,) index of the part that owns the node
+    identities : what the parts are, where it is declared
+    """
+
+    points: Array
+    tets: Index
+    region: Index
+    parts: tuple[str, ...]
+    original: Index
+    owner: Index
+    identities: Mapping[str, Identity] = field(default_factory=dict)
+
+    @property
+    def size(self) -> int:
+        return len(self.points)
+
+    def of(self, part: str) -> Index:
+        """Numbers of the nodes of one part."""
+        if part not in self.parts:
+            raise InputError(f"unknown part '{part}'", "mesh", f"known: {', '.join(self.parts)}")
+        return np.flatnonzero(self.owner == self.parts.index(part))
+
+    def boundary(self) -> tuple[Index, Index]:
+        """Outer triangles of every part, (n, 3), and the part of each, (n,)."""
+        corners = self.tets[:, [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]]].reshape(-1, 3)
+        inner = repeated(corners)
+        return corners[~inner], np.repeat(self.region, 4)[~inner]
+
+
+def repeated(triangles: Index) -> NDArray[np.bool_]:
+    """(n,) which triangles, corners (n, 3) in any order, occur more than once."""
+    a, b, c = np.sort(triangles, axis=1).T
+    step = int(triangles.max(initial=0)) + 1
+    key = (a * step + b) * step + c  # one number per triangle, below 2^63 up to two million nodes
+    order = np.argsort(key)
+    same = key[order][1:] == key[order][:-1]
+    out = np.zeros(len(key), bool)
+    out[order[1:][same]] = out[order[:-1][same]] = True
+    return out
+
+
+def split(mesh: NamedMesh) -> SplitMesh:
+    """Give every part its own copy of the nodes it touches, parts one after the other."""
+    ids = [np.unique(mesh.tets[mesh.region == i]) for i in range(len(mesh.parts))]
+    starts = np.cumsum([0, *map(len, ids)])
+    tets = np.empty_like(mesh.tets)
+    for i, part_ids in enumerate(ids):
+        mine = mesh.region == i
+        tets[mine] = starts[i] + np.searchsorted(part_ids, mesh.tets[mine])
+    original = np.concatenate(ids)
+    owner = np.repeat(np.arange(len(ids)), [len(part_ids) for part_ids in ids])
+    return SplitMesh(mesh.points[original], tets, mesh.region, mesh.parts, original, owner, mesh.identities)
+
+
+def on_nodes(nodes: SplitMesh, temperature: Array) -> Array:
+    """Temperatures per split node (or per conformal point, which are then copied), checked for size and finiteness."""
+    T = np.asarray(temperature, float)
+    if T.shape[-1] == nodes.size:
+        out = T
+    elif T.shape[-1] == nodes.original.max() + 1:
+        out = T[..., nodes.original]
+    else:
+        right = f"{nodes.size} values, one per node of every part, or {nodes.original.max() + 1}, one per point"
+        raise InputError(f"{T.shape[-1]} temperatures do not fit the mesh", "field", right)
+    if not np.isfinite(out).all():
+        raise InputError("temperatures that are not finite numbers", "field", "finite degC at every node")
+    return out

@@ -1,0 +1,155 @@
+"""The stage for pictures in space: plotter, camera, surfaces, outlines, colour bar, labels on leader lines."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from viz.colours import LIGHT, Theme
+from viz.rendering.cut import Surface
+from viz.rendering.gl import require_gl
+from viz.rendering.scale import decimals, marks
+
+if TYPE_CHECKING:
+    import pyvista
+
+Array = NDArray[np.float64]
+SIZE = (1280, 800)
+FEATURE_ANGLE = 35.0  # degrees between facets from which an edge is drawn
+
+
+@dataclass(frozen=True)
+class View:
+    """Where the camera stands: a direction from the machine's middle; z runs to the right, y up."""
+
+    direction: tuple[float, float, float] = (-1.0, 0.42, 0.62)
+    up: tuple[float, float, float] = (0.0, 1.0, 0.0)
+    angle: float = 14.0
+    margin: float = 1.06
+
+    def axes(self) -> tuple[Array, Array, Array]:
+        """Unit vectors towards the viewer, to the right and up on the screen."""
+        towards = np.asarray(self.direction, float) / np.linalg.norm(self.direction)
+        right = np.cross(self.up, towards)
+        right /= np.linalg.norm(right)
+        return towards, right, np.cross(towards, right)
+
+
+@dataclass(frozen=True)
+class Room:
+    """Shares of the picture kept free of the machine."""
+
+    left: float = 0.0
+    right: float = 0.0
+    top: float = 0.0
+
+
+NO_ROOM = Room()
+TITLE = 0.07  # share of the height that a headline takes
+
+
+def plotter(
+    theme: Theme = LIGHT, size: tuple[int, int] = SIZE, shape: tuple[int, int] = (1, 1), smooth: bool = True
+) -> pyvista.Plotter:
+    """An off-screen plotter; smooth edges cost four times the pixels."""
+    require_gl()
+    import pyvista
+
+    p = pyvista.Plotter(off_screen=True, window_size=list(size), shape=shape, border=False, lighting="none")
+    for renderer in p.renderers:
+        renderer.add_light(pyvista.Light(light_type="headlight"))
+    p.set_background(theme.paper, all_renderers=True)  # type: ignore[arg-type]
+    if smooth:
+        p.enable_anti_aliasing("ssaa", all_renderers=True)
+    return p
+
+
+def polydata(surface: Surface, shift: Array | None = None) -> pyvista.PolyData:
+    """The surface for VTK; `shift` (n_parts, 3) m moves its parts."""
+    import pyvista
+
+    points = surface.points
+    if shift is not None:
+        points = points + shift[surface.owner]
+    data = pyvista.PolyData.from_regular_faces(points, surface.triangles)  # type: ignore[arg-type]
+    data.cell_data["part"] = surface.part
+    return data
+
+
+def outline(p: pyvista.Plotter, data: pyvista.PolyData, theme: Theme = LIGHT, opacity: float = 0.8) -> None:
+    """Thin lines along sharp edges and along the edges of every part."""
+    edges = data.extract_feature_edges(
+        FEATURE_ANGLE, boundary_edges=True, non_manifold_edges=False, manifold_edges=False, clear_data=True
+    )
+    if edges.n_points:
+        p.add_mesh(edges, color=theme.ink, line_width=1.0, opacity=opacity, show_scalar_bar=False, lighting=False)
+
+
+def look(p: pyvista.Plotter, points: Array, view: View, room: Room = NO_ROOM) -> None:
+    """Put the whole machine into the picture, with room kept free around it."""
+    towards, right, up = view.axes()
+    across, above = points @ right, points @ up
+    depth = points @ towards
+    aspect = p.renderer.GetSize()[0] / max(p.renderer.GetSize()[1], 1)
+    tan = np.tan(np.deg2rad(view.angle) / 2)
+    half_w = np.ptp(across) / 2 * view.margin / (1 - room.left - room.right)
+    half_h = np.ptp(above) / 2 * view.margin / (1 - room.top)
+    distance = max(half_h, half_w / aspect) / tan + np.ptp(depth) / 2
+    middle = (across.max() + across.min()) / 2 + half_w * (room.right - room.left)
+    height = (above.max() + above.min()) / 2 + half_h * room.top
+    focus = middle * right + height * up + (depth.max() + depth.min()) / 2 * towards
+    p.camera.position = focus + distance * towards
+    p.camera.focal_point, p.camera.up, p.camera.view_angle = focus, view.up, view.angle
+    p.renderer.ResetCameraClippingRange()
+
+
+def colour_bar(p: pyvista.Plotter, title: str, theme: Theme = LIGHT, **options: Any) -> None:
+    """A vertical bar at the right edge, its title above it, marked where a rounded range has its round numbers."""
+    style: dict[str, Any] = {
+        "title": title, "vertical": True, "position_x": 0.905, "position_y": 0.14, "width": 0.045, "height": 0.66,
+        "label_font_size": 17, "title_font_size": 17, "color": theme.ink,
+    }  # fmt: skip
+    mapper: Any = options.get("mapper") or p.mapper
+    low, high = mapper.scalar_range
+    unit = f" {unit}" if (unit := options.pop("unit", "")) else ""
+    style |= {"n_labels": len(marks(low, high)), "fmt": f"%.{decimals(high - low)}f{unit}"}
+    bar = p.add_scalar_bar(**{**style, **options})
+    bar.SetTextPad(6)
+    bar.SetVerticalTitleSeparation(14)
+    for text in (bar.GetTitleTextProperty(), bar.GetLabelTextProperty()):
+        set_font(text)
+
+
+def headline(p: pyvista.Plotter, text: str, theme: Theme = LIGHT) -> None:
+    """One line above the picture."""
+    if text:
+        actor = p.add_text(text, position=(0.02, 0.94), viewport=True, font_size=14, color=theme.ink, name="headline")
+        set_font(actor.GetTextProperty())
+
+
+def footnote(p: pyvista.Plotter, text: str, theme: Theme = LIGHT) -> None:
+    """A small line below the picture."""
+    actor = p.add_text(text, position=(0.02, 0.025), viewport=True, font_size=9, color=theme.ink, name="footnote")
+    set_font(actor.GetTextProperty())
+
+
+def save(p: pyvista.Plotter, png: str | Path | None) -> None:
+    """Write the picture if a path is given; the plotter stays open for the caller."""
+    if png is not None:
+        Path(png).parent.mkdir(parents=True, exist_ok=True)
+        p.screenshot(str(png))
+
+
+def set_font(style: Any) -> None:
+    """DejaVu Sans, which matplotlib always brings along."""
+    from matplotlib import get_data_path
+
+    style.SetFontFamily(4)  # VTK_FONT_FILE, a macro that the Python wheels do not export
+    style.SetFontFile(str(Path(get_data_path()) / "fonts" / "ttf" / "DejaVuSans.ttf"))
+    style.SetItalic(False)
+    style.SetBold(False)
+    style.SetShadow(False)
