@@ -24,11 +24,11 @@ MOST = 5  # effects at once: who forgot more begins with another model
 def further(
     case: Case, evidence: Evidence, hypotheses: Sequence[Hypothesis], progress: Callable[[str], None] = silent
 ) -> list[Hypothesis]:
-    """The hypotheses, with larger ones where heat of unknown cause explains more than all that the catalogue can."""
+    """The hypotheses, with larger ones where two effects explain most, or heat of unknown cause explains more."""
     out, heat = list(hypotheses), max((h.weight for h in hypotheses if h.heat), default=-np.inf)
     fitted = [h for h in out if h.fit and h.members and not any(evidence.effects[k].whole for k in h.members)]
     best = max(fitted, key=lambda h: h.weight, default=None)
-    while best is not None and best.weight < heat and len(best.members) < MOST:
+    while best is not None and (best.weight < heat or len(best.members) > 1) and len(best.members) < MOST:
         best = with_one_more(case, evidence, best, progress)
         out += [best] if best else []
     return out

@@ -1,0 +1,86 @@
+"""The evidence of a noise against the dense normal distribution, and three effects found one beside the other."""
+
+import numpy as np
+import pytest
+from playground import Truth, wind
+from scipy.linalg import block_diag
+from scipy.stats import multivariate_normal
+
+from validation.effects import effect
+from validation.inference.diagnose import sharpened
+from validation.inference.evidence import calibrated_case, log_evidence, scored
+from validation.inference.posterior import Hypothesis, averaged, pairs, singles
+from validation.inference.refits import refitted
+from validation.inference.several import further
+from validation.measurement.noise import Level, Noise
+
+NAMES = ("convection@flange.right", "loss.constant@poles", "loss.constant@bearing.left", "sensor.bias@yoke")
+
+
+def three(T, u, t):
+    """Wind on one flange, and heat in two parts."""
+    return {**wind("flange.right", 40.0)(T, u, t), "poles": 400.0, "bearing.left": 150.0}
+
+
+@pytest.fixture(scope="module")
+def evidence():
+    case = Truth(12, three).case()
+    return scored(case, [effect(n) for n in NAMES], calibrated_case(case))
+
+
+def covariance(noise, s):
+    level = noise.at(s)
+    return level.white**2 * level.shape().matrix(s.time)
+
+
+def test_log_evidence_is_that_of_the_dense_normal_distribution(evidence):
+    """r + J theta ~ N(0, noise + J P J' + D D') where everything is linear."""
+    fit = evidence.fit
+    few = [s for s in evidence.parts if s.channel in ("yoke", "flange.right")]
+    J = np.vstack([s.J[:, : evidence.p] for s in few])
+    D = np.vstack([fit.error.of(s) for s in few])
+    z = np.concatenate([s.r for s in few]) + J @ fit.theta
+    S = block_diag(*(covariance(fit.noise, s) for s in few)) + (J * fit.unknowns.sd**2) @ J.T + D @ D.T
+    dense = multivariate_normal(np.zeros(z.size), S, allow_singular=False).logpdf(z) + 0.5 * z.size * np.log(
+        2.0 * np.pi
+    )
+    assert log_evidence(fit, few) == pytest.approx(dense + fit.noise.log_prior(few), rel=1e-6)
+
+
+def test_determinant_of_the_noise(evidence):
+    for s in evidence.parts[:3]:
+        expected = np.linalg.slogdet(covariance(evidence.fit.noise, s))[1]
+        assert evidence.fit.noise.logdet(s) == pytest.approx(expected, rel=1e-9)
+
+
+def test_a_misfit_twice_the_allowed_is_one_deviation_from_its_prior(evidence):
+    s = evidence.parts[0]
+    allowed = s.model_K / s.weight
+
+    def prior(factor):
+        return Noise({s.channel: Level(1e-3, 0.0, 120.0, factor * allowed, 1200.0)}).log_prior([s])
+
+    assert prior(1.0) == pytest.approx(0.0, abs=1e-9)
+    assert prior(2.0) == pytest.approx(-0.5)
+    assert prior(0.5) == pytest.approx(0.0, abs=1e-9)  # never below what a model is allowed
+
+
+def test_a_larger_noise_can_only_help_what_explains_less(evidence):
+    """Averaged over two noises the odds of nothing against the best effect come nearer to one."""
+    ones = singles(evidence)
+    best = max(ones[1:], key=lambda h: h.log_bayes)
+    wide = averaged(ones, evidence, -10.0)
+    assert [h.log_bayes for h in wide] == [h.log_bayes for h in ones]
+    assert wide[0].nats == pytest.approx(np.logaddexp(0.0, -10.0))
+    same = next(h for h in wide if h.members == best.members)
+    assert same.nats - wide[0].nats == pytest.approx(best.log_bayes, rel=1e-6)  # the same noise twice changes nothing
+
+
+def test_three_effects_are_found_one_beside_the_other(evidence):
+    case = Truth(12, three).case()
+    sharp = sharpened(evidence)
+    ones = singles(sharp)
+    fitted = refitted(sharp, [*ones, *pairs(sharp, ones)])
+    found = max(further(case, sharp, fitted), key=lambda h: h.weight)
+    assert isinstance(found, Hypothesis)
+    assert {sharp.names[k] for k in found.members} == set(NAMES[:3])
