@@ -109,6 +109,7 @@ def infer(case: Case, kinds: Sequence[str] | None = None, progress: Progress = s
     known = {**case.model.values, **evidence.fit.values}
     bent = laws(evidence, known) if kinds is None or KIND in kinds else []
     evidence = sharpened(joined(evidence, [*chosen, *bent], known))
+    heat = looked.read(evidence.fit.parts, evidence.fit.noise, evidence.fit.theta, evidence.fit.error)
     loud = under(evidence, fit.noise)
     ones = singles(evidence)
     weighed = [*ones, *pairs(evidence, ones), *unknown_heat({w.place: w.log_bayes for w in heat})]
