@@ -30,9 +30,9 @@ from condensation_points import Pair, Point
 
 from fem.solvers.solve import Fluids, steady
 from geom import library, load_machine
-from lumped.condensation.guard import Errors, errors, merged
+from lumped.condensation.reduction_error import Errors, errors, merged
 from lumped.model.network import Network
-from thermoscope.verification.sized import Sized, sized
+from thermoscope.verification.network_size import Sized, sized
 
 WANTED = {"mean": 1.0, "hot": 2.0, "point": 2.0}
 AT_RANDOM = {**WANTED, "hot": 3.0}

@@ -19,7 +19,7 @@ from lumped.machine.motor import rated_inputs
 from lumped.model.network import Network
 from thermoscope.verification.crosscheck import coefficients, fluid_nodes
 from thermoscope.verification.load_cases import rated_watts
-from thermoscope.verification.sized import Sized
+from thermoscope.verification.network_size import Sized
 
 Floats = np.ndarray
 WARM = 20.0  # K, of a coolant's inlet over the surroundings in the third load case

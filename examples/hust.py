@@ -25,11 +25,11 @@ from thermoscope.case_folder.folder import find_case, load_case
 from thermoscope.case_folder.history import History, load_history, save_history
 from thermoscope.commands.model.revise import recorded
 from validation import diagnose
-from validation.calibration.fitting import with_model
+from validation.calibration.unknowns import with_model
 from validation.case import Case
 from validation.comparison.compare import Comparison
 from validation.revision import revise
-from validation.revision.climb import Guide, Stair, best, climb
+from validation.revision.improvement import Guide, Stair, best, climb
 
 CHANNELS = ("winding", "stator", "rotor")
 EVIDENCE = (

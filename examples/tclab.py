@@ -16,7 +16,7 @@ from pathlib import Path
 
 from thermoscope.case_folder.files import write_whole
 from thermoscope.case_folder.folder import find_case, load_case
-from validation.revision.climb import Climbed, Guide, Stair, best, climb, leading
+from validation.revision.improvement import Climbed, Guide, Stair, best, climb, leading
 
 PATHS = ("convection.constant", "convection.buoyant", "radiation", "coupling", "sensor.lag")
 

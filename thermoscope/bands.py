@@ -21,7 +21,8 @@ from thermoscope.caches import cache_folder
 from thermoscope.case_folder.files import write_whole
 from thermoscope.case_folder.folder import Folder, Progress
 from thermoscope.case_folder.runs import looks
-from validation.bands import Bands, Belief, Place, bands, belief
+from validation.bands import Bands, Belief, Place, bands
+from validation.bands import posterior as belief
 from validation.bands.band import NORMAL_95
 from validation.case import RUNNING, Recorded, Test
 

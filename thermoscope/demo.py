@@ -18,16 +18,16 @@ from thermoscope.commands.explain.diagnose import diagnose
 from thermoscope.commands.model.build import build
 from thermoscope.commands.model.calibrate import calibrate
 from thermoscope.commands.model.revise import add
-from thermoscope.commands.opened import opened
-from thermoscope.commands.saved import saved_diagnosis
+from thermoscope.commands.open_case import opened
 from thermoscope.commands.show.pages import by_interest, render, report
+from thermoscope.commands.stored_diagnosis import saved_diagnosis
 from thermoscope.commands.test.compare import compare
 from thermoscope.console.answer import Answer, Grid, within
 from thermoscope.console.terminal import give, notes, progress, say
 
 if TYPE_CHECKING:
     from thermoscope.pipeline import Built
-    from validation.calibration.tuned import Tuned
+    from validation.calibration.one_factor_fit import Tuned
     from validation.comparison.compare import Comparison
 
 CASE, KNOB = "road-test", "fan.flow"
@@ -177,7 +177,7 @@ def held_against(case: Path) -> Comparison:
 
 def old_way(case: Path) -> Tuned:
     """One knob, turned until the right flange agrees on the first road test."""
-    from validation.calibration.tuned import tuned
+    from validation.calibration.one_factor_fit import tuned
 
     with progress() as tell:
         folder = opened(str(case), tell)

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from geom.disk_cache import written_whole
 from geom.errors import InputError
-from geom.kept import written_whole
 from geom.meshing.mesh import Contact, NamedMesh, Patch
 
 

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 from geom.description.identity import Identity
 from geom.description.machine import Machine
 from geom.description.part import Part
+from geom.disk_cache import kept_file, written_whole
 from geom.drawings.palette import colour
 from geom.errors import InputError
-from geom.kept import kept_file, written_whole
 from geom.solids.carved import carved, prism
 from geom.solids.glb import write_glb
 from geom.solids.step import step_sidecar

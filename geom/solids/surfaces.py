@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from geom.description.machine import Machine
 from geom.description.part import Part
-from geom.kept import kept_file, written_whole
+from geom.disk_cache import kept_file, written_whole
 from geom.solids.cad import solids
 
 if TYPE_CHECKING:

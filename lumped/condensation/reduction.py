@@ -29,8 +29,8 @@ from fem.solvers.snapshots import (
     snapshots,
 )
 from fem.solvers.solve import Solve, Solver, film_columns
+from lumped.condensation.basis_cache import Centre, Shelf
 from lumped.condensation.condensed import network_in
-from lumped.condensation.shelf import Centre, Shelf
 from lumped.condensation.zone import Zone
 from lumped.model.network import Array, Network
 

@@ -16,11 +16,11 @@ from scripts.papers.page import Row, Section
 from thermoscope.case_folder.folder import Folder, load_case
 from thermoscope.case_folder.runs import readings
 from validation.calibration.calibrate import calibrated
-from validation.calibration.fitting import working
+from validation.calibration.unknowns import working
 from validation.case import Case, Test
 from validation.procedure.measuring.repeats import Repeats, normalised_error, pooled_curves, repeats
 from validation.procedure.reduction.base_heat import BaseHeat, base_heat
-from validation.procedure.reduction.carry import Carried, carried, settled
+from validation.procedure.reduction.transfer import Carried, carried, settled
 from validation.procedure.reduction.two_paths import TwoPaths, of_test
 from validation.procedure.reduction.which_base import which_base
 

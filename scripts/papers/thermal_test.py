@@ -14,8 +14,8 @@ from validation.procedure.factors.factorial import full
 from validation.procedure.factors.screening import STEP, TABLE_I, WITH_GAP, Screening, screen, varied
 from validation.procedure.factors.sensitivity import Ranking, morris, sobol
 from validation.procedure.measuring.meters import OHMMETER, VOLTMETER, Meter, Range
+from validation.procedure.measuring.propagation import Spread, spread
 from validation.procedure.measuring.readings import COPPER, NDFEB, Winding, magnet_rise
-from validation.procedure.measuring.spread import Spread, spread
 from validation.procedure.measuring.switch_off import Cooling, exponentials, rule_150, semilog_at
 from viz.figures.screening import screened
 

@@ -10,8 +10,8 @@ from condensation import after_step, energy, over_loads, put, unbalanced
 from condensation_points import Pair
 
 from geom import load_machine
-from lumped.condensation.guard import Errors
-from thermoscope.verification.sized import sized
+from lumped.condensation.reduction_error import Errors
+from thermoscope.verification.network_size import sized
 
 
 @pytest.fixture(scope="module")

@@ -20,7 +20,7 @@ from hidden.user import network_of
 from scipy.integrate import solve_ivp
 
 from validation.case import Test
-from validation.planning.menu import possible
+from validation.planning.candidate_tests import possible
 
 TRUTH = Path(__file__).parents[2] / "benchmarks" / "hidden" / "truth"
 DRIVEN = [

@@ -14,7 +14,7 @@ from scripts.pmsm_cases import TESTS, folder_of, text
 from thermoscope.case_folder.folder import load_case
 from thermoscope.cli import main
 from validation.procedure.measuring.repeats import repeats
-from validation.procedure.reduction.carry import carried, settled
+from validation.procedure.reduction.transfer import carried, settled
 from validation.procedure.reduction.which_base import bases_tried, declared_base, on_base, which_base, wrong_bases
 
 GAP = "k.liner-gap"

@@ -12,7 +12,7 @@ from lumped.condensation.reduction import Recipe
 from thermoscope.case_folder.folder import load_machine_file
 from thermoscope.cli import main
 from thermoscope.commands.model.crosscheck import checked
-from thermoscope.verification.sized import sized
+from thermoscope.verification.network_size import sized
 
 ROOT = Path(__file__).resolve().parents[2]
 SMALL = Recipe(tolerance=0.1, random_points=2, local_points=2, local_states=4)

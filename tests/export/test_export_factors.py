@@ -22,7 +22,7 @@ from lumped.transfer.reversal import Direction, OneWay
 from thermoscope.export.expansion import Unknown, expanded
 from thermoscope.export.products import value
 from thermoscope.export.tables import factors
-from validation.calibration.forms import Bend, BendOfDifference, BendOfTemperature
+from validation.calibration.model_form import Bend, BendOfDifference, BendOfTemperature
 from validation.effects.build import Shaped
 from validation.effects.losses.iron_pwm import Ripple
 from validation.effects.streams.fouling import hours

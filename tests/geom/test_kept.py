@@ -2,7 +2,7 @@
 
 import pytest
 
-from geom.kept import written_whole
+from geom.disk_cache import written_whole
 
 
 def test_nobody_sees_a_file_before_it_is_complete(tmp_path):

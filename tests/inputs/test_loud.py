@@ -4,7 +4,7 @@ import pytest
 from recordings import case_of, changed, edited
 
 from geom.errors import InputError
-from thermoscope.commands.opened import opened
+from thermoscope.commands.open_case import opened
 
 TESTS = ("stand", "road", "town")
 SPEED = 'quantity = "vehicle_speed"\nunit = "km/h"'

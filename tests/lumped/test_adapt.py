@@ -8,9 +8,9 @@ from fem.matrices.assembly import assemble
 from fem.matrices.grids import ring
 from fem.matrices.material import isotropic, laminated, wound
 from fem.solvers.solve import Solver
-from lumped.condensation.adapt import Size, adapt, excess
-from lumped.condensation.guard import Wish, mixes, point_errors
+from lumped.condensation.greedy_enrichment import Size, adapt, excess
 from lumped.condensation.reduction import Recipe, Zone, reduce
+from lumped.condensation.reduction_error import Wish, mixes, point_errors
 
 CONTACTS = {"coil|core": 400.0, "coil|yoke": 800.0}
 LEFT = Zone("coil", lambda c: (c[:, 2] < 0.06).astype(float))

@@ -46,7 +46,7 @@ def with_motor(path: Path) -> Folder:
 
 
 def main() -> None:
-    from thermoscope.workbench.gate import Gate
+    from thermoscope.workbench.access_control import Gate
     from thermoscope.workbench.serve import application, serve
 
     case, gate = small_case(Path(sys.argv[1])), Gate("127.0.0.1", os.environ.get("THERMOSCOPE_TOKEN", ""))

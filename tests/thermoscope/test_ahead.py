@@ -1,6 +1,6 @@
 """What would decide is shown only where something would."""
 
-from thermoscope.commands.explain.ahead import ahead
+from thermoscope.commands.explain.next_tests import ahead
 
 
 def shown(**document):

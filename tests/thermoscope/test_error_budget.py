@@ -15,7 +15,7 @@ from thermoscope.commands.use.simulate import simulate
 from thermoscope.pipeline import Meshing, build, coefficients_on, meshed
 from thermoscope.verification import rated_errors
 from thermoscope.verification.error_budget import Looks
-from thermoscope.verification.frozen import rated
+from thermoscope.verification.fixed_coefficients import rated
 from thermoscope.verification.rated_errors import HOT, Reader, at_rated_point, kept
 
 MACHINE, SIZE, SEGMENTS, AXIAL = "pmsm-m1-no-base", 0.1, 36, 0.12

@@ -10,7 +10,7 @@ from lumped.machine.losses import loss_shares
 from thermoscope.commands.model.crosscheck import save
 from thermoscope.pipeline import build
 from thermoscope.verification.crosscheck import crosscheck
-from thermoscope.verification.hand import hand_rows
+from thermoscope.verification.hand_formulas import hand_rows
 
 
 @pytest.fixture(scope="module")

@@ -13,7 +13,7 @@ from motor_case import with_motor
 from small_case import small_case
 
 from geom.errors import InputError
-from thermoscope.workbench.gate import Gate, loopback, served
+from thermoscope.workbench.access_control import Gate, loopback, served
 from thermoscope.workbench.serve import application, token_for
 from thermoscope.workbench.tabs import MOST
 

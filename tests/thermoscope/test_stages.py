@@ -2,7 +2,7 @@
 
 import pytest
 
-from thermoscope.console.stages import Stages, progress
+from thermoscope.console.progress_bar import Stages, progress
 
 
 class Clock:

@@ -10,9 +10,9 @@ from playground import Truth, wind
 
 from lumped.model.network import Parameter
 from validation.calibration.calibrate import minimise, square_of
-from validation.calibration.fitting import Unknowns
+from validation.calibration.unknowns import Unknowns
 from validation.case import AddedEffect
-from validation.comparison.sheet import segments
+from validation.comparison.linearisation import segments
 from validation.effects import effect
 from validation.inference.evidence import diagnosing
 from validation.revision.acceptance import checks, predicted_without

@@ -9,7 +9,8 @@ from numpy.testing import assert_allclose
 from lumped.model.build import bare_network, node_link, node_source
 from lumped.model.network import Parameter, Row
 from lumped.transfer.laws import Fixed
-from validation.bands import Place, bands, belief
+from validation.bands import Place, bands
+from validation.bands import posterior as belief
 from validation.case import Case, Channel, Model, Test
 from validation.doubt import USUAL
 from validation.revision.revise import calibrate

@@ -12,11 +12,11 @@ from lumped.integration.simulate import Record, simulate
 from validation import diagnose
 from validation.case import Case, Channel, Model, Test
 from validation.comparison.predict import predict
-from validation.conditions.hats import Path, hats
+from validation.conditions.hat_functions import Path, hats
 from validation.conditions.windows import best_stretch, joined, pulses
-from validation.diagnosis.where import scan
+from validation.diagnosis.missing_heat import scan
 from validation.effects import Scene, effect
-from validation.effects.gate import Event, checked, event, holds, share
+from validation.effects.time_window import Event, checked, event, holds, share
 from validation.inference.evidence import calibrated_case, candidates, scored
 
 ONE = Event.of({"day": [(600.0, 900.0)]})

@@ -5,7 +5,7 @@ import pytest
 from playground import Truth, wind
 
 from validation.calibration.calibrate import Known, calibrated, minimise, residual_noise
-from validation.calibration.fitting import working
+from validation.calibration.unknowns import working
 from validation.effects import effect
 from validation.inference.evidence import calibrated_case, scored
 

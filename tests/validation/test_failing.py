@@ -9,7 +9,7 @@ from one_body import LOSS, G, P, measured, one_node
 from validation.case import Case, Model
 from validation.comparison.residuals import dependence, ljung_box, periodogram
 from validation.comparison.uncertainty import uncertainties
-from validation.diagnosis.failing import failing
+from validation.diagnosis.discrepancy import failing
 from validation.doubt import USUAL
 
 RNG = np.random.default_rng(0)

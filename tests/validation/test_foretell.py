@@ -8,14 +8,14 @@ import pytest
 from playground import Truth, network, steps
 
 from validation.case import Case, Model
-from validation.comparison.sheet import segments
+from validation.comparison.linearisation import segments
 from validation.effects import effect
 from validation.inference.evidence import calibrated_case, refit, scored, starts
-from validation.planning.apart import DECISIVE, GAP
-from validation.planning.contenders import Contenders, behind
+from validation.planning.candidate_tests import MENU
+from validation.planning.competing_models import Contenders, behind
 from validation.planning.experiments import next_tests
-from validation.planning.foretell import foretold, read_by
-from validation.planning.menu import MENU
+from validation.planning.prediction import foretold, read_by
+from validation.planning.separability import DECISIVE, GAP
 
 RIVALS = ("brush.friction@commutator", "loss.constant@commutator")
 

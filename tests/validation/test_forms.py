@@ -7,7 +7,7 @@ import pytest
 from playground import Truth, network
 
 from lumped.transfer.laws import Fixed, InputPower, Power
-from validation.calibration.forms import Bend, BendOfDifference, levels, shares, with_forms
+from validation.calibration.model_form import Bend, BendOfDifference, levels, shares, with_forms
 from validation.comparison.predict import predict
 from validation.effects import effect, extended
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lumped.condensation.error_budget import ErrorBudget, PlaceError
-from validation.diagnosis.imprint import imprint
+from validation.diagnosis.numerical_error import imprint
 
 BUDGET = ErrorBudget((PlaceError("winding", 1.0, 0.4, 0.1), PlaceError("flange", 0.1, None, None)))
 

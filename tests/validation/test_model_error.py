@@ -7,8 +7,8 @@ import pytest
 from playground import Truth, network
 
 from validation.calibration.calibrate import Measure, minimise
-from validation.calibration.fitting import working
-from validation.comparison.sheet import segments
+from validation.calibration.unknowns import working
+from validation.comparison.linearisation import segments
 from validation.doubt import USUAL
 from validation.inference.model_error import bridges, model_error, with_doubts
 from validation.measurement.noise import first_noise

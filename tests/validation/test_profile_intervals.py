@@ -9,10 +9,10 @@ from one_body import FILM, LOSS, MASS, G, P, measured, one_node
 from geom.errors import InputError
 from lumped.model.network import Parameter
 from validation.calibration.calibrate import minimise
-from validation.calibration.fitting import Unknowns, working
 from validation.calibration.intervals import estimates
 from validation.calibration.profile import profiles
-from validation.calibration.staged import Search, stages
+from validation.calibration.staged_fit import Search, stages
+from validation.calibration.unknowns import Unknowns, working
 from validation.case import Case, Model
 from validation.revision.revise import calibrate
 

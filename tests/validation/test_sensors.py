@@ -9,9 +9,9 @@ from playground import SENSORS, Truth, network
 from validation.case import Case, Model
 from validation.effects import effect
 from validation.inference.evidence import calibrated_case, refit, scored, starts
-from validation.planning.apart import DECISIVE, GAP, separation
-from validation.planning.contenders import Contenders, behind
+from validation.planning.competing_models import Contenders, behind
 from validation.planning.sensors import access, free_places, next_sensors, with_sensors
+from validation.planning.separability import DECISIVE, GAP, separation
 
 PLACES = ("winding.armature", "rotor")
 RIVALS = tuple(f"loss.constant@{place}" for place in PLACES)

@@ -15,7 +15,7 @@ INPUTS = ("tests", "cycles")  # folders of a case
 
 def write_whole(path: Path, text: str | bytes) -> Path:
     """Write beside the target, then rename: a reader sees the old file or the new one, never half of it."""
-    from geom.kept import written_whole  # loads NumPy, which help does without
+    from geom.disk_cache import written_whole  # loads NumPy, which help does without
 
     try:
         with written_whole(path) as partial:

@@ -12,7 +12,7 @@ from lumped.integration.simulate import simulate
 from lumped.model.network import Network, Row
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import Revision
-from validation.calibration.fitting import effects_of, to_value, working
+from validation.calibration.unknowns import effects_of, to_value, working
 from validation.case import AddedEffect, Case, Channel, Test
 from validation.comparison.compare import physical
 from validation.comparison.predict import predict, record, thermal

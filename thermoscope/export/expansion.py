@@ -20,7 +20,7 @@ from lumped.sources.losses import BrushLoss, CopperLoss, IronLoss, PowerLoss
 from lumped.transfer.laws import Fixed, InputPower, Law
 from lumped.transfer.reversal import Direction, OneWay
 from thermoscope.export.products import Mapped, Positive, Powered, Product, Straight, Sum, Tabulated
-from validation.calibration.forms import BendOfDifference, BendOfTemperature
+from validation.calibration.model_form import BendOfDifference, BendOfTemperature
 
 
 @dataclass(frozen=True)

@@ -26,8 +26,8 @@ from geom.errors import InputError
 from lumped.schemas.reader import Table
 from thermoscope.recordings.formats import pairs, read_frame, recording
 from validation.procedure.measuring.meters import OHMMETER, VOLTMETER, Meter, Range
+from validation.procedure.measuring.propagation import Reading, Spread
 from validation.procedure.measuring.readings import COPPER, NDFEB, Magnets, Saturation, Winding
-from validation.procedure.measuring.spread import Reading, Spread
 from validation.procedure.measuring.switch_off import Cooling, Extrapolated, exponentials, rule_150, semilog, semilog_at
 
 Array = NDArray[np.float64]

@@ -16,7 +16,7 @@ from lumped.condensation.recovery import Shapes
 from lumped.integration.simulate import Record, simulate
 from lumped.model.network import Array, Network, Row
 from thermoscope.case_folder.folder import Folder, Progress
-from validation.calibration.fitting import working
+from validation.calibration.unknowns import working
 from validation.case import Channel, Test
 from validation.comparison.predict import record, thermal
 

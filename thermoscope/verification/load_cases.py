@@ -8,9 +8,9 @@ import numpy as np
 
 from fem.solvers.solve import coupled, film_columns
 from geom import Machine
-from lumped.condensation.guard import Mixes, mixes
 from lumped.condensation.linear import linear, unit_load
 from lumped.condensation.reduction import Reduction
+from lumped.condensation.reduction_error import Mixes, mixes
 from lumped.machine.losses import loss_watts
 from lumped.machine.motor import motor_network, rated_inputs
 from lumped.model.network import Network

@@ -18,7 +18,7 @@ from lumped.model.network import Array, Network, Row
 from thermoscope.caches import cache_folder
 from thermoscope.case_folder.files import write_whole
 from thermoscope.pipeline import Built, coefficients_on, meshed
-from thermoscope.verification.frozen import Frozen, rated
+from thermoscope.verification.fixed_coefficients import Frozen, rated
 
 if TYPE_CHECKING:
     from thermoscope.verification.error_budget import Looks

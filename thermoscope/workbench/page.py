@@ -11,8 +11,8 @@ from trame.widgets import trame as extra
 from trame.widgets import vtk as vtk_widgets
 from trame.widgets import vuetify3 as v3
 
+from thermoscope.workbench.display import soon
 from thermoscope.workbench.session import Session, started
-from thermoscope.workbench.shown import soon
 
 KEYS = (
     ("j", "next"), ("k", "previous"), ("d", "diagnose"), ("u", "undo"), ("r", "report"), ("left", "left"),

@@ -13,8 +13,8 @@ from aiohttp import web
 from geom.errors import InputError
 from thermoscope.case_folder.folder import Folder
 from thermoscope.console.terminal import Progress
-from thermoscope.workbench.bench import bench
-from thermoscope.workbench.gate import Gate
+from thermoscope.workbench.access_control import Gate
+from thermoscope.workbench.application import bench
 from thermoscope.workbench.jobs import prepare
 from thermoscope.workbench.tabs import Tabs
 

@@ -12,12 +12,13 @@ from typing import Any
 from geom.errors import ThermoscopeError
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import History, Revision, load_history, save_history
-from thermoscope.commands.saved import save_diagnosis, saved_diagnosis
-from thermoscope.workbench import ledger, steps
-from thermoscope.workbench.bench import Bench, at
+from thermoscope.commands.stored_diagnosis import save_diagnosis, saved_diagnosis
+from thermoscope.workbench import revisions as ledger
+from thermoscope.workbench import steps
+from thermoscope.workbench.appearance import Look
+from thermoscope.workbench.application import Bench, at
+from thermoscope.workbench.display import Shown
 from thermoscope.workbench.jobs import FailedError, Job, StoppedError
-from thermoscope.workbench.look import Look
-from thermoscope.workbench.shown import Shown
 
 REMEMBERED = 8
 TITLES = {"add": "Adding", "remove": "Taking out", "calibrate": "Calibrating"}

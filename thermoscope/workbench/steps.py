@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import Revision
 from thermoscope.console.terminal import Progress
-from thermoscope.workbench.bench import at
-from thermoscope.workbench.look import Look, look
+from thermoscope.workbench.appearance import Look, look
+from thermoscope.workbench.application import at
 
 if TYPE_CHECKING:
     from viz.rendering.cut import Surface

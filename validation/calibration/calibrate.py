@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
 
 from lumped.model.network import Network
-from validation.calibration.fitting import Unknowns
+from validation.calibration.unknowns import Unknowns
 from validation.case import Test
-from validation.comparison.sheet import Segment, segments
+from validation.comparison.linearisation import Segment, segments
 from validation.doubt import USUAL, Doubt
 from validation.inference.model_error import ModelError, model_error
 from validation.measurement.noise import Noise, first_noise, fit_noise

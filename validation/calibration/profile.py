@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validation.calibration.calibrate import Fit, Known, Progress, minimise, silent
-from validation.calibration.fitting import Unknowns, to_value
 from validation.calibration.intervals import NORMAL_95, Profile
+from validation.calibration.unknowns import Unknowns, to_value
 from validation.case import Test
 
 Array = NDArray[np.float64]

@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 from scipy.special import logsumexp
 
 from validation.case import Test
-from validation.comparison.sheet import Segment, segments
+from validation.comparison.linearisation import Segment, segments
 from validation.doubt import SIZES, USUAL
 from validation.effects import Effect, extended
 from validation.effects.during import During
-from validation.effects.gate import Event, Span
+from validation.effects.time_window import Event, Span
 from validation.inference.evidence import Evidence, extended_prior, projected
 from validation.inference.posterior import one_size
 from validation.inference.score import score, total

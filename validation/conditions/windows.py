@@ -11,9 +11,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from validation.conditions.hats import Hats, Path, Stretch, held, log_bayes
-from validation.diagnosis.where import Latent
-from validation.effects.gate import Event, Span
+from validation.conditions.hat_functions import Hats, Path, Stretch, held, log_bayes
+from validation.diagnosis.missing_heat import Latent
+from validation.effects.time_window import Event, Span
 
 Array = NDArray[np.float64]
 Pulse = tuple[Span, float]  # when, and its level (W) against what is usual in the test

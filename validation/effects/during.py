@@ -11,7 +11,7 @@ from lumped.transfer.laws import CLOCK, Law
 from validation.doubt import USUAL
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import Shaped, copy_link, copy_source
-from validation.effects.gate import Event, Gate, event
+from validation.effects.time_window import Event, Gate, event
 
 IN = " in "
 SAME = ("kind", "title", "unit", "at", "source", "isolating_test", "typical", "sign", "prior_sd", "low", "high",

@@ -9,14 +9,14 @@ import numpy as np
 
 from validation.calibration.calibrate import silent
 from validation.case import Case
+from validation.conditions.conditional_effects import conditions, joined
 from validation.conditions.contradiction import contradiction
-from validation.conditions.found import conditions, joined
 from validation.conditions.laws import laws
 from validation.conditions.question import answered
 from validation.conditions.robust import without
-from validation.diagnosis.findings import Diagnosis
-from validation.diagnosis.imprint import imprint
-from validation.diagnosis.where import scan
+from validation.diagnosis.missing_heat import scan
+from validation.diagnosis.numerical_error import imprint
+from validation.diagnosis.result import Diagnosis
 from validation.effects.above import KIND
 from validation.inference.decision import Decision, decide
 from validation.inference.evidence import (

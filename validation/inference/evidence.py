@@ -14,9 +14,9 @@ from geom.errors import InputError
 from lumped.model.multipliers import values_of
 from lumped.model.network import Network, Parameter
 from validation.calibration.calibrate import Fit, Known, Measure, calibrated, minimise, silent, with_model_error
-from validation.calibration.fitting import Unknowns, at_level, scene_of, widened, working
+from validation.calibration.unknowns import Unknowns, at_level, scene_of, widened, working
 from validation.case import Case, Test
-from validation.comparison.sheet import Segment, reach, segments
+from validation.comparison.linearisation import Segment, reach, segments
 from validation.effects import Effect, catalogue, extended
 from validation.inference.score import Gram, Score, gram, score, total
 from validation.measurement.noise import Noise, fit_noise

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validation.calibration.calibrate import Fit, Measure
-from validation.comparison.sheet import Segment
-from validation.diagnosis.findings import Remainder
+from validation.comparison.linearisation import Segment
+from validation.diagnosis.result import Remainder
 from validation.inference.decision import Decision
 from validation.inference.posterior import Hypothesis, Posterior, probabilities
 

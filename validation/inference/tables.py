@@ -11,10 +11,10 @@ from scipy.special import ndtri
 
 from validation.calibration.calibrate import Fit, Measure
 from validation.case import Case, Test
-from validation.comparison.sheet import rmse, segments
-from validation.conditions.happenings import happenings
+from validation.comparison.linearisation import rmse, segments
+from validation.conditions.events import happenings
 from validation.conditions.question import best_question
-from validation.diagnosis.findings import Candidate, Decided, Diagnosis, Hidden, Odds, Verdict
+from validation.diagnosis.result import Candidate, Decided, Diagnosis, Hidden, Odds, Verdict
 from validation.doubt import TEMPER
 from validation.effects.above import Above
 from validation.effects.during import During
@@ -24,7 +24,7 @@ from validation.inference.evidence import Evidence, deviance
 from validation.inference.posterior import Hypothesis, Posterior, inclusion, probabilities
 from validation.inference.refits import laplace
 from validation.inference.remainder import remainder
-from validation.planning.contenders import Contenders
+from validation.planning.competing_models import Contenders
 from validation.planning.experiments import next_tests
 from validation.planning.sensors import next_sensors
 from validation.procedure.reduction.which_base import Hypothesis as Base

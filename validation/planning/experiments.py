@@ -8,14 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import ThermoscopeError
-from validation.comparison.sheet import segments
-from validation.diagnosis.findings import NextTest
+from validation.comparison.linearisation import segments
+from validation.diagnosis.result import NextTest
 from validation.inference.evidence import Evidence
 from validation.inference.score import gram
-from validation.planning.apart import separation, told_apart
-from validation.planning.contenders import Contenders
-from validation.planning.foretell import Plan, proven, read_by, widened_error
-from validation.planning.menu import possible
+from validation.planning.candidate_tests import possible
+from validation.planning.competing_models import Contenders
+from validation.planning.prediction import Plan, proven, read_by, widened_error
+from validation.planning.separability import separation, told_apart
 
 Array = NDArray[np.float64]
 

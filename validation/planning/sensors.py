@@ -10,15 +10,15 @@ from numpy.typing import NDArray
 
 from lumped.model.network import Network, Place
 from validation.case import Channel, Test
-from validation.comparison.sheet import Segment, segments
-from validation.diagnosis.findings import NextSensor
+from validation.comparison.linearisation import Segment, segments
+from validation.diagnosis.result import NextSensor
 from validation.effects.sites import outside, turns
 from validation.inference.evidence import Evidence
 from validation.inference.score import Gram
 from validation.measurement.noise import Noise
-from validation.planning.apart import separation, told_apart
-from validation.planning.contenders import Contenders
-from validation.planning.foretell import Plan, proven, widened_error
+from validation.planning.competing_models import Contenders
+from validation.planning.prediction import Plan, proven, widened_error
+from validation.planning.separability import separation, told_apart
 
 Array = NDArray[np.float64]
 SIGMA_K = 0.5

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validation.calibration.calibrate import Fit
-from validation.calibration.fitting import to_value
-from validation.comparison.sheet import Segment
+from validation.calibration.unknowns import to_value
+from validation.comparison.linearisation import Segment
 from validation.inference.score import Gram, gram
 
 Array = NDArray[np.float64]

@@ -10,15 +10,15 @@ import numpy as np
 from geom.errors import InputError
 from lumped.model.network import Parameter
 from validation.calibration.calibrate import Fit, silent, with_model_error
-from validation.calibration.fitting import FREE, scene_of, working
 from validation.calibration.intervals import Estimate, Profile, estimates
 from validation.calibration.profile import profiles
-from validation.calibration.staged import Search, belongs, fitted, merged
+from validation.calibration.staged_fit import Search, belongs, fitted, merged
+from validation.calibration.unknowns import FREE, scene_of, working
 from validation.case import AddedEffect, Case, Model, Test
 from validation.comparison.compare import Comparison, compare
 from validation.effects import Effect, effect
 from validation.effects.during import During
-from validation.effects.gate import checked
+from validation.effects.time_window import checked
 from validation.measurement.operators import of_measurement
 from validation.revision.acceptance import Check, checks, failures
 from validation.threads import one_blas_thread

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geom.errors import InputError
-from validation.comparison.within import limit_K
+from validation.comparison.tolerance import limit_K
 from viz.colours import BLUE, LIGHT, ORANGE, VERMILION
 from viz.data import Comparison, short
 from viz.figures import paper
@@ -43,7 +43,7 @@ def measured_and_model(comparison: Comparison, *, columns: int = 3, png: str | P
 
 @paper.styled
 def residuals(comparison: Comparison, *, png: str | Path | None = None) -> Figure:
-    """Measured - modelled per sensor over time; those that are over (see within.py) are coloured, named in bold."""
+    """Measured - modelled per sensor over time; those that are over (see tolerance.py) are coloured, named in bold."""
     figure, (ax,) = paper.subplots(8.4, 3.8)
     (t, unit), thin = comparison.clock, comparison.thin
     channels = _read(comparison)

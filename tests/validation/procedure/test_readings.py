@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 from geom.errors import InputError
 from validation.procedure.measuring.meters import OHMMETER, VOLTMETER, Meter, Range
+from validation.procedure.measuring.propagation import Reading, spread
 from validation.procedure.measuring.readings import (
     COPPER,
     NDFEB,
@@ -16,7 +17,6 @@ from validation.procedure.measuring.readings import (
     magnet_rise,
     winding_rise,
 )
-from validation.procedure.measuring.spread import Reading, spread
 
 RISE = 80.0
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from thermoscope.commands.opened import opened
+from thermoscope.commands.open_case import opened
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import give, progress
 

@@ -47,10 +47,10 @@ from thermoscope.console.terminal import give, progress
 from thermoscope.recordings.electrical import meter_of, saturation_of
 from thermoscope.recordings.formats import pairs, read_frame, recording
 from validation.procedure.measuring.meters import OHMMETER, VOLTMETER
+from validation.procedure.measuring.propagation import Reading, Spread
 from validation.procedure.measuring.protocol import Cold, Hot, Protocol, Record
 from validation.procedure.measuring.protocol import protocol as judged
 from validation.procedure.measuring.readings import COPPER, NDFEB
-from validation.procedure.measuring.spread import Reading, Spread
 
 Pairs = tuple[tuple[float, float], ...]
 

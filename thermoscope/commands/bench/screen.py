@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from geom.errors import InputError
 from thermoscope.case_folder.folder import load_machine_file
-from thermoscope.commands.opened import opened
+from thermoscope.commands.open_case import opened
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import give, notes, progress
 
@@ -128,7 +128,7 @@ def paths(found: Mapping[str, Mapping[str, Any]]) -> Answer:
 
 def carry(source: str, targets: list[str], target: str | None) -> int:
     """Exit code 1 when a sensor of a machine that was not used disagrees by more than its uncertainty."""
-    from validation.procedure.reduction.carry import carried
+    from validation.procedure.reduction.transfer import carried
 
     with progress() as tell:
         calibrated = opened(source, tell)

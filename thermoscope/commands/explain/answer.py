@@ -7,11 +7,11 @@ from dataclasses import replace
 from geom.errors import InputError
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import save_history
-from thermoscope.commands.opened import opened_to_write
-from thermoscope.commands.saved import last_diagnosis
+from thermoscope.commands.open_case import opened_to_write
+from thermoscope.commands.stored_diagnosis import last_diagnosis
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import give, progress
-from validation.effects.gate import checked, event
+from validation.effects.time_window import checked, event
 
 WORDS = {"yes": True, "y": True, "no": False, "n": False}
 

@@ -6,17 +6,17 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from thermoscope.commands.bench.bases import bases_tried
-from thermoscope.commands.explain.ahead import ahead
+from thermoscope.commands.explain.next_tests import ahead
 from thermoscope.commands.model.error_budget import budget, in_short, sampling
-from thermoscope.commands.opened import opened
-from thermoscope.commands.saved import save_diagnosis
+from thermoscope.commands.open_case import opened
+from thermoscope.commands.stored_diagnosis import save_diagnosis
 from thermoscope.commands.test.compare import contradiction
 from thermoscope.console.answer import Answer, Grid, cell
 from thermoscope.console.terminal import Progress, give, notes, progress, sized
 
 if TYPE_CHECKING:
     from thermoscope.case_folder.folder import Folder
-    from validation.diagnosis.findings import Diagnosis
+    from validation.diagnosis.result import Diagnosis
 
 ODDS, ROWS = 5, 10  # shown of hypotheses and of candidates
 SHOWN = 0.005  # probabilities below half a per cent are in --json

@@ -19,8 +19,8 @@ PLACES = 4  # named in a row of the table; all in --json
 
 def effects(case: str | None, target: str | None) -> int:
     """Every kind of effect: what it needs, and in a case where it could sit or what is missing."""
-    from thermoscope.commands.opened import opened
-    from validation.calibration.fitting import scene_of
+    from thermoscope.commands.open_case import opened
+    from validation.calibration.unknowns import scene_of
     from validation.effects.registry import kinds
 
     scene = None

@@ -10,22 +10,22 @@ from typing import TYPE_CHECKING, Any
 from thermoscope.case_folder.columns import write_columns
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import History, save_history
-from thermoscope.commands.explain.ahead import ahead
+from thermoscope.commands.explain.next_tests import ahead
 from thermoscope.commands.model.revise import recorded
-from thermoscope.commands.opened import opened_to_write
-from thermoscope.commands.saved import save_diagnosis
+from thermoscope.commands.open_case import opened_to_write
+from thermoscope.commands.stored_diagnosis import save_diagnosis
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import give, progress, sized
-from viz.pages.ahead import deciding
+from viz.pages.next_tests import deciding
 
 if TYPE_CHECKING:
-    from validation.diagnosis.findings import Candidate, Diagnosis
+    from validation.diagnosis.result import Candidate, Diagnosis
     from validation.revision.revise import Revision
 
 
 def improve(case: str, yes: bool, most: int, target: str | None) -> int:
     """Exit code 0 when the model ends adequate, 1 when it stops before. Every step is in model.toml at once."""
-    from validation.revision.climb import Guide, climb, singletons
+    from validation.revision.improvement import Guide, climb, singletons
 
     with progress() as tell:
         folder = opened_to_write(case, tell)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from geom.solids.surfaces import CadCheck
     from thermoscope.console.terminal import Progress
     from thermoscope.pipeline import Built
-    from thermoscope.verification.sized import Sized
+    from thermoscope.verification.network_size import Sized
 
 ERRORS = ("mean", "hot", "point")
 
@@ -56,7 +56,7 @@ def built_from(
     """At the size a case runs, or at the smallest that is accurate enough.  size_m : of the mesh's triangles (m)"""
     from lumped.machine.bases import on_all
     from thermoscope.pipeline import build as usual
-    from thermoscope.verification.sized import sized
+    from thermoscope.verification.network_size import sized
 
     if accuracy is None:
         return usual(on_all(described), size_m, progress=tell), None

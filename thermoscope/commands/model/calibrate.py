@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from thermoscope.case_folder.folder import Folder
 from thermoscope.commands.model.revise import revised
-from thermoscope.commands.saved import fingerprint, keep, kept
+from thermoscope.commands.stored_diagnosis import fingerprint, keep, kept
 from thermoscope.console.terminal import Progress
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ def calibrate(
 
     starts, seed : None for what case.toml says
     """
-    from validation.calibration.staged import Search
+    from validation.calibration.staged_fit import Search
     from validation.revision.revise import calibrate as fitted
 
     def step(folder: Folder, tell: Progress) -> Revision:

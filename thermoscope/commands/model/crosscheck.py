@@ -19,7 +19,7 @@ from thermoscope.console.terminal import give, plain, progress
 if TYPE_CHECKING:
     from thermoscope.console.terminal import Progress
     from thermoscope.pipeline import Built
-    from thermoscope.verification.sized import Sized
+    from thermoscope.verification.network_size import Sized
 
 HOT = 200.0  # degC, what insulation bears
 SHOWN = 12  # rows of a long table on the screen; the files hold all
@@ -27,7 +27,7 @@ SHOWN = 12  # rows of a long table on the screen; the files hold all
 
 def crosscheck(machine: str, out: Path | None, accuracy: float, target: str | None) -> int:
     """Where network and field disagree, which link is responsible, and every hand formula beside the field's value."""
-    from thermoscope.verification.sized import sized
+    from thermoscope.verification.network_size import sized
 
     described = load_machine_file(Path(machine))
     folder = out or Path("out") / described.name
@@ -43,7 +43,7 @@ def checked(built: Built, found: Sized | None, tell: Progress) -> dict[str, Any]
     """Part by part and link by link at a point where the machine settles, and the hand formulas there."""
     from lumped.machine.losses import loss_shares
     from thermoscope.verification.crosscheck import crosscheck as compare
-    from thermoscope.verification.hand import hand_rows
+    from thermoscope.verification.hand_formulas import hand_rows
     from thermoscope.verification.local_laws import with_local_laws
 
     tell("field against network")

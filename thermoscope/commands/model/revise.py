@@ -10,8 +10,8 @@ from thermoscope.case_folder.columns import write_columns
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import Revision, save_history
 from thermoscope.case_folder.runs import at_revision
-from thermoscope.commands.opened import opened_to_write
-from thermoscope.commands.saved import saved_diagnosis
+from thermoscope.commands.open_case import opened_to_write
+from thermoscope.commands.stored_diagnosis import saved_diagnosis
 from thermoscope.console.answer import Answer, Grid, cell
 from thermoscope.console.terminal import give, progress
 from validation.comparison.compare import compare

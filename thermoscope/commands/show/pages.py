@@ -16,8 +16,8 @@ from geom.errors import MissingDependency
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import Revision
 from thermoscope.case_folder.runs import at_revision, before_last, fields, held, parameters, readings, steps
-from thermoscope.commands.opened import opened_to_write
-from thermoscope.commands.saved import last_diagnosis, saved_diagnosis
+from thermoscope.commands.open_case import opened_to_write
+from thermoscope.commands.stored_diagnosis import last_diagnosis, saved_diagnosis
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import Progress, give, notes, progress
 from validation.case import Case, Test

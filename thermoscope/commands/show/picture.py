@@ -17,11 +17,11 @@ from lumped.integration.simulate import simulate
 from lumped.schemas.reader import known
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.runs import before_last, fields, held, steps
-from thermoscope.commands.opened import opened
+from thermoscope.commands.open_case import opened
 from thermoscope.commands.show.pages import by_interest
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import give, progress
-from validation.calibration.fitting import working
+from validation.calibration.unknowns import working
 from validation.case import Case, Test
 from validation.comparison.predict import record, thermal
 

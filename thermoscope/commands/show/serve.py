@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import os
 
-from thermoscope.commands.opened import opened_to_write
+from thermoscope.commands.open_case import opened_to_write
 from thermoscope.console.terminal import progress, say
 
 
 def serve(case: str, host: str, port: int) -> int:
     """The workbench in the browser, until Ctrl-C."""
-    from thermoscope.workbench.gate import Gate
+    from thermoscope.workbench.access_control import Gate
     from thermoscope.workbench.serve import application, token_for
     from thermoscope.workbench.serve import serve as run
 

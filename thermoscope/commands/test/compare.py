@@ -6,10 +6,10 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from thermoscope.commands.model.error_budget import budget, in_short, sampling
-from thermoscope.commands.opened import opened
+from thermoscope.commands.open_case import opened
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import give, progress
-from validation.comparison.within import WORDS
+from validation.comparison.tolerance import WORDS
 
 EVIDENT = 10.0  # nats
 WHITE = 0.01
@@ -22,7 +22,7 @@ def compare(case: str, target: str | None, why: bool = False, sure: bool | None 
     from thermoscope.bands import of_tests, wanted
     from thermoscope.verification.error_budget import budgets_of_tests, documents
     from validation.comparison.compare import compare as held_against
-    from validation.diagnosis.failing import failing
+    from validation.diagnosis.discrepancy import failing
 
     with progress() as tell:
         folder = opened(case, tell)

@@ -11,7 +11,7 @@ from lumped.schemas.reader import known
 from thermoscope.case_folder.files import write_whole
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.workbook import tables, write_csvs, write_xlsx
-from thermoscope.commands.opened import opened
+from thermoscope.commands.open_case import opened
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import Progress, give, plain, progress
 

@@ -21,7 +21,7 @@ from lumped.schemas.reader import known
 from thermoscope.bands import along, belief_of, wanted
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.runs import before_last, looks
-from thermoscope.commands.opened import opened
+from thermoscope.commands.open_case import opened
 from thermoscope.commands.use.export import read_limits
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import Progress, give, notes, progress

@@ -23,7 +23,7 @@ from thermoscope.case_folder.files import write_whole
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.runs import looks, sensors
 from thermoscope.commands.model.error_budget import budget, in_short
-from thermoscope.commands.opened import PACKAGE, opened
+from thermoscope.commands.open_case import PACKAGE, opened
 from thermoscope.commands.use.simulate_readings import readings, short_of
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import Progress, give, progress
@@ -56,7 +56,7 @@ def _out(folder: Folder) -> Path:
 
 def _model(folder: Folder) -> tuple[Network, dict[str, float]]:
     """The network with the effects added, and the values of the parameters that act on heat."""
-    from validation.calibration.fitting import working
+    from validation.calibration.unknowns import working
     from validation.comparison.predict import thermal
 
     network = working(folder.case)[0]

@@ -13,8 +13,8 @@ import numpy as np
 
 from geom.errors import InputError
 from validation.procedure.measuring.meters import OHMMETER, VOLTMETER, Meter
+from validation.procedure.measuring.propagation import Reading, Spread
 from validation.procedure.measuring.readings import COPPER, NDFEB, Magnets, Saturation, Winding
-from validation.procedure.measuring.spread import Reading, Spread
 from validation.procedure.measuring.switch_off import Cooling, Extrapolated, all_ways, allowed_delay
 from validation.procedure.measuring.warming import equilibrium
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError
 from validation.procedure.measuring.meters import Meter
-from validation.procedure.measuring.spread import Reading, Spread, spread
+from validation.procedure.measuring.propagation import Reading, Spread, spread
 
 Array = NDArray[np.float64]
 COPPER = Reading("beta", 0.3925e-2, 0.0005e-2)

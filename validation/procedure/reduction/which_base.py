@@ -17,7 +17,7 @@ from geom.errors import InputError
 from lumped.machine.bases import Switched
 from lumped.model.network import Network
 from validation.calibration.calibrate import Fit, calibrated, silent
-from validation.calibration.fitting import working
+from validation.calibration.unknowns import working
 from validation.case import Case, Test
 from validation.procedure.reduction.base_heat import BaseHeat, base_heat
 

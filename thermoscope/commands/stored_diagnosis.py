@@ -10,7 +10,7 @@ from typing import Any
 
 from thermoscope.case_folder.files import write_whole
 from thermoscope.case_folder.folder import Folder
-from thermoscope.commands.opened import PACKAGE
+from thermoscope.commands.open_case import PACKAGE
 from thermoscope.console.terminal import notes, plain
 
 NAME = "diagnosis.json"

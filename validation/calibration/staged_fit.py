@@ -11,7 +11,7 @@ import numpy as np
 from geom.errors import InputError
 from lumped.model.network import Network, Parameter
 from validation.calibration.calibrate import Fit, Keep, Progress, calibrated, forgets, minimise, silent
-from validation.calibration.fitting import Unknowns, working
+from validation.calibration.unknowns import Unknowns, working
 from validation.case import Case, Test
 from validation.measurement.operators import of_measurement
 

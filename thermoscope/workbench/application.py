@@ -10,7 +10,7 @@ from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import History
 from thermoscope.case_folder.runs import at_revision
 from thermoscope.console.terminal import Progress
-from thermoscope.workbench.look import Look, look
+from thermoscope.workbench.appearance import Look, look
 
 if TYPE_CHECKING:
     from viz.rendering.cut import Surface

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from thermoscope.console.answer import Grid
-from viz.pages.ahead import deciding, undecided
+from viz.pages.next_tests import deciding, undecided
 
 MOST = 3
 

@@ -6,10 +6,10 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from validation.calibration.calibrate import silent
-from validation.calibration.fitting import with_model
+from validation.calibration.unknowns import with_model
 from validation.case import Case
 from validation.comparison.compare import Comparison, compare
-from validation.diagnosis.findings import Candidate, Diagnosis
+from validation.diagnosis.result import Candidate, Diagnosis
 from validation.effects import effect
 from validation.inference.diagnose import diagnose
 from validation.revision.revise import Revision, add, calibrate

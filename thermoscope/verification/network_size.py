@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from geom import Machine
-from lumped.condensation.adapt import Adapted, Size, adapt
-from lumped.condensation.guard import Wish
+from lumped.condensation.greedy_enrichment import Adapted, Size, adapt
 from lumped.condensation.reduction import Recipe, Reduction
+from lumped.condensation.reduction_error import Wish
 from lumped.machine.bases import on_all
 from lumped.machine.motor import motor_network
 from lumped.machine.zones import motor_zones

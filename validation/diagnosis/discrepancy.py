@@ -6,15 +6,15 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from validation.calibration.calibrate import silent
-from validation.calibration.fitting import working
+from validation.calibration.unknowns import working
 from validation.case import Case
 from validation.comparison.compare import physical
+from validation.comparison.linearisation import segments
 from validation.comparison.residuals import Pattern, patterns
-from validation.comparison.sheet import segments
 from validation.comparison.uncertainty import Uncertainty, uncertainties
 from validation.conditions.contradiction import Contradiction, contradiction
 from validation.conditions.windows import pulses
-from validation.diagnosis.where import Latent, latent_heat
+from validation.diagnosis.missing_heat import Latent, latent_heat
 from validation.inference.evidence import calibrated_case, diagnosing
 from validation.threads import one_blas_thread
 

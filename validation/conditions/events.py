@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from validation.diagnosis.findings import Happening
+from validation.diagnosis.result import Happening
 from validation.effects.during import During
 from validation.inference.posterior import Posterior, probabilities
 

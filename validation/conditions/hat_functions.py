@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 from scipy.special import logsumexp
 
 from validation.case import Test
-from validation.diagnosis.where import Scan
+from validation.diagnosis.missing_heat import Scan
 from validation.doubt import SIZES, USUAL
 from validation.effects.build import conductance_scale, power_scale
-from validation.effects.gate import Event, Span
+from validation.effects.time_window import Event, Span
 from validation.inference.evidence import Evidence, extended_prior, projected
 from validation.inference.model_error import nodes
 from validation.inference.posterior import one_size

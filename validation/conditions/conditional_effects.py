@@ -14,18 +14,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validation.calibration.calibrate import silent
-from validation.calibration.fitting import scene_of
+from validation.calibration.unknowns import scene_of
 from validation.case import Case
-from validation.conditions.hats import Stretch, hats
-from validation.conditions.menu import of_a_test, passing
+from validation.conditions.candidate_conditions import of_a_test, passing
+from validation.conditions.hat_functions import Stretch, hats
 from validation.conditions.refine import columns, refined
 from validation.conditions.windows import ALIKE, distinct, stretches, worth
-from validation.diagnosis.where import Latent, Scan
+from validation.diagnosis.missing_heat import Latent, Scan
 from validation.doubt import PRIOR, USUAL
 from validation.effects import Effect, extended
 from validation.effects.during import During
-from validation.effects.gate import Event, event
 from validation.effects.sites import neighbours
+from validation.effects.time_window import Event, event
 from validation.inference.evidence import Evidence, extended_prior, projected, weighed
 from validation.inference.posterior import log_bayes_of
 from validation.inference.score import apart, score, total

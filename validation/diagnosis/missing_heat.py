@@ -20,7 +20,7 @@ from lumped.model.network import Network, Parameter
 from lumped.transfer.laws import Fixed, Inputs
 from validation.calibration.calibrate import Fit
 from validation.case import Test
-from validation.comparison.sheet import Segment, segments
+from validation.comparison.linearisation import Segment, segments
 from validation.effects.build import Shaped, heat, power_scale
 from validation.effects.sites import solids
 from validation.inference.model_error import ModelError

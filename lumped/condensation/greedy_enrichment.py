@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from lumped.condensation.guard import Errors, Mixes, Wish, merged, point_errors
+from lumped.condensation.reduction_error import Errors, Mixes, Wish, merged, point_errors
 from lumped.model.network import Network
 
 Tell = Callable[[str], None]

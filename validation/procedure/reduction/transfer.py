@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from validation.calibration.fitting import with_model, working
+from validation.calibration.unknowns import with_model, working
 from validation.case import Case
 from validation.comparison.compare import physical
 from validation.comparison.predict import predict

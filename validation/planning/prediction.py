@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 
 from lumped.model.multipliers import values_of
 from validation.calibration.calibrate import Fit, Known, minimise
-from validation.calibration.fitting import Unknowns, nuisances
+from validation.calibration.unknowns import Unknowns, nuisances
 from validation.case import Test
+from validation.comparison.linearisation import segments
 from validation.comparison.predict import predict
-from validation.comparison.sheet import segments
 from validation.inference.evidence import Evidence, with_members
 from validation.inference.model_error import ModelError, model_error
-from validation.planning.apart import GAP, Gaps
-from validation.planning.contenders import Contenders, behind
+from validation.planning.competing_models import Contenders, behind
+from validation.planning.separability import GAP, Gaps
 
 Array = NDArray[np.float64]
 CHECKED = 2  # of the best plans are refitted: each costs as much as a refit of the diagnosis

@@ -19,9 +19,9 @@ from numpy.typing import NDArray
 from lumped.model.network import Network, Parameter
 from validation.bands.inputs import FLOWS, moved_inputs
 from validation.calibration.calibrate import Fit, Known, minimise, with_model_error
-from validation.calibration.fitting import working
+from validation.calibration.unknowns import working
 from validation.case import Case, Test
-from validation.comparison.sheet import Segment, segments
+from validation.comparison.linearisation import Segment, segments
 from validation.doubt import Doubt
 from validation.inference.model_error import with_cores, with_doubts
 from validation.measurement.operators import of_measurement

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geom.kept import written_whole
+from geom.disk_cache import written_whole
 
 Floats = NDArray[np.floating]
 Pairs = dict[str, tuple[Floats, Floats]]

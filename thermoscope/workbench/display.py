@@ -9,10 +9,11 @@ from typing import Any
 import numpy as np
 
 from thermoscope.case_folder.history import History
-from thermoscope.workbench import ledger, rows
-from thermoscope.workbench.bench import Bench
-from thermoscope.workbench.look import Look
-from thermoscope.workbench.stage import Stage
+from thermoscope.workbench import revisions as ledger
+from thermoscope.workbench import tables as rows
+from thermoscope.workbench.appearance import Look
+from thermoscope.workbench.application import Bench
+from thermoscope.workbench.view import Stage
 from viz.colours import DARK, LIGHT, Theme
 from viz.figures.candidates import matrix
 from viz.live.candidates import confusion

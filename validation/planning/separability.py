@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from validation.inference.evidence import Evidence, extended_prior
 from validation.inference.score import Gram, score, total
-from validation.planning.contenders import Contenders
+from validation.planning.competing_models import Contenders
 
 Array = NDArray[np.float64]
 Gaps = dict[tuple[int, int], float]

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
 from geom.errors import InputError
-from validation.diagnosis.where import Latent
+from validation.diagnosis.missing_heat import Latent
 
 if TYPE_CHECKING:
     from validation.conditions.contradiction import Contradiction

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from lumped.model.network import Network, Parameter
 from lumped.transfer.laws import Law
-from validation.calibration.forms import with_forms
+from validation.calibration.model_form import with_forms
 from validation.case import Case, Channel, Model, Test
 from validation.doubt import USUAL, Doubt
 from validation.effects import Effect, Scene, effect, extended

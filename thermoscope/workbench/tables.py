@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from typing import Any
 
 from thermoscope.case_folder.history import History
-from thermoscope.workbench.look import Look
+from thermoscope.workbench.appearance import Look
 from viz.data import Sensor, sensors, short
 from viz.figures.candidates import amplitude
-from viz.pages.ahead import deciding
+from viz.pages.next_tests import deciding
 from viz.pages.words import verdict
 
 Row = dict[str, Any]

@@ -15,7 +15,7 @@ from viz.rendering import scene
 from viz.rendering.callouts import HOLLOW, on_top
 from viz.rendering.cut import Surface
 from viz.rendering.scene import Room, View
-from viz.rendering.sight import covered, obstacle
+from viz.rendering.visibility import covered, obstacle
 
 if TYPE_CHECKING:
     import pyvista
