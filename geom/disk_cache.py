@@ -13,7 +13,7 @@ from uuid import uuid4
 from geom.description.part import Part
 
 
-def kept_file(part: Part, folder: Path | str | None, kind: str, suffix: str) -> Path | None:
+def cache_file(part: Part, folder: Path | str | None, kind: str, suffix: str) -> Path | None:
     """Where a result of the part's shape lies; neither its name nor its material matter. None without a folder."""
     if folder is None:
         return None
@@ -22,7 +22,7 @@ def kept_file(part: Part, folder: Path | str | None, kind: str, suffix: str) -> 
 
 
 @contextmanager
-def written_whole(path: Path) -> Iterator[Path]:
+def atomic_write(path: Path) -> Iterator[Path]:
     """A file to write to that takes its place only when it is complete; hidden until then, gone if writing fails.
 
     It is on the disk before it is renamed, and its new name is before this returns: a power cut leaves old or new.

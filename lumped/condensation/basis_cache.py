@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geom.disk_cache import written_whole
+from geom.disk_cache import atomic_write
 
 Floats = NDArray[np.floating]
 Pairs = dict[str, tuple[Floats, Floats]]
@@ -32,7 +32,7 @@ class Centre:
 
 
 @dataclass(frozen=True)
-class Shelf:
+class BasisCache:
     """folder : None keeps nothing;  content : bytes of all that the shapes depend on besides the coefficients"""
 
     folder: Path | None
@@ -61,7 +61,7 @@ class Shelf:
         out |= {f"{part}/fields": fields for part, (_, fields) in pairs.items()}
         point = hashlib.sha256(centre.values.round(9).tobytes()).hexdigest()[:8]
         file = self.folder / f"shapes-{self._key}-{point}.npz"
-        with written_whole(file) as partial:
+        with atomic_write(file) as partial:
             np.savez(partial, **out)
         return pairs
 

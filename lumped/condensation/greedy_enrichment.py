@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from lumped.condensation.reduction_error import Errors, Mixes, Wish, merged, point_errors
+from lumped.condensation.reduction_error import Accuracy, Errors, LoadCases, merged, point_errors
 from lumped.model.network import Network
 
 Tell = Callable[[str], None]
@@ -30,7 +30,7 @@ class Round:
 
 
 @dataclass(frozen=True)
-class Adapted:
+class Enrichment:
     """reduction : with the points it learned from;  weights : favour of each part;  rounds : of checks, in order"""
 
     reduction: Any
@@ -57,7 +57,7 @@ class Size:
     met: bool
 
     @classmethod
-    def of(cls, reduction: Any, asked: int, points: Sequence[Any], cases: Mixes, wish: Wish) -> Size:
+    def of(cls, reduction: Any, asked: int, points: Sequence[Any], cases: LoadCases, wish: Accuracy) -> Size:
         """points : the nominal one first, then random ones, all solved in full"""
         network = reduction.network(tolerance=0.0, max_states=max(asked, len(reduction.field.blocks)))
         nominal, *drawn = (seen(network, point, cases) for point in points)
@@ -71,10 +71,10 @@ class Size:
         }  # fmt: skip
 
 
-def adapt(
-    reduction: Any, cases: Mixes, wish: Wish, rounds: int = 3, points: Sequence[Any] = (), guides: Sequence[Any] = (),
-    fresh: int = 3, tell: Tell = lambda message: None,
-) -> Adapted:  # fmt: skip
+def enrich(
+    reduction: Any, cases: LoadCases, wish: Accuracy, rounds: int = 3, points: Sequence[Any] = (),
+    guides: Sequence[Any] = (), fresh: int = 3, tell: Tell = lambda message: None,
+) -> Enrichment:  # fmt: skip
     """A network that meets the wish at random points it has not seen, or the one the last of `rounds` looked at.
 
     reduction : of reduction.py;  points : already solved, to be learned;  guides : random ones, solved too
@@ -86,7 +86,7 @@ def adapt(
     reduction = reduction.enriched(learned) if points else reduction
     done: list[Round] = []
     for k in range(rounds):
-        network = favoured(reduction, [*learned, *guides], cases, wish, weights)
+        network = allotted_shapes(reduction, [*learned, *guides], cases, wish, weights)
         new = [reduction.random_point(begun + fresh * k + j) for j in range(fresh)]
         found = merged([seen(network, point, cases) for point in new])
         done.append(Round(len(network.states), tuple(p.name for p in new), found, excess(found, wish) <= 1.0))
@@ -95,15 +95,17 @@ def adapt(
             break
         fuller = [*guides, reduction.extreme_point(begun + k)]
         learned, guides, reduction = [*learned, *fuller], new, reduction.enriched(fuller)
-    return Adapted(reduction, network, dict(weights), tuple(done))
+    return Enrichment(reduction, network, dict(weights), tuple(done))
 
 
-def excess(found: Errors, wish: Wish) -> float:
+def excess(found: Errors, wish: Accuracy) -> float:
     """1 where the worst part is just good enough."""
     return max(map(wish.excess, found.parts.values()))
 
 
-def favoured(reduction: Any, learned: Sequence[Any], cases: Mixes, wish: Wish, weights: dict[str, float]) -> Network:
+def allotted_shapes(
+    reduction: Any, learned: Sequence[Any], cases: LoadCases, wish: Accuracy, weights: dict[str, float]
+) -> Network:
     """Deal out shapes until the points already solved are met: parts that miss get more."""
     network = reduction.network(weights=weights)
     for _ in range(FAVOURS):
@@ -117,5 +119,5 @@ def favoured(reduction: Any, learned: Sequence[Any], cases: Mixes, wish: Wish, w
     return network
 
 
-def seen(network: Network, point: Any, cases: Mixes) -> Errors:
+def seen(network: Network, point: Any, cases: LoadCases) -> Errors:
     return point_errors(network, point.films, point.contacts, point.X, cases)

@@ -18,7 +18,7 @@ DRAWS = 4  # losses of all zones drawn at random: they cost no solve
 
 
 @dataclass(frozen=True)
-class Wish:
+class Accuracy:
     """Largest errors that will do, in percent of the part's own rise: means, hot spots, points."""
 
     mean: float = 1.0
@@ -106,7 +106,7 @@ def _part(T: Array, seen: Array, shape: PartShape, floor: float, rng: np.random.
 
 
 @dataclass(frozen=True)
-class Mixes:
+class LoadCases:
     """Load cases: watts (n_case, n_zone) in the zones, kelvin (n_case, n_fluid) of the fluids over the surroundings."""
 
     zones: tuple[str, ...]
@@ -119,9 +119,9 @@ class Mixes:
         return np.asarray(X @ np.hstack([self.watts, self.kelvin]).T)
 
 
-def mixes(
+def random_load_cases(
     zones: Sequence[str], fluids: Sequence[str], rated: Mapping[str, float], rises: Mapping[str, float] | None = None
-) -> Mixes:
+) -> LoadCases:
     """Load cases: rated losses, losses of every zone drawn at random, and half of rated with inner fluids 20 K warmer.
 
     rated : zone -> W;  rises : fluid -> K over the surroundings with the rated losses, 0 if not given
@@ -133,10 +133,12 @@ def mixes(
     warm = np.array([0.0 if fluid == "ambient" else 20.0 for fluid in fluids])
     at_rated = np.array([(rises or {}).get(fluid, 0.0) for fluid in fluids])
     kelvin = [at_rated, *np.zeros((DRAWS, len(fluids))), 0.5 * at_rated + warm]
-    return Mixes(tuple(zones), tuple(fluids), np.array([own, *drawn, 0.5 * own]), np.array(kelvin))
+    return LoadCases(tuple(zones), tuple(fluids), np.array([own, *drawn, 0.5 * own]), np.array(kelvin))
 
 
-def network_states(network: Network, films: Mapping[str, float], contacts: Mapping[str, float], cases: Mixes) -> Array:
+def network_states(
+    network: Network, films: Mapping[str, float], contacts: Mapping[str, float], cases: LoadCases
+) -> Array:
     """(n_states, n_case) of the network at given coefficients, rises over the surroundings."""
     system = linear(network, films, contacts)
     load = np.column_stack([unit_load(network, zone, system.solid) for zone in cases.zones]) @ cases.watts.T
@@ -148,7 +150,7 @@ def network_states(network: Network, films: Mapping[str, float], contacts: Mappi
 
 
 def point_errors(network: Network, films: Mapping[str, float], contacts: Mapping[str, float], X: Array,
-                 cases: Mixes) -> Errors:  # fmt: skip
+                 cases: LoadCases) -> Errors:  # fmt: skip
     """Worst over the load cases at one set of coefficients; X (n, n_load) as in reduction.FullPoint."""
     x, full = network_states(network, films, contacts, cases), cases.of_field(X)
     return merged([errors(network, T, own) for T, own in zip(full.T, x.T, strict=True)])

@@ -13,7 +13,7 @@ LOUD = 3  # findings that are said in full; doctor says all
 PACKAGE = Path(__file__).resolve().parents[1]
 
 
-def opened(name: str, progress: Progress, untested: bool = False) -> Folder:
+def open_case(name: str, progress: Progress, untested: bool = False) -> Folder:
     """The case for reading; doubts about its data go to stderr. `untested`: one without tests will do."""
     folder = load_case(find_case(name), progress, untested=untested)
     notes([*folder.notes, *in_short(folder, name)])
@@ -29,7 +29,7 @@ def in_short(folder: Folder, name: str) -> list[str]:
     return [*lines, *([f"{more} more such things: thermoscope test doctor {name}"] if more > 0 else [])]
 
 
-def opened_to_write(name: str, progress: Progress) -> Folder:
+def open_case_for_writing(name: str, progress: Progress) -> Folder:
     """The case for writing: one that lies inside the installed package is copied to the working folder first."""
     path = find_case(name)
     if PACKAGE in path.resolve().parents:

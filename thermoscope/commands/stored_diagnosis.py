@@ -39,13 +39,13 @@ def model_of(folder: Folder) -> str:
     ).hexdigest()
 
 
-def keep(path: Path, document: Mapping[str, Any]) -> None:
+def store(path: Path, document: Mapping[str, Any]) -> None:
     """Write a document that `kept` can tell from a damaged one."""
     content = plain(document)
     write_whole(path, json.dumps({**content, SEAL: _sealed(content)}, indent=1))
 
 
-def kept(path: Path) -> dict[str, Any] | None:
+def stored(path: Path) -> dict[str, Any] | None:
     """A document as it was written; None, with a note, where the file is not what was written."""
     if not path.is_file():
         return None
@@ -70,7 +70,7 @@ def save_diagnosis(folder: Folder, document: Mapping[str, Any]) -> None:
     if PACKAGE in folder.settings.path.resolve().parents:
         return
     path = folder.settings.path
-    keep(folder.settings.out / NAME, {**document, "model": model_of(folder), "plan": plan_of(path)})
+    store(folder.settings.out / NAME, {**document, "model": model_of(folder), "plan": plan_of(path)})
 
 
 def saved_diagnosis(folder: Folder) -> dict[str, Any] | None:
@@ -82,4 +82,4 @@ def saved_diagnosis(folder: Folder) -> dict[str, Any] | None:
 
 def last_diagnosis(folder: Folder) -> dict[str, Any] | None:
     """The kept diagnosis, of whatever model it was."""
-    return kept(folder.settings.out / NAME)
+    return stored(folder.settings.out / NAME)

@@ -22,7 +22,7 @@ _blocks = count()  # of this process: `demo` has many
 
 
 @dataclass
-class Stages:
+class ProgressBar:
     """The stages of one piece of work: how long each took so far, and the last time.
 
     last : stage -> s of the last time, in their order;  clock : s, rising
@@ -75,7 +75,7 @@ def progress() -> Iterator[Progress]:
     """A function that says what is going on."""
     key = f"{' '.join(sys.argv[1:3])} {next(_blocks)}"
     known = _remembered()
-    stages = Stages(known.get(key, {}))
+    stages = ProgressBar(known.get(key, {}))
     try:
         with _shown(stages) as tell:
             yield tell
@@ -87,7 +87,7 @@ def progress() -> Iterator[Progress]:
 
 
 @contextmanager
-def _shown(stages: Stages) -> Iterator[Progress]:
+def _shown(stages: ProgressBar) -> Iterator[Progress]:
     from rich.console import Console
 
     console = Console(stderr=True)

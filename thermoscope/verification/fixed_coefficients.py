@@ -26,7 +26,7 @@ STEPS = ((10.0, 6), (60.0, 9), (600.0, 10))  # s, number: a step of loss from a 
 
 
 @dataclass(frozen=True)
-class Frozen:
+class FixedCoefficients:
     """films, contacts (W/m2/K); watts : part -> W; fluids with the matrix of their streams (W/K) and their heat (W)."""
 
     films: Mapping[str, float]
@@ -36,7 +36,7 @@ class Frozen:
     streams: Array
     heat: Array
 
-    def moved(self, spread: float, seed: int = 0) -> Frozen:
+    def moved(self, spread: float, seed: int = 0) -> FixedCoefficients:
         """The same with every film and contact times spread ** U(-1, 1)."""
         rng = np.random.default_rng(seed)
         return replace(self, films=drawn(self.films, spread, rng), contacts=drawn(self.contacts, spread, rng))
@@ -100,7 +100,9 @@ class Frozen:
         return np.concatenate([shapes.field(states), x[solid:]])
 
 
-def rated(machine: Machine, network: Network, films: Mapping[str, float], contacts: Mapping[str, float]) -> Frozen:
+def rated(
+    machine: Machine, network: Network, films: Mapping[str, float], contacts: Mapping[str, float]
+) -> FixedCoefficients:
     """The rated point of a machine, its windings at their reference temperature, whole parts heated."""
     watts, fluids = dict(rated_watts(machine, network)), fluid_nodes(network)
     streams = coefficients(network, rated_inputs(machine), np.zeros(network.size)).streams
@@ -109,4 +111,4 @@ def rated(machine: Machine, network: Network, films: Mapping[str, float], contac
     for place, q in watts.items():
         part = place_of(network, place).part
         whole[part] = whole.get(part, 0.0) + q
-    return Frozen(films, contacts, whole, fluids, streams, heat)
+    return FixedCoefficients(films, contacts, whole, fluids, streams, heat)

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from geom import Machine
-from lumped.condensation.greedy_enrichment import Adapted, Size, adapt
+from lumped.condensation.greedy_enrichment import Enrichment, Size, enrich
 from lumped.condensation.reduction import Recipe, Reduction
-from lumped.condensation.reduction_error import Wish
+from lumped.condensation.reduction_error import Accuracy
 from lumped.machine.bases import on_all
 from lumped.machine.motor import motor_network
 from lumped.machine.zones import motor_zones
@@ -22,14 +22,14 @@ JOINTS = (0.2, 5.0)  # times all contacts, as well
 
 
 @dataclass(frozen=True)
-class Sized:
+class SizedNetwork:
     """built : with the network that was kept;  reduction : with the points it learned from;  sizes : the table"""
 
     built: Built
     reduction: Reduction
-    wish: Wish
+    wish: Accuracy
     sizes: tuple[Size, ...]
-    adapted: Adapted | None
+    adapted: Enrichment | None
 
     @property
     def met(self) -> bool:
@@ -47,32 +47,32 @@ class Sized:
         }
 
 
-def wish_of(accuracy: float) -> Wish:
+def accuracy_of(accuracy: float) -> Accuracy:
     """Hot spots and points within `accuracy` percent of a part's own rise, means within half of it."""
-    return Wish(accuracy / 2, accuracy, accuracy)
+    return Accuracy(accuracy / 2, accuracy, accuracy)
 
 
-def sized(
+def smallest_network(
     machine: Machine, accuracy: float, size_m: float = 0.06, segments: int = 48, recipe: Recipe = FINE,
     progress: Progress = silent, rounds: int = ROUNDS, across: float = ACROSS, axial_m: float | None = None,
-) -> Sized:  # fmt: skip
+) -> SizedNetwork:  # fmt: skip
     """Build at several sizes and keep the smallest that meets the wish; if none does, learn from where it fails."""
     machine = on_all(machine)
     ready = prepared(machine, size_m, segments, progress, axial_m, across)
     progress("what the parts can look like")
     reduction = reduced(ready, recipe, motor_zones(machine))
-    cases, wish = load_cases(machine, reduction), wish_of(accuracy)
+    cases, wish = load_cases(machine, reduction), accuracy_of(accuracy)
     progress("error against number of states")
     guides = [reduction.random_point(k) for k in range(LOOKS)]
     points = [reduction.nominal_point(), *(reduction.extreme_point(k) for k in range(LOOKS))]
     points += [reduction.joined_point(factor) for factor in JOINTS]
     table = tuple(Size.of(reduction, asked, [*points, *guides], cases, wish) for asked in SIZES)
     good = [size for size in table if size.met]
-    found = None if good else adapt(reduction, cases, wish, rounds, points, guides, tell=progress)
+    found = None if good else enrich(reduction, cases, wish, rounds, points, guides, tell=progress)
     condensed = good[0].network if good else found.network  # type: ignore[union-attr]
     kept = reduction if found is None else found.reduction
     built = Built(machine, ready.mesh, ready.field, motor_network(machine, condensed), ready.meshing)
-    return Sized(built, kept, wish, table, found)
+    return SizedNetwork(built, kept, wish, table, found)
 
 
 SIZES = (0, 50, 100, 200, 400)  # 0: the means only

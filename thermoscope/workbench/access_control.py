@@ -28,7 +28,7 @@ def loopback(host: str) -> bool:
 
 
 @dataclass(frozen=True)
-class Gate:
+class AccessControl:
     """host : what the server listens on;  token : what a browser must show, on this computer too"""
 
     host: str

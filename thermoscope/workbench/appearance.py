@@ -21,7 +21,7 @@ Frames = tuple[NDArray[np.float64], NDArray[np.float32]]
 
 
 @dataclass(frozen=True)
-class Look:
+class Appearance:
     """errors : a `compare` document;  curves : test -> readings and model
 
     frames : test -> times (n,) s and temperatures (n, n_points) degC on the surface, empty without a machine
@@ -42,7 +42,7 @@ class Look:
         return next(t for t in self.errors["tests"] if t["name"] == name)
 
 
-def look(folder: Folder, surface: Surface | None) -> Look:
+def appearance_of(folder: Folder, surface: Surface | None) -> Appearance:
     """Run the model on every test."""
     from validation.comparison.compare import compare
 
@@ -52,4 +52,4 @@ def look(folder: Folder, surface: Surface | None) -> Look:
         for test in folder.case.tests:
             times, T = fields(folder.case, test, surface.nodes, FRAMES)
             frames[test.name] = times, surface.values(T.T).T.astype(np.float32)
-    return Look(compare(folder.case).document(), curves, frames)
+    return Appearance(compare(folder.case).document(), curves, frames)

@@ -10,7 +10,7 @@ from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import History
 from thermoscope.case_folder.runs import at_revision
 from thermoscope.console.terminal import Progress
-from thermoscope.workbench.appearance import Look, look
+from thermoscope.workbench.appearance import Appearance, appearance_of
 
 if TYPE_CHECKING:
     from viz.rendering.cut import Surface
@@ -24,7 +24,7 @@ class Bench:
     """
 
     folder: Folder
-    first: Look
+    first: Appearance
     surface: Surface | None = None
     why_flat: str = ""
 
@@ -38,7 +38,7 @@ def bench(folder: Folder, tell: Progress) -> Bench:
     """Cut the machine open, if there is one and this computer can draw it, and run the model once."""
     surface, why_flat = _surface(folder)
     tell("running the model on every test")
-    return Bench(folder, look(folder, surface), surface, why_flat)
+    return Bench(folder, appearance_of(folder, surface), surface, why_flat)
 
 
 def _surface(folder: Folder) -> tuple[Surface | None, str]:

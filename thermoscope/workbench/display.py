@@ -11,7 +11,7 @@ import numpy as np
 from thermoscope.case_folder.history import History
 from thermoscope.workbench import revisions as ledger
 from thermoscope.workbench import tables as rows
-from thermoscope.workbench.appearance import Look
+from thermoscope.workbench.appearance import Appearance
 from thermoscope.workbench.application import Bench
 from thermoscope.workbench.view import Stage
 from viz.colours import DARK, LIGHT, Theme
@@ -30,7 +30,7 @@ START: dict[str, Any] = {
 }  # fmt: skip
 
 
-class Shown:
+class Display:
     """The part of a tab that only looks. `server` is a trame server; the page is drawn from its state."""
 
     def __init__(self, bench: Bench, server: Any) -> None:
@@ -52,7 +52,7 @@ class Shown:
     def theme(self) -> Theme:
         return DARK if self.state.dark else LIGHT
 
-    def model(self, history: History, look: Look) -> None:
+    def model(self, history: History, look: Appearance) -> None:
         """Another model: its errors, curves and temperatures."""
         self.look = look
         last, errors = history.last, look.errors
@@ -138,7 +138,7 @@ def within(value: Any, low: float, high: float) -> float:
     return float(np.clip(number, low, high))
 
 
-def soon(draw: Callable[[], None]) -> Callable[[], None]:
+def debounced(draw: Callable[[], None]) -> Callable[[], None]:
     """`draw` a moment later, once however often it is asked for: curves reach the page before the picture."""
     waiting = False
 

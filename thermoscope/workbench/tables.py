@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from thermoscope.case_folder.history import History
-from thermoscope.workbench.appearance import Look
+from thermoscope.workbench.appearance import Appearance
 from viz.data import Sensor, sensors, short
 from viz.figures.candidates import amplitude
 from viz.pages.next_tests import deciding
@@ -16,7 +16,7 @@ Row = dict[str, Any]
 SHOWN = 12
 
 
-def tests(look: Look, scale: float, before: Mapping[str, float]) -> list[Row]:
+def tests(look: Appearance, scale: float, before: Mapping[str, float]) -> list[Row]:
     """A bar per test: error (K), its length as a share of `scale`, and the error before the last step."""
     return [
         {
@@ -28,7 +28,7 @@ def tests(look: Look, scale: float, before: Mapping[str, float]) -> list[Row]:
     ]  # fmt: skip
 
 
-def channels(look: Look, test: str, scale: float) -> list[Row]:
+def channels(look: Appearance, test: str, scale: float) -> list[Row]:
     """A row per sensor of a test: what it misses (K), and whether that is more than its uncertainty."""
     tone = {s.name: s.verdict for s in sensors(look.curves[test], dict.fromkeys(_names(look, test), (0.0, 0.0, 0.0)))}
     return [
@@ -41,12 +41,12 @@ def channels(look: Look, test: str, scale: float) -> list[Row]:
     ]  # fmt: skip
 
 
-def placed(look: Look, test: str, positions: Mapping[str, tuple[float, ...]]) -> tuple[Sensor, ...]:
+def placed(look: Appearance, test: str, positions: Mapping[str, tuple[float, ...]]) -> tuple[Sensor, ...]:
     """The sensors of a test that have a position on the machine."""
     return sensors(look.curves[test], positions)
 
 
-def worst(look: Look) -> tuple[str, str]:
+def worst(look: Appearance) -> tuple[str, str]:
     """(test, channel) with the largest error against the sensor's uncertainty, never-used tests first."""
     ranked = [
         (t["role"] == "hold-out", c["rmse_K"] / c["sigma_K"], t["name"], c["channel"])
@@ -55,7 +55,7 @@ def worst(look: Look) -> tuple[str, str]:
     return max(ranked)[2:]
 
 
-def largest(look: Look) -> tuple[float, float]:
+def largest(look: Appearance) -> tuple[float, float]:
     """The largest error of a test and of a sensor (K): what the bars' lengths refer to."""
     rows = look.errors["tests"]
     return max(t["rmse_K"] for t in rows), max(c["rmse_K"] for t in rows for c in t["channels"])
@@ -101,5 +101,5 @@ def arrow(pair: Mapping[str, float] | None) -> str:
     return f"{pair['before']:.2f} → {pair['after']:.2f} K" if pair else ""
 
 
-def _names(look: Look, test: str) -> list[str]:
+def _names(look: Appearance, test: str) -> list[str]:
     return [c.name for c in look.curves[test].channels]

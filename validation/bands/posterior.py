@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from lumped.model.network import Network, Parameter
 from validation.bands.inputs import FLOWS, moved_inputs
-from validation.calibration.calibrate import Fit, Known, minimise, with_model_error
+from validation.calibration.calibrate import Fit, KnownSegments, minimise, with_model_error
 from validation.calibration.unknowns import working
 from validation.case import Case, Test
 from validation.comparison.linearisation import Segment, segments
@@ -32,7 +32,7 @@ Progress = Callable[[str], None]
 
 
 @dataclass(frozen=True)
-class Belief:
+class ParameterPosterior:
     """network : with a neutral parameter for every doubt;  values : of its parameters
 
     names (p,) : of the covariance (p, p): parameters in fitting coordinates, doubts and inputs in deviations
@@ -62,7 +62,7 @@ def silent(message: str) -> None:
 
 
 @one_blas_thread
-def belief(case: Case, progress: Progress = silent) -> Belief:
+def parameter_posterior(case: Case, progress: Progress = silent) -> ParameterPosterior:
     """Of the model as it stands: on the tests that it was fitted to; before any calibration the priors alone."""
     network, unknowns = working(case)
     grown, doubts = with_doubts(network, case.doubt)
@@ -72,15 +72,17 @@ def belief(case: Case, progress: Progress = silent) -> Belief:
     tests = [t for t in case.tests if t.role in roles] if case.model.revision else []
     if not tests:
         sd = np.array([p.prior_sd for p in unknowns.parameters])
-        return Belief(grown, values, unknowns.names, np.diag(sd**2), of_network, (), case.doubt)
+        return ParameterPosterior(grown, values, unknowns.names, np.diag(sd**2), of_network, (), case.doubt)
     progress("uncertainty of the calibrated model")
     parts = segments(network, tests, values, unknowns.parameters)
     start = unknowns.coordinates(values)
-    plain = minimise(network, tests, unknowns, start, None, values, 0, Known(parts, nearby=False))
+    plain = minimise(network, tests, unknowns, start, None, values, 0, KnownSegments(parts, nearby=False))
     fit = with_model_error(plain, tests, values, case.doubt)
     inputs = input_columns(network, tests, values, case.doubt, parts)
-    names = (*unknowns.names, *doubt_names(grown, doubts, tests[0], values, fit, case.doubt), *inputs)
-    return Belief(grown, values, names, joint(fit, inputs), of_network, tuple(t.name for t in tests), case.doubt)
+    names = (*unknowns.names, *uncertain_names(grown, doubts, tests[0], values, fit, case.doubt), *inputs)
+    return ParameterPosterior(
+        grown, values, names, joint(fit, inputs), of_network, tuple(t.name for t in tests), case.doubt
+    )
 
 
 def input_columns(
@@ -102,7 +104,7 @@ def input_columns(
     return out
 
 
-def doubt_names(
+def uncertain_names(
     grown: Network, doubts: Sequence[Parameter], test: Test, values: dict[str, float], fit: Fit, doubt: Doubt
 ) -> list[str]:
     """A name for every column of the model error: links and capacities, cores, placements, flows."""
@@ -124,7 +126,7 @@ def joint(fit: Fit, inputs: Mapping[str, Sequence[Array]]) -> Array:
     return np.asarray(np.linalg.inv(H), float)
 
 
-def acting(of: Belief, test: Test) -> tuple[Network, tuple[Parameter, ...], Array]:
+def acting(of: ParameterPosterior, test: Test) -> tuple[Network, tuple[Parameter, ...], Array]:
     """The network with the cores that a record gives its nodes; all in it that is uncertain but sensors; for each of
     these the size of one deviation where it is a doubt, else 1."""
     cored = with_cores(of.network, test, of.values, of.doubt)

@@ -29,7 +29,7 @@ KNOWN = ("copper", "measured")  # losses whose law is not in doubt
 
 
 @dataclass(frozen=True)
-class Bend(Law):
+class ExponentError(Law):
     """d law / d exponent of one input: law * ln(law(u) / law(reference)) with the other inputs at their reference.
 
     reference : level of each input at which the law is right
@@ -55,7 +55,7 @@ class Bend(Law):
 
 
 @dataclass(frozen=True)
-class BendOfTemperature(Law):
+class TemperatureSlopeError(Law):
     """d law / d slope with temperature (1/K), zero at SETTLE_C: friction falls as the grease warms."""
 
     base: Law
@@ -70,7 +70,7 @@ class BendOfTemperature(Law):
 
 
 @dataclass(frozen=True)
-class BendOfDifference(Law):
+class DifferenceExponentError(Law):
     """d law / d exponent of the temperature difference, zero at SETTLE_K."""
 
     base: Law
@@ -79,13 +79,13 @@ class BendOfDifference(Law):
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "reads", self.base.reads)
-        object.__setattr__(self, "temperature", bent(self.base.temperature))
+        object.__setattr__(self, "temperature", exponent_derivative(self.base.temperature))
 
     def factor(self, inputs: Inputs) -> Array | float:
         return self.base.factor(inputs)
 
 
-def bent(law: TemperatureLaw) -> Table | FilmTable:
+def exponent_derivative(law: TemperatureLaw) -> Table | FilmTable:
     """law(dT) ln(dT / SETTLE_K) as a table."""
     if isinstance(law, FilmTable):
         films = np.reshape(law.value, (-1, len(law.difference)))
@@ -117,7 +117,7 @@ def varied(tests: Sequence[Test], name: str) -> bool:
     return bool(np.ptp(v) > 0.1 * np.mean(v))
 
 
-def with_forms(
+def with_model_form(
     network: Network, tests: Sequence[Test], added: Collection[str] = (), doubt: Doubt = USUAL
 ) -> tuple[Network, tuple[str, ...]]:
     """The network with its form nuisances, and their names.
@@ -167,9 +167,9 @@ def _with_input(
     """The exponent of one input in all laws of a parameter that follow it."""
     new = []
 
-    def bend(x: Link | Source) -> Bend | None:
+    def bend(x: Link | Source) -> ExponentError | None:
         fit = name in x.law.reads and set(x.law.reads) <= set(level)
-        return Bend(x.law, name, {k: level[k] for k in x.law.reads}) if fit else None
+        return ExponentError(x.law, name, {k: level[k] for k in x.law.reads}) if fit else None
 
     for film in films:
         if law := bend(film):
@@ -186,7 +186,7 @@ def _with_difference(network: Network, parent: str, films: Sequence[Link], doubt
     """The exponent of the temperature difference in the films of free convection."""
     free = [x for x in films if isinstance(x.law.temperature, (Power, Table, FilmTable))]
     for x in free:
-        network = copy_link(network, x, f"{x.name}^dT", BendOfDifference(x.law))
+        network = copy_link(network, x, f"{x.name}^dT", DifferenceExponentError(x.law))
     return _with_parameter(network, f"{parent}^dT", [f"{x.name}^dT" for x in free], doubt["difference exponent"])
 
 
@@ -194,7 +194,7 @@ def _with_warming(network: Network, parent: str, losses: Sequence[Source], doubt
     """The slope with temperature of friction."""
     greased = [x for x in losses if x.kind == "friction" and x.law.temperature == CONSTANT]
     for x in greased:
-        network = copy_source(network, x, f"{x.name}^T", BendOfTemperature(x.law))
+        network = copy_source(network, x, f"{x.name}^T", TemperatureSlopeError(x.law))
     return _with_parameter(network, f"{parent}^T", [f"{x.name}^T" for x in greased], doubt["warming"], "1/K")
 
 

@@ -14,7 +14,7 @@ RANGE = (0.25, 4.0)
 
 
 @dataclass(frozen=True)
-class Tuned:
+class OneFactorFit:
     """One parameter moved, all others as they were: its factor, and the comparison that results."""
 
     parameter: str
@@ -22,7 +22,7 @@ class Tuned:
     comparison: Comparison
 
 
-def tuned(case: Case, parameter: str, channel: str | None = None) -> Tuned:
+def one_factor_fit(case: Case, parameter: str, channel: str | None = None) -> OneFactorFit:
     """The factor on one parameter of the network that brings the validation tests closest (to one channel, or to all).
 
     Nothing tells this fit what is physically right: no prior, no other test.
@@ -43,4 +43,4 @@ def tuned(case: Case, parameter: str, channel: str | None = None) -> Tuned:
         return pooled([c for t in tests for c in t.channels if channel in (None, c.channel)])
 
     best = minimize_scalar(error, bounds=tuple(np.log(RANGE)), method="bounded", options={"xatol": 0.01})
-    return Tuned(parameter, float(np.exp(best.x)), moved(float(best.x)))
+    return OneFactorFit(parameter, float(np.exp(best.x)), moved(float(best.x)))

@@ -10,7 +10,7 @@ import numpy as np
 
 from geom.errors import InputError
 from lumped.model.network import Network, Parameter
-from validation.calibration.calibrate import Fit, Keep, Progress, calibrated, forgets, minimise, silent
+from validation.calibration.calibrate import Fit, Keep, Progress, calibrated, minimise, no_memory, no_progress
 from validation.calibration.unknowns import Unknowns, working
 from validation.case import Case, Test
 from validation.measurement.operators import of_measurement
@@ -37,10 +37,10 @@ class Search:
     starts: int = 1
     seed: int = 0
     begin: Mapping[str, float] = field(default_factory=dict)
-    keep: Keep = forgets
+    keep: Keep = no_memory
 
 
-def stages(case: Case, tests: Sequence[Test], unknowns: Unknowns) -> list[Stage]:
+def fit_stages(case: Case, tests: Sequence[Test], unknowns: Unknowns) -> list[Stage]:
     """One stage per test that frees something, in the case's order, then one for all the others and what is left."""
     left, out = {p.name for p in unknowns.parameters if not of_measurement(p)}, []
     for test in tests:
@@ -65,15 +65,15 @@ def belongs(name: str, pattern: str) -> bool:
     return any(fnmatchcase(n, pattern) for n in (name, name.split("^")[0], name.split(":")[0]))
 
 
-def fitted(
+def staged_fit(
     case: Case, tests: Sequence[Test], start: Mapping[str, float], search: Search | None = None,
-    progress: Progress = silent,
+    progress: Progress = no_progress,
 ) -> list[Fit]:  # fmt: skip
     """The case's free parameters fitted to some tests, stage after stage; the fit of each."""
     network, unknowns = working(case)
     search = search or Search()
     values, fits = {**start, **search.begin}, []
-    for stage in stages(case, tests, unknowns):
+    for stage in fit_stages(case, tests, unknowns):
         names = {p.name for p in unknowns.parameters if p.name in stage.free or _measured_in(p, stage.tests)}
         own = Unknowns(tuple(p for p in unknowns.parameters if p.name in names))
         fits.append(_one(network, stage.tests, own, values, search, progress))

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from lumped.model.network import Network, Parameter
 from lumped.transfer.laws import Law
-from validation.calibration.model_form import with_forms
+from validation.calibration.model_form import with_model_form
 from validation.case import Case, Channel, Model, Test
 from validation.doubt import USUAL, Doubt
 from validation.effects import Effect, Scene, effect, extended
@@ -146,7 +146,7 @@ def working(case: Case, more: Sequence[Effect] = ()) -> tuple[Network, Unknowns]
     network = extended(case.model.network, (*inside, *more))
     network = at_level(network, {e.name for e in (*inside, *more)}, case.tests)
     network = freed(network, {e.name for e in inside})
-    network, forms = with_forms(network, case.tests, {e.name for e in inside}, case.doubt)
+    network, forms = with_model_form(network, case.tests, {e.name for e in inside}, case.doubt)
     network = replace(network, parameters=(*network.parameters, *extra))
     chosen = {p.name for p in (case.nuisances or case.model.network.parameters)}
     chosen |= {e.name for e in (*inside, *more)} | {p.name for p in extra} | set(forms)

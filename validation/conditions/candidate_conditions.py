@@ -10,7 +10,7 @@ AS_DECLARED = ("conduction.bench", "flow", "blockage", "input.factor")  # where 
 IN_WHOLE_TESTS = ("ambient.offset",)
 
 
-def passing(scene: Scene) -> tuple[Effect, ...]:
+def temporary_effects(scene: Scene) -> tuple[Effect, ...]:
     """Effects that can hold for a while."""
     known, network = kinds(), scene.network
     nodes = [p.name for p in network.places.values() if p.kind in ("part", "node", "fluid")]
@@ -21,7 +21,7 @@ def passing(scene: Scene) -> tuple[Effect, ...]:
     return (*everyday, *(known[k](place) for k in AS_DECLARED for place in known[k].places(scene)))
 
 
-def of_a_test(scene: Scene) -> tuple[Effect, ...]:
+def single_test_effects(scene: Scene) -> tuple[Effect, ...]:
     """Effects that can hold in one test: those, and a thermometer of a boundary that was elsewhere."""
     known = kinds()
-    return (*passing(scene), *(known[k](place) for k in IN_WHOLE_TESTS for place in known[k].places(scene)))
+    return (*temporary_effects(scene), *(known[k](place) for k in IN_WHOLE_TESTS for place in known[k].places(scene)))

@@ -13,14 +13,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from validation.calibration.calibrate import silent
+from validation.calibration.calibrate import no_progress
 from validation.calibration.unknowns import scene_of
 from validation.case import Case
-from validation.conditions.candidate_conditions import of_a_test, passing
-from validation.conditions.hat_functions import Stretch, hats
+from validation.conditions.candidate_conditions import single_test_effects, temporary_effects
+from validation.conditions.hat_functions import Interval, hat_scores
 from validation.conditions.refine import columns, refined
 from validation.conditions.windows import ALIKE, distinct, stretches, worth
-from validation.diagnosis.missing_heat import Latent, Scan
+from validation.diagnosis.missing_heat import MissingHeat, Scan
 from validation.doubt import PRIOR, USUAL
 from validation.effects import Effect, extended
 from validation.effects.during import During
@@ -44,29 +44,29 @@ class Condition:
 
 
 def conditions(
-    evidence: Evidence, case: Case, looked: Scan, heat: Sequence[Latent], only: Sequence[str] | None = None,
-    progress: Callable[[str], None] = silent,
+    evidence: Evidence, case: Case, looked: Scan, heat: Sequence[MissingHeat], only: Sequence[str] | None = None,
+    progress: Callable[[str], None] = no_progress,
 ) -> tuple[list[During], tuple[Event, ...]]:  # fmt: skip
     """The conditions that could carry weight, and the events they hold in.  only : kinds, None for all"""
     known = {**case.model.values, **evidence.fit.values}
     scene = replace(scene_of(case), network=evidence.fit.network)
-    bases = [e for e in passing(scene) if only is None or e.kind in only]
+    bases = [e for e in temporary_effects(scene) if only is None or e.kind in only]
     if not bases:
         return [], ()
     progress("looking for what held in one test or for a while")
-    whole = [e for e in of_a_test(scene) if only is None or e.kind in only]
-    chosen, events = best(in_one_test(evidence, whole, known), TESTS), []
-    for s in likely(evidence, looked, heat, known, len(bases)):
+    whole = [e for e in single_test_effects(scene) if only is None or e.kind in only]
+    chosen, events = best(single_test_conditions(evidence, whole, known), TESTS), []
+    for s in likely_intervals(evidence, looked, heat, known, len(bases)):
         found, own = explained(evidence, bases, s, looked, known)
         events.append(found)
         chosen += best(own, EACH)
-    for gate, share in told(case, evidence, events):
+    for gate, share in declared_conditions(case, evidence, events):
         effects = [During.of(base, gate, share / len(bases)) for base in bases]
         chosen += best(scored_in(evidence, effects, known, odds_against_nothing(share / len(bases))), EACH)
     return [c.effect for c in chosen], tuple(events)
 
 
-def told(case: Case, evidence: Evidence, events: Sequence[Event]) -> list[tuple[str, float]]:
+def declared_conditions(case: Case, evidence: Evidence, events: Sequence[Event]) -> list[tuple[str, float]]:
     """What the user says was different: inputs of 0 and 1 that no law reads, and events he confirmed, each with its
     share of the prior."""
     laws = [*(x.law for x in evidence.network.links), *(x.law for x in evidence.network.sources)]
@@ -89,7 +89,7 @@ def odds_against_nothing(share: float) -> float:
     return float(np.log(PRIOR["condition"].share * share / PRIOR["nothing"].share))
 
 
-def in_one_test(evidence: Evidence, bases: Sequence[Effect], known: Mapping[str, float]) -> list[Condition]:
+def single_test_conditions(evidence: Evidence, bases: Sequence[Effect], known: Mapping[str, float]) -> list[Condition]:
     """Everything that may have held in one test alone; none where there is only one test."""
     names = [t.name for t in evidence.tests]
     if len(names) < 2 or not bases:
@@ -108,18 +108,18 @@ def in_one_test(evidence: Evidence, bases: Sequence[Effect], known: Mapping[str,
     ]  # fmt: skip
 
 
-def likely(
-    evidence: Evidence, looked: Scan, heat: Sequence[Latent], known: Mapping[str, float], laws: int
-) -> list[Stretch]:
+def likely_intervals(
+    evidence: Evidence, looked: Scan, heat: Sequence[MissingHeat], known: Mapping[str, float], laws: int
+) -> list[Interval]:
     """The stretches that could carry weight once the price of when, what and where is paid."""
-    found = hats(evidence, looked, known)
+    found = hat_scores(evidence, looked, known)
     limit = -HOPELESS - odds_against_nothing(0.5 / (laws * len(evidence.tests)))
     ordered = stretches(found, heat, neighbours(evidence.fit.network))
     return [s for s in distinct(ordered, EVENTS) if worth(found, s) > limit]
 
 
 def explained(
-    evidence: Evidence, bases: Sequence[Effect], s: Stretch, looked: Scan, known: Mapping[str, float]
+    evidence: Evidence, bases: Sequence[Effect], s: Interval, looked: Scan, known: Mapping[str, float]
 ) -> tuple[Event, list[Condition]]:
     """An event with its ends at the samples, and all that it may have been, exactly run."""
     reach = {t: 1.5 * float(looked.knots[t][1] - looked.knots[t][0]) for t in s.event.spans}
@@ -129,7 +129,7 @@ def explained(
     return timed.event, scored_in(evidence, effects, known, odds_against_nothing(share))
 
 
-def likeness(evidence: Evidence, bases: Sequence[Effect], s: Stretch, known: Mapping[str, float]) -> Effect:
+def likeness(evidence: Evidence, bases: Sequence[Effect], s: Interval, known: Mapping[str, float]) -> Effect:
     """Of all that can hold for a while what explains a stretch best as it stands."""
     effects = [During.of(base, s.event.name) for base in bases]
     rows = scored_in(evidence, effects, known, 0.0)

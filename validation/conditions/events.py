@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import numpy as np
 
-from validation.diagnosis.result import Happening
+from validation.diagnosis.result import PossibleEvent
 from validation.effects.during import During
 from validation.inference.posterior import Posterior, probabilities
 
 
-def happenings(posterior: Posterior) -> tuple[Happening, ...]:
+def possible_events(posterior: Posterior) -> tuple[PossibleEvent, ...]:
     """Every stretch that was tried, most probable first; it is probable as far as any explanation of it is."""
     rows = [row for found in posterior.events if (row := _row(posterior, found.name)) is not None]
     return tuple(sorted(rows, key=lambda r: -r.probability))
 
 
-def _row(posterior: Posterior, name: str) -> Happening | None:
+def _row(posterior: Posterior, name: str) -> PossibleEvent | None:
     e, single = posterior.evidence, posterior.single
     own = [k for k, x in enumerate(e.effects) if isinstance(x, During) and x.gate == name]
     if not own:
@@ -32,5 +32,5 @@ def _row(posterior: Posterior, name: str) -> Happening | None:
     assert effect.event is not None
     value = float(e.score.amplitude[k] if fit is None else fit.theta[e.p])
     document = effect.event.document()
-    return Happening(name, document["words"], tuple(document["spans"]), held, effect.name, effect.title, value,
+    return PossibleEvent(name, document["words"], tuple(document["spans"]), held, effect.name, effect.title, value,
                      e.parameters[k].unit)  # fmt: skip

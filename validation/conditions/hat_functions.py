@@ -36,7 +36,7 @@ class Path:
 
 
 @dataclass(frozen=True)
-class Stretch:
+class Interval:
     """An event and the path that explains it best.  log_bayes : against nothing, the price of when not yet paid"""
 
     event: Event
@@ -45,7 +45,7 @@ class Stretch:
 
 
 @dataclass(frozen=True)
-class Hats:
+class HatScores:
     """All hats of a scan with their efficient score.
 
     knots : test -> (m,) s;  start : test -> index of its first hat;  T : test -> place or boundary -> (m,) degC
@@ -85,7 +85,7 @@ class Hats:
 
     def course(self, event: Event, path: Path) -> tuple[NDArray[np.int64], Array]:
         """Indices of the hats, and heat (W) in each, of a path of one unit that is open while an event lasts."""
-        ends = [(i, heat * held(self.knots[t], spans)) for t, spans in event.spans.items()
+        ends = [(i, heat * overlap(self.knots[t], spans)) for t, spans in event.spans.items()
                 for i, heat in self.ends(path, t)]  # fmt: skip
         return np.concatenate([i for i, _ in ends]), np.concatenate([w for _, w in ends])
 
@@ -95,14 +95,14 @@ class Hats:
         cross = sum(heat * (s.V[np.ix_(j, i)] @ w) for j, heat in self.ends(path, test))
         return float(w @ s.u[i]), float(w @ s.V[np.ix_(i, i)] @ w), np.asarray(cross)
 
-    def weigh(self, event: Event, path: Path) -> Stretch:
+    def weigh(self, event: Event, path: Path) -> Interval:
         """Evidence of a path that is open while an event lasts, repeats with one amplitude."""
         i, w = self.course(event, path)
         u, V = float(w @ self.score.u[i]), float(w @ self.score.V[np.ix_(i, i)] @ w)
-        return Stretch(event, path, float(log_bayes(np.array([u]), np.array([V]), self.usual(path))[0]))
+        return Interval(event, path, float(log_bayes(np.array([u]), np.array([V]), self.usual(path))[0]))
 
 
-def hats(evidence: Evidence, looked: Scan, values: Mapping[str, float]) -> Hats:
+def hat_scores(evidence: Evidence, looked: Scan, values: Mapping[str, float]) -> HatScores:
     """The scan as an efficient score: calibration and model error projected out."""
     fit, network = evidence.fit, evidence.fit.network
     left = {(s.test, s.channel): s.r for s in fit.parts}
@@ -113,7 +113,7 @@ def hats(evidence: Evidence, looked: Scan, values: Mapping[str, float]) -> Hats:
     theta, sd = extended_prior(fit)
     found = score(apart(grams), theta, sd, np.zeros(count, int))
     T = {t.name: temperatures(evidence, t, looked.knots[t.name], values) for t in evidence.tests}
-    return Hats(looked.places, looked.knots, start, T, found, power_scale(network), conductance_scale(network))
+    return HatScores(looked.places, looked.knots, start, T, found, power_scale(network), conductance_scale(network))
 
 
 def temperatures(evidence: Evidence, test: Test, at: Array, values: Mapping[str, float]) -> dict[str, Array]:
@@ -126,7 +126,7 @@ def temperatures(evidence: Evidence, test: Test, at: Array, values: Mapping[str,
     return {name: np.interp(at, test.time, course) for name, course in courses.items()}
 
 
-def held(knots: Array, spans: Sequence[Span]) -> Array:
+def overlap(knots: Array, spans: Sequence[Span]) -> Array:
     """Share of each hat's reach (half a spacing to either side) that lies in a span."""
     half = 0.5 * (knots[1] - knots[0])
     inside = sum(np.clip(np.minimum(knots + half, b) - np.maximum(knots - half, a), 0.0, None) for a, b in spans)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from validation.calibration.calibrate import silent
+from validation.calibration.calibrate import no_progress
 from validation.calibration.unknowns import working
 from validation.case import Case
 from validation.comparison.compare import physical
@@ -14,13 +14,13 @@ from validation.comparison.residuals import Pattern, patterns
 from validation.comparison.uncertainty import Uncertainty, uncertainties
 from validation.conditions.contradiction import Contradiction, contradiction
 from validation.conditions.windows import pulses
-from validation.diagnosis.missing_heat import Latent, latent_heat
+from validation.diagnosis.missing_heat import MissingHeat, missing_heat
 from validation.inference.evidence import calibrated_case, diagnosing
 from validation.threads import one_blas_thread
 
 
 @dataclass(frozen=True)
-class Failing:
+class Discrepancy:
     """All rows of all tests, held-out ones too; heat : what would have to enter where, most evident first.
 
     contradiction : what would have to differ between the tests that are fitted
@@ -28,7 +28,7 @@ class Failing:
 
     uncertainty: tuple[Uncertainty, ...]
     patterns: tuple[Pattern, ...]
-    heat: tuple[Latent, ...]
+    heat: tuple[MissingHeat, ...]
     contradiction: Contradiction
 
     def document(self) -> dict:
@@ -41,7 +41,7 @@ class Failing:
 
 
 @one_blas_thread
-def failing(case: Case, progress: Callable[[str], None] = silent) -> Failing:
+def discrepancies(case: Case, progress: Callable[[str], None] = no_progress) -> Discrepancy:
     """The model as it stands; the scan for heat is made after calibration, or it would find what calibration mends."""
     network, _ = working(case)
     now = physical(case)
@@ -51,10 +51,10 @@ def failing(case: Case, progress: Callable[[str], None] = silent) -> Failing:
     fit = calibrated_case(case, progress)
     progress("looking for where heat is missing")
     tests = diagnosing(case)
-    return Failing(rows, tuple(left), tuple(latent_heat(fit, tests)), contradiction(fit, tests))
+    return Discrepancy(rows, tuple(left), tuple(missing_heat(fit, tests)), contradiction(fit, tests))
 
 
-def steps(heat: Latent) -> list[dict]:
+def steps(heat: MissingHeat) -> list[dict]:
     """Every stretch in which a missing-heat curve stands on another level: test, begin and end (s), W."""
     found = {test: pulses(*curve) for test, curve in heat.heat_W.items()}
     return [

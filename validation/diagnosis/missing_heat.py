@@ -35,7 +35,7 @@ LOCATED = 10.0  # nats
 
 
 @dataclass(frozen=True)
-class Latent:
+class MissingHeat:
     """Heat missing at one place: evidence (nats); per test its times (s), heat (W) and standard deviation (W).
 
     log_bayes : the same averaged over how large and how lasting such heat may be
@@ -56,7 +56,7 @@ class Latent:
 
 
 @dataclass(frozen=True)
-class Hat:
+class HatFunction:
     """A hat function of time around one knot (s)."""
 
     at: float
@@ -82,7 +82,7 @@ class Scan:
 
     def read(
         self, residual: Sequence[Segment], noise: Noise, theta: Array, error: ModelError | None = None
-    ) -> list[Latent]:
+    ) -> list[MissingHeat]:
         """All places, most evident first.
 
         theta : where the parameters stand, from the mean of their priors
@@ -106,7 +106,7 @@ class Scan:
         forms = [_correlation(list(self.knots.values()), memory) for memory in MEMORY_S]
         return [np.asarray(np.linalg.cholesky(R), float) for R in forms]
 
-    def _at(self, i: int, grams: Mapping[str, Gram], cov: Array, Jr: Array) -> Latent:
+    def _at(self, i: int, grams: Mapping[str, Gram], cov: Array, Jr: Array) -> MissingHeat:
         size = [len(k) for k in self.knots.values()]
         start = np.concatenate([[0], np.cumsum(size)])
         A, u = np.zeros((start[-1], start[-1])), np.zeros(start[-1])
@@ -121,7 +121,7 @@ class Scan:
         best, mean = nats.max(), logsumexp([x[0] for x in tried]) - np.log(len(tried) * sizes.size)
         cut = [slice(a, b) for a, b in pairwise(start)]
         heat_W = {name: (k, q[c], sd[c]) for (name, k), c in zip(self.knots.items(), cut, strict=True)}
-        return Latent(self.places[i], float(best), float(mean), heat_W, self._moves(i, heat_W, -cov @ JZ @ q))
+        return MissingHeat(self.places[i], float(best), float(mean), heat_W, self._moves(i, heat_W, -cov @ JZ @ q))
 
     def _moves(self, i: int, heat_W: Mapping[str, tuple[Array, Array, Array]], follow: Array) -> float:
         """Largest change of a reading (K); follow : what the heat makes of the calibrated parameters."""
@@ -133,12 +133,12 @@ class Scan:
         return most
 
 
-def located(evidence_nats: float) -> bool:
+def is_located(evidence_nats: float) -> bool:
     """Is there more evidence than it takes to place heat?"""
     return evidence_nats > LOCATED
 
 
-def latent_heat(fit: Fit, tests: Sequence[Test], knot_s: float = KNOT_S) -> list[Latent]:
+def missing_heat(fit: Fit, tests: Sequence[Test], knot_s: float = KNOT_S) -> list[MissingHeat]:
     """The scan of a calibrated model's residual."""
     return scan(fit, tests, knot_s).read(fit.parts, fit.noise, fit.theta, fit.error)
 
@@ -151,18 +151,18 @@ def scan(fit: Fit, tests: Sequence[Test], knot_s: float = KNOT_S) -> Scan:
         span = test.time[-1] - test.time[0]
         count = int(np.clip(round(span / knot_s) + 1, 2, INSTANTS // 2))
         knots[test.name] = test.time[0] + np.linspace(0.0, span, count)
-        network, hats = with_hats(fit.network, places, knots[test.name])
+        network, hats = with_heat_inputs(fit.network, places, knots[test.name])
         parts += segments(network, [test], fit.values, (*fit.unknowns.parameters, *hats))
     return Scan(places, knots, tuple(parts), fit.unknowns.sd, power_scale(fit.network))
 
 
-def with_hats(network: Network, places: Sequence[str], knots: Array) -> tuple[Network, list[Parameter]]:
+def with_heat_inputs(network: Network, places: Sequence[str], knots: Array) -> tuple[Network, list[Parameter]]:
     """The network with a zero heat input (1 W) at every place and knot."""
     sources, hats = [], []
     for place in places:
         for at in knots:
             name = f"latent:{place}:{at:.0f}"
-            law = Shaped(Fixed(1.0), Hat(float(at), float(knots[1] - knots[0])), also_reads=("time_s",))
+            law = Shaped(Fixed(1.0), HatFunction(float(at), float(knots[1] - knots[0])), also_reads=("time_s",))
             sources.append(heat(network, name, "latent", place, law))
             hats.append(Parameter(name, ((name, 1.0),), 0.0, "W", mapping="amplitude", neutral=0.0))
     network = network.extended(sources=sources)

@@ -12,7 +12,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Imprint:
+class SignalToError:
     """What an effect changes at the sensors, beside what the numbers themselves may be wrong by.
 
     sensor : where it stands out most;  change_K, budget_K : largest change and error budget there
@@ -28,7 +28,7 @@ class Imprint:
         return self.change_K > self.budget_K
 
 
-def imprint(change: Mapping[str, Array | float], budget: Mapping[str, float]) -> Imprint:
+def signal_to_error(change: Mapping[str, Array | float], budget: Mapping[str, float]) -> SignalToError:
     """Where an effect stands out most from the error budget.
 
     change : sensor -> predicted change of its reading (K), a number or over time, NaN where nothing is read
@@ -36,9 +36,9 @@ def imprint(change: Mapping[str, Array | float], budget: Mapping[str, float]) ->
     """
     sizes = {sensor: float(np.nanmax(np.abs(values), initial=0.0)) for sensor, values in change.items()}
     if not sizes:
-        return Imprint("", 0.0, 0.0)
+        return SignalToError("", 0.0, 0.0)
     at = max(sizes, key=lambda s: _share(sizes[s], budget.get(s, 0.0)))
-    return Imprint(at, sizes[at], budget.get(at, 0.0))
+    return SignalToError(at, sizes[at], budget.get(at, 0.0))
 
 
 def _share(change: float, budget: float) -> float:

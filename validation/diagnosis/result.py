@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
 from geom.errors import InputError
-from validation.diagnosis.missing_heat import Latent
+from validation.diagnosis.missing_heat import MissingHeat
 
 if TYPE_CHECKING:
     from validation.conditions.contradiction import Contradiction
@@ -60,7 +60,7 @@ def _pair(pair: Pair | None) -> dict | None:
 
 
 @dataclass(frozen=True)
-class Hidden:
+class DetectionLimit:
     """An effect that these tests could not have shown unless it were larger than this."""
 
     effect: str
@@ -137,7 +137,7 @@ class Question:
 
 
 @dataclass(frozen=True)
-class Happening:
+class PossibleEvent:
     """Something that may have been different for a while.  spans : {"test", "begin_s", "end_s"}
 
     probability : of all that it may have been;  effect : the most probable of these, its value refitted where it was
@@ -207,8 +207,8 @@ class Diagnosis:
     named: tuple[str, ...]
     groups: tuple[tuple[str, ...], ...]
     candidates: tuple[Candidate, ...]
-    cannot_see: tuple[Hidden, ...]
-    where: tuple[Latent, ...]
+    cannot_see: tuple[DetectionLimit, ...]
+    where: tuple[MissingHeat, ...]
     next_tests: tuple[NextTest, ...]
     rmse_K: float
     floor_K: float
@@ -219,7 +219,7 @@ class Diagnosis:
     bases: tuple[Hypothesis, ...] = ()
     odds: tuple[Odds, ...] = ()
     p_nothing: float = 1.0
-    events: tuple[Happening, ...] = ()
+    events: tuple[PossibleEvent, ...] = ()
     remainder: tuple[Remainder, ...] = ()
     contradiction: Contradiction | None = None
     question: Question | None = None

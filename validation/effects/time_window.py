@@ -100,7 +100,7 @@ def share(time: Array, spans: Sequence[Span]) -> Array:
 
 
 @dataclass(frozen=True)
-class Gate:
+class TimeWindow:
     """Share of each sample in which something holds, times a factor."""
 
     name: str
@@ -118,4 +118,4 @@ class Gate:
 
 def holds(name: str, test: Test) -> Array:
     """The same as an input of a test."""
-    return Gate(name)(test.signals)
+    return TimeWindow(name)(test.signals)

@@ -50,7 +50,7 @@ def repeated(test: Test, hours: float) -> Test:
     return replace(test, time=time[at] + period * turn, inputs=inputs, boundaries=boundaries, channels=still)
 
 
-def measuring(network: Network, names: Iterable[str], quantity: str) -> list[str]:
+def inputs_measuring(network: Network, names: Iterable[str], quantity: str) -> list[str]:
     """The inputs of a quantity."""
     return [name for name in names if network.measures(name) == quantity]
 
@@ -60,7 +60,7 @@ def _set(**levels: float | Callable[[Array], Array]) -> Change:
 
     def change(time: Array, inputs: Inputs, boundaries: Inputs, network: Network) -> tuple[Inputs, Inputs]:
         held = {q: (v(time) if callable(v) else np.full_like(time, v)) for q, v in levels.items()}
-        new = {name: v for q, v in held.items() for name in measuring(network, inputs, q)}
+        new = {name: v for q, v in held.items() for name in inputs_measuring(network, inputs, q)}
         return {**inputs, **new}, boundaries
 
     return change
@@ -70,7 +70,7 @@ def _bars_off(time: Array, inputs: Inputs, boundaries: Inputs, network: Network)
     """The currents of cages: bars that stand still under direct current carry none."""
     read = [(n, role(network, s.place)) for s in network.sources if s.kind == "copper" for n in s.law.reads]
     elsewhere = {n for n, of in read if of is not Role.CAGE}
-    own = [n for n in measuring(network, inputs, "current") if (n, Role.CAGE) in read and n not in elsewhere]
+    own = [n for n in inputs_measuring(network, inputs, "current") if (n, Role.CAGE) in read and n not in elsewhere]
     return {**inputs, **{n: np.zeros_like(time) for n in own}}, boundaries
 
 
@@ -78,7 +78,7 @@ def _even(factor: float) -> Change:
     """Currents held at a multiple of the root mean square of their records."""
 
     def change(time: Array, inputs: Inputs, boundaries: Inputs, network: Network) -> tuple[Inputs, Inputs]:
-        own = measuring(network, inputs, "current")
+        own = inputs_measuring(network, inputs, "current")
         rms = {k: np.full_like(time, factor * np.sqrt(np.mean(inputs[k] ** 2))) for k in own}
         return {**inputs, **rms}, boundaries
 
@@ -108,7 +108,7 @@ def _on_off(level: float, periods: int = 3) -> Callable[[Array], Array]:
 
 def _half_time(time: Array, inputs: Inputs, boundaries: Inputs, network: Network) -> tuple[Inputs, Inputs]:
     """Currents switched off midway."""
-    early, own = time < 0.5 * time[-1], measuring(network, inputs, "current")
+    early, own = time < 0.5 * time[-1], inputs_measuring(network, inputs, "current")
     return {k: v * early if k in own else v for k, v in inputs.items()}, boundaries
 
 
@@ -122,7 +122,7 @@ def _fast_and_slow(time: Array, inputs: Inputs, boundaries: Inputs, network: Net
 def _half(quantity: str) -> Change:
     def change(time: Array, inputs: Inputs, boundaries: Inputs, network: Network) -> tuple[Inputs, Inputs]:
         halved = np.where(time > 0.5 * time[-1], 0.5, 1.0)
-        return {**inputs, **{k: inputs[k] * halved for k in measuring(network, inputs, quantity)}}, boundaries
+        return {**inputs, **{k: inputs[k] * halved for k in inputs_measuring(network, inputs, quantity)}}, boundaries
 
     return change
 
@@ -150,7 +150,7 @@ MENU = (
 )  # fmt: skip
 
 
-def possible(test: Test, network: Network) -> list[tuple[Experiment, Test]]:
+def candidate_tests(test: Test, network: Network) -> list[tuple[Experiment, Test]]:
     """Experiments that change something on this machine, and the tests made from the one at hand."""
     measured = {network.measures(name) for name in test.inputs}
     made = [(e, e.made_from(test, network)) for e in MENU if set(e.needs) <= measured]

@@ -9,7 +9,7 @@ from validation.measurement.noise import Noise
 
 
 @dataclass(frozen=True)
-class Contenders:
+class CompetingModels:
     """group : indices of effects, most probable first;  fits : with each in the model"""
 
     group: tuple[int, ...]
@@ -25,6 +25,6 @@ class Contenders:
         return self.fits[self.group.index(k)]
 
 
-def behind(fit: Fit, best: Fit) -> float:
+def deviance_difference(fit: Fit, best: Fit) -> float:
     """Deviance by which a fit is worse."""
     return 2.0 * (fit.objective - best.objective)

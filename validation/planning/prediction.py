@@ -9,14 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.model.multipliers import values_of
-from validation.calibration.calibrate import Fit, Known, minimise
+from validation.calibration.calibrate import Fit, KnownSegments, minimise
 from validation.calibration.unknowns import Unknowns, nuisances
 from validation.case import Test
 from validation.comparison.linearisation import segments
 from validation.comparison.predict import predict
 from validation.inference.evidence import Evidence, with_members
 from validation.inference.model_error import ModelError, model_error
-from validation.planning.competing_models import Contenders, behind
+from validation.planning.competing_models import CompetingModels, deviance_difference
 from validation.planning.separability import GAP, Gaps
 
 Array = NDArray[np.float64]
@@ -45,13 +45,13 @@ class Plan:
         return self.gain / self.hours
 
 
-def read_by(fit: Fit, test: Test) -> Test:
+def predicted_readings(fit: Fit, test: Test) -> Test:
     """The test with the readings that a fitted model foretells."""
     y = predict(fit.network, test, values_of(fit.network, fit.values)).y
     return replace(test, channels=tuple(replace(c, y=y[:, j]) for j, c in enumerate(test.channels)))
 
 
-def proven(evidence: Evidence, found: Contenders, promised: Iterable[Plan]) -> list[Plan]:
+def refitted_gains(evidence: Evidence, found: CompetingModels, promised: Iterable[Plan]) -> list[Plan]:
     """The plans with what is left of the gaps that tangents promise, best gain per hour first.
 
     Tangents promise too much: they do not know how far the rivals can bend. Refits show how much for the first CHECKED
@@ -60,7 +60,8 @@ def proven(evidence: Evidence, found: Contenders, promised: Iterable[Plan]) -> l
     """
     plans = sorted(promised, key=lambda p: -p.worth)
     kept: list[Gaps] = [
-        {pair: foretold(evidence, found, p.tests, pair) for pair in closest(p.gaps)} for p in plans[:CHECKED]
+        {pair: predicted_deviance(evidence, found, p.tests, pair) for pair in closest_pair(p.gaps)}
+        for p in plans[:CHECKED]
     ]
     kept += [{}] * (len(plans) - len(kept))
     shares = [g / p.gaps[pair] for own, p in zip(kept, plans, strict=True) for pair, g in own.items()]
@@ -72,12 +73,12 @@ def proven(evidence: Evidence, found: Contenders, promised: Iterable[Plan]) -> l
     return sorted(left, key=lambda p: -p.worth)
 
 
-def closest(gaps: Gaps) -> list[tuple[int, int]]:
+def closest_pair(gaps: Gaps) -> list[tuple[int, int]]:
     """The pair with the smallest gap among those that might come apart; none if none does."""
     return sorted((pair for pair, gap in gaps.items() if gap >= GAP), key=lambda pair: gaps[pair])[:1]
 
 
-def foretold(evidence: Evidence, found: Contenders, new: Sequence[Test], pair: tuple[int, int]) -> float:
+def predicted_deviance(evidence: Evidence, found: CompetingModels, new: Sequence[Test], pair: tuple[int, int]) -> float:
     """Deviance by which the wrong one of a pair would be behind with further readings, the smaller way.
 
     Unlike a gap in the tangents it counts what the tests at hand say already, and all that the wrong one may still
@@ -87,8 +88,8 @@ def foretold(evidence: Evidence, found: Contenders, new: Sequence[Test], pair: t
     return min(_behind(evidence, found, new, right, wrong) for right, wrong in (pair, pair[::-1]))
 
 
-def _behind(evidence: Evidence, found: Contenders, new: Sequence[Test], right: int, wrong: int) -> float:
-    read, rival = [read_by(found.fit(right), t) for t in new], found.fit(wrong)
+def _behind(evidence: Evidence, found: CompetingModels, new: Sequence[Test], right: int, wrong: int) -> float:
+    read, rival = [predicted_readings(found.fit(right), t) for t in new], found.fit(wrong)
     network, unknowns, held = with_members(evidence, [wrong])
     known = {p.name for p in network.parameters}
     own = tuple(p for p in nuisances(network, read) if p.name not in known)
@@ -98,9 +99,9 @@ def _behind(evidence: Evidence, found: Contenders, new: Sequence[Test], right: i
     near += segments(network, read, here, free)
     theta, tests = np.concatenate([rival.theta, np.zeros(len(own))]), (*evidence.tests, *read)
     error = widened_error(evidence, read)
-    fit = minimise(network, tests, Unknowns(free), theta, found.noise, held, STEPS, Known(near),
+    fit = minimise(network, tests, Unknowns(free), theta, found.noise, held, STEPS, KnownSegments(near),
                    worth=ENOUGH, error=error)  # fmt: skip
-    return behind(fit, found.fit(right))
+    return deviance_difference(fit, found.fit(right))
 
 
 def widened_error(evidence: Evidence, more: Sequence[Test]) -> ModelError | None:

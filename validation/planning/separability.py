@@ -9,14 +9,14 @@ from numpy.typing import NDArray
 
 from validation.inference.evidence import Evidence, extended_prior
 from validation.inference.score import Gram, score, total
-from validation.planning.competing_models import Contenders
+from validation.planning.competing_models import CompetingModels
 
 Array = NDArray[np.float64]
 Gaps = dict[tuple[int, int], float]
 GAP, DECISIVE = 10.0, 20.0  # deviance from which two begin to come apart, and from which a test decides
 
 
-def separation(evidence: Evidence, found: Contenders, more: Gram) -> Gaps:
+def separation(evidence: Evidence, found: CompetingModels, more: Gram) -> Gaps:
     """For every pair of a group the gap with more readings than the evidence has, the smaller way."""
     chosen = found.group
     sign = evidence.score.sign[list(chosen)]
@@ -30,6 +30,6 @@ def separation(evidence: Evidence, found: Contenders, more: Gram) -> Gaps:
     }
 
 
-def told_apart(evidence: Evidence, gaps: Gaps) -> tuple[str, ...]:
+def separable_pairs(evidence: Evidence, gaps: Gaps) -> tuple[str, ...]:
     """The pairs whose gap decides, by name."""
     return tuple(f"{evidence.names[k]} / {evidence.names[m]}" for (k, m), gap in gaps.items() if gap >= DECISIVE)

@@ -38,7 +38,7 @@ class Check:
 def checks(fit: Fit, name: str) -> tuple[Check, ...]:
     """The checks of one effect at a fit that has it among its unknowns."""
     k = fit.unknowns.names.index(name)
-    return (bounds(fit, k), left_out(fit, k))
+    return (bounds(fit, k), cross_validation(fit, k))
 
 
 def bounds(fit: Fit, k: int) -> Check:
@@ -50,7 +50,7 @@ def bounds(fit: Fit, k: int) -> Check:
     return Check("bounds", free, value, p.high, words)
 
 
-def left_out(fit: Fit, k: int) -> Check:
+def cross_validation(fit: Fit, k: int) -> Check:
     """Does the effect foretell tests that it was not fitted to better than the refitted model without it?"""
     falls = predicted_without(fit, k)
     if len(falls) < 2:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from validation.calibration.calibrate import silent
+from validation.calibration.calibrate import no_progress
 from validation.calibration.unknowns import with_model
 from validation.case import Case
 from validation.comparison.compare import Comparison, compare
@@ -19,7 +19,7 @@ MOST = 6
 
 
 @dataclass(frozen=True)
-class Stair:
+class Step:
     """The model after one step.
 
     evidence : what the diagnosis said about the effect;  revision : the step that led here, None at the start
@@ -48,11 +48,11 @@ class Stair:
 
 
 @dataclass(frozen=True)
-class Climbed:
+class Improvement:
     """All stairs, the last diagnosis, and why it ended there; case : with the model of the last stair."""
 
     case: Case
-    stairs: tuple[Stair, ...]
+    stairs: tuple[Step, ...]
     diagnosis: Diagnosis
     why: str
 
@@ -68,7 +68,7 @@ class Climbed:
 
 
 @dataclass(frozen=True)
-class Guide:
+class Supervisor:
     """Who decides and who remembers.
 
     offer : of a diagnosis the candidates that may be added now
@@ -92,14 +92,15 @@ def best(diagnosis: Diagnosis, choice: Sequence[Candidate]) -> str:
     return choice[0].effect
 
 
-def climb(
-    case: Case, guide: Guide, most: int = MOST, progress: Progress = silent, kinds: Sequence[str] | None = None,
-) -> Climbed:  # fmt: skip
+def improve(
+    case: Case, guide: Supervisor, most: int = MOST, progress: Progress = no_progress,
+    kinds: Sequence[str] | None = None,
+) -> Improvement:  # fmt: skip
     """Diagnose and add until the model is adequate, the guide says no, or an addition is not accepted.
 
     A model that was never calibrated is calibrated first. What the diagnosis cannot tell is not offered.
     """
-    stairs = [Stair(compare(case), {})]
+    stairs = [Step(compare(case), {})]
     if not case.model.values:
         progress("calibrating")
         case = _kept(case, calibrate(case, progress=progress), guide, {}, stairs)
@@ -107,15 +108,15 @@ def climb(
         found = diagnose(case, kinds=kinds, progress=progress)
         progress(f"{found.verdict}: {found.words}")
         if guide.offer(found) and len(stairs) > most:
-            return Climbed(case, tuple(stairs), found, f"{most} steps are enough for one run")
+            return Improvement(case, tuple(stairs), found, f"{most} steps are enough for one run")
         step, said, why = _added(case, guide, found, progress)
         if step is None:
-            return Climbed(case, tuple(stairs), found, why)
+            return Improvement(case, tuple(stairs), found, why)
         case = _kept(case, step, guide, said, stairs)
 
 
 def _added(
-    case: Case, guide: Guide, found: Diagnosis, progress: Progress
+    case: Case, guide: Supervisor, found: Diagnosis, progress: Progress
 ) -> tuple[Revision | None, Mapping[str, float | str], str]:
     """The first of what is missing that is chosen and accepted, and its evidence; or None, and why."""
     why = []
@@ -135,10 +136,10 @@ def _added(
 
 
 def _kept(
-    case: Case, step: Revision, guide: Guide, evidence: Mapping[str, float | str], stairs: list[Stair]
+    case: Case, step: Revision, guide: Supervisor, evidence: Mapping[str, float | str], stairs: list[Step]
 ) -> Case:  # fmt: skip
     guide.keep(step, evidence)
-    stairs.append(Stair(step.after, evidence, step))
+    stairs.append(Step(step.after, evidence, step))
     return with_model(case, step.model)
 
 

@@ -15,7 +15,7 @@ from validation.comparison.tolerance import limit_K
 from viz.colours import BLUE, LIGHT, ORANGE, VERMILION
 from viz.data import Comparison, short
 from viz.figures import paper
-from viz.labels import beside
+from viz.labels import end_labels
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -56,7 +56,7 @@ def residuals(comparison: Comparison, *, png: str | Path | None = None) -> Figur
         colours.append(wrongness(r, limit_K(channel)))
         ax.plot(t[thin], r[thin], color=colours[-1], lw=1.6 if colours[-1] != LIGHT.faint else 1.0)
     ends = [float(r[np.isfinite(r)][-1]) for r in map(comparison.residual, channels)]
-    beside(ax, ends, [short(c.name) for c in channels], [LIGHT.ink if c == LIGHT.faint else c for c in colours])
+    end_labels(ax, ends, [short(c.name) for c in channels], [LIGHT.ink if c == LIGHT.faint else c for c in colours])
     ax.axhline(0, color=LIGHT.ink, lw=0.8)
     ax.margins(x=0)
     ax.set(

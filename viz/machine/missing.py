@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from geom.errors import InputError
-from validation.diagnosis.missing_heat import located
+from validation.diagnosis.missing_heat import is_located
 from viz.colours import BLUE, LIGHT, VERMILION, Theme, missing
 from viz.rendering import scene
 from viz.rendering.callouts import Label, callouts, width
@@ -40,7 +40,7 @@ def mean_heat(where: Sequence[Mapping[str, Any]], test: str) -> dict[str, float]
 def placed(diagnosis: Mapping[str, Any]) -> bool:
     """Does the scan of a `diagnose` document put the missing heat somewhere, or could it be anywhere?"""
     best = max((w["evidence_nats"] for w in diagnosis.get("where", [])), default=0.0)
-    return located(best)
+    return is_located(best)
 
 
 def missing_in_machine(

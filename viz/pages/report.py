@@ -12,7 +12,7 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-from geom.disk_cache import written_whole
+from geom.disk_cache import atomic_write
 from validation.comparison.tolerance import WORDS
 from viz.data import Comparison
 from viz.figures import candidates, curves, errors, heat
@@ -55,7 +55,7 @@ class Report:
 def write_report(report: Report, path: str | Path) -> Path:
     """Write the page and return its path."""
     path, page = Path(path), render(report)
-    with written_whole(path) as partial:
+    with atomic_write(path) as partial:
         partial.write_text(page, encoding="utf-8")
     return path
 

@@ -11,7 +11,7 @@ from viz.pages.next_tests import deciding, undecided
 MOST = 3
 
 
-def ahead(document: Mapping[str, Any]) -> Grid | str:
+def next_tests(document: Mapping[str, Any]) -> Grid | str:
     """Three tests and three sensors at most of a diagnosis's document; "" where there is no group."""
     offers = deciding(document)
     chosen = [o for kind in ("test", "sensor") for o in [x for x in offers if x.kind == kind][:MOST]]

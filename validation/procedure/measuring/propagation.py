@@ -51,7 +51,7 @@ class Reading:
 
 
 @dataclass(frozen=True)
-class Spread:
+class PropagatedUncertainty:
     """A result with its uncertainty in the unit of the result.
 
     worst : (low, high) over all corners of the inputs;  sd : first order;  drawn_sd, interval : Monte Carlo, 95 %
@@ -77,14 +77,18 @@ class Spread:
         }  # fmt: skip
 
 
-def spread(result: Callable[..., Any], readings: Sequence[Reading], draws: int = DRAWS, seed: int = 0) -> Spread:
+def propagate(
+    result: Callable[..., Any], readings: Sequence[Reading], draws: int = DRAWS, seed: int = 0
+) -> PropagatedUncertainty:
     """The three uncertainties of result(*readings); `result` works on numbers and on arrays alike."""
     sd, budget = _first_order(result, readings)
     random = np.random.default_rng(seed)
     seen = np.asarray(result(*(r.draw(random, draws) for r in readings)), float)
     low, high = np.percentile(seen, [2.5, 97.5])
     value = float(result(*(r.value for r in readings)))
-    return Spread(value, _worst(result, readings), sd, float(seen.std(ddof=1)), (float(low), float(high)), budget)
+    return PropagatedUncertainty(
+        value, _worst(result, readings), sd, float(seen.std(ddof=1)), (float(low), float(high)), budget
+    )
 
 
 def _first_order(result: Callable[..., Any], readings: Sequence[Reading]) -> tuple[float, dict[str, float]]:

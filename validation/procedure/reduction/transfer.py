@@ -45,7 +45,7 @@ class Row:
 
 
 @dataclass(frozen=True)
-class Carried:
+class Transfer:
     """A case with another case's values: what was taken over, and how it stands."""
 
     case: Case
@@ -61,7 +61,7 @@ class Carried:
                 "rows": [r.document() for r in self.rows]}  # fmt: skip
 
 
-def carried(source: Case, target: Case) -> Carried:
+def transferred(source: Case, target: Case) -> Transfer:
     """Values of parameters that both networks declare under one name; sensors' own ones and losses stay behind.
 
     What a machine loses is its own: its resistance is measured cold, its magnetic loss given.
@@ -69,7 +69,7 @@ def carried(source: Case, target: Case) -> Carried:
     theirs = {p.name for p in target.model.network.parameters if not p.name.startswith("loss.")}
     values = {k: v for k, v in physical(source).items() if k in theirs}
     case = with_model(target, replace(target.model, values={**target.model.values, **values}))
-    return Carried(case, tuple(values), tuple(settled(case)))
+    return Transfer(case, tuple(values), tuple(settled(case)))
 
 
 def settled(case: Case) -> list[Row]:
