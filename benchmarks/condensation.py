@@ -30,9 +30,9 @@ from condensation_points import Pair, Point
 
 from fem.solvers.solve import Fluids, steady
 from geom import library, load_machine
-from lumped.condensation.guard import Errors, errors, merged
+from lumped.condensation.reduction_error import Errors, errors, merged
 from lumped.model.network import Network
-from thermoscope.verification.sized import Sized, sized
+from thermoscope.verification.network_size import SizedNetwork, smallest_network
 
 WANTED = {"mean": 1.0, "hot": 2.0, "point": 2.0}
 AT_RANDOM = {**WANTED, "hot": 3.0}
@@ -43,7 +43,7 @@ COARSE = {"size_m": 0.1, "segments": 36, "across": 1, "axial_m": 0.2}
 def machine_rows(name: str, mesh: Mapping[str, Any], accuracy: float) -> Iterator[Row]:
     """Size and cost of the network, its errors, and the balances of both."""
     start = time.process_time()
-    found = sized(load_machine(name), accuracy, **mesh)
+    found = smallest_network(load_machine(name), accuracy, **mesh)
     yield row(name, "unknowns of the field", "1", found.built.field.n)
     yield row(name, "states", "1", len(found.built.network.states))
     yield row(name, "build, with error against size", "s CPU", time.process_time() - start)
@@ -120,7 +120,7 @@ def energy(pair: Pair) -> float:
     return steady(r.solver, r.films, r.contacts, pair.field_loads[:, 0], fluids).energy_balance
 
 
-def recovery_rows(found: Sized, z: np.ndarray) -> Iterator[Row]:
+def recovery_rows(found: SizedNetwork, z: np.ndarray) -> Iterator[Row]:
     """Milliseconds for the whole field, the hot spot of every part, and one more sensor."""
     network, field = found.built.network, found.built.field
     shapes, x = network.recovery, z[: len(network.states)]

@@ -16,7 +16,7 @@ from geom import build_mesh, load_machine
 from lumped.machine.motor import nominal_coefficients
 from lumped.machine.zones import motor_zones
 from thermoscope.pipeline import Meshing, Prepared, field_of, reduced
-from thermoscope.verification.sized import FINE
+from thermoscope.verification.network_size import FINE
 
 Row = dict[str, Any]
 

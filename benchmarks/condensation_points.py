@@ -19,7 +19,7 @@ from lumped.machine.motor import rated_inputs
 from lumped.model.network import Network
 from thermoscope.verification.crosscheck import coefficients, fluid_nodes
 from thermoscope.verification.load_cases import rated_watts
-from thermoscope.verification.sized import Sized
+from thermoscope.verification.network_size import SizedNetwork
 
 Floats = np.ndarray
 WARM = 20.0  # K, of a coolant's inlet over the surroundings in the third load case
@@ -50,7 +50,7 @@ class Pair:
     streams: Floats
 
     @classmethod
-    def of(cls, found: Sized) -> Pair:
+    def of(cls, found: SizedNetwork) -> Pair:
         """Load cases: rated losses, losses drawn at random, half of rated with a warm inlet or another draw."""
         machine, network, zones = found.built.machine, found.built.network, list(found.reduction.zones)
         rated, fluids = rated_watts(machine, network), fluid_nodes(network)

@@ -29,7 +29,7 @@ from lumped.model.network import Network, Parameter
 from lumped.transfer.laws import Fixed, InputPower, Linear, Power
 from validation import diagnose
 from validation.case import Case, Channel, Model, Test
-from validation.comparison.sheet import segments
+from validation.comparison.linearisation import segments
 from validation.inference.evidence import calibrated_case, candidates
 from validation.inference.score import gram
 

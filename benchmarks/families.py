@@ -27,8 +27,8 @@ import numpy as np
 import shapely
 
 from geom import InputError, Machine, check_cad
-from geom.description.draws import random_geometry
 from geom.description.profile import ArcGrid
+from geom.description.random_geometry import random_geometry
 from geom.families import families
 from geom.families.family import Family
 from geom.machine_file import machine_from

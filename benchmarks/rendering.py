@@ -136,7 +136,7 @@ def recording(nodes: SplitMesh) -> list[dict[str, Any]]:
 
 def click(nodes: SplitMesh) -> list[dict[str, Any]]:
     """What the workbench does when a sensor is clicked: find it, draw its curves, make them JSON, mark it."""
-    from thermoscope.workbench.stage import Stage
+    from thermoscope.workbench.view import Stage
     from viz.data import sensors
 
     comparison, at = hour(nodes.points)

@@ -35,7 +35,7 @@ from small_case import small_case  # noqa: E402
 
 from thermoscope.case_folder.folder import load_case  # noqa: E402
 from thermoscope.cli import main as command_line  # noqa: E402
-from thermoscope.commands.saved import fingerprint  # noqa: E402
+from thermoscope.commands.stored_diagnosis import fingerprint  # noqa: E402
 
 COMMANDS = {
     "calibrate": ("calibrate", "{case}", "--anyway"),

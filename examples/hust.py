@@ -25,11 +25,11 @@ from thermoscope.case_folder.folder import find_case, load_case
 from thermoscope.case_folder.history import History, load_history, save_history
 from thermoscope.commands.model.revise import recorded
 from validation import diagnose
-from validation.calibration.fitting import with_model
+from validation.calibration.unknowns import with_model
 from validation.case import Case
 from validation.comparison.compare import Comparison
 from validation.revision import revise
-from validation.revision.climb import Guide, Stair, best, climb
+from validation.revision.improvement import Step, Supervisor, best, improve
 
 CHANNELS = ("winding", "stator", "rotor")
 EVIDENCE = (
@@ -37,7 +37,7 @@ EVIDENCE = (
 )  # fmt: skip
 
 
-def history(stairs: Sequence[Stair]) -> History:
+def history(stairs: Sequence[Step]) -> History:
     """Every step as model.toml keeps it."""
     out = History()
     for s in stairs:
@@ -45,12 +45,12 @@ def history(stairs: Sequence[Stair]) -> History:
     return out
 
 
-def name(stair: Stair) -> str:
+def name(stair: Step) -> str:
     """A model as the tables call it."""
     return f"+ {stair.effect}" if stair.effect else {"start": "published", "calibrate": "calibrated"}[stair.step]
 
 
-def evidence(stair: Stair) -> str:
+def evidence(stair: Step) -> str:
     """What speaks for the effect that was added, as a row of Markdown."""
     assert stair.revision
     p = next(p for p in stair.revision.parameters if p.name == stair.effect)
@@ -114,7 +114,7 @@ def errors(comparison: Comparison, role: str) -> dict[str, float]:
     return out
 
 
-def table(stairs: Sequence[Stair]) -> str:
+def table(stairs: Sequence[Step]) -> str:
     """Markdown: error (K) of every held-out profile and sensor, published and at the end; then every step's errors."""
     first, last = stairs[0].comparison, stairs[-1].comparison
     lines = ["| held-out profile | sensor | published (K) | end (K) |", "|---|---|---|---|"]
@@ -144,7 +144,7 @@ def main() -> None:
         print(message, file=sys.stderr)
 
     case = load_case(find_case("hust-ipmsm"), tell).case
-    done = climb(case, Guide(best), options.rounds, progress=tell)
+    done = improve(case, Supervisor(best), options.rounds, progress=tell)
     options.out.mkdir(parents=True, exist_ok=True)
     file = options.out / "model.toml"
     save_history(file, history(done.stairs), load_history(file))

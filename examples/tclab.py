@@ -16,37 +16,37 @@ from pathlib import Path
 
 from thermoscope.case_folder.files import write_whole
 from thermoscope.case_folder.folder import find_case, load_case
-from validation.revision.climb import Climbed, Guide, Stair, best, climb, leading
+from validation.revision.improvement import Improvement, Step, Supervisor, best, improve, leading
 
 PATHS = ("convection.constant", "convection.buoyant", "radiation", "coupling", "sensor.lag")
 
 
-def ladder(tell: Callable[[str], None], most: int = 8) -> Climbed:
+def ladder(tell: Callable[[str], None], most: int = 8) -> Improvement:
     """All rungs of the case."""
     case = load_case(find_case("tclab"), tell, bare=True).case
-    return climb(case, Guide(best, offer=leading), most, tell, PATHS)
+    return improve(case, Supervisor(best, offer=leading), most, tell, PATHS)
 
 
-def table(done: Climbed) -> str:
+def table(done: Improvement) -> str:
     """Markdown: error (K) per recording after every rung, the effect's size, and what it could also have been."""
     lines = ["| model | steps | random-1 | **random-2 (held out)** | size (95 %) | verdict | also possible |",
              "|---|---|---|---|---|---|---|"]  # fmt: skip
     return "\n".join([*lines, *(row(stair) for stair in done.stairs)])
 
 
-def row(stair: Stair) -> str:
+def row(stair: Step) -> str:
     errors = " | ".join(f"{t.rmse_K:.2f}" for t in stair.comparison.tests)
     name = f"+ {stair.effect}" if stair.effect else stair.step
     verdict, alike = (stair.evidence.get(key, "") for key in ("verdict", "confused_with"))
     return f"| {name} | {errors} | {size(stair)} | {verdict} | {alike} |"
 
 
-def size(stair: Stair) -> str:
+def size(stair: Step) -> str:
     found = [p for p in stair.revision.parameters if p.name == stair.effect] if stair.revision else []
     return "".join(f"{p.value:.3g} {p.unit} ({p.ci95[0]:.3g} to {p.ci95[1]:.3g})" for p in found)
 
 
-def ends(done: Climbed) -> str:
+def ends(done: Improvement) -> str:
     """Why it ended there, and what of the physics could not have been seen."""
     blind = [h for h in done.diagnosis.cannot_see if h.effect.split("@")[0] in PATHS]
     hidden = [f"- {h.effect}: below {h.smallest_detectable:.3g} {h.unit}, absorbed by {h.absorbed_by}" for h in blind]

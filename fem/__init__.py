@@ -10,7 +10,7 @@ from fem.matrices.material import Conductivity, LoopWound, isotropic, laminated,
 from fem.matrices.streams import Stream, cut, flowing
 from fem.matrices.terms import CopperLoss, Radiation, Term, VaryingConductivity
 from fem.matrices.winding import bundle, homogenised, unit_cell
-from fem.solvers.newton import Settled, settle
+from fem.solvers.newton import NonlinearSolution, solve_nonlinear
 from fem.solvers.solve import Fluids, Iterative, Solver, Steady, only_fixed, steady
 from fem.solvers.transient import transient
 
@@ -23,7 +23,7 @@ __all__ = [
     "Iterative",
     "LoopWound",
     "Radiation",
-    "Settled",
+    "NonlinearSolution",
     "Solver",
     "Steady",
     "Stream",
@@ -37,7 +37,7 @@ __all__ = [
     "isotropic",
     "laminated",
     "only_fixed",
-    "settle",
+    "solve_nonlinear",
     "steady",
     "transient",
     "unit_cell",

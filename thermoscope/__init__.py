@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from thermoscope.interface.case import Case, effects, open
     from thermoscope.interface.machine import Field, Machine, build, machines
     from validation.comparison.compare import Comparison
-    from validation.diagnosis.findings import Candidate, Diagnosis
+    from validation.diagnosis.result import Candidate, Diagnosis
     from validation.effects.base import Effect
     from validation.revision.revise import Revision
 
@@ -46,8 +46,8 @@ _HOME = {
     "Machine": "thermoscope.interface.machine",
     "Field": "thermoscope.interface.machine",
     "Comparison": "validation.comparison.compare",
-    "Diagnosis": "validation.diagnosis.findings",
-    "Candidate": "validation.diagnosis.findings",
+    "Diagnosis": "validation.diagnosis.result",
+    "Candidate": "validation.diagnosis.result",
     "Revision": "validation.revision.revise",
     "Effect": "validation.effects.base",
     "Network": "lumped.model.network",

@@ -20,8 +20,8 @@ from lumped.transfer.laws import CLOCK
 from thermoscope.caches import cache_folder
 from thermoscope.case_folder.files import write_whole
 from thermoscope.case_folder.folder import Folder, Progress
-from thermoscope.case_folder.runs import looks
-from validation.bands import Bands, Belief, Place, bands, belief
+from thermoscope.case_folder.runs import named_rows
+from validation.bands import Bands, ParameterPosterior, Place, bands, parameter_posterior
 from validation.bands.band import NORMAL_95
 from validation.case import RUNNING, Recorded, Test
 
@@ -36,12 +36,12 @@ def wanted(network: Network, asked: bool | None) -> bool:
     return len(network.states) <= SMALL if asked is None else asked
 
 
-def belief_of(folder: Folder, progress: Progress) -> Belief:
+def posterior_of(folder: Folder, progress: Progress) -> ParameterPosterior:
     """Of the model as it stands, from the cache where this very case was looked at before."""
     file = cache_folder() / f"belief-{_key(folder)}.npz"
     if file.exists():
         return _kept(folder, file)
-    found = belief(folder.case, progress)
+    found = parameter_posterior(folder.case, progress)
     if found.fitted:
         out = io.BytesIO()
         np.savez_compressed(out, covariance=found.covariance, said=json.dumps([found.names, found.fitted]))
@@ -49,12 +49,12 @@ def belief_of(folder: Folder, progress: Progress) -> Belief:
     return found
 
 
-def _kept(folder: Folder, file: Path) -> Belief:
+def _kept(folder: Folder, file: Path) -> ParameterPosterior:
     with np.load(file) as held:
         names, fitted = json.loads(str(held["said"]))
         bare = replace(folder.case, model=replace(folder.case.model, revision=0))
         covariance = held["covariance"]
-    return replace(belief(bare), names=tuple(names), covariance=covariance, fitted=tuple(fitted))
+    return replace(parameter_posterior(bare), names=tuple(names), covariance=covariance, fitted=tuple(fitted))
 
 
 def _key(folder: Folder) -> str:
@@ -73,7 +73,7 @@ def _key(folder: Folder) -> str:
     return content.hexdigest()[:20]
 
 
-def along(of: Belief, name: str, record: Record, rows: Mapping[str, Row]) -> Bands:
+def along(of: ParameterPosterior, name: str, record: Record, rows: Mapping[str, Row]) -> Bands:
     """Temperatures along a record and how sure they are."""
     nt = record.time.shape
     inputs = {n: np.broadcast_to(np.asarray(u, float), nt) for n, u in record.inputs.items()}
@@ -110,7 +110,7 @@ def of_tests(folder: Folder, progress: Progress) -> list[dict[str, Any]]:
     from thermoscope.verification.error_budget import model_of
     from validation.comparison.predict import record
 
-    of, rows = belief_of(folder, progress), looks(model_of(folder)[0], folder)
+    of, rows = posterior_of(folder, progress), named_rows(model_of(folder)[0], folder)
     out = []
     for test in folder.case.tests:
         found = along(of, test.name, record(test, {}), rows)

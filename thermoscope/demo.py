@@ -18,16 +18,16 @@ from thermoscope.commands.explain.diagnose import diagnose
 from thermoscope.commands.model.build import build
 from thermoscope.commands.model.calibrate import calibrate
 from thermoscope.commands.model.revise import add
-from thermoscope.commands.opened import opened
-from thermoscope.commands.saved import saved_diagnosis
+from thermoscope.commands.open_case import open_case
 from thermoscope.commands.show.pages import by_interest, render, report
+from thermoscope.commands.stored_diagnosis import saved_diagnosis
 from thermoscope.commands.test.compare import compare
 from thermoscope.console.answer import Answer, Grid, within
 from thermoscope.console.terminal import give, notes, progress, say
 
 if TYPE_CHECKING:
     from thermoscope.pipeline import Built
-    from validation.calibration.tuned import Tuned
+    from validation.calibration.one_factor_fit import OneFactorFit
     from validation.comparison.compare import Comparison
 
 CASE, KNOB = "road-test", "fan.flow"
@@ -65,7 +65,7 @@ def demo(out: Path, target: str | None) -> int:
     headline("5  What is missing?")
     with within(LONGER):
         diagnose(str(case), str(out / "diagnose.json"))
-    found = saved_diagnosis(opened(str(case), lambda _: None)) or {}
+    found = saved_diagnosis(open_case(str(case), lambda _: None)) or {}
     named = found.get("named", [])
     picture(odds(found, out), "what the readings say")
     done = False
@@ -98,7 +98,7 @@ def machine_picture(case: Path, out: Path) -> Path | None:
 
 
 def _built(case: Path) -> Built:
-    found = opened(str(case), silent).built
+    found = open_case(str(case), silent).built
     assert found is not None, "the demo's case is built from geometry"
     return found
 
@@ -107,7 +107,7 @@ def misses(case: Path, out: Path) -> Path | None:
     """The machine at the end of the held-out test, its sensors labelled by what the calibrated model misses."""
     from viz import cutaway, sensors, split
 
-    folder = opened(str(case), silent)
+    folder = open_case(str(case), silent)
     test = by_interest(folder)[0]
 
     def draw(png: Path) -> None:
@@ -172,17 +172,17 @@ def held_against(case: Path) -> Comparison:
     from validation.comparison.compare import compare as compared
 
     with progress() as tell:
-        return compared(opened(str(case), tell).case)
+        return compared(open_case(str(case), tell).case)
 
 
-def old_way(case: Path) -> Tuned:
+def old_way(case: Path) -> OneFactorFit:
     """One knob, turned until the right flange agrees on the first road test."""
-    from validation.calibration.tuned import tuned
+    from validation.calibration.one_factor_fit import one_factor_fit
 
     with progress() as tell:
-        folder = opened(str(case), tell)
+        folder = open_case(str(case), tell)
         tell("turning the fan's air flow")
-        turned = tuned(folder.case, KNOB, flange(folder.case.tests))
+        turned = one_factor_fit(folder.case, KNOB, flange(folder.case.tests))
     flow = 138 * turned.factor
     say(f"{flow:.0f} m3/h instead of 138 bring the right flange closest on road-1; see below what else they do")
     return turned

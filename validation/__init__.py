@@ -2,7 +2,7 @@
 
 from validation.case import AddedEffect, Case, Channel, Model, Test
 from validation.comparison.compare import Comparison, compare
-from validation.diagnosis.findings import Diagnosis
+from validation.diagnosis.result import Diagnosis
 from validation.effects import Effect, Scene, catalogue, effect, kinds
 from validation.inference.diagnose import diagnose
 from validation.revision.revise import Revision, add, calibrate, remove

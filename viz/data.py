@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError
 from validation.case import Channel, Test
-from validation.comparison.within import limit_K
+from validation.comparison.tolerance import limit_K
 
 Array = NDArray[np.float64]
 LONG_S = 5 * 3600.0
@@ -22,7 +22,7 @@ class Sensor:
     """A thermocouple on the machine.
 
     xyz : position (m);  residual_K : measured - modelled, None where only the position is known
-    limit_K : the largest error that counts as agreement, see validation.comparison.within
+    limit_K : the largest error that counts as agreement, see validation.comparison.tolerance
     rmse_K : error of the whole test, which decides; None where only one instant is shown
     """
 

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-def spread(values: Sequence[float], low: float, high: float, gap: float) -> list[float]:
+def spread_labels(values: Sequence[float], low: float, high: float, gap: float) -> list[float]:
     """Rising values moved apart to at least `gap` (less if they do not fit), within low..high, near where they were."""
     if not len(values):
         return []
@@ -25,11 +25,13 @@ def spread(values: Sequence[float], low: float, high: float, gap: float) -> list
     return out.tolist()
 
 
-def beside(ax: Axes, ends: Sequence[float], names: Sequence[str], colours: Sequence[str], size: float = 8.5) -> None:
+def end_labels(
+    ax: Axes, ends: Sequence[float], names: Sequence[str], colours: Sequence[str], size: float = 8.5
+) -> None:
     """Names at the right edge of the axes, each at the height where its line ends."""
     low, high = ax.get_ylim()
     order = np.argsort(ends)
-    heights = spread([float(ends[i]) for i in order], low, high, 0.055 * (high - low))
+    heights = spread_labels([float(ends[i]) for i in order], low, high, 0.055 * (high - low))
     ax.set_ylim(low, high)
     for i, y in zip(order, heights, strict=True):
         ax.annotate(

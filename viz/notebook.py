@@ -11,7 +11,7 @@ from typing import Any
 from geom.description.machine import Machine
 from lumped.model.network import Network
 from validation.comparison.compare import Comparison as Compared
-from validation.diagnosis.findings import Diagnosis
+from validation.diagnosis.result import Diagnosis
 from validation.revision.revise import Revision
 from viz.data import Comparison
 from viz.figures import candidates, curves, paper

@@ -13,7 +13,7 @@ from hidden.truth.menu import MENU, carried_out
 from hidden.user import test_of
 from validation import Case, Revision, add, calibrate
 from validation.inference.evidence import candidates
-from validation.planning.apart import DECISIVE
+from validation.planning.separability import DECISIVE
 
 Answer = dict[str, Any]
 

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validation import Case
-from validation.comparison.sheet import Segment
+from validation.comparison.linearisation import Segment
 from validation.inference.evidence import Evidence, calibrated_case, candidates, refit, scored, starts
 
 Array = NDArray[np.float64]

@@ -66,7 +66,7 @@ def cut(mesh: NamedMesh, fluid: str, along: Callable[[Floats], Floats], cells: i
 def flowing(
     field: FieldModel, films: Mapping[str, float], streams: Sequence[Stream], fixed: Mapping[str, float]
 ) -> tuple[dict[str, float], Fluids]:
-    """Films onto the cells' outlet temperatures, and the fluids for `steady`, `settle` or `transient`.
+    """Films onto the cells' outlet temperatures, and the fluids for `steady`, `solve_nonlinear` or `transient`.
 
     films : h (W/m2/K) by face, of a cut face for all its cells;  fixed : temperatures (degC) of the other fluids
     """

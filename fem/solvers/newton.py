@@ -26,13 +26,13 @@ ROUNDS = 40
 
 
 @dataclass(frozen=True)
-class Settled(Steady):
+class NonlinearSolution(Steady):
     """A steady solution and how it was found: steps (K) are the largest changes of temperature, round by round."""
 
     steps: tuple[float, ...]
 
 
-def settle(
+def solve_nonlinear(
     solver: Solve,
     films: Mapping[str, float],
     contacts: Mapping[str, float],
@@ -40,7 +40,7 @@ def settle(
     fluids: Fluids,
     terms: Sequence[Term],
     start: Floats | float = START,
-) -> Settled:
+) -> NonlinearSolution:
     """Temperatures for films h and contacts g (W/m2/K), a load (n,) in W and terms that depend on temperature.
 
     start : (n,) or one temperature (degC).  Raises InputError where no steady state is found: a thermal runaway.
@@ -62,7 +62,7 @@ def settle(
     heats = [float(term.heat(field, T).sum()) for term in terms]
     injected = float(load.sum()) - sum(q for q in heats if q < 0)
     removed = shed(field, films, fluids, T, u) + sum(q for q in heats if q > 0)
-    return Settled(T, u, injected, removed, tuple(steps))
+    return NonlinearSolution(T, u, injected, removed, tuple(steps))
 
 
 def summed(field: FieldModel, terms: Sequence[Term], T: Floats) -> tuple[Floats, sp.csr_array]:

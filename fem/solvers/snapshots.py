@@ -112,7 +112,7 @@ def energies(field: FieldModel, films: Mapping[str, float], contacts: Mapping[st
     return {name: sp.csr_array(K[block.dofs, block.dofs]) for name, block in field.blocks.items()}
 
 
-def alone(
+def isolated_part(
     field: FieldModel,
     films: Mapping[str, float],
     contacts: Mapping[str, float],

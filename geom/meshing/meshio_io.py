@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from geom.disk_cache import atomic_write
 from geom.errors import InputError
-from geom.kept import written_whole
 from geom.meshing.mesh import Contact, NamedMesh, Patch
 
 
@@ -19,7 +19,7 @@ def write_npz(mesh: NamedMesh, path: Path | str) -> None:
     arrays |= {f"contact:{name}": contact.facets for name, contact in mesh.contacts.items()}
     arrays |= {"tets": mesh.tets, "region": mesh.region}
     names = np.array(json.dumps(_names(mesh)))
-    with written_whole(Path(path)) as partial:
+    with atomic_write(Path(path)) as partial:
         np.savez(partial, points=mesh.points, names=names, **arrays)  # type: ignore[arg-type]
 
 

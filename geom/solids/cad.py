@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 from geom.description.identity import Identity
 from geom.description.machine import Machine
 from geom.description.part import Part
+from geom.disk_cache import atomic_write, cache_file
 from geom.drawings.palette import colour
 from geom.errors import InputError
-from geom.kept import kept_file, written_whole
 from geom.solids.carved import carved, prism
 from geom.solids.glb import write_glb
 from geom.solids.step import step_sidecar
@@ -30,13 +30,13 @@ def solids(part: Part, cache: Path | str | None = None) -> list[cq.Solid]:
     """
     import cadquery as cq
 
-    kept = kept_file(part, cache, "solid", "brep")
+    kept = cache_file(part, cache, "solid", "brep")
     if kept is None:
         return _built(part)
     if kept.exists():
         return [cq.Solid(solid.wrapped) for solid in cq.Shape.importBin(str(kept)).Solids()]
     found = _built(part)
-    with written_whole(kept) as partial:
+    with atomic_write(kept) as partial:
         cq.Compound.makeCompound(found).exportBin(str(partial))
     return found
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from geom.description.machine import Machine
 from geom.description.part import Part
-from geom.kept import kept_file, written_whole
+from geom.disk_cache import atomic_write, cache_file
 from geom.solids.cad import solids
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ def check_cad(machine: Machine, tolerance_mm: float = 0.02, cache: Path | str | 
 
 
 def _checked(part: Part, tolerance_mm: float, cache: Path | str | None) -> CadCheck:
-    kept = kept_file(part, cache, f"check-{tolerance_mm:g}", "json")
+    kept = cache_file(part, cache, f"check-{tolerance_mm:g}", "json")
     if kept is not None and kept.exists():
         return CadCheck(**{**json.loads(kept.read_text()), "part": part.name})
     found = solids(part, cache)
@@ -49,7 +49,7 @@ def _checked(part: Part, tolerance_mm: float, cache: Path | str | None) -> CadCh
         watertight=all(bool(mesh.is_watertight) for mesh in surfaces),
     )
     if kept is not None:
-        with written_whole(kept) as partial:
+        with atomic_write(kept) as partial:
             partial.write_text(json.dumps(vars(check)))
     return check
 

@@ -20,17 +20,17 @@ from fem.solvers.snapshots import (
     DEFAULT,
     Principal,
     Recipe,
-    alone,
     bases,
     drawn,
     energies,
     enriched,
+    isolated_part,
     principals,
     snapshots,
 )
 from fem.solvers.solve import Solve, Solver, film_columns
+from lumped.condensation.basis_cache import BasisCache, Centre
 from lumped.condensation.condensed import network_in
-from lumped.condensation.shelf import Centre, Shelf
 from lumped.condensation.zone import Zone
 from lumped.model.network import Array, Network
 
@@ -148,13 +148,13 @@ def reduce(
     """
     places = {**{part: Zone(part) for part in field.blocks}, **(zones or {})}
     loads = unit_loads(field, places)
-    shelf = Shelf(cache, _geometry(field, loads, recipe))
+    shelf = BasisCache(cache, _geometry(field, loads, recipe))
     centre = Centre({**films}, {**contacts}, {p: float(b.K.diagonal().sum()) for p, b in field.blocks.items()})
     taken = shelf.find(centre, recipe.spread)
     if taken is None:
         unit = np.column_stack([*loads.values()])
         S = snapshots(field, films, contacts, unit, recipe, solver)
-        local = alone(field, films, contacts, S, unit, recipe)
+        local = isolated_part(field, films, contacts, S, unit, recipe)
         taken = shelf.keep(centre, principals(field, S, energies(field, films, contacts), local), recipe.tolerance**2)
     kept = {part: Principal(*pair) for part, pair in taken.items()}
     return Reduction(field, films, contacts, places, fluids, boundaries, name, recipe, kept)

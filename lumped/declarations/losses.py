@@ -90,7 +90,7 @@ def _measured(table: Table, speeds: Collection[str]) -> Law:
     return MeasuredLoss(_electrical(table) + _mechanical(table, speeds))
 
 
-def taken_off(table: Table, kinds: Mapping[str, str]) -> tuple[str, ...]:
+def deducted(table: Table, kinds: Mapping[str, str]) -> tuple[str, ...]:
     """The losses that a measured one leaves to the model."""
     less = table.words("less", [])
     others = [name for name, kind in kinds.items() if kind != MEASURED]

@@ -12,7 +12,7 @@ import numpy as np
 from geom.description.toml_file import read_toml
 from geom.errors import InputError
 from lumped.declarations.links import flow_column, flow_law, mechanisms
-from lumped.declarations.losses import loss_kinds, loss_laws, taken_off
+from lumped.declarations.losses import deducted, loss_kinds, loss_laws
 from lumped.declarations.parameters import read_parameters
 from lumped.declarations.roles import read_identities, read_quantities
 from lumped.model.build import bare_network, node_link, node_source, stream, surface_place
@@ -175,7 +175,7 @@ def _sources(network: Network, top: Table) -> list[Source]:
     out = {name: _source(network, name, table, laws[name]) for name, table in tables.items()}
     taken = [
         _taken_off(out[name], out[other])
-        for name, kind in kinds.items() if kind == "measured" for other in taken_off(tables[name], kinds)
+        for name, kind in kinds.items() if kind == "measured" for other in deducted(tables[name], kinds)
     ]  # fmt: skip
     for table in tables.values():
         table.raw("prior_sd")

@@ -12,7 +12,7 @@ from lumped.integration.compiled import Compiled, compiled
 from lumped.integration.record import Record
 from lumped.integration.simulate import Run, march
 from lumped.model.network import Link, Network
-from lumped.numerics.count import count
+from lumped.numerics.heat_integrals import count
 from lumped.numerics.stages import Steps, stages, work
 from lumped.numerics.terms import ROWS
 

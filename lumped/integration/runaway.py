@@ -18,11 +18,11 @@ def checked_run(T: Array, time: Array, names: tuple[str, ...], network: Network)
     wild = ~(np.abs(T) < LIMIT_C)
     if wild.any():
         row = int(np.argmax(wild.any(axis=1)))
-        raise ThermoscopeError(told(network, names[int(np.argmax(wild[row]))], float(time[row])))
+        raise ThermoscopeError(described(network, names[int(np.argmax(wild[row]))], float(time[row])))
     return T
 
 
-def told(network: Network, place: str, t: float) -> str:
+def described(network: Network, place: str, t: float) -> str:
     """The message of a run that went astray at `place` (a node, a place or a sensor) after t (s)."""
     return f"network '{network.name}': '{place}' runs away from all bounds at t = {t:g} s; {_cause(network)}"
 

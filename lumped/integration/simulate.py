@@ -18,8 +18,8 @@ from lumped.integration.failure import failure
 from lumped.integration.record import Record
 from lumped.model.network import Network, Parameter, Row
 from lumped.numerics.kernel import DONE, FACTORED, FULL, KNOT, LOW, NEXT, STATUS, Control, Position, Trace, integrate
-from lumped.numerics.settle import settle
 from lumped.numerics.stages import EULER, GAMMA, Steps, stages, work
+from lumped.numerics.steady_start import settle
 from lumped.numerics.tangents import differentiate
 from lumped.numerics.terms import Forcing
 

@@ -12,8 +12,8 @@ from geom.errors import ThermoscopeError
 from lumped.integration.compiled import compiled
 from lumped.integration.record import Record
 from lumped.model.network import Network, Parameter, Row
-from lumped.numerics.settle import settle
 from lumped.numerics.stages import stages, work
+from lumped.numerics.steady_start import settle
 
 Array = NDArray[np.float64]
 ABOVE_K = 30.0  # still air takes nothing without a difference: a start without one would leave the nodes unheld

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from geom.description.identity import Identity
 from geom.description.roles import Role
 from lumped.model.quantities import LIQUID
+from lumped.model.rotation import turning
 from lumped.model.topology import Topology, conductance, fixed
-from lumped.model.turning import turning
 
 if TYPE_CHECKING:
     from lumped.model.network import Network

@@ -16,11 +16,11 @@ from scripts.papers.page import Row, Section
 from thermoscope.case_folder.folder import Folder, load_case
 from thermoscope.case_folder.runs import readings
 from validation.calibration.calibrate import calibrated
-from validation.calibration.fitting import working
+from validation.calibration.unknowns import working
 from validation.case import Case, Test
 from validation.procedure.measuring.repeats import Repeats, normalised_error, pooled_curves, repeats
 from validation.procedure.reduction.base_heat import BaseHeat, base_heat
-from validation.procedure.reduction.carry import Carried, carried, settled
+from validation.procedure.reduction.transfer import Transfer, settled, transferred
 from validation.procedure.reduction.two_paths import TwoPaths, of_test
 from validation.procedure.reduction.which_base import which_base
 
@@ -41,9 +41,9 @@ def m1() -> Folder:
 
 
 @cache
-def others() -> dict[str, Carried]:
+def others() -> dict[str, Transfer]:
     """M1's calibrated model on M2 and M3."""
-    return {name: carried(m1().case, load_case(CASES / "pmsm-machines" / name).case) for name in OTHERS}
+    return {name: transferred(m1().case, load_case(CASES / "pmsm-machines" / name).case) for name in OTHERS}
 
 
 @cache

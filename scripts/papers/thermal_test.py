@@ -14,8 +14,8 @@ from validation.procedure.factors.factorial import full
 from validation.procedure.factors.screening import STEP, TABLE_I, WITH_GAP, Screening, screen, varied
 from validation.procedure.factors.sensitivity import Ranking, morris, sobol
 from validation.procedure.measuring.meters import OHMMETER, VOLTMETER, Meter, Range
+from validation.procedure.measuring.propagation import PropagatedUncertainty, propagate
 from validation.procedure.measuring.readings import COPPER, NDFEB, Winding, magnet_rise
-from validation.procedure.measuring.spread import Spread, spread
 from validation.procedure.measuring.switch_off import Cooling, exponentials, rule_150, semilog_at
 from viz.figures.screening import screened
 
@@ -26,17 +26,17 @@ VOLTS = (100.0, 200.0, 290.0, 400.0)
 NEXT_RANGE = Meter("next range", "ohm", (Range(0.0, 40.0, 0.25, 20e-3, 20e-3),))
 
 
-def winding(R0: float, meter: Meter = OHMMETER) -> Spread:
+def winding(R0: float, meter: Meter = OHMMETER) -> PropagatedUncertainty:
     """Uncertainty of 80 K read with a cold resistance R0 (ohm)."""
     return Winding(R0, 20.0, meter).rise(R0 * (1 + COPPER.value * RISE))
 
 
-def magnets(E0: float, with_alpha: bool) -> Spread:
+def magnets(E0: float, with_alpha: bool) -> PropagatedUncertainty:
     """Uncertainty of 80 K read with a cold back-EMF E0 (V), by the meter alone or with alpha's range."""
     cold, warm = VOLTMETER.reading("E0", E0), VOLTMETER.reading("E", E0 * (1 + NDFEB.value * RISE))
     if with_alpha:
-        return spread(magnet_rise_of, (cold, warm, NDFEB))
-    return spread(lambda a, b: magnet_rise_of(a, b, NDFEB.value), (cold, warm))
+        return propagate(magnet_rise_of, (cold, warm, NDFEB))
+    return propagate(lambda a, b: magnet_rise_of(a, b, NDFEB.value), (cold, warm))
 
 
 def magnet_rise_of(E0: object, E: object, alpha: object) -> object:
@@ -225,7 +225,7 @@ def _figure_6() -> object:
     return figure
 
 
-def _bands(axes: object, x: np.ndarray, found: list[Spread]) -> None:
+def _bands(axes: object, x: np.ndarray, found: list[PropagatedUncertainty]) -> None:
     for words, pick in (
         ("worst case", lambda s: s.worst),
         ("GUM, 95 %", lambda s: s.first_order),

@@ -10,13 +10,13 @@ from condensation import after_step, energy, over_loads, put, unbalanced
 from condensation_points import Pair
 
 from geom import load_machine
-from lumped.condensation.guard import Errors
-from thermoscope.verification.sized import sized
+from lumped.condensation.reduction_error import Errors
+from thermoscope.verification.network_size import smallest_network
 
 
 @pytest.fixture(scope="module")
 def pair():
-    return Pair.of(sized(load_machine("pmsm-m1-no-base"), 2.0, size_m=0.1, segments=24))
+    return Pair.of(smallest_network(load_machine("pmsm-m1-no-base"), 2.0, size_m=0.1, segments=24))
 
 
 def some(pair):

@@ -20,7 +20,7 @@ from hidden.user import network_of
 from scipy.integrate import solve_ivp
 
 from validation.case import Test
-from validation.planning.menu import possible
+from validation.planning.candidate_tests import candidate_tests
 
 TRUTH = Path(__file__).parents[2] / "benchmarks" / "hidden" / "truth"
 DRIVEN = [
@@ -171,7 +171,7 @@ def test_what_is_carried_out_is_what_was_planned(kind):
     rng, four_hours = np.random.default_rng, np.arange(0.0, 14400.0, 30.0)
     at = np.arange(0.0, 60.0 * kind.plans[3].minutes, 30.0)
     base = Test("driven", "validate", at, kind.plans[3].inputs(rng(0), at), {}, (), 20.0)
-    for experiment, test in possible(base, network_of(kind.name)):
+    for experiment, test in candidate_tests(base, network_of(kind.name)):
         if experiment.name in MENU:
             asked = carried_out(experiment.name, kind.plans[3]).inputs(rng(0), four_hours)
             for key, planned in test.inputs.items():

@@ -8,7 +8,7 @@ import pytest
 
 from lumped.integration.simulate import Record, simulate
 from thermoscope.case_folder.folder import load_case
-from validation.calibration.fitting import with_model
+from validation.calibration.unknowns import with_model
 from validation.comparison.compare import compare
 from validation.revision.revise import add, calibrate
 

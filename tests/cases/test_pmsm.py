@@ -14,7 +14,7 @@ from scripts.pmsm_cases import TESTS, folder_of, text
 from thermoscope.case_folder.folder import load_case
 from thermoscope.cli import main
 from validation.procedure.measuring.repeats import repeats
-from validation.procedure.reduction.carry import carried, settled
+from validation.procedure.reduction.transfer import settled, transferred
 from validation.procedure.reduction.which_base import bases_tried, declared_base, on_base, which_base, wrong_bases
 
 GAP = "k.liner-gap"
@@ -102,7 +102,7 @@ def test_simulation_agrees_on_the_bases(bases):
 def test_machines_that_were_not_used_are_predicted(root, bases, name):
     """Every difference below the measurement's 95 % uncertainty with M1's values, and closer than without them."""
     other = load_case(root / "cases" / "pmsm-machines" / name).case
-    found, plain = carried(bases.case, other), settled(other)
+    found, plain = transferred(bases.case, other), settled(other)
     assert "h.stator.core" in found.parameters
     assert not any(name.startswith("loss.") for name in found.parameters)
     assert found.agrees

@@ -4,7 +4,7 @@ import shutil
 
 from thermoscope.case_folder.folder import load_case
 from validation import calibrate, diagnose
-from validation.calibration.fitting import with_model
+from validation.calibration.unknowns import with_model
 
 
 def test_the_wind_on_the_right_flange_is_named(root, tmp_path):

@@ -23,6 +23,16 @@ REFERENCE = {
     "radiation": 3.6,  # s of 3600: a thousandth, the tool's time steps
     "two_bodies": 0.01,  # K of 80: steps of the integrator
     "own_effect": 1e-6,  # K: linear
+    "fin": 2e-4,  # of 0.79: the mean of forty cells errs by (mL)^2 / (4 N^2) = 1.3e-4 at most
+    "composite_wall": 1e-6,  # K: resistances in series are exact
+    "generation": 1e-6,  # K: the sum over the layers is exact
+    "semi_infinite": 0.08,  # K of 80: cells of 2.5 mm in a front of 65 mm err by (1/26)^2 of it at most
+    "periodic": 0.01,  # K of 20: steps of the integrator
+    "two_blocks": 0.01,  # K of 130: steps of the integrator; the wire takes 1e-6 of the joint's heat
+    "free_convection": 0.01,  # K of 100: steps of the integrator
+    "short_time_duty": 0.05,  # s of 518: the curve is nearly straight within a sample of 1 s
+    "delta_star": 1e-6,  # K: both are exact
+    "iron_loss": 1e-6,  # W: linear
 }
 TESTED_ELSEWHERE = {"hust", "tclab"}
 

@@ -7,7 +7,7 @@ from typing import get_args
 
 import pytest
 
-from validation.diagnosis.findings import Decided, Verdict
+from validation.diagnosis.result import Decided, Verdict
 
 # Words of everyday English, units alone, and letters of a formula whose title says them.
 PLAIN = {

@@ -22,7 +22,7 @@ from lumped.transfer.reversal import Direction, OneWay
 from thermoscope.export.expansion import Unknown, expanded
 from thermoscope.export.products import value
 from thermoscope.export.tables import factors
-from validation.calibration.forms import Bend, BendOfDifference, BendOfTemperature
+from validation.calibration.model_form import DifferenceExponentError, ExponentError, TemperatureSlopeError
 from validation.effects.build import Shaped
 from validation.effects.losses.iron_pwm import Ripple
 from validation.effects.streams.fouling import hours
@@ -45,13 +45,13 @@ EXACT = [
     Interpolated("speed_rpm", (0.0, 500.0, 2000.0), (1.0, 4.0, 9.0)), Share(OVER, (0.0, 5.0, 9.0), (1.0, 7.0, 8.0)),
     Switched(Fixed(4.0), "on", True), Switched(COPPER, "on", False), Direction(InputPower(2.0, ()), "signed", -1),
     OneWay(InputPower(2.0, (("flow_l_min", 4.0, 0.8),)), "flow_l_min", "here", "that"),
-    BendOfDifference(Fixed(2.0, Power(0.25))), BendOfTemperature(COPPER),
+    DifferenceExponentError(Fixed(2.0, Power(0.25))), TemperatureSlopeError(COPPER),
 ]  # fmt: skip
 TABLES = [
     RippleLoss(300.0, "voltage_V", 1e-3, 8e3, 0.1), Rate(Flow(60.0, "flow_l_min")), COUNTER,
     CellFilm((0.0, 4.0, 12.0), (10.0, 400.0, 900.0), Flow(60.0, "flow_l_min"), 0.01, 0.02),
-    Bend(InputPower(2.0, (("speed_rpm", 1000.0, 0.8),)), "speed_rpm", {"speed_rpm": 1500.0}),
-    Bend(MAP, "iq_A", {"speed_rpm": 1500.0, "iq_A": 30.0}),
+    ExponentError(InputPower(2.0, (("speed_rpm", 1000.0, 0.8),)), "speed_rpm", {"speed_rpm": 1500.0}),
+    ExponentError(MAP, "iq_A", {"speed_rpm": 1500.0, "iq_A": 30.0}),
     Shaped(Fixed(2.0), Ripple("chopper_Hz"), CONSTANT, ("chopper_Hz",)),
 ]  # fmt: skip
 RANGES = {

@@ -7,7 +7,7 @@ from fem.matrices.assembly import assemble
 from fem.matrices.grids import ring
 from fem.matrices.material import isotropic, laminated
 from fem.solvers.local import local_solutions, of_unit_energy
-from fem.solvers.snapshots import Recipe, alone, bases, drawn, energies, principals, snapshots
+from fem.solvers.snapshots import Recipe, bases, drawn, energies, isolated_part, principals, snapshots
 from fem.solvers.solve import Solver
 
 CONTACTS = {"core|yoke": 500.0}
@@ -54,7 +54,7 @@ def missed(field, films, recipe):
     """Largest share of a field that 40 states of the recipe cannot show at unseen coefficients."""
     loads, energy = np.column_stack([field.load("core"), field.load("yoke")]), energies(field, films, CONTACTS)
     S = snapshots(field, films, CONTACTS, loads, recipe)
-    found = principals(field, S, energy, alone(field, films, CONTACTS, S, loads, recipe))
+    found = principals(field, S, energy, isolated_part(field, films, CONTACTS, S, loads, recipe))
     shapes = bases(field, found, energy, Recipe(tolerance=0.0, max_states=40))
     rng, worst = np.random.default_rng(5), 0.0
     for _ in range(4):

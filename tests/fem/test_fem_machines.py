@@ -7,7 +7,7 @@ from fem.matrices.assembly import assemble
 from fem.matrices.material import Conductivity
 from fem.matrices.streams import Stream, cut, flowing
 from fem.matrices.terms import CopperLoss, Radiation
-from fem.solvers.newton import settle
+from fem.solvers.newton import solve_nonlinear
 from fem.solvers.solve import Solver, steady
 from geom import build_mesh, library, load_machine
 
@@ -61,6 +61,6 @@ def test_energy_with_everything_that_depends_on_temperature(machine, solved):
     field = solver.field
     terms = [CopperLoss(p, q) for p, q in losses(machine).items() if "winding" in p]
     terms += [Radiation(face, 0.8, 20.0) for face, film in field.films.items() if film.fluid == "ambient"]
-    found = settle(solver, films, contacts, np.zeros(field.n), fluids, terms)
+    found = solve_nonlinear(solver, films, contacts, np.zeros(field.n), fluids, terms)
     assert found.injected > sum(term.watts for term in terms if isinstance(term, CopperLoss))
     assert found.energy_balance < 1e-9

@@ -9,7 +9,7 @@ from fem.matrices.assembly import assemble
 from fem.matrices.grids import box
 from fem.matrices.material import isotropic
 from fem.matrices.terms import SIGMA, ZERO_C, CopperLoss, Radiation, VaryingConductivity
-from fem.solvers.newton import settle
+from fem.solvers.newton import solve_nonlinear
 from fem.solvers.solve import Iterative, Solver, only_fixed
 from fem.solvers.transient import transient
 from geom.errors import InputError
@@ -28,7 +28,7 @@ def nafems_t2(n, solver=Solver):
     films = {"bar.left": GIVEN, "bar.right": 0.0}
     given = only_fixed(left=1000.0 - ZERO_C, right=0.0)
     terms = [Radiation("bar.right", 0.98, 300.0 - ZERO_C)]
-    found = settle(solver(field), films, {}, np.zeros(field.n), given, terms, 500.0)
+    found = solve_nonlinear(solver(field), films, {}, np.zeros(field.n), given, terms, 500.0)
     return found, float(field.face_mean(field.films["bar.right"].trace) @ found.T) + ZERO_C
 
 
@@ -52,7 +52,7 @@ def test_radiation_balance_of_a_hot_body():
     mesh = box(x, x, x, lambda c: named(c, default="cube"), lambda c: named(c, default="ambient"))
     field = assemble(mesh, {"cube": isotropic(4e4)}, {"cube": 1.0})
     load = 50.0 * field.load("cube")
-    found = settle(
+    found = solve_nonlinear(
         Solver(field), {"cube.outer": 0.0}, {}, load, only_fixed(ambient=0.0), [Radiation("cube.outer", 0.9, 25.0)]
     )
     exact = (50.0 / (0.9 * SIGMA * 0.06) + (25.0 + ZERO_C) ** 4) ** 0.25 - ZERO_C
@@ -67,7 +67,7 @@ def kirchhoff(n):
     term = VaryingConductivity("bar", lambda T: 1 + b * T, lambda T: np.full(len(T), b))
     given = only_fixed(left=hot, right=cold)
     films = {"bar.left": GIVEN, "bar.right": GIVEN}
-    found = settle(Solver(field), films, {}, np.zeros(field.n), given, [term])
+    found = solve_nonlinear(Solver(field), films, {}, np.zeros(field.n), given, [term])
     theta = np.interp(field.xyz[:, 0], [0, 0.05], [t + b * t**2 / 2 for t in (hot, cold)])
     return np.abs(found.T - (np.sqrt(1 + 2 * b * theta) - 1) / b).max(), found
 
@@ -85,7 +85,7 @@ def copper_bar(q, n=32):
     """Loss q (W/m3) (1 + alpha (T - 20)), one end at 40 degC, the other insulated: T - 20 + 1 / alpha is a cosine."""
     L, k, alpha = 0.05, 0.6, 0.00393
     field = assemble(bar(L, n), {"bar": isotropic(k)}, {"bar": 1.0})
-    found = settle(
+    found = solve_nonlinear(
         Solver(field), {"bar.left": GIVEN, "bar.right": 0.0}, {}, np.zeros(field.n),
         only_fixed(left=40.0, right=0.0), [CopperLoss("bar", q * field.blocks["bar"].volume, alpha)],
     )  # fmt: skip
@@ -126,7 +126,7 @@ def warm_cube():
 
 
 def test_everything_at_once_balances():
-    found = settle(*warm_cube())
+    found = solve_nonlinear(*warm_cube())
     assert found.injected > 50.0
     assert found.energy_balance < 1e-9
     assert len(found.steps) <= 7
@@ -136,7 +136,7 @@ def test_warming_ends_where_newton_settles():
     solver, films, contacts, load, fluids, terms = warm_cube()
     start = np.full(solver.field.n, 20.0)
     T = transient(solver, films, contacts, load, fluids, start, step=5000.0, steps=20, terms=terms)
-    assert np.abs(T[-1] - settle(*warm_cube()).T).max() < 1e-3
+    assert np.abs(T[-1] - solve_nonlinear(*warm_cube()).T).max() < 1e-3
 
 
 def test_unphysical_terms_are_refused():

@@ -2,12 +2,12 @@
 
 import pytest
 
-from geom.kept import written_whole
+from geom.disk_cache import atomic_write
 
 
 def test_nobody_sees_a_file_before_it_is_complete(tmp_path):
     file = tmp_path / "new" / "kept.npz"
-    with written_whole(file) as partial:
+    with atomic_write(file) as partial:
         partial.write_text("half")
         assert not list(file.parent.glob("kept*"))
         partial.write_text("whole")
@@ -15,7 +15,7 @@ def test_nobody_sees_a_file_before_it_is_complete(tmp_path):
 
 
 def interrupted(file):
-    with written_whole(file) as partial:
+    with atomic_write(file) as partial:
         partial.write_text("half")
         raise KeyboardInterrupt
 

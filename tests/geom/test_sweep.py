@@ -5,7 +5,7 @@ import pytest
 from test_random_machines import FAMILIES, FEW, build, table_of
 
 from geom import InputError, check_cad
-from geom.description.draws import random_geometry
+from geom.description.random_geometry import random_geometry
 from geom.description.reading import usual_geometry
 from geom.families import families
 from geom.machine_file import machine_from

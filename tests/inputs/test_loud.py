@@ -4,7 +4,7 @@ import pytest
 from recordings import case_of, changed, edited
 
 from geom.errors import InputError
-from thermoscope.commands.opened import opened
+from thermoscope.commands.open_case import open_case
 
 TESTS = ("stand", "road", "town")
 SPEED = 'quantity = "vehicle_speed"\nunit = "km/h"'
@@ -42,7 +42,7 @@ def test_refused_with_what_was_meant(tmp_path, kind):
     case = case_of(tmp_path)
     change(case)
     with pytest.raises(InputError, match=words):
-        opened(str(case), lambda _: None)
+        open_case(str(case), lambda _: None)
 
 
 def fan(case):
@@ -77,7 +77,7 @@ def test_said_by_every_command_that_opens_the_case(tmp_path, kind, capsys):
     change, words = LOUD[kind]
     case = case_of(tmp_path)
     change(case)
-    opened(str(case), lambda _: None)
+    open_case(str(case), lambda _: None)
     (said,) = [line for line in capsys.readouterr().err.splitlines() if words in line]
     assert said.startswith("note: ")
 
@@ -86,5 +86,5 @@ def test_a_fan_with_exponent_one_is_no_doubt(tmp_path, capsys):
     case = case_of(tmp_path)
     fan(case)
     edited(case / "network.toml", "exponent = 0.8", "exponent = 1.0")
-    opened(str(case), lambda _: None)
+    open_case(str(case), lambda _: None)
     assert "says nothing" not in capsys.readouterr().err

@@ -8,9 +8,9 @@ from fem.matrices.assembly import assemble
 from fem.matrices.grids import ring
 from fem.matrices.material import isotropic, laminated, wound
 from fem.solvers.solve import Solver
-from lumped.condensation.adapt import Size, adapt, excess
-from lumped.condensation.guard import Wish, mixes, point_errors
+from lumped.condensation.greedy_enrichment import Size, enrich, excess
 from lumped.condensation.reduction import Recipe, Zone, reduce
+from lumped.condensation.reduction_error import Accuracy, point_errors, random_load_cases
 
 CONTACTS = {"coil|core": 400.0, "coil|yoke": 800.0}
 LEFT = Zone("coil", lambda c: (c[:, 2] < 0.06).astype(float))
@@ -50,13 +50,13 @@ def reduction(field, cache=None, contacts=None, changed=None, **recipe):
 
 
 def cases(found):
-    return mixes(list(found.zones), list(found.washing), {"coil": 200.0, "core": 100.0})
+    return random_load_cases(list(found.zones), list(found.washing), {"coil": 200.0, "core": 100.0})
 
 
 def test_error_falls_with_the_number_of_states(field):
     found = reduction(field)
     points = [found.nominal_point(), found.random_point(0)]
-    sizes = [Size.of(found, n, points, cases(found), Wish()) for n in (0, 10, 25)]
+    sizes = [Size.of(found, n, points, cases(found), Accuracy()) for n in (0, 10, 25)]
     assert len(sizes[0].network.states) == len(field.blocks) + 2
     assert sizes[0].nominal.mean > sizes[1].nominal.mean > sizes[2].nominal.mean
     assert sizes[2].nominal.mean < 0.1
@@ -64,8 +64,8 @@ def test_error_falls_with_the_number_of_states(field):
 
 def test_guard_learns_until_unseen_points_are_met(field):
     """A basis of nominal solutions alone fails at random coefficients; with what the guard saw it holds at new ones."""
-    found, wish = reduction(field, tolerance=0.3), Wish(0.2, 1.0, 1.0)
-    learned = adapt(found, cases(found), wish, rounds=4)
+    found, wish = reduction(field, tolerance=0.3), Accuracy(0.2, 1.0, 1.0)
+    learned = enrich(found, cases(found), wish, rounds=4)
     assert not learned.rounds[0].met
     assert learned.met
     unseen = found.random_point(99)
@@ -77,7 +77,7 @@ def test_guard_learns_until_unseen_points_are_met(field):
 def test_guard_says_what_it_missed(field):
     """With no round left to learn, the last look says so."""
     found = reduction(field, tolerance=0.3)
-    learned = adapt(found, cases(found), Wish(1e-6, 1e-6, 1e-6), rounds=1, fresh=1)
+    learned = enrich(found, cases(found), Accuracy(1e-6, 1e-6, 1e-6), rounds=1, fresh=1)
     assert not learned.met
     assert learned.rounds[-1].document()["random"]["mean_part"] in field.blocks
 

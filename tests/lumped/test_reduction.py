@@ -8,9 +8,9 @@ from fem.matrices.grids import ring
 from fem.matrices.material import isotropic, laminated, wound
 from fem.solvers.solve import Fluids, Solver, only_fixed, steady
 from geom.errors import InputError
-from lumped.condensation.guard import errors
 from lumped.condensation.linear import linear, unit_load
 from lumped.condensation.reduction import Recipe, Zone, condense
+from lumped.condensation.reduction_error import errors
 from lumped.transfer.laws import Fixed
 
 FLUIDS = {"bore": 50.0, "air": 30.0}

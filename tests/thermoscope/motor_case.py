@@ -46,10 +46,10 @@ def with_motor(path: Path) -> Folder:
 
 
 def main() -> None:
-    from thermoscope.workbench.gate import Gate
+    from thermoscope.workbench.access_control import AccessControl
     from thermoscope.workbench.serve import application, serve
 
-    case, gate = small_case(Path(sys.argv[1])), Gate("127.0.0.1", os.environ.get("THERMOSCOPE_TOKEN", ""))
+    case, gate = small_case(Path(sys.argv[1])), AccessControl("127.0.0.1", os.environ.get("THERMOSCOPE_TOKEN", ""))
     app = application(with_motor(case), gate, lambda message: None)
     serve(app, gate, 0, lambda url: print(url, flush=True))
 

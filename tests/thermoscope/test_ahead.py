@@ -1,10 +1,10 @@
 """What would decide is shown only where something would."""
 
-from thermoscope.commands.explain.ahead import ahead
+from thermoscope.commands.explain.next_tests import next_tests
 
 
 def shown(**document):
-    return str(ahead({"next_tests": [], "next_sensors": [], **document}))
+    return str(next_tests({"next_tests": [], "next_sensors": [], **document}))
 
 
 def planned(name, gain, *separates):

@@ -14,9 +14,9 @@ from thermoscope.commands.test.compare import compare
 from thermoscope.commands.use.simulate import simulate
 from thermoscope.pipeline import Meshing, build, coefficients_on, meshed
 from thermoscope.verification import rated_errors
-from thermoscope.verification.error_budget import Looks
-from thermoscope.verification.frozen import rated
-from thermoscope.verification.rated_errors import HOT, Reader, at_rated_point, kept
+from thermoscope.verification.error_budget import MonitoredPlaces
+from thermoscope.verification.fixed_coefficients import rated
+from thermoscope.verification.rated_errors import HOT, Reader, at_rated_point, cached_errors
 
 MACHINE, SIZE, SEGMENTS, AXIAL = "pmsm-m1-no-base", 0.1, 36, 0.12
 RECIPE = Recipe(tolerance=0.05, shifts=(0.01,), random_points=1, max_states=60)
@@ -39,7 +39,7 @@ def built(cache):
 def looks(built):
     places = built.network.places
     at = {"T_point": np.array(built.machine.point_in("stator.core"))}
-    return Looks({n: places[p].mean for n, p in SENSORS.items()}, {**SENSORS, "T_point": "stator.core"}, at)
+    return MonitoredPlaces({n: places[p].mean for n, p in SENSORS.items()}, {**SENSORS, "T_point": "stator.core"}, at)
 
 
 @pytest.fixture(scope="module")
@@ -74,9 +74,9 @@ def test_a_network_of_more_states_leaves_less(built, looks, found):
 
 def test_what_was_looked_at_once_is_kept(built, looks, found, monkeypatch):
     monkeypatch.setattr(rated_errors, "at_rated_point", lambda built, looks: found)
-    first = kept(built, looks)
+    first = cached_errors(built, looks)
     monkeypatch.setattr(rated_errors, "at_rated_point", None)
-    assert kept(built, looks) == first == found
+    assert cached_errors(built, looks) == first == found
 
 
 def test_coarser_keeps_the_chords_so_that_volumes_agree(built):

@@ -9,8 +9,8 @@ from small_case import small_case
 from thermoscope.case_folder.history import load_history
 from thermoscope.cli import app
 from thermoscope.commands.explain import improve as command
-from validation.diagnosis.findings import Candidate, Diagnosis
-from validation.revision.climb import offered, singletons
+from validation.diagnosis.result import Candidate, Diagnosis
+from validation.revision.improvement import offered, singletons
 
 
 @pytest.fixture(scope="module")

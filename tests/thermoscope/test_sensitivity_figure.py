@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from thermoscope.case_folder.folder import load_case
-from validation.calibration.fitting import to_value, working
+from validation.calibration.unknowns import to_value, working
 from validation.comparison.predict import predict
 from viz.live import sensitivity
 from viz.live.influence import influence

@@ -13,7 +13,7 @@ from motor_case import with_motor
 from small_case import small_case
 
 from geom.errors import InputError
-from thermoscope.workbench.gate import Gate, loopback, served
+from thermoscope.workbench.access_control import AccessControl, loopback, served
 from thermoscope.workbench.serve import application, token_for
 from thermoscope.workbench.tabs import MOST
 
@@ -96,7 +96,7 @@ def test_without_the_token_nothing_is_shown(folder):
             page = await answer.text()
         return seen, kept, page
 
-    seen, kept, page = asked(folder, Gate("0.0.0.0", TOKEN), questions)
+    seen, kept, page = asked(folder, AccessControl("0.0.0.0", TOKEN), questions)
     assert seen == [401] * 5 + [302]
     assert "HttpOnly" in kept
     assert "SameSite=Strict" in kept
@@ -113,7 +113,7 @@ def test_other_names_and_other_pages_are_refused(folder):
                 seen.append(answer.status)
         return seen
 
-    assert asked(folder, Gate("127.0.0.1", ""), questions) == [403, 403, 403, 302]
+    assert asked(folder, AccessControl("127.0.0.1", ""), questions) == [403, 403, 403, 302]
 
 
 def test_paths_do_not_lead_out(folder):
@@ -131,7 +131,7 @@ def test_paths_do_not_lead_out(folder):
             seen["unknown"] = answer.headers["Location"]
         return seen
 
-    seen = asked(folder, Gate("127.0.0.1", ""), questions)
+    seen = asked(folder, AccessControl("127.0.0.1", ""), questions)
     assert seen.pop("index.html") == 200
     assert seen.pop("unknown") == "/"
     assert set(seen.values()) == {404}
@@ -155,7 +155,7 @@ def test_a_duplicated_tab_gets_a_session_of_its_own(folder):
         await asyncio.sleep(1.0)
         return tab, first, copy, await asked_for(tab)
 
-    tab, first, copy, again = asked(folder, Gate("127.0.0.1", ""), questions)
+    tab, first, copy, again = asked(folder, AccessControl("127.0.0.1", ""), questions)
     assert first == again
     assert tab in first
     assert tab not in copy
@@ -172,7 +172,7 @@ def test_pages_run_their_own_scripts_only(folder):
         async with session.get(tab.replace("index.html", "report.html")) as answer:
             return page, policy, answer.headers["Content-Security-Policy"]
 
-    page, policy, report = asked(folder, Gate("127.0.0.1", ""), questions)
+    page, policy, report = asked(folder, AccessControl("127.0.0.1", ""), questions)
     rules = {rule.split()[0]: rule.split()[1:] for rule in policy.split("; ")}
     (script,) = re.findall(r"<script>(.*?)</script>", page, re.S)
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
@@ -203,7 +203,7 @@ def test_a_ninth_tab_has_to_wait(folder):
             await socket_.close()
         return full, free
 
-    assert asked(folder, Gate("127.0.0.1", ""), questions) == (503, 302)
+    assert asked(folder, AccessControl("127.0.0.1", ""), questions) == (503, 302)
 
 
 def test_addresses_that_are_none(folder):
@@ -214,4 +214,4 @@ def test_addresses_that_are_none(folder):
                 seen.append((answer.status, answer.headers.get("X-Frame-Options")))
         return seen
 
-    assert asked(folder, Gate("127.0.0.1", TOKEN), questions) == [(403, "DENY"), (403, "DENY"), (401, "DENY")]
+    assert asked(folder, AccessControl("127.0.0.1", TOKEN), questions) == [(403, "DENY"), (403, "DENY"), (401, "DENY")]

@@ -4,7 +4,7 @@ import pytest
 
 from geom.errors import InputError
 from thermoscope.case_folder.history import History, Revision, load_history, save_history
-from thermoscope.workbench.ledger import effective, undone
+from thermoscope.workbench.revisions import effective, undone
 
 ONE = Revision(0, "calibrate", values={"a": 1.0}, rmse_K={"t": (3.0, 2.0)})
 TWO = Revision(0, "add", ("x@y",), "x@y", {"a": 1.1, "x@y": 5.0}, rmse_K={"t": (2.0, 0.5)})

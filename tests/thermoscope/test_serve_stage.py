@@ -5,7 +5,7 @@ import pytest
 from motor_case import POSITIONS
 from small_motor import motor
 
-from thermoscope.workbench.stage import Stage
+from thermoscope.workbench.view import Stage
 from viz import split
 from viz.data import Sensor
 from viz.rendering.cut import cut_away

@@ -2,7 +2,7 @@
 
 import pytest
 
-from thermoscope.console.stages import Stages, progress
+from thermoscope.console.progress_bar import ProgressBar, progress
 
 
 class Clock:
@@ -23,13 +23,13 @@ STEPS = [("reading a", 1.0), ("reading b", 1.0), ("fitting step 1", 3.0), ("fitt
 
 def test_the_second_time_share_and_time_left_are_known():
     clock = Clock()
-    first = Stages({}, clock)
+    first = ProgressBar({}, clock)
     worked(first, clock, STEPS)
     first.leave()
     assert first.took == {"reading": 2.0, "fitting": 6.0, "drawing": 2.0}
     assert first.left() is None
     clock.now = 0.0
-    again = Stages(first.took, clock)
+    again = ProgressBar(first.took, clock)
     worked(again, clock, STEPS[:3])
     share, seconds = again.left()
     assert share == pytest.approx(0.5)
@@ -39,7 +39,7 @@ def test_the_second_time_share_and_time_left_are_known():
 
 def test_the_share_never_falls():
     clock = Clock()
-    stages, seen = Stages({"reading": 2.0, "fitting": 6.0, "drawing": 2.0}, clock), []
+    stages, seen = ProgressBar({"reading": 2.0, "fitting": 6.0, "drawing": 2.0}, clock), []
     for message, seconds in [("reading", 9.0), ("fitting", 1.0), ("drawing", 4.0)]:
         stages.enter(message)
         for _ in range(4):

@@ -9,14 +9,14 @@ from one_body import LOSS, measured, one_node
 from playground import Truth, wind
 
 from lumped.model.network import Parameter
-from validation.calibration.calibrate import minimise, square_of
-from validation.calibration.fitting import Unknowns
+from validation.calibration.calibrate import chi_square, minimise
+from validation.calibration.unknowns import Unknowns
 from validation.case import AddedEffect
-from validation.comparison.sheet import segments
+from validation.comparison.linearisation import segments
 from validation.effects import effect
 from validation.inference.evidence import diagnosing
 from validation.revision.acceptance import checks, predicted_without
-from validation.revision.revise import fitted, start
+from validation.revision.revise import staged_fit, start
 
 BIAS = Parameter("bias of body", (("bias:body", 1.0),), value=0.0, low=-9, high=9, prior_sd=0.3, mapping="offset",
                  neutral=0.0)  # fmt: skip
@@ -33,7 +33,7 @@ def checked(name):
     """Checks of one effect, by name."""
     one = effect(name)
     grown = replace(case(), model=replace(case().model, effects=(AddedEffect(one.kind, one.place),)))
-    (fit,) = fitted(grown, diagnosing(grown), start(grown))
+    (fit,) = staged_fit(grown, diagnosing(grown), start(grown))
     return fit, {c.check: c for c in checks(fit, name)}
 
 
@@ -54,7 +54,7 @@ def test_leaving_a_test_out_agrees_with_fitting_without_it():
         deviance = []
         for free in ((BIAS,), (BIAS, LOSS)):
             alone = minimise(network, others, Unknowns(free), np.zeros(len(free)), fit.noise)
-            deviance.append(square_of(segments(network, [test], alone.values), fit.noise))
+            deviance.append(chi_square(segments(network, [test], alone.values), fit.noise))
         assert found[test.name] == pytest.approx(deviance[0] - deviance[1], rel=1e-3, abs=1e-6)
 
 

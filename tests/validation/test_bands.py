@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 from lumped.model.build import bare_network, node_link, node_source
 from lumped.model.network import Parameter, Row
 from lumped.transfer.laws import Fixed
-from validation.bands import Place, bands, belief
+from validation.bands import Place, bands, parameter_posterior
 from validation.case import Case, Channel, Model, Test
 from validation.doubt import USUAL
 from validation.revision.revise import calibrate
@@ -51,7 +51,7 @@ def test_before_a_calibration_the_priors_add_up():
     """At rest (to 0.3 % after 10 h) T_core = air + P (1/G + 1/2G): each prior by its share of the rise."""
     network, (test, _) = chain(), measured()
     few = {k: 1e-9 for k in USUAL} | {"boundary": 0.5}
-    known = belief(Case("chain", Model(network), (test,), doubt=few))
+    known = parameter_posterior(Case("chain", Model(network), (test,), doubt=few))
     found = bands(known, test, places(network))
     shell, joint = P / G, P / (2.0 * G)
     core = np.sqrt((0.3 * shell) ** 2 + (0.4 * joint) ** 2 + (0.1 * (shell + joint)) ** 2 + 0.5**2)
@@ -67,7 +67,7 @@ def calibrated():
 
 def test_a_place_without_a_sensor_is_less_sure(calibrated):
     case, T = calibrated
-    found = bands(belief(case), case.tests[0], places(case.model.network))
+    found = bands(parameter_posterior(case), case.tests[0], places(case.model.network))
     core, shell = found.sd[-1]
     assert shell < 0.1 * np.ptp(T[:, 1])  # slope and place of its sensor leave 6 %
     assert core > 2.0 * shell
@@ -77,7 +77,7 @@ def test_a_place_without_a_sensor_is_less_sure(calibrated):
 def test_what_trades_in_the_fit_does_not_widen_what_was_measured(calibrated):
     """The shell reads a quotient of heat and film: without their correlation it would seem less sure than it is."""
     case, _ = calibrated
-    known = belief(case)
+    known = parameter_posterior(case)
     apart = replace(known, covariance=np.diag(np.diag(known.covariance)))
     tied, loose = (bands(k, case.tests[0], places(case.model.network)).sd[-1, 1] for k in (known, apart))
     assert tied < 0.8 * loose
@@ -85,5 +85,5 @@ def test_what_trades_in_the_fit_does_not_widen_what_was_measured(calibrated):
 
 def test_the_start_is_as_sure_as_its_doubt(calibrated):
     case, _ = calibrated
-    found = bands(belief(case), case.tests[0], places(case.model.network))
+    found = bands(parameter_posterior(case), case.tests[0], places(case.model.network))
     assert np.all(found.sd[0] <= USUAL["start"] + 0.01)

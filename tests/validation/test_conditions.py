@@ -12,11 +12,11 @@ from lumped.integration.simulate import Record, simulate
 from validation import diagnose
 from validation.case import Case, Channel, Model, Test
 from validation.comparison.predict import predict
-from validation.conditions.hats import Path, hats
+from validation.conditions.hat_functions import Path, hat_scores
 from validation.conditions.windows import best_stretch, joined, pulses
-from validation.diagnosis.where import scan
+from validation.diagnosis.missing_heat import scan
 from validation.effects import Scene, effect
-from validation.effects.gate import Event, checked, event, holds, share
+from validation.effects.time_window import Event, checked, event, holds, share
 from validation.inference.evidence import calibrated_case, candidates, scored
 
 ONE = Event.of({"day": [(600.0, 900.0)]})
@@ -172,7 +172,7 @@ def test_all_stretches_by_cumulated_sums_are_those_weighed_one_by_one():
     case = bench()
     fit = calibrated_case(case)
     e = scored(case, candidates(case, ["convection.constant"]), fit)
-    found = hats(e, scan(fit, e.tests), fit.values)
+    found = hat_scores(e, scan(fit, e.tests), fit.values)
     for path in (Path("body"), Path("body", "ambient"), Path("body", "core")):
         one = best_stretch(found, path, "noon")
         assert found.weigh(one.event, path).log_bayes == pytest.approx(one.log_bayes, rel=1e-6)

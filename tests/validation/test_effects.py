@@ -26,7 +26,9 @@ COOLING = [
 ]
 HEATING = ["iron", "windage", "bearing.friction", "brush.drop", "brush.friction", "loss.winding", "loss.rotor",
            "loss.constant", "iron.pwm", "copper.ac", "copper.feedback"]  # fmt: skip
-SHARED = {f"validation.effects.{name}" for name in ("above", "base", "build", "during", "gate", "registry", "sites")}
+SHARED = {
+    f"validation.effects.{name}" for name in ("above", "base", "build", "during", "time_window", "registry", "sites")
+}
 
 
 @pytest.fixture(scope="module")

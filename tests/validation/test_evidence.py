@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from playground import Truth, wind
 
-from validation.calibration.calibrate import Known, calibrated, minimise, residual_noise
-from validation.calibration.fitting import working
+from validation.calibration.calibrate import KnownSegments, calibrated, minimise, residual_noise
+from validation.calibration.unknowns import working
 from validation.effects import effect
 from validation.inference.evidence import calibrated_case, scored
 
@@ -23,7 +23,7 @@ def test_a_fit_goes_on_with_the_jacobian_it_has(evidence):
     fit = evidence.fit
     held = {p.name: p.value for p in fit.network.parameters} | fit.values
     setting = (fit.network, evidence.tests, fit.unknowns, fit.theta, residual_noise(fit), held)
-    kept, made = minimise(*setting, known=Known(fit.parts, nearby=False)), minimise(*setting)
+    kept, made = minimise(*setting, known=KnownSegments(fit.parts, nearby=False)), minimise(*setting)
     np.testing.assert_allclose(kept.theta, made.theta, rtol=1e-9, atol=1e-12)
     assert kept.objective == pytest.approx(made.objective, rel=1e-12)
 

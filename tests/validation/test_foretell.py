@@ -8,14 +8,14 @@ import pytest
 from playground import Truth, network, steps
 
 from validation.case import Case, Model
-from validation.comparison.sheet import segments
+from validation.comparison.linearisation import segments
 from validation.effects import effect
 from validation.inference.evidence import calibrated_case, refit, scored, starts
-from validation.planning.apart import DECISIVE, GAP
-from validation.planning.contenders import Contenders, behind
+from validation.planning.candidate_tests import MENU
+from validation.planning.competing_models import CompetingModels, deviance_difference
 from validation.planning.experiments import next_tests
-from validation.planning.foretell import foretold, read_by
-from validation.planning.menu import MENU
+from validation.planning.prediction import predicted_deviance, predicted_readings
+from validation.planning.separability import DECISIVE, GAP
 
 RIVALS = ("brush.friction@commutator", "loss.constant@commutator")
 
@@ -52,7 +52,7 @@ def raced(more=None):
     case = Case("rubbing", Model(network()), tests)
     evidence = scored(case, [effect(name) for name in RIVALS], calibrated_case(case))
     fits = tuple(refit(evidence, [k], starts(evidence, [k])[0]) for k in (0, 1))
-    return evidence, Contenders((0, 1), fits, evidence.fit.noise)
+    return evidence, CompetingModels((0, 1), fits, evidence.fit.noise)
 
 
 def test_a_plan_is_as_long_as_it_says_and_repeats_what_it_does_not_change():
@@ -68,19 +68,19 @@ def test_a_plan_is_as_long_as_it_says_and_repeats_what_it_does_not_change():
 
 def test_tests_at_one_speed_cannot_tell():
     first, second = raced()[1].fits
-    assert abs(behind(first, second)) < GAP
+    assert abs(deviance_difference(first, second)) < GAP
 
 
 def test_a_model_reads_what_it_foretells():
     evidence, found = raced()
-    test = read_by(found.best, planned("same current at two speeds", evidence.tests[-1]))
+    test = predicted_readings(found.best, planned("same current at two speeds", evidence.tests[-1]))
     values = {p.name: p.value for p in found.best.network.parameters} | found.best.values
     assert max(np.max(np.abs(s.r)) for s in segments(found.best.network, [test], values)) < 1e-9
 
 
 def test_the_same_again_decides_nothing():
     evidence, found = raced()
-    assert foretold(evidence, found, [replace(evidence.tests[-1], name="again")], (0, 1)) < GAP
+    assert predicted_deviance(evidence, found, [replace(evidence.tests[-1], name="again")], (0, 1)) < GAP
 
 
 def test_two_speeds_are_said_to_decide():
@@ -94,4 +94,4 @@ def test_two_speeds_are_said_to_decide():
 def test_driven_it_decides():
     _, found = raced("same current at two speeds")
     right, wrong = found.fits
-    assert behind(wrong, right) > GAP
+    assert deviance_difference(wrong, right) > GAP

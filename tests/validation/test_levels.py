@@ -8,7 +8,7 @@ from everything import machine, warm_test
 
 from lumped.model.network import Parameter
 from lumped.transfer.laws import InputPower
-from validation.calibration.fitting import at_level
+from validation.calibration.unknowns import at_level
 from validation.effects import effect
 from validation.effects.build import heat
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from playground import Truth, network
 
-from validation.calibration.calibrate import Measure, minimise
-from validation.calibration.fitting import working
-from validation.comparison.sheet import segments
+from validation.calibration.calibrate import InnerProduct, minimise
+from validation.calibration.unknowns import working
+from validation.comparison.linearisation import segments
 from validation.doubt import USUAL
 from validation.inference.model_error import bridges, model_error, with_doubts
 from validation.measurement.noise import first_noise
@@ -63,7 +63,7 @@ def test_model_error_widens_what_a_fit_is_sure_of_and_never_narrows_it(case):
 def test_woodbury_is_the_inverse_of_noise_and_model_error(case):
     parts, error = segments(network(), case.tests, {}), model_error(network(), case.tests, {})
     few = [s for s in parts if s.test == parts[0].test][:2]
-    measure, noise = Measure(few, first_noise(few), error), first_noise(few)
+    measure, noise = InnerProduct(few, first_noise(few), error), first_noise(few)
     root = [np.linalg.inv(noise.whiten(s, np.eye(s.r.size))) for s in few]
     D = np.vstack([error.of(s) for s in few])
     n = few[0].r.size

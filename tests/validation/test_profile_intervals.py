@@ -9,10 +9,10 @@ from one_body import FILM, LOSS, MASS, G, P, measured, one_node
 from geom.errors import InputError
 from lumped.model.network import Parameter
 from validation.calibration.calibrate import minimise
-from validation.calibration.fitting import Unknowns, working
 from validation.calibration.intervals import estimates
 from validation.calibration.profile import profiles
-from validation.calibration.staged import Search, stages
+from validation.calibration.staged_fit import Search, fit_stages
+from validation.calibration.unknowns import Unknowns, working
 from validation.case import Case, Model
 from validation.revision.revise import calibrate
 
@@ -68,7 +68,7 @@ def case(*tests):
 def test_an_isolating_test_frees_its_own_and_the_others_take_it_as_found():
     both = case(measured("cool", frees=("mass",)), measured("warm"))
     _, unknowns = working(both)
-    first, last = stages(both, both.tests, unknowns)
+    first, last = fit_stages(both, both.tests, unknowns)
     assert "mass" in first.free
     assert "mass" not in last.free
     assert {"loss", "film"} <= last.free

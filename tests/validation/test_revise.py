@@ -8,8 +8,8 @@ from playground import Truth, wind
 
 from geom.errors import InputError
 from validation import add, calibrate, compare, remove
-from validation.calibration.fitting import working
-from validation.comparison.sheet import rmse, segments
+from validation.calibration.unknowns import working
+from validation.comparison.linearisation import rmse, segments
 
 EFFECT = "convection@flange.right"
 

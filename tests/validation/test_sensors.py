@@ -9,9 +9,9 @@ from playground import SENSORS, Truth, network
 from validation.case import Case, Model
 from validation.effects import effect
 from validation.inference.evidence import calibrated_case, refit, scored, starts
-from validation.planning.apart import DECISIVE, GAP, separation
-from validation.planning.contenders import Contenders, behind
+from validation.planning.competing_models import CompetingModels, deviance_difference
 from validation.planning.sensors import access, free_places, next_sensors, with_sensors
+from validation.planning.separability import DECISIVE, GAP, separation
 
 PLACES = ("winding.armature", "rotor")
 RIVALS = tuple(f"loss.constant@{place}" for place in PLACES)
@@ -28,7 +28,7 @@ def raced(*more):
     case = Case("heated", Model(network()), tests)
     evidence = scored(case, [effect(name) for name in RIVALS], calibrated_case(case))
     fits = tuple(refit(evidence, [k], starts(evidence, [k])[0]) for k in (0, 1))
-    return evidence, Contenders((0, 1), fits, evidence.fit.noise)
+    return evidence, CompetingModels((0, 1), fits, evidence.fit.noise)
 
 
 @cache
@@ -39,7 +39,7 @@ def said():
 
 def test_without_a_sensor_on_either_they_cannot_be_told_apart():
     first, second = raced()[1].fits
-    assert abs(behind(first, second)) < GAP
+    assert abs(deviance_difference(first, second)) < GAP
 
 
 def test_every_free_place_is_ranked_by_gain_per_hour():
@@ -71,7 +71,7 @@ def test_mounted_it_decides():
     best = max(PLACES, key=lambda place: said()[place].predicted_gain)
     _, found = raced(best)
     right, wrong = found.fits
-    assert behind(wrong, right) > GAP
+    assert deviance_difference(wrong, right) > GAP
 
 
 @pytest.mark.parametrize("place", ["shaft", "rotor", "commutator"])

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from one_body import FILM, LOSS, MASS, measured, one_node
 
-from validation.comparison import sheet
+from validation.comparison import linearisation as sheet
 from validation.measurement.blocks import Blocks, groups
 
 FREE = (LOSS, FILM, MASS)

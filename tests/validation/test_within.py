@@ -7,7 +7,7 @@ import pytest
 from one_body import measured
 
 from validation.comparison.compare import channel_error
-from validation.comparison.within import limit_K, rise_K
+from validation.comparison.tolerance import limit_K, rise_K
 from viz.colours import LIGHT, VERMILION
 from viz.data import Comparison, sensors
 from viz.figures.curves import wrongness

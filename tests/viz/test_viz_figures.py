@@ -12,7 +12,7 @@ from geom.errors import InputError
 from viz.data import Comparison
 from viz.figures import candidates as scores
 from viz.figures import curves, errors, paper, screening
-from viz.labels import spread
+from viz.labels import spread_labels
 
 EFFECTS = {
     "margin": 1.0, "simultaneous": 1.8,
@@ -104,7 +104,7 @@ def test_svg_follows_the_page_theme():
 
 
 def test_labels_keep_their_distance_and_order():
-    out = np.array(spread([0.0, 0.01, 0.02, 1.0], 0.0, 1.0, 0.1))
+    out = np.array(spread_labels([0.0, 0.01, 0.02, 1.0], 0.0, 1.0, 0.1))
     assert (np.diff(out) >= 0.1 - 1e-12).all()
     assert 0 <= out.min() <= out.max() <= 1
 

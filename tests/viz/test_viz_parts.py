@@ -12,7 +12,7 @@ from viz.machine.parts import assemblies, exploded, regions, shifts
 from viz.rendering.cut import cut_away
 from viz.rendering.nodes import split
 from viz.rendering.scene import Room, View
-from viz.rendering.sight import anchors
+from viz.rendering.visibility import anchors
 
 NODES = split(motor(24))
 

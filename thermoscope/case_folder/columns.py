@@ -16,7 +16,7 @@ from thermoscope.case_folder.folder import Folder
 from thermoscope.recordings.formats import stem_of
 from validation.effects import effect
 from validation.effects.during import During
-from validation.effects.gate import event, holds
+from validation.effects.time_window import event, holds
 
 TIME = "time_s"
 

@@ -15,10 +15,10 @@ INPUTS = ("tests", "cycles")  # folders of a case
 
 def write_whole(path: Path, text: str | bytes) -> Path:
     """Write beside the target, then rename: a reader sees the old file or the new one, never half of it."""
-    from geom.kept import written_whole  # loads NumPy, which help does without
+    from geom.disk_cache import atomic_write  # loads NumPy, which help does without
 
     try:
-        with written_whole(path) as partial:
+        with atomic_write(path) as partial:
             partial.write_bytes(text if isinstance(text, bytes) else text.encode("utf-8"))
     except OSError as fault:
         right = "a folder you may write to, with room in it"

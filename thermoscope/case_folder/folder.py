@@ -18,7 +18,7 @@ from thermoscope.recordings.quantities import with_quantities
 from thermoscope.recordings.readings import read_test
 from thermoscope.recordings.sheet import Sheet, load_sheet
 from thermoscope.recordings.tables import load_table
-from validation.calibration.fitting import matching
+from validation.calibration.unknowns import matching
 from validation.case import AddedEffect, Case, Model, Test
 from validation.measurement.sampling import SampleStep
 
@@ -176,7 +176,7 @@ def _model(network: Network, history: History) -> Model:
 
 def _checked(case: Case, history: History) -> Case:
     """The model's effects can sit where model.toml has them, and its values belong to parameters."""
-    from validation.calibration.fitting import scene_of, working
+    from validation.calibration.unknowns import scene_of, working
     from validation.effects import effect
 
     for one in case.model.effects:

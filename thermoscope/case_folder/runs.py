@@ -12,7 +12,7 @@ from lumped.integration.simulate import simulate
 from lumped.model.network import Network, Row
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import Revision
-from validation.calibration.fitting import effects_of, to_value, working
+from validation.calibration.unknowns import effects_of, to_value, working
 from validation.case import AddedEffect, Case, Channel, Test
 from validation.comparison.compare import physical
 from validation.comparison.predict import predict, record, thermal
@@ -109,7 +109,7 @@ def sensors(folder: Folder) -> dict[str, Channel]:
     return {c.name: c for test in folder.case.tests for c in test.channels}
 
 
-def looks(network: Network, folder: Folder) -> dict[str, Row]:
+def named_rows(network: Network, folder: Folder) -> dict[str, Row]:
     """Named temperatures: the means of parts and nodes, then where the sensors of the case sit."""
     means = {n: p.mean for n, p in network.places.items() if p.kind != "surface" and "#" not in n}
     return means | {f"sensor {name}": c.row for name, c in sensors(folder).items()}

@@ -11,7 +11,7 @@ from typing import Any
 
 from thermoscope.case_folder.files import write_whole
 from thermoscope.console.answer import Answer, Grid, printed
-from thermoscope.console.stages import Progress, progress
+from thermoscope.console.progress_bar import Progress, progress
 
 STDOUT = "-"
 __all__ = ["Progress", "give", "notes", "plain", "progress", "say", "sized", "table"]

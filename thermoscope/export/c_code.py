@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from lumped.numerics import stages
-from lumped.numerics.settle import CONVERGED_K
+from lumped.numerics.steady_start import CONVERGED_K
 from lumped.numerics.terms import ENTRIES, POINTS, ROWS
 from lumped.transfer.laws import FILMS, FIRST_C, STEP_K
 from thermoscope.export.flat import Flat, flat

@@ -20,7 +20,7 @@ from lumped.sources.losses import BrushLoss, CopperLoss, IronLoss, PowerLoss
 from lumped.transfer.laws import Fixed, InputPower, Law
 from lumped.transfer.reversal import Direction, OneWay
 from thermoscope.export.products import Mapped, Positive, Powered, Product, Straight, Sum, Tabulated
-from validation.calibration.forms import BendOfDifference, BendOfTemperature
+from validation.calibration.model_form import DifferenceExponentError, TemperatureSlopeError
 
 
 @dataclass(frozen=True)
@@ -131,7 +131,7 @@ def _(law: Switched) -> Sum | Unknown:
     return _each(law.base, lambda p: p.times(on))
 
 
-@expanded.register(BendOfTemperature)
-@expanded.register(BendOfDifference)
-def _(law: BendOfTemperature | BendOfDifference) -> Sum | Unknown:
+@expanded.register(TemperatureSlopeError)
+@expanded.register(DifferenceExponentError)
+def _(law: TemperatureSlopeError | DifferenceExponentError) -> Sum | Unknown:
     return expanded(law.base)

@@ -16,7 +16,7 @@ from lumped.model.network import Network, Row
 from lumped.numerics.terms import Terms
 from lumped.schemas.reader import known
 from thermoscope.case_folder.folder import Folder
-from thermoscope.case_folder.runs import looks
+from thermoscope.case_folder.runs import named_rows
 from thermoscope.export.products import Product, Sum
 from thermoscope.export.tables import Ranges, factors
 from thermoscope.recordings.units import QUANTITIES
@@ -158,7 +158,7 @@ def _initial(tests: Sequence[Test]) -> float:
 
 def outputs(network: Network, folder: Folder, limits: Mapping[str, float]) -> tuple[Output, ...]:
     """All named temperatures with their limits and, where a sensor sits, their proven error."""
-    rows, errors = looks(network, folder), _errors(folder)
+    rows, errors = named_rows(network, folder), _errors(folder)
     for place in limits:
         if place not in rows:
             raise InputError(f"no temperature '{place}' to limit", "--limit", known(place, rows))

@@ -15,7 +15,7 @@ from geom.errors import InputError
 from lumped.transfer.laws import Inputs, Law
 from thermoscope.export.expansion import Unknown, expanded
 from thermoscope.export.products import Mapped, Product, Sum, Tabulated
-from validation.calibration.forms import FARTHEST, Bend
+from validation.calibration.model_form import FARTHEST, ExponentError
 
 Array = NDArray[np.float64]
 Ranges = Mapping[str, tuple[float, float]]
@@ -35,7 +35,7 @@ def factors(name: str, law: Law, ranges: Ranges) -> Sum:
     for one in law.reads:
         if one not in ranges:
             raise _refused(f"'{name}' follows '{one}', which belongs to one test and not to the machine")
-    if isinstance(law, Bend):
+    if isinstance(law, ExponentError):
         turn = _line(name, Turn(law), law.input, ranges)
         return tuple(p.times(turn) for p in factors(name, law.base, ranges))
     known = expanded(law)
@@ -50,7 +50,7 @@ def _refused(what: str) -> InputError:
 class Turn(Law):
     """By what an exponent of one input moves a law, over the law itself; it depends on that input alone."""
 
-    bend: Bend
+    bend: ExponentError
 
     @property
     def reads(self) -> tuple[str, ...]:  # type: ignore[override]

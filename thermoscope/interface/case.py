@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from lumped.model.network import Network
     from validation.case import Test
     from validation.comparison.compare import Comparison
-    from validation.diagnosis.findings import Diagnosis
+    from validation.diagnosis.result import Diagnosis
     from validation.effects.base import Effect
     from validation.revision.revise import Revision
 
@@ -53,7 +53,7 @@ class Case:
     @property
     def network(self) -> Network:
         """The network with the effects that were added."""
-        from validation.calibration.fitting import working
+        from validation.calibration.unknowns import working
 
         return working(self.folder.case)[0]
 
@@ -69,7 +69,7 @@ class Case:
 
     def candidates(self) -> tuple[Effect, ...]:
         """Every effect at every place of this network where it can sit."""
-        from validation.calibration.fitting import scene_of
+        from validation.calibration.unknowns import scene_of
         from validation.effects import catalogue
 
         return catalogue(scene_of(self.folder.case), self.folder.settings.kinds)
@@ -118,7 +118,7 @@ class Case:
         has changed model.toml since.
         """
         from thermoscope.case_folder.columns import write_columns
-        from thermoscope.commands.opened import PACKAGE
+        from thermoscope.commands.open_case import PACKAGE
 
         refused = [s for s in self.steps if not s.accepted and s.action != "remove"]
         if refused and not anyway:

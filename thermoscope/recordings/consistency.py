@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from geom.errors import InputError
 from lumped.model.network import Link, Network, Source
 from lumped.schemas.reader import known
+from thermoscope.recordings.duplicates import twice
 from thermoscope.recordings.formats import cell
-from thermoscope.recordings.once import twice
 from thermoscope.recordings.sheet import Column, Sheet
 from thermoscope.recordings.tables import Samples
 from thermoscope.recordings.units import QUANTITIES

@@ -26,8 +26,8 @@ from geom.errors import InputError
 from lumped.schemas.reader import Table
 from thermoscope.recordings.formats import pairs, read_frame, recording
 from validation.procedure.measuring.meters import OHMMETER, VOLTMETER, Meter, Range
+from validation.procedure.measuring.propagation import PropagatedUncertainty, Reading
 from validation.procedure.measuring.readings import COPPER, NDFEB, Magnets, Saturation, Winding
-from validation.procedure.measuring.spread import Reading, Spread
 from validation.procedure.measuring.switch_off import Cooling, Extrapolated, exponentials, rule_150, semilog, semilog_at
 
 Array = NDArray[np.float64]
@@ -85,7 +85,7 @@ class Electrical:
             out[-1] = self.after.at_switch_off(self.source).value
         return out
 
-    def uncertainty(self, values: Array) -> Spread:
+    def uncertainty(self, values: Array) -> PropagatedUncertainty:
         """Of the reading farthest from the cold one."""
         cold = self.source.cold_ohm if isinstance(self.source, Winding) else self.source.cold_V
         hottest = float(values[np.nanargmax(np.abs(values - cold))]) if np.isfinite(values).any() else cold

@@ -11,10 +11,10 @@ from typing import Any
 from geom.description.toml_file import read_toml
 from geom.errors import InputError
 from lumped.schemas.reader import Table
+from thermoscope.recordings.duplicates import declared_once
 from thermoscope.recordings.electrical import QUANTITIES as ELECTRICAL
 from thermoscope.recordings.electrical import Electrical, read_electrical
 from thermoscope.recordings.events import Events, read_events
-from thermoscope.recordings.once import declared_once
 from thermoscope.recordings.units import QUANTITIES, checked_input, checked_unit, held_as
 
 FIRST = "first-readings"

@@ -14,8 +14,8 @@ from geom.errors import InputError
 from lumped.schemas.bounds import COLDEST, HOTTEST
 from lumped.schemas.reader import known
 from thermoscope.recordings.alignment import clock_shift
-from thermoscope.recordings.codes import code_note, coded
 from thermoscope.recordings.formats import HEADER, cell, merged, numbers, read_frame, recording
+from thermoscope.recordings.invalid_readings import code_note, coded
 from thermoscope.recordings.sheet import Column, Recorder, Sheet
 from thermoscope.recordings.units import converted
 

@@ -16,7 +16,7 @@ from lumped.condensation.recovery import Shapes
 from lumped.integration.simulate import Record, simulate
 from lumped.model.network import Array, Network, Row
 from thermoscope.case_folder.folder import Folder, Progress
-from validation.calibration.fitting import working
+from validation.calibration.unknowns import working
 from validation.case import Channel, Test
 from validation.comparison.predict import record, thermal
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Looks:
+class MonitoredPlaces:
     """Where a budget looks. rows : sensor -> row over the network's z; points : sensor -> (part, xyz m) where known."""
 
     rows: Mapping[str, Row]
@@ -33,7 +33,7 @@ class Looks:
     points: Mapping[str, Array]
 
     @classmethod
-    def of(cls, folder: Folder) -> Looks:
+    def of(cls, folder: Folder) -> MonitoredPlaces:
         channels: dict[str, Channel] = {c.name: c for test in folder.case.tests for c in test.channels}
         at = {name: np.array(xyz) for name, xyz in folder.positions.items() if name in channels}
         return cls({n: c.row for n, c in channels.items()}, {n: c.place for n, c in channels.items()}, at)
@@ -41,14 +41,14 @@ class Looks:
 
 def error_budgets(folder: Folder, records: Mapping[str, Record], progress: Progress) -> dict[str, ErrorBudget]:
     """Run -> what its temperatures may be wrong by, for the model as it stands."""
-    looks, found = Looks.of(folder), None
+    looks, found = MonitoredPlaces.of(folder), None
     network, values = model_of(folder)
     rows = dict(looks.rows)
     if folder.built is not None and isinstance(network.recovery, Shapes):  # only then the field's packages are loaded
-        from thermoscope.verification.rated_errors import hot_rows, kept
+        from thermoscope.verification.rated_errors import cached_errors, hot_rows
 
         progress("error of mesh and condensation")
-        found = kept(folder.built, looks)
+        found = cached_errors(folder.built, looks)
         rows |= hot_rows(network, found)
     return {name: _of_run(network, values, run, rows, found) for name, run in records.items()}
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from fem.matrices.assembly import FieldModel
 from fem.matrices.terms import CopperLoss, Radiation, Term
-from fem.solvers.newton import Settled, settle
+from fem.solvers.newton import NonlinearSolution, solve_nonlinear
 from fem.solvers.solve import Fluids, Solver
 from lumped.model.network import Array, Link, Network, Source
 from lumped.transfer import laws
@@ -29,7 +29,7 @@ def with_local_laws(
     loads: Mapping[str, Array] | None = None,
     solver: Solver | None = None,
     ambient: float = 20.0,
-) -> Settled:
+) -> NonlinearSolution:
     """Newton's method from the field of a cross-check; arguments as for `crosscheck`."""
     signals = {name: np.array([float(value)]) for name, value in inputs.items()}
     films, watts = dict(check.at.films), dict(check.at.watts)
@@ -48,7 +48,7 @@ def with_local_laws(
     zones = {part: field.load(part) for part in field.blocks} | dict(loads or {})
     load = sum((q * zones[place] for place, q in watts.items() if place in zones), np.zeros(field.n))
     fluids = Fluids(fluid_nodes(network), check.at.streams, check.at.inflow, dict.fromkeys(network.boundaries, ambient))
-    return settle(solver or Solver(field), films, check.at.contacts, load, fluids, terms, check.field)
+    return solve_nonlinear(solver or Solver(field), films, check.at.contacts, load, fluids, terms, check.field)
 
 
 def radiating(network: Network) -> list[Link]:

@@ -18,10 +18,10 @@ from lumped.model.network import Array, Network, Row
 from thermoscope.caches import cache_folder
 from thermoscope.case_folder.files import write_whole
 from thermoscope.pipeline import Built, coefficients_on, meshed
-from thermoscope.verification.frozen import Frozen, rated
+from thermoscope.verification.fixed_coefficients import FixedCoefficients, rated
 
 if TYPE_CHECKING:
-    from thermoscope.verification.error_budget import Looks
+    from thermoscope.verification.error_budget import MonitoredPlaces
 
 SPREAD = 2.0  # every film and contact is multiplied by up to this in one further look: what a calibration may do
 HOT = "hot spot of "
@@ -48,7 +48,7 @@ def _at_node(shape: PartShape, node: int) -> Row:
     return Row(shape.states, shape.V[node])
 
 
-def kept(built: Built, looks: Looks) -> Rated:
+def cached_errors(built: Built, looks: MonitoredPlaces) -> Rated:
     """From the cache, where this network was looked at before in the same places."""
     file = cache_folder() / f"budget-{_key(built, looks)}.json"
     if not file.exists():
@@ -56,7 +56,7 @@ def kept(built: Built, looks: Looks) -> Rated:
     return Rated(**json.loads(Path(file).read_text(encoding="utf-8")))
 
 
-def _key(built: Built, looks: Looks) -> str:
+def _key(built: Built, looks: MonitoredPlaces) -> str:
     shapes = built.network.recovery
     assert isinstance(shapes, Shapes)
     content = hashlib.sha256(repr((built.meshing, built.machine.sections, looks.places)).encode())
@@ -68,7 +68,7 @@ def _key(built: Built, looks: Looks) -> str:
     return content.hexdigest()[:20]
 
 
-def at_rated_point(built: Built, looks: Looks) -> Rated:
+def at_rated_point(built: Built, looks: MonitoredPlaces) -> Rated:
     """Mesh: the difference to elements twice as large, which for two meshes is Roache's grid convergence index of
     order 2 with his factor of 3. Condensation: the largest difference from the field on the same mesh, steady and after
     a step of loss, at nominal coefficients and at other ones.
@@ -90,7 +90,7 @@ def at_rated_point(built: Built, looks: Looks) -> Rated:
     return Rated({n: abs(fine[n] - other[n]) for n in fine}, left, max(map(abs, fine.values())), nodes)
 
 
-def _elsewhere(asked: Frozen, field: FieldModel, network: Network) -> Iterator[tuple[Array, Array]]:
+def _elsewhere(asked: FixedCoefficients, field: FieldModel, network: Network) -> Iterator[tuple[Array, Array]]:
     """The step of loss, and a steady state at other coefficients; field and network."""
     yield from zip(asked.steps_of_field(field), asked.steps_of_network(network, field), strict=True)
     moved = asked.moved(SPREAD)
@@ -103,8 +103,8 @@ class Reader:
 
     field: FieldModel
     network: Network
-    asked: Frozen
-    looks: Looks
+    asked: FixedCoefficients
+    looks: MonitoredPlaces
 
     def read(self, T: Array) -> dict[str, float]:
         """name -> K"""

@@ -11,8 +11,8 @@ from trame.widgets import trame as extra
 from trame.widgets import vtk as vtk_widgets
 from trame.widgets import vuetify3 as v3
 
+from thermoscope.workbench.display import debounced
 from thermoscope.workbench.session import Session, started
-from thermoscope.workbench.shown import soon
 
 KEYS = (
     ("j", "next"), ("k", "previous"), ("d", "diagnose"), ("u", "undo"), ("r", "report"), ("left", "left"),
@@ -114,7 +114,7 @@ def _machine(session: Session) -> None:
                 session.shown.stage.window, ref="machine", interactive_ratio=0.6, interactive_quality=60,
                 still_quality=92,
             )  # fmt: skip
-            session.shown.push_image = soon(view.update)
+            session.shown.push_image = debounced(view.update)
 
 
 _VIEW = (

@@ -13,8 +13,8 @@ from aiohttp import web
 from geom.errors import InputError
 from thermoscope.case_folder.folder import Folder
 from thermoscope.console.terminal import Progress
-from thermoscope.workbench.bench import bench
-from thermoscope.workbench.gate import Gate
+from thermoscope.workbench.access_control import AccessControl
+from thermoscope.workbench.application import bench
 from thermoscope.workbench.jobs import prepare
 from thermoscope.workbench.tabs import Tabs
 
@@ -29,7 +29,7 @@ def token_for(given: str | None) -> str:
     return given or secrets.token_urlsafe(24)
 
 
-def application(folder: Folder, gate: Gate, tell: Progress) -> web.Application:
+def application(folder: Folder, gate: AccessControl, tell: Progress) -> web.Application:
     """The pages of a case, behind a gate."""
     os.environ["TRAME_ARGS"] = "--server"  # trame would read our command line as its own
     tabs = Tabs(bench(folder, tell))
@@ -54,12 +54,12 @@ def application(folder: Folder, gate: Gate, tell: Progress) -> web.Application:
     return app
 
 
-def serve(app: web.Application, gate: Gate, port: int, ready: Callable[[str], None]) -> None:
+def serve(app: web.Application, gate: AccessControl, port: int, ready: Callable[[str], None]) -> None:
     """Serve until interrupted; `ready` gets the address to open once it can be opened."""
     asyncio.run(_serve(app, gate, port, ready))
 
 
-async def _serve(app: web.Application, gate: Gate, port: int, ready: Callable[[str], None]) -> None:
+async def _serve(app: web.Application, gate: AccessControl, port: int, ready: Callable[[str], None]) -> None:
     end, runner = asyncio.Event(), web.AppRunner(app, shutdown_timeout=2.0)
     for number in (signal.SIGINT, signal.SIGTERM):
         asyncio.get_running_loop().add_signal_handler(number, end.set)
@@ -72,6 +72,6 @@ async def _serve(app: web.Application, gate: Gate, port: int, ready: Callable[[s
         await runner.cleanup()
 
 
-def _address(gate: Gate, port: int) -> str:
+def _address(gate: AccessControl, port: int) -> str:
     name = f"[{gate.host}]" if ":" in gate.host else gate.host
     return f"http://{name}:{port}/" + (f"?token={gate.token}" if gate.token else "")

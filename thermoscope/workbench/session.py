@@ -12,12 +12,13 @@ from typing import Any
 from geom.errors import ThermoscopeError
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import History, Revision, load_history, save_history
-from thermoscope.commands.saved import save_diagnosis, saved_diagnosis
-from thermoscope.workbench import ledger, steps
-from thermoscope.workbench.bench import Bench, at
+from thermoscope.commands.stored_diagnosis import save_diagnosis, saved_diagnosis
+from thermoscope.workbench import revisions as ledger
+from thermoscope.workbench import steps
+from thermoscope.workbench.appearance import Appearance
+from thermoscope.workbench.application import Bench, at
+from thermoscope.workbench.display import Display
 from thermoscope.workbench.jobs import FailedError, Job, StoppedError
-from thermoscope.workbench.look import Look
-from thermoscope.workbench.shown import Shown
 
 REMEMBERED = 8
 TITLES = {"add": "Adding", "remove": "Taking out", "calibrate": "Calibrating"}
@@ -27,13 +28,13 @@ class Session:
     """What the buttons of a tab do."""
 
     def __init__(self, bench: Bench, server: Any) -> None:
-        self.bench, self.shown = bench, Shown(bench, server)
+        self.bench, self.shown = bench, Display(bench, server)
         self.state = self.shown.state
         self.history: History = bench.folder.history
         self.diagnosis: dict[str, Any] | None = None
         self._refused: Revision | None = None
         self._job: Job | None = None
-        self._known: list[tuple[Revision, Look]] = [(self.history.last, bench.first)]
+        self._known: list[tuple[Revision, Appearance]] = [(self.history.last, bench.first)]
 
     @property
     def folder(self) -> Folder:
@@ -122,7 +123,7 @@ class Session:
         if self.shown.stage is not None:
             self.shown.stage.close()
 
-    def _write(self, new: History, look: Look | None = None) -> bool:
+    def _write(self, new: History, look: Appearance | None = None) -> bool:
         """To model.toml, unless somebody else has written there; then show it."""
         try:
             self.history = save_history(self.file, new, self.history)
@@ -145,7 +146,7 @@ class Session:
                 self.state.error, self.history = "", history
                 self._keep(look)
 
-    def _keep(self, look: Look) -> None:
+    def _keep(self, look: Appearance) -> None:
         last = self.history.last
         self._known = [*((r, x) for r, x in self._known if not ledger.same(r, last)), (last, look)][-REMEMBERED:]
         self.shown.model(self.history, look)

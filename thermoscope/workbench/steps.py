@@ -9,17 +9,17 @@ from typing import TYPE_CHECKING, Any
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import Revision
 from thermoscope.console.terminal import Progress
-from thermoscope.workbench.bench import at
-from thermoscope.workbench.look import Look, look
+from thermoscope.workbench.appearance import Appearance, appearance_of
+from thermoscope.workbench.application import at
 
 if TYPE_CHECKING:
     from viz.rendering.cut import Surface
 
 
-def seen(folder: Folder, surface: Surface | None, tell: Progress) -> Look:
+def seen(folder: Folder, surface: Surface | None, tell: Progress) -> Appearance:
     """The model as it stands."""
     tell("running the model on every test")
-    return look(folder, surface)
+    return appearance_of(folder, surface)
 
 
 def searched(folder: Folder, tell: Progress) -> Mapping[str, Any]:
@@ -32,7 +32,7 @@ def searched(folder: Folder, tell: Progress) -> Mapping[str, Any]:
 
 def stepped(
     folder: Folder, surface: Surface | None, action: str, effect: str, tell: Progress
-) -> tuple[Revision, Mapping[str, Any], Look]:
+) -> tuple[Revision, Mapping[str, Any], Appearance]:
     """Add or remove an effect, or calibrate: the step as model.toml keeps it, its document, the model after it."""
     from thermoscope.commands.model.revise import evidence, recorded
     from validation.revision import revise

@@ -11,8 +11,8 @@ from typing import Any
 
 from aiohttp import WSMsgType, web
 
-from thermoscope.workbench.bench import Bench
-from thermoscope.workbench.gate import served
+from thermoscope.workbench.access_control import served
+from thermoscope.workbench.application import Bench
 from thermoscope.workbench.policy import REPORT, policy
 from thermoscope.workbench.session import Session
 
@@ -27,7 +27,7 @@ class Tab:
         from trame.app import get_server
 
         from thermoscope.workbench.page import draw
-        from thermoscope.workbench.stage import Stage
+        from thermoscope.workbench.view import Stage
 
         self.name, self.connected, self.left = name, 0, time.monotonic()
         server: Any = get_server(name, client_type="vue3")

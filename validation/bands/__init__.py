@@ -1,6 +1,6 @@
 """How sure a predicted temperature is, at sensors and at places without one."""
 
 from validation.bands.band import Bands, Place, bands
-from validation.bands.belief import Belief, belief
+from validation.bands.posterior import ParameterPosterior, parameter_posterior
 
-__all__ = ["Bands", "Belief", "Place", "bands", "belief"]
+__all__ = ["Bands", "ParameterPosterior", "Place", "bands", "parameter_posterior"]

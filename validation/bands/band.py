@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 
 from lumped.model.multipliers import values_of
 from lumped.model.network import Row
-from validation.bands.belief import Belief, acting
 from validation.bands.inputs import moved_boundaries, moved_inputs
+from validation.bands.posterior import ParameterPosterior, acting
 from validation.case import Channel, Test
+from validation.comparison.linearisation import stretch
 from validation.comparison.predict import Watch, predict
-from validation.comparison.sheet import stretch
 from validation.measurement.operators import head
 
 Array = NDArray[np.float64]
@@ -44,7 +44,7 @@ class Bands:
         return NORMAL_95 * self.sd
 
 
-def bands(of: Belief, test: Test, places: Sequence[Place]) -> Bands:
+def bands(of: ParameterPosterior, test: Test, places: Sequence[Place]) -> Bands:
     """Temperatures of places along a record, and how sure they are.
 
     test : the record: time, inputs, boundaries, start; its channels do not matter

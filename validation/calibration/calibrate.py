@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
 
 from lumped.model.network import Network
-from validation.calibration.fitting import Unknowns
+from validation.calibration.unknowns import Unknowns
 from validation.case import Test
-from validation.comparison.sheet import Segment, segments
+from validation.comparison.linearisation import Segment, segments
 from validation.doubt import USUAL, Doubt
 from validation.inference.model_error import ModelError, model_error
 from validation.measurement.noise import Noise, first_noise, fit_noise
@@ -26,11 +26,11 @@ ROUGH = 1.0  # nats: a fit under a noise that is only guessed
 FORETOLD = 0.5  # of the predicted gain: a Jacobian that delivers less is made anew
 
 
-def silent(message: str) -> None:
+def no_progress(message: str) -> None:
     """No progress."""
 
 
-def forgets(values: Mapping[str, float]) -> None:
+def no_memory(values: Mapping[str, float]) -> None:
     """Nothing is kept between steps."""
 
 
@@ -75,7 +75,7 @@ class Fit:
 
 
 @dataclass(frozen=True)
-class Known:
+class KnownSegments:
     """Segments from before a fit, whose Jacobian serves as its first.
 
     parts : of the very state where the fit begins, or else (`nearby`) of one close by, whose residuals are made anew
@@ -128,12 +128,12 @@ def minimise(
     noise: Noise | None = None,
     fixed: Mapping[str, float] | None = None,
     iterations: int = 12,
-    known: Known | None = None,
+    known: KnownSegments | None = None,
     draft: bool = False,
     centre: Array | None = None,
     worth: float = WORTH,
-    progress: Progress = silent,
-    keep: Keep = forgets,
+    progress: Progress = no_progress,
+    keep: Keep = no_memory,
     error: ModelError | None = None,
 ) -> Fit:
     """Fit `unknowns` to the tests from `theta` under a given noise (by default that of uncalibrated sensors).
@@ -144,7 +144,7 @@ def minimise(
     `error`: the covariance of the model error, added to that of the noise.
     """
     fixed = dict(fixed or {})
-    climb = Climb(network, tests, unknowns, fixed, theta, noise, known, draft, centre, worth, error)
+    climb = Iterate(network, tests, unknowns, fixed, theta, noise, known, draft, centre, worth, error)
     for iteration in range(iterations):
         progress(f"calibration step {iteration + 1}, objective {climb.objective:.4g}")
         done = climb.step()
@@ -154,12 +154,12 @@ def minimise(
     return climb.fit()
 
 
-class Climb:
+class Iterate:
     """State of a fit between its steps."""
 
     def __init__(
         self, network: Network, tests: Sequence[Test], unknowns: Unknowns, fixed: dict[str, float], theta: Array,
-        noise: Noise | None, known: Known | None, draft: bool, centre: Array | None, worth: float,
+        noise: Noise | None, known: KnownSegments | None, draft: bool, centre: Array | None, worth: float,
         error: ModelError | None,
     ) -> None:  # fmt: skip
         near = known is not None and known.nearby
@@ -177,10 +177,10 @@ class Climb:
         self.theta = np.clip(theta, self.low, self.high)
         self.parts = self.begun(known)
         self.noise = noise or first_noise(self.parts)
-        self.error, self.measure = error, Measure(self.parts, self.noise, error)
+        self.error, self.measure = error, InnerProduct(self.parts, self.noise, error)
         self.weigh()
 
-    def begun(self, known: Known | None) -> list[Segment]:
+    def begun(self, known: KnownSegments | None) -> list[Segment]:
         """Residuals and Jacobian where the fit begins."""
         if known is None:
             return self.tangents(self.theta)
@@ -275,7 +275,7 @@ class Climb:
         )  # fmt: skip
 
 
-class Measure:
+class InnerProduct:
     """x' S^-1 y over the instants of some segments, S = noise + model error.
 
     With whitened columns D of the model error, S^-1 = 1 - D (1 + D'D)^-1 D' (Woodbury).
@@ -322,10 +322,10 @@ class Measure:
 
 def residual_noise(fit: Fit) -> Noise:
     """The noise of what a fit and its model error leave."""
-    return fit_noise(Measure(fit.parts, fit.noise, fit.error).explained(fit.parts, fit.error))
+    return fit_noise(InnerProduct(fit.parts, fit.noise, fit.error).explained(fit.parts, fit.error))
 
 
-def square_of(parts: Sequence[Segment], noise: Noise) -> float:
+def chi_square(parts: Sequence[Segment], noise: Noise) -> float:
     """r'Sigma^-1 r, summed over segments."""
     return sum(float(np.sum(noise.whiten(s, s.r[:, None]) ** 2)) for s in parts)
 
@@ -336,9 +336,9 @@ def calibrated(
     unknowns: Unknowns,
     values: Mapping[str, float],
     rounds: int = 2,
-    progress: Progress = silent,
+    progress: Progress = no_progress,
     noise: Noise | None = None,
-    keep: Keep = forgets,
+    keep: Keep = no_memory,
     rough: bool = False,
 ) -> Fit:
     """Calibrate, estimate the noise from the residual, calibrate again under it; `rounds` times.
@@ -351,7 +351,8 @@ def calibrated(
     for i in range(rounds):
         fit = minimise(
             network, tests, unknowns, fit.theta, fit_noise(fit.parts), held, 10,
-            Known(fit.parts, nearby=False, stale=True), draft=rough or i + 1 < rounds, progress=progress, keep=keep,
+            KnownSegments(fit.parts, nearby=False, stale=True), draft=rough or i + 1 < rounds,
+            progress=progress, keep=keep,
         )  # fmt: skip
     return fit
 
@@ -367,6 +368,6 @@ def with_model_error(
     """
     held = {**values, **fit.values}
     error = model_error(fit.network, tests, held, doubt)
-    noise = fit_noise(Measure(fit.parts, fit.noise, error).explained(fit.parts, error))
+    noise = fit_noise(InnerProduct(fit.parts, fit.noise, error).explained(fit.parts, error))
     return minimise(fit.network, tests, fit.unknowns, fit.theta, noise, held, iterations,
-                    Known(fit.parts, nearby=False, stale=iterations > 0), draft, error=error)  # fmt: skip
+                    KnownSegments(fit.parts, nearby=False, stale=iterations > 0), draft, error=error)  # fmt: skip

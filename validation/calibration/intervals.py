@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from lumped.model.network import Parameter
 from validation.calibration.calibrate import Fit
-from validation.calibration.fitting import to_value
+from validation.calibration.unknowns import to_value
 from validation.measurement.operators import of_measurement
 
 Array = NDArray[np.float64]

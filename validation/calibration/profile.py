@@ -13,9 +13,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from validation.calibration.calibrate import Fit, Known, Progress, minimise, silent
-from validation.calibration.fitting import Unknowns, to_value
+from validation.calibration.calibrate import Fit, KnownSegments, Progress, minimise, no_progress
 from validation.calibration.intervals import NORMAL_95, Profile
+from validation.calibration.unknowns import Unknowns, to_value
 from validation.case import Test
 
 Array = NDArray[np.float64]
@@ -25,7 +25,7 @@ LOOKS = 8
 
 def profiles(
     fit: Fit, tests: Sequence[Test], held: Mapping[str, float], names: Sequence[str],
-    progress: Progress = silent,
+    progress: Progress = no_progress,
 ) -> dict[str, Profile]:  # fmt: skip
     """Name -> profile interval at 95 %; `held` are the values of what is not free."""
     out = {}
@@ -63,7 +63,9 @@ class Line:
         near = [replace(s, J=s.J[:, rest]) for s in fit.parts]
         values = {**self.held, **fit.values, p.name: to_value(p, at)}
         free = Unknowns(tuple(fit.unknowns.parameters[j] for j in rest))
-        best = minimise(fit.network, self.tests, free, start, fit.noise, values, known=Known(near), error=fit.error)
+        best = minimise(
+            fit.network, self.tests, free, start, fit.noise, values, known=KnownSegments(near), error=fit.error
+        )
         objective = best.objective + 0.5 * (at / p.prior_sd) ** 2
         return float(np.sqrt(max(2.0 * (objective - fit.objective), 0.0)))
 

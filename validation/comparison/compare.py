@@ -10,17 +10,17 @@ import numpy as np
 from geom.description.identity import Identity
 from geom.errors import ThermoscopeError
 from lumped.integration.runaway import checked_run
-from validation.calibration.fitting import nuisances, working
+from validation.calibration.unknowns import nuisances, working
 from validation.case import Case, Channel, Test
 from validation.comparison.predict import predict
-from validation.comparison.within import limit, rise_K
+from validation.comparison.tolerance import limit, rise_K
 
 
 @dataclass(frozen=True)
 class ChannelError:
     """Error of one sensor in one test, measured - model (K).
 
-    percent_of_rise : rmse over the largest rise measured in the test;  limit_K : see validation.comparison.within
+    percent_of_rise : rmse over the largest rise measured in the test;  limit_K : see validation.comparison.tolerance
     verdict : "within" when rmse is no more than limit_K, else "over"
     """
 

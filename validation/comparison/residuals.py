@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.special import kolmogorov
 
 from validation.case import Test
-from validation.comparison.sheet import Segment
+from validation.comparison.linearisation import Segment
 from validation.measurement.blocks import groups
 
 Array = NDArray[np.float64]

@@ -16,7 +16,7 @@ from scipy.special import ndtri
 
 from lumped.model.network import Network, Parameter
 from validation.calibration.calibrate import Fit
-from validation.calibration.fitting import to_value
+from validation.calibration.unknowns import to_value
 from validation.case import Test
 from validation.inference.evidence import extended_prior, projected
 from validation.inference.score import apart, score

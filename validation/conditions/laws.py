@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from validation.calibration.forms import is_film
+from validation.calibration.model_form import is_film
 from validation.conditions.refine import columns
 from validation.doubt import PRIOR, RARE
 from validation.effects import extended

@@ -12,11 +12,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from validation.diagnosis.findings import Question
+from validation.diagnosis.result import Question
 from validation.doubt import USUAL
 from validation.effects import Effect
 from validation.effects.during import During
-from validation.effects.gate import event
+from validation.effects.time_window import event
 from validation.inference.decision import SURE
 from validation.inference.evidence import Evidence
 from validation.inference.posterior import Hypothesis, Posterior, probabilities

@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 from scipy.special import logsumexp
 
 from validation.case import Test
-from validation.comparison.sheet import Segment, segments
+from validation.comparison.linearisation import Segment, segments
 from validation.doubt import SIZES, USUAL
 from validation.effects import Effect, extended
 from validation.effects.during import During
-from validation.effects.gate import Event, Span
+from validation.effects.time_window import Event, Span
 from validation.inference.evidence import Evidence, extended_prior, projected
 from validation.inference.posterior import one_size
 from validation.inference.score import score, total
@@ -26,7 +26,7 @@ TRIED = 15  # instants around each end
 
 
 @dataclass(frozen=True)
-class Timed:
+class TimedEvent:
     """An event with its ends at the samples.
 
     log_share : log evidence of all ends over that of the best ones, less the price of there being so many
@@ -38,7 +38,7 @@ class Timed:
     ends: tuple[tuple[Span, Span], ...]
 
 
-def refined(evidence: Evidence, base: Effect, event: Event, reach_s: Mapping[str, float], known: Known) -> Timed:
+def refined(evidence: Evidence, base: Effect, event: Event, reach_s: Mapping[str, float], known: Known) -> TimedEvent:
     """Ends of every span in turn, the others where they are.  reach_s : test -> how far an end may move"""
     spans, log_share = {t: list(own) for t, own in event.spans.items()}, 0.0
     ends: list[tuple[Span, Span]] = []
@@ -50,12 +50,12 @@ def refined(evidence: Evidence, base: Effect, event: Event, reach_s: Mapping[str
             spans[test][i] = one.event.spans[test][0]
             log_share += one.log_share
             ends += one.ends
-    return Timed(Event.of(spans), log_share, tuple(ends))
+    return TimedEvent(Event.of(spans), log_share, tuple(ends))
 
 
 def moved(
     evidence: Evidence, base: Effect, test: Test, span: Span, others: Spans, reach_s: float, known: Known
-) -> Timed:
+) -> TimedEvent:
     """Begin and end of one span: every two instants around them, each pair a difference of two steps."""
     begins, ends = around(test, span[0], reach_s), around(test, span[1], reach_s)
     at = np.concatenate([begins, ends])
@@ -66,7 +66,7 @@ def moved(
     best, weight = int(np.argmax(bayes)), np.exp(bayes - logsumexp(bayes))
     count = 0.5 * test.time.size * (test.time.size + 1)
     event = Event.of({test.name: [(at[a[best]], at[b[best]])]})
-    return Timed(event, float(logsumexp(bayes - bayes[best]) - np.log(count)),
+    return TimedEvent(event, float(logsumexp(bayes - bayes[best]) - np.log(count)),
                  ((between(at[a], weight), between(at[b], weight)),))  # fmt: skip
 
 
@@ -119,7 +119,7 @@ def columns(evidence: Evidence, effects: Sequence[Effect], known: Known) -> list
     network = extended(fit.network, effects)
     own = network.parameters[-len(effects) :]
     values = {**{q.name: known.get(q.name, q.value) for q in network.parameters}, **fit.values}
-    parts = segments(network, [t for t in evidence.tests if any(felt(e, t) for e in effects)], values, own)
+    parts = segments(network, [t for t in evidence.tests if any(acts_in(e, t) for e in effects)], values, own)
     new = {(s.test, s.channel): s.J for s in parts}
     return [
         replace(s, J=np.column_stack([s.J[:, :p], new.get((s.test, s.channel), np.zeros((s.r.size, len(own))))]))
@@ -127,6 +127,6 @@ def columns(evidence: Evidence, effects: Sequence[Effect], known: Known) -> list
     ]  # fmt: skip
 
 
-def felt(effect: Effect, test: Test) -> bool:
+def acts_in(effect: Effect, test: Test) -> bool:
     """Can the effect act in the test?  What an input says may be in any."""
     return not isinstance(effect, During) or test.name in effect.tests or effect.gate in test.inputs

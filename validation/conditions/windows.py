@@ -11,9 +11,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from validation.conditions.hats import Hats, Path, Stretch, held, log_bayes
-from validation.diagnosis.where import Latent
-from validation.effects.gate import Event, Span
+from validation.conditions.hat_functions import HatScores, Interval, Path, log_bayes, overlap
+from validation.diagnosis.missing_heat import MissingHeat
+from validation.effects.time_window import Event, Span
 
 Array = NDArray[np.float64]
 Pulse = tuple[Span, float]  # when, and its level (W) against what is usual in the test
@@ -25,7 +25,7 @@ REPEATS = 20  # of one event
 ALIKE = 0.5  # of the time in either of two events is in both: such are one
 
 
-def stretches(found: Hats, heat: Sequence[Latent], near: Mapping[str, set[str]]) -> list[Stretch]:
+def stretches(found: HatScores, heat: Sequence[MissingHeat], near: Mapping[str, set[str]]) -> list[Interval]:
     """Candidate events, the most evident first; each keeps the path that explains it best."""
     paths = found.paths(near)
     singles = sorted((best_stretch(found, p, test) for p in paths for test in found.knots), key=lambda s: -s.log_bayes)
@@ -37,7 +37,7 @@ def stretches(found: Hats, heat: Sequence[Latent], near: Mapping[str, set[str]])
     return sorted(best, key=lambda s: -worth(found, s))
 
 
-def best_stretch(found: Hats, path: Path, test: str, beside: Event | None = None) -> Stretch:
+def best_stretch(found: HatScores, path: Path, test: str, beside: Event | None = None) -> Interval:
     """The stretch of knots with most evidence; all are tried, each a difference of cumulated sums.
 
     beside : stretches that are there already, with the same amplitude; log_bayes is then that of all
@@ -53,19 +53,19 @@ def best_stretch(found: Hats, path: Path, test: str, beside: Event | None = None
         U, P = U + own, P + square + 2.0 * (cross[j] - cross[i])
     bayes = log_bayes(U, P, found.usual(path))
     if beside:
-        taken = np.concatenate([[0.0], np.cumsum(held(knots, beside.spans.get(test, ())) > 0)])
+        taken = np.concatenate([[0.0], np.cumsum(overlap(knots, beside.spans.get(test, ())) > 0)])
         bayes = np.where(taken[j] > taken[i], -np.inf, bayes)
     k = int(np.argmax(bayes))
-    return Stretch(Event.of({test: [span_of(knots, int(i[k]), int(j[k]))]}), path, float(bayes[k]))
+    return Interval(Event.of({test: [span_of(knots, int(i[k]), int(j[k]))]}), path, float(bayes[k]))
 
 
-def repeated(found: Hats, first: Stretch) -> Stretch:
+def repeated(found: HatScores, first: Interval) -> Interval:
     """A stretch and its repeats of one amplitude, one after another as long as each is worth saying when."""
     best = first
     for _ in range(REPEATS):
         more = max((best_stretch(found, first.path, t, best.event) for t in found.knots), key=lambda s: s.log_bayes)
         spans = {t: [*best.event.spans.get(t, ()), *more.event.spans.get(t, ())] for t in found.knots}
-        both = Stretch(Event.of({t: own for t, own in spans.items() if own}), first.path, more.log_bayes)
+        both = Interval(Event.of({t: own for t, own in spans.items() if own}), first.path, more.log_bayes)
         if not np.isfinite(more.log_bayes) or worth(found, both) <= worth(found, best):
             break
         best = both
@@ -78,7 +78,7 @@ def span_of(knots: Array, first: int, stop: int) -> Span:
     return float(max(knots[first] - half, knots[0])), float(min(knots[stop - 1] + half, knots[-1]))
 
 
-def turns(one: Latent) -> list[Event]:
+def turns(one: MissingHeat) -> list[Event]:
     """Each pulse of a place's curves, and those of one sign together, test by test and in all."""
     own = {test: pulses(*curve) for test, curve in one.heat_W.items()}
     events = [Event.of({test: [span]}) for test, every in own.items() for span, _ in every]
@@ -117,13 +117,13 @@ def joined(found: Iterable[Pulse]) -> list[Pulse]:
     return out
 
 
-def throughout(found: Hats, event: Event) -> bool:
+def throughout(found: HatScores, event: Event) -> bool:
     """Does it last nearly all of its only test?"""
     test, *others = event.tests
     return not others and sum(b - a for a, b in event.every) > WHOLE * float(np.ptp(found.knots[test]))
 
 
-def worth(found: Hats, s: Stretch) -> float:
+def worth(found: HatScores, s: Interval) -> float:
     """Evidence less the price of when: the log of how many stretches there are among the knots."""
     size = {t: k.size for t, k in found.knots.items()}
     return s.log_bayes - sum(
@@ -131,9 +131,9 @@ def worth(found: Hats, s: Stretch) -> float:
     )
 
 
-def distinct(ordered: Sequence[Stretch], most: int) -> list[Stretch]:
+def distinct(ordered: Sequence[Interval], most: int) -> list[Interval]:
     """The first of those that overlap."""
-    out: list[Stretch] = []
+    out: list[Interval] = []
     for s in ordered:
         if len(out) < most and all(s.event.overlap(t.event) < ALIKE for t in out):
             out.append(s)

@@ -11,7 +11,7 @@ from lumped.transfer.laws import CLOCK, Law
 from validation.doubt import USUAL
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import Shaped, copy_link, copy_source
-from validation.effects.gate import Event, Gate, event
+from validation.effects.time_window import Event, TimeWindow, event
 
 IN = " in "
 SAME = ("kind", "title", "unit", "at", "source", "isolating_test", "typical", "sign", "prior_sd", "low", "high",
@@ -72,7 +72,7 @@ class During(Effect):
         return tuple((f"{target}{IN}{self.gate}", factor) for target, factor in own.targets)
 
     def _law(self, law: Law, factor: float = 1.0) -> Law:
-        return Shaped(law, Gate(self.gate, factor), law.temperature, (CLOCK,))
+        return Shaped(law, TimeWindow(self.gate, factor), law.temperature, (CLOCK,))
 
     def _gated(self, network: Network, grown: Network, own: Parameter) -> Network:
         """What the other effect adds, times the gate."""

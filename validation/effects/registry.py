@@ -14,7 +14,7 @@ from lumped.model.network import Network
 from validation.effects.above import KIND, Above
 from validation.effects.base import Effect, Scene
 from validation.effects.during import IN, During
-from validation.effects.gate import event
+from validation.effects.time_window import event
 
 GROUP = "thermoscope.effects"
 HERE = Path(__file__).parent

@@ -7,16 +7,16 @@ from types import MappingProxyType
 
 import numpy as np
 
-from validation.calibration.calibrate import silent
+from validation.calibration.calibrate import no_progress
 from validation.case import Case
+from validation.conditions.conditional_effects import conditions, joined
 from validation.conditions.contradiction import contradiction
-from validation.conditions.found import conditions, joined
 from validation.conditions.laws import laws
 from validation.conditions.question import answered
 from validation.conditions.robust import without
-from validation.diagnosis.findings import Diagnosis
-from validation.diagnosis.imprint import imprint
-from validation.diagnosis.where import scan
+from validation.diagnosis.missing_heat import scan
+from validation.diagnosis.numerical_error import signal_to_error
+from validation.diagnosis.result import Diagnosis
 from validation.effects.above import KIND
 from validation.inference.decision import Decision, decide
 from validation.inference.evidence import (
@@ -55,7 +55,7 @@ NO_BUDGET: Mapping[str, float] = MappingProxyType({})
 def diagnose(
     case: Case,
     kinds: Sequence[str] | None = None,
-    progress: Progress = silent,
+    progress: Progress = no_progress,
     plan: bool = True,
     budget: Mapping[str, float] = NO_BUDGET,
 ) -> Diagnosis:
@@ -80,7 +80,7 @@ def diagnose(
 def above(posterior: Posterior, choice: Decision, budget: Mapping[str, float]) -> Decision:
     """The decision without what the error of the model's own numbers could pass for."""
     e, single = posterior.evidence, posterior.single
-    kept = tuple(g for g in choice.groups if imprint(moved(e, single[g[0]]), budget).above_budget)
+    kept = tuple(g for g in choice.groups if signal_to_error(moved(e, single[g[0]]), budget).above_budget)
     if len(kept) == len(choice.groups):
         return choice
     return Decision(choice.verdict if kept else "adequate", kept, choice.sure)
@@ -96,7 +96,7 @@ def moved(evidence: Evidence, h: Hypothesis) -> dict[str, float]:
     return out
 
 
-def infer(case: Case, kinds: Sequence[str] | None = None, progress: Progress = silent) -> Posterior:
+def infer(case: Case, kinds: Sequence[str] | None = None, progress: Progress = no_progress) -> Posterior:
     """Calibrate, score, weigh every hypothesis, refit what carries weight."""
     fit = calibrated_case(case, progress)
     progress("scoring the catalogue")

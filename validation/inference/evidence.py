@@ -13,10 +13,18 @@ from numpy.typing import NDArray
 from geom.errors import InputError
 from lumped.model.multipliers import values_of
 from lumped.model.network import Network, Parameter
-from validation.calibration.calibrate import Fit, Known, Measure, calibrated, minimise, silent, with_model_error
-from validation.calibration.fitting import Unknowns, at_level, scene_of, widened, working
+from validation.calibration.calibrate import (
+    Fit,
+    InnerProduct,
+    KnownSegments,
+    calibrated,
+    minimise,
+    no_progress,
+    with_model_error,
+)
+from validation.calibration.unknowns import Unknowns, at_level, scene_of, widened, working
 from validation.case import Case, Test
-from validation.comparison.sheet import Segment, reach, segments
+from validation.comparison.linearisation import Segment, reach, segments
 from validation.effects import Effect, catalogue, extended
 from validation.inference.score import Gram, Score, gram, score, total
 from validation.measurement.noise import Noise, fit_noise
@@ -95,7 +103,7 @@ def candidates(case: Case, kinds: Sequence[str] | None = None) -> tuple[Effect, 
 
 
 def calibrated_case(
-    case: Case, progress: Callable[[str], None] = silent, start: Mapping[str, float] | None = None
+    case: Case, progress: Callable[[str], None] = no_progress, start: Mapping[str, float] | None = None
 ) -> Fit:
     """The model calibrated on every test but the held-out ones, model error in account."""
     network, unknowns = working(case)
@@ -116,7 +124,7 @@ def scored(case: Case, effects: Sequence[Effect], fit: Fit) -> Evidence:
     exchange(parts, effects, p)
     own = [replace(s, J=s.J[:, :p]) for s in parts]
     fit = minimise(fit.network, tests, fit.unknowns, fit.theta, fit.noise, values_of(fit.network, fit.values), 0,
-                   Known(own, nearby=False), error=fit.error)  # fmt: skip
+                   KnownSegments(own, nearby=False), error=fit.error)  # fmt: skip
     evidence = weighed(tests, fit, network, tuple(effects), parameters, parts, {})
     there = {k: segments(network, tests, {**values, effects[k].name: effects[k].typical_loss or 0.0})
              for k in likely(evidence)}  # fmt: skip
@@ -216,8 +224,8 @@ def under(evidence: Evidence, noise: Noise) -> Evidence:
     """The evidence under another noise, the calibration gone on under it."""
     e, fit = evidence, evidence.fit
     held = values_of(fit.network, fit.values)
-    new = minimise(fit.network, e.tests, fit.unknowns, fit.theta, noise, held, 6, Known(e.parts_of([]), nearby=True),
-                   worth=ENOUGH, error=fit.error)  # fmt: skip
+    new = minimise(fit.network, e.tests, fit.unknowns, fit.theta, noise, held, 6,
+                   KnownSegments(e.parts_of([]), nearby=True), worth=ENOUGH, error=fit.error)  # fmt: skip
     left = {(s.test, s.channel): s.r for s in new.parts}
     parts = tuple(replace(s, r=left[s.test, s.channel]) for s in e.parts)
     return weighed(e.tests, new, e.network, e.effects, e.parameters, parts, e.jumps)
@@ -248,7 +256,7 @@ def refit(evidence: Evidence, members: Sequence[int], theta: Array, tangents: Se
     network, unknowns, held = with_members(evidence, members)
     free, fit = free_of(evidence, members), evidence.fit
     rough = minimise(network, evidence.tests, unknowns, theta, fit.noise, held, 8,
-                     Known(tangents or evidence.parts_of(free)), worth=ENOUGH, error=fit.error)  # fmt: skip
+                     KnownSegments(tangents or evidence.parts_of(free)), worth=ENOUGH, error=fit.error)  # fmt: skip
     if rough.foretold > STRAIGHT:
         return rough
     return minimise(network, evidence.tests, unknowns, rough.theta, fit.noise, held, 3, draft=True, worth=ENOUGH,
@@ -303,6 +311,6 @@ def first_amplitudes(evidence: Evidence, members: Sequence[int]) -> Array:
 
 def deviance(evidence: Evidence, fit: Fit) -> dict[tuple[str, str], float]:
     """(test, channel) -> r' noise^-1 r of what a fit and its model error leave."""
-    measure = Measure(fit.parts, fit.noise, fit.error)
+    measure = InnerProduct(fit.parts, fit.noise, fit.error)
     left = measure.explained(fit.parts, fit.error)
     return {(s.test, s.channel): float(np.sum(fit.noise.whiten(s, s.r[:, None]) ** 2)) for s in left}

@@ -18,10 +18,10 @@ from lumped.integration.simulate import simulate
 from lumped.model.network import Link, Network, Parameter, Place, Row
 from lumped.model.quantities import AIR, LIQUID
 from lumped.transfer.laws import CONSTANT, Constant, Fixed, Inputs, Law, TemperatureLaw
-from validation.calibration.forms import KNOTS, SETTLE_K, Table, is_film
+from validation.calibration.model_form import KNOTS, SETTLE_K, Table, is_film
 from validation.case import Channel, Test
+from validation.comparison.linearisation import Segment, segments
 from validation.comparison.predict import record, thermal
-from validation.comparison.sheet import Segment, segments
 from validation.doubt import USUAL, Doubt
 from validation.effects.build import Shaped, copy_link, exchange, heat
 from validation.measurement.operators import behind, setting

@@ -20,12 +20,12 @@ from numpy.typing import NDArray
 from scipy.special import log_ndtr, logsumexp
 
 from validation.calibration.calibrate import Fit
-from validation.diagnosis.where import Latent
+from validation.diagnosis.missing_heat import MissingHeat
 from validation.doubt import PRIOR, RARE, SIZES, TEMPER
 from validation.effects import Effect
 from validation.effects.above import Above
 from validation.effects.during import During
-from validation.effects.gate import Event
+from validation.effects.time_window import Event
 from validation.inference.evidence import Evidence
 from validation.inference.score import Score
 
@@ -207,7 +207,7 @@ class Posterior:
 
     evidence: Evidence
     hypotheses: tuple[Hypothesis, ...]
-    heat: tuple[Latent, ...]
+    heat: tuple[MissingHeat, ...]
     events: tuple[Event, ...] = ()
     against: Contradiction | None = None
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import logsumexp
 
-from validation.calibration.calibrate import Fit, silent
+from validation.calibration.calibrate import Fit, no_progress
 from validation.doubt import SIZES
 from validation.inference.evidence import Evidence, free_of, refit, refit_beside, starts
 from validation.inference.posterior import Hypothesis, probabilities, told
@@ -22,7 +22,7 @@ NEARLY, TRIED = 0.4, 3  # linear amplitude, and how many, of effects that happen
 
 
 def refitted(
-    evidence: Evidence, hypotheses: Sequence[Hypothesis], progress: Callable[[str], None] = silent
+    evidence: Evidence, hypotheses: Sequence[Hypothesis], progress: Callable[[str], None] = no_progress
 ) -> list[Hypothesis]:
     """The hypotheses with those that carry weight refitted, until none does that is not."""
     out = list(hypotheses)

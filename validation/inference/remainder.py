@@ -8,9 +8,9 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from validation.calibration.calibrate import Fit, Measure
-from validation.comparison.sheet import Segment
-from validation.diagnosis.findings import Remainder
+from validation.calibration.calibrate import Fit, InnerProduct
+from validation.comparison.linearisation import Segment
+from validation.diagnosis.result import Remainder
 from validation.inference.decision import Decision
 from validation.inference.posterior import Hypothesis, Posterior, probabilities
 
@@ -28,7 +28,7 @@ def remainder(posterior: Posterior, choice: Decision, single: Mapping[int, Hypot
     for s in sorted(fit.parts, key=lambda s: -left[s.test, s.channel]):
         if left[s.test, s.channel] > 1.0:
             rows.setdefault(s.channel, s)
-    measure = Measure(fit.parts, fit.noise, fit.error)
+    measure = InnerProduct(fit.parts, fit.noise, fit.error)
     return tuple(_of(s, posterior, lead, fit, measure) for s in list(rows.values())[:MOST])
 
 
@@ -43,7 +43,7 @@ def _fit_of(posterior: Posterior, lead: frozenset[int], single: Mapping[int, Hyp
     return (*whole, *alone, posterior.evidence.fit)[0]
 
 
-def _of(s: Segment, posterior: Posterior, lead: frozenset[int], fit: Fit, measure: Measure) -> Remainder:
+def _of(s: Segment, posterior: Posterior, lead: frozenset[int], fit: Fit, measure: InnerProduct) -> Remainder:
     error, doubt, model_K = rms(s.r), "", 0.0
     if fit.error is not None:
         parts = fit.error.of(s) * measure.doubts(fit.parts)

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import block_diag
 
-from validation.comparison.sheet import Segment
+from validation.comparison.linearisation import Segment
 from validation.measurement.noise import Noise
 
 Array = NDArray[np.float64]

@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from validation.calibration.calibrate import silent
+from validation.calibration.calibrate import no_progress
 from validation.case import Case
 from validation.doubt import PRIOR
 from validation.effects.during import During
@@ -22,7 +22,7 @@ MOST = 5  # effects at once: who forgot more begins with another model
 
 
 def further(
-    case: Case, evidence: Evidence, hypotheses: Sequence[Hypothesis], progress: Callable[[str], None] = silent
+    case: Case, evidence: Evidence, hypotheses: Sequence[Hypothesis], progress: Callable[[str], None] = no_progress
 ) -> list[Hypothesis]:
     """The hypotheses, with larger ones where two effects explain most, or heat of unknown cause explains more."""
     out, heat = list(hypotheses), max((h.weight for h in hypotheses if h.heat), default=-np.inf)

@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtri
 
-from validation.calibration.calibrate import Fit, Measure
+from validation.calibration.calibrate import Fit, InnerProduct
 from validation.case import Case, Test
-from validation.comparison.sheet import rmse, segments
-from validation.conditions.happenings import happenings
+from validation.comparison.linearisation import rmse, segments
+from validation.conditions.events import possible_events
 from validation.conditions.question import best_question
-from validation.diagnosis.findings import Candidate, Decided, Diagnosis, Hidden, Odds, Verdict
+from validation.diagnosis.result import Candidate, Decided, DetectionLimit, Diagnosis, Odds, Verdict
 from validation.doubt import TEMPER
 from validation.effects.above import Above
 from validation.effects.during import During
@@ -24,7 +24,7 @@ from validation.inference.evidence import Evidence, deviance
 from validation.inference.posterior import Hypothesis, Posterior, inclusion, probabilities
 from validation.inference.refits import laplace
 from validation.inference.remainder import remainder
-from validation.planning.contenders import Contenders
+from validation.planning.competing_models import CompetingModels
 from validation.planning.experiments import next_tests
 from validation.planning.sensors import next_sensors
 from validation.procedure.reduction.which_base import Hypothesis as Base
@@ -55,7 +55,7 @@ def tabulate(
         named=tuple(g[0] for g in groups), groups=groups, candidates=rows, cannot_see=unseen(e), where=posterior.heat,
         next_tests=tuple(tests), next_sensors=tuple(sensors), rmse_K=rmse(e.fit.parts), floor_K=floor(e),
         threshold=float(np.min(thresholds(e))), pulls=pulls, cosine=confusion(e, [c.effect for c in rows[:12]]),
-        bases=bases, odds=odds(posterior), p_nothing=1.0 - choice.sure, events=happenings(posterior),
+        bases=bases, odds=odds(posterior), p_nothing=1.0 - choice.sure, events=possible_events(posterior),
         remainder=remainder(posterior, choice, single),
         contradiction=posterior.against, question=best_question(posterior),
     )  # fmt: skip
@@ -85,7 +85,7 @@ def strained(fit: Fit) -> tuple[tuple[str, float, float], ...]:
 
 def beyond(evidence: Evidence) -> bool:
     """Is more left than noise and model error allow: most records out of twice what a model may be wrong by?"""
-    left = Measure(evidence.fit.parts, evidence.fit.noise, evidence.fit.error).explained(
+    left = InnerProduct(evidence.fit.parts, evidence.fit.noise, evidence.fit.error).explained(
         evidence.fit.parts, evidence.fit.error
     )
     out = [np.sqrt(np.mean(s.r**2)) > 2.0 * s.weight for s in left]
@@ -208,7 +208,7 @@ def error_on(tests: Sequence[Test], fit: Fit) -> float:
     return rmse(segments(fit.network, tests, fit.values))
 
 
-def unseen(e: Evidence) -> tuple[Hidden, ...]:
+def unseen(e: Evidence) -> tuple[DetectionLimit, ...]:
     """Effects that would have to be unusually large to show, most hidden first."""
     size = smallest(e)
     unusual = size / np.array([p.prior_sd for p in e.parameters])
@@ -216,7 +216,8 @@ def unseen(e: Evidence) -> tuple[Hidden, ...]:
     lasting = [not isinstance(x, During) for x in e.effects]
     hit = [int(k) for k in np.argsort(-unusual) if lasting[k] and (unusual[k] > 2.0 or twins[k])]
     return tuple(
-        Hidden(e.names[k], float(size[k]), e.parameters[k].unit, twins[k] or _absorber(e, k, names)) for k in hit
+        DetectionLimit(e.names[k], float(size[k]), e.parameters[k].unit, twins[k] or _absorber(e, k, names))
+        for k in hit
     )
 
 
@@ -225,12 +226,12 @@ def _absorber(e: Evidence, k: int, names: Sequence[str]) -> str | None:
     return names[j] if j < len(names) else "model error"
 
 
-def contenders(e: Evidence, choice: Decision, single: dict[int, Hypothesis]) -> Contenders | None:
+def contenders(e: Evidence, choice: Decision, single: dict[int, Hypothesis]) -> CompetingModels | None:
     """The first group that could not be separated, with the refits of its leading members."""
     group = next((g for g in choice.groups if len(g) > 1), ())
     few = [k for k in group if not e.effects[k].whole][:RIVALS]
     fits = {k: fit for k in few if (fit := single[k].fit) is not None}
-    return Contenders(tuple(fits), tuple(fits.values()), e.fit.noise) if len(fits) > 1 else None
+    return CompetingModels(tuple(fits), tuple(fits.values()), e.fit.noise) if len(fits) > 1 else None
 
 
 def confusion(e: Evidence, names: Sequence[str]) -> dict[str, dict[str, float]]:

@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dtrtri
 
-from validation.comparison.sheet import Segment
+from validation.comparison.linearisation import Segment
 from validation.doubt import USUAL
 
 Array = NDArray[np.float64]

@@ -8,33 +8,33 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import ThermoscopeError
-from validation.comparison.sheet import segments
-from validation.diagnosis.findings import NextTest
+from validation.comparison.linearisation import segments
+from validation.diagnosis.result import NextTest
 from validation.inference.evidence import Evidence
 from validation.inference.score import gram
-from validation.planning.apart import separation, told_apart
-from validation.planning.contenders import Contenders
-from validation.planning.foretell import Plan, proven, read_by, widened_error
-from validation.planning.menu import possible
+from validation.planning.candidate_tests import candidate_tests
+from validation.planning.competing_models import CompetingModels
+from validation.planning.prediction import Plan, predicted_readings, refitted_gains, widened_error
+from validation.planning.separability import separable_pairs, separation
 
 Array = NDArray[np.float64]
 
 
-def next_tests(evidence: Evidence, found: Contenders) -> list[NextTest]:
+def next_tests(evidence: Evidence, found: CompetingModels) -> list[NextTest]:
     """Tests that separate the group, best gain per hour first.
 
     Gain: the smallest deviance, over all pairs, by which the wrong one would fit worse with the new test added.
     """
-    left = proven(evidence, found, _planned(evidence, found))
-    return [NextTest(p.what, told_apart(evidence, p.gaps), p.gain, p.hours) for p in left]
+    left = refitted_gains(evidence, found, _planned(evidence, found))
+    return [NextTest(p.what, separable_pairs(evidence, p.gaps), p.gain, p.hours) for p in left]
 
 
-def _planned(evidence: Evidence, found: Contenders) -> Iterator[Plan]:
+def _planned(evidence: Evidence, found: CompetingModels) -> Iterator[Plan]:
     fit = evidence.fit
     p, columns = fit.theta.size, (*fit.unknowns.parameters, *(evidence.parameters[k] for k in found.group))
-    for experiment, plan in possible(evidence.tests[-1], evidence.network):
+    for experiment, plan in candidate_tests(evidence.tests[-1], evidence.network):
         try:
-            test = read_by(found.best, plan)
+            test = predicted_readings(found.best, plan)
             parts, error = segments(evidence.network, [test], fit.values, columns), widened_error(evidence, [test])
         except ThermoscopeError:  # a model that lacks what cools it runs away in a test that is longer than its own
             continue

@@ -10,15 +10,15 @@ from numpy.typing import NDArray
 
 from lumped.model.network import Network, Place
 from validation.case import Channel, Test
-from validation.comparison.sheet import Segment, segments
-from validation.diagnosis.findings import NextSensor
+from validation.comparison.linearisation import Segment, segments
+from validation.diagnosis.result import NextSensor
 from validation.effects.sites import outside, turns
 from validation.inference.evidence import Evidence
 from validation.inference.score import Gram
 from validation.measurement.noise import Noise
-from validation.planning.apart import separation, told_apart
-from validation.planning.contenders import Contenders
-from validation.planning.foretell import Plan, proven, widened_error
+from validation.planning.competing_models import CompetingModels
+from validation.planning.prediction import Plan, refitted_gains, widened_error
+from validation.planning.separability import separable_pairs, separation
 
 Array = NDArray[np.float64]
 SIGMA_K = 0.5
@@ -30,20 +30,20 @@ WHY = {
 }  # fmt: skip
 
 
-def next_sensors(evidence: Evidence, found: Contenders) -> list[NextSensor]:
+def next_sensors(evidence: Evidence, found: CompetingModels) -> list[NextSensor]:
     """Places without a sensor, by the deviance gap of the pair that stays closest, per hour of mounting."""
     network = evidence.fit.network
     places = {p.name: p for p in free_places(network, evidence.tests)}
     plans = [
         Plan(
-            place.name, HOURS[access(network, place)], [watched(t, [place]) for t in evidence.tests],
+            place.name, HOURS[access(network, place)], [with_thermocouples(t, [place]) for t in evidence.tests],
             separation(evidence, found, more),
         )
         for place, more in with_sensors(evidence, tuple(places.values()), found.group)
     ]  # fmt: skip
     return [
-        NextSensor(p.what, told_apart(evidence, p.gaps), p.gain, p.hours, WHY[access(network, places[p.what])])
-        for p in proven(evidence, found, plans)
+        NextSensor(p.what, separable_pairs(evidence, p.gaps), p.gain, p.hours, WHY[access(network, places[p.what])])
+        for p in refitted_gains(evidence, found, plans)
     ]
 
 
@@ -67,7 +67,7 @@ def with_sensors(evidence: Evidence, places: Sequence[Place], chosen: Sequence[i
     """What a thermocouple at each place adds to the Gram matrix, its unknown bias projected out."""
     fit = evidence.fit
     columns = (*fit.unknowns.parameters, *(evidence.parameters[k] for k in chosen))
-    tests = [watched(t, places) for t in evidence.tests]
+    tests = [with_thermocouples(t, places) for t in evidence.tests]
     p, error = len(fit.unknowns.parameters), widened_error(evidence, tests)
     parts = segments(evidence.network, tests, fit.values, columns)
     if error:
@@ -77,7 +77,7 @@ def with_sensors(evidence: Evidence, places: Sequence[Place], chosen: Sequence[i
         yield place, _without_bias(own, fit.noise, p)
 
 
-def watched(test: Test, places: Sequence[Place]) -> Test:
+def with_thermocouples(test: Test, places: Sequence[Place]) -> Test:
     """The test with a thermocouple at every place, and nothing else read."""
     still = np.zeros_like(test.time)
     return replace(test, channels=tuple(Channel(PREFIX + p.name, p.name, p.mean, still, SIGMA_K) for p in places))

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validation.calibration.calibrate import Fit
-from validation.calibration.fitting import to_value
-from validation.comparison.sheet import Segment
+from validation.calibration.unknowns import to_value
+from validation.comparison.linearisation import Segment
 from validation.inference.score import Gram, gram
 
 Array = NDArray[np.float64]
@@ -38,7 +38,7 @@ class Check:
 def checks(fit: Fit, name: str) -> tuple[Check, ...]:
     """The checks of one effect at a fit that has it among its unknowns."""
     k = fit.unknowns.names.index(name)
-    return (bounds(fit, k), left_out(fit, k))
+    return (bounds(fit, k), cross_validation(fit, k))
 
 
 def bounds(fit: Fit, k: int) -> Check:
@@ -50,7 +50,7 @@ def bounds(fit: Fit, k: int) -> Check:
     return Check("bounds", free, value, p.high, words)
 
 
-def left_out(fit: Fit, k: int) -> Check:
+def cross_validation(fit: Fit, k: int) -> Check:
     """Does the effect foretell tests that it was not fitted to better than the refitted model without it?"""
     falls = predicted_without(fit, k)
     if len(falls) < 2:

@@ -9,16 +9,16 @@ import numpy as np
 
 from geom.errors import InputError
 from lumped.model.network import Parameter
-from validation.calibration.calibrate import Fit, silent, with_model_error
-from validation.calibration.fitting import FREE, scene_of, working
+from validation.calibration.calibrate import Fit, no_progress, with_model_error
 from validation.calibration.intervals import Estimate, Profile, estimates
 from validation.calibration.profile import profiles
-from validation.calibration.staged import Search, belongs, fitted, merged
+from validation.calibration.staged_fit import Search, belongs, merged, staged_fit
+from validation.calibration.unknowns import FREE, scene_of, working
 from validation.case import AddedEffect, Case, Model, Test
 from validation.comparison.compare import Comparison, compare
 from validation.effects import Effect, effect
 from validation.effects.during import During
-from validation.effects.gate import checked
+from validation.effects.time_window import checked
 from validation.measurement.operators import of_measurement
 from validation.revision.acceptance import Check, checks, failures
 from validation.threads import one_blas_thread
@@ -78,7 +78,7 @@ class Revision:
 def calibrate(
     case: Case,
     roles: Sequence[str] = ("calibrate",),
-    progress: Progress = silent,
+    progress: Progress = no_progress,
     profiled: Sequence[str] = (),
     search: Search | None = None,
 ) -> Revision:
@@ -89,7 +89,7 @@ def calibrate(
     return _revised(case, case.model, "calibrate", None, roles, progress, profiled, search)
 
 
-def add(case: Case, name: str, progress: Progress = silent) -> Revision:
+def add(case: Case, name: str, progress: Progress = no_progress) -> Revision:
     """Add effect 'kind@place' and calibrate on all tests but the held-out ones.
 
     What was never calibrated is calibrated first: an effect is compared with the best model without it.
@@ -115,7 +115,7 @@ def inside(one: Effect, case: Case) -> None:
             checked(one.event, test.name, float(test.time[0]), float(test.time[-1]), f"effect '{one.name}'")
 
 
-def remove(case: Case, name: str, progress: Progress = silent) -> Revision:
+def remove(case: Case, name: str, progress: Progress = no_progress) -> Revision:
     """Take an effect out and calibrate on all tests but the held-out ones."""
     left = tuple(e for e in case.model.effects if e.name != name)
     if len(left) == len(case.model.effects):
@@ -138,7 +138,7 @@ def _revised(
             f"no test has the role {' or '.join(roles)}", f"case '{case.name}'", "give at least one that role"
         )
     grown = replace(case.training(), model=model)
-    fits = fitted(grown, tests if action == "calibrate" else _plain(tests), start(grown), search, progress)
+    fits = staged_fit(grown, tests if action == "calibrate" else _plain(tests), start(grown), search, progress)
     new = replace(model, values=_values(model, fits), revision=case.model.revision + 1)
     after = compare(replace(case, model=new))
     changes = tuple(Change(b.name, b.role, b.rmse_K, a.rmse_K) for b, a in zip(before.tests, after.tests, strict=True))

@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geom.errors import InputError
-from validation.comparison.within import limit_K
+from validation.comparison.tolerance import limit_K
 from viz.colours import BLUE, LIGHT, ORANGE, VERMILION
 from viz.data import Comparison, short
 from viz.figures import paper
-from viz.labels import beside
+from viz.labels import end_labels
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -43,7 +43,7 @@ def measured_and_model(comparison: Comparison, *, columns: int = 3, png: str | P
 
 @paper.styled
 def residuals(comparison: Comparison, *, png: str | Path | None = None) -> Figure:
-    """Measured - modelled per sensor over time; those that are over (see within.py) are coloured, named in bold."""
+    """Measured - modelled per sensor over time; those that are over (see tolerance.py) are coloured, named in bold."""
     figure, (ax,) = paper.subplots(8.4, 3.8)
     (t, unit), thin = comparison.clock, comparison.thin
     channels = _read(comparison)
@@ -56,7 +56,7 @@ def residuals(comparison: Comparison, *, png: str | Path | None = None) -> Figur
         colours.append(wrongness(r, limit_K(channel)))
         ax.plot(t[thin], r[thin], color=colours[-1], lw=1.6 if colours[-1] != LIGHT.faint else 1.0)
     ends = [float(r[np.isfinite(r)][-1]) for r in map(comparison.residual, channels)]
-    beside(ax, ends, [short(c.name) for c in channels], [LIGHT.ink if c == LIGHT.faint else c for c in colours])
+    end_labels(ax, ends, [short(c.name) for c in channels], [LIGHT.ink if c == LIGHT.faint else c for c in colours])
     ax.axhline(0, color=LIGHT.ink, lw=0.8)
     ax.margins(x=0)
     ax.set(

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from geom.errors import InputError
 from viz.colours import BLUE, LIGHT, ORANGE
 from viz.figures import paper
-from viz.labels import beside
+from viz.labels import end_labels
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -82,7 +82,7 @@ def staircase(
         colours.append(BLUE if strong else LIGHT.ink)
     ax.set_ylim(0, 1.12 * max(max(e) for e in paths.values()))
     ax.set_xlim(-0.1, len(history) + 0.5)
-    beside(ax, ends, names, colours)
+    end_labels(ax, ends, names, colours)
     if floor_K is not None:
         ax.axhline(floor_K, color=LIGHT.ink, lw=0.9, ls=":")
         ax.text(0, floor_K, "sensors' uncertainty", fontsize=8, va="bottom")

@@ -9,7 +9,7 @@ from geom.errors import InputError
 from viz.colours import BLUE, LIGHT, ORANGE, SKY, VERMILION
 from viz.figures import paper
 from viz.figures.flows import Heat
-from viz.labels import spread
+from viz.labels import spread_labels
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -67,7 +67,7 @@ def _side(ax: Axes, parts: dict[str, float], outer: float, inner: float, colours
         _ribbon(ax, (outer, at), (inner, y), watts, colours[name])
         middles.append(at - watts / 2)
         y, at = y - watts, at - watts - gap
-    heights = spread(middles[::-1], -LOW * total, HIGH * total, 0.075 * total)[::-1]
+    heights = spread_labels(middles[::-1], -LOW * total, HIGH * total, 0.075 * total)[::-1]
     for (name, watts), height in zip(parts.items(), heights, strict=True):
         ax.text(
             outer + 0.02 * sign, height, f"{name}  {watts:.0f} W", ha="right" if sign < 0 else "left", va="center",

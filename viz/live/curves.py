@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geom.errors import InputError
-from validation.comparison.within import limit_K
+from validation.comparison.tolerance import limit_K
 from viz.colours import BLUE, LIGHT, ORANGE, Theme
 from viz.data import Comparison, short
 from viz.figures.curves import wrongness
@@ -55,7 +55,7 @@ def sensor(comparison: Comparison, channel: str, *, theme: Theme = LIGHT) -> go.
 
 
 def residuals(comparison: Comparison, *, theme: Theme = LIGHT) -> go.Figure:
-    """Measured - modelled of every sensor over time (K); those that are over are coloured (within.py)."""
+    """Measured - modelled of every sensor over time (K); those that are over are coloured (tolerance.py)."""
     (t, unit), thin = comparison.clock, comparison.thin
     out = figure(theme, title={"text": f"{comparison.test.name}: what the model misses", "x": 0.02})
     for c in comparison.channels:

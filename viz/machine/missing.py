@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from geom.errors import InputError
-from validation.diagnosis.where import located
+from validation.diagnosis.missing_heat import is_located
 from viz.colours import BLUE, LIGHT, VERMILION, Theme, missing
 from viz.rendering import scene
 from viz.rendering.callouts import Label, callouts, width
@@ -17,7 +17,7 @@ from viz.rendering.cut import QUARTER, Wedge, cut_away
 from viz.rendering.nodes import SplitMesh
 from viz.rendering.scale import rounded
 from viz.rendering.scene import TITLE, Room, View
-from viz.rendering.sight import anchors
+from viz.rendering.visibility import anchors
 
 if TYPE_CHECKING:
     import pyvista
@@ -40,7 +40,7 @@ def mean_heat(where: Sequence[Mapping[str, Any]], test: str) -> dict[str, float]
 def placed(diagnosis: Mapping[str, Any]) -> bool:
     """Does the scan of a `diagnose` document put the missing heat somewhere, or could it be anywhere?"""
     best = max((w["evidence_nats"] for w in diagnosis.get("where", [])), default=0.0)
-    return located(best)
+    return is_located(best)
 
 
 def missing_in_machine(

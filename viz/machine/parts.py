@@ -18,7 +18,7 @@ from viz.rendering.cut import QUARTER, Surface, Wedge, cut_away, exposed
 from viz.rendering.nodes import SplitMesh, on_nodes
 from viz.rendering.scale import rounded
 from viz.rendering.scene import TITLE, Room, View
-from viz.rendering.sight import anchors
+from viz.rendering.visibility import anchors
 
 if TYPE_CHECKING:
     import pyvista

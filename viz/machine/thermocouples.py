@@ -16,7 +16,7 @@ from viz.rendering.callouts import Label, callouts, dot
 from viz.rendering.cut import Surface
 from viz.rendering.ghost import Ghosted, ghosted
 from viz.rendering.scene import View
-from viz.rendering.sight import SLACK, covered, distance, obstacle
+from viz.rendering.visibility import SLACK, covered, distance, obstacle
 
 if TYPE_CHECKING:
     import pyvista

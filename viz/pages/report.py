@@ -12,13 +12,13 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-from geom.kept import written_whole
-from validation.comparison.within import WORDS
+from geom.disk_cache import atomic_write
+from validation.comparison.tolerance import WORDS
 from viz.data import Comparison
 from viz.figures import candidates, curves, errors, heat
 from viz.machine.missing import placed
 from viz.pages import html, words
-from viz.pages.ahead import deciding, undecided
+from viz.pages.next_tests import deciding, undecided
 
 Document = Mapping[str, Any]
 
@@ -55,7 +55,7 @@ class Report:
 def write_report(report: Report, path: str | Path) -> Path:
     """Write the page and return its path."""
     path, page = Path(path), render(report)
-    with written_whole(path) as partial:
+    with atomic_write(path) as partial:
         partial.write_text(page, encoding="utf-8")
     return path
 

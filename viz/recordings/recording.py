@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError, MissingDependency
-from validation.comparison.within import limit_K
+from validation.comparison.tolerance import limit_K
 from viz.colours import BLUE, LIGHT, ORANGE, VERDICT, heat
 from viz.data import Comparison, Sensor, short
 from viz.figures.curves import wrongness

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from viz.colours import LIGHT, Theme
-from viz.labels import spread
+from viz.labels import spread_labels
 from viz.rendering.scene import SIZE, View, set_font
 
 if TYPE_CHECKING:
@@ -46,7 +46,9 @@ def callouts(
         mine = sorted(
             (q for q in labels if (np.dot(q.xyz, right) > middle) == (side > 0)), key=lambda q: np.dot(q.xyz, up)
         )
-        heights = spread([float(np.dot(q.xyz, up)) for q in mine], above.min(), above.max(), 0.075 * np.ptp(above))
+        heights = spread_labels(
+            [float(np.dot(q.xyz, up)) for q in mine], above.min(), above.max(), 0.075 * np.ptp(above)
+        )
         edge = middle + side * (0.5 + 0.03) * np.ptp(across)
         for q, height in zip(mine, heights, strict=True):
             _callout(p, q, edge * right + height * up + front * towards, side, theme, size)

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 from geom.errors import InputError
 from validation.procedure.measuring.meters import OHMMETER, VOLTMETER, Meter, Range
+from validation.procedure.measuring.propagation import Reading, propagate
 from validation.procedure.measuring.readings import (
     COPPER,
     NDFEB,
@@ -16,7 +17,6 @@ from validation.procedure.measuring.readings import (
     magnet_rise,
     winding_rise,
 )
-from validation.procedure.measuring.spread import Reading, spread
 
 RISE = 80.0
 
@@ -44,9 +44,9 @@ def test_magnets_are_known_to_8_and_7_kelvin():
     cold = 290.0
     warm = cold * (1 + NDFEB.value * RISE)
     meter = (VOLTMETER.reading("cold", cold), VOLTMETER.reading("warm", warm))
-    by_meter = spread(lambda E0, E: magnet_rise(E, E0, NDFEB.value), meter).worst
+    by_meter = propagate(lambda E0, E: magnet_rise(E, E0, NDFEB.value), meter).worst
     assert by_meter[1] - RISE == pytest.approx(8.0, abs=0.3)
-    by_alpha = spread(lambda a: magnet_rise(warm, cold, a), (NDFEB,)).worst
+    by_alpha = propagate(lambda a: magnet_rise(warm, cold, a), (NDFEB,)).worst
     assert by_alpha[1] - by_alpha[0] == pytest.approx(7.6, abs=0.1)
     at_low_alpha = magnet_rise(cold * (1 - 0.1e-2 * RISE), cold, -0.11e-2)
     assert at_low_alpha == pytest.approx(RISE - 7.0, abs=0.5)
@@ -66,7 +66,7 @@ WIDE = Meter("wide", "ohm", (Range(0.1, 40.0, 0.25, 2e-3, 2e-3),))
 
 def test_uncertainty_of_a_sum_is_the_closed_form():
     """Two even errors of half-width 1 add to a triangle: sd sqrt(2/3), worst case +-2, 95 % at 2 - 2 sqrt(0.05)."""
-    found = spread(lambda a, b: a + b, (Reading("a", 1.0, 1.0), Reading("b", 2.0, 1.0)), draws=200_000)
+    found = propagate(lambda a, b: a + b, (Reading("a", 1.0, 1.0), Reading("b", 2.0, 1.0)), draws=200_000)
     assert found.sd == pytest.approx(np.sqrt(2 / 3))
     assert found.worst == (1.0, 5.0)
     assert found.interval[1] == pytest.approx(3 + 2 - 2 * np.sqrt(0.05), abs=0.01)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from thermoscope.commands.opened import opened
+from thermoscope.commands.open_case import open_case
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import give, progress
 
@@ -15,7 +15,7 @@ def bases(case: str, target: str | None) -> int:
     from validation.procedure.reduction.which_base import which_base
 
     with progress() as tell:
-        folder = opened(case, tell)
+        folder = open_case(case, tell)
         found = which_base(folder.case, progress=tell)
     wrong = [h for h in found if h.declared and h.excluded]
     document = {"case": folder.case.name, "revision": folder.case.model.revision,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from thermoscope.commands.opened import opened
+from thermoscope.commands.open_case import open_case
 from thermoscope.console.answer import Answer, Grid, cell
 from thermoscope.console.terminal import give, progress
 
@@ -15,7 +15,7 @@ def curves(case: str, resolution: float, target: str | None) -> int:
     from validation.procedure.measuring.curves import curves as found_in
 
     with progress() as tell:
-        folder = opened(case, tell)
+        folder = open_case(case, tell)
         tell("fitting the warming curves")
         found = found_in(folder.case, resolution)
     document = found.document()

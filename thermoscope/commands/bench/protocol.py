@@ -47,10 +47,10 @@ from thermoscope.console.terminal import give, progress
 from thermoscope.recordings.electrical import meter_of, saturation_of
 from thermoscope.recordings.formats import pairs, read_frame, recording
 from validation.procedure.measuring.meters import OHMMETER, VOLTMETER
+from validation.procedure.measuring.propagation import PropagatedUncertainty, Reading
 from validation.procedure.measuring.protocol import Cold, Hot, Protocol, Record
 from validation.procedure.measuring.protocol import protocol as judged
 from validation.procedure.measuring.readings import COPPER, NDFEB
-from validation.procedure.measuring.spread import Reading, Spread
 
 Pairs = tuple[tuple[float, float], ...]
 
@@ -160,7 +160,7 @@ def _in_short(found: Protocol) -> str:
     return f"Rises: {', '.join(rises)}." if rises else f"A thermal test has {len(found.steps)} steps."
 
 
-def _row(name: str, s: Spread) -> list[Any]:
+def _row(name: str, s: PropagatedUncertainty) -> list[Any]:
     largest = max(s.budget, key=lambda n: s.budget[n])
     pairs = (s.worst, s.first_order, s.interval)
     return [name, s.value, *(f"{a:.1f} ... {b:.1f}" for a, b in pairs), f"{largest} ({s.budget[largest]:.1f} K)"]

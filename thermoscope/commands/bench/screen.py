@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from geom.errors import InputError
 from thermoscope.case_folder.folder import load_machine_file
-from thermoscope.commands.opened import opened
+from thermoscope.commands.open_case import open_case
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import give, notes, progress
 
@@ -110,7 +110,7 @@ def two_paths(case: str, winding: str, machine: str, target: str | None) -> int:
     from validation.procedure.reduction.two_paths import of_test
 
     with progress() as tell:
-        folder = opened(case, tell)
+        folder = open_case(case, tell)
         found = {t.name: of_test(folder.case, t, winding, machine).document() for t in folder.case.tests}
     document = {"case": folder.case.name, "tests": found}
     give(document, target, lambda: paths(found))
@@ -128,18 +128,18 @@ def paths(found: Mapping[str, Mapping[str, Any]]) -> Answer:
 
 def carry(source: str, targets: list[str], target: str | None) -> int:
     """Exit code 1 when a sensor of a machine that was not used disagrees by more than its uncertainty."""
-    from validation.procedure.reduction.carry import carried
+    from validation.procedure.reduction.transfer import transferred
 
     with progress() as tell:
-        calibrated = opened(source, tell)
-        found = [carried(calibrated.case, opened(name, tell).case) for name in targets]
+        calibrated = open_case(source, tell)
+        found = [transferred(calibrated.case, open_case(name, tell).case) for name in targets]
     document = {"source": calibrated.case.name, "revision": calibrated.case.model.revision,
                 "targets": [one.document() for one in found]}  # fmt: skip
-    give(document, target, lambda: show_carried(document))
+    give(document, target, lambda: show_transfer(document))
     return 0 if all(one.agrees for one in found) else 1
 
 
-def show_carried(document: Mapping[str, Any]) -> Answer:
+def show_transfer(document: Mapping[str, Any]) -> Answer:
     """Where the model of one machine is over on the others."""
     keys = ("test", "measured_C", "simulated_C", "difference_K", "U95_K", "worst_K")
     headers = ["sensor", "case", "test", "measured (degC)", "simulated (degC)", "difference (K)", "95 % (K)",

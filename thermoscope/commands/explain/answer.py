@@ -7,11 +7,11 @@ from dataclasses import replace
 from geom.errors import InputError
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import save_history
-from thermoscope.commands.opened import opened_to_write
-from thermoscope.commands.saved import last_diagnosis
+from thermoscope.commands.open_case import open_case_for_writing
+from thermoscope.commands.stored_diagnosis import last_diagnosis
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import give, progress
-from validation.effects.gate import checked, event
+from validation.effects.time_window import checked, event
 
 WORDS = {"yes": True, "y": True, "no": False, "n": False}
 
@@ -21,7 +21,7 @@ def answer(case: str, word: str, about: str | None, target: str | None) -> int:
     if word.lower() not in WORDS:
         raise InputError(f"'{word}' is no answer", "thermoscope answer", "yes or no")
     with progress() as tell:
-        folder = opened_to_write(case, tell)
+        folder = open_case_for_writing(case, tell)
     yes, subject = WORDS[word.lower()], known(folder, about or asked(folder))
     why = f"{subject}: {'yes' if yes else 'no'}"
     step = replace(folder.history.last, action="answer", effect="", why=why, rmse_K={}, answers={subject: yes})

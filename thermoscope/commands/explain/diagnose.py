@@ -6,17 +6,17 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from thermoscope.commands.bench.bases import bases_tried
-from thermoscope.commands.explain.ahead import ahead
+from thermoscope.commands.explain.next_tests import next_tests
 from thermoscope.commands.model.error_budget import budget, in_short, sampling
-from thermoscope.commands.opened import opened
-from thermoscope.commands.saved import save_diagnosis
+from thermoscope.commands.open_case import open_case
+from thermoscope.commands.stored_diagnosis import save_diagnosis
 from thermoscope.commands.test.compare import contradiction
 from thermoscope.console.answer import Answer, Grid, cell
 from thermoscope.console.terminal import Progress, give, notes, progress, sized
 
 if TYPE_CHECKING:
     from thermoscope.case_folder.folder import Folder
-    from validation.diagnosis.findings import Diagnosis
+    from validation.diagnosis.result import Diagnosis
 
 ODDS, ROWS = 5, 10  # shown of hypotheses and of candidates
 SHOWN = 0.005  # probabilities below half a per cent are in --json
@@ -27,7 +27,7 @@ def diagnose(case: str, target: str | None, older: bool = False) -> int:
     if older:
         notes(["--draws is no longer needed: nothing is drawn"])
     with progress() as tell:
-        found, document = diagnosed(opened(case, tell), tell)
+        found, document = diagnosed(open_case(case, tell), tell)
     give(document, target, lambda: answer(document))
     return 0 if found.verdict in ("named", "group", "several") else 1
 
@@ -59,7 +59,7 @@ def answer(document: Mapping[str, Any]) -> Answer:
     remaining = " ".join(row["words"] for row in document.get("remainder", []))
     found = document["candidates"]
     parts = [_odds(document), remaining, _candidates(found), *events(document), *_leader(found),
-             *contradiction(document.get("contradiction")), ahead(document),
+             *contradiction(document.get("contradiction")), next_tests(document),
              in_short(document.get("error_budget", {}), steps), unseen, question(document)]  # fmt: skip
     rest = [*budget(document.get("error_budget", {}), steps), *hidden]
     return Answer(sentence, parts, f"{step}; --json FILE; thermoscope show report {case}", rest)

@@ -19,14 +19,14 @@ PLACES = 4  # named in a row of the table; all in --json
 
 def effects(case: str | None, target: str | None) -> int:
     """Every kind of effect: what it needs, and in a case where it could sit or what is missing."""
-    from thermoscope.commands.opened import opened
-    from validation.calibration.fitting import scene_of
+    from thermoscope.commands.open_case import open_case
+    from validation.calibration.unknowns import scene_of
     from validation.effects.registry import kinds
 
     scene = None
     if case is not None:
         with progress() as tell:
-            scene = scene_of(opened(case, tell).case)
+            scene = scene_of(open_case(case, tell).case)
     document = {"case": case, "effects": [_described(kind, scene) for kind in kinds().values()]}
     give(document, target, lambda: answer(document))
     return 0

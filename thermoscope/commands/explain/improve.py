@@ -10,28 +10,28 @@ from typing import TYPE_CHECKING, Any
 from thermoscope.case_folder.columns import write_columns
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import History, save_history
-from thermoscope.commands.explain.ahead import ahead
+from thermoscope.commands.explain.next_tests import next_tests
 from thermoscope.commands.model.revise import recorded
-from thermoscope.commands.opened import opened_to_write
-from thermoscope.commands.saved import save_diagnosis
+from thermoscope.commands.open_case import open_case_for_writing
+from thermoscope.commands.stored_diagnosis import save_diagnosis
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import give, progress, sized
-from viz.pages.ahead import deciding
+from viz.pages.next_tests import deciding
 
 if TYPE_CHECKING:
-    from validation.diagnosis.findings import Candidate, Diagnosis
+    from validation.diagnosis.result import Candidate, Diagnosis
     from validation.revision.revise import Revision
 
 
 def improve(case: str, yes: bool, most: int, target: str | None) -> int:
     """Exit code 0 when the model ends adequate, 1 when it stops before. Every step is in model.toml at once."""
-    from validation.revision.climb import Guide, climb, singletons
+    from validation.revision.improvement import Supervisor, improve, singletons
 
     with progress() as tell:
-        folder = opened_to_write(case, tell)
+        folder = open_case_for_writing(case, tell)
         ledger = Ledger(folder)
-        guide = Guide(singletons if yes else asked, ledger.keep)
-        done = climb(folder.case, guide, most, tell, folder.settings.kinds)
+        guide = Supervisor(singletons if yes else asked, ledger.keep)
+        done = improve(folder.case, guide, most, tell, folder.settings.kinds)
     found = {"case": folder.case.name, "revision": ledger.history.last.number, **done.diagnosis.document()}
     save_diagnosis(folder, json.loads(json.dumps(found, default=float)))
     document = {"case": folder.case.name, **done.document(), "written": ledger.written}
@@ -86,6 +86,6 @@ def answer(document: Mapping[str, Any], folder: Folder) -> Answer:
     errors = Grid("Error, step by step (rms)", headers, rows, keep=["all (K)", "probability"])
     written = f"{document['written']} revisions written to {folder.settings.model_file}"
     kept = written if document["written"] else "nothing written"
-    further = "" if document["adequate"] else ahead(document["diagnosis"])
+    further = "" if document["adequate"] else next_tests(document["diagnosis"])
     more = f"thermoscope model undo {document['case']} takes a step back; thermoscope show report {document['case']}"
     return Answer(f"{document['verdict']}: {document['why']}; {kept}.", [errors, further], more)

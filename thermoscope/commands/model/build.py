@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from geom.solids.surfaces import CadCheck
     from thermoscope.console.terminal import Progress
     from thermoscope.pipeline import Built
-    from thermoscope.verification.sized import Sized
+    from thermoscope.verification.network_size import SizedNetwork
 
 ERRORS = ("mean", "hot", "point")
 
@@ -52,15 +52,15 @@ def build(machine: str, out: Path | None, target: str | None, accuracy: float | 
 
 def built_from(
     described: Machine, accuracy: float | None, tell: Progress, size_m: float = 0.06
-) -> tuple[Built, Sized | None]:
+) -> tuple[Built, SizedNetwork | None]:
     """At the size a case runs, or at the smallest that is accurate enough.  size_m : of the mesh's triangles (m)"""
     from lumped.machine.bases import on_all
     from thermoscope.pipeline import build as usual
-    from thermoscope.verification.sized import sized
+    from thermoscope.verification.network_size import smallest_network
 
     if accuracy is None:
         return usual(on_all(described), size_m, progress=tell), None
-    found = sized(described, accuracy, size_m, progress=tell)
+    found = smallest_network(described, accuracy, size_m, progress=tell)
     return found.built, found
 
 

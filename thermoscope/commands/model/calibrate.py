@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from thermoscope.case_folder.folder import Folder
 from thermoscope.commands.model.revise import revised
-from thermoscope.commands.saved import fingerprint, keep, kept
+from thermoscope.commands.stored_diagnosis import fingerprint, store, stored
 from thermoscope.console.terminal import Progress
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ def calibrate(
 
     starts, seed : None for what case.toml says
     """
-    from validation.calibration.staged import Search
+    from validation.calibration.staged_fit import Search
     from validation.revision.revise import calibrate as fitted
 
     def step(folder: Folder, tell: Progress) -> Revision:
@@ -54,7 +54,7 @@ class Unfinished:
 
     def values(self, tell: Progress) -> dict[str, float]:
         """Those of an interrupted calibration of this very case, else none."""
-        found = kept(self.path)
+        found = stored(self.path)
         if found is None or found.get("fingerprint") != self.of:
             return {}
         tell("going on with the calibration that was interrupted")
@@ -63,7 +63,7 @@ class Unfinished:
 
     def keep(self, values: Mapping[str, float]) -> None:
         self.reached |= values
-        keep(self.path, {"fingerprint": self.of, "values": self.reached})
+        store(self.path, {"fingerprint": self.of, "values": self.reached})
 
     def done(self) -> None:
         self.path.unlink(missing_ok=True)

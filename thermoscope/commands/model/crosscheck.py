@@ -19,7 +19,7 @@ from thermoscope.console.terminal import give, plain, progress
 if TYPE_CHECKING:
     from thermoscope.console.terminal import Progress
     from thermoscope.pipeline import Built
-    from thermoscope.verification.sized import Sized
+    from thermoscope.verification.network_size import SizedNetwork
 
 HOT = 200.0  # degC, what insulation bears
 SHOWN = 12  # rows of a long table on the screen; the files hold all
@@ -27,23 +27,23 @@ SHOWN = 12  # rows of a long table on the screen; the files hold all
 
 def crosscheck(machine: str, out: Path | None, accuracy: float, target: str | None) -> int:
     """Where network and field disagree, which link is responsible, and every hand formula beside the field's value."""
-    from thermoscope.verification.sized import sized
+    from thermoscope.verification.network_size import smallest_network
 
     described = load_machine_file(Path(machine))
     folder = out or Path("out") / described.name
     with progress() as tell:
-        found = sized(described, accuracy, progress=tell)
+        found = smallest_network(described, accuracy, progress=tell)
         document = {"machine": described.name, **checked(found.built, found, tell)}
         save(document, folder)
     give(document, target, lambda: answer(document, folder))
     return 0 if found.met else 1
 
 
-def checked(built: Built, found: Sized | None, tell: Progress) -> dict[str, Any]:
+def checked(built: Built, found: SizedNetwork | None, tell: Progress) -> dict[str, Any]:
     """Part by part and link by link at a point where the machine settles, and the hand formulas there."""
     from lumped.machine.losses import loss_shares
     from thermoscope.verification.crosscheck import crosscheck as compare
-    from thermoscope.verification.hand import hand_rows
+    from thermoscope.verification.hand_formulas import hand_formulas
     from thermoscope.verification.local_laws import with_local_laws
 
     tell("field against network")
@@ -55,7 +55,7 @@ def checked(built: Built, found: Sized | None, tell: Progress) -> dict[str, Any]
     tell("laws point by point")
     local = with_local_laws(built.field, built.network, point, check, shares, loads, solver).T
     tell("hand formulas")
-    hand = hand_rows(built.machine, built.field, check)
+    hand = hand_formulas(built.machine, built.field, check)
     responsible = {part.place: check.responsible(part.place) for part in check.parts}
     return {
         "operating_point": point,

@@ -10,8 +10,8 @@ from thermoscope.case_folder.columns import write_columns
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import Revision, save_history
 from thermoscope.case_folder.runs import at_revision
-from thermoscope.commands.opened import opened_to_write
-from thermoscope.commands.saved import saved_diagnosis
+from thermoscope.commands.open_case import open_case_for_writing
+from thermoscope.commands.stored_diagnosis import saved_diagnosis
 from thermoscope.console.answer import Answer, Grid, cell
 from thermoscope.console.terminal import give, progress
 from validation.comparison.compare import compare
@@ -55,7 +55,7 @@ def remove(case: str, effect: str, target: str | None) -> int:
 def undo(case: str, number: int | None, target: str | None) -> int:
     """One revision more, equal to the one before the last, or to `number`; nothing is forgotten."""
     with progress() as tell:
-        folder = opened_to_write(case, tell)
+        folder = open_case_for_writing(case, tell)
         last = folder.history.last.number
         if number is None and last == 0:
             raise InputError("there is no step to undo", str(folder.settings.model_file), "a case that was revised")
@@ -75,7 +75,7 @@ def undo(case: str, number: int | None, target: str | None) -> int:
 def revised(case: str, step: Callable[..., revise.Revision], anyway: bool, target: str | None) -> int:
     """Open, take the step, keep it if it is accepted, show it. `step` is given folder and progress."""
     with progress() as tell:
-        folder = opened_to_write(case, tell)
+        folder = open_case_for_writing(case, tell)
         result = step(folder, tell)
     keep = result.accepted or anyway
     if keep:

@@ -16,8 +16,8 @@ from geom.errors import MissingDependency
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import Revision
 from thermoscope.case_folder.runs import at_revision, before_last, fields, held, parameters, readings, steps
-from thermoscope.commands.opened import opened_to_write
-from thermoscope.commands.saved import last_diagnosis, saved_diagnosis
+from thermoscope.commands.open_case import open_case_for_writing
+from thermoscope.commands.stored_diagnosis import last_diagnosis, saved_diagnosis
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import Progress, give, notes, progress
 from validation.case import Case, Test
@@ -37,7 +37,7 @@ def report(case: str, out: Path | None, target: str | None) -> int:
     from viz import write_pdf
 
     with progress() as tell:
-        folder = opened_to_write(case, tell)
+        folder = open_case_for_writing(case, tell)
         path = write_page(folder, case, out or folder.settings.out, tell)
         tell("printing")
         pdf = write_pdf(path)
@@ -78,7 +78,7 @@ def marked(comparison: Comparison, diagnosis: Mapping[str, Any] | None) -> Compa
 def render(case: str, out: Path | None, target: str | None) -> int:
     """Curves and errors always; the field and the recording where the geometry is known."""
     with progress() as tell:
-        folder = opened_to_write(case, tell)
+        folder = open_case_for_writing(case, tell)
         into = out or folder.settings.out
         into.mkdir(parents=True, exist_ok=True)
         tell("drawing curves")

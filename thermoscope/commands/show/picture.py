@@ -17,11 +17,11 @@ from lumped.integration.simulate import simulate
 from lumped.schemas.reader import known
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.runs import before_last, fields, held, steps
-from thermoscope.commands.opened import opened
+from thermoscope.commands.open_case import open_case
 from thermoscope.commands.show.pages import by_interest
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import give, progress
-from validation.calibration.fitting import working
+from validation.calibration.unknowns import working
 from validation.case import Case, Test
 from validation.comparison.predict import record, thermal
 
@@ -40,7 +40,7 @@ def picture(case: str, what: str, out: Path | None, target: str | None) -> int:
     if out is not None and (out.suffix != ".png" or out.is_dir()):
         raise InputError("is no name of a picture", f"--out {out}", "a file NAME.png")
     with progress() as tell:
-        subject = Subject(opened(case, tell))
+        subject = Subject(open_case(case, tell))
         file = out or Path("out") / f"{subject.folder.case.name}-{what}.png"
         tell(f"drawing {file}")
         PICTURES[what](subject, file)

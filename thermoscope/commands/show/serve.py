@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import os
 
-from thermoscope.commands.opened import opened_to_write
+from thermoscope.commands.open_case import open_case_for_writing
 from thermoscope.console.terminal import progress, say
 
 
 def serve(case: str, host: str, port: int) -> int:
     """The workbench in the browser, until Ctrl-C."""
-    from thermoscope.workbench.gate import Gate
+    from thermoscope.workbench.access_control import AccessControl
     from thermoscope.workbench.serve import application, token_for
     from thermoscope.workbench.serve import serve as run
 
-    gate = Gate(host, token_for(os.environ.get("THERMOSCOPE_TOKEN")))
+    gate = AccessControl(host, token_for(os.environ.get("THERMOSCOPE_TOKEN")))
     with progress() as tell:
-        app = application(opened_to_write(case, tell), gate, tell)
+        app = application(open_case_for_writing(case, tell), gate, tell)
     run(app, gate, port, lambda url: say(f"open {url}  (Ctrl-C ends)"))
     return 0

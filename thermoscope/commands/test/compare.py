@@ -6,10 +6,10 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from thermoscope.commands.model.error_budget import budget, in_short, sampling
-from thermoscope.commands.opened import opened
+from thermoscope.commands.open_case import open_case
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import give, progress
-from validation.comparison.within import WORDS
+from validation.comparison.tolerance import WORDS
 
 EVIDENT = 10.0  # nats
 WHITE = 0.01
@@ -22,13 +22,13 @@ def compare(case: str, target: str | None, why: bool = False, sure: bool | None 
     from thermoscope.bands import of_tests, wanted
     from thermoscope.verification.error_budget import budgets_of_tests, documents
     from validation.comparison.compare import compare as held_against
-    from validation.diagnosis.failing import failing
+    from validation.diagnosis.discrepancy import discrepancies
 
     with progress() as tell:
-        folder = opened(case, tell)
+        folder = open_case(case, tell)
         tell("running the model")
         result = held_against(folder.case)
-        more = failing(folder.case, tell).document() if why else {}
+        more = discrepancies(folder.case, tell).document() if why else {}
         budgets = budgets_of_tests(folder, tell)
         bands = {"bands": of_tests(folder, tell)} if wanted(folder.case.model.network, sure) else {}
     document = {**result.document(), **more, "error_budget": documents(budgets), **sampling(folder), **bands}

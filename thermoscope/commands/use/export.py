@@ -11,7 +11,7 @@ from lumped.schemas.reader import known
 from thermoscope.case_folder.files import write_whole
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.workbook import tables, write_csvs, write_xlsx
-from thermoscope.commands.opened import opened
+from thermoscope.commands.open_case import open_case
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import Progress, give, plain, progress
 
@@ -29,7 +29,7 @@ def export(case: str, out: Path | None, form: str, limits: Sequence[str], versio
     if form in MODELS:
         return _model(case, out, form, read_limits(limits), version, target)
     with progress() as tell:
-        folder = opened(case, tell)
+        folder = open_case(case, tell)
         tell("running the model")
         content = tables(folder)
     where, name = out or folder.settings.out, folder.settings.path.resolve().name
@@ -60,7 +60,7 @@ def _model(
     from thermoscope.export.model import exported
 
     with progress() as tell:
-        folder = opened(case, tell, untested=True)
+        folder = open_case(case, tell, untested=True)
         tell("collecting the network")
         model = exported(folder, limits)
         apart = _differences(folder, model, tell) if form in ("c", "fmu") else {}

@@ -18,16 +18,16 @@ from lumped.correlations import RangeWarning
 from lumped.integration.simulate import Record
 from lumped.model.quantities import USUAL
 from lumped.schemas.reader import known
-from thermoscope.bands import along, belief_of, wanted
+from thermoscope.bands import along, posterior_of, wanted
 from thermoscope.case_folder.folder import Folder
-from thermoscope.case_folder.runs import before_last, looks
-from thermoscope.commands.opened import opened
+from thermoscope.case_folder.runs import before_last, named_rows
+from thermoscope.commands.open_case import open_case
 from thermoscope.commands.use.export import read_limits
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import Progress, give, notes, progress
 from thermoscope.recordings.csv_file import read_csv
 from thermoscope.verification.error_budget import model_of
-from validation.bands import Belief
+from validation.bands import ParameterPosterior
 from validation.rating.derating import deratings
 from validation.rating.envelope import FORMS, TIMES, Rating, rated, until
 from validation.rating.loss_grid import SPEED, TORQUE, loss_grid, with_losses
@@ -61,7 +61,7 @@ def rate(
     if not asked.limits:
         raise InputError("no limit is given", "--limit", "PLACE=DEGC, for example winding=155")
     with progress() as tell, once() as said:
-        folder = opened_or_built(name, tell)
+        folder = case_or_machine(name, tell)
         document = {"case": folder.case.name, "revision": folder.case.model.revision,
                     **document_of(folder, asked, sure, tell)}  # fmt: skip
     notes(said)
@@ -83,18 +83,18 @@ def read_at(said: Sequence[str]) -> dict[str, float]:
     return out
 
 
-def opened_or_built(name: str, tell: Progress) -> Folder:
+def case_or_machine(name: str, tell: Progress) -> Folder:
     """A case, or a machine on its own as a case without tests."""
     from geom import library
 
     path = Path(name)
     if not (path.is_file() or (not path.exists() and name in library())):
-        return opened(name, tell, untested=True)
+        return open_case(name, tell, untested=True)
     with tempfile.TemporaryDirectory() as folder:
         machine = str(path.resolve()) if path.is_file() else name
         text = f"[case]\nname = {json.dumps(path.stem)}\nmachine = {json.dumps(machine)}\n"
         Path(folder, "case.toml").write_text(text, encoding="utf-8")
-        return opened(folder, tell, untested=True)
+        return open_case(folder, tell, untested=True)
 
 
 def columns_of(file: Path) -> dict[str, np.ndarray]:
@@ -136,7 +136,7 @@ def document_of(folder: Folder, asked: Asked, sure: bool | None, tell: Progress)
         tell("ratings of the model before its last step")
         old, _ = _model(replace(folder, case=earlier), asked)
         before = {form: rated(old, op, asked.limits, form, None).load for form in FORMS}
-    belief = belief_of(folder, tell) if asked.losses is None and wanted(model.network, sure) else None
+    belief = posterior_of(folder, tell) if asked.losses is None and wanted(model.network, sure) else None
     tell("envelope over the speed")
     speeds = _speeds(folder, op, asked)
     envelope = [rated(model, op, asked.limits, form, n) for form in ("S1", "S2 60 s", "S2 10 s") for n in speeds]
@@ -155,7 +155,7 @@ def document_of(folder: Folder, asked: Asked, sure: bool | None, tell: Progress)
 
 def _model(folder: Folder, asked: Asked) -> tuple[Model, Operation]:
     network, values = model_of(folder)
-    rows = looks(network, folder)
+    rows = named_rows(network, folder)
     for place in asked.limits:
         if place not in rows:
             raise InputError(f"no temperature '{place}' to limit", "--limit", known(place, rows))
@@ -189,7 +189,7 @@ def _speeds(folder: Folder, op: Operation, asked: Asked) -> list[float]:
 
 
 def _row(
-    folder: Folder, asked: Asked, op: Operation, r: Rating, before: float | None, of: Belief | None
+    folder: Folder, asked: Asked, op: Operation, r: Rating, before: float | None, of: ParameterPosterior | None
 ) -> dict[str, Any]:
     main = op.inputs[op.main]
     half = _half95(folder, op, r, of) if of is not None and np.isfinite(r.load) and r.slope > 0.0 else None
@@ -201,7 +201,7 @@ def _row(
     }  # fmt: skip
 
 
-def _half95(folder: Folder, op: Operation, r: Rating, of: Belief) -> float:
+def _half95(folder: Folder, op: Operation, r: Rating, of: ParameterPosterior) -> float:
     """Half the 95 % band of a load. Duties take that of rest: their mean heat is what counts."""
     network = of.network
     span = TIMES.get(r.form, SETTLED * network.settles_s)
@@ -210,7 +210,7 @@ def _half95(folder: Folder, op: Operation, r: Rating, of: Belief) -> float:
     inputs = {n: np.full(time.size, u) for n, u in op.at(load).items()}
     air = {b: np.full(time.size, T) for b, T in op.boundaries.items()}
     found = along(of, "rating", Record(time, inputs, air, float(np.mean(list(op.boundaries.values())))),
-                  {r.at: looks(network, folder)[r.at]})  # fmt: skip
+                  {r.at: named_rows(network, folder)[r.at]})  # fmt: skip
     return float(found.half95[-1, 0] / r.slope)
 
 

@@ -17,17 +17,17 @@ from lumped.integration.runaway import checked_run
 from lumped.integration.simulate import Record
 from lumped.integration.simulate import simulate as integrated
 from lumped.model.network import Network, Row
-from thermoscope.bands import along, belief_of, documents, wanted
+from thermoscope.bands import along, documents, posterior_of, wanted
 from thermoscope.case_folder.cycle import Cycle, find_cycle, load_cycle
 from thermoscope.case_folder.files import write_whole
 from thermoscope.case_folder.folder import Folder
-from thermoscope.case_folder.runs import looks, sensors
+from thermoscope.case_folder.runs import named_rows, sensors
 from thermoscope.commands.model.error_budget import budget, in_short
-from thermoscope.commands.opened import PACKAGE, opened
+from thermoscope.commands.open_case import PACKAGE, open_case
 from thermoscope.commands.use.simulate_readings import readings, short_of
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import Progress, give, progress
-from validation.bands import Bands, Belief
+from validation.bands import Bands, ParameterPosterior
 
 Array = NDArray[np.float64]
 MISMATCH = 0.01  # of all losses: parabolas miss a hundredth of that; more means that heat went astray
@@ -36,10 +36,10 @@ MISMATCH = 0.01  # of all losses: parabolas miss a hundredth of that; more means
 def simulate(case: str, cycle: str | None, out: Path | None, target: str | None, sure: bool | None = None) -> int:
     """All tests of the case, or one cycle.  sure : with 95 % bands; None: where they cost little"""
     with progress() as tell:
-        folder = opened(case, tell, untested=True)
+        folder = open_case(case, tell, untested=True)
         network, values = _model(folder)
         into = out or _out(folder)
-        known = belief_of(folder, tell) if wanted(network, sure) else None
+        known = posterior_of(folder, tell) if wanted(network, sure) else None
         runs = [_ran(network, values, one, folder, into, tell, known) for one in _cycles(folder, network, cycle)]
         circuits = _circuits(folder)
     document = {
@@ -56,7 +56,7 @@ def _out(folder: Folder) -> Path:
 
 def _model(folder: Folder) -> tuple[Network, dict[str, float]]:
     """The network with the effects added, and the values of the parameters that act on heat."""
-    from validation.calibration.fitting import working
+    from validation.calibration.unknowns import working
     from validation.comparison.predict import thermal
 
     network = working(folder.case)[0]
@@ -77,13 +77,13 @@ def _cycles(folder: Folder, network: Network, cycle: str | None) -> Iterable[Cyc
 
 def _ran(
     network: Network, values: Mapping[str, float], cycle: Cycle, folder: Folder, into: Path, tell: Progress,
-    known: Belief | None,
+    known: ParameterPosterior | None,
 ) -> dict[str, Any]:  # fmt: skip
     tell(f"running {cycle.name}")
     from thermoscope.verification.error_budget import error_budgets
     from validation.comparison.predict import thermal
 
-    rows, record, whole = looks(network, folder), cycle.record, network
+    rows, record, whole = named_rows(network, folder), cycle.record, network
     network = thermal(network)
     residuals: tuple[float, ...] = ()
     if cycle.drive is None:

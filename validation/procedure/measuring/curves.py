@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
-from validation.calibration.fitting import working
+from validation.calibration.unknowns import working
 from validation.case import Case, Channel, Test
 from validation.comparison.compare import physical
 from validation.comparison.predict import predict

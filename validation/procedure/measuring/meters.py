@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from geom.errors import InputError
-from validation.procedure.measuring.spread import Reading
+from validation.procedure.measuring.propagation import Reading
 
 
 @dataclass(frozen=True)

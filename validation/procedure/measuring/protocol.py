@@ -13,8 +13,8 @@ import numpy as np
 
 from geom.errors import InputError
 from validation.procedure.measuring.meters import OHMMETER, VOLTMETER, Meter
+from validation.procedure.measuring.propagation import PropagatedUncertainty, Reading
 from validation.procedure.measuring.readings import COPPER, NDFEB, Magnets, Saturation, Winding
-from validation.procedure.measuring.spread import Reading, Spread
 from validation.procedure.measuring.switch_off import Cooling, Extrapolated, all_ways, allowed_delay
 from validation.procedure.measuring.warming import equilibrium
 
@@ -88,8 +88,8 @@ class Protocol:
     """
 
     steps: tuple[Step, ...]
-    winding: Spread | None = None
-    magnets: Spread | None = None
+    winding: PropagatedUncertainty | None = None
+    magnets: PropagatedUncertainty | None = None
     ways: tuple[Extrapolated, ...] = ()
     temperatures: Mapping[str, float] = field(default_factory=dict)
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError
 from validation.procedure.measuring.meters import Meter
-from validation.procedure.measuring.spread import Reading, Spread, spread
+from validation.procedure.measuring.propagation import PropagatedUncertainty, Reading, propagate
 
 Array = NDArray[np.float64]
 COPPER = Reading("beta", 0.3925e-2, 0.0005e-2)
@@ -79,7 +79,7 @@ class Winding:
         rise = winding_rise(ohm, self.cold_ohm, self.beta.value, self.cold_C, self.reference_C)
         return self.cold_C + rise
 
-    def rise(self, ohm: float) -> Spread:
+    def rise(self, ohm: float) -> PropagatedUncertainty:
         """Rise over the cold temperature (K), with its uncertainty."""
         readings = (
             self.meter.reading("cold resistance", self.cold_ohm),
@@ -90,7 +90,7 @@ class Winding:
         def result(R0: Any, R: Any, beta: Any) -> Any:
             return winding_rise(R, R0, beta, self.cold_C, self.reference_C)
 
-        return spread(result, readings)
+        return propagate(result, readings)
 
     def reading_sd(self, ohm: float) -> float:
         """Scatter (K) of single readings against each other: the resolution of the range, evenly spread."""
@@ -117,7 +117,7 @@ class Magnets:
         """Mean temperature (degC) of the magnets."""
         return self.cold_C + magnet_rise(self.at_cold_speed(volt, rpm), self.cold_V, self.alpha.value, self.curve)
 
-    def rise(self, volt: float, rpm: float) -> Spread:
+    def rise(self, volt: float, rpm: float) -> PropagatedUncertainty:
         """Rise over the cold temperature (K), with its uncertainty."""
         warm = self.meter.reading("back-EMF", volt)
         scaled = Reading(warm.name, self.at_cold_speed(volt, rpm), self.at_cold_speed(warm.limit, rpm))
@@ -126,4 +126,4 @@ class Magnets:
         def result(E0: Any, E: Any, alpha: Any) -> Any:
             return magnet_rise(E, E0, alpha, self.curve)
 
-        return spread(result, (cold, scaled, self.alpha))
+        return propagate(result, (cold, scaled, self.alpha))

@@ -17,7 +17,7 @@ from geom.errors import InputError, ThermoscopeError
 from lumped.integration.steady import Steady, steady
 from lumped.model.network import Network, Source
 from lumped.transfer.laws import Constant, Linear
-from validation.calibration.fitting import working
+from validation.calibration.unknowns import working
 from validation.case import Case, Test
 from validation.comparison.compare import physical
 from validation.comparison.predict import thermal

@@ -16,8 +16,8 @@ import numpy as np
 from geom.errors import InputError
 from lumped.machine.bases import Switched
 from lumped.model.network import Network
-from validation.calibration.calibrate import Fit, calibrated, silent
-from validation.calibration.fitting import working
+from validation.calibration.calibrate import Fit, calibrated, no_progress
+from validation.calibration.unknowns import working
 from validation.case import Case, Test
 from validation.procedure.reduction.base_heat import BaseHeat, base_heat
 
@@ -66,7 +66,7 @@ def on_base(test: Test, base: str, bases: Mapping[str, str]) -> Test:
     return replace(test, inputs={**test.inputs, **inputs})
 
 
-def which_base(case: Case, names: Sequence[str] = (), progress: Progress = silent) -> list[Hypothesis]:
+def which_base(case: Case, names: Sequence[str] = (), progress: Progress = no_progress) -> list[Hypothesis]:
     """Every base for every test (or those named) that is not held out, best first within a test."""
     bases, tests = switches(case.model.network), [t for t in case.tests if t.role != "hold-out"]
     if not bases:
@@ -110,7 +110,7 @@ def deviance(fit: Fit) -> float:
     return 2.0 * fit.objective
 
 
-def bases_tried(case: Case, progress: Progress = silent) -> list[Hypothesis]:
+def bases_tried(case: Case, progress: Progress = no_progress) -> list[Hypothesis]:
     """Every base for every test; none where the network has no bases."""
     return which_base(case, progress=progress) if switches(case.model.network) else []
 

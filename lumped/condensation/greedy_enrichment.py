@@ -1,0 +1,123 @@
+"""From a wish to a network: favour the parts that miss, look at new random points, learn those before them, repeat."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from lumped.condensation.reduction_error import Accuracy, Errors, LoadCases, merged, point_errors
+from lumped.model.network import Network
+
+Tell = Callable[[str], None]
+FAVOURS = 6  # times the shapes are dealt out anew before new solutions are asked for
+MARGIN = 0.5  # points already learned from are met this much better than wished, because new ones are not
+RESERVE = 0.7  # a size is good enough when the points it is checked at use up no more than this of the wish
+STRONGEST = 4.0  # a part's favour grows at most by this at a time
+
+
+@dataclass(frozen=True)
+class Round:
+    """One look at fresh points: what the network missed, before anything was learned from them."""
+
+    states: int
+    points: tuple[str, ...]
+    errors: Errors
+    met: bool
+
+    def document(self) -> dict[str, Any]:
+        return {"states": self.states, "points": list(self.points), "met": self.met, "random": self.errors.document()}
+
+
+@dataclass(frozen=True)
+class Enrichment:
+    """reduction : with the points it learned from;  weights : favour of each part;  rounds : of checks, in order"""
+
+    reduction: Any
+    network: Network
+    weights: Mapping[str, float]
+    rounds: tuple[Round, ...] = field(default=())
+
+    @property
+    def met(self) -> bool:
+        return bool(self.rounds) and self.rounds[-1].met
+
+
+@dataclass(frozen=True)
+class Size:
+    """A network of a given size: errors at the nominal coefficients, and the worst of several random ones.
+
+    asked : largest number of states, 0: the means only;  met : with a reserve for points that were not looked at
+    """
+
+    asked: int
+    network: Network
+    nominal: Errors
+    random: Errors
+    met: bool
+
+    @classmethod
+    def of(cls, reduction: Any, asked: int, points: Sequence[Any], cases: LoadCases, wish: Accuracy) -> Size:
+        """points : the nominal one first, then random ones, all solved in full"""
+        network = reduction.network(tolerance=0.0, max_states=max(asked, len(reduction.field.blocks)))
+        nominal, *drawn = (seen(network, point, cases) for point in points)
+        random = merged(drawn)
+        return cls(asked, network, nominal, random, max(excess(nominal, wish), excess(random, wish)) <= RESERVE)
+
+    def document(self) -> dict[str, Any]:
+        return {
+            "asked": self.asked, "states": len(self.network.states), "met": self.met,
+            "nominal": self.nominal.document(), "random": self.random.document(),
+        }  # fmt: skip
+
+
+def enrich(
+    reduction: Any, cases: LoadCases, wish: Accuracy, rounds: int = 3, points: Sequence[Any] = (),
+    guides: Sequence[Any] = (), fresh: int = 3, tell: Tell = lambda message: None,
+) -> Enrichment:  # fmt: skip
+    """A network that meets the wish at random points it has not seen, or the one the last of `rounds` looked at.
+
+    reduction : of reduction.py;  points : already solved, to be learned;  guides : random ones, solved too
+    fresh : random points per round; those that were missed guide the next, and are learned after it with an extreme one
+    """
+    weights: dict[str, float] = {}
+    learned, begun = list(points) or [reduction.nominal_point()], len(points) + len(guides)
+    # Shapes are dealt out by guides, points that were not learned: those that were are met by very few.
+    reduction = reduction.enriched(learned) if points else reduction
+    done: list[Round] = []
+    for k in range(rounds):
+        network = allotted_shapes(reduction, [*learned, *guides], cases, wish, weights)
+        new = [reduction.random_point(begun + fresh * k + j) for j in range(fresh)]
+        found = merged([seen(network, point, cases) for point in new])
+        done.append(Round(len(network.states), tuple(p.name for p in new), found, excess(found, wish) <= 1.0))
+        tell(f"{len(network.states)} states: {found}")
+        if done[-1].met or k == rounds - 1:
+            break
+        fuller = [*guides, reduction.extreme_point(begun + k)]
+        learned, guides, reduction = [*learned, *fuller], new, reduction.enriched(fuller)
+    return Enrichment(reduction, network, dict(weights), tuple(done))
+
+
+def excess(found: Errors, wish: Accuracy) -> float:
+    """1 where the worst part is just good enough."""
+    return max(map(wish.excess, found.parts.values()))
+
+
+def allotted_shapes(
+    reduction: Any, learned: Sequence[Any], cases: LoadCases, wish: Accuracy, weights: dict[str, float]
+) -> Network:
+    """Deal out shapes until the points already solved are met: parts that miss get more."""
+    network = reduction.network(weights=weights)
+    for _ in range(FAVOURS):
+        found = merged([seen(network, point, cases) for point in learned])
+        missing = {part: wish.excess(e) for part, e in found.parts.items() if wish.excess(e) > MARGIN}
+        if not missing:
+            break
+        for part, excess in missing.items():
+            weights[part] = weights.get(part, 1.0) * min(max(excess / MARGIN, 1.3), STRONGEST)
+        network = reduction.network(weights=weights)
+    return network
+
+
+def seen(network: Network, point: Any, cases: LoadCases) -> Errors:
+    return point_errors(network, point.films, point.contacts, point.X, cases)

@@ -1,0 +1,156 @@
+"""How far a condensed network is from its field, in the numbers a user cares about."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from lumped.condensation.linear import linear, unit_load
+from lumped.condensation.recovery import PartShape, Shapes
+from lumped.model.network import Array, Network
+
+FLOOR = 0.1  # of the machine's largest rise: below it a percentage of a part's own rise means nothing
+POINTS = 25  # random points per part
+DRAWS = 4  # losses of all zones drawn at random: they cost no solve
+
+
+@dataclass(frozen=True)
+class Accuracy:
+    """Largest errors that will do, in percent of the part's own rise: means, hot spots, points."""
+
+    mean: float = 1.0
+    hot: float = 2.0
+    point: float = 2.0
+
+    def excess(self, error: PartError) -> float:
+        """1 where a part is just good enough."""
+        return max(error.mean / self.mean, error.hot / self.hot, error.point / self.point)
+
+
+@dataclass(frozen=True)
+class PartError:
+    """Of one part, in percent of its own rise: mean, hottest point, worst of random points."""
+
+    mean: float
+    hot: float
+    point: float
+
+
+@dataclass(frozen=True)
+class Errors:
+    """Worst over parts, in percent of the part's own rise: mean, hottest point, random points; and of which part."""
+
+    mean: float
+    hot: float
+    point: float
+    mean_part: str
+    hot_part: str
+    point_part: str
+    parts: Mapping[str, PartError]
+
+    def document(self) -> dict[str, Any]:
+        """The three numbers and where they arise."""
+        return {
+            "mean": self.mean, "hot": self.hot, "point": self.point,
+            "mean_part": self.mean_part, "hot_part": self.hot_part, "point_part": self.point_part,
+        }  # fmt: skip
+
+    def __str__(self) -> str:
+        return f"{self.mean:.2f}/{self.hot:.2f}/{self.point:.2f} % ({self.mean_part}, {self.hot_part})"
+
+
+def worst(parts: Mapping[str, PartError]) -> Errors:
+    """The largest of each kind, and where."""
+    names = [max(parts, key=lambda p: getattr(parts[p], kind)) for kind in ("mean", "hot", "point")]
+    mean, hot, point = names
+    return Errors(parts[mean].mean, parts[hot].hot, parts[point].point, mean, hot, point, parts)
+
+
+def merged(found: Sequence[Errors]) -> Errors:
+    """Part by part the worst of several comparisons."""
+    return worst({part: PartError(*(max(getattr(e.parts[part], k) for e in found) for k in ("mean", "hot", "point")))
+                  for part in found[0].parts})  # fmt: skip
+
+
+def errors(network: Network, full: Array, x: Array, largest: float | None = None, floor: float = FLOOR) -> Errors:
+    """Compare a field `full` (n,) with the network's states x (n_states,), both as rises over the surroundings (K).
+
+    largest : the machine's largest rise (K) that the floor refers to; None: of this field
+    floor : least rise, as a share of the largest, that a percentage refers to; 1: of the largest rise throughout
+    """
+    shapes = network.recovery
+    assert isinstance(shapes, Shapes)
+    rng, start = np.random.default_rng(0), 0
+    least = floor * (float(np.abs(full).max()) if largest is None else largest)
+    parts: dict[str, PartError] = {}
+    for part, shape in shapes.parts.items():
+        T = full[start : start + len(shape.V)]
+        start += len(T)
+        parts[part] = _part(T, shape.V @ x[shape.states], shape, least, rng)
+    return worst(parts)
+
+
+def _part(T: Array, seen: Array, shape: PartShape, floor: float, rng: np.random.Generator) -> PartError:
+    w = shape.weights
+    mean, off = w @ T, T - seen
+    at = rng.choice(len(T), min(POINTS, len(T)), replace=False)
+    own = max(abs(float(mean)), floor)
+    return PartError(
+        100 * abs(float(w @ off)) / own,
+        100 * abs(float(T.max() - seen.max())) / max(float(T.max()), floor),
+        100 * float(np.abs(off[at]).max()) / own,
+    )
+
+
+@dataclass(frozen=True)
+class LoadCases:
+    """Load cases: watts (n_case, n_zone) in the zones, kelvin (n_case, n_fluid) of the fluids over the surroundings."""
+
+    zones: tuple[str, ...]
+    fluids: tuple[str, ...]
+    watts: Array
+    kelvin: Array
+
+    def of_field(self, X: Array) -> Array:
+        """(n, n_case) from unit solutions X (n, n_zone + n_fluid)."""
+        return np.asarray(X @ np.hstack([self.watts, self.kelvin]).T)
+
+
+def random_load_cases(
+    zones: Sequence[str], fluids: Sequence[str], rated: Mapping[str, float], rises: Mapping[str, float] | None = None
+) -> LoadCases:
+    """Load cases: rated losses, losses of every zone drawn at random, and half of rated with inner fluids 20 K warmer.
+
+    rated : zone -> W;  rises : fluid -> K over the surroundings with the rated losses, 0 if not given
+    """
+    rng = np.random.default_rng(3)
+    own = np.array([rated.get(zone, 0.0) for zone in zones])
+    own = own if own.any() else np.ones(len(zones))
+    drawn = own.sum() * rng.dirichlet(np.full(len(zones), 0.5), DRAWS)
+    warm = np.array([0.0 if fluid == "ambient" else 20.0 for fluid in fluids])
+    at_rated = np.array([(rises or {}).get(fluid, 0.0) for fluid in fluids])
+    kelvin = [at_rated, *np.zeros((DRAWS, len(fluids))), 0.5 * at_rated + warm]
+    return LoadCases(tuple(zones), tuple(fluids), np.array([own, *drawn, 0.5 * own]), np.array(kelvin))
+
+
+def network_states(
+    network: Network, films: Mapping[str, float], contacts: Mapping[str, float], cases: LoadCases
+) -> Array:
+    """(n_states, n_case) of the network at given coefficients, rises over the surroundings."""
+    system = linear(network, films, contacts)
+    load = np.column_stack([unit_load(network, zone, system.solid) for zone in cases.zones]) @ cases.watts.T
+    names = (*network.states, *network.boundaries)
+    order = [[names[c] for c in system.fluid].index(fluid) for fluid in cases.fluids]
+    out = np.zeros((len(network.states), len(cases.watts)))
+    out[system.solid] = np.linalg.solve(system.A, load + system.B[:, order] @ cases.kelvin.T)
+    return out
+
+
+def point_errors(network: Network, films: Mapping[str, float], contacts: Mapping[str, float], X: Array,
+                 cases: LoadCases) -> Errors:  # fmt: skip
+    """Worst over the load cases at one set of coefficients; X (n, n_load) as in reduction.FullPoint."""
+    x, full = network_states(network, films, contacts, cases), cases.of_field(X)
+    return merged([errors(network, T, own) for T, own in zip(full.T, x.T, strict=True)])

@@ -1,0 +1,22 @@
+"""What would tell a group apart: tests of the menu and further sensors, or the word that no test is expected to."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from thermoscope.console.answer import Grid
+from viz.pages.next_tests import deciding, undecided
+
+MOST = 3
+
+
+def next_tests(document: Mapping[str, Any]) -> Grid | str:
+    """Three tests and three sensors at most of a diagnosis's document; "" where there is no group."""
+    offers = deciding(document)
+    chosen = [o for kind in ("test", "sensor") for o in [x for x in offers if x.kind == kind][:MOST]]
+    if not chosen:
+        return undecided(document)
+    rows = [[o.what, o.kind, o.hours, "; ".join(o.separates), o.gain] for o in chosen]
+    headers = ["what", "kind", "hours", "separates", "predicted gain"]
+    return Grid("What would decide", headers, rows, keep=["kind", "predicted gain"])

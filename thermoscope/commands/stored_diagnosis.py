@@ -1,0 +1,85 @@
+"""The last diagnosis of a case, kept in its out/ so that a report or an added effect can refer to it."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from thermoscope.case_folder.files import write_whole
+from thermoscope.case_folder.folder import Folder
+from thermoscope.commands.open_case import PACKAGE
+from thermoscope.console.terminal import notes, plain
+
+NAME = "diagnosis.json"
+SEAL = "sha256"
+
+
+def fingerprint(case: Path, but: str = "") -> str:
+    """Of everything a result depends on: all files of the case outside out/, but one."""
+    digest = hashlib.sha256()
+    for path in sorted(p for p in case.rglob("*") if p.is_file() and "out" not in p.relative_to(case).parts):
+        if path.name != but and not path.name.startswith("."):  # a hidden file is what a killed process left
+            digest.update(str(path.relative_to(case)).encode() + b"\0" + path.read_bytes())
+    return digest.hexdigest()
+
+
+def plan_of(case: Path) -> str:
+    """Fingerprint of machine and tests, whatever the model's history."""
+    return fingerprint(case, "model.toml")
+
+
+def model_of(folder: Folder) -> str:
+    """Fingerprint of the model as it stands and of what the user answered, however it came about."""
+    last = folder.history.last
+    return hashlib.sha256(
+        repr((last.effects, sorted(last.values.items()), *sorted(last.answers.items()))).encode()
+    ).hexdigest()
+
+
+def store(path: Path, document: Mapping[str, Any]) -> None:
+    """Write a document that `kept` can tell from a damaged one."""
+    content = plain(document)
+    write_whole(path, json.dumps({**content, SEAL: _sealed(content)}, indent=1))
+
+
+def stored(path: Path) -> dict[str, Any] | None:
+    """A document as it was written; None, with a note, where the file is not what was written."""
+    if not path.is_file():
+        return None
+    try:
+        found = json.loads(path.read_text(encoding="utf-8"))
+        seal = found.pop(SEAL)
+        whole = bool(seal == _sealed(found))
+    except (OSError, ValueError, RecursionError, AttributeError, KeyError, TypeError):
+        whole = False
+    if not whole:
+        notes([f"{path} is damaged and is not used; the next result replaces it"])
+        return None
+    return dict(found)
+
+
+def _sealed(content: Mapping[str, Any]) -> str:
+    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+
+def save_diagnosis(folder: Folder, document: Mapping[str, Any]) -> None:
+    """Keep it, unless the case lies inside the installed package."""
+    if PACKAGE in folder.settings.path.resolve().parents:
+        return
+    path = folder.settings.path
+    store(folder.settings.out / NAME, {**document, "model": model_of(folder), "plan": plan_of(path)})
+
+
+def saved_diagnosis(folder: Folder) -> dict[str, Any] | None:
+    """The kept diagnosis, if it is of these tests and this model: also after a step that was undone."""
+    kept = last_diagnosis(folder)
+    same = kept and kept.get("model") == model_of(folder) and kept.get("plan") == plan_of(folder.settings.path)
+    return kept if same else None
+
+
+def last_diagnosis(folder: Folder) -> dict[str, Any] | None:
+    """The kept diagnosis, of whatever model it was."""
+    return stored(folder.settings.out / NAME)

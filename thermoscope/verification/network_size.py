@@ -1,0 +1,78 @@
+"""A network as small as the wish allows: error against number of states, checked at points it has not seen."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from geom import Machine
+from lumped.condensation.greedy_enrichment import Enrichment, Size, enrich
+from lumped.condensation.reduction import Recipe, Reduction
+from lumped.condensation.reduction_error import Accuracy
+from lumped.machine.bases import on_all
+from lumped.machine.motor import motor_network
+from lumped.machine.zones import motor_zones
+from thermoscope.pipeline import ACROSS, Built, Progress, prepared, reduced, silent
+from thermoscope.verification.load_cases import load_cases
+
+FINE = Recipe(tolerance=0.01, random_points=8, local_points=12, local_states=16)
+ROUNDS = 3
+LOOKS = 3  # random points, and extreme ones, at which every size is checked
+JOINTS = (0.2, 5.0)  # times all contacts, as well
+
+
+@dataclass(frozen=True)
+class SizedNetwork:
+    """built : with the network that was kept;  reduction : with the points it learned from;  sizes : the table"""
+
+    built: Built
+    reduction: Reduction
+    wish: Accuracy
+    sizes: tuple[Size, ...]
+    adapted: Enrichment | None
+
+    @property
+    def met(self) -> bool:
+        return self.adapted is None or self.adapted.met
+
+    def document(self) -> dict[str, Any]:
+        """Errors in percent of a part's own rise, at nominal coefficients and at random ones."""
+        rounds = () if self.adapted is None else self.adapted.rounds
+        return {
+            "wish_percent": {"mean": self.wish.mean, "hot": self.wish.hot, "point": self.wish.point},
+            "met": self.met,
+            "states": len(self.built.network.states),
+            "sizes": [size.document() for size in self.sizes],
+            "guard": [r.document() for r in rounds],
+        }
+
+
+def accuracy_of(accuracy: float) -> Accuracy:
+    """Hot spots and points within `accuracy` percent of a part's own rise, means within half of it."""
+    return Accuracy(accuracy / 2, accuracy, accuracy)
+
+
+def smallest_network(
+    machine: Machine, accuracy: float, size_m: float = 0.06, segments: int = 48, recipe: Recipe = FINE,
+    progress: Progress = silent, rounds: int = ROUNDS, across: float = ACROSS, axial_m: float | None = None,
+) -> SizedNetwork:  # fmt: skip
+    """Build at several sizes and keep the smallest that meets the wish; if none does, learn from where it fails."""
+    machine = on_all(machine)
+    ready = prepared(machine, size_m, segments, progress, axial_m, across)
+    progress("what the parts can look like")
+    reduction = reduced(ready, recipe, motor_zones(machine))
+    cases, wish = load_cases(machine, reduction), accuracy_of(accuracy)
+    progress("error against number of states")
+    guides = [reduction.random_point(k) for k in range(LOOKS)]
+    points = [reduction.nominal_point(), *(reduction.extreme_point(k) for k in range(LOOKS))]
+    points += [reduction.joined_point(factor) for factor in JOINTS]
+    table = tuple(Size.of(reduction, asked, [*points, *guides], cases, wish) for asked in SIZES)
+    good = [size for size in table if size.met]
+    found = None if good else enrich(reduction, cases, wish, rounds, points, guides, tell=progress)
+    condensed = good[0].network if good else found.network  # type: ignore[union-attr]
+    kept = reduction if found is None else found.reduction
+    built = Built(machine, ready.mesh, ready.field, motor_network(machine, condensed), ready.meshing)
+    return SizedNetwork(built, kept, wish, table, found)
+
+
+SIZES = (0, 50, 100, 200, 400)  # 0: the means only

@@ -1,0 +1,55 @@
+"""Everything the page shows of one model: errors, curves, temperatures on the surface."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermoscope.case_folder.folder import Folder
+from thermoscope.case_folder.runs import fields, held
+
+if TYPE_CHECKING:
+    from viz.data import Comparison
+    from viz.rendering.cut import Surface
+
+FRAMES = 25
+Frames = tuple[NDArray[np.float64], NDArray[np.float32]]
+
+
+@dataclass(frozen=True)
+class Appearance:
+    """errors : a `compare` document;  curves : test -> readings and model
+
+    frames : test -> times (n,) s and temperatures (n, n_points) degC on the surface, empty without a machine
+    """
+
+    errors: Mapping[str, Any]
+    curves: Mapping[str, Comparison]
+    frames: Mapping[str, Frames]
+
+    @property
+    def limits(self) -> tuple[float, float]:
+        """Coldest and hottest temperature of all tests (degC)."""
+        values = [T for _, T in self.frames.values()]
+        return min(float(T.min()) for T in values), max(float(T.max()) for T in values)
+
+    def test(self, name: str) -> Mapping[str, Any]:
+        """The errors of one test."""
+        return next(t for t in self.errors["tests"] if t["name"] == name)
+
+
+def appearance_of(folder: Folder, surface: Surface | None) -> Appearance:
+    """Run the model on every test."""
+    from validation.comparison.compare import compare
+
+    curves = {test.name: held(folder, test) for test in folder.case.tests}
+    frames: dict[str, Frames] = {}
+    if surface is not None:
+        for test in folder.case.tests:
+            times, T = fields(folder.case, test, surface.nodes, FRAMES)
+            frames[test.name] = times, surface.values(T.T).T.astype(np.float32)
+    return Appearance(compare(folder.case).document(), curves, frames)

@@ -1,0 +1,144 @@
+"""What is known of a model after its calibration: one normal distribution of parameters and doubts together.
+
+    H = [J D]' S^-1 [J D] + diag(prior),   covariance = H^-1
+
+J: tangents of the calibrated readings to the parameters, D: to one deviation of every doubt (model_error.py), S: the
+noise that the residual shows. A doubt that the readings have settled counts no more, one that no sensor sees keeps its
+whole size, and what trades with a parameter stays tied to it. Source: Laplace's approximation; Kennedy and O'Hagan
+2001.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.model.network import Network, Parameter
+from validation.bands.inputs import FLOWS, moved_inputs
+from validation.calibration.calibrate import Fit, KnownSegments, minimise, with_model_error
+from validation.calibration.unknowns import working
+from validation.case import Case, Test
+from validation.comparison.linearisation import Segment, segments
+from validation.doubt import Doubt
+from validation.inference.model_error import with_cores, with_doubts
+from validation.measurement.operators import of_measurement
+from validation.threads import one_blas_thread
+
+Array = NDArray[np.float64]
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class ParameterPosterior:
+    """network : with a neutral parameter for every doubt;  values : of its parameters
+
+    names (p,) : of the covariance (p, p): parameters in fitting coordinates, doubts and inputs in deviations
+    doubts : of the network;  fitted : tests that it was calibrated on;  doubt : the table of doubt
+    """
+
+    network: Network
+    values: dict[str, float]
+    names: tuple[str, ...]
+    covariance: Array
+    doubts: tuple[str, ...]
+    fitted: tuple[str, ...]
+    doubt: Doubt
+
+    def of(self, names: Sequence[str], sd: Array) -> Array:
+        """(k, k) covariance of some names; those that it does not know are independent with the given deviations."""
+        at = {name: i for i, name in enumerate(self.names)}
+        known = np.array([name in at for name in names], bool)
+        index = [at[name] for name in names if name in at]
+        out = np.diag(np.where(known, 0.0, sd) ** 2)
+        out[np.ix_(known, known)] += self.covariance[np.ix_(index, index)]
+        return out
+
+
+def silent(message: str) -> None:
+    """No progress."""
+
+
+@one_blas_thread
+def parameter_posterior(case: Case, progress: Progress = silent) -> ParameterPosterior:
+    """Of the model as it stands: on the tests that it was fitted to; before any calibration the priors alone."""
+    network, unknowns = working(case)
+    grown, doubts = with_doubts(network, case.doubt)
+    values = {p.name: case.model.values.get(p.name, p.value) for p in network.parameters}
+    of_network = tuple(p.name for p in doubts)
+    roles = ("calibrate", "validate") if case.model.effects else ("calibrate",)
+    tests = [t for t in case.tests if t.role in roles] if case.model.revision else []
+    if not tests:
+        sd = np.array([p.prior_sd for p in unknowns.parameters])
+        return ParameterPosterior(grown, values, unknowns.names, np.diag(sd**2), of_network, (), case.doubt)
+    progress("uncertainty of the calibrated model")
+    parts = segments(network, tests, values, unknowns.parameters)
+    start = unknowns.coordinates(values)
+    plain = minimise(network, tests, unknowns, start, None, values, 0, KnownSegments(parts, nearby=False))
+    fit = with_model_error(plain, tests, values, case.doubt)
+    inputs = input_columns(network, tests, values, case.doubt, parts)
+    names = (*unknowns.names, *uncertain_names(grown, doubts, tests[0], values, fit, case.doubt), *inputs)
+    return ParameterPosterior(
+        grown, values, names, joint(fit, inputs), of_network, tuple(t.name for t in tests), case.doubt
+    )
+
+
+def input_columns(
+    network: Network, tests: Sequence[Test], values: dict[str, float], doubt: Doubt, plain: Sequence[Segment]
+) -> dict[str, list[Array]]:
+    """Input -> what its standard uncertainty does to every segment (K): one instrument serves all tests.
+
+    Flows are among the columns of the model error already.
+    """
+    out: dict[str, list[Array]] = {}
+    for test in tests:
+        for name, moved in moved_inputs(network, test, doubt):
+            if name not in FLOWS.values():
+                change = {s.channel: s for s in segments(network, [moved], values)}
+                column = out.setdefault(name, [np.zeros_like(s.r) for s in plain])
+                for i, s in enumerate(plain):
+                    if s.test == test.name:
+                        column[i] = s.r - change[s.channel].r
+    return out
+
+
+def uncertain_names(
+    grown: Network, doubts: Sequence[Parameter], test: Test, values: dict[str, float], fit: Fit, doubt: Doubt
+) -> list[str]:
+    """A name for every column of the model error: links and capacities, cores, placements, flows."""
+    cored = with_cores(grown, test, values, doubt)
+    first = [p.name for p in (*doubts, *cored.parameters[len(grown.parameters) :])]
+    assert fit.error is not None
+    rest = fit.error.size - len(first)
+    return [*first, *(f"placement {i}" for i in range(rest - 2)), "flow of air", "flow of liquid"]
+
+
+def joint(fit: Fit, inputs: Mapping[str, Sequence[Array]]) -> Array:
+    """Covariance of parameters, doubts and inputs."""
+    error = fit.error
+    assert error is not None
+    H = np.diag(np.concatenate([fit.unknowns.sd**-2.0, np.ones(error.size + len(inputs))]))
+    for i, s in enumerate(fit.parts):
+        X = fit.noise.whiten(s, np.column_stack([s.J, error.of(s), *(columns[i] for columns in inputs.values())]))
+        H += X.T @ X
+    return np.asarray(np.linalg.inv(H), float)
+
+
+def acting(of: ParameterPosterior, test: Test) -> tuple[Network, tuple[Parameter, ...], Array]:
+    """The network with the cores that a record gives its nodes; all in it that is uncertain but sensors; for each of
+    these the size of one deviation where it is a doubt, else 1."""
+    cored = with_cores(of.network, test, of.values, of.doubt)
+    cores = {p.name for p in cored.parameters[len(of.network.parameters) :]}
+    doubts = cores | set(of.doubts)
+    free = tuple(p for p in cored.parameters if p.name in doubts or (p.name in of.names and not _of_sensor(p, test)))
+    return cored, free, np.array([p.prior_sd if p.name in doubts else 1.0 for p in free])
+
+
+def _of_sensor(p: Parameter, test: Test) -> bool:
+    """A sensor's or a clock's: no temperature of the machine depends on it. Nor on how another test starts."""
+    if not of_measurement(p):
+        return False
+    kind, _, of = p.targets[0][0].partition(":")
+    return not (kind == "boundary" and of in test.boundaries) and not (kind == "initial" and of == test.name)

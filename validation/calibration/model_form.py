@@ -1,0 +1,222 @@
+"""What the formulas of a model get wrong: exponents of inputs and of the temperature difference, shares of one film.
+
+No correlation has the right exponent for one machine. A fit that may not move them presses their error into whatever
+else it may move. So every film and loss brings, as nuisances with narrow priors, an exponent for each input its law
+follows, one for the temperature difference of free convection, and the share of each part that one film is spread over.
+They are neutral at zero (shares at one). An effect that was added brings its exponents along as well.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.model.network import Link, Network, Parameter, Source
+from lumped.transfer.laws import CONSTANT, FilmTable, Inputs, Law, Linear, Power, Table, TemperatureLaw
+from validation.case import Test
+from validation.doubt import USUAL, Doubt
+from validation.effects.build import copy_link, copy_source
+
+Array = NDArray[np.float64]
+SETTLE_K = 40.0
+SETTLE_C = 40.0
+KNOTS = (0.0, 1.0, 2.0, 5.0, 10.0, 20.0, 40.0, 80.0, 160.0, 320.0)
+FARTHEST = np.log(10.0)
+KNOWN = ("copper", "measured")  # losses whose law is not in doubt
+
+
+@dataclass(frozen=True)
+class ExponentError(Law):
+    """d law / d exponent of one input: law * ln(law(u) / law(reference)) with the other inputs at their reference.
+
+    reference : level of each input at which the law is right
+    """
+
+    base: Law
+    input: str
+    reference: Mapping[str, float]
+    reads: tuple[str, ...] = field(init=False, default=())
+    temperature: TemperatureLaw = field(init=False, default=TemperatureLaw())
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "reads", self.base.reads)
+        object.__setattr__(self, "temperature", self.base.temperature)
+
+    def factor(self, inputs: Inputs) -> Array | float:
+        now = np.abs(np.asarray(inputs[self.input], float))
+        level = {k: np.full_like(now, v) for k, v in self.reference.items()}
+        at = np.abs(np.asarray(self.base.factor({**level, self.input: now}), float))
+        right = np.abs(np.asarray(self.base.factor(level), float))
+        bend = np.log(np.maximum(at, 1e-12 * right) / right)
+        return np.asarray(self.base.factor(inputs) * np.clip(bend, -FARTHEST, FARTHEST))
+
+
+@dataclass(frozen=True)
+class TemperatureSlopeError(Law):
+    """d law / d slope with temperature (1/K), zero at SETTLE_C: friction falls as the grease warms."""
+
+    base: Law
+    reads: tuple[str, ...] = field(init=False, default=())
+    temperature: TemperatureLaw = field(init=False, default=Linear(1.0, SETTLE_C + 1.0))
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "reads", self.base.reads)
+
+    def factor(self, inputs: Inputs) -> Array | float:
+        return self.base.factor(inputs)
+
+
+@dataclass(frozen=True)
+class DifferenceExponentError(Law):
+    """d law / d exponent of the temperature difference, zero at SETTLE_K."""
+
+    base: Law
+    reads: tuple[str, ...] = field(init=False, default=())
+    temperature: TemperatureLaw = field(init=False, default=TemperatureLaw())
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "reads", self.base.reads)
+        object.__setattr__(self, "temperature", exponent_derivative(self.base.temperature))
+
+    def factor(self, inputs: Inputs) -> Array | float:
+        return self.base.factor(inputs)
+
+
+def exponent_derivative(law: TemperatureLaw) -> Table | FilmTable:
+    """law(dT) ln(dT / SETTLE_K) as a table."""
+    if isinstance(law, FilmTable):
+        films = np.reshape(law.value, (-1, len(law.difference)))
+        return replace(law, value=tuple((films * _turn(np.array(law.difference))).ravel()))
+    if isinstance(law, Power):
+        knots: Array = np.array(KNOTS)
+        value = np.maximum(knots, 1.0) ** law.exponent
+    else:
+        assert isinstance(law, Table)
+        knots, value = np.array(law.difference), np.array(law.value)
+    return Table(tuple(knots), tuple(value * _turn(knots)))
+
+
+def _turn(difference: Array) -> Array:
+    return np.log(np.clip(difference / SETTLE_K, 0.1, 10.0))
+
+
+def levels(tests: Sequence[Test]) -> dict[str, float]:
+    """Root mean square of every input over all tests that record it; inputs that are zero throughout are left out."""
+    names = dict.fromkeys(name for t in tests for name in t.inputs)
+    pooled = {n: np.concatenate([t.inputs[n] for t in tests if n in t.inputs]) for n in names}
+    level = {n: float(np.sqrt(np.nanmean(np.square(v)))) for n, v in pooled.items()}
+    return {n: v for n, v in level.items() if v > 0}
+
+
+def varied(tests: Sequence[Test], name: str) -> bool:
+    """Does an input change within or between tests by more than a tenth of its level?"""
+    v = np.abs(np.concatenate([t.inputs[name] for t in tests if name in t.inputs]))
+    return bool(np.ptp(v) > 0.1 * np.mean(v))
+
+
+def with_model_form(
+    network: Network, tests: Sequence[Test], added: Collection[str] = (), doubt: Doubt = USUAL
+) -> tuple[Network, tuple[str, ...]]:
+    """The network with its form nuisances, and their names.
+
+    added : effects that are in the model: their laws are no truer than the model's own
+    """
+    level, before = levels(tests), {p.name for p in network.parameters}
+    moving = {n for n in level if varied(tests, n)}
+    first = first_of(network)
+    for p in network.parameters:
+        if p.mapping == "log" or p.name in added:
+            own = [x for x in network.links if first.get(x.name) == p.name]
+            films = [x for x in own if p.name in added or is_film(network, x)]
+            losses = [x for x in network.sources if first.get(x.name) == p.name and x.kind not in KNOWN]
+            laws = [x.law for x in films] + [x.law for x in losses]
+            for name in dict.fromkeys(r for law in laws for r in law.reads if r in moving):
+                network = _with_input(network, p.name, name, films, losses, level, doubt)
+            network = _with_difference(network, p.name, films, doubt)
+            network = _with_warming(network, p.name, losses, doubt)
+            if p.name not in added:
+                network = replace(network, parameters=(*network.parameters, *shares(p.name, films, doubt)))
+    return network, tuple(p.name for p in network.parameters if p.name not in before)
+
+
+def first_of(network: Network) -> dict[str, str]:
+    """For each target the first parameter that acts on it."""
+    first: dict[str, str] = {}
+    for p in network.parameters:
+        for target, _ in p.targets:
+            first.setdefault(target, p.name)
+    return first
+
+
+def is_film(network: Network, link: Link) -> bool:
+    return link.kind == "film" or (link.kind == "link" and bool(set(link.places) & set(network.boundaries)))
+
+
+def _with_input(
+    network: Network,
+    parent: str,
+    name: str,
+    films: Sequence[Link],
+    losses: Sequence[Source],
+    level: Mapping[str, float],
+    doubt: Doubt,
+) -> Network:
+    """The exponent of one input in all laws of a parameter that follow it."""
+    new = []
+
+    def bend(x: Link | Source) -> ExponentError | None:
+        fit = name in x.law.reads and set(x.law.reads) <= set(level)
+        return ExponentError(x.law, name, {k: level[k] for k in x.law.reads}) if fit else None
+
+    for film in films:
+        if law := bend(film):
+            new.append(f"{film.name}^{name}")
+            network = copy_link(network, film, new[-1], law)
+    for loss in losses:
+        if law := bend(loss):
+            new.append(f"{loss.name}^{name}")
+            network = copy_source(network, loss, new[-1], law)
+    return _with_parameter(network, f"{parent}^{name}", new, doubt["input exponent"])
+
+
+def _with_difference(network: Network, parent: str, films: Sequence[Link], doubt: Doubt) -> Network:
+    """The exponent of the temperature difference in the films of free convection."""
+    free = [x for x in films if isinstance(x.law.temperature, (Power, Table, FilmTable))]
+    for x in free:
+        network = copy_link(network, x, f"{x.name}^dT", DifferenceExponentError(x.law))
+    return _with_parameter(network, f"{parent}^dT", [f"{x.name}^dT" for x in free], doubt["difference exponent"])
+
+
+def _with_warming(network: Network, parent: str, losses: Sequence[Source], doubt: Doubt) -> Network:
+    """The slope with temperature of friction."""
+    greased = [x for x in losses if x.kind == "friction" and x.law.temperature == CONSTANT]
+    for x in greased:
+        network = copy_source(network, x, f"{x.name}^T", TemperatureSlopeError(x.law))
+    return _with_parameter(network, f"{parent}^T", [f"{x.name}^T" for x in greased], doubt["warming"], "1/K")
+
+
+def _with_parameter(network: Network, name: str, targets: Sequence[str], sd: float, unit: str = "1") -> Network:
+    if not targets:
+        return network
+    new = Parameter(
+        name, tuple((t, 1.0) for t in targets), value=0.0, unit=unit, low=-2.5 * sd,
+        high=2.5 * sd, prior_sd=sd, mapping="amplitude", neutral=0.0, source="scatter of published exponents",
+    )  # fmt: skip
+    return replace(network, parameters=(*network.parameters, new))
+
+
+def shares(parent: str, films: Sequence[Link], doubt: Doubt = USUAL) -> Iterator[Parameter]:
+    """The part of each body in a film that several share."""
+    by_body: dict[str, list[str]] = {}
+    for link in films:
+        by_body.setdefault(link.places[0], []).append(link.name)
+    if len(by_body) < 2:
+        return
+    for body, names in by_body.items():
+        yield Parameter(
+            f"{parent}:{body}", tuple((n, 1.0) for n in names), low=0.5, high=2.0, prior_sd=doubt["share"],
+            source="scatter of published film sets",
+        )  # fmt: skip

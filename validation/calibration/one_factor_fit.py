@@ -1,0 +1,46 @@
+"""The old way: turn one knob until the curves agree. Shown beside a diagnosis to see what it costs on other tests."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from geom.errors import InputError
+from validation.case import Case
+from validation.comparison.compare import Comparison, compare, pooled
+
+RANGE = (0.25, 4.0)
+
+
+@dataclass(frozen=True)
+class OneFactorFit:
+    """One parameter moved, all others as they were: its factor, and the comparison that results."""
+
+    parameter: str
+    factor: float
+    comparison: Comparison
+
+
+def one_factor_fit(case: Case, parameter: str, channel: str | None = None) -> OneFactorFit:
+    """The factor on one parameter of the network that brings the validation tests closest (to one channel, or to all).
+
+    Nothing tells this fit what is physically right: no prior, no other test.
+    """
+    from scipy.optimize import minimize_scalar
+
+    known = {p.name: p.value for p in case.model.network.parameters}
+    if parameter not in known:
+        raise InputError(f"unknown parameter '{parameter}'", case.name, f"known: {', '.join(sorted(known))}")
+    now = dict(case.model.values)
+    start = now.get(parameter, known[parameter])
+
+    def moved(log_factor: float) -> Comparison:
+        return compare(case, {**now, parameter: start * float(np.exp(log_factor))})
+
+    def error(log_factor: float) -> float:
+        tests = [t for t in moved(log_factor).tests if t.role == "validate"]
+        return pooled([c for t in tests for c in t.channels if channel in (None, c.channel)])
+
+    best = minimize_scalar(error, bounds=tuple(np.log(RANGE)), method="bounded", options={"xatol": 0.01})
+    return OneFactorFit(parameter, float(np.exp(best.x)), moved(float(best.x)))

@@ -1,0 +1,117 @@
+"""Calibration in stages: an isolating test frees its own parameters, later tests take them as found."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from fnmatch import fnmatchcase
+
+import numpy as np
+
+from geom.errors import InputError
+from lumped.model.network import Network, Parameter
+from validation.calibration.calibrate import Fit, Keep, Progress, calibrated, minimise, no_memory, no_progress
+from validation.calibration.unknowns import Unknowns, working
+from validation.case import Case, Test
+from validation.measurement.operators import of_measurement
+
+SAME = 0.5  # nats: two starts that end this close have found the same optimum
+
+
+@dataclass(frozen=True)
+class Stage:
+    """Tests that are fitted together and the names of the parameters that are free then."""
+
+    tests: tuple[Test, ...]
+    free: frozenset[str]
+
+
+@dataclass(frozen=True)
+class Search:
+    """How a fit looks for its optimum.
+
+    starts : how many, the first where the model stands, the others drawn from the prior with `seed`
+    begin : values of an interrupted fit, to go on from;  keep : told the values after every step
+    """
+
+    starts: int = 1
+    seed: int = 0
+    begin: Mapping[str, float] = field(default_factory=dict)
+    keep: Keep = no_memory
+
+
+def fit_stages(case: Case, tests: Sequence[Test], unknowns: Unknowns) -> list[Stage]:
+    """One stage per test that frees something, in the case's order, then one for all the others and what is left."""
+    left, out = {p.name for p in unknowns.parameters if not of_measurement(p)}, []
+    for test in tests:
+        if test.frees:
+            own = {n for n in left if any(belongs(n, g) for g in _known(case, test, left))}
+            out.append(Stage((test,), frozenset(own)))
+            left -= own
+    together = tuple(t for t in tests if not t.frees)
+    return [*out, Stage(together, frozenset(left))] if together else out
+
+
+def _known(case: Case, test: Test, left: set[str]) -> tuple[str, ...]:
+    for pattern in test.frees:
+        if not any(belongs(n, pattern) for n in left):
+            right = f"free and not freed by an earlier test: {', '.join(sorted(left))}"
+            raise InputError(f"'{pattern}' frees nothing", f"case '{case.name}' test '{test.name}'", right)
+    return test.frees
+
+
+def belongs(name: str, pattern: str) -> bool:
+    """Does a parameter, or the one whose form or share it is ("h^speed", "h:flange"), match a glob?"""
+    return any(fnmatchcase(n, pattern) for n in (name, name.split("^")[0], name.split(":")[0]))
+
+
+def staged_fit(
+    case: Case, tests: Sequence[Test], start: Mapping[str, float], search: Search | None = None,
+    progress: Progress = no_progress,
+) -> list[Fit]:  # fmt: skip
+    """The case's free parameters fitted to some tests, stage after stage; the fit of each."""
+    network, unknowns = working(case)
+    search = search or Search()
+    values, fits = {**start, **search.begin}, []
+    for stage in fit_stages(case, tests, unknowns):
+        names = {p.name for p in unknowns.parameters if p.name in stage.free or _measured_in(p, stage.tests)}
+        own = Unknowns(tuple(p for p in unknowns.parameters if p.name in names))
+        fits.append(_one(network, stage.tests, own, values, search, progress))
+        values |= fits[-1].values
+    return fits
+
+
+def _measured_in(p: Parameter, tests: Sequence[Test]) -> bool:
+    """Does a nuisance of the measurement concern one of these tests?"""
+    ends = (
+        {t.name for t in tests} | {c.name for t in tests for c in t.channels} | {b for t in tests for b in t.boundaries}
+    )
+    return of_measurement(p) and p.targets[0][0].split(":", 1)[1] in ends
+
+
+def _one(
+    network: Network, tests: Sequence[Test], unknowns: Unknowns, values: Mapping[str, float], search: Search,
+    progress: Progress,
+) -> Fit:  # fmt: skip
+    best = best_start(network, tests, unknowns, values, search, progress) if search.starts > 1 else values
+    return calibrated(network, tests, unknowns, best, progress=progress, keep=search.keep)
+
+
+def best_start(
+    network: Network, tests: Sequence[Test], unknowns: Unknowns, values: Mapping[str, float], search: Search,
+    progress: Progress,
+) -> dict[str, float]:  # fmt: skip
+    """Rough fits from several points of the prior; the values of the best."""
+    rng, held = np.random.default_rng(search.seed), {p.name: values.get(p.name, p.value) for p in network.parameters}
+    first = unknowns.coordinates(values)
+    points = [first, *(unknowns.sd * rng.standard_normal(first.size) for _ in range(search.starts - 1))]
+    fits = [minimise(network, tests, unknowns, x, fixed=held, draft=True, progress=progress) for x in points]
+    alike = sum(f.objective < min(g.objective for g in fits) + SAME for f in fits)
+    progress(f"{alike} of {len(fits)} starts end at the same optimum")
+    return {**values, **min(fits, key=lambda f: f.objective).values}
+
+
+def merged(fits: Sequence[Fit], row: Callable[[Fit], Sequence]) -> list:
+    """Rows of all stages by their name; a later stage's word counts."""
+    rows = {r.name: r for fit in fits for r in row(fit)}
+    return list(rows.values())

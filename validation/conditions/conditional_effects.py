@@ -1,0 +1,162 @@
+"""Conditions nobody wrote down, as hypotheses of the posterior: what may have held in one test, or for a while.
+
+All are scored by tangents; those that could carry weight join the evidence, where they are paired and refitted like
+all others. Their prior is a share of PRIOR["condition"]: half for whole tests, half for stretches, evenly over what, in
+which test, and when.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from validation.calibration.calibrate import no_progress
+from validation.calibration.unknowns import scene_of
+from validation.case import Case
+from validation.conditions.candidate_conditions import single_test_effects, temporary_effects
+from validation.conditions.hat_functions import Interval, hat_scores
+from validation.conditions.refine import columns, refined
+from validation.conditions.windows import ALIKE, distinct, stretches, worth
+from validation.diagnosis.missing_heat import MissingHeat, Scan
+from validation.doubt import PRIOR, USUAL
+from validation.effects import Effect, extended
+from validation.effects.during import During
+from validation.effects.sites import neighbours
+from validation.effects.time_window import Event, event
+from validation.inference.evidence import Evidence, extended_prior, projected, weighed
+from validation.inference.posterior import log_bayes_of
+from validation.inference.score import apart, score, total
+
+Array = NDArray[np.float64]
+TESTS, EVENTS, EACH = 16, 4, 6  # conditions of whole tests, events, and explanations of each that join the others
+HOPELESS = 5.0  # nats below nothing, prior included: what has less cannot carry weight
+
+
+@dataclass(frozen=True)
+class Condition:
+    """A condition before it joins.  worth : log posterior odds against nothing"""
+
+    effect: During
+    worth: float
+
+
+def conditions(
+    evidence: Evidence, case: Case, looked: Scan, heat: Sequence[MissingHeat], only: Sequence[str] | None = None,
+    progress: Callable[[str], None] = no_progress,
+) -> tuple[list[During], tuple[Event, ...]]:  # fmt: skip
+    """The conditions that could carry weight, and the events they hold in.  only : kinds, None for all"""
+    known = {**case.model.values, **evidence.fit.values}
+    scene = replace(scene_of(case), network=evidence.fit.network)
+    bases = [e for e in temporary_effects(scene) if only is None or e.kind in only]
+    if not bases:
+        return [], ()
+    progress("looking for what held in one test or for a while")
+    whole = [e for e in single_test_effects(scene) if only is None or e.kind in only]
+    chosen, events = best(single_test_conditions(evidence, whole, known), TESTS), []
+    for s in likely_intervals(evidence, looked, heat, known, len(bases)):
+        found, own = explained(evidence, bases, s, looked, known)
+        events.append(found)
+        chosen += best(own, EACH)
+    for gate, share in declared_conditions(case, evidence, events):
+        effects = [During.of(base, gate, share / len(bases)) for base in bases]
+        chosen += best(scored_in(evidence, effects, known, odds_against_nothing(share / len(bases))), EACH)
+    return [c.effect for c in chosen], tuple(events)
+
+
+def declared_conditions(case: Case, evidence: Evidence, events: Sequence[Event]) -> list[tuple[str, float]]:
+    """What the user says was different: inputs of 0 and 1 that no law reads, and events he confirmed, each with its
+    share of the prior."""
+    laws = [*(x.law for x in evidence.network.links), *(x.law for x in evidence.network.sources)]
+    read = {name for law in laws for name in law.reads}
+    inputs = {n: np.concatenate([t.inputs[n] for t in evidence.tests if n in t.inputs]) for t in evidence.tests
+              for n in t.inputs}  # fmt: skip
+    switches = [n for n, u in inputs.items() if n not in read and set(np.unique(u)) == {0.0, 1.0}]
+    said = [e for name, yes in case.answers.items() if yes and (e := event(name))]
+    new = [e.name for e in said if all(e.overlap(x) < ALIKE for x in events)]
+    return [(n, 0.5 / len(switches)) for n in switches] + [(n, 0.5 / len(evidence.tests)) for n in new]
+
+
+def best(conditions: Sequence[Condition], most: int) -> list[Condition]:
+    hopeful = [c for c in conditions if c.worth > -HOPELESS]
+    return sorted(hopeful, key=lambda c: -c.worth)[:most]
+
+
+def odds_against_nothing(share: float) -> float:
+    """log prior odds of a condition with a share of their prior."""
+    return float(np.log(PRIOR["condition"].share * share / PRIOR["nothing"].share))
+
+
+def single_test_conditions(evidence: Evidence, bases: Sequence[Effect], known: Mapping[str, float]) -> list[Condition]:
+    """Everything that may have held in one test alone; none where there is only one test."""
+    names = [t.name for t in evidence.tests]
+    if len(names) < 2 or not bases:
+        return []
+    parts = columns(evidence, bases, known)
+    parameters = extended(evidence.fit.network, bases).parameters[-len(bases) :]
+    theta, sd = extended_prior(evidence.fit)
+    sign = np.tile([q.sign for q in parameters], len(names)).astype(int)
+    found = score(apart(projected(evidence.fit, parts)), theta, sd, sign)
+    bayes = log_bayes_of(found, np.tile([q.prior_sd for q in parameters], len(names)))
+    share = 0.5 / (len(bases) * len(names))
+    each = [(base, test) for test in names for base in bases]
+    return [
+        Condition(During.of(base, test, share), float(b) + odds_against_nothing(share))
+        for (base, test), b, seen in zip(each, bayes, found.visible, strict=True) if seen
+    ]  # fmt: skip
+
+
+def likely_intervals(
+    evidence: Evidence, looked: Scan, heat: Sequence[MissingHeat], known: Mapping[str, float], laws: int
+) -> list[Interval]:
+    """The stretches that could carry weight once the price of when, what and where is paid."""
+    found = hat_scores(evidence, looked, known)
+    limit = -HOPELESS - odds_against_nothing(0.5 / (laws * len(evidence.tests)))
+    ordered = stretches(found, heat, neighbours(evidence.fit.network))
+    return [s for s in distinct(ordered, EVENTS) if worth(found, s) > limit]
+
+
+def explained(
+    evidence: Evidence, bases: Sequence[Effect], s: Interval, looked: Scan, known: Mapping[str, float]
+) -> tuple[Event, list[Condition]]:
+    """An event with its ends at the samples, and all that it may have been, exactly run."""
+    reach = {t: 1.5 * float(looked.knots[t][1] - looked.knots[t][0]) for t in s.event.spans}
+    timed = refined(evidence, likeness(evidence, bases, s, known), s.event, reach, known)
+    share = 0.5 / (len(bases) * len(evidence.tests)) * float(np.exp(max(timed.log_share, -600.0)))
+    effects = [During.of(base, timed.event.name, share) for base in bases]
+    return timed.event, scored_in(evidence, effects, known, odds_against_nothing(share))
+
+
+def likeness(evidence: Evidence, bases: Sequence[Effect], s: Interval, known: Mapping[str, float]) -> Effect:
+    """Of all that can hold for a while what explains a stretch best as it stands."""
+    effects = [During.of(base, s.event.name) for base in bases]
+    rows = scored_in(evidence, effects, known, 0.0)
+    return max(rows, key=lambda c: c.worth).effect.base if rows else bases[0]
+
+
+def scored_in(
+    evidence: Evidence, effects: Sequence[During], known: Mapping[str, float], prior: float
+) -> list[Condition]:
+    """Conditions at their linear amplitude, without those that move no reading further than chance does."""
+    parameters = extended(evidence.fit.network, effects).parameters[-len(effects) :]
+    theta, sd = extended_prior(evidence.fit)
+    parts = columns(evidence, effects, known)
+    found = score(total(projected(evidence.fit, parts)), theta, sd, np.array([q.sign for q in parameters], int))
+    bayes = log_bayes_of(found, np.array([q.prior_sd for q in parameters]))
+    moved = np.max([np.max(np.abs(s.J[:, evidence.p :]), axis=0) / s.weight for s in parts], axis=0)
+    clear = found.visible & (moved * np.abs(found.amplitude) > USUAL["excursion"])
+    return [Condition(e, float(b) + prior) for e, b, seen in zip(effects, bayes, clear, strict=True) if seen]
+
+
+def joined(evidence: Evidence, effects: Sequence[Effect], known: Mapping[str, float]) -> Evidence:
+    """The evidence with further effects behind its own."""
+    if not effects:
+        return evidence
+    e, fit, p = evidence, evidence.fit, evidence.p
+    network = extended(e.network, effects)
+    parameters = (*e.parameters, *network.parameters[-len(effects) :])
+    new = columns(evidence, effects, known)
+    parts = tuple(replace(s, J=np.column_stack([s.J, n.J[:, p:]])) for s, n in zip(e.parts, new, strict=True))
+    return weighed(e.tests, fit, network, (*e.effects, *effects), parameters, parts, e.jumps)

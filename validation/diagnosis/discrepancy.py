@@ -1,0 +1,63 @@
+"""Where a comparison fails: uncertainty, whiteness, inputs the error follows, and the heat that would mend it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from validation.calibration.calibrate import no_progress
+from validation.calibration.unknowns import working
+from validation.case import Case
+from validation.comparison.compare import physical
+from validation.comparison.linearisation import segments
+from validation.comparison.residuals import Pattern, patterns
+from validation.comparison.uncertainty import Uncertainty, uncertainties
+from validation.conditions.contradiction import Contradiction, contradiction
+from validation.conditions.windows import pulses
+from validation.diagnosis.missing_heat import MissingHeat, missing_heat
+from validation.inference.evidence import calibrated_case, diagnosing
+from validation.threads import one_blas_thread
+
+
+@dataclass(frozen=True)
+class Discrepancy:
+    """All rows of all tests, held-out ones too; heat : what would have to enter where, most evident first.
+
+    contradiction : what would have to differ between the tests that are fitted
+    """
+
+    uncertainty: tuple[Uncertainty, ...]
+    patterns: tuple[Pattern, ...]
+    heat: tuple[MissingHeat, ...]
+    contradiction: Contradiction
+
+    def document(self) -> dict:
+        return {
+            "uncertainty": [u.document() for u in self.uncertainty],
+            "patterns": [p.document() for p in self.patterns],
+            "where": [{**h.document(), "pulses": steps(h)} for h in self.heat],
+            "contradiction": self.contradiction.document(),
+        }
+
+
+@one_blas_thread
+def discrepancies(case: Case, progress: Callable[[str], None] = no_progress) -> Discrepancy:
+    """The model as it stands; the scan for heat is made after calibration, or it would find what calibration mends."""
+    network, _ = working(case)
+    now = physical(case)
+    progress("moving every input by its uncertainty")
+    rows = tuple(u for test in case.tests for u in uncertainties(network, test, now))
+    left = patterns(segments(network, case.tests, now), case.tests)
+    fit = calibrated_case(case, progress)
+    progress("looking for where heat is missing")
+    tests = diagnosing(case)
+    return Discrepancy(rows, tuple(left), tuple(missing_heat(fit, tests)), contradiction(fit, tests))
+
+
+def steps(heat: MissingHeat) -> list[dict]:
+    """Every stretch in which a missing-heat curve stands on another level: test, begin and end (s), W."""
+    found = {test: pulses(*curve) for test, curve in heat.heat_W.items()}
+    return [
+        {"test": test, "begin_s": a, "end_s": b, "heat_W": level}
+        for test, own in found.items() for (a, b), level in own
+    ]  # fmt: skip

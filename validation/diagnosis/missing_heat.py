@@ -1,0 +1,189 @@
+"""Where and when heat is missing: a free heat input at each node in turn, as hat functions of time.
+
+log evidence of a heat input q ~ N(0, s^2) per hat at node i, nuisances projected out; 10 nats locate it.
+Source: Sarkka, Alvarez and Lawrence 2019 (latent force models); Rasmussen and Williams 2006, 5.4.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import block_diag
+from scipy.special import logsumexp
+
+from lumped.model.network import Network, Parameter
+from lumped.transfer.laws import Fixed, Inputs
+from validation.calibration.calibrate import Fit
+from validation.case import Test
+from validation.comparison.linearisation import Segment, segments
+from validation.effects.build import Shaped, heat, power_scale
+from validation.effects.sites import solids
+from validation.inference.model_error import ModelError
+from validation.inference.score import Gram, gram
+from validation.measurement.blocks import INSTANTS
+from validation.measurement.noise import Noise
+
+Array = NDArray[np.float64]
+KNOT_S = 180.0
+MEMORY_S = (60.0, 1200.0)
+LOCATED = 10.0  # nats
+
+
+@dataclass(frozen=True)
+class MissingHeat:
+    """Heat missing at one place: evidence (nats); per test its times (s), heat (W) and standard deviation (W).
+
+    log_bayes : the same averaged over how large and how lasting such heat may be
+    moves_K : the most by which it moves a reading, what is calibrated following
+    """
+
+    place: str
+    evidence_nats: float
+    log_bayes: float
+    heat_W: dict[str, tuple[Array, Array, Array]]
+    moves_K: float
+
+    def document(self) -> dict:
+        series = {
+            n: {"time_s": t.tolist(), "heat_W": q.tolist(), "sd_W": s.tolist()} for n, (t, q, s) in self.heat_W.items()
+        }
+        return {"place": self.place, "evidence_nats": self.evidence_nats, "heat": series}
+
+
+@dataclass(frozen=True)
+class HatFunction:
+    """A hat function of time around one knot (s)."""
+
+    at: float
+    width: float
+
+    def __call__(self, inputs: Inputs) -> Array:
+        return np.maximum(0.0, 1.0 - np.abs(np.asarray(inputs["time_s"], float) - self.at) / self.width)
+
+
+@dataclass(frozen=True)
+class Scan:
+    """What a heat input at every solid and instant would do to the readings of a calibrated model.
+
+    knots : test -> instants (s) of its hats;  parts : derivatives by calibrated parameters (standard deviations `sd` of
+    their priors), then by every place's hats;  scale : usual heat (W)
+    """
+
+    places: tuple[str, ...]
+    knots: Mapping[str, Array]
+    parts: tuple[Segment, ...]
+    sd: Array
+    scale: float
+
+    def read(
+        self, residual: Sequence[Segment], noise: Noise, theta: Array, error: ModelError | None = None
+    ) -> list[MissingHeat]:
+        """All places, most evident first.
+
+        theta : where the parameters stand, from the mean of their priors
+        """
+        left = {(s.test, s.channel): s.r for s in residual}
+        parts = [replace(s, r=left[s.test, s.channel]) for s in self.parts]
+        if error:
+            parts = [error.beside(s, self.sd.size) for s in parts]
+        d = error.size if error else 0
+        grams = gram(parts, noise, self.sd.size + d)
+        theta, weight = np.concatenate([theta, np.zeros(d)]), np.concatenate([self.sd**-2.0, np.ones(d)])
+        H = sum(g.JJ for g in grams.values()) + np.diag(weight)
+        Jr = sum(g.Jr for g in grams.values()) - weight * theta
+        cov = np.asarray(np.linalg.inv(H), float)
+        found = [self._at(i, grams, cov, Jr) for i in range(len(self.places))]
+        return sorted(found, key=lambda x: -x.evidence_nats)
+
+    @cached_property
+    def roots(self) -> list[Array]:
+        """Cholesky factor of the heat's correlation at the knots, for each memory."""
+        forms = [_correlation(list(self.knots.values()), memory) for memory in MEMORY_S]
+        return [np.asarray(np.linalg.cholesky(R), float) for R in forms]
+
+    def _at(self, i: int, grams: Mapping[str, Gram], cov: Array, Jr: Array) -> MissingHeat:
+        size = [len(k) for k in self.knots.values()]
+        start = np.concatenate([[0], np.cumsum(size)])
+        A, u = np.zeros((start[-1], start[-1])), np.zeros(start[-1])
+        JZ = np.zeros((cov.shape[0], start[-1]))
+        for d, name in enumerate(self.knots):
+            g, own, block = grams[name], slice(i * size[d], (i + 1) * size[d]), slice(start[d], start[d + 1])
+            A[block, block], u[block], JZ[:, block] = g.ZZ[own, own], g.Zr[own], g.JZ[:, own]
+        A, u = A - JZ.T @ cov @ JZ, u - JZ.T @ cov @ Jr
+        sizes = self.scale * 10.0 ** np.arange(-3.0, 1.5, 0.5)
+        tried = [_evidence(A, u, sizes, root) for root in self.roots]
+        nats, q, sd = max(tried, key=lambda x: x[0].max())
+        best, mean = nats.max(), logsumexp([x[0] for x in tried]) - np.log(len(tried) * sizes.size)
+        cut = [slice(a, b) for a, b in pairwise(start)]
+        heat_W = {name: (k, q[c], sd[c]) for (name, k), c in zip(self.knots.items(), cut, strict=True)}
+        return MissingHeat(self.places[i], float(best), float(mean), heat_W, self._moves(i, heat_W, -cov @ JZ @ q))
+
+    def _moves(self, i: int, heat_W: Mapping[str, tuple[Array, Array, Array]], follow: Array) -> float:
+        """Largest change of a reading (K); follow : what the heat makes of the calibrated parameters."""
+        p, most = self.sd.size, 0.0
+        for s in self.parts:
+            _, q, _ = heat_W[s.test]
+            own = slice(p + i * q.size, p + (i + 1) * q.size)
+            most = max(most, float(np.max(np.abs(s.J[:, :p] @ follow[:p] + s.J[:, own] @ q), initial=0.0)))
+        return most
+
+
+def is_located(evidence_nats: float) -> bool:
+    """Is there more evidence than it takes to place heat?"""
+    return evidence_nats > LOCATED
+
+
+def missing_heat(fit: Fit, tests: Sequence[Test], knot_s: float = KNOT_S) -> list[MissingHeat]:
+    """The scan of a calibrated model's residual."""
+    return scan(fit, tests, knot_s).read(fit.parts, fit.noise, fit.theta, fit.error)
+
+
+def scan(fit: Fit, tests: Sequence[Test], knot_s: float = KNOT_S) -> Scan:
+    """Hats every `knot_s`, or as many in a long test as its residual has instants to tell apart."""
+    places, knots = tuple(p.name for p in solids(fit.network)), {}
+    parts: list[Segment] = []
+    for test in tests:
+        span = test.time[-1] - test.time[0]
+        count = int(np.clip(round(span / knot_s) + 1, 2, INSTANTS // 2))
+        knots[test.name] = test.time[0] + np.linspace(0.0, span, count)
+        network, hats = with_heat_inputs(fit.network, places, knots[test.name])
+        parts += segments(network, [test], fit.values, (*fit.unknowns.parameters, *hats))
+    return Scan(places, knots, tuple(parts), fit.unknowns.sd, power_scale(fit.network))
+
+
+def with_heat_inputs(network: Network, places: Sequence[str], knots: Array) -> tuple[Network, list[Parameter]]:
+    """The network with a zero heat input (1 W) at every place and knot."""
+    sources, hats = [], []
+    for place in places:
+        for at in knots:
+            name = f"latent:{place}:{at:.0f}"
+            law = Shaped(Fixed(1.0), HatFunction(float(at), float(knots[1] - knots[0])), also_reads=("time_s",))
+            sources.append(heat(network, name, "latent", place, law))
+            hats.append(Parameter(name, ((name, 1.0),), 0.0, "W", mapping="amplitude", neutral=0.0))
+    network = network.extended(sources=sources)
+    return replace(network, parameters=(*network.parameters, *hats)), hats
+
+
+def _correlation(knots: Sequence[Array], memory: float) -> Array:
+    """Correlation of the heat at the knots: exp(-|dt| / memory) within a test, none between tests."""
+    return block_diag(*(np.exp(-np.abs(k[:, None] - k[None, :]) / memory) for k in knots))
+
+
+def _evidence(A: Array, u: Array, sizes: Array, root: Array) -> tuple[Array, Array, Array]:
+    """Log evidence of q ~ N(0, s^2 root root') for each size s, posterior mean and standard deviation of the best.
+
+    In the eigenvectors of root' A root every size is a sum: log ev = 1/2 sum(s^2 b^2 / (1 + s^2 l) - log(1 + s^2 l)).
+    """
+    eigenvalues, vectors = np.linalg.eigh(root.T @ A @ root)
+    basis = root @ vectors
+    b, square = basis.T @ u, sizes[:, None] ** 2
+    grown = 1.0 + square * np.maximum(eigenvalues, 0.0)
+    evidence = 0.5 * np.sum(square * b**2 / grown - np.log(grown), axis=1)
+    best = int(np.argmax(evidence))
+    share = square[best] / grown[best]
+    return evidence, basis @ (share * b), np.asarray(np.sqrt(basis**2 @ share))

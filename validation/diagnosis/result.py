@@ -1,0 +1,257 @@
+"""What a diagnosis says: the seven verdicts, and the rows of its tables."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal
+
+from geom.errors import InputError
+from validation.diagnosis.missing_heat import MissingHeat
+
+if TYPE_CHECKING:
+    from validation.conditions.contradiction import Contradiction
+    from validation.procedure.reduction.which_base import Hypothesis
+
+Verdict = Literal["adequate", "named", "group", "several", "outside", "absorbed", "data"]
+Decided = Literal["named", "group", "no", "cannot-tell"]
+Pair = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """One effect that may be missing.
+
+    score : log evidence against nothing missing (nats);  threshold : from which it is more probable than nothing
+    probability : that it is among what is missing
+    explained : share of the residual's sum of squares it removes
+    rmse_K, holdout_rmse_K : (before, after) on the tests used and on the held-out ones, where it was refitted
+    absorbed : share of its trace that the calibration takes;  twin : the calibrated parameter that does the same
+    note : the record that speaks against it
+    """
+
+    effect: str
+    score: float
+    threshold: float
+    value: float
+    unit: str
+    ci95: Pair
+    decision: Decided
+    explained: float | None = None
+    rmse_K: Pair | None = None
+    holdout_rmse_K: Pair | None = None
+    confused_with: tuple[str, ...] = ()
+    absorbed: float = 0.0
+    smallest_detectable: float = float("inf")
+    twin: str | None = None
+    title: str = ""
+    isolating_test: str = ""
+    note: str = ""
+    probability: float = 0.0
+
+    def document(self) -> dict:
+        out = {k: v for k, v in vars(self).items() if k not in ("value", "unit", "ci95", "rmse_K", "holdout_rmse_K")}
+        out["amplitude"] = {"value": self.value, "unit": self.unit, "ci95": list(self.ci95)}
+        out["rmse_K"], out["holdout_rmse_K"] = _pair(self.rmse_K), _pair(self.holdout_rmse_K)
+        return {**out, "confused_with": list(self.confused_with)}
+
+
+def _pair(pair: Pair | None) -> dict | None:
+    return None if pair is None else {"before": pair[0], "after": pair[1]}
+
+
+@dataclass(frozen=True)
+class DetectionLimit:
+    """An effect that these tests could not have shown unless it were larger than this."""
+
+    effect: str
+    smallest_detectable: float
+    unit: str
+    absorbed_by: str | None = None
+
+    def document(self) -> dict:
+        return dict(vars(self))
+
+
+@dataclass(frozen=True)
+class NextTest:
+    """A test of the engineer's menu: the pairs it would separate and the deviance by which (20 is decisive)."""
+
+    test: str
+    separates: tuple[str, ...]
+    predicted_gain: float
+    hours: float
+    why: str = ""
+
+    def document(self) -> dict:
+        return {**vars(self), "separates": list(self.separates)}
+
+
+@dataclass(frozen=True)
+class NextSensor:
+    """A further thermocouple in the same tests: the pairs it would set apart and the deviance by which."""
+
+    place: str
+    separates: tuple[str, ...]
+    predicted_gain: float
+    hours: float
+    why: str = ""
+
+    def document(self) -> dict:
+        return {**vars(self), "separates": list(self.separates)}
+
+
+@dataclass(frozen=True)
+class Odds:
+    """The probability of one hypothesis: "nothing", "kind@place", "kind@place + kind@place", "heat@place".
+
+    log_evidence : over that of nothing (nats), None for "others"
+    tests : those a condition held in;  begin_s, end_s : when, if it held once and for a while
+    """
+
+    hypothesis: str
+    effects: tuple[str, ...]
+    probability: float
+    log_evidence: float | None = None
+    tests: tuple[str, ...] = ()
+    begin_s: float | None = None
+    end_s: float | None = None
+
+    def document(self) -> dict:
+        return {**vars(self), "effects": list(self.effects), "tests": list(self.tests)}
+
+
+@dataclass(frozen=True)
+class Question:
+    """A yes-or-no question that needs no test.
+
+    about : what `answer` takes;  yes : probability of yes;  nats : information expected of an answer
+    """
+
+    about: str
+    words: str
+    yes: float
+    nats: float
+
+    def document(self) -> dict:
+        return dict(vars(self))
+
+
+@dataclass(frozen=True)
+class PossibleEvent:
+    """Something that may have been different for a while.  spans : {"test", "begin_s", "end_s"}
+
+    probability : of all that it may have been;  effect : the most probable of these, its value refitted where it was
+    """
+
+    event: str
+    words: str
+    spans: tuple[dict, ...]
+    probability: float
+    effect: str
+    title: str
+    value: float
+    unit: str
+
+    def document(self) -> dict:
+        return {**vars(self), "spans": list(self.spans)}
+
+
+@dataclass(frozen=True)
+class Remainder:
+    """A record that stays off with what is named in the model.
+
+    error_K : rms;  model_K : how much of it the doubts of the model take away;  doubt : the one that does most of it
+    effect : a second effect that would bring it to brought_K, with its probability;  test : the test that shows it
+    """
+
+    channel: str
+    record: str
+    error_K: float
+    model_K: float
+    doubt: str
+    effect: str
+    probability: float
+    brought_K: float
+    test: str
+
+    @property
+    def words(self) -> str:
+        said = f"{self.channel} is still {self.error_K:.1f} K off in {self.record}"
+        if self.model_K > 0.5 * self.error_K:
+            said += f"; {self.model_K:.1f} K of it is within the doubts of the model, most of all {self.doubt}"
+        if not self.effect:
+            return f"{said}; no second effect explains it."
+        return (
+            f"{said}; {self.effect} would bring it to {self.brought_K:.1f} K (probability {self.probability:.2f}). "
+            f"To tell: {self.test}."
+        )
+
+    def document(self) -> dict:
+        return {**vars(self), "words": self.words}
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """The answer. named : the effects to add, best first (one per group); words : the verdict in a sentence.
+
+    bases : every base that a test may have stood on, where the network knows several
+    odds : every hypothesis that carries weight, most probable first, summing to one;  p_nothing : of nothing missing
+    events : when something may have been different for a while, most probable first
+    remainder : what is still off with what is named in the model
+    contradiction : what would have to differ between the tests
+    question : what to ask the user, where an answer would tell more than a guess
+    """
+
+    verdict: Verdict
+    words: str
+    named: tuple[str, ...]
+    groups: tuple[tuple[str, ...], ...]
+    candidates: tuple[Candidate, ...]
+    cannot_see: tuple[DetectionLimit, ...]
+    where: tuple[MissingHeat, ...]
+    next_tests: tuple[NextTest, ...]
+    rmse_K: float
+    floor_K: float
+    threshold: float
+    pulls: tuple[tuple[str, float, float], ...] = ()
+    cosine: dict[str, dict[str, float]] = field(default_factory=dict)
+    next_sensors: tuple[NextSensor, ...] = ()
+    bases: tuple[Hypothesis, ...] = ()
+    odds: tuple[Odds, ...] = ()
+    p_nothing: float = 1.0
+    events: tuple[PossibleEvent, ...] = ()
+    remainder: tuple[Remainder, ...] = ()
+    contradiction: Contradiction | None = None
+    question: Question | None = None
+
+    @property
+    def best(self) -> str:
+        """The effect to add first, "kind@place". Raises InputError where none is named: the verdict says why."""
+        if not self.named:
+            raise InputError(f"no effect is named: {self.words}", f"verdict '{self.verdict}'")
+        return self.named[0]
+
+    def document(self) -> dict:
+        return {
+            "verdict": self.verdict,
+            "words": self.words,
+            "named": list(self.named),
+            "groups": [list(g) for g in self.groups],
+            "candidates": [c.document() for c in self.candidates],
+            "cannot_see": [h.document() for h in self.cannot_see],
+            "where": [w.document() for w in self.where],
+            "next_tests": [t.document() for t in self.next_tests],
+            "next_sensors": [t.document() for t in self.next_sensors],
+            "odds": [o.document() for o in self.odds],
+            "p_nothing": self.p_nothing,
+            "events": [e.document() for e in self.events],
+            "remainder": [r.document() for r in self.remainder],
+            "question": None if self.question is None else self.question.document(),
+            "contradiction": None if self.contradiction is None else self.contradiction.document(),
+            "rmse_K": self.rmse_K,
+            "floor_K": self.floor_K,
+            "threshold": self.threshold,
+            "pulls": [{"parameter": n, "value": v, "prior_deviations": p} for n, v, p in self.pulls],
+            "confusion": self.cosine,
+            "bases": [h.document() for h in self.bases],
+        }

@@ -1,0 +1,121 @@
+"""When something held: all of a test, stretches of some, or as an input of 0 to 1 says. Its name says all of it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geom.errors import InputError
+from lumped.transfer.laws import CLOCK, Inputs
+from validation.case import RUNNING, Test
+
+Array = NDArray[np.float64]
+Span = tuple[float, float]
+NUMBER = r"\d+(?:\.\d+)?"
+PIECE = re.compile(rf"(.+):({NUMBER}-{NUMBER}(?:,{NUMBER}-{NUMBER})*)s")
+AND = " & "
+
+
+@dataclass(frozen=True)
+class Event:
+    """Something that was different for a while.  spans : test -> when, from and to (s of the test), in order"""
+
+    spans: Mapping[str, tuple[Span, ...]]
+
+    @classmethod
+    def of(cls, spans: Mapping[str, Iterable[Span]]) -> Event:
+        return cls({t: tuple(sorted((float(a), float(b)) for a, b in own)) for t, own in spans.items()})
+
+    @property
+    def name(self) -> str:
+        """ "day:600-900,1300-1600s": what reads it back is `event`."""
+        pieces = [f"{t}:{','.join(f'{a:.10g}-{b:.10g}' for a, b in own)}s" for t, own in self.spans.items()]
+        return AND.join(pieces)
+
+    @property
+    def tests(self) -> tuple[str, ...]:
+        return tuple(self.spans)
+
+    @property
+    def every(self) -> list[Span]:
+        return [s for own in self.spans.values() for s in own]
+
+    @property
+    def words(self) -> str:
+        """ "from 36 to 78 min of day"; of repeats how often and how long."""
+        if len(self.every) == 1:
+            (begin, end), (test,) = self.every[0], self.tests
+            return f"from {begin / 60:.3g} to {end / 60:.3g} min of {test}"
+        length = float(np.median([end - begin for begin, end in self.every])) / 60.0
+        return f"{len(self.every)} times in {', '.join(self.tests)}, about {length:.2g} min each"
+
+    def overlap(self, other: Event) -> float:
+        """Time in both over time in either."""
+        both = sum(
+            max(0.0, min(y, d) - max(x, c))
+            for t in self.spans for x, y in self.spans[t] for c, d in other.spans.get(t, ())
+        )  # fmt: skip
+        every = sum(y - x for e in (self, other) for x, y in e.every)
+        return both / max(every - both, 1e-12)
+
+    def document(self) -> dict:
+        spans = [{"test": t, "begin_s": a, "end_s": b} for t, own in self.spans.items() for a, b in own]
+        return {"event": self.name, "words": self.words, "spans": spans}
+
+
+def event(name: str) -> Event | None:
+    """The event that a name describes; None where it is a test's or an input's."""
+    pieces = [PIECE.fullmatch(piece) for piece in name.split(AND)]
+    found = [(p[1], [tuple(map(float, s.split("-"))) for s in p[2].split(",")]) for p in pieces if p]
+    return Event.of(dict(found)) if len(found) == len(pieces) else None  # type: ignore[arg-type]
+
+
+def checked(found: Event, test: str, first: float, last: float, where: str) -> None:
+    """Spans run forwards, lie inside the record and do not overlap."""
+    for begin, end in found.spans[test]:
+        if not begin < end:
+            raise InputError(
+                f"an event ends at {end:g} s, not after it begins at {begin:g} s", where, "begin, then end"
+            )
+        if begin < first or end > last:
+            raise InputError(f"an event from {begin:g} to {end:g} s is outside the record", where,
+                             f"{first:g} to {last:g} s")  # fmt: skip
+    for (a, b), (c, d) in pairwise(found.spans[test]):
+        if c < b:
+            raise InputError(f"an event overlaps itself: {a:g} to {b:g} s and {c:g} to {d:g} s", where,
+                             "spans that follow one another, or two events")  # fmt: skip
+
+
+def share(time: Array, spans: Sequence[Span]) -> Array:
+    """Share of each sample's time (half a step to either side) that lies in a span."""
+    middle = 0.5 * (time[1:] + time[:-1])
+    low, high = np.append(time[0], middle), np.append(middle, time[-1])
+    inside = sum(np.clip(np.minimum(high, b) - np.maximum(low, a), 0.0, None) for a, b in spans)
+    return np.asarray((np.zeros_like(time) + inside) / np.maximum(high - low, 1e-12))
+
+
+@dataclass(frozen=True)
+class TimeWindow:
+    """Share of each sample in which something holds, times a factor."""
+
+    name: str
+    factor: float = 1.0
+
+    def __call__(self, inputs: Inputs) -> Array:
+        time, found = np.asarray(inputs[CLOCK], float), event(self.name)
+        if self.name in inputs:
+            return self.factor * np.asarray(inputs[self.name], float)
+        if found is None:
+            return self.factor * np.asarray(inputs.get(f"{RUNNING}{self.name}", np.zeros_like(time)), float)
+        here = [own for test, own in found.spans.items() if f"{RUNNING}{test}" in inputs]
+        return self.factor * share(time, here[0]) if here else np.zeros_like(time)
+
+
+def holds(name: str, test: Test) -> Array:
+    """The same as an input of a test."""
+    return TimeWindow(name)(test.signals)

@@ -1,0 +1,113 @@
+"""What further readings would decide: as one candidate foretells them, explained by another that is fitted anew."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.model.multipliers import values_of
+from validation.calibration.calibrate import Fit, KnownSegments, minimise
+from validation.calibration.unknowns import Unknowns, nuisances
+from validation.case import Test
+from validation.comparison.linearisation import segments
+from validation.comparison.predict import predict
+from validation.inference.evidence import Evidence, with_members
+from validation.inference.model_error import ModelError, model_error
+from validation.planning.competing_models import CompetingModels, deviance_difference
+from validation.planning.separability import GAP, Gaps
+
+Array = NDArray[np.float64]
+CHECKED = 2  # of the best plans are refitted: each costs as much as a refit of the diagnosis
+STEPS, ENOUGH = 4, 1.0  # of a rival's refit, and the gain (nats) of one: gaps are told in tens
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Further readings.  tests : that have them, planned ones or those at hand with a sensor more;  gaps : between the
+    rivals with them, for every pair"""
+
+    what: str
+    hours: float
+    tests: Sequence[Test]
+    gaps: Gaps
+
+    @property
+    def gain(self) -> float:
+        """Deviance between the two that stay closest."""
+        return min(self.gaps.values())
+
+    @property
+    def worth(self) -> float:
+        """Gain per hour."""
+        return self.gain / self.hours
+
+
+def predicted_readings(fit: Fit, test: Test) -> Test:
+    """The test with the readings that a fitted model foretells."""
+    y = predict(fit.network, test, values_of(fit.network, fit.values)).y
+    return replace(test, channels=tuple(replace(c, y=y[:, j]) for j, c in enumerate(test.channels)))
+
+
+def refitted_gains(evidence: Evidence, found: CompetingModels, promised: Iterable[Plan]) -> list[Plan]:
+    """The plans with what is left of the gaps that tangents promise, best gain per hour first.
+
+    Tangents promise too much: they do not know how far the rivals can bend. Refits show how much for the first CHECKED
+    plans and, in each, the closest pair that might come apart: it is the gain of the plan. What was not refitted keeps
+    the largest share that any of those kept.
+    """
+    plans = sorted(promised, key=lambda p: -p.worth)
+    kept: list[Gaps] = [
+        {pair: predicted_deviance(evidence, found, p.tests, pair) for pair in closest_pair(p.gaps)}
+        for p in plans[:CHECKED]
+    ]
+    kept += [{}] * (len(plans) - len(kept))
+    shares = [g / p.gaps[pair] for own, p in zip(kept, plans, strict=True) for pair, g in own.items()]
+    share = float(np.clip(max(shares, default=1.0), 0.0, 1.0))
+    left = [
+        replace(p, gaps={pair: max(min(gap, own.get(pair, share * gap)), 0.0) for pair, gap in p.gaps.items()})
+        for own, p in zip(kept, plans, strict=True)
+    ]
+    return sorted(left, key=lambda p: -p.worth)
+
+
+def closest_pair(gaps: Gaps) -> list[tuple[int, int]]:
+    """The pair with the smallest gap among those that might come apart; none if none does."""
+    return sorted((pair for pair, gap in gaps.items() if gap >= GAP), key=lambda pair: gaps[pair])[:1]
+
+
+def predicted_deviance(evidence: Evidence, found: CompetingModels, new: Sequence[Test], pair: tuple[int, int]) -> float:
+    """Deviance by which the wrong one of a pair would be behind with further readings, the smaller way.
+
+    Unlike a gap in the tangents it counts what the tests at hand say already, and all that the wrong one may still
+    bend: its own refit, with start and clock of a new test or bias and lag of a new sensor, meets noiseless readings of
+    the right one.
+    """
+    return min(_behind(evidence, found, new, right, wrong) for right, wrong in (pair, pair[::-1]))
+
+
+def _behind(evidence: Evidence, found: CompetingModels, new: Sequence[Test], right: int, wrong: int) -> float:
+    read, rival = [predicted_readings(found.fit(right), t) for t in new], found.fit(wrong)
+    network, unknowns, held = with_members(evidence, [wrong])
+    known = {p.name for p in network.parameters}
+    own = tuple(p for p in nuisances(network, read) if p.name not in known)
+    network, free = replace(network, parameters=(*network.parameters, *own)), (*unknowns.parameters, *own)
+    here = {**held, **{p.name: p.value for p in own}, **rival.values}
+    near = [replace(s, J=np.pad(s.J, ((0, 0), (0, len(own))))) for s in rival.parts]
+    near += segments(network, read, here, free)
+    theta, tests = np.concatenate([rival.theta, np.zeros(len(own))]), (*evidence.tests, *read)
+    error = widened_error(evidence, read)
+    fit = minimise(network, tests, Unknowns(free), theta, found.noise, held, STEPS, KnownSegments(near),
+                   worth=ENOUGH, error=error)  # fmt: skip
+    return deviance_difference(fit, found.fit(right))
+
+
+def widened_error(evidence: Evidence, more: Sequence[Test]) -> ModelError | None:
+    """The model error of the tests at hand and of further readings."""
+    fit = evidence.fit
+    if fit.error is None:
+        return None
+    new = model_error(fit.network, more, fit.values, sensed=evidence.tests)
+    return ModelError({**fit.error.columns, **new.columns}, new.names)

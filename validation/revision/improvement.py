@@ -1,0 +1,165 @@
+"""From a model that disagrees to one that does not: diagnose, choose, add, again; with every step's errors kept."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+from validation.calibration.calibrate import no_progress
+from validation.calibration.unknowns import with_model
+from validation.case import Case
+from validation.comparison.compare import Comparison, compare
+from validation.diagnosis.result import Candidate, Diagnosis
+from validation.effects import effect
+from validation.inference.diagnose import diagnose
+from validation.revision.revise import Revision, add, calibrate
+
+Progress = Callable[[str], None]
+MOST = 6
+
+
+@dataclass(frozen=True)
+class Step:
+    """The model after one step.
+
+    evidence : what the diagnosis said about the effect;  revision : the step that led here, None at the start
+    """
+
+    comparison: Comparison
+    evidence: Mapping[str, float | str]
+    revision: Revision | None = None
+
+    @property
+    def step(self) -> str:
+        """ "start", "calibrate" or "add"."""
+        return self.revision.action if self.revision else "start"
+
+    @property
+    def effect(self) -> str | None:
+        """What was added."""
+        return self.revision.effect if self.revision else None
+
+    def document(self) -> dict:
+        tests = [{"name": t.name, "role": t.role, "rmse_K": t.rmse_K} for t in self.comparison.tests]
+        return {
+            "step": self.step, "effect": self.effect, "revision": self.comparison.revision, "tests": tests,
+            "rmse_K": self.comparison.rmse_K, "evidence": dict(self.evidence),
+        }  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Improvement:
+    """All stairs, the last diagnosis, and why it ended there; case : with the model of the last stair."""
+
+    case: Case
+    stairs: tuple[Step, ...]
+    diagnosis: Diagnosis
+    why: str
+
+    @property
+    def adequate(self) -> bool:
+        return self.diagnosis.verdict == "adequate"
+
+    def document(self) -> dict:
+        return {
+            "verdict": self.diagnosis.verdict, "words": self.diagnosis.words, "adequate": self.adequate,
+            "why": self.why, "stairs": [s.document() for s in self.stairs], "diagnosis": self.diagnosis.document(),
+        }  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Supervisor:
+    """Who decides and who remembers.
+
+    offer : of a diagnosis the candidates that may be added now
+    choose : of the candidates that cannot be told apart (one or more) the name to add, or None to stop
+    keep : told every accepted revision and the evidence for it
+    """
+
+    choose: Callable[[Diagnosis, Sequence[Candidate]], str | None]
+    keep: Callable[[Revision, Mapping[str, float | str]], None] = field(default=lambda step, evidence: None)
+    offer: Callable[[Diagnosis], tuple[Candidate, ...]] = field(default=lambda found: offered(found))
+
+
+def singletons(diagnosis: Diagnosis, choice: Sequence[Candidate]) -> str | None:
+    """What may be added without asking: physics that stands alone, no fault of the measurement."""
+    alone = len(choice) == 1 and diagnosis.verdict in ("named", "several")
+    return choice[0].effect if alone and not effect(choice[0].effect).fault else None
+
+
+def best(diagnosis: Diagnosis, choice: Sequence[Candidate]) -> str:
+    """Of a group its best-fitting member, which comes first: for studies, where nobody is asked."""
+    return choice[0].effect
+
+
+def improve(
+    case: Case, guide: Supervisor, most: int = MOST, progress: Progress = no_progress,
+    kinds: Sequence[str] | None = None,
+) -> Improvement:  # fmt: skip
+    """Diagnose and add until the model is adequate, the guide says no, or an addition is not accepted.
+
+    A model that was never calibrated is calibrated first. What the diagnosis cannot tell is not offered.
+    """
+    stairs = [Step(compare(case), {})]
+    if not case.model.values:
+        progress("calibrating")
+        case = _kept(case, calibrate(case, progress=progress), guide, {}, stairs)
+    while True:
+        found = diagnose(case, kinds=kinds, progress=progress)
+        progress(f"{found.verdict}: {found.words}")
+        if guide.offer(found) and len(stairs) > most:
+            return Improvement(case, tuple(stairs), found, f"{most} steps are enough for one run")
+        step, said, why = _added(case, guide, found, progress)
+        if step is None:
+            return Improvement(case, tuple(stairs), found, why)
+        case = _kept(case, step, guide, said, stairs)
+
+
+def _added(
+    case: Case, guide: Supervisor, found: Diagnosis, progress: Progress
+) -> tuple[Revision | None, Mapping[str, float | str], str]:
+    """The first of what is missing that is chosen and accepted, and its evidence; or None, and why."""
+    why = []
+    for i in range(max(len(found.groups), 1)):
+        choice = guide.offer(replace(found, groups=found.groups[i:], named=found.named[i:]))
+        if not choice:
+            break
+        name = guide.choose(found, choice)
+        if name is None:
+            why.append(f"{' or '.join(c.effect for c in choice)}: not added")
+            break
+        step = add(case, name, progress)
+        if step.accepted:
+            return step, evidence(found, next(c for c in choice if c.effect == name)), ""
+        why.append(f"{name} was not accepted: {step.why}")
+    return None, {}, "; ".join(why) or found.words
+
+
+def _kept(
+    case: Case, step: Revision, guide: Supervisor, evidence: Mapping[str, float | str], stairs: list[Step]
+) -> Case:  # fmt: skip
+    guide.keep(step, evidence)
+    stairs.append(Step(step.after, evidence, step))
+    return with_model(case, step.model)
+
+
+def offered(found: Diagnosis) -> tuple[Candidate, ...]:
+    """The first group's candidates; none where the diagnosis cannot tell, or nothing is missing."""
+    first = found.groups[0] if found.groups and found.verdict != "absorbed" else ()
+    rows = [c for c in found.candidates if c.effect in first]
+    return tuple(rows) if all(c.decision in ("named", "group") for c in rows) else ()
+
+
+def leading(found: Diagnosis) -> tuple[Candidate, ...]:
+    """The first group's candidates, also where the catalogue does not explain all: for studies, not for users."""
+    first = found.groups[0] if found.groups else ()
+    return tuple(c for c in found.candidates if c.effect in first)
+
+
+def evidence(found: Diagnosis, chosen: Candidate) -> dict[str, float | str]:
+    """What speaks for an effect, as the history keeps it."""
+    said: dict[str, float | str] = {
+        "probability": chosen.probability, "score": chosen.score, "threshold": chosen.threshold,
+        "decision": chosen.decision, "verdict": found.verdict,
+    }  # fmt: skip
+    return said | ({"confused_with": ", ".join(chosen.confused_with)} if chosen.confused_with else {})
