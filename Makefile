@@ -18,7 +18,7 @@ benchmark: setup  ## every benchmark at a small size, results in out/benchmarks;
 	@mkdir -p out/benchmarks
 	@for name in geometry field network viz; do echo "== $$name"; $(BIN)/python benchmarks/$$name.py --json out/benchmarks/$$name.json || exit 1; done
 	@echo "== condensation"; $(BIN)/python benchmarks/condensation.py series-dc-100kw --coarse --json out/benchmarks/condensation.json
-	@echo "== robustness"; $(BIN)/python benchmarks/robustness.py --trials 1 --json out/benchmarks/robustness.json
+	@echo "== robustness"; $(BIN)/python benchmarks/robustness.py --hits 1 --json out/benchmarks/robustness.json
 	@echo "== diagnosis"; $(BIN)/python benchmarks/diagnosis.py --samples 400000 --json out/benchmarks/diagnosis.json
 	@echo "== hidden_effects"; $(BIN)/python benchmarks/hidden_effects.py --seeds dev --count 2 --classes nothing one --json out/benchmarks/hidden_effects.json
 

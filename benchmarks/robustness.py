@@ -1,11 +1,12 @@
 """A process killed, and a disk that fills, at random moments of commands that write: does the case still open?
 
-    python benchmarks/robustness.py [--trials 20] [--seed 0] [--json FILE]
+    python benchmarks/robustness.py [--hits 20] [--seed 0] [--json FILE]
 
 Every trial runs one command on a fresh copy of a small case in a process of its own. It is killed (SIGKILL) at a random
 moment, or as soon as a file is half written (aimed), or its disk (a small tmpfs, in a mount namespace of its own) is
-filled up at a random moment. A trial hits when the command was still at work. After it the case has to open, all inputs
-be what they were, all earlier revisions be there, and nothing that counts lie about.
+filled up at a random moment. A trial hits when the command was still at work; trials go on until so many have hit.
+After it the case has to open, all inputs be what they were, all earlier revisions be there, and nothing that counts lie
+about. `new` makes its case beside the recordings: after it there is none, or one that opens.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager, redirect_stderr, redirect_stdout, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -42,7 +43,11 @@ COMMANDS = {
     "add": ("add", "{case}", "convection@flange", "--anyway"),
     "undo": ("undo", "{case}"),
     "improve": ("improve", "{case}", "--yes", "--most", "1"),
-}
+    "new": ("new", "{case}/tests/stand.csv", "{case}/tests/road.csv", "--network", "{case}/network.toml", "--yes",
+            "--out", "{case}/../made"),
+}  # fmt: skip
+MADE = "made"
+MISSES = 5  # trials for every hit at most: a command may end before it is struck
 SPACE = 2**23  # bytes of the disk that fills
 
 
@@ -57,17 +62,17 @@ class Trial:
     faults: tuple[str, ...]
 
 
-def started(arguments: list[str], log: Path) -> int:
+def started(name: str, case: Path) -> int:
     """A child that runs a command with everything loaded already; its process id."""
     child = os.fork()
     if child:
         return child
     code = 3
     try:
-        with log.open("w") as stderr, Path(os.devnull).open("w") as stdout:
-            os.dup2(stdout.fileno(), 1)
-            os.dup2(stderr.fileno(), 2)
-            sys.argv = ["thermoscope", *arguments]
+        with Path(os.devnull).open("w") as nowhere:
+            os.dup2(nowhere.fileno(), 1)
+            os.dup2(nowhere.fileno(), 2)
+            sys.argv = ["thermoscope", *(word.format(case=case) for word in COMMANDS[name])]
             command_line()
     except SystemExit as end:
         code = int(end.code or 0)
@@ -93,7 +98,8 @@ def killed(child: int, case: Path, wait: Callable[[Path], bool], limit: float) -
 
 
 def half_written(case: Path) -> bool:
-    return any(".part" in p.name for folder in (case, case / "out") if folder.is_dir() for p in folder.iterdir())
+    folders = [folder for folder in (case, case / "out", case.parent) if folder.is_dir()]
+    return any(".part" in p.name or p.name.startswith(f".{MADE}.") for folder in folders for p in folder.iterdir())
 
 
 def filled(child: int, case: Path, limit: float) -> bool:
@@ -123,6 +129,18 @@ def faults(case: Path, before: dict[str, bytes], revisions: int, print_: str) ->
             yield "revisions are lost"
     except Exception as fault:
         yield f"does not open: {fault}"
+    if (made := case.parent / MADE).exists():
+        try:
+            if len(load_case(made).case.tests) != 2:
+                yield "tests are missing from the new case"
+        except Exception as fault:
+            yield f"the new case does not open: {fault}"
+
+
+def cleared(home: Path) -> None:
+    """Nothing of a trial is left, what a killed command began neither."""
+    for path in (home / "case", home / MADE, *home.glob(f".{MADE}.*")):
+        shutil.rmtree(path, ignore_errors=True)
 
 
 def trial(name: str, strike: str, home: Path, original: Path, rng: random.Random, usual: float) -> Trial:
@@ -130,7 +148,7 @@ def trial(name: str, strike: str, home: Path, original: Path, rng: random.Random
     case = Path(shutil.copytree(original, home / "case"))
     try:
         before, revisions, print_ = state(case), len(load_case(case).history.revisions), fingerprint(case, "model.toml")
-        child = started([word.format(case=case) for word in COMMANDS[name]], Path(os.devnull))
+        child = started(name, case)
         at = rng.uniform(0.0, usual)
         if strike == "full disk":
             hit = filled(child, case, at)
@@ -140,23 +158,46 @@ def trial(name: str, strike: str, home: Path, original: Path, rng: random.Random
             hit = killed(child, case, lambda _: False, at)
         (home / "ballast").unlink(missing_ok=True)
         wrong = tuple(faults(case, before, revisions, print_))
-        return Trial(
-            name, strike, hit, len(load_case(case).history.revisions) > revisions if not wrong else False, wrong
-        )
+        written = not wrong and ((home / MADE).exists() or len(load_case(case).history.revisions) > revisions)
+        return Trial(name, strike, hit, written, wrong)
     finally:
-        shutil.rmtree(case)
+        cleared(home)
+
+
+def trials(
+    name: str, strike: str, home: Path, original: Path, rng: random.Random, usual: float, hits: int
+) -> list[Trial]:
+    """As many as it takes for so many hits."""
+    done: list[Trial] = []
+    while sum(t.hit for t in done) < hits and len(done) < MISSES * hits:
+        done.append(trial(name, strike, home, original, rng, usual))
+    return done
 
 
 def usual_time(name: str, home: Path, original: Path) -> float:
     """Seconds that a command takes when nothing strikes it."""
     case = Path(shutil.copytree(original, home / "case"))
     begin = time.monotonic()
-    child = started([word.format(case=case) for word in COMMANDS[name]], Path(os.devnull))
-    _, status = os.waitpid(child, 0)
-    shutil.rmtree(case)
+    _, status = os.waitpid(started(name, case), 0)
+    took = time.monotonic() - begin
+    cleared(home)
     if os.waitstatus_to_exitcode(status) not in (0, 1):
         raise SystemExit(f"{name} fails when nothing strikes it")
-    return time.monotonic() - begin
+    return took
+
+
+def loaded(name: str, home: Path, original: Path) -> None:
+    """Run a command here once: what it loads and compiles, every child has from its start."""
+    case = Path(shutil.copytree(original, home / "case"))
+    sys.argv = ["thermoscope", *(word.format(case=case) for word in COMMANDS[name])]
+    with (
+        Path(os.devnull).open("w") as nowhere,
+        redirect_stdout(nowhere),
+        redirect_stderr(nowhere),
+        suppress(SystemExit),
+    ):
+        command_line()
+    cleared(home)
 
 
 @contextmanager
@@ -175,24 +216,25 @@ def disk(folder: Path) -> Iterator[bool]:
 def prepared(folder: Path) -> Path:
     """A small case with one revision to lose."""
     case = small_case(folder)
-    os.waitpid(started([word.format(case=case) for word in COMMANDS["calibrate"]], Path(os.devnull)), 0)
+    os.waitpid(started("calibrate", case), 0)
     if not load_case(case).history.revisions:
         raise SystemExit("the case could not be prepared")
     return case
 
 
-def measured(trials: int, seed: int) -> list[Trial]:
+def measured(hits: int, seed: int) -> list[Trial]:
     """All trials: every command, killed at random and aimed, and on a disk that fills."""
     rng, out = random.Random(seed), []
     with tempfile.TemporaryDirectory() as work, disk(Path(work) / "disk") as mounted:
         home, original = Path(work), prepared(Path(work))
         for name in COMMANDS:
+            loaded(name, home, original)
             usual = usual_time(name, home, original)
             strikes = {"killed": home, "aimed": home, **({"full disk": home / "disk"} if mounted else {})}
             for strike, place in strikes.items():
-                done = [trial(name, strike, place, original, rng, usual) for _ in range(trials)]
-                hits, wrong = sum(t.hit for t in done), sum(bool(t.faults) for t in done)
-                print(f"{name:10s} {strike:10s} {trials} trials, {hits} hit, {wrong} left a fault", flush=True)
+                done = trials(name, strike, place, original, rng, usual, hits)
+                struck, wrong = sum(t.hit for t in done), sum(bool(t.faults) for t in done)
+                print(f"{name:10s} {strike:10s} {len(done)} trials, {struck} hit, {wrong} left a fault", flush=True)
                 out += done
         if not mounted:
             print("no disk could be mounted: run as root, or under unshare -rm")
@@ -202,12 +244,12 @@ def measured(trials: int, seed: int) -> list[Trial]:
 def main() -> None:
     """Print the table; exit code 1 if any trial left a fault."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--trials", type=int, default=20)
+    parser.add_argument("--hits", type=int, default=20)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--json", type=Path)
     options = parser.parse_args()
     print(f"{platform.machine()}, Python {platform.python_version()}, {datetime.date.today()}", flush=True)
-    done = measured(options.trials, options.seed)
+    done = measured(options.hits, options.seed)
     hits, wrong = [t for t in done if t.hit], [t for t in done if t.faults]
     print(f"{len(done)} trials, {len(hits)} hit, {len(wrong)} left a fault")
     for t in wrong:

@@ -34,17 +34,26 @@ def load_network(path: str | Path) -> Network:
 
     Raises InputError that names the file, the table, the key and what would be right.
     """
-    return read_network(read_toml(Path(path), RIGHT), Path(path).name)
+    return replace(read_network(read_toml(Path(path), RIGHT), str(path)), file=str(path))
 
 
 def load_circuits(path: str | Path) -> dict[str, Circuit]:
     """The coolant circuits of a network.toml, for pressure drop and pump power."""
-    top = Table(read_toml(Path(path), RIGHT), Path(path).name)
+    top = Table(read_toml(Path(path), RIGHT), str(path))
     return _circuits(top, top.tables("nodes"), top.table("network").words("boundaries"))
 
 
 def read_network(data: Mapping[str, Any], where: str = "network.toml") -> Network:
-    """The network of a TOML document already read."""
+    """The network of a TOML document already read; every message names `where`."""
+    try:
+        return _read(data, where)
+    except InputError as fault:
+        if where in fault.where:
+            raise
+        raise InputError(fault.what, f"{where}, {fault.where}", fault.right) from None
+
+
+def _read(data: Mapping[str, Any], where: str) -> Network:
     top = Table(data, where)
     head, nodes = top.table("network"), top.tables("nodes")
     if not nodes:

@@ -57,7 +57,7 @@ def coupled(
             return Coupled(_without(run, len(looks)), inputs, tuple(residuals))
     shown = ", ".join(f"{r:.3g}" for r in residuals[-4:])
     raise ThermoscopeError(
-        f"drive and network '{network.name}' do not agree after {most} rounds (last changes {shown} K): thermal "
+        f"drive and {network.title} do not agree after {most} rounds (last changes {shown} K): thermal "
         "runaway, or a drive at its limit that jumps with temperature"
     )
 

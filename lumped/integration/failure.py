@@ -13,7 +13,7 @@ from lumped.numerics.terms import Forcing
 def failure(network: Network, core: Compiled, forcing: Forcing, at: Position) -> str:
     """What to say of where the run stands."""
     status, t, hottest = int(at.at[STATUS]), _instant(forcing, at), core.control.hottest[0]
-    node, where = network.states[int(at.at[NODE])], f"network '{network.name}': "
+    node, where = network.states[int(at.at[NODE])], f"{network.title}: "
     if status == HOT and (growing := _growing(network)):
         tables = ", ".join(f"[losses.{name}]" for name in growing)
         why = f"{tables} grow faster with temperature than its cooling"
@@ -54,4 +54,4 @@ def _hint(network: Network, core: Compiled) -> str:
     floating = [s for s, c, row in zip(network.states, core.C, core.K0, strict=True) if c == 0.0 and not np.any(row)]
     if floating:
         return f"states without capacity and constant links: {', '.join(floating)}"
-    return "check the links' signs"
+    return "check the coefficients of the links: G_W_K, R_K_W and what they are multiplied with"

@@ -24,7 +24,7 @@ def checked_run(T: Array, time: Array, names: tuple[str, ...], network: Network)
 
 def described(network: Network, place: str, t: float) -> str:
     """The message of a run that went astray at `place` (a node, a place or a sensor) after t (s)."""
-    return f"network '{network.name}': '{place}' runs away from all bounds at t = {t:g} s; {_cause(network)}"
+    return f"{network.title}: '{place}' runs away from all bounds at t = {t:g} s; {_cause(network)}"
 
 
 def _cause(network: Network) -> str:

@@ -56,7 +56,7 @@ def steady(
     rests = settle(np.zeros(n), core.K0, core.terms, core.tangents, core.forcing.factor[0], both, scratch)
     if not rests or np.linalg.eigvals(scratch.G).real.min() <= 0:
         why = "a node nothing holds, or thermal runaway"
-        raise ThermoscopeError(f"network '{network.name}' does not come to rest: {why}")
+        raise ThermoscopeError(f"{network.title} does not come to rest: {why}")
     z, dz = both.z[0, :-1], np.vstack([scratch.D, np.zeros((u.size, p))])
     y, dy = [r.weights @ z[r.index] for r in rows], [r.weights @ dz[r.index] for r in rows]
     return Steady((*network.states, *network.boundaries), z, np.array(y), np.reshape(dy, (len(rows), p)) if p else None)

@@ -25,9 +25,7 @@ def values_of(network: Network, values: Mapping[str, float] | None) -> dict[str,
     declared = {p.name: p.value for p in network.parameters}
     unknown = sorted(set(values or {}) - set(declared))
     if unknown:
-        raise InputError(
-            f"unknown parameter '{unknown[0]}'", f"network '{network.name}'", f"known: {', '.join(sorted(declared))}"
-        )
+        raise InputError(f"unknown parameter '{unknown[0]}'", network.title, f"known: {', '.join(sorted(declared))}")
     return {**declared, **{k: float(v) for k, v in (values or {}).items()}}
 
 
@@ -42,7 +40,7 @@ def _targets(network: Network, parameter: Parameter, known: set[str]) -> list[tu
         if target not in known:
             raise InputError(
                 f"target '{target}' is no link, source or capacity group",
-                f"parameter '{parameter.name}' of network '{network.name}'",
+                f"parameter '{parameter.name}' of {network.title}",
                 f"known: {', '.join(sorted(known))}",
             )
     return kept
@@ -76,7 +74,7 @@ def slopes(
     out = []
     for parameter in parameters:
         if parameter.name not in declared:
-            where = f"network '{network.name}'"
+            where = network.title
             raise InputError(f"unknown parameter '{parameter.name}'", where, "tangents are of its own parameters")
         own = declared[parameter.name]
         f, df = factor(own, now[own.name])

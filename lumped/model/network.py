@@ -168,6 +168,7 @@ class Network:
     settles_s : time constant (s) of the whole, roughly; with C it says how large a missing path usually is
     declared : what parts, nodes, fluids and boundaries are said to be, by name
     quantities : input -> what it measures ("speed");  signals : quantity -> the input of the machine's own
+    file : where it was read from; "" of a network that no file declares
     """
 
     name: str
@@ -184,6 +185,12 @@ class Network:
     declared: Mapping[str, Identity] = field(default_factory=dict)
     quantities: Mapping[str, str] = field(default_factory=dict)
     signals: Mapping[str, str] = field(default_factory=dict)
+    file: str = field(default="", compare=False)
+
+    @property
+    def title(self) -> str:
+        """How messages call it."""
+        return f"network '{self.name}'" + (f" of {self.file}" if self.file else "")
 
     @cached_property
     def identities(self) -> Mapping[str, Identity]:
@@ -211,13 +218,11 @@ class Network:
         if name in self.boundaries:
             return len(self.states) + self.boundaries.index(name)
         known = ", ".join([*(s for s in self.states if "#" not in s), *self.boundaries])
-        raise InputError(f"unknown node or boundary '{name}'", f"network '{self.name}'", f"known: {known}")
+        raise InputError(f"unknown node or boundary '{name}'", self.title, f"known: {known}")
 
     def place(self, name: str) -> Place:
         if name not in self.places:
-            raise InputError(
-                f"unknown place '{name}'", f"network '{self.name}'", f"known: {', '.join(sorted(self.places))}"
-            )
+            raise InputError(f"unknown place '{name}'", self.title, f"known: {', '.join(sorted(self.places))}")
         return self.places[name]
 
     def extended(

@@ -145,7 +145,7 @@ class Table:
         """The named tables under a key: [key.NAME]."""
         return {
             name: Table(data, f"{self.where} [{key}.{name}]")
-            for name, data in Table(self.raw(key, {}), key).data.items()
+            for name, data in Table(self.raw(key, {}), f"{self.where} [{key}]").data.items()
         }
 
     def listed(self, key: str) -> list[Table]:

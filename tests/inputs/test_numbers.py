@@ -56,6 +56,7 @@ def test_no_number_of_a_network_is_refused_by_key(name, way, value):
     with pytest.raises(InputError, match=key_of(way)) as refused:
         read_network(put(NETWORKS[name], way, value))
     assert len(str(refused.value)) < 1000
+    assert "network.toml" in str(refused.value)
     assert refused.value.right
 
 

@@ -58,13 +58,15 @@ def wrong(document, way):
     yield without(document, way)
 
 
-def accepted_or_refused(read, document, way):
+def accepted_or_refused(read, document, way, file=""):
+    """file : what every message has to name"""
     for spoilt in wrong(document, way):
-        message = ""
+        message = file
         try:
             read(spoilt)
         except ThermoscopeError as fault:
             message = str(fault)
+        assert file in message
         assert len(message) < 1500
         assert "\n" not in message
 
@@ -91,12 +93,12 @@ NETWORK = documented()
 
 @pytest.mark.parametrize("way", **named(NETWORK))
 def test_network(way):
-    accepted_or_refused(read_network, NETWORK, way)
+    accepted_or_refused(read_network, NETWORK, way, "network.toml")
 
 
 @pytest.mark.parametrize("way", **named(SHEET))
 def test_sheet(way):
-    accepted_or_refused(lambda document: read_sheet(document, "sheet.toml"), SHEET, way)
+    accepted_or_refused(lambda document: read_sheet(document, "sheet.toml"), SHEET, way, "sheet.toml")
 
 
 CASE = {

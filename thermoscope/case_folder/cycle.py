@@ -210,4 +210,5 @@ def _complete(network: Network, cycle: Cycle, where: str) -> None:
         for name in item.law.reads:
             if name not in have:
                 right = f'a column with input = "{name}", or [inputs] {name} = ...'
-                raise InputError(f"nothing gives the input '{name}', which '{item.name}' needs", where, right)
+                what = f"nothing gives the input '{name}', which '{item.name}' of {network.title} needs"
+                raise InputError(what, where, right)

@@ -145,7 +145,8 @@ def _complete(network: Network, inputs: Mapping[str, Array], boundaries: Mapping
         for name in item.law.reads:
             if name not in inputs and name != "time_s":
                 right = f'a column with input = "{name}", [events.{name}], or [inputs] {name} = ...'
-                raise InputError(f"nothing gives the input '{name}', which '{item.name}' needs", sheet.where, right)
+                what = f"nothing gives the input '{name}', which '{item.name}' of {network.title} needs"
+                raise InputError(what, sheet.where, right)
 
 
 def row_of(network: Network, place: str, position_mm: tuple[float, ...], where: str) -> Row:

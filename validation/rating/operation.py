@@ -67,9 +67,7 @@ def operation(network: Network, tests: Sequence[Test], given: Mapping[str, float
     seen = [t for t in tests if all(n in t.inputs for n in reads)]
     loads = tuple(n for n in reads if network.measures(n) in LOADS)
     if not loads:
-        raise InputError(
-            "no input carries the load", f"network '{network.name}'", f"an input that measures {' or '.join(LOADS)}"
-        )
+        raise InputError("no input carries the load", network.title, f"an input that measures {' or '.join(LOADS)}")
     inputs = {n: v for n, v in given.items() if n in reads} | {
         n: given.get(n, v) for n, v in _largest(seen, reads, loads).items()
     }

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -119,7 +118,7 @@ def _machine(machine: str, tell: Progress) -> Model:
 
 def _copied(kind: str, path: Path, name: str) -> Callable[[Path], str]:
     def put(folder: Path) -> str:
-        shutil.copyfile(path, folder / name)
+        write_whole(folder / name, path.read_bytes())
         return f"{kind} = {quoted(name)}"
 
     return put
