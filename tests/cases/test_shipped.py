@@ -13,14 +13,14 @@ from pathlib import Path
 
 import pytest
 
-from lumped.declared import load_network
-from lumped.reduction import Recipe
+from lumped.condensation.reduction import Recipe
+from lumped.declarations.network import load_network
 from thermoscope import pipeline
+from thermoscope.case_folder.folder import load_machine_file
 from thermoscope.cli import main
-from thermoscope.commands.crosscheck import checked
-from thermoscope.folder import load_machine_file
-from thermoscope.groups import HOME
-from thermoscope.sized import sized
+from thermoscope.commands.model.crosscheck import checked
+from thermoscope.console.groups import HOME
+from thermoscope.verification.network_size import smallest_network
 
 ROOT = Path(__file__).resolve().parents[2]
 SMALL = Recipe(tolerance=0.1, random_points=2, local_points=2, local_states=4)
@@ -120,7 +120,7 @@ def test_a_network_beside_no_case_is_read(file):
 def test_a_shipped_machine_is_built_and_held_against_its_field(name):
     """On a coarse mesh, and of any accuracy: that it runs and closes its balance is the point."""
     machine = load_machine_file(ROOT / name if name.endswith(".toml") else Path(name))
-    found = sized(machine, 1e3, size_m=0.15, segments=24, recipe=SMALL, rounds=0, across=1)
+    found = smallest_network(machine, 1e3, size_m=0.15, segments=24, recipe=SMALL, rounds=0, across=1)
     result = checked(found.built, found, lambda message: None)
     assert result["energy_balance"] < 1e-9
     assert all(math.isfinite(part["network_mean_C"]) for part in result["crosscheck"])
