@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from geom.description.identity import Identity
 from geom.errors import InputError
 from lumped.model.network import Network, Row
 from lumped.model.quantities import USUAL
@@ -56,7 +57,7 @@ def rated_model(folder: Folder, asked: Asked) -> Rated:
     """Of a case as it stands, or of a machine at its rated point."""
     network, values = model_of(folder)
     rows = looks(network, folder)
-    limits = places(asked.limits, rows)
+    limits = places(asked.limits, rows, network.identities)
     tests, usual = folder.case.tests, rated_point(folder, network)
     if asked.losses is not None:
         grid = loss_grid(columns_of(asked.losses), str(asked.losses), asked.voltage)
@@ -70,11 +71,17 @@ def rated_model(folder: Folder, asked: Asked) -> Rated:
     return Rated(model, op, limits)
 
 
-def places(limits: Mapping[str, float], rows: Mapping[str, Row]) -> dict[str, float]:
-    """Every place by its name; 'winding' stands for winding.field, winding.armature, ... where it is none itself."""
+def places(
+    limits: Mapping[str, float], rows: Mapping[str, Row], what: Mapping[str, Identity]
+) -> dict[str, float]:  # fmt: skip
+    """Every place by its name; a role (winding, magnet, bearing, ...) stands for all places that have it.
+
+    what : name -> its role; a place of that very name goes before a role
+    """
     out: dict[str, float] = {}
     for name, T in limits.items():
-        mine = [name] if name in rows else [n for n in rows if n.startswith(f"{name}.")]
+        roles = {n: i.role.value for n, i in what.items() if i.role is not None}
+        mine = [name] if name in rows else [n for n in rows if roles.get(n) == name]
         if not mine:
             raise InputError(f"no temperature '{name}' to limit", "--limit", known(name, rows))
         out |= dict.fromkeys(mine, T)

@@ -10,6 +10,7 @@ from small_case import small_case
 
 from geom.description.identity import Identity
 from geom.description.roles import Role
+from geom.errors import InputError
 from lumped.model.build import bare_network
 from lumped.model.network import Row
 from thermoscope.case_folder.folder import load_machine_file
@@ -66,11 +67,13 @@ def test_what_is_wrong_is_one_message(thermoscope, tmp_path):
         assert message in said.err.splitlines()[-1]
 
 
-def test_a_group_stands_for_its_places():
-    rows = dict.fromkeys(("winding.field", "winding.armature", "yoke"), Row(np.array([0]), np.ones(1)))
-    assert places({"winding": 155.0, "yoke": 120.0}, rows) == {
-        "winding.field": 155.0, "winding.armature": 155.0, "yoke": 120.0,
-    }  # fmt: skip
+def test_a_role_stands_for_its_places():
+    rows = dict.fromkeys(("winding.field", "armature", "yoke"), Row(np.array([0]), np.ones(1)))
+    what = {"winding.field": Identity(Role.WINDING), "armature": Identity(Role.WINDING), "yoke": Identity(Role.IRON)}
+    limits = places({"winding": 155.0, "yoke": 120.0}, rows, what)
+    assert limits == {"winding.field": 155.0, "armature": 155.0, "yoke": 120.0}
+    with pytest.raises(InputError, match="no temperature 'magnet' to limit"):
+        places({"magnet": 120.0}, rows, what)
 
 
 def test_a_cycle_and_a_map(thermoscope, tmp_path):
