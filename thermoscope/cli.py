@@ -335,13 +335,17 @@ def rate(
     voltage: Annotated[float | None, typer.Option(help="Of the map's slices.")] = None,
     overload: Annotated[float, typer.Option(min=100.1, help="Percent of the continuous rating.")] = 150.0,
     top: Annotated[float | None, typer.Option(min=0.0, metavar="RPM", help="Largest speed of the envelope.")] = None,
+    load: Annotated[list[str] | None, typer.Option(metavar="INPUT", help="What the load multiplies.")] = None,
+    cycle: Annotated[str | None, typer.Option(metavar="FILE|NAME", help="A drive cycle to repeat.")] = None,
+    mapped: Annotated[bool, typer.Option("--map", help="How long at every speed and load.")] = False,
     bands: Sure = None, json: Json = None,
 ) -> None:  # fmt: skip
     """What a machine may carry: S1, S2, S3, S6, 10 s, 60 s, derating, overload; with bands, beside the last model."""
     from thermoscope.commands.use.rate import rate as run
 
     given = tuple(limit or ()), tuple(at or ())
-    raise typer.Exit(run(name, *given, losses, voltage, overload, top, bands, json))
+    loads = tuple(load or ())
+    raise typer.Exit(run(name, *given, losses, voltage, overload, top, loads, cycle, mapped, bands, json))
 
 
 @app.command()

@@ -1,8 +1,34 @@
 """thermoscope rate: ratings of a small case, with bands; what is wrong is one message."""
 
+from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
 import pytest
 from small_case import small_case
 
+from geom.description.identity import Identity
+from geom.description.roles import Role
+from geom.errors import InputError
+from lumped.model.build import bare_network
+from lumped.model.network import Row
+from thermoscope.case_folder.folder import load_machine_file
+from thermoscope.rating import places, rated_point
+
+CYCLE = """
+[cycle]
+initial_degC = 20
+[duty]
+type = "S3"
+period_s = 120
+duty_percent = 50
+cycles = 1
+[load]
+current_A = 200
+[boundaries]
+ambient = 20
+"""
 HOLES = "torque_Nm,speed_rpm,copper_W\n0,0,0\n50,0,20\n0,1000,0\n"
 
 
@@ -39,3 +65,37 @@ def test_what_is_wrong_is_one_message(thermoscope, tmp_path):
         said = thermoscope("use", "rate", case, *arguments)
         assert said.code == 2
         assert message in said.err.splitlines()[-1]
+
+
+def test_a_role_stands_for_its_places():
+    rows = dict.fromkeys(("winding.field", "armature", "yoke"), Row(np.array([0]), np.ones(1)))
+    what = {"winding.field": Identity(Role.WINDING), "armature": Identity(Role.WINDING), "yoke": Identity(Role.IRON)}
+    limits = places({"winding": 155.0, "yoke": 120.0}, rows, what)
+    assert limits == {"winding.field": 155.0, "armature": 155.0, "yoke": 120.0}
+    with pytest.raises(InputError, match="no temperature 'magnet' to limit"):
+        places({"magnet": 120.0}, rows, what)
+
+
+def test_a_cycle_and_a_map(thermoscope, tmp_path):
+    """Half of the time under load: the share of the cycle's load is larger than that of its peak for ever."""
+    case = small_case(tmp_path)
+    (case / "cycles").mkdir()
+    (case / "cycles" / "town.toml").write_text(CYCLE)
+    asked = ("--limit", "winding=120", "--at", "ambient=20", "--cycle", "town")
+    said = thermoscope("use", "rate", case, *asked, "--json", "-")
+    assert said.code == 0, said.err
+    continuous = said.document["ratings"][0]["value"]
+    cycle = said.document["cycle"]
+    assert cycle["share"] * 200.0 == pytest.approx(continuous * 2.0**0.5, rel=0.08)
+    assert 0.0 < cycle["until_s"] < 3600.0
+    assert thermoscope("use", "rate", case, *asked, "--map").err.splitlines()[-1].endswith("and a limit in reach")
+
+
+def test_a_machine_without_tests_stands_at_its_ratings():
+    """Its coolant enters as [cooling] says; the air around is what IEC 60034-1 rates in."""
+    machine = load_machine_file(Path("series-dc-100kw-jacket-one"))
+    net = bare_network("n", {"body": 1.0}, ("ambient", "coolant"))
+    net = replace(net, declared={"coolant": Identity(role=Role.COOLANT)})
+    point = rated_point(SimpleNamespace(built=SimpleNamespace(machine=machine)), net)
+    expected = {"current_A": 511.0, "speed_rpm": 1000.0, "flow_l_min": 8.0, "ambient": 40.0, "coolant": 20.0}
+    assert point == expected

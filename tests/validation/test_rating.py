@@ -5,15 +5,18 @@ import pytest
 from numpy.testing import assert_allclose
 
 from geom.errors import InputError
+from lumped.integration.simulate import Record
 from lumped.integration.steady import steady
 from lumped.model.build import bare_network, node_link, node_source
 from lumped.model.network import Row
-from lumped.transfer.laws import Fixed, InputPower
+from lumped.transfer.laws import Fixed, InputPower, Linear
 from validation.rating.derating import deratings
 from validation.rating.envelope import rated, until
+from validation.rating.holding_map import holding_times
 from validation.rating.loss_grid import loss_grid, with_losses
 from validation.rating.operation import at_altitude, density, operation
-from validation.rating.points import Duty, Model
+from validation.rating.points import Duty, Model, mixed
+from validation.rating.repeated_cycle import Lap, share_for_ever, time_to_limit
 
 C, G, R, AIR = 1000.0, 2.0, 0.01, 20.0
 TAU = C / G
@@ -133,3 +136,58 @@ def test_a_loss_that_the_network_lacks():
     columns = {**grid(), "iron_W": np.zeros(6)}
     with pytest.raises(InputError, match="'iron_W' is no loss of the network; known: copper"):
         with_losses(body(), loss_grid(columns, "map.csv"), "map.csv")
+
+
+def test_a_load_without_rest_reaches_its_limit_in_time():
+    """Resistance that grows faster than the film takes: T runs off as e^(t/tau'), tau' = C / (R alpha I^2 - G)."""
+    net = bare_network("hot", {"body": C}, ("air",))
+    copper = InputPower(R, (("current_A", 1.0, 2.0),), Linear(0.004, AIR))
+    hot = net.extended(
+        [node_link(net, "film", "film", "body", "air", Fixed(G))],
+        [node_source(net, "loss:copper", "copper", {"body": 1.0}, copper)],
+    )
+    load = 10.0
+    P, k = R * (50.0 * load) ** 2, 0.004 * R * (50.0 * load) ** 2 - G
+    expected = C / k * np.log(1.0 + 100.0 * k / P)
+    assert k > 0.0
+    assert_allclose(until(model(hot), OP, [120.0], load, None, None), expected, rtol=5e-3)
+
+
+def test_the_map_holds_times_and_for_ever():
+    times = holding_times(model(), OP, LIMIT, (0.9 * REST, 1.5 * REST), (0.0, 1000.0))
+    assert np.all(np.isinf(times[:, 0]))
+    assert_allclose(times[:, 1], -TAU * np.log(1.0 - 1.0 / 2.25), rtol=5e-3)
+
+
+LAP = Record(np.array([0.0, 240.0, 240.0, 600.0]), {"current_A": np.array([100.0, 100.0, 0.0, 0.0])}, {"air": AIR})
+
+
+def test_a_cycle_may_be_repeated_at_a_share_of_its_load():
+    """The same closed form as of S3, at 100 A where load counts as 1."""
+    share, at = share_for_ever(model(), OP, LIMIT, Lap(LAP, ("current_A",)))
+    most = 50.0 * REST / np.sqrt((1.0 - np.exp(-240.0 / TAU)) / (1.0 - np.exp(-600.0 / TAU)))
+    assert at == "body"
+    assert_allclose(share, most / 100.0, rtol=3e-3)
+
+
+def test_a_cycle_reaches_its_limit_in_a_later_lap():
+    """2 R I^2 in the first 240 s of every lap; laps are added up by hand until 120 degC."""
+    T, t, rise = AIR, 0.0, R * 200.0**2 / G
+    while True:
+        end = AIR + rise + (T - AIR - rise) * np.exp(-240.0 / TAU)
+        if end >= 120.0:
+            t += -TAU * np.log((100.0 - rise) / (T - AIR - rise))
+            break
+        T, t = AIR + (end - AIR) * np.exp(-360.0 / TAU), t + 600.0
+    fine = np.linspace(0.0, 240.0, 121)
+    time = np.append(fine, [240.0, 600.0])
+    record = Record(time, {"current_A": np.append(np.full(121, 200.0), [0.0, 0.0])}, LAP.boundaries)
+    assert_allclose(time_to_limit(model(), OP, LIMIT, Lap(record, ("current_A",))), t, atol=0.5)
+    assert time_to_limit(model(), OP, {"body": 500.0}, Lap(record, ("current_A",))) == np.inf
+
+
+def test_mixing_finds_where_a_linear_map_repeats():
+    """x = A x + b in two unknowns: two differences say all of A."""
+    A, b = np.array([[0.99, 0.0], [0.1, 0.5]]), np.array([1.0, 2.0])
+    pairs = [(x, A @ x + b) for x in (np.zeros(2), np.ones(2), np.array([1.0, -1.0]))]
+    assert_allclose(mixed(pairs), np.linalg.solve(np.eye(2) - A, b), rtol=1e-8)

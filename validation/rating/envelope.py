@@ -42,8 +42,15 @@ def rated(model: Model, op: Operation, limits: Mapping[str, float], form: str, s
 
     Raises InputError where a limit is exceeded without any load.
     """
+    return reached(excess(model, op, form, speed), limits, form, speed)
+
+
+def reached(over: Callable[[float], Array], limits: Mapping[str, float], form: str, speed: float | None) -> Rating:
+    """The load at which the first limit is reached.  over : load -> temperatures of the places (degC), growing with it
+
+    Raises InputError where a limit is exceeded without any load.
+    """
     names, most = list(limits), np.array(list(limits.values()))
-    over = excess(model, op, form, speed)
 
     def worst(load: float) -> float:
         return float(np.max(over(load) - most))
@@ -85,16 +92,17 @@ def until(
     begin, most = model.start(op, warm, speed), np.asarray(limits)
     if np.any(begin_at(model, op, begin, speed) >= most):
         return 0.0
-    time, T = model.course(op, load, speed, begin, longest)
-    over = np.flatnonzero(np.any(most <= T, axis=1))
-    if over.size == 0:
-        return float("inf")
-    low, high = time[over[0] - 1], time[over[0]]
 
     def left(seconds: float) -> float:
         return float(np.max(model.course(op, load, speed, begin, seconds)[1][-1] - most))
 
-    return float(brentq(left, max(low, 1e-3), high, rtol=1e-3)) if left(max(low, 1e-3)) < 0.0 else float(low)
+    low, high = 0.0, 1.0  # grown step by step: a run without rest goes astray long after the limit
+    while (over := left(high)) < 0.0:
+        if high >= longest:
+            return float("inf")
+        low, high = high, min(4.0 * high, longest)
+    low = max(low, 1e-3)
+    return float(brentq(left, low, high, rtol=1e-3)) if over > 0.0 > left(low) else low
 
 
 def begin_at(model: Model, op: Operation, begin: object, speed: float | None) -> Array:

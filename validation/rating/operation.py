@@ -12,6 +12,7 @@ from geom.description.roles import Role
 from geom.errors import InputError
 from lumped.model.network import Link, Network
 from lumped.model.quantities import AIR, LIQUID
+from lumped.schemas.reader import known
 from lumped.transfer.laws import CLOCK, Law, Radiation, TemperatureLaw
 from validation.case import Test
 
@@ -53,8 +54,14 @@ class Operation:
         )
 
 
-def operation(network: Network, tests: Sequence[Test], given: Mapping[str, float]) -> Operation:
+def operation(
+    network: Network, tests: Sequence[Test], given: Mapping[str, float], carry: Sequence[str] = (),
+    usual: Mapping[str, float] | None = None,
+) -> Operation:  # fmt: skip
     """From what the tests recorded: the sample of the largest load, boundaries at their means; `given` goes before.
+
+    usual : what an input or boundary is where neither says;
+    carry : inputs that the load multiplies; without any, those that measure one of LOADS
 
     Raises InputError where nothing says what an input is, or nothing carries a load.
     """
@@ -62,21 +69,28 @@ def operation(network: Network, tests: Sequence[Test], given: Mapping[str, float
     reads = dict.fromkeys(n for law in laws for n in law.reads if n != CLOCK)
     for name in given:
         if name not in (*reads, *network.boundaries):
-            known = ", ".join((*reads, *network.boundaries))
-            raise InputError(f"'{name}' is no input or boundary of the model", "--at", f"known: {known}")
+            raise InputError(
+                f"'{name}' is no input or boundary of the model", "--at", known(name, (*reads, *network.boundaries))
+            )
     seen = [t for t in tests if all(n in t.inputs for n in reads)]
-    loads = tuple(n for n in reads if network.measures(n) in LOADS)
+    for name in carry:
+        if name not in reads:
+            raise InputError(f"'{name}' is no input of the model", "--load", known(name, tuple(reads)))
+    loads = tuple(carry) or tuple(n for n in reads if network.measures(n) in LOADS)
     if not loads:
-        raise InputError("no input carries the load", network.title, f"an input that measures {' or '.join(LOADS)}")
-    inputs = {n: v for n, v in given.items() if n in reads} | {
-        n: given.get(n, v) for n, v in _largest(seen, reads, loads).items()
-    }
+        raise InputError(
+            "no input carries the load",
+            f"network '{network.name}'",
+            f"an input that measures {' or '.join(LOADS)}, or --load INPUT, one of {', '.join(reads)}",
+        )
+    said = {**(usual or {}), **_largest(seen, reads, loads), **given}
+    inputs = {n: v for n, v in said.items() if n in reads}
     for name in reads:
         if name not in inputs:
             raise InputError(f"nothing says what '{name}' is", "--at", f"--at {name}=VALUE")
     if not any(inputs[n] for n in loads):
         raise InputError("the load is zero", "--at", f"--at {loads[0]}=VALUE")
-    around = {b: given.get(b, _mean(tests, b)) for b in network.boundaries}
+    around = {b: given.get(b, _mean(tests, b, (usual or {}).get(b))) for b in network.boundaries}
     for name, T in around.items():
         if T is None:
             raise InputError(f"nothing says how warm '{name}' is", "--at", f"--at {name}=DEGC")
@@ -96,9 +110,9 @@ def _largest(tests: Sequence[Test], reads: Mapping[str, None], loads: Sequence[s
     return best[1]
 
 
-def _mean(tests: Sequence[Test], boundary: str) -> float | None:
+def _mean(tests: Sequence[Test], boundary: str, usual: float | None) -> float | None:
     seen = [float(np.mean(t.boundaries[boundary])) for t in tests if boundary in t.boundaries]
-    return float(np.mean(seen)) if seen else None
+    return float(np.mean(seen)) if seen else usual
 
 
 def air_boundaries(network: Network) -> tuple[str, ...]:

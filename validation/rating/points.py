@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,8 +16,9 @@ from lumped.model.network import Network, Row
 from validation.rating.operation import Operation
 
 Array = NDArray[np.float64]
-TOGETHER, ROUNDS = 8, 12  # periods that run as one record; of these at most
+TOGETHER, ROUNDS = 2, 40  # periods that run as one record; of these at most
 REPEATS_K = 0.02  # change per period below which a duty repeats itself
+DEPTH = 4  # earlier rounds that Anderson's mixing looks back at
 SAMPLES = 24  # of a period
 RUNAWAY_C = 1e4  # what a load without rest counts as
 
@@ -40,10 +41,14 @@ class Model:
     def start(self, op: Operation, load: float | None, speed: float | None) -> Stand:
         """A stand to begin from: all at the mean of what is around, or at rest under a load."""
         if load is None:
-            x = initial_state(self.network, float(np.mean(list(op.boundaries.values()))))
-        else:
-            x = steady(self.network, op.at(load, speed), op.boundaries, self.values).z[: len(self.network.states)]
-        return Stand(x, np.zeros((x.size, 0)), np.zeros(x.size), 1.0, float(min(x.min(), *op.boundaries.values())))
+            return self.at(op, initial_state(self.network, float(np.mean(list(op.boundaries.values())))))
+        z = steady(self.network, op.at(load, speed), op.boundaries, self.values).z
+        return self.at(op, z[: len(self.network.states)])
+
+    def at(self, op: Operation, x: Array) -> Stand:
+        """A stand at a state x (n_states,)."""
+        named = x[["#" not in s for s in self.network.states]]
+        return Stand(x, np.zeros((x.size, 0)), np.zeros(x.size), 1.0, float(min(named.min(), *op.boundaries.values())))
 
     def course(
         self, op: Operation, load: float, speed: float | None, begin: Stand, seconds: float
@@ -61,18 +66,36 @@ class Model:
         time, share = s3(duty.period_s, duty.share, TOGETHER, duty.period_s / SAMPLES)
         pause = op.at(duty.idle * load, 0.0 if duty.stops else speed)
         given = {n: np.where(share > 0.5, u, pause[n]) for n, u in op.at(load, speed).items()}
-        record = Record(time, given, op.boundaries)
-        last = time >= duty.period_s * (TOGETHER - 1)
+        mean = load * np.sqrt(duty.share + (1.0 - duty.share) * duty.idle**2)
+        return self.again_and_again(op, Record(time, given, op.boundaries), mean, speed)
+
+    def again_and_again(self, op: Operation, record: Record, load: float, speed: float | None) -> Array:
+        """(n_rows,) largest temperatures of a record that follows on itself until it repeats itself.
+
+        load : whose rest is a first guess;  RUNAWAY_C where there is no rest
+        """
         try:
-            begin = self.start(op, load * np.sqrt(duty.share + (1.0 - duty.share) * duty.idle**2), speed)
+            x = self.start(op, load, speed).x
+            seen: list[tuple[Array, Array]] = []
             for _ in range(ROUNDS):
-                run = simulate(self.network, record, self.values, self.rows, begin=replace(begin, step=1.0))
-                done, begin = np.abs(run.end.x - begin.x).max() < REPEATS_K * TOGETHER, run.end
-                if done:
+                run = simulate(self.network, record, self.values, self.rows, begin=self.at(op, x))
+                seen = [*seen, (x, run.end.x)][-DEPTH:]
+                if np.abs(run.end.x - x).max() < REPEATS_K * TOGETHER:
                     break
-            return np.asarray(run.y[last].max(axis=0))
+                x = mixed(seen)
+            return np.asarray(run.y.max(axis=0))
         except ThermoscopeError:
             return np.full(len(self.rows), RUNAWAY_C)
+
+
+def mixed(seen: Sequence[tuple[Array, Array]]) -> Array:
+    """Where x = g(x) is, from pairs (x, g(x)): Anderson 1965, without damping."""
+    x, g = (np.array(side).T for side in zip(*seen, strict=True))
+    if x.shape[1] == 1:
+        return np.asarray(g[:, -1])
+    f = g - x
+    share = np.linalg.lstsq(np.diff(f), f[:, -1], rcond=1e-8)[0]
+    return np.asarray(g[:, -1] - np.diff(g) @ share)
 
 
 @dataclass(frozen=True)

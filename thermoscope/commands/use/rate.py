@@ -7,7 +7,7 @@ import tempfile
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,8 +16,6 @@ import numpy as np
 from geom.errors import InputError
 from lumped.correlations import RangeWarning
 from lumped.integration.simulate import Record
-from lumped.model.quantities import USUAL
-from lumped.schemas.reader import known
 from thermoscope.bands import along, posterior_of, wanted
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.runs import before_last, named_rows
@@ -25,39 +23,27 @@ from thermoscope.commands.open_case import open_case
 from thermoscope.commands.use.export import read_limits
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import Progress, give, notes, progress
-from thermoscope.recordings.csv_file import read_csv
-from thermoscope.verification.error_budget import model_of
+from thermoscope.rating import Asked, Rated, rated_model
 from validation.bands import ParameterPosterior
 from validation.rating.derating import deratings
 from validation.rating.envelope import FORMS, TIMES, Rating, rated, until
-from validation.rating.loss_grid import SPEED, TORQUE, loss_grid, with_losses
-from validation.rating.operation import Operation, operation
-from validation.rating.points import Model
+from validation.rating.holding_map import holding_times
+from validation.rating.operation import Operation
+from validation.rating.repeated_cycle import Lap, share_for_ever, time_to_limit
 
-NORMAL_95 = 1.96
 POINTS = 6  # speeds of the envelope
+LOADS = 8  # loads of the map
 WARM = 0.75  # load at rest from which an overload begins warm
 SETTLED = 20.0  # time constants
 
 
-@dataclass(frozen=True)
-class Asked:
-    """limits : place -> degC;  at : input or boundary -> value;  losses : a map, at a voltage;  overload : of S1"""
-
-    limits: Mapping[str, float]
-    at: Mapping[str, float]
-    losses: Path | None = None
-    voltage: float | None = None
-    overload: float = 1.5
-    top_rpm: float | None = None
-
-
 def rate(
     name: str, limits: Sequence[str], at: Sequence[str], losses: Path | None, voltage: float | None, overload: float,
-    top_rpm: float | None, sure: bool | None, target: str | None,
+    top_rpm: float | None, loads: Sequence[str], cycle: str | None, mapped: bool, sure: bool | None, target: str | None,
 ) -> int:  # fmt: skip
     """Ratings of a case, or of a machine with nothing measured."""
-    asked = Asked(read_limits(limits), read_at(at), losses, voltage, overload / 100.0, top_rpm)
+    given = read_limits(limits), read_at(at), tuple(loads)
+    asked = Asked(*given, losses, voltage, overload / 100.0, top_rpm, cycle, mapped)
     if not asked.limits:
         raise InputError("no limit is given", "--limit", "PLACE=DEGC, for example winding=155")
     with progress() as tell, once() as said:
@@ -97,23 +83,6 @@ def case_or_machine(name: str, tell: Progress) -> Folder:
         return open_case(folder, tell, untested=True)
 
 
-def columns_of(file: Path) -> dict[str, np.ndarray]:
-    """The columns of a loss map as numbers."""
-    import pandas as pd
-
-    if not file.is_file():
-        raise InputError("no such file", f"--losses {file}", "a CSV file with a row per torque and speed")
-    table = read_csv(file)
-    out = {}
-    for name in table.columns:
-        numbers = pd.to_numeric(table[name], errors="coerce").to_numpy(float)
-        if not np.all(np.isfinite(numbers)):
-            row = int(np.argmin(np.isfinite(numbers)))
-            raise InputError(f"column '{name}' has no number in row {row + 2}", str(file), "numbers in every row")
-        out[str(name)] = numbers
-    return out
-
-
 @contextmanager
 def once() -> Iterator[list[str]]:
     """What correlations and maps say of their ranges: the last word of each instead of hundreds."""
@@ -127,56 +96,70 @@ def once() -> Iterator[list[str]]:
 
 
 def document_of(folder: Folder, asked: Asked, sure: bool | None, tell: Progress) -> dict[str, Any]:
-    model, op = _model(folder, asked)
+    it = rated_model(folder, asked)
+    model, op, limits = it.model, it.op, it.limits
     tell("ratings")
-    here = {form: rated(model, op, asked.limits, form, None) for form in FORMS}
-    earlier = before_last(folder)
-    before = {}
-    if earlier is not None:
-        tell("ratings of the model before its last step")
-        old, _ = _model(replace(folder, case=earlier), asked)
-        before = {form: rated(old, op, asked.limits, form, None).load for form in FORMS}
+    here = {form: rated(model, op, limits, form, None) for form in FORMS}
+    before = _before(folder, asked, tell)
     belief = posterior_of(folder, tell) if asked.losses is None and wanted(model.network, sure) else None
     tell("envelope over the speed")
     speeds = _speeds(folder, op, asked)
-    envelope = [rated(model, op, asked.limits, form, n) for form in ("S1", "S2 60 s", "S2 10 s") for n in speeds]
+    envelope = [rated(model, op, limits, form, n) for form in ("S1", "S2 60 s", "S2 10 s") for n in speeds]
     tell("derating")
     load, main = here["S1"].load, op.inputs[op.main]
     return {
-        "limits": [{"place": p, "degC": T} for p, T in asked.limits.items()],
+        "limits": [{"place": p, "degC": T} for p, T in limits.items()],
         "reference": {"input": op.main, "value": main, "inputs": dict(op.inputs), "boundaries": dict(op.boundaries)},
-        "ratings": [_row(folder, asked, op, r, before.get(f), belief) for f, r in here.items()],
+        "ratings": [_row(folder, op, r, before.get(f), belief) for f, r in here.items()],
         "envelope": [{"form": r.form, "speed_rpm": r.speed, "value": r.load * main, "at": r.at} for r in envelope],
         "derating": [{"of": d.of, "value": d.value, "unit": d.unit, "share": d.load / load}
-                     for d in deratings(model, op, asked.limits)],
-        "overload": _overload(model, op, asked, load),
+                     for d in deratings(model, op, limits)],
+        "overload": _overload(it, asked, load),
+        "cycle": _cycle(folder, it, asked, tell),
+        "map": _map(it, (load, here["S2 10 s"].load), speeds, tell) if asked.mapped else {},
     }  # fmt: skip
 
 
-def _model(folder: Folder, asked: Asked) -> tuple[Model, Operation]:
-    network, values = model_of(folder)
-    rows = named_rows(network, folder)
-    for place in asked.limits:
-        if place not in rows:
-            raise InputError(f"no temperature '{place}' to limit", "--limit", known(place, rows))
-    tests = folder.case.tests
-    if asked.losses is not None:
-        grid = loss_grid(columns_of(asked.losses), str(asked.losses), asked.voltage)
-        network = with_losses(network, grid, str(asked.losses))
-        network = replace(network, quantities={TORQUE: USUAL[TORQUE], SPEED: USUAL[SPEED], **network.quantities})
-        asked = replace(asked, at={TORQUE: float(grid.torque.max()), SPEED: float(np.median(grid.speed)), **asked.at})
-        tests = ()
-    around = {b: u for b, u in _air(folder).items() if b in network.boundaries}
-    op = operation(network, tests, {**(around if asked.losses else {}), **asked.at})
-    mine = {p.name for p in network.parameters}
-    return Model(network, {k: v for k, v in values.items() if k in mine}, [rows[p] for p in asked.limits]), op
+def _before(folder: Folder, asked: Asked, tell: Progress) -> dict[str, float]:
+    """The same ratings of the model before its last step (loads); none without a step."""
+    earlier = before_last(folder)
+    if earlier is None:
+        return {}
+    tell("ratings of the model before its last step")
+    old = rated_model(replace(folder, case=earlier), asked)
+    return {form: rated(old.model, old.op, old.limits, form, None).load for form in FORMS}
 
 
-def _air(folder: Folder) -> dict[str, float]:
-    """Boundaries at the mean of the tests."""
-    names = {b for t in folder.case.tests for b in t.boundaries}
-    tests = folder.case.tests
-    return {b: float(np.mean([np.mean(t.boundaries[b]) for t in tests if b in t.boundaries])) for b in names}
+def _map(it: Rated, ends: tuple[float, float], speeds: Sequence[float], tell: Progress) -> dict[str, Any]:
+    """Seconds from cold at every speed and load, from half of what holds for ever to what holds for ten seconds."""
+    if not speeds or not np.all(np.isfinite(ends)):
+        raise InputError("there is no map", "--map", "a model whose losses or films know a speed, and a limit in reach")
+    tell("map over load and speed")
+    loads = [float(x) for x in np.geomspace(0.5 * ends[0], ends[1], LOADS)]
+    seconds = holding_times(it.model, it.op, it.limits, loads, speeds)
+    main = it.op.inputs[it.op.main]
+    return {"speed_rpm": list(speeds), it.op.main: [main * x for x in loads], "seconds": seconds.tolist()}
+
+
+def _cycle(folder: Folder, it: Rated, asked: Asked, tell: Progress) -> dict[str, Any]:
+    """The share of a drive cycle's load that may be repeated for ever; how long all of it from cold."""
+    if asked.cycle is None:
+        return {}
+    from thermoscope.case_folder.cycle import find_cycle, load_cycle
+
+    tell(f"cycle {asked.cycle}")
+    network, op = it.model.network, it.op
+    ratings = folder.built.machine.sections.get("ratings", {}) if folder.built is not None else {}
+    cycle = load_cycle(find_cycle(folder.settings.path, asked.cycle), network, ratings)
+    record = cycle.record
+    if cycle.drive is not None:
+        from lumped.drives.coupled import coupled
+
+        found = coupled(network, record, cycle.drive, cycle.watched, it.model.values, it.model.rows)
+        record = replace(record, inputs=found.inputs)
+    lap = Lap(record, op.loads)
+    share, at = share_for_ever(it.model, op, it.limits, lap)
+    return {"name": cycle.name, "share": share, "at": at, "until_s": time_to_limit(it.model, op, it.limits, lap)}
 
 
 def _speeds(folder: Folder, op: Operation, asked: Asked) -> list[float]:
@@ -189,7 +172,7 @@ def _speeds(folder: Folder, op: Operation, asked: Asked) -> list[float]:
 
 
 def _row(
-    folder: Folder, asked: Asked, op: Operation, r: Rating, before: float | None, of: ParameterPosterior | None
+    folder: Folder, op: Operation, r: Rating, before: float | None, of: ParameterPosterior | None
 ) -> dict[str, Any]:
     main = op.inputs[op.main]
     half = _half95(folder, op, r, of) if of is not None and np.isfinite(r.load) and r.slope > 0.0 else None
@@ -214,29 +197,50 @@ def _half95(folder: Folder, op: Operation, r: Rating, of: ParameterPosterior) ->
     return float(found.half95[-1, 0] / r.slope)
 
 
-def _overload(model: Model, op: Operation, asked: Asked, load: float) -> dict[str, Any]:
+def _overload(it: Rated, asked: Asked, load: float) -> dict[str, Any]:
     """How long at a multiple of the continuous rating, from cold and from rest at three quarters of it."""
     if not np.isfinite(load):
         return {}
-    most = list(asked.limits.values())
-    cold, warm = (until(model, op, most, asked.overload * load, None, w) for w in (None, WARM * load))
+    most = list(it.limits.values())
+    cold, warm = (until(it.model, it.op, most, asked.overload * load, None, w) for w in (None, WARM * load))
     return {"percent": 100.0 * asked.overload, "from_cold_s": cold, "from_warm_s": warm, "warm_percent": 100.0 * WARM}
 
 
 def answer(document: Mapping[str, Any]) -> Answer:
-    """The continuous rating with its band; the other forms; envelope and derating."""
-    first, main = document["ratings"][0], document["reference"]["input"]
+    """The continuous rating with its band; the other forms; cycle, map, envelope and derating."""
+    first, reference = document["ratings"][0], document["reference"]
+    main = reference["input"]
     band = "" if first["ci95"] is None else f" ({first['ci95'][0]:.4g} to {first['ci95'][1]:.4g})"
     sentence = f"Continuous: {main} = {first['value']:.4g}{band}, limited by {first['at'] or 'nothing'}."
     rows = [[r["form"], r["value"], *(r["ci95"] or (None, None)), r["at"], r["before"], r["change_percent"]]
             for r in document["ratings"]]  # fmt: skip
     headers = ["form", main, "95 % from", "to", "limited by", "before", "change (%)"]
-    parts: list[Grid | str] = [Grid("", headers, rows, keep=[main, "95 % from", "to", "change (%)"])]
+    around = {**{n: u for n, u in reference["inputs"].items() if n != main}, **reference["boundaries"]}
+    at = ", ".join(f"{n} = {u:.4g}" for n, u in around.items())
+    parts: list[Grid | str] = [Grid("", headers, rows, keep=[main, "95 % from", "to", "change (%)"]), f"At {at}."]
     if over := document["overload"]:
         parts.append(f"{over['percent']:g} % of it: {over['from_cold_s']:.4g} s from cold, {over['from_warm_s']:.4g} s "
                      f"from rest at {over['warm_percent']:g} %.")  # fmt: skip
+    if cycle := document["cycle"]:
+        parts.append(_of_cycle(cycle))
+    parts += [_of_map(document["map"], main)] if document["map"] else []
     derated = [[d["of"], d["value"], d["unit"], 100.0 * d["share"]] for d in document["derating"]]
     parts.append(Grid("Continuous rating elsewhere", ["over", "value", "unit", "% of it"], derated))
     envelope = [[e["form"], e["speed_rpm"], e["value"], e["at"]] for e in document["envelope"]]
     parts.append(Grid("Over the speed", ["form", "speed (1/min)", main, "limited by"], envelope))
-    return Answer(sentence, parts, "--json FILE; --limit, --at, --losses")
+    return Answer(sentence, parts, "--json FILE; --limit, --at, --losses, --cycle, --map")
+
+
+def _of_cycle(cycle: Mapping[str, Any]) -> str:
+    """A sentence on a cycle."""
+    until_s = cycle["until_s"]
+    whole = f"all of it reaches the limit after {until_s:.4g} s" if np.isfinite(until_s) else "all of it may"
+    share = f"{100.0 * cycle['share']:.4g} % of its load" if np.isfinite(cycle["share"]) else "any load"
+    return f"Cycle {cycle['name']}: {share} may be repeated for ever ({cycle['at'] or 'nothing'} limits); {whole}."
+
+
+def _of_map(found: Mapping[str, Any], main: str) -> Grid:
+    """A row per load, the largest first; a column per speed."""
+    rows = [[u, *(s[k] if np.isfinite(s[k]) else "for ever" for s in found["seconds"])]
+            for k, u in reversed(list(enumerate(found[main])))]  # fmt: skip
+    return Grid("Seconds from cold, over the speed (1/min)", [main, *(f"{n:.0f}" for n in found["speed_rpm"])], rows)

@@ -1,0 +1,124 @@
+"""What is asked of a rating, and the model and operating point that answer it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from geom.description.identity import Identity
+from geom.errors import InputError
+from lumped.model.network import Network, Row
+from lumped.model.quantities import USUAL
+from lumped.schemas.reader import known
+from thermoscope.case_folder.folder import Folder
+from thermoscope.case_folder.runs import named_rows
+from thermoscope.recordings.csv_file import read_csv
+from thermoscope.verification.error_budget import model_of
+from validation.rating.loss_grid import SPEED, TORQUE, loss_grid, with_losses
+from validation.rating.operation import Operation, air_boundaries, coolant_boundaries, operation
+from validation.rating.points import Model
+
+AMBIENT_C = 40.0  # IEC 60034-1: what a machine is rated in where nothing else is said
+INLET_C = 20.0  # what [cooling] takes where it does not say
+
+
+@dataclass(frozen=True)
+class Asked:
+    """limits : place -> degC;  at : input or boundary -> value;  loads : inputs that carry the load, if not the usual
+
+    losses : a map, at a voltage;  overload : of S1;  cycle : a file or a name;  mapped : whether a map is wanted
+    """
+
+    limits: Mapping[str, float]
+    at: Mapping[str, float]
+    loads: tuple[str, ...] = ()
+    losses: Path | None = None
+    voltage: float | None = None
+    overload: float = 1.5
+    top_rpm: float | None = None
+    cycle: str | None = None
+    mapped: bool = False
+
+
+@dataclass(frozen=True)
+class Rated:
+    """A model at the point where load counts as 1.  limits : place -> degC, groups taken apart"""
+
+    model: Model
+    op: Operation
+    limits: Mapping[str, float]
+
+
+def rated_model(folder: Folder, asked: Asked) -> Rated:
+    """Of a case as it stands, or of a machine at its rated point."""
+    network, values = model_of(folder)
+    rows = named_rows(network, folder)
+    limits = places(asked.limits, rows, network.identities)
+    tests, usual = folder.case.tests, rated_point(folder, network)
+    if asked.losses is not None:
+        grid = loss_grid(columns_of(asked.losses), str(asked.losses), asked.voltage)
+        network = with_losses(network, grid, str(asked.losses))
+        network = replace(network, quantities={TORQUE: USUAL[TORQUE], SPEED: USUAL[SPEED], **network.quantities})
+        usual = {**usual, TORQUE: float(grid.torque.max()), SPEED: float(np.median(grid.speed)), **_air(folder)}
+        tests = ()
+    op = operation(network, tests, asked.at, asked.loads, usual)
+    mine = {p.name for p in network.parameters}
+    model = Model(network, {k: v for k, v in values.items() if k in mine}, [rows[p] for p in limits])
+    return Rated(model, op, limits)
+
+
+def places(
+    limits: Mapping[str, float], rows: Mapping[str, Row], what: Mapping[str, Identity]
+) -> dict[str, float]:  # fmt: skip
+    """Every place by its name; a role (winding, magnet, bearing, ...) stands for all places that have it.
+
+    what : name -> its role; a place of that very name goes before a role
+    """
+    out: dict[str, float] = {}
+    for name, T in limits.items():
+        roles = {n: i.role.value for n, i in what.items() if i.role is not None}
+        mine = [name] if name in rows else [n for n in rows if roles.get(n) == name]
+        if not mine:
+            raise InputError(f"no temperature '{name}' to limit", "--limit", known(name, rows))
+        out |= dict.fromkeys(mine, T)
+    return out
+
+
+def rated_point(folder: Folder, network: Network) -> dict[str, float]:
+    """Inputs and boundaries of a machine without tests: its ratings, 40 degC around it, its coolant's inlet."""
+    if folder.built is None:
+        return {}
+    from lumped.machine.motor import rated_inputs
+
+    machine: Any = folder.built.machine
+    cooling = machine.sections.get("cooling", {})
+    wet = dict.fromkeys(coolant_boundaries(network), float(cooling.get("inlet_C", INLET_C)))
+    return {**rated_inputs(machine), **dict.fromkeys(air_boundaries(network), AMBIENT_C), **wet}
+
+
+def _air(folder: Folder) -> dict[str, float]:
+    """Boundaries at the mean of the tests."""
+    tests = folder.case.tests
+    names = {b for t in tests for b in t.boundaries}
+    return {b: float(np.mean([np.mean(t.boundaries[b]) for t in tests if b in t.boundaries])) for b in names}
+
+
+def columns_of(file: Path) -> dict[str, np.ndarray]:
+    """The columns of a loss map as numbers."""
+    import pandas as pd
+
+    if not file.is_file():
+        raise InputError("no such file", f"--losses {file}", "a CSV file with a row per torque and speed")
+    table = read_csv(file)
+    out = {}
+    for name in table.columns:
+        numbers = pd.to_numeric(table[name], errors="coerce").to_numpy(float)
+        if not np.all(np.isfinite(numbers)):
+            row = int(np.argmin(np.isfinite(numbers)))
+            raise InputError(f"column '{name}' has no number in row {row + 2}", str(file), "numbers in every row")
+        out[str(name)] = numbers
+    return out
