@@ -344,8 +344,8 @@ def rate(
     from thermoscope.commands.use.rate import rate as run
 
     given = tuple(limit or ()), tuple(at or ())
-    more = tuple(load or ()), cycle, mapped
-    raise typer.Exit(run(name, *given, losses, voltage, overload, top, *more, bands, json))
+    loads = tuple(load or ())
+    raise typer.Exit(run(name, *given, losses, voltage, overload, top, loads, cycle, mapped, bands, json))
 
 
 @app.command()

@@ -80,7 +80,7 @@ def operation(
     if not loads:
         raise InputError(
             "no input carries the load",
-            network.title,
+            f"network '{network.name}'",
             f"an input that measures {' or '.join(LOADS)}, or --load INPUT, one of {', '.join(reads)}",
         )
     said = {**(usual or {}), **_largest(seen, reads, loads), **given}

@@ -75,7 +75,8 @@ class Model:
         load : whose rest is a first guess;  RUNAWAY_C where there is no rest
         """
         try:
-            x, seen = self.start(op, load, speed).x, []
+            x = self.start(op, load, speed).x
+            seen: list[tuple[Array, Array]] = []
             for _ in range(ROUNDS):
                 run = simulate(self.network, record, self.values, self.rows, begin=self.at(op, x))
                 seen = [*seen, (x, run.end.x)][-DEPTH:]

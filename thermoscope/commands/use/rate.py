@@ -171,7 +171,9 @@ def _speeds(folder: Folder, op: Operation, asked: Asked) -> list[float]:
     return [float(n) for n in np.linspace(0.0, top, POINTS)] if top > 0.0 else []
 
 
-def _row(folder: Folder, op: Operation, r: Rating, before: float | None, of: ParameterPosterior | None) -> dict[str, Any]:
+def _row(
+    folder: Folder, op: Operation, r: Rating, before: float | None, of: ParameterPosterior | None
+) -> dict[str, Any]:
     main = op.inputs[op.main]
     half = _half95(folder, op, r, of) if of is not None and np.isfinite(r.load) and r.slope > 0.0 else None
     ci95 = None if half is None else [(r.load - half) * main, (r.load + half) * main]
