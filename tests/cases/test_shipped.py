@@ -64,7 +64,7 @@ def answered(monkeypatch, capsys, *words):
     with pytest.raises(SystemExit) as end:
         main()
     told = capsys.readouterr()
-    return end.value.code, told.out, [line for line in told.err.splitlines() if line.startswith("error")]
+    return end.value.code, told.out, [line for line in told.err.splitlines() if line.startswith("error:")]
 
 
 @pytest.fixture(scope="module")
@@ -79,7 +79,13 @@ def home(tmp_path_factory):
         yield home
 
 
-@pytest.mark.parametrize(("case", "words"), [(case, words) for case, all_ in TAKEN.items() for words in all_])
+LINES = [
+    pytest.param(case, words, marks=[pytest.mark.heavy] if all_[: len(MESHED)] == MESHED else [])
+    for case, all_ in TAKEN.items() for words in all_
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("case", "words"), LINES)
 def test_a_shipped_case_goes_through_the_command(home, tmp_path, monkeypatch, capsys, case, words):
     monkeypatch.chdir(tmp_path)
     places = {name: str(home / "cases" / name) for name in TAKEN}

@@ -14,6 +14,7 @@ import numpy as np
 
 from fem.matrices.assembly import FieldModel
 from lumped.condensation.recovery import PartShape, Shapes, locate
+from lumped.machine.bases import on_every_base
 from lumped.model.network import Array, Network, Row
 from thermoscope.caches import cache_folder
 from thermoscope.case_folder.files import write_whole
@@ -75,7 +76,7 @@ def at_rated_point(built: Built, looks: MonitoredPlaces) -> Rated:
 
     Source: Roache 1994, J. Fluids Eng. 116, 405.
     """
-    field, network = built.field, built.network
+    field, network = built.field, on_every_base(built.network)
     films, contacts = coefficients_on(built.machine, built.mesh)
     asked = rated(built.machine, network, films, contacts)
     coarse = meshed(built.machine, built.meshing.coarser).field
