@@ -41,6 +41,8 @@ def with_one_more(
     assert best.fit is not None
     others = [k for k, e in enumerate(evidence.effects) if k not in best.members and not isinstance(e, During)]
     others = [k for k in others if not evidence.effects[k].whole]
+    if not others:
+        return None
     now = scored(case, [evidence.effects[k] for k in others], best.fit)
     lead = max(singles(now)[1:], key=lambda h: h.weight)
     progress(f"refitting {best.name(evidence)} + {lead.name(now)}")
