@@ -5,12 +5,15 @@ from __future__ import annotations
 import errno
 import hashlib
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import TypeVar
 from uuid import uuid4
 
 from geom.description.part import Part
+
+Result = TypeVar("Result")
 
 
 def cache_file(part: Part, folder: Path | str | None, kind: str, suffix: str) -> Path | None:
@@ -19,6 +22,19 @@ def cache_file(part: Part, folder: Path | str | None, kind: str, suffix: str) ->
         return None
     content = hashlib.sha256(repr((part.prisms, part.made)).encode()).hexdigest()[:20]
     return Path(folder) / f"{kind}-{content}.{suffix}"
+
+
+def recalled(file: Path, read: Callable[[Path], Result]) -> Result | None:
+    """What is kept there; None where there is nothing or it is damaged: then it is made again.
+
+    Whatever fails in reading means damage: zip, NumPy, JSON and CAD have no error in common.
+    """
+    if not file.is_file():
+        return None
+    try:
+        return read(file)
+    except Exception:
+        return None
 
 
 @contextmanager

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.disk_cache import recalled
 from lumped.integration.signals import Signals
 from lumped.integration.simulate import Record
 from lumped.model.network import Network, Row
@@ -39,8 +40,9 @@ def wanted(network: Network, asked: bool | None) -> bool:
 def posterior_of(folder: Folder, progress: Progress) -> ParameterPosterior:
     """Of the model as it stands, from the cache where this very case was looked at before."""
     file = cache_folder() / f"belief-{_key(folder)}.npz"
-    if file.exists():
-        return _kept(folder, file)
+    kept = recalled(file, lambda path: _kept(folder, path))
+    if kept is not None:
+        return kept
     found = parameter_posterior(folder.case, progress)
     if found.fitted:
         out = io.BytesIO()

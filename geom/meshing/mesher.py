@@ -10,6 +10,7 @@ from typing import Any
 
 from geom.description.machine import Machine
 from geom.description.part import Part
+from geom.disk_cache import recalled
 from geom.meshing.blocks import Block, Column, find_blocks, find_columns
 from geom.meshing.extrude import extrude
 from geom.meshing.mesh import NamedMesh
@@ -43,8 +44,8 @@ def build_mesh(
     axial = 1.5 * size_m if axial_m is None else axial_m
     kept = _kept(machine, (size_m, segments, across, axial), cache)
     known = {part.name: said for part in machine.parts if (said := part.identity) is not None}
-    if kept is not None and kept.exists():
-        return replace(read_npz(kept), identities=known)
+    if kept is not None and (found := recalled(kept, read_npz)) is not None:
+        return replace(found, identities=known)
     plan = _planned((*machine.parts, *machine.fluids), segments)
     flat = triangulate(plan.columns, size_m, across)
     mesh = extrude(plan.cut, plan.blocks, plan.columns, flat, axial, machine.face_name)

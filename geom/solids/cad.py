@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from geom.description.identity import Identity
 from geom.description.machine import Machine
 from geom.description.part import Part
-from geom.disk_cache import atomic_write, cache_file
+from geom.disk_cache import atomic_write, cache_file, recalled
 from geom.drawings.palette import colour
 from geom.errors import InputError
 from geom.solids.carved import carved, prism
@@ -33,8 +33,9 @@ def solids(part: Part, cache: Path | str | None = None) -> list[cq.Solid]:
     kept = cache_file(part, cache, "solid", "brep")
     if kept is None:
         return _built(part)
-    if kept.exists():
-        return [cq.Solid(solid.wrapped) for solid in cq.Shape.importBin(str(kept)).Solids()]
+    solid = recalled(kept, lambda path: [cq.Solid(s.wrapped) for s in cq.Shape.importBin(str(path)).Solids()])
+    if solid:
+        return solid
     found = _built(part)
     with atomic_write(kept) as partial:
         cq.Compound.makeCompound(found).exportBin(str(partial))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from geom.description.machine import Machine
 from geom.description.part import Part
-from geom.disk_cache import atomic_write, cache_file
+from geom.disk_cache import atomic_write, cache_file, recalled
 from geom.solids.cad import solids
 
 if TYPE_CHECKING:
@@ -36,8 +36,9 @@ def check_cad(machine: Machine, tolerance_mm: float = 0.02, cache: Path | str | 
 
 def _checked(part: Part, tolerance_mm: float, cache: Path | str | None) -> CadCheck:
     kept = cache_file(part, cache, f"check-{tolerance_mm:g}", "json")
-    if kept is not None and kept.exists():
-        return CadCheck(**{**json.loads(kept.read_text()), "part": part.name})
+    known = kept and recalled(kept, lambda path: CadCheck(**{**json.loads(path.read_text()), "part": part.name}))
+    if known:
+        return known
     found = solids(part, cache)
     surfaces = [surface(solid, tolerance_mm) for solid in found]
     check = CadCheck(

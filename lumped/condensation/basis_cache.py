@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geom.disk_cache import atomic_write
+from geom.disk_cache import atomic_write, recalled
 
 Floats = NDArray[np.floating]
 Pairs = dict[str, tuple[Floats, Floats]]
@@ -41,15 +41,9 @@ class BasisCache:
     def find(self, centre: Centre, spread: float) -> Pairs | None:
         """part -> (strength, fields) of the nearest centre within a factor `spread` in every coefficient."""
         files = [] if self.folder is None else sorted(self.folder.glob(f"shapes-{self._key}-*.npz"))
-        if not files:
-            return None
-        far = [float(np.abs(np.load(file)["centre"] - centre.values).max()) for file in files]
-        nearest = int(np.argmin(far))
-        if far[nearest] > np.log(spread) + 1e-9:
-            return None
-        with np.load(files[nearest]) as saved:
-            parts = [name.removesuffix("/strength") for name in saved.files if name.endswith("/strength")]
-            return {part: (saved[f"{part}/strength"], saved[f"{part}/fields"]) for part in parts}
+        far = {file: d for file in files if (d := recalled(file, lambda path: _distance(path, centre))) is not None}
+        near = sorted((file for file, d in far.items() if d <= np.log(spread) + 1e-9), key=lambda file: far[file])
+        return recalled(near[0], _pairs) if near else None
 
     def keep(self, centre: Centre, found: Mapping[str, Any], least: float = WEAKEST) -> Pairs:
         """What is worth keeping of principal fields, in single precision, written if there is a folder."""
@@ -71,6 +65,18 @@ class BasisCache:
         for piece in self.content:
             h.update(piece)
         return h.hexdigest()[:20]
+
+
+def _distance(file: Path, centre: Centre) -> float:
+    """Largest logarithm of a coefficient's ratio to that of a kept centre."""
+    with np.load(file) as saved:
+        return float(np.abs(saved["centre"] - centre.values).max())
+
+
+def _pairs(file: Path) -> Pairs:
+    with np.load(file) as saved:
+        parts = [name.removesuffix("/strength") for name in saved.files if name.endswith("/strength")]
+        return {part: (saved[f"{part}/strength"], saved[f"{part}/fields"]) for part in parts}
 
 
 def _worth(strength: Floats, fields: Floats, least: float) -> tuple[Floats, Floats]:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import re
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -11,6 +13,7 @@ from geom.errors import InputError
 
 CASE = "case.toml"
 INPUTS = ("tests", "cycles")  # folders of a case
+YOUNG_S = 5.0  # a folder may be made and not yet locked
 
 
 def write_whole(path: Path, text: str | bytes) -> Path:
@@ -23,6 +26,14 @@ def write_whole(path: Path, text: str | bytes) -> Path:
     except OSError as fault:
         right = "a folder you may write to, with room in it"
         raise InputError(f"cannot be written: {fault.strerror}", str(path), right) from None
+    return path
+
+
+def checked_result(path: Path) -> Path:
+    """Where a result is kept: a file or nothing yet, in a folder or nothing yet; said before anything is computed."""
+    for place, right, kind in ((path.parent, "folder", Path.is_dir), (path, "file", Path.is_file)):
+        if (place.exists() or place.is_symlink()) and not kind(place):
+            raise InputError(f"is no {right}", str(place), f"a {right} for results: move it away or delete it")
     return path
 
 
@@ -44,6 +55,34 @@ def locked(folder: Path) -> Iterator[None]:
         yield
     finally:
         os.close(handle)
+
+
+def abandoned(folder: Path, name: re.Pattern[str]) -> list[Path]:
+    """Folders of such a name that were `locked` once and whose process is gone; none where there are no locks."""
+    try:
+        import fcntl
+    except ImportError:
+        return []
+    out = []
+    for path in (p for p in folder.iterdir() if name.fullmatch(p.name) and p.is_dir() and not p.is_symlink()):
+        if time.time() - path.stat().st_mtime < YOUNG_S:
+            continue
+        handle = os.open(path, os.O_RDONLY)
+        try:
+            with suppress(OSError):
+                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                out.append(path)
+        finally:
+            os.close(handle)
+    return out
+
+
+def message_of(fault: Exception) -> str:
+    """The message of a fault; of the system's own with the file it was about and the cure."""
+    if not isinstance(fault, OSError) or not fault.strerror:
+        return str(fault)
+    cure = "a file or folder you may read and write, with room on its disk"
+    return f"{fault.filename2 or fault.filename or 'the disk'}: {fault.strerror}; {cure}"
 
 
 def checked_target(target: str | None) -> str | None:

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from thermoscope.case_folder.files import write_whole
+from thermoscope.case_folder.files import checked_result, write_whole
 from thermoscope.case_folder.folder import Folder
 from thermoscope.commands.open_case import PACKAGE
 from thermoscope.console.terminal import notes, plain
@@ -47,7 +47,7 @@ def store(path: Path, document: Mapping[str, Any]) -> None:
 
 def stored(path: Path) -> dict[str, Any] | None:
     """A document as it was written; None, with a note, where the file is not what was written."""
-    if not path.is_file():
+    if not checked_result(path).is_file():
         return None
     try:
         found = json.loads(path.read_text(encoding="utf-8"))
@@ -63,6 +63,11 @@ def stored(path: Path) -> dict[str, Any] | None:
 
 def _sealed(content: Mapping[str, Any]) -> str:
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+
+def checked_diagnosis(folder: Folder) -> Path:
+    """Where the diagnosis will be kept; refused before minutes are spent where no file can stand."""
+    return checked_result(folder.settings.out / NAME)
 
 
 def save_diagnosis(folder: Folder, document: Mapping[str, Any]) -> None:

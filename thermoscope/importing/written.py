@@ -16,7 +16,7 @@ from uuid import uuid4
 import numpy as np
 
 from geom.errors import InputError
-from thermoscope.case_folder.files import write_whole
+from thermoscope.case_folder.files import abandoned, locked, write_whole
 from thermoscope.importing.aligned import Recording
 from thermoscope.importing.draft import Draft, sample_of
 from thermoscope.importing.guess import Guess
@@ -31,16 +31,22 @@ ROLES = ("calibrate", "validate", "hold-out")
 
 @contextmanager
 def folder_whole(folder: Path) -> Iterator[Path]:
-    """A folder to fill that takes its place only when it is complete; gone if anything fails."""
+    """A folder to fill that takes its place only when it is complete; gone if anything fails.
+
+    What a killed process left of it is hidden, counts for nothing, and goes with the next one of that name.
+    """
     if folder.exists():
         raise InputError("is there already", str(folder), "--out with the name of a new folder")
     if not folder.parent.is_dir():
         raise InputError("no such folder", str(folder.parent), "--out in a folder that is there")
+    for left in abandoned(folder.parent, re.compile(rf"\.{re.escape(folder.name)}\.[0-9a-f]{{32}}")):
+        shutil.rmtree(left, ignore_errors=True)
     partial = folder.with_name(f".{folder.name}.{uuid4().hex}")
     try:
         partial.mkdir()
-        yield partial
-        os.rename(partial, folder)
+        with locked(partial):
+            yield partial
+            os.rename(partial, folder)
     finally:
         shutil.rmtree(partial, ignore_errors=True)
 

@@ -7,12 +7,12 @@ import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import chain
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fem.matrices.assembly import FieldModel
+from geom.disk_cache import recalled
 from lumped.condensation.recovery import PartShape, Shapes, locate
 from lumped.machine.bases import on_every_base
 from lumped.model.network import Array, Network, Row
@@ -52,9 +52,12 @@ def _at_node(shape: PartShape, node: int) -> Row:
 def cached_errors(built: Built, looks: MonitoredPlaces) -> Rated:
     """From the cache, where this network was looked at before in the same places."""
     file = cache_folder() / f"budget-{_key(built, looks)}.json"
-    if not file.exists():
-        write_whole(file, json.dumps(vars(at_rated_point(built, looks))))
-    return Rated(**json.loads(Path(file).read_text(encoding="utf-8")))
+    kept = recalled(file, lambda path: Rated(**json.loads(path.read_text(encoding="utf-8"))))
+    if kept is not None:
+        return kept
+    found = at_rated_point(built, looks)
+    write_whole(file, json.dumps(vars(found)))
+    return found
 
 
 def _key(built: Built, looks: MonitoredPlaces) -> str:

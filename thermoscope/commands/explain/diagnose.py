@@ -9,7 +9,7 @@ from thermoscope.commands.bench.bases import bases_tried
 from thermoscope.commands.explain.next_tests import next_tests
 from thermoscope.commands.model.error_budget import budget, in_short, sampling
 from thermoscope.commands.open_case import open_case
-from thermoscope.commands.stored_diagnosis import save_diagnosis
+from thermoscope.commands.stored_diagnosis import checked_diagnosis, save_diagnosis
 from thermoscope.commands.test.compare import contradiction
 from thermoscope.console.answer import Answer, Grid, cell
 from thermoscope.console.terminal import Progress, give, notes, progress, sized
@@ -38,6 +38,7 @@ def diagnosed(folder: Folder, tell: Progress) -> tuple[Diagnosis, dict[str, Any]
     from thermoscope.verification.error_budget import budgets_of_tests, documents
     from validation import diagnose as search
 
+    checked_diagnosis(folder)
     budgets = budgets_of_tests(folder, tell)
     found = search(folder.case, folder.settings.kinds, tell, budget=ErrorBudget.worst(budgets.values()).total_K)
     named = {"case": folder.case.name, "revision": folder.case.model.revision}

@@ -1,0 +1,190 @@
+"""Damaged files in out/ and in the cache: made again, or one message with file and cure; no traceback, no block."""
+
+import os
+import shutil
+import sys
+import time
+
+import numpy as np
+import pytest
+from small_case import small_case
+
+from geom.disk_cache import recalled
+from lumped.condensation.basis_cache import BasisCache, Centre
+from thermoscope import caches
+from thermoscope.cli import main
+from thermoscope.importing.written import folder_whole
+
+
+def answered(monkeypatch, capsys, *words):
+    """Exit code and errors of a command in this process."""
+    monkeypatch.setattr(sys, "argv", ["thermoscope", *map(str, words)])
+    with pytest.raises(SystemExit) as end:
+        main()
+    told = capsys.readouterr().err.splitlines()
+    return end.value.code, [line for line in told if line.startswith("error:")], "\n".join(told)
+
+
+def folder(file):
+    file.unlink()
+    file.mkdir()
+    (file / "a.txt").write_text("something")
+
+
+def loop(file):
+    file.unlink()
+    file.symlink_to(file)
+
+
+def pipe(file):
+    file.unlink()
+    os.mkfifo(file)
+
+
+def cut(file):
+    file.write_bytes(file.read_bytes()[: file.stat().st_size // 2])
+
+
+def flipped(file):
+    content = bytearray(file.read_bytes())
+    middle = len(content) // 2
+    content[middle : middle + 40] = b"9" * 40
+    file.write_bytes(bytes(content))
+
+
+BYTES = {
+    "empty": lambda file: file.write_bytes(b""), "truncated": cut, "a few bytes others": flipped,
+    "random": lambda file: file.write_bytes(np.random.default_rng(0).bytes(4096)),
+    "zeros": lambda file: file.write_bytes(bytes(4096)),
+    "a number": lambda file: file.write_text("3"), "a list": lambda file: file.write_text("[]"),
+    "another document": lambda file: file.write_text('{"fingerprint": 3, "values": [1]}'),
+    "nested": lambda file: file.write_text("[" * 100000),
+}  # fmt: skip
+PLACES = {"folder": folder, "loop": loop, "pipe": pipe}
+READERS = [("diagnosis.json", "answer {case} yes"), ("diagnosis.json", "add {case} event@1"),
+           ("calibration.json", "calibrate {case} --anyway")]  # fmt: skip
+SLOW = ("diagnosis.json", "report {case}")
+
+
+@pytest.fixture(scope="module")
+def original(tmp_path_factory):
+    """A case that was calibrated and diagnosed, and whose next calibration was interrupted."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("THERMOSCOPE_CACHE", str(tmp_path_factory.mktemp("cache")))
+        patch.setattr("viz.write_pdf", lambda page: None)  # a browser reads the page, nothing of out/
+        case = small_case(tmp_path_factory.mktemp("original"))
+        for command in ("calibrate", "diagnose"):
+            patch.setattr(sys, "argv", ["thermoscope", command, str(case), *(["--anyway"] * (command == "calibrate"))])
+            with pytest.raises(SystemExit):
+                main()
+        shutil.copy(case / "out/diagnosis.json", case / "out/calibration.json")
+        yield case
+
+
+@pytest.mark.parametrize(
+    ("name", "words", "damage"),
+    [*((*reader, damage) for reader in READERS for damage in BYTES.values()), (*SLOW, cut)],
+)
+def test_damaged_bytes_are_said_and_not_used(original, tmp_path, monkeypatch, capsys, name, words, damage):
+    case = shutil.copytree(original, tmp_path / "case")
+    damage(case / "out" / name)
+    code, errors, told = answered(monkeypatch, capsys, *words.format(case=case).split())
+    assert f"{name} is damaged and is not used" in told
+    asks = words.startswith(("answer", "add"))  # they need a diagnosis: told to make one
+    assert (code, len(errors)) == ((2, 1) if asks else (0, 0))
+    assert not asks or "diagnose first" in errors[0]
+
+
+@pytest.mark.parametrize("damage", PLACES.values(), ids=PLACES)
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [*READERS, SLOW, ("diagnosis.json", "diagnose {case}")],
+)
+def test_what_is_no_file_is_named_with_its_cure(original, tmp_path, monkeypatch, capsys, name, words, damage):
+    case = shutil.copytree(original, tmp_path / "case")
+    damage(case / "out" / name)
+    before = (case / "model.toml").read_bytes()
+    code, errors, _ = answered(monkeypatch, capsys, *words.format(case=case).split())
+    assert (code, len(errors)) == (2, 1)
+    assert str(case / "out" / name) in errors[0]
+    assert "delete it" in errors[0]
+    assert (case / "model.toml").read_bytes() == before
+
+
+WRITTEN = {
+    "simulate {case}": "simulate-stand.csv", "export {case}": "case.xlsx", "export {case} --as csv": "errors.csv",
+    "report {case}": "report.html", "render {case}": "error.png", "export {case} --as c": "c/thermal_network.c",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("words", WRITTEN)
+def test_results_go_over_damaged_ones_and_not_over_folders(original, tmp_path, monkeypatch, capsys, words):
+    case = shutil.copytree(original, tmp_path / "case")
+    file = case / "out" / WRITTEN[words]
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_bytes(b"\xff\x00damaged")
+    command = words.format(case=case).split()
+    assert answered(monkeypatch, capsys, *command)[:2] == (0, [])
+    assert b"damaged" not in file.read_bytes()[:10]
+    folder(file)
+    code, errors, _ = answered(monkeypatch, capsys, *command)
+    assert (code, len(errors)) == (2, 1)
+    assert str(file) in errors[0]
+    assert (file / "a.txt").exists()
+
+
+@pytest.mark.parametrize("damage", BYTES.values(), ids=BYTES)
+def test_a_damaged_cache_is_made_again(original, tmp_path, monkeypatch, capsys, damage):
+    """What calibration left unsure, which `simulate` draws its bands from."""
+    monkeypatch.setenv("THERMOSCOPE_CACHE", str(tmp_path / "cache"))
+    case = shutil.copytree(original, tmp_path / "case")
+    assert answered(monkeypatch, capsys, "simulate", case)[0] == 0
+    (kept,) = caches.cache_folder().glob("belief-*.npz")
+    sound = kept.read_bytes()
+    damage(kept)
+    assert answered(monkeypatch, capsys, "simulate", case)[:2] == (0, [])
+    assert np.load(kept)["covariance"].shape == np.load(_file(tmp_path, sound))["covariance"].shape
+
+
+def _file(tmp_path, content):
+    (tmp_path / "sound.npz").write_bytes(content)
+    return tmp_path / "sound.npz"
+
+
+@pytest.mark.parametrize("damage", BYTES.values(), ids=BYTES)
+def test_damaged_shapes_are_not_found(tmp_path, damage):
+    centre = Centre({"air": 10.0}, {"fit": 100.0}, {"core": 5.0})
+    cache = BasisCache(tmp_path, [b"machine"])
+
+    class Principal:
+        strength, fields = np.ones(3), np.arange(1200.0).reshape(400, 3)
+
+    cache.keep(centre, {"core": Principal})
+    assert cache.find(centre, 2.0) is not None
+    damage(next(tmp_path.glob("shapes-*.npz")))
+    assert cache.find(centre, 2.0) is None
+    cache.keep(centre, {"core": Principal})
+    assert cache.find(centre, 2.0) is not None
+
+
+def test_what_cannot_be_read_is_as_if_it_were_not_there(tmp_path):
+    (tmp_path / "kept").write_text("x")
+    assert recalled(tmp_path / "kept", lambda path: path.read_text()) == "x"
+    assert recalled(tmp_path / "kept", lambda path: int(path.read_text())) is None
+    assert recalled(tmp_path, lambda path: "read") is None
+    assert recalled(tmp_path / "no", lambda path: "read") is None
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no locks on folders")
+def test_what_a_killed_new_left_goes_with_the_next(tmp_path):
+    left, other = tmp_path / f".made.{'a' * 32}", tmp_path / ".made.notes"
+    for path in (left, other):
+        path.mkdir()
+        os.utime(path, (time.time() - 60,) * 2)
+    with folder_whole(tmp_path / "made") as partial:
+        assert not left.exists()
+        os.utime(partial, (time.time() - 60,) * 2)
+        with folder_whole(tmp_path / "made"):  # the first is still at work: it stays
+            assert partial.exists()
+        shutil.rmtree(tmp_path / "made")
+    assert sorted(p.name for p in tmp_path.iterdir()) == [".made.notes", "made"]
