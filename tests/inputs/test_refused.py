@@ -139,6 +139,7 @@ REFUSED = {
     "no Parquet": (bytes_of("tests/stand.csv", lambda c: ("tests/stand.parquet", c)), ["stand.parquet"]),
     "decimal commas": (
         bytes_of("tests/stand.csv", lambda c: ("tests/stand.csv", c.replace(b".", b","))), ["decimal commas"]),
+    "row cut off": (bytes_of("tests/stand.csv", lambda c: ("tests/stand.csv", c[:-25])), ["line 301", "cut off"]),
     "semicolons": (bytes_of("tests/stand.csv", lambda c: ("tests/stand.csv", c.replace(b",", b";"))), ["';'"]),
     "a header twice": (
         lambda case: changed(case, "stand", lambda table: table.insert(7, " T_yoke", table["T_yoke"])),

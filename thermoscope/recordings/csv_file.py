@@ -27,6 +27,7 @@ def read_csv(file: Path) -> pd.DataFrame:
         if any(cell.strip() for cell in first[len(header) :]):
             raise InputError(f"{len(first)} values under {len(header)} names", f"{file} line 2",
                              "as many as names: decimal commas become points")  # fmt: skip
+        _complete(file, text, max((i for i, name in enumerate(header, 1) if name.strip()), default=0))
         table = pd.read_csv(io.StringIO(text), skipinitialspace=True, low_memory=False, index_col=False)
     except pd.errors.EmptyDataError:
         raise InputError("the file is empty", str(file), "a header line and rows of numbers") from None
@@ -45,6 +46,16 @@ def _top(text: str) -> tuple[list[str], list[str]]:
     """The header and the row after it."""
     rows = csv.reader(io.StringIO(text), skipinitialspace=True)
     return next(rows, []), next(rows, [])
+
+
+def _complete(file: Path, text: str, names: int) -> None:
+    """A row that ends early was cut off, mostly within a number: what is left of that would be a wrong reading."""
+    if '"' in text:
+        return  # commas and line breaks within quotes are no ends
+    for number, line in enumerate(text.split("\n"), 1):
+        if (found := line.count(",") + 1) < names and line.strip():
+            raise InputError(f"{found} values under {names} names: the row was cut off", f"{file} line {number}",
+                             "a whole row (commas where nothing was read), or none: delete it")  # fmt: skip
 
 
 def _text(file: Path) -> str:
