@@ -38,10 +38,17 @@ MESHED = ("doctor", "compare", "simulate", "effects", "curves", "export --as csv
 TAKEN = {
     "tclab": (*DECLARED, *STEPS, "add convection.constant@heater1 --anyway", "picture losses"),
     "hust-ipmsm": (*DECLARED, "simulate --cycle s3-40", "rate --limit winding=150"),
-    "pmsm-bases": (*MESHED, "bases", "two-paths", "carry {pmsm-machines/m2} {pmsm-machines/m3}"),
+    "pmsm-bases": (
+        *MESHED,
+        "bases",
+        "two-paths",
+        "carry {pmsm-machines/m2} {pmsm-machines/m3}",
+        "report",
+        "rate --limit magnets=120 --limit winding=155",
+    ),
     "pmsm-machines/m2": MESHED,
     "pmsm-machines/m3": MESHED,
-    "road-test": (*MESHED, "simulate --cycle overpass"),
+    "road-test": (*MESHED, "simulate --cycle overpass", "render", "report", "rate --limit winding=155"),
 }
 MACHINE_COMMANDS = {"build", "crosscheck", "screen", "machines"}  # below, tests/thermoscope/test_build_command.py, geom
 NO_FILE = {"new", "quantities", "protocol", "answer", "remove", "undo", "serve"}  # of recordings, of what went before
