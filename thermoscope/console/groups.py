@@ -13,7 +13,7 @@ GROUPS: dict[str, tuple[str, tuple[str, ...]]] = {
     "test": ("Recordings: bring them in, look at them, hold the model against them.",
              ("new", "doctor", "compare", "quantities")),
     "explain": ("What is missing, and what would show it.", ("diagnose", "improve", "effects", "answer")),
-    "show": ("Report, pictures, the workbench in the browser.", ("report", "render", "picture", "serve")),
+    "show": ("Report, pictures, the workbench in the browser.", ("report", "render", "picture", "viewer", "serve")),
     "use": ("Run the model, and take it elsewhere.", ("simulate", "export", "rate")),
     "bench": ("The published test procedure, from resistances to screened models.",
               ("protocol", "curves", "bases", "screen", "two-paths", "carry")),
