@@ -241,6 +241,30 @@ def picture(
 
 
 @app.command()
+def film(
+    case: Case,
+    out: Annotated[Path | None, typer.Option("--out", metavar="FILE", help="A GIF or MP4 file.")] = None,
+    json: Json = None,
+) -> None:
+    """The machine warming up in its most telling test, before and after the model's last step."""
+    from thermoscope.commands.show.film import film as run
+
+    raise typer.Exit(run(case, out, json))
+
+
+@app.command()
+def viewer(
+    case: Case,
+    out: Annotated[Path | None, typer.Option("--out", metavar="FILE", help="An HTML file.")] = None,
+    json: Json = None,
+) -> None:
+    """One HTML file: the machine to turn, cut and play in any browser, without a server or network."""
+    from thermoscope.commands.show.viewer import viewer as run
+
+    raise typer.Exit(run(case, out, json))
+
+
+@app.command()
 def serve(
     case: Case,
     host: Annotated[str, typer.Option(help="Where to listen; all browsers need the token.")] = "127.0.0.1",

@@ -9,7 +9,7 @@ from geom.errors import InputError
 from lumped import Balance, bare_network, node_link, node_source
 from lumped.transfer.laws import Fixed
 from viz.figures import paper
-from viz.figures.flows import Flow, Heat, heat_flows
+from viz.figures.flows import Flow, Heat, heat_flows, last_running_step
 from viz.figures.sankey import sankey_of_losses
 from viz.machine.animation import animate
 from viz.machine.network import LABEL, NODE, apart, clear_place, network_in_machine, places
@@ -46,6 +46,14 @@ def test_flow_keeps_the_sign_of_its_link(heat):
     flow = next(f for f in heat.flows if f.kind == "contact")
     assert (flow.start, flow.end) == ("housing", "yoke")
     assert flow.watts == pytest.approx(-75.0)
+
+
+@pytest.mark.parametrize(("joules", "step"), [([0, 900, 1800, 1800], 1), ([0, 0, 900, 1000], 1), ([0, 0, 0, 0], -1)])
+def test_a_test_that_ends_at_standstill_is_drawn_where_it_last_ran(joules, step):
+    net = bare_network("one", {"yoke": 10.0}, ("ambient",))
+    net = net.extended([], [node_source(net, "loss:iron", "iron", {"yoke": 1.0}, Fixed(1.0))])
+    seconds, heat = 10.0 * np.arange(4), np.array(joules, float)
+    assert last_running_step(net, Balance(seconds, {}, {"loss:iron": heat}, 0 * heat, heat)) == step
 
 
 def test_conductance_is_that_of_the_link(heat):

@@ -45,6 +45,16 @@ class Heat:
         return sum(self.losses.values()) - sum(self.out.values())
 
 
+RUNNING = 0.5  # of the largest losses of a record: less is a machine that coasts or stands
+
+
+def last_running_step(network: Network, balance: Balance) -> int:
+    """The last step of a balance in which the machine runs; the last one where it never does."""
+    total = np.sum([balance.power(s.name) for s in network.sources], axis=0)
+    running = np.flatnonzero(total >= RUNNING * total.max(initial=0.0))
+    return int(running[-1]) if running.size and total.max() > 0 else -1
+
+
 def heat_flows(network: Network, balance: Balance, step: int = -1, z: Array | None = None) -> Heat:
     """Losses, flows and exits over one step of the balance, the last one if not told.
 

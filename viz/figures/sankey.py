@@ -21,7 +21,7 @@ LOW, HIGH = 0.3, 1.3  # of the total: the drawing reaches below and above the tr
 
 
 @paper.styled
-def sankey_of_losses(heat: Heat, *, png: str | Path | None = None) -> Figure:
+def sankey_of_losses(heat: Heat, *, title: str = "", png: str | Path | None = None) -> Figure:
     """Losses on the left, exits and what is stored on the right (W)."""
     left = {k: v for k, v in sorted(heat.losses.items(), key=lambda kv: -kv[1]) if v > 0}
     right = exits(heat)
@@ -35,6 +35,7 @@ def sankey_of_losses(heat: Heat, *, png: str | Path | None = None) -> Figure:
     ax.text(0.5, total * 1.04, f"{total:.0f} W", ha="center", weight="bold", fontsize=10)
     ax.set(xlim=(-0.32, 1.32), ylim=(-LOW * total, HIGH * total))
     ax.axis("off")
+    ax.set_title(title, loc="left")
     return paper.saved(figure, png)
 
 

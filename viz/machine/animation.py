@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -29,8 +29,12 @@ def animate(
     view: View | None = None,
     theme: Theme = LIGHT,
     frames_per_second: float = 12.0,
+    titles: Sequence[str] = (),
+    tell: Callable[[int], None] = lambda number: None,
 ) -> Path:
-    """Write a .gif or .mp4 of fields (n_times, n_nodes) degC on one colour scale, the minute of the test in the corner.
+    """Write a .gif or .mp4 of fields (n_times, n_nodes) degC on one colour scale.
+
+    titles : one per field, else the minute of the test;  tell : called with the number of each picture that is drawn
 
     An .mp4 needs imageio-ffmpeg (the extra [video]), which brings an encoder of its own, under the GPL.
     """
@@ -45,13 +49,18 @@ def animate(
     scene.colour_bar(p, field.UNIT, theme)
     scene.look(p, surface.points, view, Room(right=0.12, top=scene.TITLE))
     pictures = []
-    for time, values in zip(times, T, strict=True):
+    for number, (words, values) in enumerate(zip(titles or _minutes(times), T, strict=True), 1):
+        tell(number)
         data.point_data["T"] = surface.values(values)
-        scene.headline(p, f"{time / 60:.0f} min", theme)
+        scene.headline(p, words, theme)
         pictures.append(np.asarray(p.screenshot(return_img=True)))
     p.close()
     path.parent.mkdir(parents=True, exist_ok=True)
     return WRITERS[path.suffix](path, pictures, frames_per_second)
+
+
+def _minutes(times: Sequence[float]) -> list[str]:
+    return [f"{time / 60:.0f} min" for time in times]
 
 
 def _gif(path: Path, pictures: list[NDArray[np.uint8]], frames_per_second: float) -> Path:

@@ -79,16 +79,19 @@ class Subject:
         """(n_nodes,) degC at the end of the test."""
         return np.asarray(fields(case or self.folder.case, self.test, self.nodes, 1)[1][-1])
 
-    def heat(self) -> tuple[Heat, dict[str, float]]:
-        """Heat flows, and node -> degC, at the end of the test."""
-        from viz import heat_flows
+    def heat(self) -> tuple[Heat, dict[str, float], str]:
+        """Heat flows, and node -> degC, when the machine last runs in the test; and when that is."""
+        from viz.figures.flows import heat_flows, last_running_step
 
         network, test = thermal(working(self.folder.case)[0]), record(self.test, {})
         names = {p.name for p in network.parameters}
         values = {k: v for k, v in self.folder.case.model.values.items() if k in names}
-        z = np.asarray(simulate(network, test, values, keep_states=True).z)[-1]
-        flows = heat_flows(network, balance(network, test, values), z=z)
-        return flows, dict(zip([*network.states, *network.boundaries], z.tolist(), strict=True))
+        heat = balance(network, test, values)
+        step = last_running_step(network, heat) % (heat.time.size - 1)
+        z = np.asarray(simulate(network, test, values, keep_states=True).z)[step + 1]
+        when = f"{self.test.name} at {heat.time[step + 1] / 60:.0f} min"
+        means = dict(zip([*network.states, *network.boundaries], z.tolist(), strict=True))
+        return heat_flows(network, heat, step, z), means, when
 
 
 def _field(s: Subject, png: Path) -> None:
@@ -141,14 +144,15 @@ def _network(s: Subject, png: Path) -> None:
     from viz import network_in_machine
 
     mesh = s.built.mesh
-    flows, means = s.heat()
-    network_in_machine(mesh, means, flows, title=f"{s.when}: heat flows;", png=png).close()
+    flows, means, when = s.heat()
+    network_in_machine(mesh, means, flows, title=f"{when}: heat flows;", png=png).close()
 
 
 def _losses(s: Subject, png: Path) -> None:
     from viz import sankey_of_losses
 
-    sankey_of_losses(s.heat()[0], png=png)
+    flows, _, when = s.heat()
+    sankey_of_losses(flows, title=when, png=png)
 
 
 def _curves(s: Subject, png: Path) -> None:

@@ -1,0 +1,109 @@
+"""The page in the browser: it holds the fields it was made from, and a browser draws it without complaint."""
+
+import shutil
+
+import numpy as np
+import pytest
+from small_motor import motor
+
+from lumped.model.network import Row
+from validation.case import Channel, Test
+from viz import split
+from viz.data import Comparison
+from viz.viewer.low_rank import ERROR_K, low_rank
+from viz.viewer.packing import packed_integers, packed_numbers, unpacked
+from viz.viewer.page import Recorded, document, write_viewer
+
+NODES = split(motor(24))
+TIMES = np.linspace(0.0, 3600.0, 13)
+PLACE = {"T_housing": (0.0, 0.22, 0.3), "T_shaft": (0.0, 0.0, 0.3)}
+BROWSER = shutil.which("chromium") or shutil.which("google-chrome")
+
+
+def warming(hot: float) -> np.ndarray:
+    """Each part with a time constant of its own: not a product of one shape and one curve."""
+    tau = 600.0 * (1 + NODES.owner)
+    return 20.0 + hot * (1 - np.exp(-TIMES[:, None] / tau)) * (1 + NODES.points[:, 2])
+
+
+def recorded(before: bool = True) -> Recorded:
+    row = Row(np.array([0]), np.array([1.0]))
+    model = {n: 20.0 + 30.0 * (1 - np.exp(-TIMES / 900.0)) for n in PLACE}
+    channels = tuple(Channel(n, n, row, model[n] + 5.0) for n in PLACE)
+    test = Test("hour", "hold-out", TIMES, {}, {"ambient": np.full(TIMES.size, 20.0)}, channels)
+    return Recorded(Comparison(test, model), TIMES, warming(60.0), warming(50.0) if before else None)
+
+
+def test_mixed_shapes_are_the_fields():
+    fields = warming(60.0)
+    found = low_rank(fields)
+    assert len(found.shapes) < len(fields)
+    assert np.abs(found.fields() - fields).max() <= ERROR_K
+
+
+def test_a_field_that_stays_needs_no_shape():
+    assert len(low_rank(np.full((3, 5), 20.0)).shapes) == 0
+
+
+def test_packing_loses_no_whole_number_and_half_a_step_of_others():
+    rng = np.random.default_rng(1)
+    whole = rng.integers(0, 70_000, (50, 4))
+    assert (unpacked(packed_integers(whole)) == whole).all()
+    numbers = rng.normal(0.0, 3.0, (50, 3))
+    assert np.abs(unpacked(packed_numbers(numbers)) - numbers).max() <= np.ptp(numbers, axis=0).max() / 65535 / 2 * 1.01
+
+
+@pytest.mark.parametrize("before", [True, False])
+def test_the_page_holds_the_fields_it_was_made_from(before):
+    one = recorded(before)
+    held = document("motor", NODES, [one], PLACE)
+    mean, shapes = unpacked(held["mean"])[:, 0], unpacked(held["shapes"])
+    for key, fields in (("now", one.fields), ("before", one.before)):
+        if fields is not None:
+            T = mean + np.array(held["tests"][0][key]) @ shapes.T
+            assert np.abs(T - fields).max() < 1.5 * ERROR_K
+    assert (held["tests"][0]["before"] is None) == (not before)
+    assert np.abs(unpacked(held["points"]) - NODES.points).max() < 1e-5
+
+
+def test_what_a_name_holds_is_never_run(tmp_path):
+    page = write_viewer(tmp_path / "v.html", "</script><script>x", NODES, [recorded()], PLACE).read_text()
+    assert "</script><script>x" not in page
+    assert "http://" not in page
+    assert "https://" not in page
+
+
+@pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
+def test_a_browser_draws_it_without_complaint(tmp_path):
+    """A part and its true temperature under the pointer, other colours at another time, nothing on the console."""
+    playwright = pytest.importorskip("playwright.sync_api")
+    file, one = tmp_path / "viewer.html", recorded()
+    write_viewer(file, "motor", NODES, [one], PLACE)
+    with playwright.sync_playwright() as engine:
+        arguments = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+        browser = engine.chromium.launch(executable_path=BROWSER, args=arguments)
+        page, said = browser.new_page(viewport={"width": 800, "height": 600}), []
+        page.on("console", lambda message: said.append(message.text))
+        page.on("pageerror", lambda fault: said.append(str(fault)))
+        page.goto(file.as_uri())
+        page.wait_for_function("window.viewer && viewer.frames > 0")
+        found = page.evaluate("viewer.pick($('gl').clientWidth * 0.45, $('gl').clientHeight * 0.5)")
+        assert found["name"] in NODES.parts
+        mine = one.fields[-1][NODES.of(found["name"])]
+        assert mine.min() - 0.2 < found["value"] < mine.max() + 0.2
+        late = page.locator("#stage").screenshot()
+        page.evaluate("viewer.move(0)")
+        page.wait_for_function("!viewer.dirty")
+        assert page.locator("#stage").screenshot() != late
+        assert "at 0 min" in page.inner_text("#title")
+        page.keyboard.press(" ")
+        page.wait_for_function("viewer.time > 0")
+        page.keyboard.press(" ")
+        page.select_option("#layer", "1")
+        page.wait_for_function("!viewer.dirty")
+        assert page.inner_text("#unit") == "K"
+        for sensor in page.evaluate("viewer.sensors.map((s) => [s.name, ...viewer.pixel(s)])"):
+            page.mouse.move(*sensor[1:])
+            assert sensor[0] in page.inner_text("#hover")
+        browser.close()
+    assert said == []

@@ -1,0 +1,57 @@
+"""thermoscope show viewer CASE"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from geom.errors import InputError
+from thermoscope.case_folder.folder import Folder
+from thermoscope.case_folder.runs import before_last, fields, held
+from thermoscope.commands.open_case import open_case
+from thermoscope.commands.show.pages import by_interest
+from thermoscope.console.answer import Answer
+from thermoscope.console.terminal import Progress, give, progress
+from validation.case import Case, Test
+
+if TYPE_CHECKING:
+    from viz.rendering.nodes import SplitMesh
+    from viz.viewer.page import Recorded
+
+FRAMES = 61  # instants of a test: between them the page draws straight lines
+
+
+def viewer(case: str, out: Path | None, target: str | None) -> int:
+    """One page that plays every test on the machine, in the browser's own GL."""
+    if out is not None and (out.suffix != ".html" or out.is_dir()):
+        raise InputError("is no name of a page", f"--out {out}", "a file NAME.html")
+    with progress() as tell:
+        folder = open_case(case, tell)
+        file = write_case(folder, out or Path("out") / f"{folder.case.name}-viewer.html", tell)
+    give({"case": folder.case.name, "viewer": str(file)}, target, lambda: Answer(f"{file}"))
+    return 0
+
+
+def write_case(folder: Folder, file: Path, tell: Progress) -> Path:
+    """Write the page of an open case, and return its path."""
+    from viz import split
+    from viz.viewer.page import write_viewer
+
+    if folder.built is None:
+        right = f"a case with a machine; or: thermoscope show picture {folder.case.name} curves"
+        raise InputError("has a network declared by hand, and so no geometry", folder.case.name, right)
+    nodes, earlier, tests = split(folder.built.mesh), before_last(folder), []
+    for test in by_interest(folder):
+        tell(f"running {test.name}")
+        tests.append(_recorded(folder, test, nodes, earlier))
+    tell(f"writing {file}")
+    file.parent.mkdir(parents=True, exist_ok=True)
+    return write_viewer(file, folder.case.name, nodes, tests, folder.positions)
+
+
+def _recorded(folder: Folder, test: Test, nodes: SplitMesh, earlier: Case | None) -> Recorded:
+    from viz.viewer.page import Recorded
+
+    times, now = fields(folder.case, test, nodes, FRAMES)
+    before = None if earlier is None else fields(earlier, test, nodes, FRAMES)[1]
+    return Recorded(held(folder, test), times, now, before)

@@ -1,0 +1,50 @@
+"""Temperature fields as a few shapes times their amplitudes, so that a browser can mix them at any instant."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+ERROR_K = 0.1  # largest error of any node at any instant: a fifth of what a thermocouple tells
+
+
+@dataclass(frozen=True)
+class LowRank:
+    """fields = mean + amplitudes @ shapes
+
+    mean : (n_nodes,) degC;  shapes : (r, n_nodes), largest magnitude 1;  amplitudes : (n_fields, r) K
+    """
+
+    mean: Array
+    shapes: Array
+    amplitudes: Array
+
+    def steps(self, step_K: float) -> Array:
+        """(r,) how finely each shape must be known, for `step_K` at its largest amplitude."""
+        return step_K / np.abs(self.amplitudes).max(axis=0, initial=1e-12)
+
+    def fields(self) -> Array:
+        """(n_fields, n_nodes) degC."""
+        return self.mean + self.amplitudes @ self.shapes
+
+
+def low_rank(fields: Array, error_K: float = ERROR_K) -> LowRank:
+    """The fewest principal shapes of fields (n_fields, n_nodes) degC that keep every value within `error_K`.
+
+    Method of snapshots (Sirovich 1987): eigenvectors of the small matrix of inner products of the fields.
+    """
+    mean = fields.mean(axis=0)
+    rest = fields - mean
+    values, vectors = np.linalg.eigh(rest @ rest.T)
+    order = np.argsort(values)[::-1]
+    rank = 0
+    shapes, amplitudes = np.zeros((0, fields.shape[1])), np.zeros((len(fields), 0))
+    while float(np.abs(rest - amplitudes @ shapes).max(initial=0.0)) > error_K and rank < len(order):
+        rank += 1
+        amplitudes = vectors[:, order[:rank]]
+        shapes = amplitudes.T @ rest
+    largest = np.abs(shapes).max(axis=1, initial=1e-12)
+    return LowRank(mean, shapes / largest[:, None], amplitudes * largest)

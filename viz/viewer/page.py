@@ -1,0 +1,133 @@
+"""The page: mesh once, a few shapes of its temperature, amplitudes per instant; a script that draws them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from html import escape
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geom.disk_cache import atomic_write
+from viz.colours import heat, missing, part_colours
+from viz.data import Comparison, short
+from viz.rendering.nodes import SplitMesh
+from viz.rendering.scale import marks, rounded
+from viz.viewer.low_rank import LowRank, low_rank
+from viz.viewer.packing import packed_integers, packed_numbers
+
+Array = NDArray[np.float64]
+STEP_K = 0.02  # of the shapes: small ones then take few bits
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """A test as the page plays it.
+
+    times : (n,) s;  fields : (n, n_nodes) degC;  before : the same of the model before its last step, if there is one
+    """
+
+    comparison: Comparison
+    times: Array
+    fields: Array
+    before: Array | None = None
+
+
+def write_viewer(
+    path: str | Path, title: str, nodes: SplitMesh, tests: Sequence[Recorded], positions: Mapping[str, Sequence[float]]
+) -> Path:
+    """Write the page and return its path. positions : sensor -> (m)"""
+    path, page = Path(path), render(document(title, nodes, tests, positions))
+    with atomic_write(path) as partial:
+        partial.write_text(page, encoding="utf-8")
+    return path
+
+
+def document(
+    title: str, nodes: SplitMesh, tests: Sequence[Recorded], positions: Mapping[str, Sequence[float]]
+) -> dict[str, Any]:
+    """All the page draws."""
+    found = low_rank(np.concatenate([part for t in tests for part in (t.fields, t.before) if part is not None]))
+    triangles, part = nodes.boundary()
+    order = np.argsort(part, kind="stable")
+    colours = part_colours(nodes.parts, nodes.identities)
+    every = [part for t in tests for part in (t.fields, t.before) if part is not None]
+    low, high = rounded(min(float(f.min()) for f in every), max(float(f.max()) for f in every))
+    return {
+        "title": title, "points": packed_numbers(nodes.points), "tets": packed_integers(_by_part(nodes)),
+        "triangles": packed_integers(triangles[order]), "owner": packed_integers(nodes.owner[:, None]),
+        "parts": [{"name": name, "colour": colours[name]} for name in nodes.parts],
+        "mean": packed_numbers(found.mean[:, None]), "shapes": packed_numbers(found.shapes.T, found.steps(STEP_K)),
+        "tests": _tests(tests, found, positions), "range": [low, high], "marks": marks(low, high),
+        "change_marks": _change(tests), "heat": _palette(heat()), "missing": _palette(missing()),
+    }  # fmt: skip
+
+
+def render(shown: Mapping[str, Any]) -> str:
+    """The page as text. The data stand in a block that no browser runs."""
+    here = files("viz.viewer")
+    page, css, script = (here.joinpath(f"viewer.{end}").read_text(encoding="utf-8") for end in ("html", "css", "js"))
+    data = json.dumps(shown, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
+    for key, text in (("TITLE", escape(shown["title"])), ("CSS", css), ("DATA", data), ("SCRIPT", script)):
+        page = page.replace(f"@{key}@", text, 1)
+    return page
+
+
+def _change(tests: Sequence[Recorded]) -> list[float]:
+    """Round marks for now minus before (K), as far below zero as above."""
+    changes = [float(np.abs(t.fields - t.before).max()) for t in tests if t.before is not None]
+    return marks(*rounded(-max(changes, default=1.0), max(changes, default=1.0)))
+
+
+def _by_part(nodes: SplitMesh) -> NDArray[np.int64]:
+    return nodes.tets[np.argsort(nodes.region, kind="stable")]
+
+
+def _tests(tests: Sequence[Recorded], found: LowRank, positions: Mapping[str, Sequence[float]]) -> list[dict[str, Any]]:
+    """Amplitudes in the order in which the fields were given."""
+    out, first = [], 0
+    for test in tests:
+        n = len(test.times)
+        now, first = found.amplitudes[first : first + n], first + n
+        before = None
+        if test.before is not None:
+            before, first = found.amplitudes[first : first + n], first + n
+        name = f"{test.comparison.test.name} ({test.comparison.test.role})"
+        out.append({
+            "name": name, "times": test.times.tolist(), "now": _digits(now, 4),
+            "before": None if before is None else _digits(before, 4), "sensors": _sensors(test, positions),
+        })  # fmt: skip
+    return out
+
+
+def _sensors(test: Recorded, positions: Mapping[str, Sequence[float]]) -> list[dict[str, Any]]:
+    """Readings at the page's instants; null where nothing was read."""
+    from validation.comparison.tolerance import limit_K
+
+    shown, clock = test.comparison, np.asarray(test.comparison.test.time, float)
+    at = np.clip(np.searchsorted(clock, test.times), 0, len(clock) - 1)
+    return [
+        {
+            "name": short(c.name), "xyz": [float(x) for x in positions[c.name]], "limit": limit_K(c),
+            "measured": _digits(np.asarray(c.y, float)[at], 2),
+            "model": _digits(np.asarray(shown.model[c.name])[at], 2),
+            "before": None if shown.before is None else _digits(np.asarray(shown.before[c.name])[at], 2),
+        }
+        for c in shown.channels if c.name in positions
+    ]  # fmt: skip
+
+
+def _digits(values: Array, digits: int) -> Any:
+    """Rounded lists; null for what is not finite."""
+    if values.ndim > 1:
+        return [_digits(row, digits) for row in values]
+    return [round(float(v), digits) if np.isfinite(v) else None for v in values]
+
+
+def _palette(colours: Any) -> list[int]:
+    return (np.asarray(colours(np.linspace(0, 1, 256)))[:, :3] * 255).round().astype(int).ravel().tolist()

@@ -1,0 +1,447 @@
+"use strict";
+const $ = (id) => document.getElementById(id);
+const data = JSON.parse($("data").textContent);
+
+async function unpacked(p) {
+  const bytes = Uint8Array.from(atob(p.data), (c) => c.charCodeAt(0));
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
+  const planes = new Uint8Array(await new Response(stream).arrayBuffer());
+  const size = planes.length / 4, rows = size / p.columns;
+  const out = p.step ? new Float32Array(size) : new Int32Array(size);
+  for (let k = 0; k < p.columns; k++) {
+    let sum = 0;
+    for (let i = 0; i < rows; i++) {
+      const at = k * rows + i;
+      sum += planes[at] | (planes[size + at] << 8) | (planes[2 * size + at] << 16) | (planes[3 * size + at] << 24);
+      out[i * p.columns + k] = p.step ? sum * p.step[k] + p.low[k] : sum;
+    }
+  }
+  return out;
+}
+
+const VERTEX = `#version 300 es
+precision highp float; precision highp int;
+in vec3 place; in vec3 normal; in vec2 ends; in float share;
+uniform mat4 view; uniform sampler2D field; uniform int wide;
+out vec3 at; out vec3 facing; out vec2 T;
+vec2 value(float i) { int k = int(i); return texelFetch(field, ivec2(k % wide, k / wide), 0).rg; }
+void main() {
+  at = place; facing = normal; T = mix(value(ends.x), value(ends.y), share);
+  gl_Position = view * vec4(place, 1.0);
+}`;
+const FRAGMENT = `#version 300 es
+precision highp float;
+in vec3 at; in vec3 facing; in vec2 T;
+uniform vec4 plane; uniform vec3 eye; uniform vec2 range; uniform float wipe, alpha, part, flat_; uniform int layer, mode;
+uniform sampler2D palette; out vec4 colour;
+void main() {
+  if (flat_ < 0.5 && dot(at, plane.xyz) > plane.w) discard;
+  float value = layer == 1 ? T.x - T.y : (gl_FragCoord.x < wipe ? T.y : T.x);
+  float s = (value - range.x) / (range.y - range.x);
+  if (mode == 1) { float q = clamp(s, 0.0, 1.0) * 65535.0; colour = vec4((part + 1.0) / 255.0, floor(q / 256.0) / 255.0, mod(q, 256.0) / 255.0, 1.0); return; }
+  vec3 towards = normalize(eye - at), n = normalize(facing);
+  float light = flat_ > 0.5 ? 1.0 : 0.62 + 0.38 * abs(dot(n, towards));
+  colour = vec4(texture(palette, vec2(clamp(s, 0.002, 0.998), 0.5)).rgb * light, alpha);
+}`;
+const DOTS = `#version 300 es
+precision highp float;
+in vec3 place; in vec3 tint; uniform mat4 view; uniform vec4 plane; uniform float size, nearer; out vec3 ink;
+void main() { ink = tint; gl_Position = view * vec4(place, 1.0); gl_Position.z -= nearer * gl_Position.w; gl_PointSize = nearer > 0.0 && dot(place, plane.xyz) > plane.w + 0.006 ? 0.0 : size;
+  if (gl_PointSize == 0.0) gl_Position = vec4(2.0, 2.0, 2.0, 1.0); }`;
+const DOT = `#version 300 es
+precision highp float;
+in vec3 ink; uniform float hollow; out vec4 colour;
+void main() {
+  float r = length(gl_PointCoord - 0.5) * 2.0;
+  if (r > 1.0) discard;
+  colour = vec4(r > 0.74 || r < hollow ? vec3(1.0) : ink, 1.0);
+}`;
+
+class Viewer {
+  constructor(arrays) {
+    Object.assign(this, arrays);
+    this.gl = $("gl").getContext("webgl2", { antialias: true, preserveDrawingBuffer: true });
+    if (!this.gl) throw new Error("this browser has no WebGL 2, which this page draws with");
+    this.parts = data.parts.map((p) => ({ ...p, shown: 1 }));
+    this.time = 1; this.playing = false; this.frames = 0; this.dirty = true; this.pointers = new Map();
+    this.bounds();
+    this.first();
+    this.programs();
+    this.surface();
+    this.textures();
+    this.choose(0);
+  }
+  bounds() {
+    this.low = [Infinity, Infinity, Infinity]; this.high = [-Infinity, -Infinity, -Infinity];
+    for (let i = 0; i < this.points.length; i++) {
+      const k = i % 3, v = this.points[i];
+      if (v < this.low[k]) this.low[k] = v;
+      if (v > this.high[k]) this.high[k] = v;
+    }
+    this.middle = this.low.map((v, k) => (v + this.high[k]) / 2);
+    this.size = Math.hypot(...this.high.map((v, k) => v - this.low[k]));
+  }
+  first() { this.turn = -1.0; this.tilt = 0.35; this.zoom = 1; this.dirty = true; }
+  program(vertex, fragment, inputs) {
+    const gl = this.gl, p = gl.createProgram();
+    for (const [kind, text] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
+      const s = gl.createShader(kind);
+      gl.shaderSource(s, text); gl.compileShader(s);
+      if (!gl.getShaderParameter(s, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(s));
+      gl.attachShader(p, s);
+    }
+    inputs.forEach((name, k) => gl.bindAttribLocation(p, k, name));
+    gl.linkProgram(p);
+    return new Proxy({ p }, { get: (o, name) => name === "p" ? p : (o[name] ??= gl.getUniformLocation(p, name)) });
+  }
+  programs() {
+    this.skin = this.program(VERTEX, FRAGMENT, ["place", "normal", "ends", "share"]);
+    this.dots = this.program(DOTS, DOT, ["place", "tint"]);
+  }
+  mesh(rows, floats, sizes) {
+    const gl = this.gl, vao = gl.createVertexArray(), buffer = gl.createBuffer();
+    const stride = 4 * sizes.reduce((a, b) => a + b);
+    gl.bindVertexArray(vao); gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+    let offset = 0;
+    sizes.forEach((n, k) => {
+      gl.enableVertexAttribArray(k); gl.vertexAttribPointer(k, n, gl.FLOAT, false, stride, offset); offset += 4 * n;
+    });
+    gl.bufferData(gl.ARRAY_BUFFER, floats, gl.DYNAMIC_DRAW);
+    return { vao, buffer, rows };
+  }
+  surface() {  // normals are shared by triangles that meet at less than 40 degrees, so that edges stay sharp
+    const t = this.triangles, n = t.length / 3, p = this.points, flat = new Float32Array(3 * n);
+    const count = new Int32Array(p.length / 3 + 1);
+    for (let i = 0; i < n; i++) {
+      const [a, b, c] = [3 * t[3 * i], 3 * t[3 * i + 1], 3 * t[3 * i + 2]];
+      const u = [p[b] - p[a], p[b + 1] - p[a + 1], p[b + 2] - p[a + 2]];
+      const v = [p[c] - p[a], p[c + 1] - p[a + 1], p[c + 2] - p[a + 2]];
+      const x = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+      const s = 1 / (Math.hypot(...x) || 1);
+      for (let k = 0; k < 3; k++) { flat[3 * i + k] = x[k] * s; count[t[3 * i + k] + 1]++; }
+    }
+    for (let i = 1; i < count.length; i++) count[i] += count[i - 1];
+    const fill = count.slice(), around = new Int32Array(3 * n), out = new Float32Array(3 * n * 9);
+    for (let i = 0; i < 3 * n; i++) around[fill[t[i]]++] = Math.floor(i / 3);
+    for (let i = 0; i < 3 * n; i++) {
+      const node = t[i], own = 3 * Math.floor(i / 3), sum = [0, 0, 0];
+      for (let j = count[node]; j < count[node + 1]; j++) {
+        const o = 3 * around[j];
+        if (flat[o] * flat[own] + flat[o + 1] * flat[own + 1] + flat[o + 2] * flat[own + 2] > 0.77)
+          for (let k = 0; k < 3; k++) sum[k] += flat[o + k];
+      }
+      out.set([p[3 * node], p[3 * node + 1], p[3 * node + 2], ...sum, node, node, 0], 9 * i);
+    }
+    this.whole = this.mesh(3 * n, out, [3, 3, 2, 1]);
+    this.whole.spans = this.spans(n, (i) => this.owner[t[3 * i]]);
+    this.section = this.mesh(0, new Float32Array(9), [3, 3, 2, 1]);
+    this.beads = this.mesh(0, new Float32Array(6), [3, 3]);
+  }
+  spans(n, part) {  // of rows sorted by part: [first, count] in vertices
+    const out = this.parts.map(() => [0, 0]);
+    for (let i = 0; i < n; i++) { const s = out[part(i)]; if (!s[1]) s[0] = 3 * i; s[1] += 3; }
+    return out;
+  }
+  textures() {
+    const gl = this.gl;
+    this.wide = 1024; this.high_ = Math.ceil(this.owner.length / this.wide);
+    this.values = new Float32Array(2 * this.wide * this.high_);
+    const made = (unit) => {
+      const t = gl.createTexture();
+      gl.activeTexture(gl.TEXTURE0 + unit); gl.bindTexture(gl.TEXTURE_2D, t);
+      for (const k of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, k, gl.NEAREST);
+      for (const k of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.texParameteri(gl.TEXTURE_2D, k, gl.CLAMP_TO_EDGE);
+      return t;
+    };
+    made(0); made(1);
+    gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
+    this.picked = { frame: gl.createFramebuffer(), colour: gl.createRenderbuffer(), depth: gl.createRenderbuffer() };
+  }
+  choose(k) {
+    this.test = data.tests[k];
+    if (!this.test.before && $("layer").value === "1") $("layer").value = "0";
+    $("layer").disabled = !this.test.before; $("wiping").hidden = !this.test.before;
+    this.recolour();
+    this.move(this.time);
+  }
+  recolour() {
+    const gl = this.gl, change = $("layer").value === "1", rgb = change ? data.missing : data.heat;
+    gl.activeTexture(gl.TEXTURE1);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGB, 256, 1, 0, gl.RGB, gl.UNSIGNED_BYTE, new Uint8Array(rgb));
+    const ramp = $("ramp").getContext("2d"), picture = ramp.createImageData(1, 256);
+    for (let i = 0; i < 256; i++) picture.data.set([...rgb.slice(3 * (255 - i), 3 * (255 - i) + 3), 255], 4 * i);
+    ramp.putImageData(picture, 0, 0);
+    this.range = data.range; this.marks = data.marks;
+    if (change) {
+      this.marks = data.change_marks; this.range = [this.marks[0], this.marks[this.marks.length - 1]];
+    }
+    $("unit").textContent = change ? "K" : "°C";
+    $("marks").replaceChildren(...this.marks.map((m) => {
+      const s = document.createElement("span");
+      s.textContent = m; s.style.bottom = `${100 * (m - this.range[0]) / (this.range[1] - this.range[0])}%`;
+      return s;
+    }));
+    this.dirty = true;
+  }
+  between(list) {  // the row of a list of rows at the present instant
+    const i = Math.min(Math.floor(this.place), list.length - 2), f = this.place - i;
+    return list[i].map((v, k) => v + f * (list[i + 1][k] - v));
+  }
+  move(time) {  // 0 to 1 of the test
+    const times = this.test.times, s = times[0] + time * (times[times.length - 1] - times[0]);
+    this.time = time;
+    let i = 0;
+    while (i < times.length - 2 && times[i + 1] <= s) i++;
+    this.place = i + (s - times[i]) / (times[i + 1] - times[i]);
+    const now = this.between(this.test.now), before = this.test.before ? this.between(this.test.before) : now;
+    const r = now.length, n = this.owner.length, v = this.values;
+    for (let node = 0; node < n; node++) {
+      let a = this.mean[node], b = a;
+      for (let k = 0; k < r; k++) { const x = this.shapes[node * r + k]; a += now[k] * x; b += before[k] * x; }
+      v[2 * node] = a; v[2 * node + 1] = b;
+    }
+    const gl = this.gl;
+    gl.activeTexture(gl.TEXTURE0);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RG32F, this.wide, this.high_, 0, gl.RG, gl.FLOAT, v);
+    $("title").textContent = `${data.title}: ${this.test.name} at ${(s / 60).toFixed(0)} min`;
+    $("time").value = 1000 * time;
+    this.readings();
+    this.dirty = true;
+  }
+  readings() {
+    const k = Math.round(this.place);
+    this.sensors = this.test.sensors.map((s) => {
+      const y = s.measured[k], residual = y === null || s.model[k] === null ? null : y - s.model[k];
+      const verdict = residual === null ? 3 : Math.abs(residual) <= s.limit ? 0 : residual > 0 ? 1 : 2;
+      return { ...s, y, residual, verdict, weight: residual === null ? -1 : Math.abs(residual) / s.limit };
+    });
+    const beads = new Float32Array(6 * this.sensors.length);
+    this.sensors.forEach((s, i) => beads.set([...s.xyz, ...TINTS[s.verdict]], 6 * i));
+    this.gl.bindBuffer(this.gl.ARRAY_BUFFER, this.beads.buffer);
+    this.gl.bufferData(this.gl.ARRAY_BUFFER, beads, this.gl.DYNAMIC_DRAW);
+    this.beads.rows = this.sensors.length;
+    $("sensors").replaceChildren(...this.sensors.map((s) => line(s.name, s.y === null ? "–" : `${s.y.toFixed(1)} °C  ${signed(s.residual)} K`, `rgb(${TINTS[s.verdict].map((c) => 255 * c)})`)));
+  }
+  plane() {
+    const axis = +$("axis").value;
+    if (axis < 0) return [0, 0, 0, 1];
+    const share = $("cut").value / 1000, sign = axis === 0 ? -1 : 1, out = [0, 0, 0, 0];
+    out[axis] = sign;
+    out[3] = sign * (this.low[axis] + share * (this.high[axis] - this.low[axis])) + 1e-7 * this.size;
+    return out;
+  }
+  slice() {  // the plane through every tetrahedron: each corner of the section is a mix of two nodes
+    const plane = this.plane(), off = this.plane().slice(0, 3).every((v) => v === 0), n = this.owner.length;
+    const d = new Float32Array(n), p = this.points, t = this.tets, out = [], part = [];
+    this.cutting = plane;
+    for (let i = 0; i < n && !off; i++) d[i] = plane[0] * p[3 * i] + plane[1] * p[3 * i + 1] + plane[2] * p[3 * i + 2] - plane[3];
+    const corner = (i, j) => {
+      const s = d[i] / (d[i] - d[j]);
+      for (let k = 0; k < 3; k++) out.push(p[3 * i + k] + s * (p[3 * j + k] - p[3 * i + k]));
+      out.push(plane[0], plane[1], plane[2], i, j, s);
+    };
+    for (let i = 0; i < t.length && !off; i += 4) {
+      const up = [], down = [];
+      for (let k = 0; k < 4; k++) (d[t[i + k]] > 0 ? up : down).push(t[i + k]);
+      if (!up.length || !down.length) continue;
+      const triangles = up.length === 2
+        ? [[up[0], down[0], up[0], down[1], up[1], down[1]], [up[0], down[0], up[1], down[1], up[1], down[0]]]
+        : [(up.length === 1 ? down : up).flatMap((j) => [up.length === 1 ? up[0] : down[0], j])];
+      for (const c of triangles) { corner(c[0], c[1]); corner(c[2], c[3]); corner(c[4], c[5]); part.push(this.owner[t[i]]); }
+    }
+    this.gl.bindBuffer(this.gl.ARRAY_BUFFER, this.section.buffer);
+    this.gl.bufferData(this.gl.ARRAY_BUFFER, new Float32Array(out), this.gl.DYNAMIC_DRAW);
+    this.section.spans = this.spans(part.length, (i) => part[i]);
+  }
+  matrix() {
+    const [ct, st, cp, sp] = [Math.cos(this.turn), Math.sin(this.turn), Math.cos(this.tilt), Math.sin(this.tilt)];
+    const towards = [st * cp, sp, ct * cp], right = [ct, 0, -st], up = [-st * sp, cp, -ct * sp];
+    const far = 3.4 * this.size / this.zoom, gl = $("gl"), f = 6.2, aspect = gl.width / gl.height;
+    const near = Math.max(far - this.size, 0.01 * this.size), end = far + this.size;
+    this.eye = this.middle.map((m, k) => m + far * towards[k]);
+    const fx = aspect < 1.2 ? f * aspect / 1.2 / aspect : f / aspect, fy = aspect < 1.2 ? f * aspect / 1.2 : f;
+    const rows = [right, up, towards].map((v) => [...v, -v.reduce((s, x, k) => s + x * this.eye[k], 0)]);
+    const a = -(end + near) / (end - near), b = -2 * end * near / (end - near), z = rows[2];
+    const m = [rows[0].map((v) => fx * v), rows[1].map((v) => fy * v), z.map((v, k) => a * v + (k === 3 ? b : 0)), z.map((v) => -v)];
+    m[0] = m[0].map((v, k) => v - 0.1 * m[3][k]);  // room for the colour bar
+    this.rows = m;
+    return new Float32Array([0, 1, 2, 3].flatMap((c) => m.map((row) => row[c])));
+  }
+  skinned(mode) {
+    const gl = this.gl, s = this.skin;
+    gl.useProgram(s.p);
+    gl.uniformMatrix4fv(s.view, false, this.matrix());
+    gl.uniform4fv(s.plane, this.cutting); gl.uniform3fv(s.eye, this.eye); gl.uniform2fv(s.range, this.range);
+    gl.uniform1i(s.layer, +$("layer").value); gl.uniform1i(s.mode, mode); gl.uniform1i(s.wide, this.wide);
+    gl.uniform1i(s.field, 0); gl.uniform1i(s.palette, 1);
+    gl.uniform1f(s.wipe, this.test.before ? $("wipe").value / 1000 * $("gl").width : 0);
+    for (const shown of mode ? [1] : [1, 0.5]) {
+      if (shown < 1) { gl.enable(gl.BLEND); gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA); gl.depthMask(false); }
+      gl.uniform1f(s.alpha, shown < 1 ? 0.16 : 1);
+      for (const [mesh, flat] of [[this.whole, 0], [this.section, 1]]) {
+        gl.uniform1f(s.flat_, flat);
+        gl.bindVertexArray(mesh.vao);
+        this.parts.forEach((p, k) => {
+          gl.uniform1f(s.part, k);
+          if (p.shown === shown && mesh.spans[k][1]) gl.drawArrays(gl.TRIANGLES, ...mesh.spans[k]);
+        });
+      }
+    }
+    gl.disable(gl.BLEND); gl.depthMask(true);
+  }
+  draw() {
+    const gl = this.gl, c = $("gl"), scale = Math.min(devicePixelRatio || 1, 2);
+    const [w, h] = [Math.round(c.clientWidth * scale), Math.round(c.clientHeight * scale)];
+    if (c.width !== w || c.height !== h) { c.width = w; c.height = h; }
+    const paper = getComputedStyle(document.body).backgroundColor.match(/\d+/g).map((v) => v / 255);
+    gl.viewport(0, 0, w, h); gl.clearColor(paper[0], paper[1], paper[2], 1); gl.enable(gl.DEPTH_TEST);
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    this.skinned(0);
+    gl.useProgram(this.dots.p); gl.bindVertexArray(this.beads.vao);
+    gl.uniformMatrix4fv(this.dots.view, false, this.matrix()); gl.uniform4fv(this.dots.plane, this.cutting);
+    for (const [hollow, test] of [[0.42, false], [0, true]]) {  // hollow everywhere, filled where nothing covers it
+      (test ? gl.enable : gl.disable).call(gl, gl.DEPTH_TEST);
+      gl.uniform1f(this.dots.hollow, hollow); gl.uniform1f(this.dots.size, 15 * scale); gl.uniform1f(this.dots.nearer, test ? 0.002 : 0);
+      gl.drawArrays(gl.POINTS, 0, this.beads.rows);
+    }
+    this.labels(scale);
+    this.frames++;
+  }
+  pixel(sensor) {
+    const at = [...sensor.xyz, 1], q = this.rows.map((row) => row.reduce((sum, v, k) => sum + v * at[k], 0));
+    return [(q[0] / q[3] + 1) / 2 * $("gl").width, (1 - q[1] / q[3]) / 2 * $("gl").height];
+  }
+  labels(scale) {  // of the six sensors furthest beyond their uncertainty; none covers a dot or another label
+    const c = $("over"), x = c.getContext("2d"), d = 9 * scale;
+    const taken = this.sensors.map((s) => this.pixel(s)).map((p) => [p[0] - d, p[1] - d, 2 * d, 2 * d]);
+    c.width = $("gl").width; c.height = $("gl").height;
+    x.font = `${13 * scale}px "DejaVu Sans", system-ui, sans-serif`; x.textBaseline = "middle";
+    for (const s of [...this.sensors].sort((a, b) => b.weight - a.weight).slice(0, 6)) {
+      const at = this.pixel(s);
+      const text = `${s.name}  ${signed(s.residual)} K`, wide = x.measureText(text).width + 12 * scale, tall = 22 * scale;
+      const room = c.width - 100 * scale - wide;
+      const left = Math.max(0, at[0] < c.width * 0.45 ? at[0] - wide - 26 * scale : Math.min(at[0] + 26 * scale, room));
+      let top = at[1] - tall / 2;
+      const over = (y) => taken.some((t) => left < t[0] + t[2] && left + wide > t[0] && y < t[1] + t[3] && y + tall > t[1]);
+      for (let k = 1; over(top) && k < 30; k++) top = at[1] - tall / 2 + (k % 2 ? 1 : -1) * Math.ceil(k / 2) * tall * 1.1;
+      if (over(top)) continue;  // no room: its name is under the pointer
+      taken.push([left, top, wide, tall]);
+      x.strokeStyle = getComputedStyle(document.body).color; x.lineWidth = 1.5 * scale; x.beginPath();
+      x.moveTo(...at); x.lineTo(Math.max(left, Math.min(at[0], left + wide)), top + tall / 2); x.stroke();
+      x.fillStyle = `rgb(${TINTS[s.verdict].map((v) => 255 * v)})`; x.fillRect(left, top, wide, tall);
+      x.fillStyle = "#fff"; x.fillText(text, left + 6 * scale, top + tall / 2);
+    }
+  }
+  pick(x, y) {  // part and value under the pointer, read back from one pixel
+    const gl = this.gl, c = $("gl"), p = this.picked, scale = c.width / c.clientWidth;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, p.frame);
+    for (const [buffer, kind, at] of [[p.colour, gl.RGBA8, gl.COLOR_ATTACHMENT0], [p.depth, gl.DEPTH_COMPONENT24, gl.DEPTH_ATTACHMENT]]) {
+      gl.bindRenderbuffer(gl.RENDERBUFFER, buffer); gl.renderbufferStorage(gl.RENDERBUFFER, kind, c.width, c.height);
+      gl.framebufferRenderbuffer(gl.FRAMEBUFFER, at, gl.RENDERBUFFER, buffer);
+    }
+    const [px, py] = [Math.round(x * scale), c.height - 1 - Math.round(y * scale)], out = new Uint8Array(4);
+    gl.enable(gl.SCISSOR_TEST); gl.enable(gl.DEPTH_TEST); gl.scissor(px, py, 1, 1);
+    gl.clearColor(0, 0, 0, 0); gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    this.skinned(1);
+    gl.readPixels(px, py, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, out);
+    gl.disable(gl.SCISSOR_TEST); gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    if (!out[0]) return null;
+    const s = (256 * out[1] + out[2]) / 65535;
+    return { name: this.parts[out[0] - 1].name, value: this.range[0] + s * (this.range[1] - this.range[0]) };
+  }
+  hover(x, y) {
+    const box = $("hover"), scale = $("gl").width / $("gl").clientWidth;
+    const far = (s) => { const p = this.pixel(s); return Math.hypot(p[0] / scale - x, p[1] / scale - y); };
+    const sensor = this.sensors.find((s) => far(s) < 9), found = sensor || this.pick(x, y);
+    box.style.display = found ? "block" : "none";
+    if (sensor) box.textContent = `${sensor.name}  ${sensor.y === null ? "–" : sensor.y.toFixed(1)} °C, ${signed(sensor.residual)} K`;
+    else if (found) box.textContent = `${found.name}  ${found.value.toFixed(1)} ${$("unit").textContent}`;
+    box.style.left = `${Math.min(x + 14, $("gl").clientWidth - 180)}px`; box.style.top = `${y + 14}px`;
+  }
+  tick(now) {
+    const times = this.test.times, span = times[times.length - 1] - times[0];
+    if (this.playing) {  // an hour in ten seconds
+      const time = this.time + (now - this.last) / 1000 * 360 / span;
+      this.move(Math.min(time, 1));
+      if (time >= 1) this.play(false);
+    }
+    this.last = now;
+    if (this.dirty) { this.dirty = false; this.draw(); }
+    requestAnimationFrame((t) => this.tick(t));
+  }
+  play(on) {
+    if (on && this.time >= 1) this.move(0);
+    this.playing = on; $("play").textContent = on ? "❚❚" : "▶";
+  }
+}
+
+const TINTS = [[0, 158, 115], [213, 94, 0], [0, 114, 178], [107, 114, 128]].map((c) => c.map((v) => v / 255));
+const signed = (v) => v === null ? "–" : (v < 0 ? "−" : "+") + Math.abs(v).toFixed(1);
+
+function line(name, value, colour, act) {
+  const li = document.createElement("li"), b = document.createElement("button");
+  b.append(...[name, value].map((text) => Object.assign(document.createElement("span"), { textContent: text })));
+  b.lastChild.style.color = colour || "";
+  if (act) b.onclick = () => act(b.lastChild);
+  li.append(b);
+  return li;
+}
+
+function wired(v) {
+  const c = $("gl"), again = () => { v.dirty = true; };
+  $("test").replaceChildren(...data.tests.map((t, k) => new Option(t.name, k)));
+  $("test").onchange = (e) => v.choose(+e.target.value);
+  $("layer").onchange = () => v.recolour();
+  $("wipe").oninput = again;
+  $("axis").onchange = $("cut").oninput = () => { v.slice(); again(); };
+  $("time").oninput = (e) => { v.play(false); v.move(e.target.value / 1000); };
+  $("play").onclick = () => v.play(!v.playing);
+  const words = { 1: "shown", 0.5: "ghost", 0: "hidden" }, next = { 1: 0.5, 0.5: 0, 0: 1 };
+  $("parts").replaceChildren(...v.parts.map((p) => line(p.name, "shown", "", (span) => {
+    p.shown = next[p.shown]; span.textContent = words[p.shown]; again();
+  })));
+  c.onpointerdown = (e) => { c.setPointerCapture(e.pointerId); v.pointers.set(e.pointerId, e); };
+  c.onpointerup = c.onpointercancel = (e) => v.pointers.delete(e.pointerId);
+  c.onpointerleave = () => { $("hover").style.display = "none"; };
+  c.onpointermove = (e) => {
+    const old = v.pointers.get(e.pointerId);
+    if (!old) return v.hover(e.offsetX, e.offsetY);
+    const other = [...v.pointers.values()].find((q) => q.pointerId !== e.pointerId);
+    if (other) {
+      const far = (q) => Math.hypot(q.clientX - other.clientX, q.clientY - other.clientY);
+      v.zoom *= far(e) / Math.max(far(old), 1);
+    } else {
+      v.turn -= 0.008 * (e.clientX - old.clientX);
+      v.tilt = Math.max(-1.5, Math.min(1.5, v.tilt + 0.008 * (e.clientY - old.clientY)));
+    }
+    v.pointers.set(e.pointerId, e); again();
+  };
+  c.onwheel = (e) => { e.preventDefault(); v.zoom = Math.max(0.3, Math.min(12, v.zoom * Math.exp(-0.001 * e.deltaY))); again(); };
+  const keys = {
+    ArrowLeft: () => { v.turn -= 0.15; }, ArrowRight: () => { v.turn += 0.15; }, ArrowUp: () => { v.tilt += 0.1; },
+    ArrowDown: () => { v.tilt -= 0.1; }, "+": () => { v.zoom *= 1.2; }, "-": () => { v.zoom /= 1.2; },
+    0: () => v.first(), " ": () => v.play(!v.playing), ",": () => v.move(Math.max(0, v.time - 0.02)),
+    ".": () => v.move(Math.min(1, v.time + 0.02)),
+  };
+  onkeydown = (e) => {
+    if (["INPUT", "SELECT", "BUTTON"].includes(e.target.tagName) || !keys[e.key]) return;
+    e.preventDefault(); keys[e.key](); again();
+  };
+  onresize = again;
+  matchMedia("(prefers-color-scheme: dark)").onchange = again;
+}
+
+(async () => {
+  try {
+    const names = ["points", "tets", "triangles", "owner", "mean", "shapes"];
+    const arrays = await Promise.all(names.map((n) => unpacked(data[n])));
+    const v = new Viewer(Object.fromEntries(names.map((n, k) => [n, arrays[k]])));
+    v.slice();
+    wired(v);
+    window.viewer = v;
+    requestAnimationFrame((t) => { v.last = t; v.tick(t); });
+  } catch (fault) {
+    $("fault").hidden = false; $("fault").textContent = `The machine cannot be drawn: ${fault.message}.`;
+    $("title").textContent = data.title;
+  }
+})();
