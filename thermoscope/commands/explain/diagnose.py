@@ -70,7 +70,7 @@ def question(document: Mapping[str, Any]) -> str:
     found = document.get("question")
     if not found:
         return ""
-    return f"One question: {found['words']} Then: thermoscope answer {document.get('case', 'CASE')} yes|no"
+    return f"One question: {found['words']} Then: thermoscope explain answer {document.get('case', 'CASE')} yes|no"
 
 
 def _odds(document: Mapping[str, Any]) -> Grid:
