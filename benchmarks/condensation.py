@@ -3,9 +3,9 @@
     python benchmarks/condensation.py [MACHINE ...] [--coarse] [--accuracy PERCENT] [--json FILE] [--table FILE]
     python benchmarks/condensation.py --offline [--json FILE]      what condensing the motor on 150,000 nodes costs
 
-For every machine of the library, or those named: the network that `thermoscope build --accuracy` keeps, at coefficients
-and load cases that it has not seen (`condensation_points.py`). Errors are in percent of a part's own rise, at least a
-tenth of the machine's largest; after a step of loss, hot spots and points in percent of the largest rise at that time.
+For every machine of the library, or those named: the network that `thermoscope model build --accuracy` keeps, at
+coefficients and load cases not seen before (`condensation_points.py`). Errors are in percent of a part's own rise, at
+least a tenth of the machine's largest; after a step of loss, hot spots and points in percent of the largest rise then.
 "wanted" is what the network is built for. Shapes are found anew: the cache of earlier builds is not used.
 """
 
@@ -183,8 +183,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("machines", nargs="*", metavar="MACHINE", help="names of the library; all if none is given")
     parser.add_argument("--offline", action="store_true", help="only what condensing a large motor costs")
-    parser.add_argument("--coarse", action="store_true", help="a mesh half as fine as `thermoscope build` makes it")
-    parser.add_argument("--accuracy", type=float, default=2.0, help="percent, as in `thermoscope build --accuracy`")
+    parser.add_argument("--coarse", action="store_true", help="a mesh half as fine as of `thermoscope model build`")
+    parser.add_argument("--accuracy", type=float, default=2.0, help="percent, as of `thermoscope model build`")
     parser.add_argument("--json", metavar="FILE", help="write the rows there, - is stdout; other machines' rows stay")
     parser.add_argument("--table", metavar="PAGE", help="put the table between the markers of this Markdown page")
     given = parser.parse_args()

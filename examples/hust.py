@@ -2,11 +2,11 @@
 
     python examples/hust.py [--rounds 4] [--ablation] [--out out/hust]
 
-What `thermoscope improve` does, the best-fitting of a group taken unasked: the effect that leads is added and what
-case.toml leaves free is calibrated again, until nothing is named. Profiles 5, 8, 11 and 15 are only ever predicted, and
-nothing here looks at them before the end. With --ablation every effect that was added is deleted in turn, the rest
-calibrated anew, and the diagnosis asked what is missing. Prints the tables of cases/hust-ipmsm/README.md and writes
-them to --out, with the model.
+What `thermoscope explain improve` does, the best-fitting of a group taken unasked: the effect that leads is added and
+what case.toml leaves free is calibrated again, until nothing is named. Profiles 5, 8, 11 and 15 are only ever
+predicted, and nothing here looks at them before the end. With --ablation every effect that was added is deleted in
+turn, the rest calibrated anew, and the diagnosis asked what is missing. Prints the tables of
+cases/hust-ipmsm/README.md and writes them to --out, with the model.
 """
 
 from __future__ import annotations

@@ -3,8 +3,8 @@
     python examples/tclab.py [--out out/tclab]
 
 Each rung is one `diagnose` and one `add` of what leads; where several cannot be told apart the first is taken and the
-others are listed. Asked is which path of heat is missing, so the catalogue is restricted to paths and the sensors' lag.
-The third recording is only ever predicted. Prints the tables of cases/tclab/README.md.
+others are listed. Asked is which path of heat is missing, so case.toml restricts the catalogue to paths and the
+sensors' lag. The third recording is only ever predicted. Prints the tables of cases/tclab/README.md.
 """
 
 from __future__ import annotations
@@ -18,13 +18,11 @@ from thermoscope.case_folder.files import write_whole
 from thermoscope.case_folder.folder import find_case, load_case
 from validation.revision.improvement import Improvement, Step, Supervisor, best, improve, leading
 
-PATHS = ("convection.constant", "convection.buoyant", "radiation", "coupling", "sensor.lag")
-
 
 def ladder(tell: Callable[[str], None], most: int = 8) -> Improvement:
     """All rungs of the case."""
-    case = load_case(find_case("tclab"), tell, bare=True).case
-    return improve(case, Supervisor(best, offer=leading), most, tell, PATHS)
+    folder = load_case(find_case("tclab"), tell, bare=True)
+    return improve(folder.case, Supervisor(best, offer=leading), most, tell, folder.settings.kinds)
 
 
 def table(done: Improvement) -> str:
@@ -48,8 +46,8 @@ def size(stair: Step) -> str:
 
 def ends(done: Improvement) -> str:
     """Why it ended there, and what of the physics could not have been seen."""
-    blind = [h for h in done.diagnosis.cannot_see if h.effect.split("@")[0] in PATHS]
-    hidden = [f"- {h.effect}: below {h.smallest_detectable:.3g} {h.unit}, absorbed by {h.absorbed_by}" for h in blind]
+    unseen = done.diagnosis.cannot_see
+    hidden = [f"- {h.effect}: below {h.smallest_detectable:.3g} {h.unit}, absorbed by {h.absorbed_by}" for h in unseen]
     return "\n".join([f"\n{done.diagnosis.verdict}: {done.why}", *hidden])
 
 

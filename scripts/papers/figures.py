@@ -20,12 +20,15 @@ NODES = {  # fig. 1, from the middle to the outside -> parts of the network
     "end-caps": ("endcap.left", "endcap.right"), "base": ("base", "base.plate"),
 }  # fmt: skip
 STAGES = (
-    ("fig. 3, 1: thermal test", "`thermoscope protocol` lists and checks its steps"),
-    ("fig. 3, 2: temperatures when switched off", "`thermoscope protocol RECORD.toml`; `after = { ... }` in a sheet"),
+    ("fig. 3, 1: thermal test", "`thermoscope bench protocol` lists and checks its steps"),
+    (
+        "fig. 3, 2: temperatures when switched off",
+        "`thermoscope bench protocol RECORD.toml`; `after = { ... }` in a sheet",
+    ),
     ("fig. 3, 3: uncertainty", "the same: worst case, GUM and Monte Carlo side by side"),
-    ("fig. 9, 1: sensitivity analysis", "`thermoscope screen MACHINE`, with `--design morris` or `sobol`"),
-    ("fig. 9, 2: tests for what is critical, calibration", "`thermoscope calibrate cases/pmsm-bases`, `bases`"),
-    ("fig. 9, 3: uncertainty, validation", "`thermoscope compare`, `thermoscope carry SOURCE CASE...`"),
+    ("fig. 9, 1: sensitivity analysis", "`thermoscope bench screen MACHINE`, with `--design morris` or `sobol`"),
+    ("fig. 9, 2: tests for what is critical, calibration", "`thermoscope model calibrate cases/pmsm-bases`, `bases`"),
+    ("fig. 9, 3: uncertainty, validation", "`thermoscope test compare`, `thermoscope bench carry SOURCE CASE...`"),
 )
 
 
@@ -83,5 +86,5 @@ def figure_2() -> Section:
 
 def figures_3_and_9() -> Section:
     steps = tuple((f"{k + 1}. {name}", f"{when}: {what}") for k, (name, when, what, _) in enumerate(STEPS))
-    words = "The flow charts as commands, and below the steps of the test that `thermoscope protocol` checks."
+    words = "The flow charts as commands, and below the steps of the test that `thermoscope bench protocol` checks."
     return Section("Figures 3 and 9: flow charts", words, table=(("stage", "here"), *STAGES, *steps))

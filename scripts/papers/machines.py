@@ -241,10 +241,10 @@ def wrong_base() -> Section:
         for h in found
     ]  # fmt: skip
     words = (
-        "The paper calibrates each base by hand and cannot ask whether it was the right one. `thermoscope bases`, and "
-        "`diagnose` before it names an effect, fit all tests together for every base that a test may have stood on; "
-        "the tests on other bases hold the body's films. A deviance above 10 excludes a base. Bases that are not "
-        "excluded differ by less than the meters tell."
+        "The paper calibrates each base by hand and cannot ask whether it was the right one. `thermoscope bench "
+        "bases`, and `diagnose` before it names an effect, fit all tests together for every base a test may have "
+        "stood on; the tests on other bases hold the body's films. A deviance above 10 excludes a base. Bases "
+        "that are not excluded differ by less than the meters tell."
     )
     return Section("Figures 12 and 13: which base a test stood on", words, table=(head, *rows))
 

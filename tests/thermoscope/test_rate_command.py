@@ -1,4 +1,4 @@
-"""thermoscope rate: ratings of a small case, with bands; what is wrong is one message."""
+"""thermoscope use rate: ratings of a small case, with bands; what is wrong is one message."""
 
 from dataclasses import replace
 from pathlib import Path

@@ -92,7 +92,7 @@ def _toml(
     """One link from node to node in a row, and one to each boundary."""
     lines = [
         "# A first network made from the columns alone: every number is an order of magnitude. Put in what you know:",
-        "# masses, materials, areas, what heats what (docs/network-toml.md), then thermoscope calibrate.", "",
+        "# masses, materials, areas, what heats what (docs/network-toml.md), then thermoscope model calibrate.", "",
         "[network]", f"name = {json.dumps(name)}", f"boundaries = {json.dumps(list(boundaries))}", "",
     ]  # fmt: skip
     for node in nodes:

@@ -53,7 +53,7 @@ def folder_whole(folder: Path) -> Iterator[Path]:
 
 def write_case(folder: Path, name: str, model: Callable[[Path], str], drafts: Sequence[Draft]) -> None:
     """model : puts the machine or network into the folder and returns its line of case.toml."""
-    lines = ["# Written by thermoscope new. Every line may be changed.", "[case]", f"name = {quoted(name)}",
+    lines = ["# Written by thermoscope test new. Every line may be changed.", "[case]", f"name = {quoted(name)}",
              model(folder), f"sample_s = {sample_of(drafts):g}", ""]  # fmt: skip
     for draft, role in zip(drafts, roles(len(drafts)), strict=True):
         lines += [f"[tests.{key(draft.name)}]", f'role = "{role}"', ""]

@@ -1,4 +1,4 @@
-"""thermoscope answer CASE yes|no"""
+"""thermoscope explain answer CASE yes|no"""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ WORDS = {"yes": True, "y": True, "no": False, "n": False}
 def answer(case: str, word: str, about: str | None, target: str | None) -> int:
     """The answer as a step of the model's history; effects and values stay as they are."""
     if word.lower() not in WORDS:
-        raise InputError(f"'{word}' is no answer", "thermoscope answer", "yes or no")
+        raise InputError(f"'{word}' is no answer", "thermoscope explain answer", "yes or no")
     with progress() as tell:
         folder = open_case_for_writing(case, tell)
     yes, subject = WORDS[word.lower()], known(folder, about or asked(folder))
@@ -29,7 +29,7 @@ def answer(case: str, word: str, about: str | None, target: str | None) -> int:
     save_history(folder.settings.model_file, history, folder.history)
     document = {"case": folder.case.name, "revision": history.last.number, "answers": dict(history.last.answers)}
     sentence = f"Revision {history.last.number}: {why}. The next diagnosis takes it as evidence."
-    give(document, target, lambda: Answer(sentence, more=f"Next: thermoscope diagnose {case}"))
+    give(document, target, lambda: Answer(sentence, more=f"Next: thermoscope explain diagnose {case}"))
     return 0
 
 
@@ -38,7 +38,7 @@ def asked(folder: Folder) -> str:
     question = (last_diagnosis(folder) or {}).get("question")
     if not question:
         raise InputError("the last diagnosis asked nothing", f"case '{folder.case.name}'",
-                         "thermoscope diagnose first, or --about a test, an event or a fault")  # fmt: skip
+                         "thermoscope explain diagnose first, or --about a test, an event or a fault")  # fmt: skip
     return str(question["about"])
 
 

@@ -59,7 +59,7 @@ def answer(document: Mapping[str, Any]) -> Answer:
     unseen = f"{len(hidden)} effects could be there unseen: {', '.join(hidden[:2])}, ..." if hidden else ""
     remaining = " ".join(row["words"] for row in document.get("remainder", []))
     found = document["candidates"]
-    parts = [_odds(document), remaining, _candidates(found), *events(document), *_leader(found),
+    parts = [_odds(document), remaining, _candidates(found), *events(document), *_leader(found, named),
              *contradiction(document.get("contradiction")), next_tests(document),
              in_short(document.get("error_budget", {}), steps), unseen, question(document)]  # fmt: skip
     rest = [*budget(document.get("error_budget", {}), steps), *hidden]
@@ -71,7 +71,7 @@ def question(document: Mapping[str, Any]) -> str:
     found = document.get("question")
     if not found:
         return ""
-    return f"One question: {found['words']} Then: thermoscope answer {document.get('case', 'CASE')} yes|no"
+    return f"One question: {found['words']} Then: thermoscope explain answer {document.get('case', 'CASE')} yes|no"
 
 
 def _odds(document: Mapping[str, Any]) -> Grid:
@@ -88,7 +88,7 @@ def _candidates(found: Sequence[Mapping[str, Any]]) -> Grid:
     return Grid("Candidates", headers, rows[:ROWS], ["named", "group"], keep)
 
 
-def _leader(found: Sequence[Mapping[str, Any]]) -> list[str]:
+def _leader(found: Sequence[Mapping[str, Any]], named: Sequence[str]) -> list[str]:
     """Why the rivals lost, what the leader looks like, and the experiment that proves it."""
     if not found or found[0]["probability"] <= SHOWN:
         return []
@@ -97,7 +97,7 @@ def _leader(found: Sequence[Mapping[str, Any]]) -> list[str]:
     if first["confused_with"]:
         lines.append(f"{first['effect']} looks like {', '.join(first['confused_with'])} to these tests and sensors.")
     lost = [f"Against {c['effect']}: it {c['note']} than {first['effect']}." for c in found[1:ROWS]
-            if c["note"] and c["probability"] > SHOWN]  # fmt: skip
+            if c["note"] and c["probability"] > SHOWN and c["effect"] not in named]  # fmt: skip
     return [*lines, *lost]
 
 

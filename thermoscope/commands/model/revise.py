@@ -19,6 +19,7 @@ from validation.comparison.compare import compare
 if TYPE_CHECKING:
     from validation.revision import revise
 
+NO_EVENT = "thermoscope explain diagnose first: it found no event in these"
 FEW = 4  # parameters named in a sentence
 
 
@@ -40,7 +41,7 @@ def meant(folder: Folder, effect: str) -> str:
     found = (saved_diagnosis(folder) or {}).get("events", [])
     names = {name: e["effect"] for i, e in enumerate(found) for name in (str(i + 1), e["event"])}
     if which not in names:
-        right = f"event@1 to event@{len(found)}" if found else "thermoscope diagnose first: it found no event in these"
+        right = f"event@1 to event@{len(found)}" if found else NO_EVENT
         raise InputError(f"no event '{which}'", f"effect '{effect}'", right)
     return str(names[which])
 

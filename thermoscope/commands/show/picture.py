@@ -107,7 +107,7 @@ def _difference(s: Subject, png: Path) -> None:
     earlier = before_last(s.folder)
     if earlier is None:
         what = "has a model that was not changed yet, so there is no difference"
-        raise InputError(what, s.folder.case.name, "a case with a revision: thermoscope calibrate or add")
+        raise InputError(what, s.folder.case.name, "a case with a revision: thermoscope model calibrate or add")
     difference(
         s.nodes, s.field(earlier), s.field(), title=f"{s.when}: after minus before the last step", png=png
     ).close()

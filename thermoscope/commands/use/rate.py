@@ -1,4 +1,4 @@
-"""thermoscope rate CASE|MACHINE: what it may carry, for how long, and how sure that is."""
+"""thermoscope use rate CASE|MACHINE: what it may carry, for how long, and how sure that is."""
 
 from __future__ import annotations
 
