@@ -87,6 +87,11 @@ def test_a_limit_below_the_surroundings_is_refused():
         rated(model(), OP, {"body": 15.0}, "S1", None)
 
 
+def test_a_model_that_no_heat_leaves_is_refused_as_such():
+    with pytest.raises(InputError, match="does not come to rest even without any load"):
+        rated(model(body(Fixed(0.0))), OP, LIMIT, "S1", None)
+
+
 @pytest.mark.parametrize(
     ("given", "message"),
     [({"current_A": 5.0}, "nothing says how warm 'air' is"), ({"air": 20.0}, "nothing says what 'current_A' is"),

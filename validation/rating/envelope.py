@@ -14,7 +14,7 @@ from scipy.optimize import brentq
 
 from geom.errors import InputError
 from validation.rating.operation import Operation
-from validation.rating.points import S3, S6, Model
+from validation.rating.points import RUNAWAY_C, S3, S6, Model
 
 Array = NDArray[np.float64]
 LARGEST = 50.0  # of the reference load; beyond, no temperature limits
@@ -58,6 +58,11 @@ def reached(over: Callable[[float], Array], limits: Mapping[str, float], form: s
     if worst(0.0) >= 0.0:
         T = over(0.0)
         k = int(np.argmax(T - most))
+        if T[k] >= RUNAWAY_C:
+            raise InputError(
+                "the model does not come to rest even without any load", f"rating {form}",
+                "a way for heat to leave every part; effects add one (explain diagnose)",
+            )  # fmt: skip
         raise InputError(
             f"the limit of '{names[k]}', {most[k]:g} degC, is exceeded without any load ({T[k]:.1f} degC)",
             "--limit", "a higher limit, cooler surroundings or a lower speed",
