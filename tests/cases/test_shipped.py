@@ -37,7 +37,7 @@ DECLARED = (*LOOK, *DRAWN, *(f"export --as {form}" for form in FORMS))
 MESHED = ("doctor", "compare", "simulate", "effects", "curves", "export --as csv", "picture curves")
 TAKEN = {
     "tclab": (*DECLARED, *STEPS, "add convection.constant@heater1 --anyway", "picture losses"),
-    "hust-ipmsm": (*DECLARED, "simulate --cycle s3-40", "rate --limit winding=150"),
+    "hust-ipmsm": (*DECLARED, "picture losses", "simulate --cycle s3-40", "rate --limit winding=150"),
     "pmsm-bases": (
         *MESHED,
         "bases",
@@ -48,7 +48,15 @@ TAKEN = {
     ),
     "pmsm-machines/m2": MESHED,
     "pmsm-machines/m3": MESHED,
-    "road-test": (*MESHED, "simulate --cycle overpass", "render", "report", "rate --limit winding=155"),
+    "road-test": (
+        *MESHED,
+        "simulate --cycle overpass",
+        "render",
+        "report",
+        "viewer",
+        "film",
+        "rate --limit winding=155",
+    ),
 }
 MACHINE_COMMANDS = {"build", "crosscheck", "screen", "machines"}  # below, tests/thermoscope/test_build_command.py, geom
 NO_FILE = {"new", "quantities", "protocol", "answer", "remove", "undo", "serve"}  # of recordings, of what went before
@@ -61,7 +69,8 @@ REFUSED = {
     ("tclab", "bases"): "base",
     ("tclab", "two-paths"): "winding.copper",
     ("tclab", "rate --limit heater1=90"): "no input carries the load",
-    ("hust-ipmsm", "picture losses"): "a machine that is running",
+    ("tclab", "film"): "no geometry",
+    ("hust-ipmsm", "viewer"): "no geometry",
     ("hust-ipmsm", "picture field"): "no geometry",
 }
 
