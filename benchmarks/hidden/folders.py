@@ -68,7 +68,7 @@ def label_of(name: str, machine: str, truth: Mapping[str, Any], words: Mapping[s
         f"{machine}-{group}-{name}", machine, group, 0, tuple(e["effect"] for e in hidden),
         tuple(all_names([e["effect"]]) for e in hidden), tuple(all_names(n) for n in near),
         max((SIZES.get(e.get("size", ""), 0.0) for e in hidden), default=0.0),
-        tuple(float(e["amplitude"]) for e in hidden), place,
+        (), place,  # its amplitudes are in units of its own
     )  # fmt: skip
 
 

@@ -113,8 +113,9 @@ def fault_found(label: Answer, answer: Answer) -> bool | None:
     """Verdict 'data', and the fault or its channel is what is pointed at."""
     if label["group"] != "fault":
         return None
-    kind, place = label["truth"][0].split("@")
-    plain = kind in ("frozen", "clipped", "unit")
+    place = label["truth"][0].split("@")[1]
+    kinds = {name.split("@")[0] for name in (label["truth"][0], *(n for names in label["right"] for n in names))}
+    plain = bool(kinds & {"frozen", "clipped", "unit"})
     hit = (plain and place in answer["words"]) or any(fault_of(label["truth"][0], e) for e in reported(answer)[:3])
     return answer["verdict"] == "data" and hit
 
@@ -126,7 +127,7 @@ def quiet(label: Answer, answer: Answer) -> bool | None:
 
 def covered(label: Answer, answer: Answer) -> bool | None:
     """The true amplitude lies in the 90 % interval of the true effect, where it was refitted."""
-    if label["group"] != "one" or answer["verdict"] not in ("named", "group"):
+    if label["group"] != "one" or not label["amplitude"] or answer["verdict"] not in ("named", "group"):
         return None
     row = next((answer["candidates"][n] for n in label["right"][0] if n in answer["candidates"]), None)
     if row is None or row["decision"] not in ("named", "group"):

@@ -130,9 +130,39 @@ def test_effects_that_tests_cannot_show_are_listed():
     assert "mass@shaft" in {h.effect for h in answer("wind", plan=True).cannot_see}
 
 
-def test_frozen_channel_is_seen_without_a_model():
-    (test, *_) = Truth(0).case(network()).tests
-    y = np.where(test.time > 1800.0, 30.0, test.channels[0].y)
+def with_frozen(case, index):
+    """One channel shows from half an hour on, in one test, what it showed then."""
+    test = case.tests[index]
+    stuck = np.interp(1800.0, test.time, test.channels[0].y)
+    y = np.where(test.time > 1800.0, stuck, test.channels[0].y)
     broken = replace(test, channels=(replace(test.channels[0], y=y), *test.channels[1:]))
-    assert not broken_channels([test])
-    assert "flange.left" in broken_channels([broken])[0]
+    return replace(case, tests=tuple(broken if t is test else t for t in case.tests)), test.channels[0].name
+
+
+def test_frozen_channel_is_seen_without_a_model():
+    case = Truth(0).case(network())
+    broken, name = with_frozen(case, 0)
+    assert not broken_channels(case.tests[:1])
+    (found,) = broken_channels(broken.tests[:1])
+    assert found.name == f"frozen@{name}"
+    time = broken.tests[0].time
+    assert found.bad[time > 1800.0].all()
+    assert not found.bad[time < 1740.0].any()
+
+
+def test_a_frozen_channel_is_told_and_accuses_nothing_else():
+    broken, name = with_frozen(TRUTHS["nothing"]().case(), 0)
+    found = diagnose(broken, plan=False)
+    assert found.verdict == "data"
+    assert found.groups == ()
+    assert found.odds[0].effects == (f"frozen@{name}",)
+    assert "no evidence of a missing effect" in found.words
+
+
+def test_what_is_missing_is_found_beside_a_frozen_channel():
+    broken, name = with_frozen(TRUTHS["wind"]().case(), 0)
+    found = diagnose(broken, plan=False)
+    assert found.verdict == "data"
+    assert found.named == ("convection@flange.right",)
+    assert found.odds[0].effects == (f"frozen@{name}", "convection@flange.right")
+    assert f"{name} in" in found.words

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from types import MappingProxyType
 
 import numpy as np
@@ -13,7 +14,7 @@ from validation.conditions.conditional_effects import conditions, joined
 from validation.conditions.contradiction import contradiction
 from validation.conditions.laws import laws
 from validation.conditions.question import answered
-from validation.conditions.robust import without
+from validation.conditions.robust import without as without_test
 from validation.diagnosis.missing_heat import scan
 from validation.diagnosis.numerical_error import signal_to_error
 from validation.diagnosis.result import Diagnosis
@@ -41,7 +42,7 @@ from validation.inference.posterior import (
 from validation.inference.refits import refitted
 from validation.inference.several import further
 from validation.inference.tables import tabulate
-from validation.measurement.faults import broken_channels
+from validation.measurement.faults import PlainFaults, broken_channels, without
 from validation.measurement.noise import Noise
 from validation.procedure.reduction.which_base import bases_tried, wrong_bases
 from validation.threads import one_blas_thread
@@ -63,18 +64,20 @@ def diagnose(
 
     kinds : restrict the catalogue;  plan : also rank the next tests and sensors
     budget : channel -> error (K) of the model's own numbers there; what moves no reading by more is not named
-    A test that stood on another base than its sheet says is told before anything else.
+    A test that stood on another base than its sheet says is told before anything else. Readings of a channel that is
+    plainly broken are told, and left out.
     """
     training = case.training()
+    broken = broken_channels(training.tests)
+    training = replace(training, tests=without(training.tests, broken))
     stood = bases_tried(training, progress)
     posterior = infer(training, kinds, progress)
     wrong = wrong_bases(stood)
     choice = above(posterior, decide(posterior.evidence, posterior.hypotheses), budget)
     if wrong:  # nothing else is accused of what the base does
         choice = Decision("data", (), choice.sure)
-    broken = [*broken_channels(training.tests), *wrong]
     progress("writing the tables")
-    return tabulate(case, posterior, choice, broken, tuple(stood), plan)
+    return tabulate(case, posterior, choice, PlainFaults(tuple(broken), tuple(wrong)), tuple(stood), plan)
 
 
 def above(posterior: Posterior, choice: Decision, budget: Mapping[str, float]) -> Decision:
@@ -105,7 +108,7 @@ def infer(case: Case, kinds: Sequence[str] | None = None, progress: Progress = n
     progress("looking for where heat is missing")
     looked = scan(evidence.fit, evidence.tests)
     heat = looked.read(evidence.fit.parts, evidence.fit.noise, evidence.fit.theta, evidence.fit.error)
-    chosen, events = conditions(without(evidence, against.test), case, looked, heat, kinds, progress)
+    chosen, events = conditions(without_test(evidence, against.test), case, looked, heat, kinds, progress)
     known = {**case.model.values, **evidence.fit.values}
     bent = laws(evidence, known) if kinds is None or KIND in kinds else []
     evidence = sharpened(joined(evidence, [*chosen, *bent], known))

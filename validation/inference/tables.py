@@ -24,6 +24,7 @@ from validation.inference.evidence import Evidence, deviance
 from validation.inference.posterior import Hypothesis, Posterior, inclusion, probabilities
 from validation.inference.refits import laplace
 from validation.inference.remainder import remainder
+from validation.measurement.faults import PlainFaults
 from validation.planning.competing_models import CompetingModels
 from validation.planning.experiments import next_tests
 from validation.planning.sensors import next_sensors
@@ -36,7 +37,7 @@ RIVALS = 4  # of a group are compared with each other where a plan is wanted
 
 
 def tabulate(
-    case: Case, posterior: Posterior, choice: Decision, broken: Sequence[str], bases: tuple[Base, ...], plan: bool
+    case: Case, posterior: Posterior, choice: Decision, broken: PlainFaults, bases: tuple[Base, ...], plan: bool
 ) -> Diagnosis:
     """The whole answer; the held-out tests of `case` are predicted here, after everything is decided."""
     e = posterior.evidence
@@ -55,13 +56,14 @@ def tabulate(
         named=tuple(g[0] for g in groups), groups=groups, candidates=rows, cannot_see=unseen(e), where=posterior.heat,
         next_tests=tuple(tests), next_sensors=tuple(sensors), rmse_K=rmse(e.fit.parts), floor_K=floor(e),
         threshold=float(np.min(thresholds(e))), pulls=pulls, cosine=confusion(e, [c.effect for c in rows[:12]]),
-        bases=bases, odds=odds(posterior), p_nothing=1.0 - choice.sure, events=possible_events(posterior),
+        bases=bases, odds=odds(posterior, broken.names), p_nothing=0.0 if broken.names else 1.0 - choice.sure,
+        events=possible_events(posterior),
         remainder=remainder(posterior, choice, single),
         contradiction=posterior.against, question=best_question(posterior),
     )  # fmt: skip
 
 
-def final(verdict: Verdict, posterior: Posterior, choice: Decision, pulls: Sequence, broken: Sequence[str]) -> Verdict:
+def final(verdict: Verdict, posterior: Posterior, choice: Decision, pulls: Sequence, broken: PlainFaults) -> Verdict:
     """The decision with what the calibration says about itself: a machine that has to be bent is not adequate."""
     if broken:
         return "data"
@@ -97,12 +99,15 @@ def floor(evidence: Evidence) -> float:
     return float(np.sqrt(np.mean([s.weight**2 for s in evidence.fit.parts])))
 
 
-def odds(posterior: Posterior) -> tuple[Odds, ...]:
-    """Every hypothesis that carries weight, most probable first; the rest as one line."""
+def odds(posterior: Posterior, sure: tuple[str, ...] = ()) -> tuple[Odds, ...]:
+    """Every hypothesis that carries weight, most probable first; the rest as one line.
+
+    sure : faults that are there beside whatever else is
+    """
     P = probabilities(posterior.hypotheses)
     e = posterior.evidence
     rows = [
-        _odds(e, h, float(p))
+        _odds(e, h, float(p), sure)
         for h, p in zip(posterior.hypotheses, P, strict=True) if p > SHOWN
     ]  # fmt: skip
     rows.sort(key=lambda o: -o.probability)
@@ -110,13 +115,15 @@ def odds(posterior: Posterior) -> tuple[Odds, ...]:
     return (*rows, Odds("others", (), max(rest, 0.0)))
 
 
-def _odds(e: Evidence, h: Hypothesis, p: float) -> Odds:
+def _odds(e: Evidence, h: Hypothesis, p: float, sure: tuple[str, ...]) -> Odds:
     """A hypothesis with when it held."""
+    own = tuple(e.names[k] for k in h.members)
+    name = " + ".join((*sure, *([h.name(e)] if own or h.heat or not sure else [])))
     held = [x for k in h.members if isinstance(x := e.effects[k], During)]
     tests = tuple(dict.fromkeys(t for x in held for t in x.tests))
     spans = [s for x in held if x.event for s in x.event.every]
     begin, end = spans[0] if len(spans) == 1 else (None, None)
-    return Odds(h.name(e), tuple(e.names[k] for k in h.members), p, h.nats, tests, begin, end)
+    return Odds(name, (*sure, *own), p, h.nats, tests, begin, end)
 
 
 def candidates(
@@ -242,12 +249,13 @@ def confusion(e: Evidence, names: Sequence[str]) -> dict[str, dict[str, float]]:
 
 def sentence(
     verdict: Verdict, posterior: Posterior, choice: Decision, rows: Sequence[Candidate], pulls: Sequence,
-    broken: Sequence[str],
+    broken: PlainFaults,
 ) -> str:  # fmt: skip
     """The verdict in words, with its odds."""
     hides = "it may hide a missing effect"
     if broken:
-        return f"check the measurement first: {'; '.join(broken)}"
+        rest = sentence(choice.verdict, posterior, choice, rows, pulls, PlainFaults()) if broken.names else ""
+        return f"check the measurement first: {broken.words}" + (f"; without those readings: {rest}" if rest else "")
     if verdict == "adequate":
         return f"no evidence of a missing effect (nothing missing: {percent(1.0 - choice.sure)})"
     if verdict == "absorbed" and not choice.groups:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,38 +12,87 @@ from validation.case import Channel, Test
 
 FROZEN_SHARE = 0.25
 MOVING_K = 3.0
+FEW = 8  # readings below which nothing is said of a channel
 
 
-def longest_run(y: NDArray[np.float64]) -> int:
-    """Length of the longest stretch of equal readings."""
-    change = np.flatnonzero(np.diff(y) != 0.0)
-    edges = np.concatenate([[-1], change, [y.size - 1]])
-    return int(np.max(np.diff(edges)))
+@dataclass(frozen=True)
+class Fault:
+    """What is plainly wrong with a channel in a test.  kind : "frozen", "clipped" or "unit"
+    bad : (n_time,) the readings that mean nothing;  words : for people
+    """
+
+    kind: str
+    test: str
+    channel: str
+    bad: NDArray[np.bool_]
+    words: str
+
+    @property
+    def name(self) -> str:
+        """Like an effect's."""
+        return f"{self.kind}@{self.channel}"
 
 
-def fault(test: Test, channel: Channel) -> str | None:
+@dataclass(frozen=True)
+class PlainFaults:
+    """What is wrong with the measurement for sure.  channels : broken ones;  bases : tests on another than said"""
+
+    channels: tuple[Fault, ...] = ()
+    bases: tuple[str, ...] = ()
+
+    def __bool__(self) -> bool:
+        return bool(self.channels or self.bases)
+
+    @property
+    def words(self) -> str:
+        return "; ".join([*(f.words for f in self.channels), *self.bases])
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of the broken channels, each once."""
+        return tuple(dict.fromkeys(f.name for f in self.channels))
+
+
+def longest_run(y: NDArray[np.float64]) -> tuple[int, int]:
+    """First and last index of the longest stretch of equal readings."""
+    edges = np.concatenate([[-1], np.flatnonzero(np.diff(y) != 0.0), [y.size - 1]])
+    longest = int(np.argmax(np.diff(edges)))
+    return int(edges[longest]) + 1, int(edges[longest + 1])
+
+
+def fault(test: Test, channel: Channel) -> Fault | None:
     """What is plainly wrong with a channel, or None."""
-    y = channel.y[np.isfinite(channel.y)]
-    if y.size < 8:
+    read = np.flatnonzero(np.isfinite(channel.y))
+    y = channel.y[read]
+    if y.size < FEW:
         return None
+    here = f"{channel.name} in {test.name}"
     if y.min() < -60.0 or y.max() > 400.0:
-        return f"{channel.name} in {test.name} reads {y.min():.0f} to {y.max():.0f} degC: a wrong unit?"
+        words = f"{here} reads {y.min():.0f} to {y.max():.0f} degC: a wrong unit?"
+        return Fault("unit", test.name, channel.name, np.isfinite(channel.y), words)
     others = [np.nanmax(c.y) - np.nanmin(c.y) for c in test.channels if c is not channel and np.isfinite(c.y).any()]
-    run = longest_run(y)
-    moving = others and np.median(others) > MOVING_K
-    if run > FROZEN_SHARE * y.size and moving:
-        where = "at its limit" if y[np.argmax(y)] == stuck(y, run) and np.ptp(y) > MOVING_K else "frozen"
-        return f"{channel.name} in {test.name} is {where} for {100 * run / y.size:.0f} % of the test"
-    return None
+    first, last = longest_run(y)
+    run = last - first + 1
+    if run <= FROZEN_SHARE * y.size or not others or np.median(others) <= MOVING_K:
+        return None
+    limit = y[first] == y.max() and np.ptp(y) > MOVING_K
+    bad = np.zeros(channel.y.size, bool)
+    bad[read[y == y[first]] if limit else read[first : last + 1]] = True
+    words = f"{here} is {'at its limit' if limit else 'frozen'} for {100 * run / y.size:.0f} % of the test"
+    return Fault("clipped" if limit else "frozen", test.name, channel.name, bad, words)
 
 
-def stuck(y: NDArray[np.float64], run: int) -> float:
-    """The value that is held during the longest run."""
-    change = np.concatenate([[-1], np.flatnonzero(np.diff(y) != 0.0), [y.size - 1]])
-    return float(y[change[int(np.argmax(np.diff(change)))] + 1])
-
-
-def broken_channels(tests: Iterable[Test]) -> list[str]:
-    """All plain faults, in words."""
+def broken_channels(tests: Iterable[Test]) -> list[Fault]:
+    """All plain faults."""
     found = [fault(test, channel) for test in tests for channel in test.channels]
     return [f for f in found if f]
+
+
+def without(tests: Sequence[Test], faults: Sequence[Fault]) -> tuple[Test, ...]:
+    """The tests without the readings that mean nothing."""
+    bad = {(f.test, f.channel): f.bad for f in faults}
+
+    def cleaned(t: Test, c: Channel) -> Channel:
+        return replace(c, y=np.where(bad[t.name, c.name], np.nan, c.y)) if (t.name, c.name) in bad else c
+
+    return tuple(replace(t, channels=tuple(cleaned(t, c) for c in t.channels)) for t in tests)
