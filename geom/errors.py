@@ -23,3 +23,7 @@ class InputError(ThermoscopeError):
 
 class MissingDependency(ThermoscopeError):  # noqa: N818
     """A program or system library is missing; the message carries the command that installs it."""
+
+
+class NoSolution(ThermoscopeError):  # noqa: N818
+    """A model has no temperatures at some values of its parameters: it runs away. The message says where and when."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from geom.errors import ThermoscopeError
+from geom.errors import NoSolution
 from lumped.model.network import Network
 from lumped.transfer.laws import Linear
 
@@ -14,11 +14,11 @@ LIMIT_C = 1e4  # no machine; a run that passes it has no meaning, though its num
 
 
 def checked_run(T: Array, time: Array, names: tuple[str, ...], network: Network) -> Array:
-    """Temperatures (n_time, n) of a run; ThermoscopeError names the first that is not finite or beyond LIMIT_C."""
+    """Temperatures (n_time, n) of a run; NoSolution names the first that is not finite or beyond LIMIT_C."""
     wild = ~(np.abs(T) < LIMIT_C)
     if wild.any():
         row = int(np.argmax(wild.any(axis=1)))
-        raise ThermoscopeError(described(network, names[int(np.argmax(wild[row]))], float(time[row])))
+        raise NoSolution(described(network, names[int(np.argmax(wild[row]))], float(time[row])))
     return T
 
 

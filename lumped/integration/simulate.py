@@ -12,7 +12,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from geom.errors import InputError, ThermoscopeError
+from geom.errors import InputError, NoSolution
 from lumped.integration.compiled import Compiled, compiled
 from lumped.integration.failure import failure
 from lumped.integration.record import Record
@@ -161,7 +161,7 @@ class _Course:
         core, own = self.core, self.moved[1]
         scratch = self.scratch._replace(D=own.D, R=own.R)
         if not settle(core.C, core.K0, core.terms, core.tangents, forcing.factor[0], self.both, scratch):
-            raise ThermoscopeError(failure(self.network, core, forcing, self.position))
+            raise NoSolution(failure(self.network, core, forcing, self.position))
 
     def _portion(self, forcing: Forcing, first: int) -> bool:
         """As many steps as the trace holds; whether there are more."""
@@ -170,7 +170,7 @@ class _Course:
         shared = (core.rows, control, self.trace, self.position, self.both, self.scratch)
         integrate(forcing, core.C, core.K0, core.terms, *shared, self.z, self.y, self.late)
         if at[STATUS] not in (0, FULL):
-            raise ThermoscopeError(failure(self.network, core, forcing, self.position))
+            raise NoSolution(failure(self.network, core, forcing, self.position))
         done, X = int(at[DONE]), self.trace
         self.taken += done
         self.steps.append(Steps(X.knot[:done] + first, X.share[:done].copy(), X.kind[:done].copy()))

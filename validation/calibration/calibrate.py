@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
 
+from geom.errors import NoSolution
 from lumped.model.network import Network
 from validation.calibration.unknowns import Unknowns
 from validation.case import Test
@@ -232,7 +233,10 @@ class Iterate:
         predicted = float(g @ (new - self.theta) - 0.5 * (new - self.theta) @ H @ (new - self.theta))
         if predicted < self.enough:
             return self.stop()
-        trial = self.residuals(new, self.parts)
+        try:
+            trial = self.residuals(new, self.parts)
+        except NoSolution:  # a step into values at which the machine runs away
+            return self.back()
         value = 0.5 * (self.measure.square(trial) + self.strain(new))
         gained = self.objective - value
         if predicted > ROUGH:

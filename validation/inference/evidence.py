@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import permutations
@@ -10,7 +11,7 @@ from itertools import permutations
 import numpy as np
 from numpy.typing import NDArray
 
-from geom.errors import InputError
+from geom.errors import InputError, NoSolution
 from lumped.model.multipliers import values_of
 from lumped.model.network import Network, Parameter
 from validation.calibration.calibrate import (
@@ -126,8 +127,10 @@ def scored(case: Case, effects: Sequence[Effect], fit: Fit) -> Evidence:
     fit = minimise(fit.network, tests, fit.unknowns, fit.theta, fit.noise, values_of(fit.network, fit.values), 0,
                    KnownSegments(own, nearby=False), error=fit.error)  # fmt: skip
     evidence = weighed(tests, fit, network, tuple(effects), parameters, parts, {})
-    there = {k: segments(network, tests, {**values, effects[k].name: effects[k].typical_loss or 0.0})
-             for k in likely(evidence)}  # fmt: skip
+    there = {}
+    for k in likely(evidence):
+        with suppress(NoSolution):  # so large it cannot be: the machine would run away
+            there[k] = segments(network, tests, {**values, effects[k].name: effects[k].typical_loss or 0.0})
     jumps = {k: [old.r - new.r for old, new in zip(parts, moved, strict=True)] for k, moved in there.items()}
     return weighed(tests, fit, network, tuple(effects), parameters, parts, jumps)
 

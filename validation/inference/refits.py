@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import logsumexp
 
+from geom.errors import NoSolution
 from validation.calibration.calibrate import Fit, no_progress
 from validation.doubt import SIZES
 from validation.inference.evidence import Evidence, free_of, refit, refit_beside, starts
@@ -18,6 +20,7 @@ Array = NDArray[np.float64]
 WEIGHT = 0.01  # posterior probability from which a hypothesis is refitted
 ROUNDS, MOST = 4, 8  # what a refit promotes is refitted too; so many at once
 GREAT, NEAR = 50.0, 0.6  # nats beyond which tangents mislead, and the share of the best from which a rival is refitted
+IMPOSSIBLE = -1e3  # nats: as good as excluded, and a number that a document can hold
 NEARLY, TRIED = 0.4, 3  # linear amplitude, and how many, of effects that happen whole or not at all
 
 
@@ -85,9 +88,13 @@ def laplace(evidence: Evidence, h: Hypothesis, near: tuple[int, Fit] | None = No
 
     near : one of two effects and its fit without the other
     """
-    points = starts(evidence, h.members)
-    fits = [refit_beside(evidence, h.members, *near)] if near else [refit(evidence, h.members, points[0])]
-    fits += [refit(evidence, h.members, theta) for theta in points[1:]]
+    points, fits = starts(evidence, h.members), []
+    for i, theta in enumerate(points):
+        with suppress(NoSolution):  # a machine that would run away there begins elsewhere
+            first = near is not None and i == 0
+            fits.append(refit_beside(evidence, h.members, *near) if first else refit(evidence, h.members, theta))
+    if not fits:
+        return replace(h, log_bayes=IMPOSSIBLE, loud=IMPOSSIBLE)
     best = min(fits, key=lambda fit: fit.objective)
     return replace(h, fit=best, log_bayes=log_bayes(evidence, best, h.members))
 
