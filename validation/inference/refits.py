@@ -91,8 +91,8 @@ def laplace(evidence: Evidence, h: Hypothesis, near: tuple[int, Fit] | None = No
     points, fits = starts(evidence, h.members), []
     for i, theta in enumerate(points):
         with suppress(NoSolution):  # a machine that would run away there begins elsewhere
-            first = near is not None and i == 0
-            fits.append(refit_beside(evidence, h.members, *near) if first else refit(evidence, h.members, theta))
+            first = near if i == 0 else None
+            fits.append(refit_beside(evidence, h.members, *first) if first else refit(evidence, h.members, theta))
     if not fits:
         return replace(h, log_bayes=IMPOSSIBLE, loud=IMPOSSIBLE)
     best = min(fits, key=lambda fit: fit.objective)
