@@ -12,6 +12,7 @@ from hidden.sizes import MULTIPLES, PART, ROLES, sizes
 from hidden.truth.archetype import Archetype, Edit, Hidden, Record, measured
 from hidden.truth.change import NOTHING, Change, for_a_while, only_in
 from hidden.truth.oracle import DEVIATION
+from hidden.user import area_of
 
 DECISIVE, ALIKE = 20.0, 5.0  # squared deviation by which an explanation must be worse; at which it is as good
 SHARES = {"nothing": 300, "one": 300, "two": 100, "pair": 100, "condition": 100, "foreign": 60, "absorbed": 40,
@@ -25,7 +26,8 @@ class Label:
 
     truth : what is hidden, in the generator's words;  right : for each, its names in the catalogue
     twins : for each, the names of what an observer who knows the machine could not tell from it at this size
-    size : in units of size, 0 where it has none;  amplitude : in the catalogue's units, as it shows
+    size : in units of size, 0 where it has none;  amplitude : in the catalogue's units, as it shows, but films in W/K
+    area : of the place (m2) where the catalogue counts the first of these per area, 1 where it does not
     place : node where a foreign effect acts;  test, span : where a condition holds, from and to (s) of it
     """
 
@@ -38,6 +40,7 @@ class Label:
     twins: tuple[tuple[str, ...], ...] = ()
     size: float = 0.0
     amplitude: tuple[float, ...] = ()
+    area: float = 1.0
     place: str = ""
     test: str = ""
     span: tuple[float, ...] = ()
@@ -92,6 +95,7 @@ def _hide(kind: Archetype, bare: Label, chosen: Sequence[Hidden], size: float) -
         twins=tuple(twins(kind, h.name, s) for h, s in zip(chosen, own, strict=True)),
         size=0.0 if any(h.declared for h in chosen) else size,
         amplitude=tuple(s * table[h.name]["size"] for h, s in zip(chosen, own, strict=True)),
+        area=area_of(kind.name, right(kind, chosen[0].name)[0]),
     )  # fmt: skip
 
 

@@ -133,7 +133,7 @@ def covered(label: Answer, answer: Answer) -> bool | None:
     if row is None or row["decision"] not in ("named", "group"):
         return None
     half = 0.5 * (row["ci95"][1] - row["ci95"][0]) * 1.645 / 1.96
-    return abs(row["value"] - label["amplitude"][0]) <= half
+    return abs(row["value"] - label["amplitude"][0] / label.get("area", 1.0)) <= half
 
 
 def leads(label: Answer, name: str, size: float) -> bool | None:

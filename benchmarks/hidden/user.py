@@ -13,6 +13,8 @@ from hidden.truth.archetype import Archetype, Edit, Record
 from lumped.declarations.network import read_network
 from lumped.model.network import Network
 from validation.case import Case, Channel, Model, Test
+from validation.effects.registry import effect
+from validation.effects.sites import ambient, faces
 
 MACHINES = Path(__file__).parent / "machines"
 SIGMA_K = 0.5
@@ -25,6 +27,16 @@ def network_of(kind: str, edits: tuple[Edit, ...] = ()) -> Network:
     for keys, value in edits:
         _set(data, keys, value)
     return read_network(data, f"{kind}.toml")
+
+
+@cache
+def area_of(kind: str, name: str) -> float:
+    """Area (m2) by which an effect of the catalogue counts there, 1 where it counts the whole conductance."""
+    network, one = network_of(kind), effect(name)
+    air = ambient(network)
+    if air is None or not one.extend(network).parameters[-1].unit.startswith("W/m2/K"):
+        return 1.0
+    return sum(face.area or 0.0 for face in faces(network, one.place, air))
 
 
 def _set(data: dict[str, Any], keys: Sequence[str], value: float) -> None:

@@ -150,6 +150,15 @@ def test_judge_on_intervals():
     one = label("one", "a@b", size=4.0, amplitude=[1.0])
     row = {"value": 1.9, "ci95": [0.9, 2.9], "decision": "named"}
     assert judge.covered(one, said("named", ["a@b"], candidates={"a@b": row})) is False
+    assert (
+        judge.covered({**one, "amplitude": [1.1], "area": 0.1}, said("named", ["a@b"], candidates={"a@b": row}))
+        is False
+    )
+    assert (
+        judge.covered({**one, "amplitude": [0.11], "area": 0.1}, said("named", ["a@b"], candidates={"a@b": row}))
+        is True
+    )
+    assert judge.covered({**one, "amplitude": []}, said("named", ["a@b"], candidates={"a@b": row})) is None
     assert judge.covered({**one, "amplitude": [1.1]}, said("named", ["a@b"], candidates={"a@b": row})) is True
 
 

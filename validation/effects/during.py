@@ -15,7 +15,7 @@ from validation.effects.time_window import Event, TimeWindow, event
 
 IN = " in "
 SAME = ("kind", "title", "unit", "at", "source", "isolating_test", "typical", "sign", "prior_sd", "low", "high",
-        "neutral", "confused_with", "needs", "fault")  # fmt: skip
+        "neutral", "confused_with", "needs", "fault", "empirical")  # fmt: skip
 
 
 @dataclass(frozen=True)

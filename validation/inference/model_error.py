@@ -179,10 +179,14 @@ def nodes(network: Network, test: Test, values: Mapping[str, float], own: Sequen
 
 @dataclass(frozen=True)
 class ModelError:
-    """columns : (test, channel) -> (n, d) change of the readings (K) by one deviation of each doubt;  names (d,)"""
+    """columns : (test, channel) -> (n, d) change of the readings (K) by one deviation of each doubt;  names (d,)
+
+    law : share of itself (one sigma) that an effect's amplitude is wrong by because its law is
+    """
 
     columns: Mapping[tuple[str, str], Array]
     names: tuple[str, ...]
+    law: float = USUAL["law"]
 
     def of(self, segment: Segment) -> Array:
         return self.columns[segment.test, segment.channel]
@@ -214,7 +218,7 @@ def model_error(
         beside = placements(network, test, values, doubt, sensed or tests)
         flow = flows(network, test, values, doubt, parts)
         out |= {(s.test, s.channel): np.column_stack([s.J * scale, beside[s.channel], flow[s.channel]]) for s in parts}
-    return ModelError(out, named(network, doubts, cores, doubt, sensed or tests))
+    return ModelError(out, named(network, doubts, cores, doubt, sensed or tests), doubt["law"])
 
 
 def named(

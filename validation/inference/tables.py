@@ -15,7 +15,7 @@ from validation.comparison.linearisation import rmse, segments
 from validation.conditions.events import possible_events
 from validation.conditions.question import best_question
 from validation.diagnosis.result import Candidate, Decided, DetectionLimit, Diagnosis, Odds, Verdict
-from validation.doubt import TEMPER
+from validation.doubt import TEMPER, USUAL
 from validation.effects.above import Above
 from validation.effects.during import During
 from validation.inference.decision import Decision
@@ -179,7 +179,7 @@ def _row(e: Evidence, h: Hypothesis, share: float, limit: float, size: float, be
     k, s = h.members[0], e.score
     a = float(s.amplitude[k])
     row = Candidate(
-        e.names[k], h.nats, limit, a, e.parameters[k].unit, interval(a, float(s.sd[k])), "no",
+        e.names[k], h.nats, limit, a, e.parameters[k].unit, interval(a, float(s.sd[k]), scatter(e, k)), "no",
         absorbed=float(s.absorbed[k]), smallest_detectable=size, twin=e.twins[k], title=e.effects[k].title,
         isolating_test=e.effects[k].isolating_test, probability=share,
     )  # fmt: skip
@@ -188,7 +188,7 @@ def _row(e: Evidence, h: Hypothesis, share: float, limit: float, size: float, be
     before, after, p = rmse(e.fit.parts), rmse(h.fit.parts), e.p
     if not e.effects[k].whole:
         a = float(h.fit.theta[p])
-        row = replace(row, value=a, ci95=interval(a, float(h.fit.sd[p])))
+        row = replace(row, value=a, ci95=interval(a, float(h.fit.sd[p]), scatter(e, k)))
     held = None if beside.error_K is None else (beside.error_K, error_on(beside.tests, h.fit))
     return replace(
         row, rmse_K=(before, after), explained=1.0 - (after / before) ** 2, holdout_rmse_K=held,
@@ -196,10 +196,19 @@ def _row(e: Evidence, h: Hypothesis, share: float, limit: float, size: float, be
     )  # fmt: skip
 
 
-def interval(a: float, sd: float) -> tuple[float, float]:
-    """Central 95 % of an amplitude; the temper that divides log evidence widens it as well."""
-    half = NORMAL_95 * float(np.sqrt(TEMPER.share)) * sd
+def interval(a: float, sd: float, scatter: float = 0.0) -> tuple[float, float]:
+    """Central 95 % of an amplitude; the temper that divides log evidence widens it as well.
+
+    scatter : share of itself (one sigma) by which its law is wrong: no single amplitude fits a film of another exponent
+    """
+    half = NORMAL_95 * float(np.hypot(np.sqrt(TEMPER.share) * sd, scatter * a))
     return a - half, a + half
+
+
+def scatter(e: Evidence, k: int) -> float:
+    """By how much of itself an effect's amplitude is off because its correlation is; 0 for what is exact."""
+    law = e.fit.error.law if e.fit.error else USUAL["law"]
+    return law if e.effects[k].empirical else 0.0
 
 
 def against(e: Evidence, fit: Fit, beside: Beside) -> str:

@@ -14,6 +14,7 @@ class BuoyantConvection(Effect):
     """h = a (|T - T_ambient| / 40 K)^(1/4), a the coefficient at 40 K (W/m2/K; W/K at a bare node)."""
 
     kind = "convection.buoyant"
+    empirical = True
     title = "natural convection growing with the rise"
     sits = "an outer part or face, with an ambient"
     unit = "W/m2/K"

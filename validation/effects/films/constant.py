@@ -14,6 +14,7 @@ class ConstantConvection(Effect):
     """Extra heat transfer to ambient, constant coefficient a (W/m2/K; W/K at a bare node): mounting, cable, draught."""
 
     kind = "convection.constant"
+    empirical = True
     title = "steady extra cooling to ambient"
     sits = "an outer part or face, with an ambient"
     unit = "W/m2/K"

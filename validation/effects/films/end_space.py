@@ -15,6 +15,7 @@ class EndSpaceMixing(Effect):
     """Films on every face of an end space grow with speed: h = a (n / 1000 rpm)^0.9, a in W/m2/K at 1000 rpm."""
 
     kind = "end.mixing"
+    empirical = True
     title = "end-space air stirred by the rotor"
     sits = "a fluid with role inner air and faces on it"
     unit = "W/m2/K"

@@ -18,6 +18,7 @@ class FanConvection(Effect):
     """
 
     kind = "convection.fan"
+    empirical = True
     title = "air of a fan on the shaft over a standing face"
     sits = "a standing outer part off the axle, with no air flow recorded"
     unit = "W/m2/K"

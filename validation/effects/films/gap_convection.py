@@ -31,6 +31,7 @@ class GapConvection(Effect):
     """Extra exchange across the air gap with speed: h = a (n / 1000 rpm)^0.5 (W/m2/K; W/K between bare nodes)."""
 
     kind = "gap.convection"
+    empirical = True
     title = "air-gap convection with speed"
     sits = "a fluid with role air gap"
     unit = "W/m2/K"

@@ -14,6 +14,7 @@ class RotationConvection(Effect):
     """Cooling of a turning part to ambient: h = a (n / 1000 rpm)^0.7 (W/m2/K; W/K at a bare node)."""
 
     kind = "convection.rotation"
+    empirical = True
     title = "cooling of a turning part to ambient"
     sits = "a turning part, with an ambient"
     unit = "W/m2/K"

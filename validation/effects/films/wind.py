@@ -17,6 +17,7 @@ class Convection(Effect):
     """
 
     kind = "convection"
+    empirical = True
     title = "forced convection by vehicle wind"
     sits = "an outer part or face, with an ambient"
     unit = "W/m2/K"

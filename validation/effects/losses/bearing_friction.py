@@ -14,6 +14,7 @@ class BearingFriction(Effect):
     """P = a (n / 1000 rpm)^(5/3), a the loss (W) at 1000 rpm."""
 
     kind = "bearing.friction"
+    empirical = True
     title = "bearing friction"
     sits = "a part with role bearing"
     unit = "W"

@@ -14,6 +14,7 @@ class BrushDrop(Effect):
     """P = a |I| / 100 A, a the loss (W) at 100 A; 2 V of drop give 200 W."""
 
     kind = "brush.drop"
+    empirical = True
     title = "brush contact drop"
     sits = "a part with role commutator"
     unit = "W"

@@ -14,6 +14,7 @@ class BrushFriction(Effect):
     """P = mu p A v: a n / 1000 rpm, a the loss (W) at 1000 rpm."""
 
     kind = "brush.friction"
+    empirical = True
     title = "brush friction"
     sits = "a part with role commutator"
     unit = "W"

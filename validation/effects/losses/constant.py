@@ -14,6 +14,7 @@ class ConstantLoss(Effect):
     """P = a, a constant power (W): a heater, the sun, a neighbour, electronics on standby."""
 
     kind = "loss.constant"
+    empirical = True
     title = "constant heat input"
     sits = "an outer part or face"
     unit = "W"

@@ -15,6 +15,7 @@ class AcCopper(Effect):
     """P = a (n / 1000 rpm)^2 (I / 100 A)^2, a the loss (W) at 1000 rpm and 100 A."""
 
     kind = "copper.ac"
+    empirical = True
     title = "AC copper loss"
     sits = "a winding with copper loss"
     unit = "W"

@@ -14,6 +14,7 @@ class IronLoss(Effect):
     """P = a (n / 1000 rpm)^1.5, a the loss (W) at 1000 rpm, between hysteresis (1) and eddy currents (2)."""
 
     kind = "iron"
+    empirical = True
     title = "iron loss growing with speed"
     sits = "a part with role iron or rotor, or one with iron loss"
     unit = "W"

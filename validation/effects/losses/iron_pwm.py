@@ -32,6 +32,7 @@ class PwmIronLoss(Effect):
     """
 
     kind = "iron.pwm"
+    empirical = True
     title = "iron loss of the inverter's ripple"
     sits = "a part with role iron or rotor, or one with iron loss"
     unit = "W"

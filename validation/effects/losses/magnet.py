@@ -14,6 +14,7 @@ class MagnetLoss(Effect):
     """P = a (n / 1000 rpm)^2, a the loss (W) at 1000 rpm: slotting and PWM harmonics."""
 
     kind = "loss.rotor"
+    empirical = True
     title = "loss in rotor or magnets"
     sits = "a turning part"
     unit = "W"

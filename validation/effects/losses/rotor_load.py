@@ -15,6 +15,7 @@ class RotorLoadLoss(Effect):
     """P = a (n / 1000 rpm)^2 (I / 100 A)^2, a the loss (W) at 1000 rpm and 100 A."""
 
     kind = "loss.rotor.load"
+    empirical = True
     title = "load-dependent loss in rotor or magnets"
     sits = "a turning part that is no wound winding"
     unit = "W"

@@ -14,6 +14,7 @@ class Windage(Effect):
     """P = a (n / 1000 rpm)^3, a the loss (W) at 1000 rpm."""
 
     kind = "windage"
+    empirical = True
     title = "windage"
     sits = "a turning part"
     unit = "W"

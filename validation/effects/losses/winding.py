@@ -14,6 +14,7 @@ class WindingLoss(Effect):
     """P = a (I / 100 A)^2, a the extra loss (W) at 100 A: joints, leads, a wrong resistance."""
 
     kind = "loss.winding"
+    empirical = True
     title = "copper loss larger than assumed"
     sits = "a winding with copper loss"
     unit = "W"

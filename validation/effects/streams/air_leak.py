@@ -16,6 +16,7 @@ class AirLeak(Effect):
     """A share of a fluid stream passes by: m = m0 (1 + a), -0.95 <= a <= 0, films on the rest unchanged."""
 
     kind = "bypass"
+    empirical = True
     title = "part of the stream passes by"
     sits = "a stream"
     unit = "1"

@@ -29,6 +29,7 @@ class CoolantLink(Effect):
     """Extra heat transfer a to the coolant (W/m2/K on wetted faces, W/K at a bare node)."""
 
     kind = "coolant"
+    empirical = True
     title = "extra heat path to the coolant"
     sits = "a part at or beside a fluid with role coolant"
     unit = "W/m2/K"

@@ -27,6 +27,7 @@ class Fouling(Effect):
     """Films of a part fade linearly with time: h = h0 (1 - a t / 1 h), a the fraction lost in one hour."""
 
     kind = "fouling"
+    empirical = True
     title = "cooling fades during the test"
     sits = "a part with a film to air or coolant"
     unit = "1/h"
