@@ -23,7 +23,7 @@ from thermoscope.commands.show.pages import by_interest, render, report
 from thermoscope.commands.stored_diagnosis import saved_diagnosis
 from thermoscope.commands.test.compare import compare
 from thermoscope.console.answer import Answer, Grid, within
-from thermoscope.console.terminal import give, notes, progress, say
+from thermoscope.console.terminal import give, notes, notes_once, progress, say
 
 if TYPE_CHECKING:
     from thermoscope.pipeline import Built
@@ -43,6 +43,7 @@ class Stage:
     comparison: Comparison
 
 
+@notes_once()
 def demo(out: Path, target: str | None) -> int:
     """Exit code 0 when an effect was named, accepted, and the error on the held-out test fell."""
     begun = time.monotonic()

@@ -9,6 +9,7 @@ from small_case import small_case
 
 from thermoscope.cli import main
 from thermoscope.console.answer import LINES, Answer, Grid, folded, lay_out
+from thermoscope.console.terminal import notes, notes_once
 
 WORDS = st.text("abcdefgh ", min_size=1, max_size=60).map(str.strip).filter(bool)
 CELLS = st.one_of(WORDS, st.floats(-1e6, 1e6), st.integers(-(10**6), 10**6), st.none())
@@ -100,3 +101,12 @@ def test_every_command_at_80_columns(three, words, monkeypatch, capsys, tmp_path
         return
     assert 1 <= len(lines) <= LINES + 2
     assert [line for line in lines if len(line) > 80 and "/" not in line] == []
+
+
+def test_commands_in_a_row_say_each_note_once(capsys):
+    notes(["a"])
+    with notes_once():
+        notes(["a", "b"])
+        notes(["b", "a", "c"])
+    notes(["a"])
+    assert capsys.readouterr().err.split() == ["note:", "a", "note:", "a", "note:", "b", "note:", "c", "note:", "a"]

@@ -5,7 +5,9 @@ from __future__ import annotations
 import json
 import math
 import sys
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from pathlib import Path
 from typing import Any
 
@@ -14,17 +16,34 @@ from thermoscope.console.answer import Answer, Grid, printed
 from thermoscope.console.progress_bar import Progress, progress
 
 STDOUT = "-"
-__all__ = ["Progress", "give", "notes", "plain", "progress", "say", "sized", "table"]
+__all__ = ["Progress", "give", "notes", "notes_once", "plain", "progress", "say", "sized", "table"]
 
 
 def _line(message: str) -> None:
     print(message, file=sys.stderr, flush=True)
 
 
+SAID: ContextVar[set[str] | None] = ContextVar("said", default=None)  # notes so far, where each is to be said once
+
+
+@contextmanager
+def notes_once() -> Iterator[None]:
+    """Several commands in a row say each note once."""
+    token = SAID.set(set())
+    try:
+        yield
+    finally:
+        SAID.reset(token)
+
+
 def notes(messages: Iterable[str]) -> None:
     """Doubts about the data."""
+    said = SAID.get()
     for message in messages:
-        _line(f"note: {message}")
+        if said is None or message not in said:
+            _line(f"note: {message}")
+        if said is not None:
+            said.add(message)
 
 
 def plain(value: Any) -> Any:
