@@ -3,6 +3,7 @@
 from dataclasses import replace
 from functools import cache
 
+import numpy as np
 import pytest
 from playground import Truth, wind
 
@@ -116,3 +117,21 @@ def test_comparison_document():
         "limit_K",
         "verdict",
     } == set(row)
+
+
+def test_a_frozen_channel_does_not_bend_the_calibration(monkeypatch):
+    """The same to 0.02 (factors, K) as without its readings; fitted to them it is far off."""
+    case, _ = stand()
+    (first, *others) = case.tests
+    y, half = first.channels[0].y, first.time.size // 2
+
+    def values(late):
+        read = replace(first.channels[0], y=np.where(np.arange(y.size) < half, y, late))
+        test = replace(first, channels=(read, *first.channels[1:]))
+        return calibrate(replace(case, tests=(test, *others))).model.values
+
+    gone, frozen = values(np.nan), values(y[half])
+    assert frozen == pytest.approx(gone, abs=0.02)
+    monkeypatch.setattr("validation.revision.revise.broken_channels", lambda tests: [])
+    bent = values(y[half])
+    assert max(abs(bent[k] - gone[k]) for k in gone) > 0.2

@@ -19,6 +19,7 @@ from validation.comparison.compare import Comparison, compare
 from validation.effects import Effect, effect
 from validation.effects.during import During
 from validation.effects.time_window import checked
+from validation.measurement.faults import broken_channels, without
 from validation.measurement.operators import of_measurement
 from validation.revision.acceptance import Check, checks, failures
 from validation.threads import one_blas_thread
@@ -131,6 +132,7 @@ def _revised(
     case: Case, model: Model, action: str, name: str | None, roles: Sequence[str], progress: Progress,
     profiled: Sequence[str] = (), search: Search | None = None,
 ) -> Revision:  # fmt: skip
+    case = replace(case, tests=without(case.tests, broken_channels(case.tests)))
     before = compare(case)
     tests = [t for t in case.tests if t.role in roles]
     if not tests:

@@ -13,8 +13,9 @@ from thermoscope.case_folder.runs import at_revision
 from thermoscope.commands.open_case import open_case_for_writing
 from thermoscope.commands.stored_diagnosis import saved_diagnosis
 from thermoscope.console.answer import Answer, Grid, cell
-from thermoscope.console.terminal import give, progress
+from thermoscope.console.terminal import give, notes, progress
 from validation.comparison.compare import compare
+from validation.measurement.faults import broken_channels
 
 if TYPE_CHECKING:
     from validation.revision import revise
@@ -77,6 +78,7 @@ def revised(case: str, step: Callable[..., revise.Revision], anyway: bool, targe
     """Open, take the step, keep it if it is accepted, show it. `step` is given folder and progress."""
     with progress() as tell:
         folder = open_case_for_writing(case, tell)
+        notes(f"{f.words}; those readings are left out" for f in broken_channels(folder.case.tests))
         result = step(folder, tell)
     keep = result.accepted or anyway
     if keep:
