@@ -116,6 +116,18 @@ def test_held_out_tests_have_no_say():
     assert other.candidates[0].holdout_rmse_K != answer("wind", plan=True).candidates[0].holdout_rmse_K
 
 
+def test_what_it_buys_is_told_test_by_test():
+    """The tests' errors make up the whole, weighted with their records; the held-out one is marked and falls."""
+    case, first = TRUTHS["wind"]().case(), answer("wind", plan=True).candidates[0]
+    told = {name: (before, after, held) for name, before, after, held in first.tests}
+    assert set(told) == {t.name for t in case.tests}
+    assert {n for n, (*_, held) in told.items() if held} == {t.name for t in case.tests if t.role == "hold-out"}
+    used = [(b, a) for b, a, held in told.values() if not held]
+    assert min(b for b, _ in used) <= first.rmse_K[0] <= max(b for b, _ in used)
+    assert min(a for _, a in used) <= first.rmse_K[1] <= max(a for _, a in used)
+    assert all(after < before for before, after, held in told.values() if held)
+
+
 def test_document_has_the_agreed_fields():
     out = answer("wind", plan=True).document()
     assert {"verdict", "candidates", "cannot_see", "where", "next_tests"} <= set(out)

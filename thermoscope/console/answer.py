@@ -82,13 +82,18 @@ def _pointer(more: str, cut: bool) -> str:
 
 
 def _cut(parts: Sequence[Grid | str], full: list[Any], width: int, room: int) -> list[Any]:
-    """As much of each part as fits when every later one keeps a little."""
+    """The least of each part, the most important first, as far as there is room; what is left goes in the same order."""
+    lengths = list(map(len, full))
+    least = [min(n, TITLE + 2) if isinstance(p, Grid) else n for p, n in zip(parts, lengths, strict=True)]
+    given = []
+    for n in least:
+        given.append(n if n <= room else 0)
+        room -= given[-1]
     out = []
-    for i, (part, whole) in enumerate(zip(parts, full, strict=True)):
-        later = sum(min(len(b), TITLE + 2 if isinstance(p, Grid) else 1) for p, b in zip(parts[i + 1 :], full[i + 1 :]))
-        mine = max(min(room - later, len(whole)), 0)
-        out.append(whole if mine >= len(whole) else _lines(part, width, mine))
-        room -= len(out[-1])
+    for part, whole, mine in zip(parts, full, given, strict=True):
+        more = min(len(whole) - mine, room) if mine else 0
+        out.append(whole if mine + more >= len(whole) else _lines(part, width, mine + more))
+        room -= len(out[-1]) - mine
     return out
 
 

@@ -25,6 +25,7 @@ class Candidate:
     probability : that it is among what is missing
     explained : share of the residual's sum of squares it removes
     rmse_K, holdout_rmse_K : (before, after) on the tests used and on the held-out ones, where it was refitted
+    tests : (name, before, after, held out) of each test, error (K) without and with it, where it was refitted
     absorbed : share of its trace that the calibration takes;  twin : the calibrated parameter that does the same
     note : the record that speaks against it
     """
@@ -47,11 +48,14 @@ class Candidate:
     isolating_test: str = ""
     note: str = ""
     probability: float = 0.0
+    tests: tuple[tuple[str, float, float, bool], ...] = ()
 
     def document(self) -> dict:
-        out = {k: v for k, v in vars(self).items() if k not in ("value", "unit", "ci95", "rmse_K", "holdout_rmse_K")}
+        own = ("value", "unit", "ci95", "rmse_K", "holdout_rmse_K", "tests")
+        out = {k: v for k, v in vars(self).items() if k not in own}
         out["amplitude"] = {"value": self.value, "unit": self.unit, "ci95": list(self.ci95)}
         out["rmse_K"], out["holdout_rmse_K"] = _pair(self.rmse_K), _pair(self.holdout_rmse_K)
+        out["tests"] = [dict(zip(("test", "before", "after", "held_out"), t, strict=True)) for t in self.tests]
         return {**out, "confused_with": list(self.confused_with)}
 
 

@@ -11,7 +11,7 @@ from scipy.special import ndtri
 
 from validation.calibration.calibrate import Fit, InnerProduct
 from validation.case import Case, Test
-from validation.comparison.linearisation import rmse, segments
+from validation.comparison.linearisation import Segment, rmse, segments
 from validation.conditions.events import possible_events
 from validation.conditions.question import best_question
 from validation.diagnosis.result import Candidate, Decided, DetectionLimit, Diagnosis, Odds, Verdict
@@ -163,16 +163,16 @@ def _others(e: Evidence, k: int, choice: Decision) -> tuple[str, ...]:
 @dataclass(frozen=True)
 class Beside:
     """What every refit is set beside.  lead : deviance of each record with the leading effect, empty without one
-    tests, error_K : the held-out tests and the model's error on them, None without any"""
+    tests, held : the held-out tests and what the model without it leaves there"""
 
     lead: Mapping[tuple[str, str], float]
     tests: tuple[Test, ...]
-    error_K: float | None
+    held: tuple[Segment, ...]
 
     @classmethod
     def of(cls, case: Case, e: Evidence, lead: Fit | None) -> Beside:
         tests = tuple(t for t in case.tests if t.role == "hold-out")
-        return cls(deviance(e, lead) if lead else {}, tests, error_on(tests, e.fit) if tests else None)
+        return cls(deviance(e, lead) if lead else {}, tests, left_on(tests, e.fit))
 
 
 def _row(e: Evidence, h: Hypothesis, share: float, limit: float, size: float, beside: Beside, leads: bool) -> Candidate:
@@ -189,9 +189,11 @@ def _row(e: Evidence, h: Hypothesis, share: float, limit: float, size: float, be
     if not e.effects[k].whole:
         a = float(h.fit.theta[p])
         row = replace(row, value=a, ci95=interval(a, float(h.fit.sd[p]), scatter(e, k)))
-    held = None if beside.error_K is None else (beside.error_K, error_on(beside.tests, h.fit))
+    new = left_on(beside.tests, h.fit)
+    held = (rmse(beside.held), rmse(new)) if beside.tests else None
+    tests = (*by_test(e.fit.parts, h.fit.parts, False), *by_test(beside.held, new, True))
     return replace(
-        row, rmse_K=(before, after), explained=1.0 - (after / before) ** 2, holdout_rmse_K=held,
+        row, rmse_K=(before, after), explained=1.0 - (after / before) ** 2, holdout_rmse_K=held, tests=tests,
         note=against(e, h.fit, beside) if beside.lead and not leads else "",
     )  # fmt: skip
 
@@ -219,9 +221,18 @@ def against(e: Evidence, fit: Fit, beside: Beside) -> str:
     return f"fits {channel} in {test} worse by {nats:.1f} nats" if nats > 1.0 else ""
 
 
-def error_on(tests: Sequence[Test], fit: Fit) -> float:
-    """Error (K) on tests that nothing was fitted to."""
-    return rmse(segments(fit.network, tests, fit.values))
+def left_on(tests: Sequence[Test], fit: Fit) -> tuple[Segment, ...]:
+    """What a fit leaves on tests that nothing was fitted to."""
+    return tuple(segments(fit.network, tests, fit.values)) if tests else ()
+
+
+def by_test(
+    before: Sequence[Segment], after: Sequence[Segment], held_out: bool
+) -> tuple[tuple[str, float, float, bool], ...]:
+    """Name, error (K) before and after, and whether nothing was fitted to it, of each test."""
+    names = dict.fromkeys(s.test for s in before)
+    own = [[[s for s in parts if s.test == name] for parts in (before, after)] for name in names]
+    return tuple((name, rmse(old), rmse(new), held_out) for name, (old, new) in zip(names, own, strict=True))
 
 
 def unseen(e: Evidence) -> tuple[DetectionLimit, ...]:

@@ -59,8 +59,8 @@ def answer(document: Mapping[str, Any]) -> Answer:
     unseen = f"{len(hidden)} effects could be there unseen: {', '.join(hidden[:2])}, ..." if hidden else ""
     remaining = " ".join(row["words"] for row in document.get("remainder", []))
     found = document["candidates"]
-    parts = [_odds(document), remaining, _candidates(found), *events(document), *_leader(found, named),
-             *contradiction(document.get("contradiction")), next_tests(document),
+    parts = [_odds(document), remaining, _candidates(found), *_leader(found), *events(document),
+             *contradiction(document.get("contradiction")), next_tests(document), *_lost(found, named),
              in_short(document.get("error_budget", {}), steps), unseen, question(document)]  # fmt: skip
     rest = [*budget(document.get("error_budget", {}), steps), *hidden]
     return Answer(sentence, parts, f"{step}; --json FILE; thermoscope show report {case}", rest)
@@ -88,17 +88,30 @@ def _candidates(found: Sequence[Mapping[str, Any]]) -> Grid:
     return Grid("Candidates", headers, rows[:ROWS], ["named", "group"], keep)
 
 
-def _leader(found: Sequence[Mapping[str, Any]], named: Sequence[str]) -> list[str]:
-    """Why the rivals lost, what the leader looks like, and the experiment that proves it."""
+def _leader(found: Sequence[Mapping[str, Any]]) -> list[str]:
+    """What the leader buys and looks like, and the experiment that proves it."""
     if not found or found[0]["probability"] <= SHOWN:
         return []
     first = found[0]
-    lines = [f"Proof: {first['isolating_test']}."] if first["isolating_test"] else []
+    lines = [bought(first)] if first.get("tests") and first["decision"] != "no" else []
+    lines += [f"Proof: {first['isolating_test']}."] if first["isolating_test"] else []
     if first["confused_with"]:
         lines.append(f"{first['effect']} looks like {', '.join(first['confused_with'])} to these tests and sensors.")
-    lost = [f"Against {c['effect']}: it {c['note']} than {first['effect']}." for c in found[1:ROWS]
+    return lines
+
+
+def _lost(found: Sequence[Mapping[str, Any]], named: Sequence[str]) -> list[str]:
+    """Why the rivals lost."""
+    return [f"Against {c['effect']}: it {c['note']} than {found[0]['effect']}." for c in found[1:ROWS]
             if c["note"] and c["probability"] > SHOWN and c["effect"] not in named]  # fmt: skip
-    return [*lines, *lost]
+
+
+def bought(candidate: Mapping[str, Any]) -> str:
+    """The error (K) in each test without and with the effect."""
+    tests = candidate["tests"]
+    each = [f"{t['test']}{'*' if t['held_out'] else ''} {t['before']:.2f} -> {t['after']:.2f}" for t in tests]
+    star = " (* never used)" if any(t["held_out"] for t in tests) else ""
+    return f"Error (K) with {candidate['effect']}: {', '.join(each)}{star}."
 
 
 def events(document: Mapping[str, Any]) -> list[Grid]:
