@@ -82,7 +82,7 @@ def _pointer(more: str, cut: bool) -> str:
 
 
 def _cut(parts: Sequence[Grid | str], full: list[Any], width: int, room: int) -> list[Any]:
-    """The least of each part, the most important first, as far as there is room; what is left goes in the same order."""
+    """The least of each part, the most important first, as far as there is room; the rest goes in the same order."""
     lengths = list(map(len, full))
     least = [min(n, TITLE + 2) if isinstance(p, Grid) else n for p, n in zip(parts, lengths, strict=True)]
     given = []
