@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 
 from geom.errors import ThermoscopeError
-from thermoscope.case_folder.files import checked_out, checked_target, message_of
+from thermoscope.case_folder.files import checked_out, checked_target, message_of, printable
 from thermoscope.console.answer import LINES, within
 from thermoscope.console.groups import grouped, old_name
 
@@ -439,5 +439,5 @@ def main() -> None:
     except (ThermoscopeError, OSError) as fault:
         if "--debug" in sys.argv:
             raise
-        print(f"error: {' '.join(message_of(fault).splitlines())}", file=sys.stderr)
+        print(f"error: {printable(message_of(fault))}", file=sys.stderr)
         raise SystemExit(2) from None

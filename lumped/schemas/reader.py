@@ -104,6 +104,8 @@ class Table:
         if not isinstance(value, str) or (choices is not None and value not in choices):
             right = "a word" if choices is None else known(str(value), choices)
             raise self.error(f"{key} = {shown(value)} is not possible", f"{right}{meaning(key)}")
+        if not value.replace("\n", "").replace("\t", "").isprintable():
+            raise self.error(f"{key} = {shown(value)} is not possible", f"letters that can be printed{meaning(key)}")
         return value
 
     def kind(self, key: str, default: str | None, allowed: Iterable[str]) -> str:
@@ -115,7 +117,7 @@ class Table:
 
     def words(self, key: str, default: list[str] | None = None) -> tuple[str, ...]:
         value = self._needed(key, default, "[words]")
-        if not isinstance(value, list) or not all(isinstance(v, str) for v in value):
+        if not isinstance(value, list) or not all(isinstance(v, str) and v.isprintable() for v in value):
             raise self.error(f"{key} = {shown(value)} is not possible", "a list of words")
         return tuple(value)
 

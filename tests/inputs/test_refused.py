@@ -112,6 +112,12 @@ def parameter(keys):
 AIR = "[columns.air]"
 FLANGE = 'between = ["flange", "ambient"]'
 REFUSED = {
+    "a case named with an escape code": (
+        swap("case.toml", 'name = "three"', 'name = "\\u001b[2J"'), ["case.toml", r"\x1b[2J", "printed"]),
+    "a link to a node with an escape code": (
+        swap("network.toml", 'between = ["winding"', 'between = ["\\u001b[2J"'), ["network.toml", "a list of words"]),
+    "a node with a name without end": (
+        swap("network.toml", 'between = ["winding"', f'between = ["{"x" * 9999}"'), ["network.toml", "x" * 99 + "..."]),
     "name that leads outside": (named("/../../../ESCAPED"), ["case.toml", "ESCAPED", "characters without"]),
     "name with a backslash": (named("a\\\\b"), ["case.toml", "characters without"]),
     "name of dots": (named(".."), ["case.toml", "characters without"]),

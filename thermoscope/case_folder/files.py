@@ -13,6 +13,7 @@ from geom.errors import InputError
 
 CASE = "case.toml"
 INPUTS = ("tests", "cycles")  # folders of a case
+LONGEST_WORD = 300  # characters of a word in a message: longer than most paths
 YOUNG_S = 5.0  # a folder may be made and not yet locked
 
 
@@ -83,6 +84,12 @@ def message_of(fault: Exception) -> str:
         return str(fault)
     cure = "a file or folder you may read and write, with room on its disk"
     return f"{fault.filename2 or fault.filename or 'the disk'}: {fault.strerror}; {cure}"
+
+
+def printable(message: str) -> str:
+    """In one line, control characters as their escapes, no word longer than LONGEST_WORD."""
+    safe = "".join(c if c.isprintable() or c.isspace() else repr(c)[1:-1] for c in message)
+    return " ".join(w if len(w) <= LONGEST_WORD else f"{w[:LONGEST_WORD]}..." for w in safe.split())
 
 
 def checked_target(target: str | None) -> str | None:
