@@ -34,6 +34,8 @@ Array = NDArray[np.float64]
 TWIN = 0.9995  # cosine from which a calibrated parameter does the same as an effect
 ENOUGH = 0.1  # nats: evidence is read to a few tenths
 STRAIGHT = 0.9  # of the gain that tangents foretold: a refit that got it needs none of its own
+GREAT = 50.0  # nats: what gains more turns the tangents of all that is calibrated, not only its own
+HOPELESS = 20.0  # nats worse than nothing after a first refit: no second one makes up for that
 LEAN = 0.5  # nats that a tangent gains at an effect's typical loss before it pays for its own size
 ROUNDS = 4  # steps of a calibration that goes on under the model error
 
@@ -260,10 +262,24 @@ def refit(evidence: Evidence, members: Sequence[int], theta: Array, tangents: Se
     free, fit = free_of(evidence, members), evidence.fit
     rough = minimise(network, evidence.tests, unknowns, theta, fit.noise, held, 8,
                      KnownSegments(tangents or evidence.parts_of(free)), worth=ENOUGH, error=fit.error)  # fmt: skip
-    if rough.foretold > STRAIGHT:
+    if straight(rough, fit):
         return rough
-    return minimise(network, evidence.tests, unknowns, rough.theta, fit.noise, held, 3, draft=True, worth=ENOUGH,
+    great = fit.objective - rough.objective > GREAT
+    near = None if great else KnownSegments(turned(rough, evidence, held), nearby=False, stale=True)
+    return minimise(network, evidence.tests, unknowns, rough.theta, fit.noise, held, 3, near, draft=True, worth=ENOUGH,
                     error=fit.error)  # fmt: skip
+
+
+def straight(refit: Fit, nothing: Fit) -> bool:
+    """Did a refit gain what its tangents foretold, or is it hopeless?"""
+    return refit.foretold > STRAIGHT or refit.objective > nothing.objective + HOPELESS
+
+
+def turned(rough: Fit, evidence: Evidence, held: Mapping[str, float]) -> list[Segment]:
+    """Where a fit stands, the tangents of the candidates in it made anew: they turn more than those of the others."""
+    p = evidence.p
+    own = segments(rough.network, evidence.tests, {**held, **rough.values}, rough.unknowns.parameters[p:])
+    return [replace(s, J=np.column_stack([s.J[:, :p], n.J])) for s, n in zip(rough.parts, own, strict=True)]
 
 
 def refit_beside(evidence: Evidence, members: Sequence[int], one: int, alone: Fit) -> Fit:

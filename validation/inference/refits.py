@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import replace
 
@@ -29,18 +31,26 @@ def refitted(
 ) -> list[Hypothesis]:
     """The hypotheses with those that carry weight refitted, until none does that is not."""
     out = list(hypotheses)
-    for i in (*exchanged(evidence, out), *rivals(out)):
-        progress(f"refitting {out[i].name(evidence)}")
-        out[i] = laplace(evidence, out[i])
+    together(evidence, out, [*exchanged(evidence, out), *rivals(out)], progress)
     for _ in range(ROUNDS):
         P = shares(promised(hypotheses, out))
         due = [i for i in np.argsort(-P) if P[i] > WEIGHT and out[i].members and out[i].fit is None][:MOST]
         if not due:
             break
-        for i in sorted(due, key=lambda i: len(out[i].members)):
-            progress(f"refitting {out[i].name(evidence)}")
-            out[i] = laplace(evidence, out[i], fitted_alone(out, out[i].members))
+        for size in (1, 2):  # two begin where one of them was fitted alone
+            together(evidence, out, [i for i in due if len(out[i].members) == size], progress)
     return out
+
+
+def together(evidence: Evidence, out: list[Hypothesis], due: Sequence[int], progress: Callable[[str], None]) -> None:
+    """Refit some hypotheses side by side (the kernel frees the GIL); none depends on another of them."""
+    for i in due:
+        progress(f"refitting {out[i].name(evidence)}")
+    near = [fitted_alone(out, out[i].members) for i in due]
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        found = list(pool.map(lambda i, alone: laplace(evidence, out[i], alone), due, near))
+    for i, h in zip(due, found, strict=True):
+        out[i] = h
 
 
 def promised(before: Sequence[Hypothesis], after: Sequence[Hypothesis]) -> list[Hypothesis]:
