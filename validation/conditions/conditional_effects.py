@@ -159,4 +159,4 @@ def joined(evidence: Evidence, effects: Sequence[Effect], known: Mapping[str, fl
     parameters = (*e.parameters, *network.parameters[-len(effects) :])
     new = columns(evidence, effects, known)
     parts = tuple(replace(s, J=np.column_stack([s.J, n.J[:, p:]])) for s, n in zip(e.parts, new, strict=True))
-    return weighed(e.tests, fit, network, (*e.effects, *effects), parameters, parts, e.jumps)
+    return weighed(e.tests, fit, network, (*e.effects, *effects), parameters, parts, e.jumps, e.large)

@@ -21,7 +21,7 @@ from validation.inference.posterior import Hypothesis, probabilities, told
 Array = NDArray[np.float64]
 WEIGHT = 0.01  # posterior probability from which a hypothesis is refitted
 ROUNDS, MOST = 4, 8  # what a refit promotes is refitted too; so many at once
-GREAT, NEAR = 50.0, 0.6  # nats beyond which tangents mislead, and the share of the best from which a rival is refitted
+GREAT, NEAR = 10.0, 0.5  # nats beyond which tangents mislead, and the share of the best from which a rival is refitted
 IMPOSSIBLE = -1e3  # nats: as good as excluded, and a number that a document can hold
 NEARLY, TRIED = 0.4, 3  # linear amplitude, and how many, of effects that happen whole or not at all
 
