@@ -98,6 +98,7 @@ RARE: Mapping[str, Odds] = MappingProxyType({
     "coupling": Odds(0.3, "two solids that touch are seldom forgotten"),
     "mass": Odds(0.3, "masses are weighed"),
     "input.factor": Odds(1.0, "wrong ranges and shunts are as frequent as sensors that are off"),
+    "input.offset": Odds(0.3, "a zero is set before a test more often than a range is"),
     "law": Odds(0.3, "exponents and factors of a law are off more often than its shape"),
     "loss.factor": Odds(0.3, "calibration moves declared losses already"),
 })  # fmt: skip

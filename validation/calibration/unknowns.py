@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 
 from lumped.model.network import Network, Parameter
 from lumped.transfer.laws import Law
-from validation.calibration.model_form import with_model_form
+from validation.calibration.model_form import levels, with_model_form
 from validation.case import Case, Channel, Model, Test
 from validation.doubt import USUAL, Doubt
 from validation.effects import Effect, Scene, effect, extended
+from validation.effects.sensors.input_offset import Shift
 
 Array = NDArray[np.float64]
 FREE = 30.0  # prior deviations of what the data alone shall say: wide enough to leave no trace
@@ -106,8 +107,10 @@ def at_level(network: Network, names: Collection[str], tests: Sequence[Test]) ->
     """The network with the priors and upper bounds of losses that effects bring in for the heat in these tests.
 
     Declared for the loss's reference (1000 rpm, 100 A), they would be a hundred times too narrow on a motor of 10 A.
-    What is no power, such as a temperature coefficient, has a prior that no test changes.
+    Those of an input's offset are shares of its level. What is no power, such as a temperature coefficient, has a prior
+    that no test changes.
     """
+    network = _offsets_at_level(network, names, tests)
     laws = {s.name: s.law for s in network.sources}
     watts = [p for p in network.parameters if p.name in names and p.unit.split(" at ")[0] == "W"]
     mean = {p.name: _mean_factor([laws[t] for t, _ in p.targets if t in laws], tests) for p in watts}
@@ -115,6 +118,18 @@ def at_level(network: Network, names: Collection[str], tests: Sequence[Test]) ->
         replace(p, prior_sd=p.prior_sd / f, high=p.high / f) if (f := mean.get(p.name, 0.0)) > 0 else p
         for p in network.parameters
     ))  # fmt: skip
+
+
+def _offsets_at_level(network: Network, names: Collection[str], tests: Sequence[Test]) -> Network:
+    laws = {x.name: x.law for x in (*network.links, *network.sources)}
+    level = levels(tests)
+
+    def scaled(p: Parameter) -> Parameter:
+        law = laws.get(p.targets[0][0]) if p.name in names else None
+        f = level.get(law.input, 1.0) if isinstance(law, Shift) else 1.0
+        return p if f == 1.0 else replace(p, prior_sd=f * p.prior_sd, low=f * p.low, high=f * p.high)
+
+    return replace(network, parameters=tuple(scaled(p) for p in network.parameters))
 
 
 def freed(network: Network, names: Collection[str]) -> Network:
