@@ -103,7 +103,10 @@ RARE: Mapping[str, Odds] = MappingProxyType({
     "loss.factor": Odds(0.3, "calibration moves declared losses already"),
 })  # fmt: skip
 
-TEMPER = Odds(1.75, "divides log evidence: no model is quite right; any six of seven machine kinds ask for it")
+TEMPER = Odds(
+    2.0,
+    "divides log evidence: no model is quite right; seven kinds of machine ask for 2 to 2.5, another generator for 1.5",
+)
 SIZES = (0.3, 1.0, 3.0)  # of an effect's usual size: nobody knows it better than within a decade
 
 # What a statement costs; a wrong name is one.

@@ -61,9 +61,11 @@ def to_value(p: Parameter, theta: float) -> float:
 
 def nuisances(network: Network, tests: Sequence[Test], doubt: Doubt = USUAL) -> list[Parameter]:
     """What no measurement is free of: bias, slope and lag of sensors, bias of boundary sensors, start, clock."""
-    channels = {c.name: c for test in tests for c in test.channels}
+    channels: dict[str, list[Channel]] = {}
+    for c in (c for test in tests for c in test.channels):
+        channels.setdefault(c.name, []).append(c)
     boundaries = dict.fromkeys(b for test in tests for b in test.boundaries)
-    sensors = [p for c in channels.values() for p in _sensor(network, c, doubt)]
+    sensors = [p for same in channels.values() for p in _sensor(network, same, doubt)]
     air = [_offset(f"bias of {b}", f"boundary:{b}", doubt["boundary"], "sensor of the boundary") for b in boundaries]
     start = [_offset(f"start of {t.name}", f"initial:{t.name}", doubt["start"], "uneven start") for t in tests]
     clocks = [_offset(f"clock of {t.name}", f"delay:{t.name}", clock(t, doubt), "logger's clock", "s") for t in tests]
@@ -75,13 +77,15 @@ def clock(test: Test, doubt: Doubt) -> float:
     return float(np.hypot(doubt["clock"], doubt["step in sample"] * test.step_s))
 
 
-def _sensor(network: Network, c: Channel, doubt: Doubt) -> list[Parameter]:
-    bias = _offset(f"bias of {c.name}", f"bias:{c.name}", c.sigma_K, "calibration of the sensor")
+def _sensor(network: Network, same: Sequence[Channel], doubt: Doubt) -> list[Parameter]:
+    """Of one sensor, as it is declared in each of its tests. Its lag is below zero in none of them."""
+    c, lags = same[0], [c.lag_s for c in same]
+    bias = _offset(f"bias of {c.name}", f"bias:{c.name}", max(c.sigma_K for c in same), "calibration of the sensor")
     stream = c.place in network.places and network.places[c.place].kind == "fluid"
     sd = doubt["gain of stream" if stream else "gain"]
     gain = _offset(f"slope of {c.name}", f"gain:{c.name}", sd, "placement of the sensor")
-    lag = _offset(f"lag of {c.name}", f"lag:{c.name}", max(doubt["lag"], 0.3 * c.lag_s), "mounting of the sensor")
-    return [bias, replace(gain, unit="1"), replace(lag, unit="s", low=-c.lag_s)]
+    lag = _offset(f"lag of {c.name}", f"lag:{c.name}", max(doubt["lag"], 0.3 * max(lags)), "mounting of the sensor")
+    return [bias, replace(gain, unit="1"), replace(lag, unit="s", low=-min(lags))]
 
 
 def _offset(name: str, target: str, sd: float, source: str, unit: str = "K") -> Parameter:

@@ -35,9 +35,9 @@ Array = NDArray[np.float64]
 TWIN = 0.9995  # cosine from which a calibrated parameter does the same as an effect
 ENOUGH = 0.1  # nats: evidence is read to a few tenths
 STRAIGHT = 0.9  # of the gain that tangents foretold: a refit that got it needs none of its own
-GREAT = 50.0  # nats: what gains more turns the tangents of all that is calibrated, not only its own
 HOPELESS = 20.0  # nats worse than nothing after a first refit: no second one makes up for that
 LEAN = 0.5  # nats that a tangent gains at a large amplitude before it pays for its own size
+SECOND = 6  # steps of a refit under tangents of its own: with three, some stopped tens of nats short
 ROUNDS = 4  # steps of a calibration that goes on under the model error
 
 
@@ -211,6 +211,25 @@ def exchange(parts: Sequence[Segment], effects: Sequence[Effect], p: int) -> Non
             s.J[:, p + k] = s.r - np.interp(s.time, t.time, t.r) - s.J[:, p + k]
 
 
+def mended_by_exchange(evidence: Evidence) -> dict[int, float]:
+    """All-or-nothing effects that take half or more off the squares they touch, of the model before any calibration,
+    with what they take; a model calibrated to exchanged readings hides that they were."""
+    e, few = evidence, [k for k, x in enumerate(evidence.effects) if x.whole]
+    try:
+        parts = segments(e.network, e.tests, {q.name: q.value for q in e.network.parameters},
+                         [e.parameters[k] for k in few])  # fmt: skip
+    except NoSolution:  # the declared values alone run away
+        return {}
+    exchange(parts, [e.effects[k] for k in few], 0)
+    out = {}
+    for i, k in enumerate(few):
+        own = [(s.r / s.weight, s.J[:, i] / s.weight) for s in parts if np.any(s.J[:, i])]
+        before, after = sum(float(r @ r) for r, _ in own), sum(float((r - J) @ (r - J)) for r, J in own)
+        if after < 0.5 * before:
+            out[k] = before - after
+    return out
+
+
 def log_evidence(fit: Fit, parts: Sequence[Segment]) -> float:
     """Of the readings under a fit's noise (nats), calibration and model error integrated out by tangents; the columns
     of `parts` behind the calibrated parameters are left out.
@@ -277,24 +296,11 @@ def refit(evidence: Evidence, members: Sequence[int], theta: Array, tangents: Se
     free, fit = free_of(evidence, members), evidence.fit
     rough = minimise(network, evidence.tests, unknowns, theta, fit.noise, held, 8,
                      KnownSegments(tangents or evidence.parts_of(free)), worth=ENOUGH, error=fit.error)  # fmt: skip
-    if straight(rough, fit):
+    far = any(evidence.effects[k].whole for k in members)  # exchanged plugs begin where the calibration is wrong
+    if rough.foretold > STRAIGHT or (rough.objective > fit.objective + HOPELESS and not far):
         return rough
-    great = fit.objective - rough.objective > GREAT
-    near = None if great else KnownSegments(turned(rough, evidence, held), nearby=False, stale=True)
-    return minimise(network, evidence.tests, unknowns, rough.theta, fit.noise, held, 3, near, draft=True, worth=ENOUGH,
+    return minimise(network, evidence.tests, unknowns, rough.theta, fit.noise, held, SECOND, draft=True, worth=ENOUGH,
                     error=fit.error)  # fmt: skip
-
-
-def straight(refit: Fit, nothing: Fit) -> bool:
-    """Did a refit gain what its tangents foretold, or is it hopeless?"""
-    return refit.foretold > STRAIGHT or refit.objective > nothing.objective + HOPELESS
-
-
-def turned(rough: Fit, evidence: Evidence, held: Mapping[str, float]) -> list[Segment]:
-    """Where a fit stands, the tangents of the candidates in it made anew: they turn more than those of the others."""
-    p = evidence.p
-    own = segments(rough.network, evidence.tests, {**held, **rough.values}, rough.unknowns.parameters[p:])
-    return [replace(s, J=np.column_stack([s.J[:, :p], n.J])) for s, n in zip(rough.parts, own, strict=True)]
 
 
 def refit_beside(evidence: Evidence, members: Sequence[int], one: int, alone: Fit) -> Fit:

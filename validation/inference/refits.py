@@ -15,7 +15,7 @@ from scipy.special import logsumexp
 from geom.errors import NoSolution
 from validation.calibration.calibrate import Fit, no_progress
 from validation.doubt import SIZES
-from validation.inference.evidence import Evidence, free_of, refit, refit_beside, starts
+from validation.inference.evidence import Evidence, free_of, mended_by_exchange, refit, refit_beside, starts
 from validation.inference.posterior import Hypothesis, probabilities, told
 
 Array = NDArray[np.float64]
@@ -84,13 +84,16 @@ def rivals(hypotheses: Sequence[Hypothesis]) -> list[int]:
 
 
 def exchanged(evidence: Evidence, hypotheses: Sequence[Hypothesis]) -> list[int]:
-    """All-or-nothing effects that come near: they are too large for tangents, so they are refitted in any case."""
-    a = evidence.score.amplitude
+    """All-or-nothing effects that come near, or that mend the model before its calibration: they are too large for
+    tangents, so they are refitted in any case."""
+    a, mended = evidence.score.amplitude, mended_by_exchange(evidence)
     whole = [
-        (i, h.log_bayes) for i, h in enumerate(hypotheses)
-        if len(h.members) == 1 and evidence.effects[h.members[0]].whole and a[h.members[0]] > NEARLY
+        (i, h.members[0]) for i, h in enumerate(hypotheses)
+        if len(h.members) == 1 and evidence.effects[h.members[0]].whole
     ]  # fmt: skip
-    return [i for i, _ in sorted(whole, key=lambda x: -x[1])[:TRIED]]
+    near = sorted((x for x in whole if a[x[1]] > NEARLY), key=lambda x: -hypotheses[x[0]].log_bayes)[:TRIED]
+    before = sorted((x for x in whole if x[1] in mended), key=lambda x: -mended[x[1]])[:TRIED]
+    return [i for i, _ in dict.fromkeys([*near, *before])]
 
 
 def laplace(evidence: Evidence, h: Hypothesis, near: tuple[int, Fit] | None = None) -> Hypothesis:

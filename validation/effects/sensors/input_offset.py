@@ -12,7 +12,7 @@ from lumped.model.quantities import INPUTS
 from lumped.transfer.laws import Array, Inputs, Law, TemperatureLaw
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import copy_link, copy_source
-from validation.effects.sensors.input_factor import read
+from validation.effects.sensors.input_factor import metered, read
 
 STEP = 0.05  # of the input's largest value: a chord as wide as such faults are
 
@@ -49,7 +49,7 @@ class InputOffset(Effect):
 
     kind = "input.offset"
     title = "an input is recorded with an offset"
-    sits = "an input that a law of the network reads"
+    sits = "an input that a law of the network reads, but none that is counted (speed, frequency)"
     unit = "1"
     source = "definition; the laws that read it follow it"
     isolating_test = "read the input with everything switched off"
@@ -63,7 +63,7 @@ class InputOffset(Effect):
 
     @classmethod
     def where(cls, scene: Scene) -> list[str]:
-        return [name for name in dict.fromkeys(n for n, _ in read(scene.network)) if name in scene.inputs]
+        return metered(scene)
 
     def extend(self, network: Network) -> Network:
         names = []
