@@ -164,7 +164,9 @@ def _contradiction(diagnosis: Document) -> str:
     ]  # fmt: skip
     headers = ["test", "parameter", "other tests", "this test", "unit", "standard deviations", "can it differ?"]
     table = html.table(headers, rows, [d["possible"] is False for d in found["differences"][:12]])
-    return f"<h3>Tests that contradict each other</h3>{html.text(found['words'])}{html.more('In numbers', table)}"
+    drawn = html.plot(candidates.differences(found), "differences", "What would have to differ between tests.")
+    head = f"<h3>Tests that contradict each other</h3>{html.text(found['words'])}"
+    return f"{head}{drawn}{html.more('In numbers', table)}"
 
 
 _HEADERS = ["effect", "decision", "score", "threshold", "size", "95 % interval", "error (K)", "held-out (K)"]
