@@ -170,10 +170,8 @@ def headline(words: str) -> None:
 
 
 def held_against(case: Path) -> Comparison:
-    from validation.comparison.compare import compare as compared
-
     with progress() as tell:
-        return compared(open_case(str(case), tell).case)
+        return open_case(str(case), tell).compared
 
 
 def old_way(case: Path) -> OneFactorFit:

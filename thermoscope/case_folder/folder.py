@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -24,7 +25,9 @@ from validation.measurement.sampling import SampleStep
 
 if TYPE_CHECKING:
     from geom import Machine
+    from lumped.condensation.error_budget import ErrorBudget
     from thermoscope.pipeline import Built
+    from validation.comparison.compare import Comparison
 
 Progress = Callable[[str], None]
 
@@ -44,6 +47,25 @@ class Folder:
     built: Built | None = None
     findings: tuple[Finding, ...] = ()
     steps: Mapping[str, SampleStep] = field(default_factory=dict)
+
+    @cached_property
+    def budgets(self) -> Mapping[str, ErrorBudget]:
+        """Test -> what mesh, condensation and time steps may put wrong in the model's numbers; computed once."""
+        from thermoscope.verification.error_budget import budgets_of_tests
+
+        return budgets_of_tests(self)
+
+    @property
+    def numeric_K(self) -> dict[str, dict[str, float]]:
+        """Test -> channel -> the sum of its error budget (K)."""
+        return {name: dict(budget.total_K) for name, budget in self.budgets.items()}
+
+    @cached_property
+    def compared(self) -> Comparison:
+        """The model against every test: the one comparison that tables, pictures and pages show; computed once."""
+        from validation.comparison.compare import compare
+
+        return compare(self.case, budgets=self.numeric_K)
 
 
 def _once(settings: Settings, files: Mapping[str, Path]) -> None:

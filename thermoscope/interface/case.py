@@ -75,10 +75,11 @@ class Case:
         return catalogue(scene_of(self.folder.case), self.folder.settings.kinds)
 
     def compare(self) -> Comparison:
-        """The model against every test: error per sensor (K) against the sensor's uncertainty and 4 % of its rise."""
-        from validation.comparison.compare import compare
+        """The model against every test: error per sensor (K) against the uncertainty of reading, inputs, arithmetic.
 
-        return compare(self.folder.case)
+        Source: ASME V&V 20-2009 (expanded uncertainty).
+        """
+        return self.folder.compared
 
     def diagnose(self) -> Diagnosis:
         """Which effect is missing, with its probability and size; kept in the case's out/, as the command does.

@@ -35,11 +35,11 @@ def diagnose(case: str, target: str | None, older: bool = False) -> int:
 def diagnosed(folder: Folder, tell: Progress) -> tuple[Diagnosis, dict[str, Any]]:
     """What is missing in an open case, and the document of it, which is kept in the case's out/."""
     from lumped.condensation.error_budget import ErrorBudget
-    from thermoscope.verification.error_budget import budgets_of_tests, documents
+    from thermoscope.verification.error_budget import documents
     from validation import diagnose as search
 
     checked_diagnosis(folder)
-    budgets = budgets_of_tests(folder, tell)
+    budgets = folder.budgets
     found = search(folder.case, folder.settings.kinds, tell, budget=ErrorBudget.worst(budgets.values()).total_K)
     named = {"case": folder.case.name, "revision": folder.case.model.revision}
     document = {**named, **found.document(), "error_budget": documents(budgets), **sampling(folder)}

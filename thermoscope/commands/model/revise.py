@@ -14,7 +14,7 @@ from thermoscope.commands.open_case import open_case_for_writing
 from thermoscope.commands.stored_diagnosis import saved_diagnosis
 from thermoscope.console.answer import Answer, Grid, cell
 from thermoscope.console.terminal import give, notes, progress
-from validation.comparison.compare import compare
+from validation.comparison.compare import errors
 from validation.measurement.faults import broken_channels
 
 if TYPE_CHECKING:
@@ -64,12 +64,12 @@ def undo(case: str, number: int | None, target: str | None) -> int:
         history = folder.history.back_to(last - 1 if number is None else number)
         after = at_revision(folder, history.last)
         tell("running the model")
-        errors = {t.name: t.rmse_K for t in compare(after).tests}
+        rms = {t.name: t.rmse_K for t in errors(after).tests}
     save_history(folder.settings.model_file, history, folder.history)
     write_columns(folder, history.last.effects)
     model = {"case": folder.case.name, "revision": history.last.number, "why": history.last.why}
-    document = {**model, "effects": list(history.last.effects), "rmse_K": errors}
-    sentence, rows = f"Revision {history.last.number}: {history.last.why}.", list(errors.items())
+    document = {**model, "effects": list(history.last.effects), "rmse_K": rms}
+    sentence, rows = f"Revision {history.last.number}: {history.last.why}.", list(rms.items())
     give(document, target, lambda: Answer(sentence, [Grid("", ["test", "rms (K)"], rows)]))
     return 0
 

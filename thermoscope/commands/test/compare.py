@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from thermoscope.commands.model.error_budget import budget, in_short, sampling
 from thermoscope.commands.open_case import open_case
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import give, progress
-from validation.comparison.tolerance import WORDS
+from validation.comparison.uncertainty import RULE
+
+if TYPE_CHECKING:
+    from validation.comparison.compare import Comparison
 
 EVIDENT = 10.0  # nats
 WHITE = 0.01
@@ -18,22 +21,27 @@ TURNS = {True: "yes", False: "no", None: ""}
 
 
 def compare(case: str, target: str | None, why: bool = False, sure: bool | None = None) -> int:
-    """Exit code 1 when a sensor is outside its uncertainty and outside the 4 % rule."""
+    """Exit code 1 when a sensor's error is beyond the uncertainty of reading, inputs and arithmetic."""
     from thermoscope.bands import of_tests, wanted
-    from thermoscope.verification.error_budget import budgets_of_tests, documents
-    from validation.comparison.compare import compare as held_against
+    from thermoscope.verification.error_budget import documents
     from validation.diagnosis.discrepancy import discrepancies
 
     with progress() as tell:
         folder = open_case(case, tell)
+        tell("error of mesh and condensation" if folder.built else "error of the time steps")
+        budgets = folder.budgets
         tell("running the model")
-        result = held_against(folder.case)
-        more = discrepancies(folder.case, tell).document() if why else {}
-        budgets = budgets_of_tests(folder, tell)
+        result = folder.compared
+        more = {**uncertainty(result), **discrepancies(folder.case, tell).document()} if why else {}
         bands = {"bands": of_tests(folder, tell)} if wanted(folder.case.model.network, sure) else {}
     document = {**result.document(), **more, "error_budget": documents(budgets), **sampling(folder), **bands}
     give(document, target, lambda: answer(document))
     return 0 if result.agrees else 1
+
+
+def uncertainty(result: Comparison) -> dict[str, Any]:
+    """What reading, inputs and arithmetic leave open at every sensor, for a document."""
+    return {"uncertainty": [u.document() for test in result.tests for u in test.uncertainty]}
 
 
 def answer(document: Mapping[str, Any]) -> Answer:
@@ -51,7 +59,7 @@ def answer(document: Mapping[str, Any]) -> Answer:
     rest = [*(records_of(f"{t['name']} ({t['role']})", [{"test": t["name"], **c} for c in t["channels"]])
               for t in document["tests"]), roles(document["roles"]),
              *budget(document["error_budget"], document["sampling"]), bands_of(document.get("bands", ()))]  # fmt: skip
-    return Answer(sentence, parts, f"{WORDS}; --why, --json FILE; thermoscope show report {document['case']}", rest)
+    return Answer(sentence, parts, f"{RULE}; --why, --json FILE; thermoscope show report {document['case']}", rest)
 
 
 def tests(found: Sequence[Mapping[str, Any]]) -> Grid:
