@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -15,10 +16,11 @@ from lumped.schemas.reader import known
 from thermoscope.case_folder.doctor import Finding, Patient, examined
 from thermoscope.case_folder.history import History, checked_values, load_history
 from thermoscope.case_folder.settings import Entry, Settings, read_settings
+from thermoscope.recordings.formats import recording
 from thermoscope.recordings.quantities import with_quantities
 from thermoscope.recordings.readings import read_test
 from thermoscope.recordings.sheet import Sheet, load_sheet
-from thermoscope.recordings.tables import load_table
+from thermoscope.recordings.tables import Samples, load_table
 from validation.calibration.unknowns import matching
 from validation.case import AddedEffect, Case, Model, Test
 from validation.measurement.sampling import SampleStep
@@ -89,8 +91,7 @@ def load_case(
     history = History() if bare else load_history(settings.model_file)
     patients: dict[str, Patient] = {}
     for entry in settings.tests:
-        progress(f"reading {entry.name}")
-        patients[entry.name] = patient_of(entry)
+        patients[entry.name] = patient_of(entry, progress)
     _once(settings, {name: one.samples.file for name, one in patients.items()})
     network, built = network_of(settings, progress)
     read = [
@@ -109,10 +110,27 @@ def load_case(
     return Folder(settings, _checked(case, history), history, notes, _positions(sheets), built, findings, steps)
 
 
-def patient_of(entry: Entry) -> Patient:
-    """A test as its files have it."""
+READ = 32  # recordings that a process keeps: a command, or the demo, works on one case
+_read: dict[tuple, Samples] = {}  # by sheet and files: nothing that is asked for has changed
+
+
+def patient_of(entry: Entry, progress: Progress = lambda message: None) -> Patient:
+    """A test as its files have it; a recording that has not changed is read once in a process."""
     sheet = load_sheet(entry.sheet)
-    return Patient(entry.name, sheet, load_table(entry.file, sheet))
+    files = (recording(entry.file), *(recording(r.file) for r in sheet.recorders.values()))
+    key = (pickle.dumps(sheet), *(_stamp(file) for file in files))
+    if key not in _read:
+        progress(f"reading {entry.name}")
+        while len(_read) >= READ:
+            _read.pop(next(iter(_read)))
+        _read[key] = load_table(entry.file, sheet)
+    return Patient(entry.name, sheet, _read[key])
+
+
+def _stamp(file: Path) -> tuple[str, int, int, int]:
+    """What changes when a file is written: name, number on the disk, length, instant (ns)."""
+    found = file.stat()
+    return str(file.resolve()), found.st_ino, found.st_size, found.st_mtime_ns
 
 
 def _assumed(built: Built | None) -> list[str]:

@@ -13,6 +13,7 @@ from trame.widgets import vuetify3 as v3
 
 from thermoscope.workbench.display import debounced
 from thermoscope.workbench.session import Session, started
+from validation.comparison.uncertainty import RULE
 
 KEYS = (
     ("j", "next"), ("k", "previous"), ("d", "diagnose"), ("u", "undo"), ("r", "report"), ("left", "left"),
@@ -176,6 +177,7 @@ def _errors() -> None:
 def _sensors(session: Session) -> None:
     with html.Div(classes="card", id="sensors"):
         html.H2("Sensors in {{ test }}")
+        html.P(RULE, classes="faint")
         with html.Button(
             v_for="s in sensors", key="s.name", type="button",
             classes=("'bar sensor ' + s.tone + (s.name === sensor ? ' chosen' : '')",), id=("'sensor-' + s.name",),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -38,8 +38,10 @@ def one_factor_fit(case: Case, parameter: str, channel: str | None = None) -> On
     def moved(log_factor: float) -> dict[str, float]:
         return {**now, parameter: start * float(np.exp(log_factor))}
 
+    watched = replace(case, tests=tuple(t for t in case.tests if t.role == "validate"))
+
     def error(log_factor: float) -> float:
-        tests = [t for t in errors(case, moved(log_factor)).tests if t.role == "validate"]
+        tests = errors(watched, moved(log_factor)).tests
         return pooled([c for t in tests for c in t.channels if channel in (None, c.channel)])
 
     best = minimize_scalar(error, bounds=tuple(np.log(RANGE)), method="bounded", options={"xatol": 0.01})

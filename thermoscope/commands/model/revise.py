@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from shlex import quote
 from typing import TYPE_CHECKING, Any
 
 from geom.errors import InputError
@@ -86,7 +87,7 @@ def revised(case: str, step: Callable[..., revise.Revision], anyway: bool, targe
         save_history(folder.settings.model_file, longer, folder.history)
         write_columns(folder, longer.last.effects)
     document = {**result.document(), "case": folder.case.name, "written": keep}
-    give(document, target, lambda: answer(document, folder))
+    give(document, target, lambda: answer(document, folder, case))
     return 0 if keep else 1
 
 
@@ -129,7 +130,7 @@ def note(p: Mapping[str, Any]) -> str:
     return "at its bound" if p["at_bound"] else f"trades with {p['partner']}" if p["partner"] else ""
 
 
-def answer(document: Mapping[str, Any], folder: Folder) -> Answer:
+def answer(document: Mapping[str, Any], folder: Folder, called: str) -> Answer:
     """Whether it stands, the error before and after, and the values that the data fixed."""
     name = f"{document['action']} {document['effect'] or ''}".strip()
     verdict = "accepted" if document["accepted"] else "not accepted"
@@ -143,7 +144,7 @@ def answer(document: Mapping[str, Any], folder: Folder) -> Answer:
     return Answer(
         f"{name}: {verdict}; {document['why']}; {kept}.",
         parts,
-        f"Next: thermoscope {step} {document['case']}; --json FILE",
+        f"Next: thermoscope {step} {quote(called)}; --json FILE",
     )
 
 
