@@ -57,14 +57,14 @@ def demo(out: Path, target: str | None) -> int:
     folder = opened(case)
     headline("3  Held against the road")
     with within(SHORT):
-        stages = [Stage("calibrated on the stand", told(folder))]
+        stages = [Stage("calibrated on the stand", print_comparison(folder))]
         picture(misses(folder, out), "the motor after an hour on the road, labelled by what the model misses")
     headline("4  The old way: turn up the fan's air flow until the right flange agrees")
     turned = old_way(folder)
     stages.append(Stage(f"{KNOB} x {turned.factor:.2f} instead", turned.comparison.document()))
     headline("5  What is missing?")
     with within(LONGER):
-        found = searched(folder, out)
+        found = print_diagnosis(folder, out)
     picture(odds(found, out), "what the readings say")
     done, named = False, found["named"]
     if named:
@@ -86,7 +86,7 @@ def opened(case: Path) -> Folder:
         return open_case(str(case), tell)
 
 
-def told(folder: Folder) -> dict[str, Any]:
+def print_comparison(folder: Folder) -> dict[str, Any]:
     """The comparison, printed."""
     with progress() as tell:
         _, document = compared(folder, tell)
@@ -94,7 +94,7 @@ def told(folder: Folder) -> dict[str, Any]:
     return document
 
 
-def searched(folder: Folder, out: Path) -> dict[str, Any]:
+def print_diagnosis(folder: Folder, out: Path) -> dict[str, Any]:
     """The diagnosis, printed."""
     with progress() as tell:
         _, document = diagnosed(folder, tell)

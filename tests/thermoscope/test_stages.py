@@ -6,7 +6,6 @@ import time
 
 import pytest
 
-from thermoscope.console import progress_bar
 from thermoscope.console.progress_bar import ProgressBar, one_bar, progress
 
 
