@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from validation.calibration.one_factor_fit import OneFactorFit
 
 CASE, KNOB = "road-test", "fan.flow"
-SHORT, LONGER = 7, 10  # lines of a chapter after its first sentence: the whole story is at most 80
+SHORT, LONGER = 7, 14  # lines of a chapter after its first sentence: the whole story is at most 80
 MARKER = ".made-by-thermoscope-demo"
 
 

@@ -6,6 +6,7 @@ import time
 
 import pytest
 
+from thermoscope.console import progress_bar
 from thermoscope.console.progress_bar import ProgressBar, one_bar, progress
 
 
@@ -73,6 +74,7 @@ def test_several_pieces_of_work_have_one_bar(tmp_path, monkeypatch, capsys):
     monkeypatch.setenv("THERMOSCOPE_CACHE", str(tmp_path))
     monkeypatch.setattr("thermoscope.console.progress_bar.WORTH_S", 1e-3)
     monkeypatch.setattr("sys.argv", ["thermoscope", "demo", "--out", "x"])
+    monkeypatch.setattr("thermoscope.console.progress_bar._usual", dict)
     for _ in range(2):
         with one_bar():
             for _ in range(2):
@@ -86,3 +88,11 @@ def test_several_pieces_of_work_have_one_bar(tmp_path, monkeypatch, capsys):
     assert shares == sorted(shares)
     assert len(shares) == 2, "of the second run, each stage one line"
     assert shares[-1] > 30
+
+
+def test_the_first_run_of_long_commands_knows_a_share(tmp_path, monkeypatch):
+    """Before anything was remembered on this computer."""
+    monkeypatch.setenv("THERMOSCOPE_CACHE", str(tmp_path))
+    known = progress_bar._usual()
+    assert {"demo", "explain diagnose 0", "model build 0", "model calibrate 0", "model add 0"} <= set(known)
+    assert all(sum(stages.values()) > progress_bar.WORTH_S for stages in known.values())

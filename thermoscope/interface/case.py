@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from geom.errors import InputError
 from thermoscope.case_folder.folder import Folder, find_case, load_case
 from thermoscope.case_folder.history import History, save_history
+from thermoscope.extras import explained
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -132,6 +133,7 @@ class Case:
         write_columns(self.folder, history.last.effects)
         return replace(self, folder=replace(self.folder, history=history), saved=history, steps=())
 
+    @explained()
     def plot(self, test: str | None = None, png: str | Path | None = None) -> Figure:
         """Measured and modelled (degC) over time, a panel per sensor; beside the model before the last step.
 

@@ -64,7 +64,7 @@ def answer(document: Mapping[str, Any], called: str) -> Answer:
     sentence = (f"{document['case']}, revision {model['revision']}{effects}: {found}; rms {document['rmse_K']:.2f} K, "
                 f"the sensors' own uncertainty explains {document['floor_K']:.2f} K.")  # fmt: skip
     why = _why(document) if "patterns" in document else []
-    parts = [*why, tests(document["tests"]), records_of("Over: error is measured - model", over),
+    parts = [*why, records_of("Over: error is measured - model", over), tests(document["tests"]),
              in_short(document["error_budget"], document["sampling"]), roles_in_short(document["roles"])]  # fmt: skip
     rest = [*(records_of(f"{t['name']} ({t['role']})", [{"test": t["name"], **c} for c in t["channels"]])
               for t in document["tests"]), roles(document["roles"]),

@@ -13,7 +13,8 @@ import numpy as np
 from geom.errors import InputError
 from thermoscope.case_folder.files import write_whole
 from thermoscope.console.answer import Answer, Grid
-from thermoscope.console.terminal import Progress, give, progress
+from thermoscope.console.terminal import Progress, give, notes, progress
+from thermoscope.extras import message as missing_extra
 from thermoscope.importing.aligned import Recording, grouped, shift
 from thermoscope.importing.cells import number
 from thermoscope.importing.clock import Clock, clock_of
@@ -179,7 +180,6 @@ def written(folder: Path, model: Model, drafts: Sequence[Draft], tell: Progress)
     from thermoscope.case_folder.folder import patient_of
     from thermoscope.case_folder.settings import read_settings
     from thermoscope.recordings.readings import read_test
-    from viz.figures.columns import columns
 
     with folder_whole(folder) as partial:
         tell("writing the case")
@@ -190,12 +190,22 @@ def written(folder: Path, model: Model, drafts: Sequence[Draft], tell: Progress)
             read_test(entry.name, entry.role, one.samples, one.sheet, model.network, settings.sample_s)
         findings = [f for f in examined(patients, model.network) if not f.remark]
         tell("drawing the columns")
-        columns(panels(drafts[0]), f"{drafts[0].name}: what each column was taken for", png=partial / "out" / PICTURE)
+        _draw(drafts[0], partial / "out" / PICTURE)
     return {
         "case": folder.name, "folder": str(folder), "invented_network": model.invented,
         "sample_s": settings.sample_s, "findings": [f.document() for f in findings],
         "tests": [_document(d, e.role) for d, e in zip(drafts, settings.tests, strict=True)],
     }  # fmt: skip
+
+
+def _draw(draft: Draft, png: Path) -> None:
+    """The columns as a picture, a note where nothing can draw."""
+    try:
+        from viz.figures.columns import columns
+
+        columns(panels(draft), f"{draft.name}: what each column was taken for", png=png)
+    except ModuleNotFoundError as fault:
+        notes([f"no picture of the columns: {missing_extra(fault) or fault}"])
 
 
 def _document(draft: Draft, role: str) -> dict[str, Any]:
