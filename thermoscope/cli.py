@@ -13,6 +13,7 @@ from geom.errors import ThermoscopeError
 from thermoscope.case_folder.files import checked_out, checked_target, message_of, printable
 from thermoscope.console.answer import LINES, within
 from thermoscope.console.groups import grouped, old_name
+from thermoscope.extras import explained
 
 app = typer.Typer(
     help="See where your motor's thermal model is wrong, and why.",
@@ -434,7 +435,7 @@ def main() -> None:
     if note := old_name(arguments):
         print(f"note: {note}", file=sys.stderr)
     try:
-        with within(None if "--all" in sys.argv else LINES):
+        with within(None if "--all" in sys.argv else LINES), explained():
             app(arguments, prog_name="thermoscope")
     except (ThermoscopeError, OSError) as fault:
         if "--debug" in sys.argv:

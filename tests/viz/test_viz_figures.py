@@ -82,7 +82,7 @@ def test_long_test_is_drawn_in_hours_with_few_points():
     channels = tuple(replace(ch, y=np.interp(time, 10 * c.test.time, ch.y)) for ch in c.test.channels)
     test = replace(c.test, time=time, channels=channels)
     model = {k: np.interp(time, 10 * c.test.time, y) for k, y in c.model.items()}
-    svg = paper.svg(curves.measured_and_model(Comparison(test, model)), "long")
+    svg = paper.svg(curves.measured_and_model(Comparison(test, model, c.limits)), "long")
     assert "time (h)" in svg
     assert len(svg) < 400_000
 
@@ -112,7 +112,7 @@ def test_labels_keep_their_distance_and_order():
 def test_channel_without_model_curve_is_named():
     c = comparison()
     with pytest.raises(InputError, match=r"no model curve for flange\.right"):
-        Comparison(c.test, {k: v for k, v in c.model.items() if k != "flange.right"})
+        Comparison(c.test, {k: v for k, v in c.model.items() if k != "flange.right"}, c.limits)
 
 
 def test_empty_history_is_refused():

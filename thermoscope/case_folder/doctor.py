@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from lumped.model.network import Link, Network, Source
 from lumped.transfer.laws import InputPower
-from thermoscope.recordings.consistency import read_by
 from thermoscope.recordings.sheet import Sheet
 from thermoscope.recordings.tables import Samples
 
@@ -145,7 +144,7 @@ def _power(p: Patient, network: Network) -> Iterator[Finding]:
     rises = [float(np.nanmax(v) - v[np.isfinite(v)][0]) for v in p.temperatures.values() if np.isfinite(v).any()]
     rise, span = float(np.median(rises)) if rises else 0.0, float(p.samples.time[-1])
     stored = float(network.C.sum()) * rise
-    columns = [c for c in p.sheet.columns if c.quantity == "power" and c.feeds in read_by(network)]
+    columns = [c for c in p.sheet.columns if c.quantity == "power" and c.feeds in network.inputs]
     came = sum(float(np.nanmean(np.abs(p.samples.values[c.name]))) for c in columns) * span
     if columns and rise > WARM_K and 0.0 < STORED * came < stored:
         names = ", ".join(c.name for c in columns)
@@ -173,7 +172,7 @@ def _copies(patients: list[Patient]) -> Iterator[Finding]:
 
 def _unused(patients: list[Patient], network: Network) -> Iterator[Finding]:
     """Inputs that no law reads, and inputs that no test moves."""
-    read = read_by(network)
+    read = network.inputs
     fed = {name: c for p in patients for c in p.sheet.columns for name in [c.feeds] if name}
     squared = {column for p in patients for of in p.sheet.squares.values() for column in of}
     for name, column in sorted(fed.items()):
@@ -189,7 +188,7 @@ def _unused(patients: list[Patient], network: Network) -> Iterator[Finding]:
 
 def _switched(patients: list[Patient], network: Network) -> Iterator[Finding]:
     """Inputs that are only ever on or off in a law that raises them to a power: 0 and 1 are the same to any power."""
-    for name in sorted(read_by(network)):
+    for name in sorted(network.inputs):
         seen = [p.inputs[name] for p in patients if name in p.inputs]
         seen += [p.sheet.events[name].value for p in patients if name in p.sheet.events]
         levels = np.unique(np.concatenate(seen)) if seen else np.zeros(0)

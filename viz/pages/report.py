@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from geom.disk_cache import atomic_write
-from validation.comparison.tolerance import WORDS
+from validation.comparison.uncertainty import RULE
 from viz.data import Comparison
 from viz.figures import candidates, curves, errors, heat
 from viz.machine.missing import placed
@@ -242,7 +242,7 @@ def _sensors(r: Report) -> str:
         ]
         name = f"{test['name']} ({test['role']}), rms {test['rmse_K']:.2f} K"
         parts.append(html.more(name, html.table(headers, rows), opened=test["role"] == "hold-out"))
-    rule = f"<p>Error is measured − model; {WORDS}.</p>"
+    rule = f"<p>Error is measured − model; {RULE}.</p>"
     return html.section("Every sensor", rule, *parts)
 
 

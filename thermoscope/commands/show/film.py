@@ -26,7 +26,7 @@ def film(case: str, out: Path | None, target: str | None) -> int:
 
         folder = open_case(case, tell)
         if folder.built is None:
-            right = f"a case with a machine; or: thermoscope show picture {folder.case.name} curves"
+            right = f"a case with a machine; or: thermoscope show picture {folder.settings.path} curves"
             raise InputError("has a network declared by hand, and so no geometry", folder.case.name, right)
         nodes, test, earlier = split(folder.built.mesh), by_interest(folder)[0], before_last(folder)
         file = out or Path("out") / f"{folder.case.name}.gif"

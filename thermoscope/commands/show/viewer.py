@@ -38,7 +38,7 @@ def write_case(folder: Folder, file: Path, tell: Progress) -> Path:
     from viz.viewer.page import write_viewer
 
     if folder.built is None:
-        right = f"a case with a machine; or: thermoscope show picture {folder.case.name} curves"
+        right = f"a case with a machine; or: thermoscope show picture {folder.settings.path} curves"
         raise InputError("has a network declared by hand, and so no geometry", folder.case.name, right)
     nodes, earlier, tests = split(folder.built.mesh), before_last(folder), []
     for test in by_interest(folder):
