@@ -101,6 +101,19 @@ def _field(s: Subject, png: Path) -> None:
     cutaway(s.nodes, s.field(), sensors=seen, title=f"{s.when}: temperature of the model", png=png).close()
 
 
+def _machine(s: Subject, png: Path) -> None:
+    from viz import portrait
+
+    portrait(s.built.machine, title=s.built.machine.name, png=png).close()
+
+
+def _temperature(s: Subject, png: Path) -> None:
+    from viz import portrait
+
+    machine = s.built.machine
+    portrait(machine, nodes=s.nodes, T=s.field(), title=f"{s.when}: temperature of the model", png=png).close()
+
+
 def _difference(s: Subject, png: Path) -> None:
     from viz import difference
 
@@ -178,5 +191,5 @@ FLAT: dict[str, Callable[[Subject, Path], None]] = {
 }  # fmt: skip
 PICTURES: dict[str, Callable[[Subject, Path], None]] = {
     "field": _field, "difference": _difference, "exploded": _exploded, "parts": _parts, "mesh": _mesh, "flux": _flux,
-    "network": _network, **FLAT,
+    "network": _network, "machine": _machine, "temperature": _temperature, **FLAT,
 }  # fmt: skip
