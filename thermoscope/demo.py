@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING, Any
 
 from geom.errors import InputError, MissingDependency
 from thermoscope.case_folder.folder import find_case
-from thermoscope.case_folder.runs import fields, held
+from thermoscope.case_folder.runs import by_interest, fields, held
 from thermoscope.commands.explain.diagnose import diagnose
 from thermoscope.commands.model.build import build
 from thermoscope.commands.model.calibrate import calibrate
 from thermoscope.commands.model.revise import add
 from thermoscope.commands.open_case import open_case
-from thermoscope.commands.show.pages import by_interest, render, report
+from thermoscope.commands.show.pages import render, report
 from thermoscope.commands.stored_diagnosis import saved_diagnosis
 from thermoscope.commands.test.compare import compare
 from thermoscope.console.answer import Answer, Grid, within

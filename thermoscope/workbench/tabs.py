@@ -13,7 +13,7 @@ from aiohttp import WSMsgType, web
 
 from thermoscope.workbench.access_control import served
 from thermoscope.workbench.application import Bench
-from thermoscope.workbench.policy import REPORT, policy
+from thermoscope.workbench.policy import policy, report_policy
 from thermoscope.workbench.session import Session
 
 MOST = 8
@@ -113,7 +113,9 @@ class Tabs:
             raise web.HTTPNotFound()
         headers = {}
         if path.suffix == ".html":
-            headers["Content-Security-Policy"] = REPORT if name == "report.html" else policy(path, request.host)
+            headers["Content-Security-Policy"] = (
+                report_policy() if name == "report.html" else policy(path, request.host)
+            )
         return web.FileResponse(path, headers=headers)
 
     async def address(self, request: web.Request) -> web.Response:

@@ -16,9 +16,8 @@ from lumped.integration.balance import balance
 from lumped.integration.simulate import simulate
 from lumped.schemas.reader import known
 from thermoscope.case_folder.folder import Folder
-from thermoscope.case_folder.runs import before_last, fields, held, steps
+from thermoscope.case_folder.runs import before_last, by_interest, fields, held, steps
 from thermoscope.commands.open_case import open_case
-from thermoscope.commands.show.pages import by_interest
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import give, progress
 from validation.calibration.unknowns import working
