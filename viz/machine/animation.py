@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError, MissingDependency
-from viz.colours import LIGHT, Theme
+from viz.colours import LIGHT, VERDICT, Theme
 from viz.data import Sensor
 from viz.machine import field
 from viz.machine.pulses import Pulses
@@ -19,6 +19,7 @@ from viz.rendering.nodes import SplitMesh, on_nodes
 from viz.rendering.scene import Room, View
 
 Array = NDArray[np.float64]
+PALETTE = 8  # pictures that a GIF's colours are taken from
 
 
 def animate(
@@ -73,10 +74,13 @@ def _minutes(times: Sequence[float]) -> list[str]:
 
 
 def _gif(path: Path, pictures: list[NDArray[np.uint8]], frames_per_second: float) -> Path:
-    """A looping GIF with one palette, taken from the last and most colourful picture."""
-    from PIL import Image
+    """A looping GIF with one palette, taken from pictures all along the way."""
+    from PIL import Image, ImageColor
 
-    palette = Image.fromarray(pictures[-1]).quantize(255)
+    some = [pictures[i][::2, ::2] for i in np.linspace(0, len(pictures) - 1, min(PALETTE, len(pictures))).astype(int)]
+    for colour in VERDICT.values():  # dots are small, but their colours matter
+        some.append(np.full((12, some[0].shape[1], 3), ImageColor.getrgb(colour), np.uint8))
+    palette = Image.fromarray(np.concatenate(some)).quantize(255)
     frames = [Image.fromarray(one).quantize(palette=palette, dither=Image.Dither.NONE) for one in pictures]
     pause = round(1000 / frames_per_second)
     frames[0].save(path, save_all=True, append_images=frames[1:], duration=pause, loop=0, optimize=False)

@@ -17,8 +17,8 @@ from viz.rendering.visibility import covered, obstacle
 if TYPE_CHECKING:
     import pyvista
 
-SIZE = 15.0  # pixels of a dot in a picture 960 wide
-SWELL = 1.6  # of its own size that the ring around a dot grows by while it pulses
+SIZE = 17.0  # pixels of a dot in a picture 960 wide
+SWELL = 1.1  # of its own size that the ring around a dot grows by while it pulses
 HERTZ = 1.2  # pulses in a second: slow enough not to flicker
 
 
@@ -34,19 +34,16 @@ class Pulses:
         colours = np.array([_rgb(VERDICT[s.verdict]) for s in sensors], np.uint8).reshape(-1, 3)
         wrong = np.array([s.verdict in ("hot", "cold") for s in sensors], bool)
         phase = second * HERTZ % 1.0
-        self._dots("pulse", wrong, colours, SIZE * (1.2 + SWELL * phase), 1, 0.6 * (1 - phase))
+        self._dots("pulse", wrong, colours, SIZE * (1.4 + SWELL * np.sin(np.pi * phase)), 1)
         self._dots("halo", np.ones_like(wrong), np.full_like(colours, 255), 1.35 * SIZE, 2)
         self._dots("dot", np.ones_like(wrong), colours, SIZE, 3)
         self._dots("core", self._hidden, np.full_like(colours, 255), HOLLOW * SIZE, 4)
 
-    def _dots(
-        self, name: str, chosen: NDArray[np.bool_], colours: NDArray[np.uint8], size: float, order: int,
-        opacity: float = 1.0,
-    ) -> None:  # fmt: skip
+    def _dots(self, name: str, chosen: NDArray[np.bool_], colours: NDArray[np.uint8], size: float, order: int) -> None:
         self._p.remove_actor(name, reset_camera=False, render=False)  # type: ignore[arg-type]
         if chosen.any():
             actor = self._p.add_points(
-                self._xyz[chosen], scalars=colours[chosen], rgb=True, point_size=size, lighting=False, opacity=opacity,
+                self._xyz[chosen], scalars=colours[chosen], rgb=True, point_size=size, lighting=False,
                 render_points_as_spheres=True, name=name, reset_camera=False, render=False,
             )  # fmt: skip
             on_top(actor, order)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -40,8 +41,9 @@ def film(case: str, out: Path | None, target: str | None) -> int:
         tell(f"running {test.name}")
         models = runs | {now(folder): folder.case}
         played = {words: fields(model, test, nodes, FRAMES) for words, model in models.items()}
-        titles = [f"{test.name} at {t / 60:.0f} min: {w}" for w, (times, _) in played.items() for t in times]
         seen = [row for w, model in models.items() for row in misses(folder, model, test, played[w][0])]
+        words = [f"{test.name} at {t / 60:.0f} min, {w}" for w, (times, _) in played.items() for t in times]
+        titles = [f"{w}{largest(row)}" for w, row in zip(words, seen, strict=True)]
         T = np.concatenate([values for _, values in played.values()])
         animate(nodes, [t for times, _ in played.values() for t in times], T, file, titles=titles,
                 sensors=seen, tell=lambda k: tell(f"drawing picture {k}/{len(T)}"))  # fmt: skip
@@ -59,6 +61,15 @@ def now(folder: Folder) -> str:
     """The model as it is, in words."""
     last = folder.history.last
     return f"with {last.effect}" if folder.history.revisions and last.action == "add" else "the model now"
+
+
+def largest(sensors: Sequence[Sensor]) -> str:
+    """The sensor that the model misses by most, and by how much; nothing where it misses none."""
+    from viz.data import short
+
+    wrong = [s for s in sensors if s.verdict in ("hot", "cold")]
+    worst = max(wrong, key=lambda s: s.weight, default=None)
+    return "" if worst is None else f": {short(worst.name)} {worst.residual_K:+.1f} K"
 
 
 def misses(folder: Folder, model: Case, test: Test, times: NDArray[np.float64]) -> list[tuple[Sensor, ...]]:
