@@ -124,8 +124,8 @@ def test_bodies_take_the_temperature_of_the_part_they_stand_for():
     nodes = SplitMesh(points, np.zeros((0, 4), int), np.zeros(0, int), ("cold", "hot"), np.arange(8000), owner)
     warm = Warm(nodes, np.where(owner == 0, 20.0, 80.0) + 10 * points[:, 2], None)
     at = rng.random((50, 3))
-    assert warm.at("cold", at) == pytest.approx(20 + 10 * at[:, 2], abs=0.8)
-    assert warm.at("hot", at) == pytest.approx(80 + 10 * at[:, 2], abs=0.8)
+    assert warm.weights("cold", at) @ warm.T == pytest.approx(20 + 10 * at[:, 2], abs=0.8)
+    assert warm.weights("hot", at) @ warm.T == pytest.approx(80 + 10 * at[:, 2], abs=0.8)
 
 
 def test_a_portrait_says_that_its_details_are_only_for_the_eye(tmp_path):

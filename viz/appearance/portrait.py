@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_matrix, vstack
 
 from geom.description.machine import Machine
 from geom.description.roles import Role
@@ -52,21 +53,28 @@ def portrait(
     nodes, T : a mesh and temperatures (degC) per node; limits : of the colour scale (degC)
     said : below the picture
     """
-    p = _stage(theme, size)
-    bodies = dressed(machine)
     warm = None if nodes is None or T is None else Warm(nodes, on_nodes(nodes, T), limits)
-    for (finish, section), pieces in _gathered(bodies, wedge, warm is not None).items():
-        _add(p, pieces, finish, section, warm)
+    p = staged(machine, warm, wedge, view, theme, size, bool(title))[0]
+    scene.headline(p, title, theme)
+    scene.footnote(p, said, theme)
+    scene.save(p, png)
+    return p
+
+
+def staged(
+    machine: Machine, warm: Warm | None, wedge: Wedge | None, view: View, theme: Theme, size: tuple[int, int],
+    title: bool,
+) -> tuple[pyvista.Plotter, list[Painted]]:  # fmt: skip
+    """The machine lit and standing, with room for a title; and what of it is coloured by temperature."""
+    p, bodies = _stage(theme, size), dressed(machine)
+    painted = [_add(p, pieces, *kind, warm) for kind, pieces in _gathered(bodies, wedge).items()]
     points = _framed(machine, bodies)
     p.add_actor(shadow([b.shape for b in bodies], theme), reset_camera=False, pickable=False)
     scene.look(p, points, view, Room(0.0, 0.1 if warm else 0.0, TITLE if title else 0.0))
     if warm is not None:
         scene.colour_bar(p, "°C", theme)
-    scene.headline(p, title, theme)
-    scene.footnote(p, said, theme)
     _shade(p, points)
-    scene.save(p, png)
-    return p
+    return p, [one for one in painted if one is not None]
 
 
 def _framed(machine: Machine, bodies: Sequence[Body]) -> Array:
@@ -81,25 +89,28 @@ def _framed(machine: Machine, bodies: Sequence[Body]) -> Array:
 class Warm:
     """Temperatures for points that are no nodes: of the nearest nodes of the part that a body stands for."""
 
-    def __init__(self, nodes: SplitMesh, T: Array, limits: tuple[float, float] | None) -> None:
+    def __init__(self, nodes: SplitMesh, T: Array, limits: tuple[float, float] | None = None) -> None:
         self.nodes, self.T = nodes, T
         self.limits = rounded(*(limits or (float(T.min()), float(T.max()))))
 
-    def at(self, part: str, points: Array) -> Array:
-        """(n,) degC, weighted by the inverse of the distance."""
+    def weights(self, part: str, points: Array) -> csr_matrix:
+        """(n, n_nodes) rows summing to 1, by the inverse of the distance."""
         from scipy.spatial import cKDTree
 
         mine = self.nodes.of(part)
-        away, near = cKDTree(self.nodes.points[mine]).query(points, k=min(NEAREST, len(mine)))
-        share = 1 / np.maximum(np.reshape(away, (len(points), -1)), 1e-6)
-        values = self.T[mine][np.reshape(near, (len(points), -1))]
-        return np.asarray((share * values).sum(axis=1) / share.sum(axis=1))
+        k, n = min(NEAREST, len(mine)), len(points)
+        away, near = (np.reshape(x, (n, k)) for x in cKDTree(self.nodes.points[mine]).query(points, k=k))
+        share = 1 / np.maximum(away, 1e-6)
+        share /= share.sum(axis=1, keepdims=True)
+        row = np.repeat(np.arange(n), k)
+        return csr_matrix((share.ravel(), (row, mine[near].ravel())), shape=(n, self.nodes.size))
 
 
 Pieces = list[tuple[str, "pyvista.PolyData"]]
+Painted = tuple["pyvista.PolyData", csr_matrix]
 
 
-def _gathered(bodies: Sequence[Body], wedge: Wedge | None, warm: bool) -> dict[tuple[Finish, bool], Pieces]:
+def _gathered(bodies: Sequence[Body], wedge: Wedge | None) -> dict[tuple[Finish, bool], Pieces]:
     """By finish, surfaces and sections apart: few things to draw are drawn fast."""
     out: dict[tuple[Finish, bool], Pieces] = defaultdict(list)
     for body in bodies:
@@ -110,19 +121,23 @@ def _gathered(bodies: Sequence[Body], wedge: Wedge | None, warm: bool) -> dict[t
     return out
 
 
-def _add(p: pyvista.Plotter, pieces: Pieces, finish: Finish, section: bool, warm: Warm | None) -> None:
+def _add(
+    p: pyvista.Plotter, pieces: Pieces, finish: Finish, section: bool, warm: Warm | None
+) -> Painted | None:  # fmt: skip
+    """One thing to draw; with the rows that give its temperatures, where it shows any."""
     shine, sharpness = finish.shine
     look: dict[str, Any] = {"ambient": 0.40, "diffuse": 0.75, "smooth_shading": False}
     look |= {"specular": 0.0 if section else shine, "specular_power": sharpness}
+    first, *others = [piece for _, piece in pieces]
+    data, rows = first.append_polydata(*others) if others else first, None
     if warm is not None:
-        for part, piece in pieces:
-            piece.point_data["T"] = warm.at(part, np.asarray(piece.points))
+        rows = vstack([warm.weights(part, np.asarray(piece.points)) for part, piece in pieces], format="csr")
+        data.point_data["T"] = rows @ warm.T
         look |= {"scalars": "T", "cmap": heat(), "clim": warm.limits, "show_scalar_bar": False, "ambient": 0.45}
         look |= {"diffuse": 0.6, "specular": 0.08}
-    first, *others = [piece for _, piece in pieces]
-    data = first.append_polydata(*others) if others else first
     actor = p.add_mesh(data, color=finish.section if section else finish.colour, **look)
     actor.prop.interpolation = "flat" if section else "phong"
+    return None if rows is None else (data, rows)
 
 
 def _stage(theme: Theme, size: tuple[int, int]) -> pyvista.Plotter:
