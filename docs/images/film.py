@@ -15,7 +15,7 @@ from thermoscope.commands.show.film import before, largest, misses, now
 from viz.appearance.moving import moving
 from viz.rendering.nodes import split
 
-FRAMES, PER_SECOND, WIDTH = 48, 12.0, 720  # 48 pictures for each model: eight seconds
+FRAMES, PER_SECOND, WIDTH = 48, 12.0, 640  # 48 pictures for each model: eight seconds
 LARGEST = 3e6  # bytes
 
 

@@ -32,6 +32,7 @@ class Session:
         self.state = self.shown.state
         self.history: History = bench.folder.history
         self.diagnosis: dict[str, Any] | None = None
+        self.viewer_page = ""
         self._refused: Revision | None = None
         self._job: Job | None = None
         self._known: list[tuple[Revision, Appearance]] = [(self.history.last, bench.first)]
@@ -108,6 +109,18 @@ class Session:
         if await self._calculate("Writing the report", steps.reported, self.folder) is not None:
             with self.state:
                 self.state.report = f"report.html?{time.time_ns()}"
+
+    async def view(self) -> None:
+        """The model on the machine in the browser's own GL, instead of the pictures from here; then back again."""
+        if self.state.viewer:
+            with self.state:
+                self.state.viewer = ""
+            return
+        page = await self._calculate("Preparing the machine", steps.viewed, self.folder)
+        if page is not None:
+            self.viewer_page = page
+            with self.state:
+                self.state.viewer = f"viewer.html?{time.time_ns()}"
 
     def paper(self) -> None:
         """From light to dark and back."""

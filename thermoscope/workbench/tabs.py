@@ -13,7 +13,7 @@ from aiohttp import WSMsgType, web
 
 from thermoscope.workbench.access_control import served
 from thermoscope.workbench.application import Bench
-from thermoscope.workbench.policy import policy, report_policy
+from thermoscope.workbench.policy import policy, report_policy, viewer_policy
 from thermoscope.workbench.session import Session
 
 MOST = 8
@@ -105,6 +105,12 @@ class Tabs:
             await socket.prepare(request)
             await tab.talk(socket)
             return socket
+        if name == "viewer.html":
+            return web.Response(
+                text=tab.session.viewer_page,
+                content_type="text/html",
+                headers={"Content-Security-Policy": viewer_policy()},
+            )
         if name == "report.html":
             path: Path | None = self.bench.folder.settings.out / "report.html"
         else:

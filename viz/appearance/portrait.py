@@ -133,8 +133,8 @@ def _add(
     if warm is not None:
         rows = vstack([warm.weights(part, np.asarray(piece.points)) for part, piece in pieces], format="csr")
         data.point_data["T"] = rows @ warm.T
-        look |= {"scalars": "T", "cmap": heat(), "clim": warm.limits, "show_scalar_bar": False, "ambient": 0.45}
-        look |= {"diffuse": 0.6, "specular": 0.08}
+        look |= {"scalars": "T", "cmap": heat(), "clim": warm.limits, "show_scalar_bar": False, "ambient": 0.64}
+        look |= {"diffuse": 0.42, "specular": 0.05}
     actor = p.add_mesh(data, color=finish.section if section else finish.colour, **look)
     actor.prop.interpolation = "flat" if section else "phong"
     return None if rows is None else (data, rows)
