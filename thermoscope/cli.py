@@ -229,7 +229,8 @@ def picture(
         str,
         typer.Argument(
             metavar="WHAT",
-            help="field, difference, exploded, parts, mesh, flux, network, losses, curves, residuals or errors.",
+            help="machine, temperature, field, difference, misses, exploded, parts, mesh, flux, network, losses, "
+            "curves, residuals or errors.",
         ),
     ],
     out: Annotated[Path | None, typer.Option("--out", metavar="FILE", help="A PNG file.")] = None,
@@ -275,6 +276,23 @@ def serve(
     from thermoscope.commands.show.serve import serve as run
 
     raise typer.Exit(run(case, host, port))
+
+
+@app.command()
+def plan(
+    case: Case,
+    effect: Annotated[
+        list[str] | None,
+        typer.Option(metavar="EFFECT@PLACE", help="A hypothesis; several are possible. Else the last diagnosis's."),
+    ] = None,
+    test: Annotated[str | None, typer.Option(metavar="NAME", help="Of the menu; else the one that tells most.")] = None,
+    out: Annotated[Path | None, typer.Option("--out", metavar="FILE", help="An HTML file.")] = None,
+    json: Json = None,
+) -> None:
+    """A page to pin on the bench: the test to drive next, and the curves that each hypothesis predicts."""
+    from thermoscope.commands.show.plan import plan as run
+
+    raise typer.Exit(run(case, tuple(effect or ()), test, out, json))
 
 
 @app.command()

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from geom.errors import InputError
+from geom.errors import InputError, MissingDependency
 from thermoscope.case_folder.folder import load_machine_file
 from thermoscope.commands.model import crosscheck
 from thermoscope.console.answer import Answer, Grid
-from thermoscope.console.terminal import give, progress
+from thermoscope.console.terminal import give, notes, progress
 
 if TYPE_CHECKING:
     from geom import Machine
@@ -47,8 +47,25 @@ def build(machine: str, out: Path | None, target: str | None, accuracy: float | 
         write_vtu(built.mesh, folder / f"{described.name}.vtu")
         document = {**described_as(built, solids), **checked, **({} if found is None else {"sizes": found.document()})}
         crosscheck.save(document, folder)
+        document["pictures"] = [str(file) for file in pictures(built, folder, tell)]
     give(document, target, lambda: answer(document, folder))
     return 0 if found is None or found.met else 1
+
+
+def pictures(built: Built, folder: Path, tell: Progress) -> list[Path]:
+    """What was built: the machine cut open, and its mesh; none, and one note, where nothing can be drawn."""
+    from viz import portrait, regions, require_gl, split
+
+    try:
+        require_gl()
+    except MissingDependency as fault:
+        notes([str(fault)])
+        return []
+    tell("drawing")
+    name, files = built.machine.name, [folder / "machine.png", folder / "mesh.png"]
+    portrait(built.machine, title=name, png=files[0]).close()
+    regions(split(built.mesh), mesh=True, title=f"{name}: its mesh", png=files[1]).close()
+    return files
 
 
 def built_from(
@@ -108,7 +125,7 @@ def answer(document: Mapping[str, Any], folder: Path) -> Answer:
     sizes = _sizes(document["sizes"]) if "sizes" in document else []
     shown = [*sizes, crosscheck.parts(document), parts]
     rest = [crosscheck.links(document), crosscheck.hand(document)]
-    return Answer(sentence, shown, f"solids, mesh and tables in {folder}; --json FILE", rest)
+    return Answer(sentence, shown, f"solids, mesh, tables and pictures in {folder}; --json FILE", rest)
 
 
 def _row(part: Mapping[str, Any]) -> list[Any]:
