@@ -1,0 +1,130 @@
+"""What is asked of an optimisation, and the problem that says it: of a case as it stands, or of a machine file."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
+
+from geom.errors import InputError
+from lumped.model.network import Network
+from lumped.schemas.reader import known
+from thermoscope.bands import posterior_of
+from thermoscope.case_folder.folder import Folder, Progress
+from thermoscope.case_folder.runs import named_rows
+from thermoscope.design.condensations import Condensations
+from thermoscope.design.machine_keys import FLOWS, MachineFile
+from thermoscope.rating import places, rated_point
+from thermoscope.verification.error_budget import model_of
+from validation.bands.at_rest import AtRest
+from validation.optimisation.electrics import electrics_of, wanted_inputs
+from validation.optimisation.hot_spots import hot_spots
+from validation.optimisation.problem import COPPER, OBJECTIVES, PEAK, SETTLING, Problem
+from validation.optimisation.scaling import Scaling, design_parameters
+from validation.optimisation.space import Space, Variable
+from validation.rating.operation import flows, operation
+
+INPUT_RANGE = (0.5, 2.0)  # of an input's value at the operating point, where nothing else is said
+
+
+@dataclass(frozen=True)
+class Asked:
+    """limits : place -> degC, the first is what peaks;  torque (N m);  at : input or boundary -> value
+
+    vary : variable -> its bounds, or None for the usual ones; empty for all usual variables
+    robust : temperatures at the upper end of their 95 % band
+    """
+
+    limits: Mapping[str, float]
+    torque: float | None = None
+    at: Mapping[str, float] | None = None
+    vary: Mapping[str, tuple[float, float] | None] | None = None
+    robust: bool = False
+
+
+def design_problem(folder: Folder, asked: Asked, progress: Progress) -> tuple[Problem, MachineFile | None]:
+    """The problem with what its reduced model gets wrong about other geometries learned, and the file of its machine.
+
+    Raises InputError for what is not known, and where a limit is exceeded without any load.
+    """
+    network, values = model_of(folder)
+    file = None if folder.settings.machine is None else MachineFile.read(folder.settings.machine)
+    op = operation(network, folder.case.tests, asked.at or {}, (), rated_point(folder, network))
+    sections = {} if file is None else file.sections
+    electrics = electrics_of(
+        "" if file is None else file.machine.family, sections.get("ratings", {}), sections.get("losses", {})
+    )
+    inputs = wanted_inputs(op.inputs, asked.torque, electrics)
+    grown, sure = _grown(folder, network, asked.robust, progress)
+    rows = named_rows(network, folder)
+    limits = places(asked.limits, rows, network.identities)
+    first = len(places(dict(list(asked.limits.items())[:1]), rows, network.identities))
+    space = Space(tuple(_variables(grown, inputs, file, asked.vary or {})))
+    machine = {} if file is None else _of_machine(grown, file, space, inputs)
+    aimed = (PEAK, SETTLING, COPPER) if file is None else OBJECTIVES
+    problem = Problem(
+        grown, values, inputs, op.boundaries, space, hot_spots(grown, rows, limits), first, electrics, sure=sure,
+        aimed=aimed, **machine,
+    )  # fmt: skip
+    _refuse_hot_at_no_load(problem, op.loads)
+    if file is not None and any(v.conducts for v in space.variables):
+        problem = replace(problem, corrections=Condensations(problem, progress).learn())
+    return problem, file
+
+
+def _grown(folder: Folder, network: Network, robust: bool, progress: Progress) -> tuple[Network, AtRest | None]:
+    """The network with the parameters of a design; for a robust one with those of the table of doubt too."""
+    if not robust:
+        return network.extended(parameters=design_parameters(network)), None
+    of = posterior_of(folder, progress)
+    grown = of.network.extended(parameters=design_parameters(of.network))
+    return grown, AtRest(of, grown)
+
+
+def _variables(
+    network: Network, inputs: Mapping[str, float], file: MachineFile | None, vary: Mapping[str, Any]
+) -> list[Variable]:
+    if not vary:
+        usual = file.usual() if file is not None else [_input(n, inputs, None) for n in flows(network, inputs)]
+        if not usual:
+            raise InputError("nothing that a design could change", "--vary", "--vary NAME=LOW:HIGH")
+        return usual
+    out = []
+    for name, bounds in vary.items():
+        if file is not None and file.knows(name):
+            out.append(file.variable(name, bounds))
+        elif name in inputs:
+            out.append(_input(name, inputs, bounds))
+        else:
+            here = [*inputs, *([v.name for v in file.usual()] if file is not None else [])]
+            raise InputError(f"'{name}' is nothing that a design could change", "--vary", known(name, here))
+    return out
+
+
+def _input(name: str, inputs: Mapping[str, float], bounds: tuple[float, float] | None) -> Variable:
+    low, high = bounds or tuple(share * inputs[name] for share in INPUT_RANGE)
+    return Variable(name, low, high, inputs[name])
+
+
+def _of_machine(network: Network, file: MachineFile, space: Space, inputs: Mapping[str, float]) -> dict[str, Any]:
+    names = {v.name for v in space.variables}
+    taken = tuple(n for key, n in FLOWS.items() if key in names and n in inputs)
+    return {"machine_at": partial(_machine_at, file), "scaling": Scaling(network, file.machine), "taken": taken}
+
+
+def _machine_at(file: MachineFile, values: Mapping[str, float]) -> Any:
+    return file.at(values)
+
+
+def _refuse_hot_at_no_load(problem: Problem, loads: tuple[str, ...]) -> None:
+    """A limit that the reference exceeds without any load no design can keep."""
+    idle = replace(problem, inputs={**problem.inputs, **dict.fromkeys(loads, 0.0)}, sure=None)
+    usual = {v.name: v.usual for v in problem.space.variables if v.name not in loads}
+    found = idle.judged(usual, None if problem.machine_at is None else problem.machine_at(usual))
+    for s in problem.spots:
+        if found.places[s.name] >= s.limit:
+            raise InputError(
+                f"the limit of '{s.name}', {s.limit:g} degC, is exceeded without any load "
+                f"({found.places[s.name]:.1f} degC)", "--limit", "a higher limit, cooler surroundings or a lower speed",
+            )  # fmt: skip
