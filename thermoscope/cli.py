@@ -386,6 +386,7 @@ def optimise(
     generations: Annotated[int, typer.Option(min=1)] = 30,
     seed: Annotated[int, typer.Option(min=0)] = 1,
     cluster: Annotated[str | None, typer.Option(metavar="ADDRESS", help="Of a Dask scheduler.")] = None,
+    cycle: Annotated[str | None, typer.Option(metavar="FILE|NAME", help="A vehicle's, with its gains.")] = None,
     robust: Annotated[bool, typer.Option("--robust", help="Temperatures at the upper end of their bands.")] = False,
     out: Out = None, json: Json = None,
 ) -> None:  # fmt: skip
@@ -394,7 +395,7 @@ def optimise(
     from validation.optimisation.search import Effort
 
     given = tuple(limit or ()), torque, tuple(at or ()), tuple(vary or ()), method
-    raise typer.Exit(run(name, *given, Effort(population, generations, seed), cluster, robust, out, json))
+    raise typer.Exit(run(name, *given, Effort(population, generations, seed), cluster, cycle, robust, out, json))
 
 
 @app.command()

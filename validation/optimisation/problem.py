@@ -14,6 +14,7 @@ from geom.errors import InputError
 from lumped.model.network import Network, Row
 from validation.optimisation.auxiliaries import auxiliary_power
 from validation.optimisation.corrections import NONE, Corrections
+from validation.optimisation.driven import Driven
 from validation.optimisation.electrics import Electrics
 from validation.optimisation.hot_spots import HotSpots
 from validation.optimisation.rest import Rest, losses, rest, without_feedback
@@ -60,6 +61,7 @@ class Problem:
     peak : how many of the limited places, from the first, make up the peak temperature that is minimised
     machine_at : values of variables -> machine;  scaling : of the network's own machine; both None for a network alone
     taken : inputs that a design's machine decides, such as flows;  aimed : OBJECTIVES that are minimised
+    driven : the cycle that is the load, instead of the inputs' current and speed
     sure : widens temperatures to the upper end of their 95 % band
     """
 
@@ -76,6 +78,7 @@ class Problem:
     taken: tuple[str, ...] = ()
     corrections: Corrections = NONE
     sure: Uncertainty | None = None
+    driven: Driven | None = None
     aimed: tuple[str, ...] = OBJECTIVES
 
     @cached_property
@@ -93,7 +96,7 @@ class Problem:
 
     def judged(self, named: Mapping[str, float], machine: Any) -> Performance:
         """A design whose machine is there already."""
-        inputs = self._inputs(named, machine)
+        inputs, lag = self._inputs(named, machine)
         values = {**self.values, **({} if self.scaling is None else self.scaling.of(machine, inputs))}
         found, runaway = self._rest(values, inputs)
         share = self.space.share(named)
@@ -105,18 +108,21 @@ class Problem:
             AUXILIARY: 0.0 if machine is None else auxiliary_power(machine, inputs),
         }  # fmt: skip
         excess = {f"{s.name} <= {s.limit:g} degC": places[s.name] / s.limit - 1.0 for s in self.spots}
-        return Performance(
-            objectives, {**excess, **self.electrics.excess(inputs, copper)}, places, inputs, "runaway" * runaway
-        )
+        limits = self.electrics.excess(inputs, copper) if self.driven is None else lag
+        return Performance(objectives, {**excess, **limits}, places, inputs, "runaway" * runaway)
 
-    def _inputs(self, named: Mapping[str, float], machine: Any) -> dict[str, float]:
-        own = {n: u for n, u in named.items() if n in self.inputs}
-        if machine is None:
-            return {**self.inputs, **own}
-        from lumped.machine.motor import rated_inputs
+    def _inputs(self, named: Mapping[str, float], machine: Any) -> tuple[dict[str, float], dict[str, float]]:
+        """Of the network; and what the drive misses of its cycle."""
+        out = {**self.inputs, **{n: u for n, u in named.items() if n in self.inputs}}
+        if machine is not None:
+            from lumped.machine.motor import rated_inputs
 
-        given = rated_inputs(machine)
-        return {**self.inputs, **{n: given[n] for n in self.taken}, **own}
+            given = rated_inputs(machine)
+            out |= {n: given[n] for n in self.taken}
+        if self.driven is None:
+            return out, {}
+        load, lag = self.driven.inputs(named)
+        return out | {n: u for n, u in load.items() if n in out}, lag
 
     def _rest(self, values: Mapping[str, float], inputs: Mapping[str, float]) -> tuple[Rest, bool]:
         """The rest; where the machine would run away, with losses as at the limit: above it then."""
@@ -144,7 +150,7 @@ class Problem:
 
     def _impossible(self, why: str) -> Performance:
         limits = [f"{s.name} <= {s.limit:g} degC" for s in self.spots]
-        limits += list(self.electrics.excess(self.inputs, 0.0))
+        limits += list(self.electrics.excess(self.inputs, 0.0) if self.driven is None else self.driven.inputs({})[1])
         return Performance(
             dict.fromkeys(OBJECTIVES, IMPOSSIBLE), {**dict.fromkeys(limits, 0.0), GEOMETRY: 1.0}, why=why
         )

@@ -106,6 +106,10 @@ class Heated:
     T: Array
     rng: np.random.Generator
 
+    def at_spot(self, spot: Spot) -> Array:
+        """Temperature (degC) at a spot at the logging times."""
+        return np.interp(self.at, self.fine, self.T[:, self.machine.skeleton.cell(spot.body, spot.position)])
+
     def mean(self, body: str) -> Array:
         """Mean temperature (degC) of a body at the logging times; its cells are equal."""
         return np.interp(self.at, self.fine, self.T[:, self.machine.skeleton.cells(body)].mean(axis=1))

@@ -8,6 +8,7 @@ from numpy.testing import assert_allclose
 
 from geom.errors import InputError
 from geom.machine_file import load_machine
+from lumped.drives.drive import Controller, SeriesMachine, Vehicle
 from lumped.integration.simulate import Record, simulate
 from lumped.model.build import bare_network, node_link, node_source
 from lumped.model.network import Row
@@ -16,6 +17,7 @@ from lumped.transfer.laws import Fixed, InputPower, Linear
 from lumped.transfer.properties import ethylene_glycol
 from validation.optimisation.auxiliaries import auxiliary_power, way_of
 from validation.optimisation.corrections import errors, learned
+from validation.optimisation.driven import Driven
 from validation.optimisation.electrics import electrics_of
 from validation.optimisation.hot_spots import HotSpots
 from validation.optimisation.problem import AUXILIARY, COPPER, PEAK, SETTLING, Problem
@@ -197,3 +199,19 @@ def test_designs_are_judged_on_a_cluster_as_here():
     assert [d.performance for d in there] == [d.performance for d in here]
     assert isinstance(here[0], Design)
     assert set(here[0].performance.objectives) == {PEAK, SETTLING, COPPER, AUXILIARY}
+
+
+def test_a_cycle_at_constant_speed_takes_the_current_of_its_torque():
+    """40 km/h on 4 % for an hour: T at the shaft by the vehicle's formula, I = sqrt(T / L_af)."""
+    machine = SeriesMachine.from_ratings(100e3, 1000.0, 220.0, 511.0)
+    vehicle = Vehicle(9000.0, 0.48, 4.52)
+    time = np.arange(0.0, 3601.0, 1.0)
+    wanted = np.minimum(time / 30.0, 1.0) * 40.0 / 3.6
+    cycle = Driven(machine, vehicle, Controller(), time, wanted, np.full(time.size, 0.04))
+    inputs, lag = cycle.inputs({})
+    steady = machine.current(vehicle.load_torque(40.0 / 3.6, 0.04))
+    assert_allclose(inputs["current_A"], steady, rtol=0.02)
+    assert_allclose(inputs["speed_rpm"], vehicle.motor_speed_rpm(40.0 / 3.6), rtol=0.02)
+    assert max(lag.values()) < 0.0
+    weak = cycle.inputs({"controller.Kp": 0.5, "controller.Ki": 0.001})[1]
+    assert max(weak.values()) > 0.0

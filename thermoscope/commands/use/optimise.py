@@ -32,12 +32,12 @@ MOST = 24  # designs that are written as machine files: evenly over the Pareto s
 
 def optimise(
     name: str, limits: Sequence[str], torque: float | None, at: Sequence[str], vary: Sequence[str], method: str,
-    effort: Effort, cluster: str | None, robust: bool, out: Path | None, target: str | None,
+    effort: Effort, cluster: str | None, cycle: str | None, robust: bool, out: Path | None, target: str | None,
 ) -> int:  # fmt: skip
     """The Pareto set of a case or a machine file; table, plots and machine files in a folder."""
     if method not in METHODS:
         raise InputError(f"'{method}' is no method", "--method", ", ".join(METHODS))
-    asked = Asked(read_limits(limits), torque, read_at(at), read_bounds(vary), robust)
+    asked = Asked(read_limits(limits), torque, read_at(at), read_bounds(vary), robust, cycle)
     if not asked.limits:
         raise InputError("no limit is given", "--limit", "PLACE=DEGC, for example winding=155")
     with progress() as tell, once() as said, _executor(cluster) as executor:
