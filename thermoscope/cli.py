@@ -392,6 +392,32 @@ def rate(
 
 
 @app.command()
+def optimise(
+    name: Annotated[str, typer.Argument(metavar="CASE|MACHINE", help="A case, or a machine with nothing measured.")],
+    limit: Limit = None,
+    torque: Annotated[float | None, typer.Option(min=0.0, metavar="NM", help="Required, for ever.")] = None,
+    at: Annotated[list[str] | None, typer.Option("--at", metavar="NAME=VALUE", help="Input or boundary.")] = None,
+    vary: Annotated[
+        list[str] | None, typer.Option(metavar="NAME[=LOW:HIGH]", help="Else flows, jacket and fins.")
+    ] = None,
+    method: Annotated[str, typer.Option(help="nsga2 or unsga3.")] = "nsga2",
+    population: Annotated[int, typer.Option(min=8, help="Designs per generation.")] = 48,
+    generations: Annotated[int, typer.Option(min=1)] = 30,
+    seed: Annotated[int, typer.Option(min=0)] = 1,
+    cluster: Annotated[str | None, typer.Option(metavar="ADDRESS", help="Of a Dask scheduler.")] = None,
+    cycle: Annotated[str | None, typer.Option(metavar="FILE|NAME", help="A vehicle's, with its gains.")] = None,
+    robust: Annotated[bool, typer.Option("--robust", help="Temperatures at the upper end of their bands.")] = False,
+    out: Out = None, json: Json = None,
+) -> None:  # fmt: skip
+    """Designs that trade peak temperature, settling time, copper loss and auxiliary power; each a machine file."""
+    from thermoscope.commands.use.optimise import optimise as run
+    from validation.optimisation.search import Effort
+
+    given = tuple(limit or ()), torque, tuple(at or ()), tuple(vary or ()), method
+    raise typer.Exit(run(name, *given, Effort(population, generations, seed), cluster, cycle, robust, out, json))
+
+
+@app.command()
 def export(
     case: Case,
     out: Out = None,

@@ -29,12 +29,28 @@ WINDING, MAGNET = "winding", "magnet"
 
 @dataclass(frozen=True)
 class Cycle:
-    """record : what is known beforehand;  drive : gives the rest from the temperatures of the places it watches"""
+    """record : what is known beforehand;  drive : gives the rest from the temperatures of the places it watches
+
+    series : what a vehicle with a series machine is, where the cycle has one
+    """
 
     name: str
     record: Record
     drive: Drive | None = None
     watched: Mapping[str, str] = field(default_factory=dict)
+    series: Series | None = None
+
+
+@dataclass(frozen=True)
+class Series:
+    """wanted (nt,) m/s, slope (nt,) rise over run;  reference_degC : of the machine's resistance"""
+
+    machine: SeriesMachine
+    vehicle: Vehicle
+    controller: Controller
+    wanted: Array
+    slope: Array
+    reference_degC: float
 
 
 def find_cycle(case: Path, name: str) -> Path:
@@ -58,12 +74,12 @@ def load_cycle(path: Path, network: Network, ratings: Mapping[str, float]) -> Cy
     inputs |= {n: np.full(time.size, v) for n, v in top.table("inputs").constants("inputs").items()}
     boundaries |= {n: np.full(time.size, v) for n, v in top.table("boundaries").constants("boundaries").items()}
     start = head.number("initial_degC", _usual(network, boundaries, str(path)))
-    drive, watched = _drive(top, network, ratings, time, inputs)
+    drive, watched, series = _drive(top, network, ratings, time, inputs)
     head.close()
     top.close()
     if columns is not None and drive is None:
         inputs = columns.signals(inputs, time)
-    cycle = Cycle(path.stem, Record(time, inputs, boundaries, start), drive, watched)
+    cycle = Cycle(path.stem, Record(time, inputs, boundaries, start), drive, watched, series)
     _complete(network, cycle, str(path))
     return cycle
 
@@ -133,15 +149,15 @@ def _duty(top: Table) -> tuple[Array, dict[str, Array], dict[str, Array]]:
 
 def _drive(
     top: Table, network: Network, ratings: Mapping[str, float], time: Array, inputs: dict[str, Array]
-) -> tuple[Drive | None, dict[str, str]]:
+) -> tuple[Drive | None, dict[str, str], Series | None]:
     if "vehicle" in top:
         return _series(top, network, ratings, time, inputs)
-    return _permanent(top, network, inputs) if "pm-machine" in top else (None, {})
+    return (*_permanent(top, network, inputs), None) if "pm-machine" in top else (None, {}, None)
 
 
 def _series(
     top: Table, network: Network, ratings: Mapping[str, float], time: Array, inputs: dict[str, Array]
-) -> tuple[Drive, dict[str, str]]:
+) -> tuple[Drive, dict[str, str], Series]:
     m, v, c = top.table("series-machine"), top.table("vehicle"), top.table("controller")
     rated = [m.number(k, ratings.get(k)) for k in ("power_W", "speed_rpm", "voltage_V", "current_A")]
     machine = SeriesMachine.from_ratings(
@@ -165,7 +181,8 @@ def _series(
     slope = inputs["slope_percent"] / 100
     wanted = inputs.pop("vehicle_speed_mps")
     drive = series_drive(machine, vehicle, control, time, wanted, slope, reference)
-    return _mixed(drive, {WINDING: places}), {p: p for p in places}
+    series = Series(machine, vehicle, control, np.asarray(wanted, float), np.asarray(slope, float), reference)
+    return _mixed(drive, {WINDING: places}), {p: p for p in places}, series
 
 
 def _permanent(top: Table, network: Network, inputs: dict[str, Array]) -> tuple[Drive, dict[str, str]]:
