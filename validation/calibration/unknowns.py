@@ -60,7 +60,9 @@ def to_value(p: Parameter, theta: float) -> float:
 
 def nuisances(network: Network, tests: Sequence[Test], doubt: Doubt = USUAL) -> list[Parameter]:
     """What no measurement is free of: bias, slope and lag of sensors, bias of boundary sensors, start, clock."""
-    channels = {c.name: c for test in tests for c in test.channels}
+    channels: dict[str, Channel] = {}  # each in the test where it lags least: no reading may come before its heat
+    for c in (c for test in tests for c in test.channels):
+        channels[c.name] = min(channels.get(c.name, c), c, key=lambda one: one.lag_s)
     boundaries = dict.fromkeys(b for test in tests for b in test.boundaries)
     sensors = [p for c in channels.values() for p in _sensor(network, c, doubt)]
     air = [_offset(f"bias of {b}", f"boundary:{b}", doubt["boundary"], "sensor of the boundary") for b in boundaries]
