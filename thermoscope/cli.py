@@ -418,6 +418,20 @@ def optimise(
 
 
 @app.command()
+def watch(
+    case: Case,
+    follow: Annotated[str, typer.Option("--follow", metavar="FILE|-", help="A CSV file, or - for rows from a pipe.")],
+    sensor: Annotated[list[str] | None, typer.Option(metavar="NAME", help="Use these sensors alone.")] = None,
+    like: Annotated[str | None, typer.Option(metavar="TEST", help="Columns as in this test; else the first.")] = None,
+    out: Out = None, json: Json = None,
+) -> None:  # fmt: skip
+    """Beside a running machine: all temperatures and missing heat from its sensors, and where the model fails."""
+    from thermoscope.commands.use.watch import watch as run
+
+    raise typer.Exit(run(case, follow, tuple(sensor or ()), like, out, json))
+
+
+@app.command()
 def export(
     case: Case,
     out: Out = None,
