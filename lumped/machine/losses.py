@@ -52,6 +52,7 @@ def loss_watts(machine: Any, network: Network, inputs: Mapping[str, float]) -> d
 
 
 Declared = tuple[str, str, Shares, Law, str]
+ASSUMED = "loss:assumed"
 ASSUMED_W = 100.0  # of a machine that declares no losses, so that it can be looked at
 
 
@@ -62,7 +63,7 @@ def _declared(machine: Any) -> list[Declared]:
         losses = read(Losses, section, f"{machine.name} [losses]")
         return _series(losses, machine.sections["ratings"])
     if not section:
-        return [("assumed", "constant", _everywhere(machine), PowerLoss(((ASSUMED_W, ()),)), "")]
+        return [(ASSUMED.partition(":")[2], "constant", _everywhere(machine), PowerLoss(((ASSUMED_W, ()),)), "")]
     where = f"{machine.name} [losses"
     tables = {name: Table(data, f"{where}.{name}]") for name, data in section.items()}
     laws = loss_laws(tables)
