@@ -61,7 +61,8 @@ def _declared(machine: Any) -> list[Declared]:
     plain = not any(isinstance(value, Mapping) for value in section.values())
     if plain and machine.family == "series-dc":
         losses = read(Losses, section, f"{machine.name} [losses]")
-        return _series(losses, machine.sections["ratings"])
+        rated = Table(machine.sections.get("ratings", {}), f"{machine.name} [ratings]")
+        return _series(losses, {key: rated.number(key) for key in ("current_A", "speed_rpm")})
     if not section:
         return [(ASSUMED.partition(":")[2], "constant", _everywhere(machine), PowerLoss(((ASSUMED_W, ()),)), "")]
     where = f"{machine.name} [losses"

@@ -35,14 +35,13 @@ def recording(path: Path) -> Path:
         return path
     if path.exists():
         raise InputError("is no file", str(path), "a recording")
-    if path.is_symlink():
-        raise InputError("is a link that leads nowhere", str(path), "the recording itself")
     here = sorted(path.parent.iterdir()) if path.parent.is_dir() else []
     stem = stem_of(path)
     twins = [p for p in here if _suffix(p) and p.name[: len(stem)] == stem and stem_of(p) == stem]
     for twin in twins:
         if not twin.is_file():
-            raise InputError("is no file", str(twin), "a recording")
+            what = "is a link that leads nowhere" if not twin.exists() else "is no file"
+            raise InputError(what, str(twin), "a recording")
     if len(twins) > 1:
         names = " and ".join(twin.name for twin in twins)
         raise InputError(f"{names} are both there", str(path), f'one of them, or file = "tests/{twins[0].name}"')
