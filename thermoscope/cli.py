@@ -387,6 +387,20 @@ def watch(
 
 
 @app.command()
+def fleet(
+    case: Case,
+    recordings: Annotated[list[Path], typer.Argument(metavar="RECORDINGS...", help="UNIT@2026-03.csv, or folders.")],
+    like: Annotated[str | None, typer.Option(metavar="TEST", help="Columns as in this test; else the first.")] = None,
+    cluster: Annotated[str | None, typer.Option(metavar="ADDRESS", help="Of a Dask scheduler.")] = None,
+    json: Json = None,
+) -> None:
+    """Motors that should be equal: what differs between them, what drifts over the months, which one stands out."""
+    from thermoscope.commands.use.fleet import fleet as run
+
+    raise typer.Exit(run(case, recordings, like, cluster, json))
+
+
+@app.command()
 def export(
     case: Case,
     out: Out = None,
