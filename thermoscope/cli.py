@@ -404,16 +404,19 @@ def fleet(
 def export(
     case: Case,
     out: Out = None,
-    form: Annotated[str, typer.Option("--as", help="xlsx, csv: results; c, fmu, json, matlab: the model.")] = "xlsx",
+    form: Annotated[
+        str, typer.Option("--as", help="xlsx, csv: results; c, fmu, json, matlab: the model; observer.")
+    ] = "xlsx",
     limit: Limit = None,
     fmi: Annotated[int, typer.Option(help="Version of an FMU: 2 or 3.")] = 2,
+    sensor: Annotated[list[str] | None, typer.Option(metavar="NAME", help="Of an observer; else all.")] = None,
     csv: Annotated[bool, typer.Option("--csv", hidden=True, help="As --as csv.")] = False,
     json: Json = None,
 ) -> None:
     """Results as a workbook or CSV files; or the model to run elsewhere: C99, FMU, JSON or MAT file."""
     from thermoscope.commands.use.export import export as run
 
-    raise typer.Exit(run(case, out, "csv" if csv else form, tuple(limit or ()), fmi, json))
+    raise typer.Exit(run(case, out, "csv" if csv else form, tuple(limit or ()), fmi, json, tuple(sensor or ())))
 
 
 @app.command()
