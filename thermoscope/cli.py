@@ -404,9 +404,7 @@ def fleet(
 def export(
     case: Case,
     out: Out = None,
-    form: Annotated[
-        str, typer.Option("--as", help="xlsx, csv: results; c, fmu, json, matlab: the model; observer.")
-    ] = "xlsx",
+    form: Annotated[str, typer.Option("--as", help="xlsx, csv: results; c, fmu, json, matlab; observer: C.")] = "xlsx",
     limit: Limit = None,
     fmi: Annotated[int, typer.Option(help="Version of an FMU: 2 or 3.")] = 2,
     sensor: Annotated[list[str] | None, typer.Option(metavar="NAME", help="Of an observer; else all.")] = None,

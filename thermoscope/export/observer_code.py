@@ -143,11 +143,11 @@ class CompiledObserver:
 
     def __init__(self, of: ObserverModel, extra: Sequence[str] = ()) -> None:
         self.of = of
-        files = {**observer_files(of), "run.c": (RUNTIME / "thermal_observer_run.c").read_text(encoding="utf-8")}
-        # run.c takes the others in: they are no sources of their own
-        files = {n if n == "run.c" or not n.endswith(".c") else f"{n}.inc": t for n, t in files.items()}
-        files = {n: t.replace('network.c"', 'network.c.inc"').replace('observer.c"', 'observer.c.inc"')
-                 for n, t in files.items()}  # fmt: skip
+        taken_in = {**observer_files(of)}
+        network = taken_in.pop("thermal_network.c")
+        main = taken_in.pop("thermal_observer.c").replace('#include "thermal_network.c"', network)
+        run = (RUNTIME / "thermal_observer_run.c").read_text(encoding="utf-8")
+        files = {**taken_in, "run.c": run.replace('#include "thermal_observer.c"', main)}
         with tempfile.TemporaryDirectory() as folder:
             file = Path(folder) / f"observer{here().ending}"
             file.write_bytes(library(files, here(), extra))

@@ -40,12 +40,16 @@ class Recording:
 
 @dataclass(frozen=True)
 class Reader:
-    """What a recording is read with.  test : of the case, whose sheet the columns have;  case : without its tests"""
+    """What a recording is read with.  test : of the case, whose sheet the columns have;  case : without its tests
+
+    tests : their names, of which none is running here
+    """
 
     case: Case
     test: Test
     sheet: Sheet
     step_s: float
+    tests: tuple[str, ...] = ()
 
     def statistics(self, recording: Recording) -> Statistics:
         """All pieces of a recording together."""
@@ -77,15 +81,9 @@ class Reader:
             raise InputError("no sensor of the machine", str(recording.file), "a temperature that the sheet knows")
         time = mean(rows.time)
         inputs = {n: mean(u) for n, u in rows.inputs.items()}
-        inputs |= {name: np.zeros(time.size) for name in self._elsewhere()}
+        inputs |= {f"{RUNNING}{name}": np.zeros(time.size) for name in self.tests}
         air = {n: mean(u) for n, u in rows.boundaries.items()}
         return Test(recording.unit, "calibrate", time - time[0], inputs, air, tuple(channels), _initial(channels, air))
-
-    def _elsewhere(self) -> list[str]:
-        """Inputs that are 1 in one test of the case alone."""
-        network = self.case.model.network
-        laws = [*(x.law for x in network.links), *(x.law for x in network.sources)]
-        return [n for law in laws for n in law.reads if n.startswith(RUNNING)]
 
 
 def _starts(time: Array, step_s: float) -> NDArray[np.int64]:
@@ -114,7 +112,7 @@ def recordings(names: Sequence[Path]) -> list[Recording]:
 
 
 def _inside(folder: Path) -> list[Path]:
-    files = sorted(f for f in folder.iterdir() if f.name.lower().endswith(ENDINGS) and not f.name.startswith("."))
+    files = sorted(f for ending in ENDINGS for f in folder.glob(f"[!.]*{ending}"))
     if not files:
         raise InputError("no recording in the folder", str(folder), "CSV files named UNIT.csv or UNIT@2026-03.csv")
     return files

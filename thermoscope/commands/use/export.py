@@ -112,7 +112,7 @@ def _observer(
         "sensors": [c.name for c in sensors], "missing_heat": of.process.bodies, "outputs": [o.name for o in looks],
     }  # fmt: skip
     sentence = f"An observer of {len(sensors)} sensors, {of.bytes} bytes from step to step."
-    give(document, target, lambda: Answer(sentence, document["files"], "--json FILE"))
+    give(document, target, lambda: Answer(sentence, [str(p) for p in written], "--json FILE"))
     return 0
 
 

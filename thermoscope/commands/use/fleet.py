@@ -36,7 +36,7 @@ def fleet(case: str, names: Sequence[Path], like: str | None, cluster: str | Non
             raise InputError(f"no test '{like}'", "--like", known(like, sheets))
         test = next(t for t in folder.case.tests if like in (None, t.name))
         reader = Reader(replace(folder.case, tests=()), test, load_sheet(sheets[test.name]),
-                        folder.settings.sample_s or STEP_S)  # fmt: skip
+                        folder.settings.sample_s or STEP_S, tuple(sheets))  # fmt: skip
         with dask_cluster(cluster) if cluster else nullcontext() as executor:
             units = histories(files, reader, tell, executor)
         tell("the motors together")
