@@ -17,7 +17,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.model.network import Network, Parameter, Row
-from validation.bands.inputs import FLOWS, moved_inputs
 from validation.calibration.calibrate import Fit, KnownSegments, minimise, with_model_error
 from validation.calibration.unknowns import working
 from validation.case import Case, Test
