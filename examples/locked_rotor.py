@@ -32,6 +32,4 @@ heat = R20 * CURRENT**2
 growth = np.log((1 + ALPHA * (LIMIT - 20.0)) / (1 + ALPHA * (START - 20.0)))
 expected = C / (heat * ALPHA) * growth
 constant = C * (LIMIT - START) / (heat * (1 + ALPHA * (START - 20.0)))
-print(
-    f"{LIMIT:g} degC after: computed {computed:.3f} s, exact {expected:.3f} s; with the cold resistance {constant:.1f} s"
-)
+print(f"{LIMIT:g} degC after: computed {computed:.3f} s, exact {expected:.3f} s; if it stayed cold {constant:.1f} s")
