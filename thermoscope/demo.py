@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Any
 
 from geom.errors import InputError, MissingDependency
 from thermoscope.case_folder.folder import find_case
-from thermoscope.case_folder.runs import fields, held
+from thermoscope.case_folder.runs import by_interest, fields, held
 from thermoscope.commands.explain.diagnose import answer as diagnosis_answer
 from thermoscope.commands.explain.diagnose import diagnosed
 from thermoscope.commands.model.build import build
 from thermoscope.commands.model.calibrate import calibrate
 from thermoscope.commands.model.revise import add
 from thermoscope.commands.open_case import open_case
-from thermoscope.commands.show.pages import by_interest, rendered, write_page
+from thermoscope.commands.show.pages import rendered, write_page
 from thermoscope.commands.test.compare import answer as comparison_answer
 from thermoscope.commands.test.compare import compared
 from thermoscope.console.answer import Answer, Grid, within

@@ -205,3 +205,21 @@ def test_dropped_files_become_a_case(page, served):
     page.click("#open-made")
     page.wait_for_selector("#error-own")
     assert page.inner_text("h1") == "own"
+
+
+def test_the_machine_plays_in_the_browsers_own_gl(root, served):
+    """In the page, under its policy; the frame has nothing of the page around it, and goes when it is not wanted."""
+    said = []
+    with playwright.sync_playwright() as engine:
+        arguments = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+        tab, faults = opened(engine.chromium.launch(executable_path=BROWSER, args=arguments), served[0])
+        tab.on("console", lambda message: message.type == "error" and said.append(message.text))
+        tab.click("#view")
+        tab.frame_locator("#viewer").locator("#title:has-text(' min')").wait_for()
+        assert tab.frame_locator("#viewer").locator("#fault").is_hidden()
+        assert not tab.is_visible("#machine")
+        kept(root, tab, "6-played")
+        tab.click("#view")
+        tab.wait_for_selector("#viewer", state="detached", timeout=60_000)
+        assert tab.is_visible("#machine")
+    assert faults == said == []

@@ -118,3 +118,18 @@ def test_channel_without_model_curve_is_named():
 def test_empty_history_is_refused():
     with pytest.raises(InputError, match="at least one revision"):
         errors.staircase([])
+
+
+def test_what_would_have_to_differ_is_drawn_with_what_cannot(tmp_path):
+    row = {"test": "run4", "unit": "1", "nats": 9.0}
+    found = {"limit": 3.0, "differences": [
+        {**row, "parameter": "capacity.stator", "others": 1.0, "here": 2.7, "sd": 6.0, "possible": False,
+         "relative": True},
+        {**row, "parameter": "bias of T", "others": 0.1, "here": -0.9, "sd": -4.0, "possible": True, "relative": False,
+         "unit": "K"}]}  # fmt: skip
+    figure = scores.differences(found, png=tmp_path / "differences.png")
+    (ax,) = figure.axes
+    assert [t.get_text() for t in ax.get_yticklabels()] == ["bias of T in run4", "capacity.stator in run4"]
+    assert [t.get_text().strip("\u00a0") for t in ax.texts] == ["-1 K", "x 2.7"]
+    colours = [bar.get_facecolor() for bar in ax.patches]
+    assert colours[0] != colours[1]

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from geom.errors import InputError
-from lumped.machine.losses import ASSUMED_W
+from lumped.machine.losses import ASSUMED, ASSUMED_W
 from lumped.model.network import Network, Parameter
 from lumped.schemas.reader import known
 from thermoscope.case_folder.doctor import Finding, Patient, examined
@@ -99,7 +99,7 @@ def load_case(
         for e in settings.tests
     ]
     findings = examined(list(patients.values()), network)
-    notes = tuple(dict.fromkeys([*_assumed(built), *(note for one in read for note in one.notes)]))
+    notes = tuple(dict.fromkeys([*_assumed(network, settings), *(note for one in read for note in one.notes)]))
     frees = {e.name: e.frees for e in settings.tests}
     tests = tuple(replace(_allowing(r.test, settings.model_K), frees=frees[r.test.name]) for r in read)
     sheets = [one.sheet for one in patients.values()]
@@ -107,7 +107,9 @@ def load_case(
     case = Case(settings.name, _model(network, history), tests, _free(network, settings), settings.doubt,
                 history.last.answers)  # fmt: skip
     steps = {r.test.name: r.step for r in read}
-    return Folder(settings, _checked(case, history), history, notes, _positions(sheets), built, findings, steps)
+    return Folder(
+        settings, _checked(case, history, settings), history, notes, _positions(sheets), built, findings, steps
+    )
 
 
 READ = 32  # recordings that a process keeps: a command, or the demo, works on one case
@@ -133,11 +135,15 @@ def _stamp(file: Path) -> tuple[str, int, int, int]:
     return str(file.resolve()), found.st_ino, found.st_size, found.st_mtime_ns
 
 
-def _assumed(built: Built | None) -> list[str]:
-    """Losses that nobody declared."""
-    if built is None or built.machine.sections.get("losses"):
+def _assumed(network: Network, settings: Settings) -> list[str]:
+    """A note on losses that nobody declared; InputError where measurements are to be held against them."""
+    if all(source.name != ASSUMED for source in network.sources):
         return []
-    return [f"{built.machine.name} declares no losses: {ASSUMED_W:g} W in its windings are assumed ([losses.NAME])"]
+    what, right = "the machine declares no losses", "[losses.NAME] with kind, at and its numbers"
+    if settings.tests:
+        where = str(settings.machine)
+        raise InputError(f"{what}: nothing says what heated it in the tests", where, right)
+    return [f"{what}: {ASSUMED_W:g} W in its windings are assumed; {right}"]
 
 
 def _allowing(test: Test, model_K: float) -> Test:
@@ -214,12 +220,22 @@ def _model(network: Network, history: History) -> Model:
     return Model(network, effects, dict(last.values), last.number)
 
 
-def _checked(case: Case, history: History) -> Case:
-    """The model's effects can sit where model.toml has them, and its values belong to parameters."""
+def _checked(case: Case, history: History, settings: Settings) -> Case:
+    """The model's effects can sit where model.toml has them, its values belong to parameters, as what tests free."""
+    from validation.calibration.staged_fit import fit_stages
     from validation.calibration.unknowns import scene_of, working
     from validation.effects import effect
 
-    for one in case.model.effects:
-        effect(one.name, scene_of(case))
-    checked_values(history.last, working(case)[0].parameters, "model.toml")
+    where = f"{settings.model_file} revision {history.last.number}"
+    try:
+        for one in case.model.effects:
+            effect(one.name, scene_of(case))
+        network, unknowns = working(case)
+    except InputError as fault:
+        raise (
+            fault if not case.model.effects else InputError(fault.what, f"{where}, {fault.where}", fault.right)
+        ) from None
+    checked_values(history.last, network.parameters, where)
+    if any(test.frees for test in case.tests):
+        fit_stages(case, case.tests, unknowns)
     return case

@@ -139,8 +139,7 @@ class Case:
 
         test : its name; else the first that was never used to fit. Raises InputError for an unknown one.
         """
-        from thermoscope.case_folder.runs import held
-        from thermoscope.commands.show.pages import by_interest
+        from thermoscope.case_folder.runs import by_interest, held
         from viz import measured_and_model
 
         if test is not None and test not in self.tests:

@@ -65,6 +65,11 @@ def without_sign(network: Network, name: str) -> bool:
     return False
 
 
+def is_amount(network: Network, name: str) -> bool:
+    """Whether an input is a power or a share that a loss takes the amount of."""
+    return name.endswith(AMOUNTS) and without_sign(network, name)
+
+
 def checked_heat(
     sheet: Sheet, samples: Samples, inputs: Mapping[str, Array], network: Network
 ) -> tuple[dict[str, Array], list[str]]:
@@ -73,7 +78,7 @@ def checked_heat(
     for name, values in inputs.items():
         read = samples.values[columns[name].name] if name in columns else values
         lowest = float(np.nanmin(read))
-        if name.endswith(AMOUNTS) and lowest < 0.0 and without_sign(network, name):
+        if lowest < 0.0 and is_amount(network, name):
             where = _cell(columns[name], samples) if name in columns else f"{sheet.where} [inputs] {name}"
             if lowest < -NOISE * float(np.nanmax(np.abs(read))):
                 raise InputError(f"{lowest:g} is negative, and the loss that reads '{name}' would heat by it",

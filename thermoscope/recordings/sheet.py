@@ -125,10 +125,10 @@ def load_sheet(path: Path) -> Sheet:
     return read_sheet(data, str(path), path.parent)
 
 
-def read_sheet(data: Mapping[str, Any], where: str, folder: Path = Path()) -> Sheet:
-    """A sheet; InputError for unknown keys, forgotten units and contradictions."""
+def read_sheet(data: Mapping[str, Any], where: str, folder: Path = Path(), head: str = "test") -> Sheet:
+    """A sheet; InputError for unknown keys, forgotten units and contradictions.  head : the table of its clock"""
     top = Table(data, where)
-    test, columns, means = top.table("test"), top.tables("columns"), top.tables("means")
+    test, columns, means = top.table(head), top.tables("columns"), top.tables("means")
     inputs, boundaries = top.table("inputs").constants("inputs"), top.table("boundaries").constants("boundaries")
     squares, recorders, events = top.table("root_sum_square"), top.tables("recorders"), top.tables("events")
     top.close()
@@ -141,7 +141,7 @@ def read_sheet(data: Mapping[str, Any], where: str, folder: Path = Path()) -> Sh
         test.word("description", ""), _initial(test), test.number("max_gap_s", MAX_GAP_S),
         tuple(c for name, table in columns.items() if (c := _column(name, table, filtered, folder)) is not None),
         tuple(_mean(name, table, filtered) for name, table in means.items()),
-        {name: squares.words(name) for name in squares.data}, inputs, boundaries, test.word("worksheet", ""),
+        {name: squares.members(name) for name in squares.data}, inputs, boundaries, test.word("worksheet", ""),
         {name: _recorder(table, folder) for name, table in recorders.items()},
         {name: read_events(name, table, folder) for name, table in events.items()}, *_window(test),
     )  # fmt: skip
@@ -202,9 +202,7 @@ def _recorder(table: Table, folder: Path) -> Recorder:
 
 
 def _mean(name: str, table: Table, filtered: float) -> Mean:
-    of, place = table.words("of"), table.word("place")
+    of, place = table.members("of"), table.word("place")
     sigma, lag = table.number("sigma_K", 0.5), table.number("lag_s", 0.0) + filtered
     table.close()
-    if not of:
-        raise table.error("of = [] averages nothing", "of = [two or more columns]")
     return Mean(name, of, place, sigma, lag, table.where)

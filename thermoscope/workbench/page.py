@@ -115,10 +115,16 @@ def _machine(session: Session) -> None:
                 for icon, name in _VIEW:
                     act = session.shown.first_view if name == "first_view" else _turning(session, name)
                     v3.VBtn(icon=icon, size="x-small", variant="text", click=act, **told("aria-label", _LABEL[name]))
+            if session.bench.folder.built is not None:
+                v3.VBtn("{{ viewer ? 'Back' : 'Play' }}", id="view", size="small", variant="outlined",
+                        disabled=("busy",), click=lambda: started(session.view()),
+                        **told(":aria-label", "viewer ? 'back to the picture' : 'turn, cut and play the machine here'"),
+                        )  # fmt: skip
+        html.Iframe(v_if=("viewer",), src=("viewer",), classes="view", id="viewer", **told("title", "the machine"))
         if session.shown.stage is None:
             html.P("{{ why_flat }}", classes="flat")
             return
-        with html.Div(classes="view", id="machine"):
+        with html.Div(v_show=("!viewer",), classes="view", id="machine"):
             view = vtk_widgets.VtkRemoteView(
                 session.shown.stage.window, ref="machine", interactive_ratio=0.6, interactive_quality=60,
                 still_quality=92,

@@ -35,6 +35,7 @@ class Session:
         self.history: History = bench.folder.history
         self.diagnosis: dict[str, Any] | None = None
         self.dropped: Dropped | None = None
+        self.viewer_page = ""
         self._refused: Revision | None = None
         self._job: Job | None = None
         self._known: list[tuple[Revision, Appearance]] = [(self.history.last, bench.first)]
@@ -146,6 +147,18 @@ class Session:
             self.turn_to(Bench(folder, look, *drawn))
             with self.state:
                 self.state.drop, self.state.made = None, str(folder.settings.path)
+
+    async def view(self) -> None:
+        """The model on the machine in the browser's own GL, instead of the pictures from here; then back again."""
+        if self.state.viewer:
+            with self.state:
+                self.state.viewer = ""
+            return
+        page = await self._calculate("Preparing the machine", steps.viewed, self.folder)
+        if page is not None:
+            self.viewer_page = page
+            with self.state:
+                self.state.viewer = f"viewer.html?{time.time_ns()}"
 
     def paper(self) -> None:
         """From light to dark and back."""

@@ -17,7 +17,7 @@ from aiohttp import WSMsgType, web
 from thermoscope.workbench.access_control import served
 from thermoscope.workbench.application import Bench
 from thermoscope.workbench.dropped import stored
-from thermoscope.workbench.policy import REPORT, policy
+from thermoscope.workbench.policy import policy, report_policy, viewer_policy
 from thermoscope.workbench.session import Session
 
 MOST = 8
@@ -109,6 +109,12 @@ class Tabs:
             await socket.prepare(request)
             await tab.talk(socket)
             return socket
+        if name == "viewer.html":
+            return web.Response(
+                text=tab.session.viewer_page,
+                content_type="text/html",
+                headers={"Content-Security-Policy": viewer_policy()},
+            )
         if name == "report.html":
             path: Path | None = tab.session.bench.folder.settings.out / "report.html"
         else:
@@ -117,7 +123,9 @@ class Tabs:
             raise web.HTTPNotFound()
         headers = {}
         if path.suffix == ".html":
-            headers["Content-Security-Policy"] = REPORT if name == "report.html" else policy(path, request.host)
+            headers["Content-Security-Policy"] = (
+                report_policy() if name == "report.html" else policy(path, request.host)
+            )
         return web.FileResponse(path, headers=headers)
 
     def turn_to(self, bench: Bench) -> None:

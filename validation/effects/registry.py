@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 from pkgutil import walk_packages
@@ -81,7 +82,8 @@ def _known(gate: str, scene: Scene | None, name: str) -> str:
 
 
 def extended(network: Network, effects: Iterable[Effect]) -> Network:
-    """The network with several effects at zero amplitude."""
+    """The network with several effects at zero amplitude. They sit by what the network is without them."""
+    grown = replace(network, declared=network.identities)
     for one in effects:
-        network = one.extend(network)
-    return network
+        grown = one.extend(grown)
+    return replace(grown, declared=network.declared)

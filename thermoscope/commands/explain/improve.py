@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from shlex import quote
 from typing import TYPE_CHECKING, Any
 
-from thermoscope.case_folder.columns import write_columns
+from thermoscope.case_folder.columns import checked_columns, write_columns
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import History, save_history
 from thermoscope.commands.explain.next_tests import next_tests
@@ -30,6 +30,7 @@ def improve(case: str, yes: bool, most: int, target: str | None) -> int:
 
     with progress() as tell:
         folder = open_case_for_writing(case, tell)
+        checked_columns(folder)
         ledger = Ledger(folder)
         guide = Supervisor(singletons if yes else asked, ledger.keep)
         done = improve(folder.case, guide, most, tell, folder.settings.kinds)
@@ -61,7 +62,7 @@ def asked(found: Diagnosis, choice: Sequence[Candidate]) -> str | None:
         print(f"  would decide: {further.kind} {further.what} ({further.hours:.3g} h)", file=sys.stderr)
     print("add which? (number, or Enter to stop) ", end="", file=sys.stderr, flush=True)
     word = sys.stdin.readline().strip()
-    return choice[int(word) - 1].effect if word.isdigit() and 1 <= int(word) <= len(choice) else None
+    return choice[int(word) - 1].effect if word.isdecimal() and 1 <= int(word) <= len(choice) else None
 
 
 def offer(c: Candidate) -> str:

@@ -7,7 +7,7 @@ from shlex import quote
 from typing import TYPE_CHECKING, Any
 
 from geom.errors import InputError
-from thermoscope.case_folder.columns import write_columns
+from thermoscope.case_folder.columns import checked_columns, write_columns
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import Revision, save_history
 from thermoscope.case_folder.runs import at_revision
@@ -59,6 +59,7 @@ def undo(case: str, number: int | None, target: str | None) -> int:
     """One revision more, equal to the one before the last, or to `number`; nothing is forgotten."""
     with progress() as tell:
         folder = open_case_for_writing(case, tell)
+        checked_columns(folder)
         last = folder.history.last.number
         if number is None and last == 0:
             raise InputError("there is no step to undo", str(folder.settings.model_file), "a case that was revised")
@@ -79,6 +80,7 @@ def revised(case: str, step: Callable[..., revise.Revision], anyway: bool, targe
     """Open, take the step, keep it if it is accepted, show it. `step` is given folder and progress."""
     with progress() as tell:
         folder = open_case_for_writing(case, tell)
+        checked_columns(folder)
         notes(f"{f.words}; those readings are left out" for f in broken_channels(folder.case.tests))
         result = step(folder, tell)
     keep = result.accepted or anyway

@@ -15,8 +15,19 @@ import numpy as np
 from geom.errors import MissingDependency
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import Revision
-from thermoscope.case_folder.runs import at_revision, before_last, fields, held, parameters, readings, steps
+from thermoscope.case_folder.runs import (
+    ORDER,
+    at_revision,
+    before_last,
+    by_interest,
+    fields,
+    held,
+    parameters,
+    readings,
+    steps,
+)
 from thermoscope.commands.open_case import open_case_for_writing
+from thermoscope.commands.show.viewer import viewer_page
 from thermoscope.commands.stored_diagnosis import last_diagnosis, saved_diagnosis
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import Progress, give, notes, progress
@@ -29,7 +40,6 @@ if TYPE_CHECKING:
 
 FRAMES = 61
 LIKELY = 0.5  # probability from which an event is drawn
-ORDER = {"hold-out": 0, "validate": 1, "calibrate": 2}
 
 
 def report(case: str, out: Path | None, target: str | None) -> int:
@@ -58,10 +68,11 @@ def write_page(folder: Folder, case: str, into: Path, tell: Progress) -> Path:
     result, (diagnosis, earlier) = folder.compared, _diagnosis(folder)
     curves = [marked(held(folder, test), diagnosis) for test in by_interest(folder)]
     tell("drawing")
+    viewed = "" if folder.built is None else viewer_page(folder, tell)
     page = Report(
         folder.case.name, folder.settings.description, result.document(), diagnosis, steps(folder),
         parameters(folder), curves, _pictures(folder, into, None if earlier else diagnosis), assumptions(folder),
-        commands(folder, case), made(), earlier, documents(folder.budgets),
+        commands(folder, case), made(), earlier, documents(folder.budgets), viewed,
     )  # fmt: skip
     return write_report(page, into / "report.html")
 
@@ -97,11 +108,6 @@ def rendered(folder: Folder, into: Path, tell: Progress) -> list[Path]:
         tell("writing the recording")
         files.append(_recording(folder, into))
     return files
-
-
-def by_interest(folder: Folder) -> list[Test]:
-    """Tests with the never-used ones first."""
-    return sorted(folder.case.tests, key=lambda test: ORDER[test.role])
 
 
 def _diagnosis(folder: Folder) -> tuple[Mapping[str, Any] | None, bool]:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from geom.errors import InputError
+from lumped.machine.losses import ASSUMED
 from thermoscope.case_folder.files import write_whole
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import Progress, give, notes, progress
@@ -25,6 +27,7 @@ from thermoscope.importing.source import Source, read_source, signature
 from thermoscope.importing.starter import starter
 from thermoscope.importing.target import Target, target_of
 from thermoscope.importing.written import folder_whole, quoted, write_case
+from thermoscope.recordings.grid import LONGEST_S
 
 if TYPE_CHECKING:
     from lumped.model.network import Network
@@ -66,6 +69,7 @@ def new(files: Sequence[Path], wishes: Wishes, target: str | None) -> int:
         raise InputError("a machine and a network are both given", "--machine, --network", "one of the two")
     folder = wishes.out or Path(test_name(files[0], []))
     with progress() as tell:
+        _window(wishes)
         read = [read_recording(file, wishes.period_s, tell) for file in dict.fromkeys(files)]
         model = _model(wishes, read, tell)
     drafts = _drafts(read, model, wishes)
@@ -73,6 +77,13 @@ def new(files: Sequence[Path], wishes: Wishes, target: str | None) -> int:
         document = written(folder, model, drafts, tell)
     give(document, target, lambda: answer(document))
     return 0
+
+
+def _window(wishes: Wishes) -> None:
+    """The part that is asked for runs forwards."""
+    start, end = wishes.window_s
+    if end is not None and end <= start:
+        raise InputError(f"{start:g} is not before {end:g}", "--from, --to", "--from below --to")
 
 
 def settings(words: Sequence[str]) -> dict[str, float]:
@@ -90,7 +101,11 @@ def read_recording(file: Path, period_s: float | None, tell: Progress) -> tuple[
     """A file and its clock.  period_s : between rows, where it has none"""
     tell(f"reading {file.name}")
     source = read_source(file)
-    return source, clock_of(source, period_s)
+    clock = clock_of(source, period_s)
+    span = float(np.nanmax(clock.seconds) - np.nanmin(clock.seconds))
+    if span > LONGEST_S:
+        raise InputError(f"its rows span {span:.3g} s", str(file), "at most a year: the clock in seconds, or --period")
+    return source, clock
 
 
 def model_of_case(settings: Settings, network: Network) -> Model:
@@ -120,6 +135,9 @@ def _machine(machine: str, tell: Progress) -> Model:
     from thermoscope.pipeline import build
 
     network = build(load_machine_file(Path(machine)), progress=tell).network
+    if any(source.name == ASSUMED for source in network.sources):
+        raise InputError("declares no losses: nothing says what heated it in the tests", machine,
+                         "[losses.NAME] with kind, at and its numbers")  # fmt: skip
     path = Path(machine)
     if not path.exists():
         name = path.name.removesuffix(".toml")
@@ -185,9 +203,10 @@ def written(folder: Path, model: Model, drafts: Sequence[Draft], tell: Progress)
         tell("writing the case")
         write_case(partial, folder.name, model.put, drafts)
         settings = read_settings(partial)
-        patients = [patient_of(entry) for entry in settings.tests]
-        for entry, one in zip(settings.tests, patients, strict=True):
-            read_test(entry.name, entry.role, one.samples, one.sheet, model.network, settings.sample_s)
+        with _as_recorded(partial, drafts):
+            patients = [patient_of(entry) for entry in settings.tests]
+            for entry, one in zip(settings.tests, patients, strict=True):
+                read_test(entry.name, entry.role, one.samples, one.sheet, model.network, settings.sample_s)
         findings = [f for f in examined(patients, model.network) if not f.remark]
         tell("drawing the columns")
         _draw(drafts[0], partial / "out" / PICTURE)
@@ -206,6 +225,21 @@ def _draw(draft: Draft, png: Path) -> None:
         columns(panels(draft), f"{draft.name}: what each column was taken for", png=png)
     except ModuleNotFoundError as fault:
         notes([f"no picture of the columns: {missing_extra(fault) or fault}"])
+
+
+@contextmanager
+def _as_recorded(folder: Path, drafts: Sequence[Draft]) -> Iterator[None]:
+    """What is wrong with a test that was to be written is said of the recording it comes from."""
+    try:
+        yield
+    except InputError as fault:
+        where = fault.where
+        for draft in drafts:
+            files = ", ".join(str(r.source.file) for r in draft.records)
+            for name in (f"{draft.name}.csv", f"{draft.name}.toml"):
+                where = where.replace(str(folder / "tests" / name), files)
+        right = f"{fault.right}; or a part of it by --from and --to, other values by --set; nothing was written"
+        raise InputError(fault.what, where.replace(str(folder), "the new case"), right) from None
 
 
 def _document(draft: Draft, role: str) -> dict[str, Any]:
