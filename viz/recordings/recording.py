@@ -142,7 +142,7 @@ def _sensors(
         radii=rr.Radius.ui_points(5.0), show_labels=False,
     )  # fmt: skip
     stream.log("machine/sensors", points, static=True)
-    named = sorted(placed, key=lambda channel: -c.rmse(channel) / limit_K(channel))[:LABELS]
+    named = sorted(placed, key=lambda channel: -c.rmse(channel) / c.limit_K(channel))[:LABELS]
     labels = rr.Points3D(
         [positions[channel.name] for channel in named], labels=[short(channel.name) for channel in named],
         radii=rr.Radius.ui_points(0.0), show_labels=True,
