@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import combinations
@@ -12,7 +13,7 @@ from numpy.typing import NDArray
 from lumped.model.network import Link, Network, Source
 from lumped.transfer.laws import InputPower
 from thermoscope.recordings.consistency import read_by
-from thermoscope.recordings.sheet import Sheet
+from thermoscope.recordings.sheet import Column, Sheet
 from thermoscope.recordings.tables import Samples
 
 Array = NDArray[np.float64]
@@ -24,9 +25,10 @@ UNEVEN = 0.5  # of a long step of a clock, between nine in ten and one in ten of
 RATES = 10.0  # times the rows of another test
 STORED = 20.0  # times the heat that came in; capacities are known within a factor of 2 or 3
 WARM_K = 3.0
+SWAPPED = 0.25  # of the rise of the others, as far as wires that are swapped make a reading fall at least
 LEAST_READINGS = 3  # of a sensor in a test, as of rows
 WIDE_K = 10.0  # 1-sigma that no sensor of a machine has
-ONE = np.ones(2)  # of every input
+SOME = np.array([1.0, 1e3, 1e6])  # of every input: small, usual, large
 SWITCHES = ((0.0, 1.0), (0.0, 100.0))  # levels of an input that is switched: as a number, in percent
 
 
@@ -71,9 +73,9 @@ class Patient:
 def examined(patients: list[Patient], network: Network) -> tuple[Finding, ...]:
     """Everything that looks wrong in the tests, in the case as a whole and in the network."""
     each = [finding for p in patients for check in CHECKS for finding in check(p)]
-    power = [finding for p in patients for finding in _power(p, network)]
+    inside = [finding for p in patients for check in INSIDE for finding in check(p, network)]
     inputs = [*_unused(patients, network), *_switched(patients, network)]
-    return (*each, *power, *_rates(patients), *_copies(patients), *_cold(network), *inputs, *_stores(network))
+    return (*each, *inside, *_rates(patients), *_copies(patients), *_cold(network), *inputs, *_stores(network))
 
 
 def _units(p: Patient) -> Iterator[Finding]:
@@ -100,13 +102,14 @@ def _scale(p: Patient) -> Iterator[Finding]:
                 yield p.found(name, f"starts at {start:.4g} degC, the others at {usual:.4g}: tenths of a degree?", cure)
 
 
-def _reversed(p: Patient) -> Iterator[Finding]:
-    """A sensor that falls as the others rise: a thermocouple with its wires swapped."""
-    moves = {n: float(v[seen[-1]] - v[seen[0]]) for n, v in p.temperatures.items()
+def _reversed(p: Patient, network: Network) -> Iterator[Finding]:
+    """A sensor of the machine that falls as the others rise: a thermocouple with its wires swapped."""
+    columns = {c.name: p.samples.values[c.name] for c in _within(p, network)}
+    moves = {n: float(v[seen[-1]] - v[seen[0]]) for n, v in columns.items()
              if (seen := np.flatnonzero(np.isfinite(v))).size}  # fmt: skip
     for name, move in moves.items():
-        others = [m for n, m in moves.items() if n != name]
-        if move < -WARM_K and others and min(others) > -WARM_K / 3 and float(np.median(others)) > WARM_K:
+        rise = float(np.median([m for n, m in moves.items() if n != name] or [0.0]))
+        if rise > WARM_K and move < -max(WARM_K, SWAPPED * rise):
             yield p.found(name, f"falls by {-move:.0f} K while the others rise: are its wires swapped?",
                           "use = false, or the wires the right way round")  # fmt: skip
 
@@ -121,11 +124,16 @@ def _sparse(p: Patient) -> Iterator[Finding]:
                           "says next to nothing of the model", "readings over the test, or use = false")  # fmt: skip
 
 
-def _declared(p: Patient) -> Iterator[Finding]:
+def _within(p: Patient, network: Network) -> list[Column]:
+    """Columns of temperatures of the machine, not of what surrounds it."""
+    return [c for c in p.sheet.columns if c.is_temperature and c.place not in network.boundaries]
+
+
+def _declared(p: Patient, network: Network) -> Iterator[Finding]:
     """What the sheet says of a test or a sensor, against what was read."""
     starts, span = _starts(p), float(p.samples.time[-1])
     given = p.sheet.initial
-    for c in (c for c in p.sheet.columns if c.name in starts):
+    for c in (c for c in _within(p, network) if c.name in starts):
         first = given if isinstance(given, float) else given.get(c.place) if not isinstance(given, str) else None
         if first is not None and abs(first - starts[c.name]) > APART_K:
             yield p.found(c.name, f"starts at {starts[c.name]:.0f} degC, the sheet says initial = {first:g}",
@@ -200,7 +208,7 @@ def _noted(p: Patient) -> Iterator[Finding]:
             yield p.found("", note, "look at it; use = false leaves a column out")
 
 
-CHECKS = (_noted, _units, _scale, _reversed, _sparse, _declared, _clock, _spikes, _frozen, _twins)
+CHECKS = (_noted, _units, _scale, _sparse, _clock, _spikes, _frozen, _twins)
 
 
 def _power(p: Patient, network: Network) -> Iterator[Finding]:
@@ -214,6 +222,9 @@ def _power(p: Patient, network: Network) -> Iterator[Finding]:
         names = ", ".join(c.name for c in columns)
         yield p.found(names, f"{came:.3g} J came in, {stored:.3g} J would be needed for the rise of {rise:.0f} K: kW?",
                       'unit = "kW", or check [nodes] C_J_K')  # fmt: skip
+
+
+INSIDE = (_power, _reversed, _declared)
 
 
 def _rates(patients: list[Patient]) -> Iterator[Finding]:
@@ -271,7 +282,10 @@ def _switched(patients: list[Patient], network: Network) -> Iterator[Finding]:
 def _cold(network: Network) -> Iterator[Finding]:
     """A network that nothing can heat."""
     laws = [source.law for source in network.sources]
-    if not any(np.any(np.asarray(law.factor({n: ONE for n in law.reads})) != 0.0) for law in laws):
+    with warnings.catch_warnings(), np.errstate(all="ignore"):  # maps end somewhere between these
+        warnings.simplefilter("ignore")
+        heats = any(np.any(np.asarray(law.factor({n: SOME for n in law.reads})) != 0.0) for law in laws)
+    if not heats:
         what = "no loss of the network gives any heat" if laws else "the network has no loss: nothing heats it"
         yield Finding("", "losses", what, "[losses.NAME] with kind, at and its numbers")
 
