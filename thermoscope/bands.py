@@ -40,7 +40,7 @@ def wanted(network: Network, asked: bool | None) -> bool:
 
 def posterior_of(folder: Folder, progress: Progress) -> ParameterPosterior:
     """Of the model as it stands, from the cache where this very case was looked at before."""
-    file = cache_folder() / f"belief-{_key(folder)}.npz"
+    file = cache_folder() / f"belief-{case_key(folder)}.npz"
     kept = recalled(file, lambda path: _kept(folder, path))
     if kept is not None:
         return kept
@@ -63,7 +63,7 @@ def _kept(folder: Folder, file: Path) -> ParameterPosterior:
     )
 
 
-def _key(folder: Folder) -> str:
+def case_key(folder: Folder) -> str:
     """Of everything that decides: the case's files, the machine, and what was calibrated."""
     settings, model = folder.settings, folder.case.model
     content = hashlib.sha256(repr((LAYOUT, model.effects, sorted(model.values.items()), model.revision)).encode())
