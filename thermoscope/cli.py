@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -13,6 +13,7 @@ from geom.errors import ThermoscopeError
 from thermoscope.case_folder.files import checked_out, checked_target, message_of, printable
 from thermoscope.console.answer import LINES, within
 from thermoscope.console.groups import grouped, old_name
+from thermoscope.extras import explained
 
 app = typer.Typer(
     help="See where your motor's thermal model is wrong, and why.",
@@ -21,6 +22,8 @@ app = typer.Typer(
     no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False, rich_markup_mode=None,
 )  # fmt: skip
 
+UsageError: Any = typer.BadParameter.__base__  # of click, wherever this version of typer keeps it
+LATEST_S = 1e9  # as [test] from_s in a sheet
 ANYWHERE = ("--all", "--debug")  # options of every command
 
 # Read when NumPy is imported. The matrices of a diagnosis are small: threads of BLAS would mostly wait for each other.
@@ -35,7 +38,9 @@ Json = Annotated[
 Anyway = Annotated[bool, typer.Option("--anyway", help="Write it even if it is not accepted.")]
 Draws = Annotated[int | None, typer.Option("--draws", hidden=True, help="Of older versions; nothing is drawn now.")]
 Machine = Annotated[str, typer.Argument(metavar="MACHINE", help="A machine or STEP file, or a name that comes along.")]
-Accuracy = Annotated[float, typer.Option(min=0.01, help="Percent of a part's rise; means within half of it.")]
+Accuracy = Annotated[
+    float, typer.Option(min=0.01, max=100.0, help="Percent of a part's rise; means within half of it.")
+]
 Limit = Annotated[
     list[str] | None,
     typer.Option("--limit", metavar="PLACE=DEGC", help="For example winding=155; several are possible."),
@@ -70,9 +75,13 @@ def new(
     constants: Annotated[
         list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="What was not recorded: ambient=21.5.")
     ] = None,
-    period: Annotated[float | None, typer.Option(min=1e-6, help="Seconds between rows without a clock.")] = None,
-    start: Annotated[float, typer.Option("--from", min=0.0, help="The tests begin here (s from the first row).")] = 0.0,
-    end: Annotated[float | None, typer.Option("--to", min=0.0, help="And end here.")] = None,
+    period: Annotated[
+        float | None, typer.Option(min=1e-6, max=1e7, help="Seconds between rows without a clock.")
+    ] = None,
+    start: Annotated[
+        float, typer.Option("--from", min=0.0, max=LATEST_S, help="The tests begin here (s from the first row).")
+    ] = 0.0,
+    end: Annotated[float | None, typer.Option("--to", min=0.0, max=LATEST_S, help="And end here.")] = None,
     json: Json = None,
 ) -> None:
     """A case from your own recordings: guesses each column, asks what it cannot know. Same columns: one test a file."""
@@ -195,8 +204,8 @@ def calibrate(
     case: Case,
     anyway: Anyway = False,
     profile: Annotated[list[str] | None, typer.Option(metavar="GLOB", help="Profile these parameters too.")] = None,
-    starts: Annotated[int | None, typer.Option(min=1, help="Fits from so many points of the prior.")] = None,
-    seed: Annotated[int | None, typer.Option(min=0, help="Of the points.")] = None,
+    starts: Annotated[int | None, typer.Option(min=1, max=1000, help="Fits from so many points of the prior.")] = None,
+    seed: Annotated[int | None, typer.Option(min=0, max=2**32 - 1, help="Of the points.")] = None,
     json: Json = None,
 ) -> None:
     """Fit the declared parameters to the calibration tests, with intervals and what the data cannot identify."""
@@ -228,7 +237,8 @@ def picture(
         str,
         typer.Argument(
             metavar="WHAT",
-            help="field, difference, exploded, parts, mesh, flux, network, losses, curves, residuals or errors.",
+            help="machine, temperature, field, difference, misses, exploded, parts, mesh, flux, network, losses, "
+            "curves, residuals or errors.",
         ),
     ],
     out: Annotated[Path | None, typer.Option("--out", metavar="FILE", help="A PNG file.")] = None,
@@ -274,6 +284,23 @@ def serve(
     from thermoscope.commands.show.serve import serve as run
 
     raise typer.Exit(run(case, host, port))
+
+
+@app.command()
+def plan(
+    case: Case,
+    effect: Annotated[
+        list[str] | None,
+        typer.Option(metavar="EFFECT@PLACE", help="A hypothesis; several are possible. Else the last diagnosis's."),
+    ] = None,
+    test: Annotated[str | None, typer.Option(metavar="NAME", help="Of the menu; else the one that tells most.")] = None,
+    out: Annotated[Path | None, typer.Option("--out", metavar="FILE", help="An HTML file.")] = None,
+    json: Json = None,
+) -> None:
+    """A page to pin on the bench: the test to drive next, and the curves that each hypothesis predicts."""
+    from thermoscope.commands.show.plan import plan as run
+
+    raise typer.Exit(run(case, tuple(effect or ()), test, out, json))
 
 
 @app.command()
@@ -323,7 +350,8 @@ def two_paths(
 @app.command()
 def curves(
     case: Case,
-    resolution: Annotated[float, typer.Option(min=1e-3, help="K, of the thermocouples.")] = 0.5, json: Json = None,
+    resolution: Annotated[float, typer.Option(min=1e-3, max=100.0, help="K, of the thermocouples.")] = 0.5,
+    json: Json = None,
 ) -> None:  # fmt: skip
     """Warming curves: equilibrium, tau_95, the 3 to 4 % rule, equal tests pooled; exit code 1 if these two fail."""
     from thermoscope.commands.bench.curves import curves as run
@@ -356,9 +384,9 @@ def rate(
     limit: Limit = None,
     at: Annotated[list[str] | None, typer.Option("--at", metavar="NAME=VALUE", help="Input or boundary.")] = None,
     losses: Annotated[Path | None, typer.Option(metavar="CSV", help="Loss map over torque and speed.")] = None,
-    voltage: Annotated[float | None, typer.Option(help="Of the map's slices.")] = None,
-    overload: Annotated[float, typer.Option(min=100.1, help="Percent of the continuous rating.")] = 150.0,
-    top: Annotated[float | None, typer.Option(min=0.0, metavar="RPM", help="Largest speed of the envelope.")] = None,
+    voltage: Annotated[float | None, typer.Option(min=0.0, max=1e7, help="Of the map's slices.")] = None,
+    overload: Annotated[float, typer.Option(min=100.1, max=1e4, help="Percent of the continuous rating.")] = 150.0,
+    top: Annotated[float | None, typer.Option(min=0.0, max=1e6, metavar="RPM", help="Of the envelope.")] = None,
     load: Annotated[list[str] | None, typer.Option(metavar="INPUT", help="What the load multiplies.")] = None,
     cycle: Annotated[str | None, typer.Option(metavar="FILE|NAME", help="A drive cycle to repeat.")] = None,
     mapped: Annotated[bool, typer.Option("--map", help="How long at every speed and load.")] = False,
@@ -370,6 +398,32 @@ def rate(
     given = tuple(limit or ()), tuple(at or ())
     loads = tuple(load or ())
     raise typer.Exit(run(name, *given, losses, voltage, overload, top, loads, cycle, mapped, bands, json))
+
+
+@app.command()
+def optimise(
+    name: Annotated[str, typer.Argument(metavar="CASE|MACHINE", help="A case, or a machine with nothing measured.")],
+    limit: Limit = None,
+    torque: Annotated[float | None, typer.Option(min=0.0, metavar="NM", help="Required, for ever.")] = None,
+    at: Annotated[list[str] | None, typer.Option("--at", metavar="NAME=VALUE", help="Input or boundary.")] = None,
+    vary: Annotated[
+        list[str] | None, typer.Option(metavar="NAME[=LOW:HIGH]", help="Else flows, jacket and fins.")
+    ] = None,
+    method: Annotated[str, typer.Option(help="nsga2 or unsga3.")] = "nsga2",
+    population: Annotated[int, typer.Option(min=8, help="Designs per generation.")] = 48,
+    generations: Annotated[int, typer.Option(min=1)] = 30,
+    seed: Annotated[int, typer.Option(min=0)] = 1,
+    cluster: Annotated[str | None, typer.Option(metavar="ADDRESS", help="Of a Dask scheduler.")] = None,
+    cycle: Annotated[str | None, typer.Option(metavar="FILE|NAME", help="A vehicle's, with its gains.")] = None,
+    robust: Annotated[bool, typer.Option("--robust", help="Temperatures at the upper end of their bands.")] = False,
+    out: Out = None, json: Json = None,
+) -> None:  # fmt: skip
+    """Designs that trade peak temperature, settling time, copper loss and auxiliary power; each a machine file."""
+    from thermoscope.commands.use.optimise import optimise as run
+    from validation.optimisation.search import Effort
+
+    given = tuple(limit or ()), torque, tuple(at or ()), tuple(vary or ()), method
+    raise typer.Exit(run(name, *given, Effort(population, generations, seed), cluster, cycle, robust, out, json))
 
 
 @app.command()
@@ -463,10 +517,21 @@ def main() -> None:
     if note := old_name(arguments):
         print(f"note: {note}", file=sys.stderr)
     try:
-        with within(None if "--all" in sys.argv else LINES):
-            app(arguments, prog_name="thermoscope")
-    except (ThermoscopeError, OSError) as fault:
+        with within(None if "--all" in sys.argv else LINES), explained():
+            code = app(arguments, prog_name="thermoscope", standalone_mode=False)
+    except (ThermoscopeError, OSError, UsageError) as fault:
         if "--debug" in sys.argv:
             raise
-        print(f"error: {printable(message_of(fault))}", file=sys.stderr)
+        print(one_line(fault), file=sys.stderr)
         raise SystemExit(2) from None
+    except typer.Abort:
+        raise SystemExit(1) from None
+    raise SystemExit(code if isinstance(code, int) else 0)
+
+
+def one_line(fault: Exception) -> str:
+    """One line that says what is wrong; the help itself where nothing at all was asked for."""
+    if not isinstance(fault, UsageError):
+        return f"error: {printable(message_of(fault))}"
+    message, command = fault.format_message().rstrip("."), fault.ctx.command_path if fault.ctx else "thermoscope"
+    return message if "\n" in message else f"error: {printable(f'{command}: {message}; {command} --help')}"

@@ -52,6 +52,7 @@ def loss_watts(machine: Any, network: Network, inputs: Mapping[str, float]) -> d
 
 
 Declared = tuple[str, str, Shares, Law, str]
+ASSUMED = "loss:assumed"
 ASSUMED_W = 100.0  # of a machine that declares no losses, so that it can be looked at
 
 
@@ -60,9 +61,10 @@ def _declared(machine: Any) -> list[Declared]:
     plain = not any(isinstance(value, Mapping) for value in section.values())
     if plain and machine.family == "series-dc":
         losses = read(Losses, section, f"{machine.name} [losses]")
-        return _series(losses, machine.sections["ratings"])
+        rated = Table(machine.sections.get("ratings", {}), f"{machine.name} [ratings]")
+        return _series(losses, {key: rated.number(key) for key in ("current_A", "speed_rpm")})
     if not section:
-        return [("assumed", "constant", _everywhere(machine), PowerLoss(((ASSUMED_W, ()),)), "")]
+        return [(ASSUMED.partition(":")[2], "constant", _everywhere(machine), PowerLoss(((ASSUMED_W, ()),)), "")]
     where = f"{machine.name} [losses"
     tables = {name: Table(data, f"{where}.{name}]") for name, data in section.items()}
     laws = loss_laws(tables)

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from lumped.model.multipliers import values_of
 from lumped.model.network import Row
-from validation.bands.inputs import moved_boundaries, moved_inputs
 from validation.bands.posterior import ParameterPosterior, acting
 from validation.case import Channel, Test
 from validation.comparison.linearisation import stretch
+from validation.comparison.moved_inputs import moved_boundaries, moved_inputs
 from validation.comparison.predict import Watch, predict
 from validation.measurement.operators import head
 

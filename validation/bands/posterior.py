@@ -17,11 +17,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.model.network import Network, Parameter
-from validation.bands.inputs import FLOWS, moved_inputs
 from validation.calibration.calibrate import Fit, KnownSegments, minimise, with_model_error
 from validation.calibration.unknowns import working
 from validation.case import Case, Test
 from validation.comparison.linearisation import Segment, segments
+from validation.comparison.moved_inputs import FLOWS, moved_inputs
 from validation.doubt import Doubt
 from validation.inference.model_error import with_cores, with_doubts
 from validation.measurement.operators import of_measurement

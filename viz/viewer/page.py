@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.disk_cache import atomic_write
-from viz.colours import heat, missing, part_colours
+from viz.colours import VERDICT, heat, missing, part_colours
 from viz.data import Comparison, short
 from viz.rendering.nodes import SplitMesh
 from viz.rendering.scale import marks, rounded
@@ -65,17 +65,22 @@ def document(
         "mean": packed_numbers(found.mean[:, None]), "shapes": packed_numbers(found.shapes.T, found.steps(STEP_K)),
         "tests": _tests(tests, found, positions), "range": [low, high], "marks": marks(low, high),
         "change_marks": _change(tests), "heat": _palette(heat()), "missing": _palette(missing()),
+        "tints": [[int(c[i : i + 2], 16) / 255 for i in (1, 3, 5)] for c in VERDICT.values()],
     }  # fmt: skip
 
 
 def render(shown: Mapping[str, Any]) -> str:
     """The page as text. The data stand in a block that no browser runs."""
-    here = files("viz.viewer")
-    page, css, script = (here.joinpath(f"viewer.{end}").read_text(encoding="utf-8") for end in ("html", "css", "js"))
+    page, css = (files("viz.viewer").joinpath(f"viewer.{end}").read_text(encoding="utf-8") for end in ("html", "css"))
     data = json.dumps(shown, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
-    for key, text in (("TITLE", escape(shown["title"])), ("CSS", css), ("DATA", data), ("SCRIPT", script)):
+    for key, text in (("TITLE", escape(shown["title"])), ("CSS", css), ("DATA", data), ("SCRIPT", script())):
         page = page.replace(f"@{key}@", text, 1)
     return page
+
+
+def script() -> str:
+    """All that the page runs."""
+    return files("viz.viewer").joinpath("viewer.js").read_text(encoding="utf-8")
 
 
 def _change(tests: Sequence[Recorded]) -> list[float]:
@@ -107,13 +112,11 @@ def _tests(tests: Sequence[Recorded], found: LowRank, positions: Mapping[str, Se
 
 def _sensors(test: Recorded, positions: Mapping[str, Sequence[float]]) -> list[dict[str, Any]]:
     """Readings at the page's instants; null where nothing was read."""
-    from validation.comparison.tolerance import limit_K
-
     shown, clock = test.comparison, np.asarray(test.comparison.test.time, float)
     at = np.clip(np.searchsorted(clock, test.times), 0, len(clock) - 1)
     return [
         {
-            "name": short(c.name), "xyz": [float(x) for x in positions[c.name]], "limit": limit_K(c),
+            "name": short(c.name), "xyz": [float(x) for x in positions[c.name]], "limit": shown.limit_K(c),
             "measured": _digits(np.asarray(c.y, float)[at], 2),
             "model": _digits(np.asarray(shown.model[c.name])[at], 2),
             "before": None if shown.before is None else _digits(np.asarray(shown.before[c.name])[at], 2),

@@ -375,13 +375,17 @@ class Viewer {
   }
 }
 
-const TINTS = [[0, 158, 115], [213, 94, 0], [0, 114, 178], [107, 114, 128]].map((c) => c.map((v) => v / 255));
+const TINTS = data.tints;  // within, hot, cold, unknown: red, green, blue from 0 to 1
 const signed = (v) => v === null ? "–" : (v < 0 ? "−" : "+") + Math.abs(v).toFixed(1);
 
-function line(name, value, colour, act) {
+function line(name, value, colour, act) {  // a dot of the colour, the name, the value
   const li = document.createElement("li"), b = document.createElement("button");
   b.append(...[name, value].map((text) => Object.assign(document.createElement("span"), { textContent: text })));
-  b.lastChild.style.color = colour || "";
+  if (colour) {
+    const dot = Object.assign(document.createElement("i"), { className: "dot" });
+    dot.style.background = colour;
+    b.firstChild.prepend(dot);
+  }
   if (act) b.onclick = () => act(b.lastChild);
   li.append(b);
   return li;
@@ -439,8 +443,10 @@ function wired(v) {
     v.slice();
     wired(v);
     window.viewer = v;
+    $("wait").remove();
     requestAnimationFrame((t) => { v.last = t; v.tick(t); });
   } catch (fault) {
+    $("wait").remove();
     $("fault").hidden = false; $("fault").textContent = `The machine cannot be drawn: ${fault.message}.`;
     $("title").textContent = data.title;
   }

@@ -51,6 +51,8 @@ def read_limits(said: Sequence[str]) -> dict[str, float]:
     out = {}
     for one in said:
         place, equals, value = one.rpartition("=")
+        if place in out:
+            raise InputError(f"'{place}' is given twice", "--limit", "one limit for each place")
         try:
             out[place] = float(value)
         except ValueError:

@@ -44,6 +44,10 @@ def rate(
     """Ratings of a case, or of a machine with nothing measured."""
     given = read_limits(limits), read_at(at), tuple(loads)
     asked = Asked(*given, losses, voltage, overload / 100.0, top_rpm, cycle, mapped)
+    if voltage is not None and losses is None:
+        raise InputError(
+            "is of a loss map, and none is given", "--voltage", "--losses FILE.csv with a column voltage_V"
+        )
     if not asked.limits:
         raise InputError("no limit is given", "--limit", "PLACE=DEGC, for example winding=155")
     with progress() as tell, once() as said:
@@ -60,6 +64,8 @@ def read_at(said: Sequence[str]) -> dict[str, float]:
     out = {}
     for one in said:
         name, _, value = one.rpartition("=")
+        if name in out:
+            raise InputError(f"'{name}' is given twice", "--at", "one value for each")
         try:
             out[name] = float(value)
         except ValueError:
@@ -151,6 +157,7 @@ def _cycle(folder: Folder, it: Rated, asked: Asked, tell: Progress) -> dict[str,
     network, op = it.model.network, it.op
     ratings = folder.built.machine.sections.get("ratings", {}) if folder.built is not None else {}
     cycle = load_cycle(find_cycle(folder.settings.path, asked.cycle), network, ratings)
+    notes(cycle.notes)
     record = cycle.record
     if cycle.drive is not None:
         from lumped.drives.coupled import coupled
