@@ -210,8 +210,8 @@ def _rgba(colour: str) -> int:
     return int(colour[1:] + "ff", 16)
 
 
-_LEGEND = """Sensors: green within their uncertainty, vermilion where the machine is hotter than the model, blue where it is
-colder. Six have names, those furthest beyond their uncertainty; the others say theirs under the pointer.
+_LEGEND = """Sensors: green within their uncertainty, vermilion where the machine is hotter than the model,
+blue where it is colder. Six have names, those furthest beyond their uncertainty; the others under the pointer.
 
 Timelines (chosen at the bottom left): **test_time** runs through the test; for the tab *revisions* choose **revision**.
 """
