@@ -13,6 +13,7 @@ from geom.errors import ThermoscopeError
 from thermoscope.case_folder.files import checked_out, checked_target, message_of, printable
 from thermoscope.console.answer import LINES, within
 from thermoscope.console.groups import grouped, old_name
+from thermoscope.extras import explained
 
 app = typer.Typer(
     help="See where your motor's thermal model is wrong, and why.",
@@ -236,7 +237,8 @@ def picture(
         str,
         typer.Argument(
             metavar="WHAT",
-            help="field, difference, exploded, parts, mesh, flux, network, losses, curves, residuals or errors.",
+            help="machine, temperature, field, difference, misses, exploded, parts, mesh, flux, network, losses, "
+            "curves, residuals or errors.",
         ),
     ],
     out: Annotated[Path | None, typer.Option("--out", metavar="FILE", help="A PNG file.")] = None,
@@ -282,6 +284,23 @@ def serve(
     from thermoscope.commands.show.serve import serve as run
 
     raise typer.Exit(run(case, host, port))
+
+
+@app.command()
+def plan(
+    case: Case,
+    effect: Annotated[
+        list[str] | None,
+        typer.Option(metavar="EFFECT@PLACE", help="A hypothesis; several are possible. Else the last diagnosis's."),
+    ] = None,
+    test: Annotated[str | None, typer.Option(metavar="NAME", help="Of the menu; else the one that tells most.")] = None,
+    out: Annotated[Path | None, typer.Option("--out", metavar="FILE", help="An HTML file.")] = None,
+    json: Json = None,
+) -> None:
+    """A page to pin on the bench: the test to drive next, and the curves that each hypothesis predicts."""
+    from thermoscope.commands.show.plan import plan as run
+
+    raise typer.Exit(run(case, tuple(effect or ()), test, out, json))
 
 
 @app.command()
@@ -382,19 +401,74 @@ def rate(
 
 
 @app.command()
+def optimise(
+    name: Annotated[str, typer.Argument(metavar="CASE|MACHINE", help="A case, or a machine with nothing measured.")],
+    limit: Limit = None,
+    torque: Annotated[float | None, typer.Option(min=0.0, metavar="NM", help="Required, for ever.")] = None,
+    at: Annotated[list[str] | None, typer.Option("--at", metavar="NAME=VALUE", help="Input or boundary.")] = None,
+    vary: Annotated[
+        list[str] | None, typer.Option(metavar="NAME[=LOW:HIGH]", help="Else flows, jacket and fins.")
+    ] = None,
+    method: Annotated[str, typer.Option(help="nsga2 or unsga3.")] = "nsga2",
+    population: Annotated[int, typer.Option(min=8, help="Designs per generation.")] = 48,
+    generations: Annotated[int, typer.Option(min=1)] = 30,
+    seed: Annotated[int, typer.Option(min=0)] = 1,
+    cluster: Annotated[str | None, typer.Option(metavar="ADDRESS", help="Of a Dask scheduler.")] = None,
+    cycle: Annotated[str | None, typer.Option(metavar="FILE|NAME", help="A vehicle's, with its gains.")] = None,
+    robust: Annotated[bool, typer.Option("--robust", help="Temperatures at the upper end of their bands.")] = False,
+    out: Out = None, json: Json = None,
+) -> None:  # fmt: skip
+    """Designs that trade peak temperature, settling time, copper loss and auxiliary power; each a machine file."""
+    from thermoscope.commands.use.optimise import optimise as run
+    from validation.optimisation.search import Effort
+
+    given = tuple(limit or ()), torque, tuple(at or ()), tuple(vary or ()), method
+    raise typer.Exit(run(name, *given, Effort(population, generations, seed), cluster, cycle, robust, out, json))
+
+
+@app.command()
+def watch(
+    case: Case,
+    follow: Annotated[str, typer.Option("--follow", metavar="FILE|-", help="A CSV file, or - for rows from a pipe.")],
+    sensor: Annotated[list[str] | None, typer.Option(metavar="NAME", help="Use these sensors alone.")] = None,
+    like: Annotated[str | None, typer.Option(metavar="TEST", help="Columns as in this test; else the first.")] = None,
+    out: Out = None, json: Json = None,
+) -> None:  # fmt: skip
+    """Beside a running machine: all temperatures and missing heat from its sensors, and where the model fails."""
+    from thermoscope.commands.use.watch import watch as run
+
+    raise typer.Exit(run(case, follow, tuple(sensor or ()), like, out, json))
+
+
+@app.command()
+def fleet(
+    case: Case,
+    recordings: Annotated[list[Path], typer.Argument(metavar="RECORDINGS...", help="UNIT@2026-03.csv, or folders.")],
+    like: Annotated[str | None, typer.Option(metavar="TEST", help="Columns as in this test; else the first.")] = None,
+    cluster: Annotated[str | None, typer.Option(metavar="ADDRESS", help="Of a Dask scheduler.")] = None,
+    json: Json = None,
+) -> None:
+    """Motors that should be equal: what differs between them, what drifts over the months, which one stands out."""
+    from thermoscope.commands.use.fleet import fleet as run
+
+    raise typer.Exit(run(case, recordings, like, cluster, json))
+
+
+@app.command()
 def export(
     case: Case,
     out: Out = None,
-    form: Annotated[str, typer.Option("--as", help="xlsx, csv: results; c, fmu, json, matlab: the model.")] = "xlsx",
+    form: Annotated[str, typer.Option("--as", help="xlsx, csv: results; c, fmu, json, matlab; observer: C.")] = "xlsx",
     limit: Limit = None,
     fmi: Annotated[int, typer.Option(help="Version of an FMU: 2 or 3.")] = 2,
+    sensor: Annotated[list[str] | None, typer.Option(metavar="NAME", help="Of an observer; else all.")] = None,
     csv: Annotated[bool, typer.Option("--csv", hidden=True, help="As --as csv.")] = False,
     json: Json = None,
 ) -> None:
     """Results as a workbook or CSV files; or the model to run elsewhere: C99, FMU, JSON or MAT file."""
     from thermoscope.commands.use.export import export as run
 
-    raise typer.Exit(run(case, out, "csv" if csv else form, tuple(limit or ()), fmi, json))
+    raise typer.Exit(run(case, out, "csv" if csv else form, tuple(limit or ()), fmi, json, tuple(sensor or ())))
 
 
 @app.command()
@@ -443,7 +517,7 @@ def main() -> None:
     if note := old_name(arguments):
         print(f"note: {note}", file=sys.stderr)
     try:
-        with within(None if "--all" in sys.argv else LINES):
+        with within(None if "--all" in sys.argv else LINES), explained():
             code = app(arguments, prog_name="thermoscope", standalone_mode=False)
     except (ThermoscopeError, OSError, UsageError) as fault:
         if "--debug" in sys.argv:

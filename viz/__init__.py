@@ -17,7 +17,7 @@ _HOME = {
     "scores": "figures.candidates", "posterior": "figures.candidates", "confusion": "figures.candidates",
     "write_recording": "recordings.recording", "verify": "recordings.recording", "Report": "pages.report",
     "write_report": "pages.report", "write_pdf": "pages.pdf", "screened": "figures.screening",
-    "ranking": "figures.screening",
+    "ranking": "figures.screening", "portrait": "appearance.portrait", "misses": "machine.misses",
 }  # fmt: skip
 __all__ = sorted(_HOME)
 

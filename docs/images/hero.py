@@ -10,8 +10,7 @@ from pathlib import Path
 from PIL import Image
 
 from thermoscope.case_folder.folder import load_case
-from thermoscope.case_folder.runs import before_last, fields, held
-from thermoscope.commands.show.pages import by_interest
+from thermoscope.case_folder.runs import before_last, by_interest, fields, held
 from viz import Comparison, cutaway, sensors, split
 from viz.colours import LIGHT
 from viz.rendering import scene

@@ -4,6 +4,7 @@ import json
 from dataclasses import replace
 
 import pytest
+from PIL import Image
 
 from geom import Machine, load_machine, read_vtu
 from geom.machine_file import machine_from
@@ -34,6 +35,9 @@ def coarse(tmp_path_factory):
         patch.setenv("THERMOSCOPE_CACHE", str(tmp_path_factory.mktemp("cache")))
         patch.setattr(command, "load_machine_file", lambda path: small(path.name) if path.name in FEW else usual(path))
         patch.setattr(command, "built_from", lambda m, accuracy, tell: (pipeline(m, 0.1, 36), None))
+        pictures = command.pictures  # one family is enough
+        drawn = lambda built, *rest: pictures(built, *rest) if built.machine.family != "series-dc" else []  # noqa: E731
+        patch.setattr(command, "pictures", drawn)
         yield command.build
 
 
@@ -57,6 +61,8 @@ def test_build_writes_solids_mesh_and_a_table_of_every_part(built):
         assert row["solid_volume_m3"] == pytest.approx(row["volume_m3"], rel=0.01), part.name
         assert sum(row["faces_m2"].values()) + sum(row["contacts_m2"].values()) > 0
         assert (folder / f"{part.name}.stl").stat().st_size > 0
+    assert all(Image.open(picture).size == (1280, 800) for picture in document["pictures"])
+    assert len(document["pictures"]) == (0 if machine.family == "series-dc" else 2)
     assert {"small.step", "small.step.toml", "small.glb", "small.vtu"} < {path.name for path in folder.iterdir()}
     assert read_vtu(folder / "small.vtu").parts == tuple(part.name for part in machine.parts)
     assert document["energy_balance"] < 1e-9

@@ -5,8 +5,9 @@ from pathlib import Path
 import pytest
 
 from geom.errors import InputError
-from thermoscope.commands.show.film import film
+from thermoscope.commands.show.film import film, largest
 from thermoscope.commands.show.viewer import viewer
+from viz import Sensor
 
 
 @pytest.mark.parametrize(("run", "name"), [(viewer, "v.html"), (film, "f.gif"), (film, "f.mp4")])
@@ -20,3 +21,14 @@ def test_a_case_without_geometry_is_refused(case, tmp_path, run, name):
 def test_a_name_that_fits_no_format_is_refused(run, name):
     with pytest.raises(InputError, match="is no name"):
         run("road-test", Path(name), None)
+
+
+def test_a_title_names_the_sensor_that_is_missed_most():
+    place = (0.0, 0.0, 0.0)
+    row = [
+        Sensor("T_shaft_degC", place, 2.0, 1.0),
+        Sensor("T_yoke_degC", place, -4.0, 4.5),
+        Sensor("T_air", place, None),
+    ]
+    assert largest(row) == ": shaft +2.0 K"
+    assert largest(row[1:]) == ""

@@ -1,14 +1,19 @@
 """The report: one file, nothing loaded from elsewhere, carrying the numbers it was given."""
 
 import re
+from html import unescape
 from html.parser import HTMLParser
 
 import pytest
 from fictional import HISTORY, comparison, documents
 from PIL import Image
+from test_viz_viewer import BROWSER, NODES, PLACE, recorded
 
+from thermoscope.workbench.policy import report_policy
 from viz.pages.report import Report, render, write_report
 from viz.pages.words import story, verdict
+from viz.viewer.page import document as viewer_document
+from viz.viewer.page import render as viewer_page
 
 
 @pytest.fixture(scope="module")
@@ -139,3 +144,39 @@ def test_only_what_would_decide_is_proposed():
 def test_if_no_test_would_decide_the_report_says_so():
     spin = {"test": "spin without current", "separates": [], "predicted_gain": 3.0, "hours": 4.0}
     assert "No test of the menu would tell them apart" in told(next_tests=[spin])
+
+
+def test_the_viewer_stands_in_a_frame_that_sees_nothing_of_the_page():
+    inner = '<!doctype html><p title="x">&amp;</p><script>1 < 2</script>'
+    text = render(Report("case", viewer=inner))
+    frame = re.search(r'<iframe ([^>]*) srcdoc="([^"]*)"></iframe>', text)
+    assert unescape(frame[2]) == inner
+    assert 'sandbox="allow-scripts"' in frame[1]
+    assert 'loading="lazy"' in frame[1]
+    assert "<script" not in text.replace(frame[0], "")
+    assert "<iframe" not in render(Report("case"))
+
+
+@pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
+def test_a_browser_draws_the_viewer_in_the_report(tmp_path):
+    """From disk, and with the policy under which the workbench hands the report out."""
+    playwright = pytest.importorskip("playwright.sync_api")
+    text = render(Report("case", viewer=viewer_page(viewer_document("motor", NODES, [recorded()], PLACE))))
+    rule = f'<meta http-equiv="Content-Security-Policy" content="{report_policy()}">'.replace(
+        "; frame-ancestors 'none'", ""
+    )  # a page from disk cannot forbid its frames
+    said = []
+    with playwright.sync_playwright() as engine:
+        arguments = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+        browser = engine.chromium.launch(executable_path=BROWSER, args=arguments)
+        for name, shown in (("plain", text), ("ruled", text.replace("<head>", f"<head>{rule}", 1))):
+            file = tmp_path / f"{name}.html"
+            file.write_text(shown, encoding="utf-8")
+            page = browser.new_page()
+            page.on("console", lambda message: said.append(message.text))
+            page.goto(file.as_uri())
+            page.click("summary:has-text('Turn it')")
+            page.frame_locator("iframe").locator("#title:has-text('at 60 min')").wait_for()
+            page.close()
+        browser.close()
+    assert said == []

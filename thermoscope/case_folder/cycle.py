@@ -21,7 +21,7 @@ from lumped.integration.signals import Signals
 from lumped.integration.simulate import Record
 from lumped.model.network import Network
 from lumped.schemas.reader import Table, known
-from thermoscope.recordings.consistency import is_amount, read_by
+from thermoscope.recordings.consistency import is_amount
 from thermoscope.recordings.grid import LEAST, MOST, bridged
 from thermoscope.recordings.sheet import read_sheet
 from thermoscope.recordings.tables import load_table
@@ -34,6 +34,7 @@ WINDING, MAGNET = "winding", "magnet"
 class Cycle:
     """record : what is known beforehand;  drive : gives the rest from the temperatures of the places it watches
 
+    series : what a vehicle with a series machine is, where the cycle has one
     notes : doubts about its file
     """
 
@@ -41,7 +42,20 @@ class Cycle:
     record: Record
     drive: Drive | None = None
     watched: Mapping[str, str] = field(default_factory=dict)
+    series: Series | None = None
     notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Series:
+    """wanted (nt,) m/s, slope (nt,) rise over run;  reference_degC : of the machine's resistance"""
+
+    machine: SeriesMachine
+    vehicle: Vehicle
+    controller: Controller
+    wanted: Array
+    slope: Array
+    reference_degC: float
 
 
 def find_cycle(case: Path, name: str) -> Path:
@@ -68,13 +82,13 @@ def load_cycle(path: Path, network: Network, ratings: Mapping[str, float]) -> Cy
         if name not in network.boundaries:
             raise top.error(f"no boundary is called '{name}'", known(name, network.boundaries))
     start = head.number("initial_degC", _usual(network, boundaries, str(path)))
-    drive, watched = _drive(top, network, ratings, time, inputs)
+    drive, watched, series = _drive(top, network, ratings, time, inputs)
     head.close()
     top.close()
     if columns is not None and drive is None:
         inputs = columns.signals(inputs, time)
     notes = (*(columns.notes if columns is not None else ()), *_unread(network, inputs, drive, str(path)))
-    cycle = Cycle(path.stem, Record(time, inputs, boundaries, start), drive, watched, notes)
+    cycle = Cycle(path.stem, Record(time, inputs, boundaries, start), drive, watched, series, notes)
     _complete(network, cycle, str(path))
     return cycle
 
@@ -91,7 +105,7 @@ def _constants(top: Table, key: str, time: Array, given: Mapping[str, Array]) ->
 def _unread(network: Network, inputs: Mapping[str, Array], drive: Drive | None, where: str) -> Iterator[str]:
     """Notes on inputs that no law reads; InputError for a negative power that a loss would take the amount of."""
     for name, values in inputs.items():
-        if drive is None and name not in read_by(network):
+        if drive is None and name not in network.inputs:
             yield f"{where}: no law of the model reads '{name}'"
         if values.min() < 0.0 and is_amount(network, name):
             what = f"{values.min():g} is negative, and the loss that reads '{name}' would heat by it"
@@ -184,15 +198,15 @@ def _duty(top: Table) -> tuple[Array, dict[str, Array], dict[str, Array]]:
 
 def _drive(
     top: Table, network: Network, ratings: Mapping[str, float], time: Array, inputs: dict[str, Array]
-) -> tuple[Drive | None, dict[str, str]]:
+) -> tuple[Drive | None, dict[str, str], Series | None]:
     if "vehicle" in top:
         return _series(top, network, ratings, time, inputs)
-    return _permanent(top, network, inputs) if "pm-machine" in top else (None, {})
+    return (*_permanent(top, network, inputs), None) if "pm-machine" in top else (None, {}, None)
 
 
 def _series(
     top: Table, network: Network, ratings: Mapping[str, float], time: Array, inputs: dict[str, Array]
-) -> tuple[Drive, dict[str, str]]:
+) -> tuple[Drive, dict[str, str], Series]:
     m, v, c = top.table("series-machine"), top.table("vehicle"), top.table("controller")
     rated = [m.number(k, ratings.get(k)) for k in ("power_W", "speed_rpm", "voltage_V", "current_A")]
     machine = SeriesMachine.from_ratings(
@@ -216,7 +230,8 @@ def _series(
     slope = inputs["slope_percent"] / 100
     wanted = inputs.pop("vehicle_speed_mps")
     drive = series_drive(machine, vehicle, control, time, wanted, slope, reference)
-    return _mixed(drive, {WINDING: places}), {p: p for p in places}
+    series = Series(machine, vehicle, control, np.asarray(wanted, float), np.asarray(slope, float), reference)
+    return _mixed(drive, {WINDING: places}), {p: p for p in places}, series
 
 
 def _permanent(top: Table, network: Network, inputs: dict[str, Array]) -> tuple[Drive, dict[str, str]]:

@@ -19,7 +19,6 @@ from thermoscope.case_folder.recording_checks import (
     Patient,
     first_readings,
 )
-from thermoscope.recordings.consistency import read_by
 from thermoscope.recordings.sheet import Column
 
 Array = NDArray[np.float64]
@@ -84,7 +83,7 @@ def _power(p: Patient, network: Network) -> Iterator[Finding]:
     rises = [float(np.nanmax(v) - v[np.isfinite(v)][0]) for v in p.temperatures.values() if np.isfinite(v).any()]
     rise, span = float(np.median(rises)) if rises else 0.0, float(p.samples.time[-1])
     stored = float(network.C.sum()) * rise
-    columns = [c for c in p.sheet.columns if c.quantity == "power" and c.feeds in read_by(network)]
+    columns = [c for c in p.sheet.columns if c.quantity == "power" and c.feeds in network.inputs]
     came = sum(float(np.nanmean(np.abs(p.samples.values[c.name]))) for c in columns) * span
     if columns and rise > WARM_K and 0.0 < STORED * came < stored:
         names = ", ".join(c.name for c in columns)
@@ -115,7 +114,7 @@ def _copies(patients: list[Patient]) -> Iterator[Finding]:
 
 def _unused(patients: list[Patient], network: Network) -> Iterator[Finding]:
     """Inputs that no law reads, and inputs that no test moves."""
-    read = read_by(network)
+    read = network.inputs
     fed = {name: c.name for p in patients for c in p.sheet.columns for name in [c.feeds] if name}
     fed |= {name: "" for p in patients for name in p.sheet.events}
     squared = {column for p in patients for of in p.sheet.squares.values() for column in of}
@@ -132,7 +131,7 @@ def _unused(patients: list[Patient], network: Network) -> Iterator[Finding]:
 
 def _switched(patients: list[Patient], network: Network) -> Iterator[Finding]:
     """Inputs that are only ever on or off in a law that raises them to a power: 0 and 1 are the same to any power."""
-    for name in sorted(read_by(network)):
+    for name in sorted(network.inputs):
         seen = [p.inputs[name] for p in patients if name in p.inputs]
         seen += [p.sheet.events[name].value for p in patients if name in p.sheet.events]
         levels = np.unique(np.concatenate(seen)) if seen else np.zeros(0)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import pickle
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,17 +17,20 @@ from thermoscope.case_folder.doctor import examined
 from thermoscope.case_folder.history import History, checked_values, load_history
 from thermoscope.case_folder.recording_checks import Finding, Patient
 from thermoscope.case_folder.settings import Entry, Settings, read_settings
+from thermoscope.recordings.formats import recording
 from thermoscope.recordings.quantities import with_quantities
 from thermoscope.recordings.readings import read_test
 from thermoscope.recordings.sheet import Sheet, load_sheet
-from thermoscope.recordings.tables import load_table
+from thermoscope.recordings.tables import Samples, load_table
 from validation.calibration.unknowns import matching
 from validation.case import AddedEffect, Case, Model, Test
 from validation.measurement.sampling import SampleStep
 
 if TYPE_CHECKING:
     from geom import Machine
+    from lumped.condensation.error_budget import ErrorBudget
     from thermoscope.pipeline import Built
+    from validation.comparison.compare import Comparison
 
 Progress = Callable[[str], None]
 
@@ -45,6 +50,25 @@ class Folder:
     built: Built | None = None
     findings: tuple[Finding, ...] = ()
     steps: Mapping[str, SampleStep] = field(default_factory=dict)
+
+    @cached_property
+    def budgets(self) -> Mapping[str, ErrorBudget]:
+        """Test -> what mesh, condensation and time steps may put wrong in the model's numbers; computed once."""
+        from thermoscope.verification.error_budget import budgets_of_tests
+
+        return budgets_of_tests(self)
+
+    @property
+    def numeric_K(self) -> dict[str, dict[str, float]]:
+        """Test -> channel -> the sum of its error budget (K)."""
+        return {name: dict(budget.total_K) for name, budget in self.budgets.items()}
+
+    @cached_property
+    def compared(self) -> Comparison:
+        """The model against every test: the one comparison that tables, pictures and pages show; computed once."""
+        from validation.comparison.compare import compare
+
+        return compare(self.case, budgets=self.numeric_K)
 
 
 def _once(settings: Settings, files: Mapping[str, Path]) -> None:
@@ -68,8 +92,7 @@ def load_case(
     history = History() if bare else load_history(settings.model_file)
     patients: dict[str, Patient] = {}
     for entry in settings.tests:
-        progress(f"reading {entry.name}")
-        patients[entry.name] = patient_of(entry)
+        patients[entry.name] = patient_of(entry, progress)
     _once(settings, {name: one.samples.file for name, one in patients.items()})
     network, built = network_of(settings, progress)
     read = [
@@ -90,10 +113,27 @@ def load_case(
     )
 
 
-def patient_of(entry: Entry) -> Patient:
-    """A test as its files have it."""
+READ = 32  # recordings that a process keeps: a command, or the demo, works on one case
+_read: dict[tuple, Samples] = {}  # by sheet and files: nothing that is asked for has changed
+
+
+def patient_of(entry: Entry, progress: Progress = lambda message: None) -> Patient:
+    """A test as its files have it; a recording that has not changed is read once in a process."""
     sheet = load_sheet(entry.sheet)
-    return Patient(entry.name, sheet, load_table(entry.file, sheet))
+    files = (recording(entry.file), *(recording(r.file) for r in sheet.recorders.values()))
+    key = (pickle.dumps(sheet), *(_stamp(file) for file in files))
+    if key not in _read:
+        progress(f"reading {entry.name}")
+        while len(_read) >= READ:
+            _read.pop(next(iter(_read)))
+        _read[key] = load_table(entry.file, sheet)
+    return Patient(entry.name, sheet, _read[key])
+
+
+def _stamp(file: Path) -> tuple[str, int, int, int]:
+    """What changes when a file is written: name, number on the disk, length, instant (ns)."""
+    found = file.stat()
+    return str(file.resolve()), found.st_ino, found.st_size, found.st_mtime_ns
 
 
 def _assumed(network: Network, settings: Settings) -> list[str]:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
-from lumped.model.network import Link, Network, Source
+from lumped.model.network import Network
 from lumped.schemas.reader import known
 from thermoscope.recordings.duplicates import twice
 from thermoscope.recordings.formats import cell
@@ -43,15 +43,9 @@ def _boundaries(sheet: Sheet, network: Network) -> None:
                          "one of them: use = false, or delete the constant")  # fmt: skip
 
 
-def read_by(network: Network) -> set[str]:
-    """Inputs that a law of the network reads."""
-    items: list[Link | Source] = [*network.links, *network.sources]
-    return {name for item in items for name in item.law.reads}
-
-
 def _unread(sheet: Sheet, network: Network) -> Iterator[str]:
     """Notes on constants that no law reads; a slip of a name that one does read is refused."""
-    read, usual = read_by(network), {quantity.feeds for quantity in QUANTITIES.values()}
+    read, usual = network.inputs, {quantity.feeds for quantity in QUANTITIES.values()}
     fed = {c.feeds for c in sheet.columns}
     for name in set(sheet.inputs) - read - usual:
         near = difflib.get_close_matches(name, sorted(read - fed - set(sheet.inputs)), n=1, cutoff=NEAR)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError, MissingDependency
+from geom.plugins import plugins
 from lumped.schemas.reader import known
 from thermoscope.recordings.csv_file import read_csv
 
@@ -21,7 +23,9 @@ if TYPE_CHECKING:
     import pandas as pd
 
 Array = NDArray[np.float64]
-SUFFIXES = (".csv", ".csv.gz", ".xlsx", ".tdms", ".mf4", ".parquet")
+Reader = Callable[[Path], "pd.DataFrame"]
+READERS: Mapping[str, Reader] = plugins("formats")  # of other packages: name without its dot -> reader
+SUFFIXES = (".csv", ".csv.gz", ".xlsx", ".tdms", ".mf4", ".parquet", *(f".{name}" for name in READERS))
 TIME = "time_s"  # of formats that carry their own time
 SHEETS = (".xlsx", ".tdms")  # formats of several tables
 HEADER = 2  # line of the first row of numbers
@@ -76,6 +80,8 @@ def read_frame(file: Path, worksheet: str = "", least: int = 3) -> pd.DataFrame:
         ".csv": lambda: read_csv(file), ".csv.gz": lambda: read_csv(file), ".xlsx": lambda: _xlsx(file, worksheet),
         ".tdms": lambda: _tdms(file, worksheet), ".mf4": lambda: _mf4(file), ".parquet": lambda: _parquet(file),
     }  # fmt: skip
+    for name, read in READERS.items():
+        readers[f".{name}"] = partial(opened, file, f"a .{name} file", name, partial(read, file))
     if suffix not in readers:
         raise InputError(f"files ending in '{file.suffix}' are not read", str(file), f"one of {', '.join(SUFFIXES)}")
     if worksheet and suffix not in SHEETS:

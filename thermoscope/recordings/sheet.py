@@ -44,12 +44,17 @@ class Column:
 
     @property
     def is_temperature(self) -> bool:
-        return self.quantity == "temperature" or self.electrical is not None
+        return self.electrical is not None or of_temperature(self.quantity)
 
     @property
     def header(self) -> str:
         """The column's name in the recording."""
         return self.written or self.name
+
+
+def of_temperature(quantity: str) -> bool:
+    """Does such a column say how warm something is?"""
+    return quantity == "temperature" or QUANTITIES[quantity].degC is not None
 
 
 @dataclass(frozen=True)
@@ -166,12 +171,12 @@ def _column(name: str, table: Table, filtered: float, folder: Path) -> Column | 
     if not table.flag("use", True):
         return None
     of = table.kind("quantity", None, QUANTITIES)
-    unit, hot = checked_unit(of, table.raw("unit"), table.where), of == "temperature" or of in ELECTRICAL
+    unit, hot = checked_unit(of, table.raw("unit"), table.where), of_temperature(of) or of in ELECTRICAL
     electrical = read_electrical(of, name, table, folder) if of in ELECTRICAL else None
     kind = table.kind("sensor", "resistance" if electrical else "thermocouple", SENSORS)
     place, feeds = table.word("place", None if hot else ""), "" if hot else table.word("input", QUANTITIES[of].feeds)
     of = of if hot else held_as(of, checked_input(of, feeds, table.where))
-    usual = 0.0 if electrical else SENSORS[kind]
+    usual = 0.0 if electrical else QUANTITIES[of].sigma_K if QUANTITIES[of].degC else SENSORS[kind]
     sigma = table.number("sigma_K") if "sigma_K" in table else usual
     lag, written = table.number("lag_s", 0.0) + filtered, table.word("column", name)
     position = table.numbers("position_mm", [])

@@ -24,9 +24,11 @@ MOMENT_S = 0.02
 NOTHING: dict[str, Any] = {"data": [], "layout": {}}
 START: dict[str, Any] = {
     "busy": False, "job": {"title": "", "message": "", "percent": None}, "error": "", "outcome": None, "report": "",
+    "viewer": "",
     "tests": [], "test": "", "test_names": [], "sensors": [], "sensor": "", "curve": NOTHING, "dark": False,
     "effects": [], "revision": 0, "steps": [], "can_undo": False, "frame": 0, "frames": 0, "minute": "",
     "verdict": None, "candidates": [], "confusion": NOTHING, "has_confusion": False, "rms": "", "floor": "",
+    "drop": None, "dragged": "", "made": "",
 }  # fmt: skip
 
 
@@ -56,6 +58,7 @@ class Display:
         """Another model: its errors, curves and temperatures."""
         self.look = look
         last, errors = history.last, look.errors
+        self.state.viewer = ""  # of the model before
         self.state.effects, self.state.revision = list(last.effects), last.number
         self.state.steps, self.state.can_undo = rows.steps(history), len(ledger.effective(history)) > 1
         self.state.rms, self.state.floor = f"{errors['rmse_K']:.2f}", f"{errors['floor_K']:.2f}"

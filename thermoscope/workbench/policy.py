@@ -9,17 +9,39 @@ from functools import cache
 from pathlib import Path
 
 INLINE = re.compile(rb"<script>(.*?)</script>", re.S)
-REPORT = "; ".join([
-    "default-src 'none'", "style-src 'unsafe-inline'", "img-src 'self' data:", "font-src data:", "base-uri 'none'",
-    "form-action 'none'", "frame-ancestors 'none'",
-])  # fmt: skip
+
+
+def _named(script: bytes) -> str:
+    """A script as a policy names it."""
+    return f"'sha256-{base64.b64encode(hashlib.sha256(script).digest()).decode()}'"
 
 
 @cache
 def hashes(page: Path) -> str:
-    """The scripts inside a page, as a policy names them."""
-    found = INLINE.findall(page.read_bytes())
-    return " ".join(f"'sha256-{base64.b64encode(hashlib.sha256(script).digest()).decode()}'" for script in found)
+    """The scripts inside a page."""
+    return " ".join(_named(script) for script in INLINE.findall(page.read_bytes()))
+
+
+@cache
+def report_policy() -> str:
+    """Of the report: no script but the viewer's, which runs in a frame of its own."""
+    from viz.viewer.page import script
+
+    return "; ".join([
+        "default-src 'none'", f"script-src {_named(script().encode())}", "style-src 'unsafe-inline'",
+        "img-src 'self' data:", "font-src data:", "base-uri 'none'", "form-action 'none'", "frame-ancestors 'none'",
+    ])  # fmt: skip
+
+
+@cache
+def viewer_policy() -> str:
+    """Of the viewer: its one script, inside a page of ours."""
+    from viz.viewer.page import script
+
+    return "; ".join([
+        "default-src 'none'", f"script-src {_named(script().encode())}", "style-src 'unsafe-inline'", "base-uri 'none'",
+        "form-action 'none'", "frame-ancestors 'self'",
+    ])  # fmt: skip
 
 
 def policy(page: Path, host: str) -> str:
@@ -28,5 +50,5 @@ def policy(page: Path, host: str) -> str:
         "default-src 'none'", f"script-src 'self' 'unsafe-eval' {hashes(page)}", "style-src 'self' 'unsafe-inline'",
         "img-src 'self' data: blob:", "font-src 'self' data:", f"connect-src 'self' blob: ws://{host} wss://{host}",
         "worker-src 'self' blob:", "manifest-src 'self'", "base-uri 'self'", "form-action 'none'", "object-src 'none'",
-        "frame-ancestors 'none'",
+        "frame-src 'self'", "frame-ancestors 'none'",
     ])  # fmt: skip

@@ -38,6 +38,7 @@ def application(folder: Folder, gate: AccessControl, tell: Progress) -> web.Appl
     app.router.add_get("/", tabs.new)
     app.router.add_get("/tab/{tab}/{name:.+}", tabs.fetch)
     app.router.add_post("/tab/{tab}/paraview/", tabs.address)
+    app.router.add_post("/tab/{tab}/recordings", tabs.receive)
 
     async def sweeping(_: web.Application) -> AsyncIterator[None]:
         async def sweep() -> None:

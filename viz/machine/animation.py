@@ -9,14 +9,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError, MissingDependency
-from viz.colours import LIGHT, Theme
+from viz.colours import LIGHT, VERDICT, Theme
+from viz.data import Sensor
 from viz.machine import field
+from viz.machine.pulses import Pulses
 from viz.rendering import scene
 from viz.rendering.cut import QUARTER, Wedge, cut_away
 from viz.rendering.nodes import SplitMesh, on_nodes
 from viz.rendering.scene import Room, View
 
 Array = NDArray[np.float64]
+PALETTE = 8  # pictures that a GIF's colours are taken from
 
 
 def animate(
@@ -30,11 +33,14 @@ def animate(
     theme: Theme = LIGHT,
     frames_per_second: float = 12.0,
     titles: Sequence[str] = (),
+    sensors: Sequence[Sequence[Sensor]] = (),
+    size: tuple[int, int] = (960, 600),
     tell: Callable[[int], None] = lambda number: None,
 ) -> Path:
     """Write a .gif or .mp4 of fields (n_times, n_nodes) degC on one colour scale.
 
     titles : one per field, else the minute of the test;  tell : called with the number of each picture that is drawn
+    sensors : one row per field, all in one order; those that the model misses pulse
 
     An .mp4 needs imageio-ffmpeg (the extra [video]), which brings an encoder of its own, under the GPL.
     """
@@ -43,14 +49,18 @@ def animate(
         raise InputError(f"cannot write '{path.suffix}'", str(path), f"a file name that ends in {' or '.join(WRITERS)}")
     if len(T) != len(times) or not len(T):
         raise InputError(f"{len(times)} times but {len(T)} fields", "animation", "one field per time")
-    p, view = scene.plotter(theme, (960, 600)), view or View()
+    if sensors and len(sensors) != len(T):
+        raise InputError(f"{len(sensors)} rows of sensors but {len(T)} fields", "animation", "one row per field")
+    p, view = scene.plotter(theme, size), view or View()
     surface = cut_away(nodes, wedge)
     data = field.paint(p, surface, T[0], (float(T.min()), float(T.max())), theme)
     scene.colour_bar(p, field.UNIT, theme)
     scene.look(p, surface.points, view, Room(right=0.12, top=scene.TITLE))
-    pictures = []
+    pictures, pulses = [], Pulses(p, surface, sensors[0]) if sensors else None
     for number, (words, values) in enumerate(zip(titles or _minutes(times), T, strict=True), 1):
         tell(number)
+        if pulses is not None:
+            pulses.show(sensors[number - 1], number / frames_per_second)
         data.point_data["T"] = surface.values(values)
         scene.headline(p, words, theme)
         pictures.append(np.asarray(p.screenshot(return_img=True)))
@@ -64,10 +74,13 @@ def _minutes(times: Sequence[float]) -> list[str]:
 
 
 def _gif(path: Path, pictures: list[NDArray[np.uint8]], frames_per_second: float) -> Path:
-    """A looping GIF with one palette, taken from the last and most colourful picture."""
-    from PIL import Image
+    """A looping GIF with one palette, taken from pictures all along the way."""
+    from PIL import Image, ImageColor
 
-    palette = Image.fromarray(pictures[-1]).quantize(255)
+    some = [pictures[i][::2, ::2] for i in np.linspace(0, len(pictures) - 1, min(PALETTE, len(pictures))).astype(int)]
+    for colour in VERDICT.values():  # dots are small, but their colours matter
+        some.append(np.full((12, some[0].shape[1], 3), ImageColor.getrgb(colour), np.uint8))
+    palette = Image.fromarray(np.concatenate(some)).quantize(255)
     frames = [Image.fromarray(one).quantize(palette=palette, dither=Image.Dither.NONE) for one in pictures]
     pause = round(1000 / frames_per_second)
     frames[0].save(path, save_all=True, append_images=frames[1:], duration=pause, loop=0, optimize=False)

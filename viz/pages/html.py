@@ -50,6 +50,12 @@ def picture(png: str | Path | bytes, caption: str) -> str:
     return f'<figure><img alt="{escape(caption, quote=True)}" src="{source}">{_caption(caption)}</figure>\n'
 
 
+def inner_page(page: str, title: str) -> str:
+    """A whole page in a frame, carried inside this one; begun when it comes into sight, it sees nothing of this one."""
+    inside = f'sandbox="allow-scripts" loading="lazy" title="{escape(title, quote=True)}"'
+    return f'<iframe {inside} srcdoc="{escape(page, quote=True)}"></iframe>{_caption(title)}\n'
+
+
 def table(headers: Sequence[str], rows: Iterable[Sequence[Cell]], strong: Sequence[bool] = ()) -> str:
     """Numbers to the right, words to the left; '' and None are shown as a dash."""
     body = [list(row) for row in rows]

@@ -1,7 +1,8 @@
 """One self-contained page to hand on: verdict first, pictures, numbers with uncertainty, how to repeat it.
 
-Plots are inline SVG and pictures inline PNG, so the page is about 1 MB, opens without a network or scripts, prints, and
-follows the reader's light or dark theme. (plotly's script alone would be 4.8 MB.)
+Plots are inline SVG and pictures inline PNG, so the page is about 1 MB, opens without a network, prints, and follows
+the reader's light or dark theme. (plotly's script alone would be 4.8 MB.) Only the viewer of the machine, about 1.5 MB
+more in a frame of its own, needs scripts.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from geom.disk_cache import atomic_write
-from validation.comparison.tolerance import WORDS
+from validation.comparison.uncertainty import RULE
 from viz.data import Comparison
 from viz.figures import candidates, curves, errors, heat
 from viz.machine.missing import placed
@@ -34,6 +35,7 @@ class Report:
     curves : one Comparison per test, the most telling first
     pictures : caption -> PNG (path or bytes)
     error_budget : test -> places, as in `compare`
+    viewer : the page of viz.viewer as text, to turn and play the machine in
     assumptions : one sentence each;  commands : what repeats the result;  made : date, versions, computer
     """
 
@@ -50,6 +52,7 @@ class Report:
     made: str = ""
     earlier: bool = False
     error_budget: Mapping[str, Sequence[Document]] = field(default_factory=dict)
+    viewer: str = ""
 
 
 def write_report(report: Report, path: str | Path) -> Path:
@@ -102,7 +105,11 @@ def _error(r: Report) -> str:
 
 
 def _pictures(r: Report) -> str:
-    return html.section("The machine", *(html.picture(png, caption) for caption, png in r.pictures.items()))
+    turned = html.more("Turn it, cut it, play it", html.inner_page(r.viewer, _VIEWER)) if r.viewer else ""
+    return html.section("The machine", *(html.picture(png, caption) for caption, png in r.pictures.items()), turned)
+
+
+_VIEWER = "The machine in the browser's own GL: every test, turned, cut and played. It runs a script of its own."
 
 
 def _curves(r: Report) -> str:
@@ -164,7 +171,9 @@ def _contradiction(diagnosis: Document) -> str:
     ]  # fmt: skip
     headers = ["test", "parameter", "other tests", "this test", "unit", "standard deviations", "can it differ?"]
     table = html.table(headers, rows, [d["possible"] is False for d in found["differences"][:12]])
-    return f"<h3>Tests that contradict each other</h3>{html.text(found['words'])}{html.more('In numbers', table)}"
+    drawn = html.plot(candidates.differences(found), "differences", "What would have to differ between tests.")
+    head = f"<h3>Tests that contradict each other</h3>{html.text(found['words'])}"
+    return f"{head}{drawn}{html.more('In numbers', table)}"
 
 
 _HEADERS = ["effect", "decision", "score", "threshold", "size", "95 % interval", "error (K)", "held-out (K)"]
@@ -240,7 +249,7 @@ def _sensors(r: Report) -> str:
         ]
         name = f"{test['name']} ({test['role']}), rms {test['rmse_K']:.2f} K"
         parts.append(html.more(name, html.table(headers, rows), opened=test["role"] == "hold-out"))
-    rule = f"<p>Error is measured − model; {WORDS}.</p>"
+    rule = f"<p>Error is measured − model; {RULE}.</p>"
     return html.section("Every sensor", rule, *parts)
 
 

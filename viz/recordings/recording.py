@@ -19,11 +19,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError, MissingDependency
-from validation.comparison.tolerance import limit_K
 from viz.colours import BLUE, LIGHT, ORANGE, VERDICT, heat
 from viz.data import Comparison, Sensor, short
 from viz.figures.curves import wrongness
 from viz.figures.errors import PALE, error_paths
+from viz.machine.thermocouples import LABELS
+from viz.recordings import scale
 from viz.recordings.arrangement import blueprint
 from viz.rendering.cut import QUARTER, Surface, Wedge, cut_away
 from viz.rendering.edges import outline_strips
@@ -71,6 +72,9 @@ def write_recording(
     surface = cut_away(nodes, wedge)
     stream.save(path, default_blueprint=blueprint(comparison, worst, surface.points, bool(history)))
     _machine(stream, surface, times, fields, revision_fields)
+    scale.colour_bar(stream, *rounded(float(fields.min()), float(fields.max())))
+    scale.inputs(stream, comparison, TIME)
+    scale.events(stream, comparison, TIME)
     _sensors(stream, comparison, times, positions, revision_residuals)
     _curves(stream, comparison)
     _revisions(stream, history)
@@ -105,8 +109,7 @@ def _machine(
     stream.log("machine/field", mesh, static=True)
     lines = rr.LineStrips3D(list(outline_strips(surface)), colors=[31, 41, 51, 150], radii=rr.Radius.ui_points(0.6))
     stream.log("machine/edges", lines, static=True)
-    scale = f"# Colours\n\nblue {low:.0f} °C … magenta {(low + high) / 2:.0f} °C … yellow {high:.0f} °C"
-    stream.log("legend", rr.TextDocument(scale + _LEGEND, media_type="text/markdown"), static=True)
+    stream.log("legend", rr.TextDocument(_LEGEND, media_type="text/markdown"), static=True)
     _colours(stream, surface, rr.TimeColumn(TIME, duration=times), fields, (low, high))
     if revisions is not None:
         steps = rr.TimeColumn(REVISION, sequence=range(len(revisions)))
@@ -136,22 +139,30 @@ def _sensors(
         return
     points = rr.Points3D(
         [positions[channel.name] for channel in placed], labels=[short(channel.name) for channel in placed],
-        radii=rr.Radius.ui_points(5.0), show_labels=True,
+        radii=rr.Radius.ui_points(5.0), show_labels=False,
     )  # fmt: skip
     stream.log("machine/sensors", points, static=True)
+    named = sorted(placed, key=lambda channel: -c.rmse(channel) / c.limit_K(channel))[:LABELS]
+    labels = rr.Points3D(
+        [positions[channel.name] for channel in named], labels=[short(channel.name) for channel in named],
+        radii=rr.Radius.ui_points(0.0), show_labels=True,
+    )  # fmt: skip
+    stream.log("machine/names", labels, static=True)
     residual = np.stack([np.interp(times, c.test.time, c.residual(channel)) for channel in placed], axis=1)
-    _markers(stream, placed, rr.TimeColumn(TIME, duration=times), residual)
+    _markers(stream, c, placed, rr.TimeColumn(TIME, duration=times), residual)
     if revisions:
         ends = np.array([[row.get(channel.name, np.nan) for channel in placed] for row in revisions])
-        _markers(stream, placed, rr.TimeColumn(REVISION, sequence=range(len(ends))), ends)
+        _markers(stream, c, placed, rr.TimeColumn(REVISION, sequence=range(len(ends))), ends)
 
 
-def _markers(stream: rr.RecordingStream, placed: Sequence[Channel], index: Any, residual: Array) -> None:
+def _markers(
+    stream: rr.RecordingStream, c: Comparison, placed: Sequence[Channel], index: Any, residual: Array
+) -> None:  # fmt: skip
     """Colours of the sensors for every entry of `index`, from residuals (n, n_sensors) K."""
     import rerun as rr
 
     colours = [
-        _rgba(VERDICT[Sensor(channel.name, (0, 0, 0), r, limit_K(channel)).verdict])
+        _rgba(VERDICT[Sensor(channel.name, (0, 0, 0), r, c.limit_K(channel)).verdict])
         for row in residual
         for channel, r in zip(placed, row, strict=True)
     ]
@@ -166,7 +177,7 @@ def _curves(stream: rr.RecordingStream, c: Comparison) -> None:
         if c.before is not None:
             earlier = c.before[channel.name]
             _series(stream, f"curves/{channel.name}/earlier", c.test.time, earlier, ORANGE, "earlier model")
-        colour = wrongness(c.residual(channel), limit_K(channel))
+        colour = wrongness(c.residual(channel), c.limit_K(channel))
         _series(stream, f"residual/{channel.name}", c.test.time, c.residual(channel), colour, short(channel.name))
 
 
@@ -202,7 +213,8 @@ def _rgba(colour: str) -> int:
 
 _LEGEND = """
 
-Sensors: green within their uncertainty, vermilion where the machine is hotter than the model, blue where it is colder.
+Sensors: green within the uncertainty, vermilion where the machine is hotter than the model, blue where it is colder.
+Six have names, those furthest beyond their uncertainty; the others say theirs under the pointer.
 
 Timelines (chosen at the bottom left): **test_time** runs through the test; for the tab *revisions* choose **revision**.
 """

@@ -14,10 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.disk_cache import atomic_write
-from viz.colours import heat, missing, part_colours
+from viz.colours import VERDICT, heat, missing, part_colours, power
 from viz.data import Comparison, short
 from viz.rendering.nodes import SplitMesh
 from viz.rendering.scale import marks, rounded
+from viz.viewer.flux import nodal_flux
 from viz.viewer.low_rank import LowRank, low_rank
 from viz.viewer.packing import packed_integers, packed_numbers
 
@@ -49,9 +50,10 @@ def write_viewer(
 
 
 def document(
-    title: str, nodes: SplitMesh, tests: Sequence[Recorded], positions: Mapping[str, Sequence[float]]
-) -> dict[str, Any]:
-    """All the page draws."""
+    title: str, nodes: SplitMesh, tests: Sequence[Recorded], positions: Mapping[str, Sequence[float]],
+    conductivity: Mapping[str, tuple[float, float]] | None = None,
+) -> dict[str, Any]:  # fmt: skip
+    """All the page draws. conductivity : part -> across and along the axis (W/m/K), for heat flux"""
     found = low_rank(np.concatenate([part for t in tests for part in (t.fields, t.before) if part is not None]))
     triangles, part = nodes.boundary()
     order = np.argsort(part, kind="stable")
@@ -63,25 +65,38 @@ def document(
         "triangles": packed_integers(triangles[order]), "owner": packed_integers(nodes.owner[:, None]),
         "parts": [{"name": name, "colour": colours[name]} for name in nodes.parts],
         "mean": packed_numbers(found.mean[:, None]), "shapes": packed_numbers(found.shapes.T, found.steps(STEP_K)),
-        "tests": _tests(tests, found, positions), "range": [low, high], "marks": marks(low, high),
+        "tests": _tests(tests, found, positions), "marks": marks(low, high),
         "change_marks": _change(tests), "heat": _palette(heat()), "missing": _palette(missing()),
+        "k": conductivity and [conductivity[name] for name in nodes.parts], "power": _palette(power()),
+        "flux_marks": conductivity and _flux(nodes, tests, conductivity),
+        "tints": [[int(c[i : i + 2], 16) / 255 for i in (1, 3, 5)] for c in VERDICT.values()],
     }  # fmt: skip
 
 
 def render(shown: Mapping[str, Any]) -> str:
     """The page as text. The data stand in a block that no browser runs."""
-    here = files("viz.viewer")
-    page, css, script = (here.joinpath(f"viewer.{end}").read_text(encoding="utf-8") for end in ("html", "css", "js"))
+    page, css = (files("viz.viewer").joinpath(f"viewer.{end}").read_text(encoding="utf-8") for end in ("html", "css"))
     data = json.dumps(shown, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
-    for key, text in (("TITLE", escape(shown["title"])), ("CSS", css), ("DATA", data), ("SCRIPT", script)):
+    for key, text in (("TITLE", escape(shown["title"])), ("CSS", css), ("DATA", data), ("SCRIPT", script())):
         page = page.replace(f"@{key}@", text, 1)
     return page
+
+
+def script() -> str:
+    """All that the page runs."""
+    return files("viz.viewer").joinpath("viewer.js").read_text(encoding="utf-8")
 
 
 def _change(tests: Sequence[Recorded]) -> list[float]:
     """Round marks for now minus before (K), as far below zero as above."""
     changes = [float(np.abs(t.fields - t.before).max()) for t in tests if t.before is not None]
     return marks(*rounded(-max(changes, default=1.0), max(changes, default=1.0)))
+
+
+def _flux(nodes: SplitMesh, tests: Sequence[Recorded], conductivity: Mapping[str, tuple[float, float]]) -> list[float]:
+    """Round marks for the heat flux (kW/m2) of every test's end, the densest twentieth of the nodes left out."""
+    ends = [nodal_flux(nodes, t.fields[-1], conductivity) for t in tests]
+    return marks(*rounded(0.0, max(float(np.quantile(q, 0.95)) for q in ends)))
 
 
 def _by_part(nodes: SplitMesh) -> NDArray[np.int64]:
@@ -107,13 +122,11 @@ def _tests(tests: Sequence[Recorded], found: LowRank, positions: Mapping[str, Se
 
 def _sensors(test: Recorded, positions: Mapping[str, Sequence[float]]) -> list[dict[str, Any]]:
     """Readings at the page's instants; null where nothing was read."""
-    from validation.comparison.tolerance import limit_K
-
     shown, clock = test.comparison, np.asarray(test.comparison.test.time, float)
     at = np.clip(np.searchsorted(clock, test.times), 0, len(clock) - 1)
     return [
         {
-            "name": short(c.name), "xyz": [float(x) for x in positions[c.name]], "limit": limit_K(c),
+            "name": short(c.name), "xyz": [float(x) for x in positions[c.name]], "limit": shown.limit_K(c),
             "measured": _digits(np.asarray(c.y, float)[at], 2),
             "model": _digits(np.asarray(shown.model[c.name])[at], 2),
             "before": None if shown.before is None else _digits(np.asarray(shown.before[c.name])[at], 2),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Mapping, Sequence
+from shlex import quote
 from typing import TYPE_CHECKING, Any
 
 from thermoscope.case_folder.columns import checked_columns, write_columns
@@ -36,7 +37,7 @@ def improve(case: str, yes: bool, most: int, target: str | None) -> int:
     found = {"case": folder.case.name, "revision": ledger.history.last.number, **done.diagnosis.document()}
     save_diagnosis(folder, json.loads(json.dumps(found, default=float)))
     document = {"case": folder.case.name, **done.document(), "written": ledger.written}
-    give(document, target, lambda: answer(document, folder))
+    give(document, target, lambda: answer(document, folder, case))
     return 0 if done.adequate else 1
 
 
@@ -71,7 +72,7 @@ def offer(c: Candidate) -> str:
     return f"{c.effect}: {c.title}, {size}, probability {100 * c.probability:.0f} %{fell}"
 
 
-def answer(document: Mapping[str, Any], folder: Folder) -> Answer:
+def answer(document: Mapping[str, Any], folder: Folder, called: str) -> Answer:
     """Why it ended, the error step by step, and what would decide if it stopped."""
     steps = document["stairs"]
     headers = ["step", *(f"{t['name']} ({t['role']}, K)" for t in steps[0]["tests"]), "all (K)", "probability"]
@@ -88,5 +89,5 @@ def answer(document: Mapping[str, Any], folder: Folder) -> Answer:
     written = f"{document['written']} revisions written to {folder.settings.model_file}"
     kept = written if document["written"] else "nothing written"
     further = "" if document["adequate"] else next_tests(document["diagnosis"])
-    more = f"thermoscope model undo {document['case']} takes a step back; thermoscope show report {document['case']}"
+    more = f"thermoscope model undo {quote(called)} takes a step back; thermoscope show report {quote(called)}"
     return Answer(f"{document['verdict']}: {document['why']}; {kept}.", [errors, further], more)

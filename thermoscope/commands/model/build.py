@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from geom.errors import InputError
+from geom.errors import InputError, MissingDependency
 from thermoscope.case_folder.folder import load_machine_file
 from thermoscope.commands.model import crosscheck
 from thermoscope.console.answer import Answer, Grid
-from thermoscope.console.terminal import give, progress
+from thermoscope.console.terminal import give, notes, progress
 
 if TYPE_CHECKING:
     from geom import Machine
@@ -28,7 +28,8 @@ ERRORS = ("mean", "hot", "point")
 def build(machine: str, out: Path | None, target: str | None, accuracy: float | None = None) -> int:
     """Solids, mesh and network of a machine to a folder, and the network against the field.
 
-    accuracy : percent of a part's own rise; the smallest network that meets it is kept. None: the size a case runs.
+    accuracy : percent of a part's own rise, mesh included; the smallest network that meets it is kept.
+        None: the mesh and the size that a case runs.
     """
     from geom import check_cad, export_cad, write_vtu
 
@@ -46,8 +47,25 @@ def build(machine: str, out: Path | None, target: str | None, accuracy: float | 
         write_vtu(built.mesh, folder / f"{described.name}.vtu")
         document = {**described_as(built, solids), **checked, **({} if found is None else {"sizes": found.document()})}
         crosscheck.save(document, folder)
+        document["pictures"] = [str(file) for file in pictures(built, folder, tell)]
     give(document, target, lambda: answer(document, folder))
     return 0 if found is None or found.met else 1
+
+
+def pictures(built: Built, folder: Path, tell: Progress) -> list[Path]:
+    """What was built: the machine cut open, and its mesh; none, and one note, where nothing can be drawn."""
+    from viz import portrait, regions, require_gl, split
+
+    try:
+        require_gl()
+    except MissingDependency as fault:
+        notes([str(fault)])
+        return []
+    tell("drawing")
+    name, files = built.machine.name, [folder / "machine.png", folder / "mesh.png"]
+    portrait(built.machine, title=name, png=files[0]).close()
+    regions(split(built.mesh), mesh=True, title=f"{name}: its mesh", png=files[1]).close()
+    return files
 
 
 def built_from(
@@ -56,11 +74,11 @@ def built_from(
     """At the size a case runs, or at the smallest that is accurate enough.  size_m : of the mesh's triangles (m)"""
     from lumped.machine.bases import on_all
     from thermoscope.pipeline import build as usual
-    from thermoscope.verification.network_size import smallest_network
+    from thermoscope.verification.network_size import accurate_network
 
     if accuracy is None:
         return usual(on_all(described), size_m, progress=tell), None
-    found = smallest_network(described, accuracy, size_m, progress=tell)
+    found = accurate_network(described, accuracy, size_m, tell)
     return found.built, found
 
 
@@ -107,7 +125,7 @@ def answer(document: Mapping[str, Any], folder: Path) -> Answer:
     sizes = _sizes(document["sizes"]) if "sizes" in document else []
     shown = [*sizes, crosscheck.parts(document), parts]
     rest = [crosscheck.links(document), crosscheck.hand(document)]
-    return Answer(sentence, shown, f"solids, mesh and tables in {folder}; --json FILE", rest)
+    return Answer(sentence, shown, f"solids, mesh, tables and pictures in {folder}; --json FILE", rest)
 
 
 def _row(part: Mapping[str, Any]) -> list[Any]:
@@ -125,13 +143,16 @@ def _sizes(sizes: Mapping[str, Any]) -> list[Grid | str]:
     ]
     title = f"Error in % of a part's rise (wish: means {wish['mean']:g}, hot spots and points {wish['hot']:g})"
     headers = ["network", "states", "mean", "hot spot", "point", "mean, random", "hot, random", "point, random", "met"]
-    missed: list[Grid | str] = []
-    if not sizes["met"]:
+    notes: list[Grid | str] = []
+    if mesh := sizes["mesh"]:
+        left = f"{mesh['worst']:.2g} % of the rise at the hot spot of {mesh['worst_part']}"
+        notes.append(f"The mesh of {mesh['unknowns']} unknowns leaves {left}.")
+    if sizes["guard"] and not sizes["guard"][-1]["met"]:
         bad = sizes["guard"][-1]["random"]
-        missed = [
+        notes.append(
             f"The wish is missed: mean {bad['mean_part']}, hot spot {bad['hot_part']}, point {bad['point_part']}."
-        ]
-    return [Grid(title, headers, rows, keep=["states", "mean, random", "hot, random", "met"]), *missed]
+        )
+    return [Grid(title, headers, rows, keep=["states", "mean, random", "hot, random", "met"]), *notes]
 
 
 def _errors(size: Mapping[str, Any]) -> Sequence[Any]:

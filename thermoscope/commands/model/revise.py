@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from shlex import quote
 from typing import TYPE_CHECKING, Any
 
 from geom.errors import InputError
@@ -14,7 +15,7 @@ from thermoscope.commands.open_case import open_case_for_writing
 from thermoscope.commands.stored_diagnosis import saved_diagnosis
 from thermoscope.console.answer import Answer, Grid, cell
 from thermoscope.console.terminal import give, notes, progress
-from validation.comparison.compare import compare
+from validation.comparison.compare import errors
 from validation.measurement.faults import broken_channels
 
 if TYPE_CHECKING:
@@ -65,12 +66,12 @@ def undo(case: str, number: int | None, target: str | None) -> int:
         history = folder.history.back_to(last - 1 if number is None else number)
         after = at_revision(folder, history.last)
         tell("running the model")
-        errors = {t.name: t.rmse_K for t in compare(after).tests}
+        rms = {t.name: t.rmse_K for t in errors(after).tests}
     save_history(folder.settings.model_file, history, folder.history)
     write_columns(folder, history.last.effects)
     model = {"case": folder.case.name, "revision": history.last.number, "why": history.last.why}
-    document = {**model, "effects": list(history.last.effects), "rmse_K": errors}
-    sentence, rows = f"Revision {history.last.number}: {history.last.why}.", list(errors.items())
+    document = {**model, "effects": list(history.last.effects), "rmse_K": rms}
+    sentence, rows = f"Revision {history.last.number}: {history.last.why}.", list(rms.items())
     give(document, target, lambda: Answer(sentence, [Grid("", ["test", "rms (K)"], rows)]))
     return 0
 
@@ -88,7 +89,7 @@ def revised(case: str, step: Callable[..., revise.Revision], anyway: bool, targe
         save_history(folder.settings.model_file, longer, folder.history)
         write_columns(folder, longer.last.effects)
     document = {**result.document(), "case": folder.case.name, "written": keep}
-    give(document, target, lambda: answer(document, folder))
+    give(document, target, lambda: answer(document, folder, case))
     return 0 if keep else 1
 
 
@@ -131,7 +132,7 @@ def note(p: Mapping[str, Any]) -> str:
     return "at its bound" if p["at_bound"] else f"trades with {p['partner']}" if p["partner"] else ""
 
 
-def answer(document: Mapping[str, Any], folder: Folder) -> Answer:
+def answer(document: Mapping[str, Any], folder: Folder, called: str) -> Answer:
     """Whether it stands, the error before and after, and the values that the data fixed."""
     name = f"{document['action']} {document['effect'] or ''}".strip()
     verdict = "accepted" if document["accepted"] else "not accepted"
@@ -145,7 +146,7 @@ def answer(document: Mapping[str, Any], folder: Folder) -> Answer:
     return Answer(
         f"{name}: {verdict}; {document['why']}; {kept}.",
         parts,
-        f"Next: thermoscope {step} {document['case']}; --json FILE",
+        f"Next: thermoscope {step} {quote(called)}; --json FILE",
     )
 
 

@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from geom.errors import InputError
-from thermoscope.case_folder.runs import before_last, fields
+from thermoscope.case_folder.folder import Folder
+from thermoscope.case_folder.runs import before_last, by_interest, fields, readings
 from thermoscope.commands.open_case import open_case
-from thermoscope.commands.show.pages import by_interest
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import give, progress
 
-FRAMES = 40  # of one run of the test: three seconds
+if TYPE_CHECKING:
+    from validation.case import Case, Test
+    from viz.data import Sensor
+
+FRAMES = 44  # of one run of the test: with two runs eight seconds
 SUFFIXES = (".gif", ".mp4")
 
 
@@ -26,16 +33,58 @@ def film(case: str, out: Path | None, target: str | None) -> int:
 
         folder = open_case(case, tell)
         if folder.built is None:
-            right = f"a case with a machine; or: thermoscope show picture {folder.case.name} curves"
+            right = f"a case with a machine; or: thermoscope show picture {folder.settings.path} curves"
             raise InputError("has a network declared by hand, and so no geometry", folder.case.name, right)
         nodes, test, earlier = split(folder.built.mesh), by_interest(folder)[0], before_last(folder)
         file = out or Path("out") / f"{folder.case.name}.gif"
-        runs = {} if earlier is None else {"before the last step": earlier}
+        runs = {} if earlier is None else {before(folder): earlier}
         tell(f"running {test.name}")
-        played = {words: fields(model, test, nodes, FRAMES) for words, model in (runs | {"now": folder.case}).items()}
-        titles = [f"{test.name} at {t / 60:.0f} min: model {w}" for w, (times, _) in played.items() for t in times]
+        models = runs | {now(folder): folder.case}
+        played = {words: fields(model, test, nodes, FRAMES) for words, model in models.items()}
+        seen = [row for w, model in models.items() for row in misses(folder, model, test, played[w][0])]
+        words = [f"{test.name} at {t / 60:.0f} min, {w}" for w, (times, _) in played.items() for t in times]
+        titles = [f"{w}{largest(row)}" for w, row in zip(words, seen, strict=True)]
         T = np.concatenate([values for _, values in played.values()])
         animate(nodes, [t for times, _ in played.values() for t in times], T, file, titles=titles,
-                tell=lambda k: tell(f"drawing picture {k}/{len(T)}"))  # fmt: skip
+                sensors=seen, tell=lambda k: tell(f"drawing picture {k}/{len(T)}"))  # fmt: skip
     give({"case": folder.case.name, "film": str(file)}, target, lambda: Answer(f"{file}"))
     return 0
+
+
+def before(folder: Folder) -> str:
+    """The model before its last step, in words."""
+    last = folder.history.last
+    return f"without {last.effect}" if last.action == "add" else "the model before its last step"
+
+
+def now(folder: Folder) -> str:
+    """The model as it is, in words."""
+    last = folder.history.last
+    return f"with {last.effect}" if folder.history.revisions and last.action == "add" else "the model now"
+
+
+def largest(sensors: Sequence[Sensor]) -> str:
+    """The sensor that the model misses by most, and by how much; nothing where it misses none."""
+    from viz.data import short
+
+    wrong = [s for s in sensors if s.verdict in ("hot", "cold")]
+    worst = max(wrong, key=lambda s: s.weight, default=None)
+    return "" if worst is None else f": {short(worst.name)} {worst.residual_K:+.1f} K"
+
+
+def misses(folder: Folder, model: Case, test: Test, times: NDArray[np.float64]) -> list[tuple[Sensor, ...]]:
+    """At each of the times (s): the sensors with a place, and what the model misses there."""
+    from validation.comparison.tolerance import limit_K
+
+    from viz.data import Sensor
+
+    read, at = readings(model, test), np.searchsorted(test.time, times).clip(0, len(test.time) - 1)
+    out = []
+    for i in at:
+        row = []
+        for c in test.channels:
+            if c.name in folder.positions:
+                x, y, z = folder.positions[c.name]
+                row.append(Sensor(c.name, (x, y, z), float(c.y[i] - read[c.name][i]), limit_K(c)))
+        out.append(tuple(row))
+    return out

@@ -15,8 +15,19 @@ import numpy as np
 from geom.errors import MissingDependency
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import Revision
-from thermoscope.case_folder.runs import at_revision, before_last, fields, held, parameters, readings, steps
+from thermoscope.case_folder.runs import (
+    ORDER,
+    at_revision,
+    before_last,
+    by_interest,
+    fields,
+    held,
+    parameters,
+    readings,
+    steps,
+)
 from thermoscope.commands.open_case import open_case_for_writing
+from thermoscope.commands.show.viewer import viewer_page
 from thermoscope.commands.stored_diagnosis import last_diagnosis, saved_diagnosis
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import Progress, give, notes, progress
@@ -29,7 +40,6 @@ if TYPE_CHECKING:
 
 FRAMES = 61
 LIKELY = 0.5  # probability from which an event is drawn
-ORDER = {"hold-out": 0, "validate": 1, "calibrate": 2}
 
 
 def report(case: str, out: Path | None, target: str | None) -> int:
@@ -51,19 +61,18 @@ def report(case: str, out: Path | None, target: str | None) -> int:
 
 def write_page(folder: Folder, case: str, into: Path, tell: Progress) -> Path:
     """Write into/report.html with its pictures; `case` is what the commands on it call the case."""
-    from thermoscope.verification.error_budget import budgets_of_tests, documents
-    from validation.comparison.compare import compare
+    from thermoscope.verification.error_budget import documents
     from viz.pages.report import Report, write_report
 
-    tell("running the model")
-    result, (diagnosis, earlier) = compare(folder.case), _diagnosis(folder)
+    tell("running the model and its error budget")
+    result, (diagnosis, earlier) = folder.compared, _diagnosis(folder)
     curves = [marked(held(folder, test), diagnosis) for test in by_interest(folder)]
-    budgets = budgets_of_tests(folder, tell)
     tell("drawing")
+    viewed = "" if folder.built is None else viewer_page(folder, tell)
     page = Report(
         folder.case.name, folder.settings.description, result.document(), diagnosis, steps(folder),
         parameters(folder), curves, _pictures(folder, into, None if earlier else diagnosis), assumptions(folder),
-        commands(folder, case), made(), earlier, documents(budgets),
+        commands(folder, case), made(), earlier, documents(folder.budgets), viewed,
     )  # fmt: skip
     return write_report(page, into / "report.html")
 
@@ -80,12 +89,7 @@ def render(case: str, out: Path | None, target: str | None) -> int:
     with progress() as tell:
         folder = open_case_for_writing(case, tell)
         into = out or folder.settings.out
-        into.mkdir(parents=True, exist_ok=True)
-        tell("drawing curves")
-        files = [*_plots(folder, into), *_pictures(folder, into, saved_diagnosis(folder)).values()]
-        if folder.built is not None:
-            tell("writing the recording")
-            files.append(_recording(folder, into))
+        files = rendered(folder, into, tell)
     if folder.built is None:
         notes(["this case has no geometry (a hand-declared network): no field and no recording"])
     document = {"case": folder.case.name, "files": [str(f) for f in files]}
@@ -93,9 +97,17 @@ def render(case: str, out: Path | None, target: str | None) -> int:
     return 0
 
 
-def by_interest(folder: Folder) -> list[Test]:
-    """Tests with the never-used ones first."""
-    return sorted(folder.case.tests, key=lambda test: ORDER[test.role])
+def rendered(folder: Folder, into: Path, tell: Progress) -> list[Path]:
+    """The pictures of an open case, and its recording."""
+    into.mkdir(parents=True, exist_ok=True)
+    tell("running the model and its error budget")
+    _ = folder.compared
+    tell("drawing curves")
+    files = [*_plots(folder, into), *_pictures(folder, into, saved_diagnosis(folder)).values()]
+    if folder.built is not None:
+        tell("writing the recording")
+        files.append(_recording(folder, into))
+    return files
 
 
 def _diagnosis(folder: Folder) -> tuple[Mapping[str, Any] | None, bool]:

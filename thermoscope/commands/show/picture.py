@@ -12,13 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
+from geom.plugins import plugins
 from lumped.integration.balance import balance
 from lumped.integration.simulate import simulate
 from lumped.schemas.reader import known
 from thermoscope.case_folder.folder import Folder
-from thermoscope.case_folder.runs import before_last, fields, held, steps
+from thermoscope.case_folder.runs import before_last, by_interest, error_field, fields, held, steps
 from thermoscope.commands.open_case import open_case
-from thermoscope.commands.show.pages import by_interest
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import give, progress
 from validation.calibration.unknowns import working
@@ -35,15 +35,16 @@ Array = NDArray[np.float64]
 
 def picture(case: str, what: str, out: Path | None, target: str | None) -> int:
     """One picture of a case, at the end of its most telling test, as a PNG file."""
-    if what not in PICTURES:
-        raise InputError(f"unknown picture '{what}'", "show picture", known(what, PICTURES))
+    pictures = {**PICTURES, **plugins("pictures")}
+    if what not in pictures:
+        raise InputError(f"unknown picture '{what}'", "show picture", known(what, pictures))
     if out is not None and (out.suffix != ".png" or out.is_dir()):
         raise InputError("is no name of a picture", f"--out {out}", "a file NAME.png")
     with progress() as tell:
         subject = Subject(open_case(case, tell))
         file = out or Path("out") / f"{subject.folder.case.name}-{what}.png"
         tell(f"drawing {file}")
-        PICTURES[what](subject, file)
+        pictures[what](subject, file)
     give({"case": subject.folder.case.name, "picture": what, "file": str(file)}, target, lambda: Answer(f"{file}"))
     return 0
 
@@ -101,6 +102,19 @@ def _field(s: Subject, png: Path) -> None:
     cutaway(s.nodes, s.field(), sensors=seen, title=f"{s.when}: temperature of the model", png=png).close()
 
 
+def _machine(s: Subject, png: Path) -> None:
+    from viz import portrait
+
+    portrait(s.built.machine, title=s.built.machine.name, png=png).close()
+
+
+def _temperature(s: Subject, png: Path) -> None:
+    from viz import portrait
+
+    machine = s.built.machine
+    portrait(machine, nodes=s.nodes, T=s.field(), title=f"{s.when}: temperature of the model", png=png).close()
+
+
 def _difference(s: Subject, png: Path) -> None:
     from viz import difference
 
@@ -111,6 +125,15 @@ def _difference(s: Subject, png: Path) -> None:
     difference(
         s.nodes, s.field(earlier), s.field(), title=f"{s.when}: after minus before the last step", png=png
     ).close()
+
+
+def _misses(s: Subject, png: Path) -> None:
+    from viz import misses, sensors
+
+    found = error_field(s.folder, s.test, s.nodes)
+    seen = sensors(held(s.folder, s.test), s.folder.positions)
+    title = f"{s.test.name}, its last fifth: measured minus model"
+    misses(s.nodes, found.mean, found.told, sensors=seen, title=title, png=png).close()
 
 
 def _exploded(s: Subject, png: Path) -> None:
@@ -177,6 +200,6 @@ FLAT: dict[str, Callable[[Subject, Path], None]] = {
     "curves": _curves, "residuals": _residuals, "errors": _errors, "losses": _losses,
 }  # fmt: skip
 PICTURES: dict[str, Callable[[Subject, Path], None]] = {
-    "field": _field, "difference": _difference, "exploded": _exploded, "parts": _parts, "mesh": _mesh, "flux": _flux,
-    "network": _network, **FLAT,
+    "field": _field, "difference": _difference, "misses": _misses, "exploded": _exploded, "parts": _parts,
+    "mesh": _mesh, "flux": _flux, "network": _network, "machine": _machine, "temperature": _temperature, **FLAT,
 }  # fmt: skip

@@ -5,11 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from geom.disk_cache import atomic_write
 from geom.errors import InputError
 from thermoscope.case_folder.folder import Folder
-from thermoscope.case_folder.runs import before_last, fields, held
+from thermoscope.case_folder.runs import before_last, by_interest, fields, held
 from thermoscope.commands.open_case import open_case
-from thermoscope.commands.show.pages import by_interest
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import Progress, give, progress
 from validation.case import Case, Test
@@ -34,19 +34,28 @@ def viewer(case: str, out: Path | None, target: str | None) -> int:
 
 def write_case(folder: Folder, file: Path, tell: Progress) -> Path:
     """Write the page of an open case, and return its path."""
+    page = viewer_page(folder, tell)
+    tell(f"writing {file}")
+    file.parent.mkdir(parents=True, exist_ok=True)
+    with atomic_write(file) as partial:
+        partial.write_text(page, encoding="utf-8")
+    return file
+
+
+def viewer_page(folder: Folder, tell: Progress) -> str:
+    """The page of an open case that has a machine: all its tests."""
     from viz import split
-    from viz.viewer.page import write_viewer
+    from viz.viewer.page import document, render
 
     if folder.built is None:
-        right = f"a case with a machine; or: thermoscope show picture {folder.case.name} curves"
+        right = f"a case with a machine; or: thermoscope show picture {folder.settings.path} curves"
         raise InputError("has a network declared by hand, and so no geometry", folder.case.name, right)
     nodes, earlier, tests = split(folder.built.mesh), before_last(folder), []
     for test in by_interest(folder):
         tell(f"running {test.name}")
         tests.append(_recorded(folder, test, nodes, earlier))
-    tell(f"writing {file}")
-    file.parent.mkdir(parents=True, exist_ok=True)
-    return write_viewer(file, folder.case.name, nodes, tests, folder.positions)
+    conductivity = {part.name: folder.built.machine.conductivity(part.name) for part in folder.built.machine.parts}
+    return render(document(folder.case.name, nodes, tests, folder.positions, conductivity))
 
 
 def _recorded(folder: Folder, test: Test, nodes: SplitMesh, earlier: Case | None) -> Recorded:

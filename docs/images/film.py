@@ -1,0 +1,40 @@
+"""Draws the film that the README opens with: python docs/images/film.py CASE [GIF]
+
+The hour of the test that was never used, twice: with the model before its last step, then with the effect it found.
+Sensors pulse where the model misses. CASE has had an effect added, as the demo's has: out/demo/road-test.
+"""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from thermoscope.case_folder.folder import load_case
+from thermoscope.case_folder.runs import before_last, by_interest, fields
+from thermoscope.commands.show.film import before, largest, misses, now
+from viz.appearance.moving import moving
+from viz.rendering.nodes import split
+
+FRAMES, PER_SECOND, WIDTH = 48, 12.0, 640  # 48 pictures for each model: eight seconds
+LARGEST = 3e6  # bytes
+
+
+def draw(case: Path, gif: Path) -> None:
+    folder = load_case(case)
+    assert folder.built is not None
+    test, earlier = by_interest(folder)[0], before_last(folder)
+    assert earlier is not None, "a case whose model has had a step"
+    nodes, T, titles, seen = split(folder.built.mesh), [], [], []
+    for words, model in ((before(folder), earlier), (now(folder), folder.case)):
+        times, values = fields(model, test, nodes, FRAMES)
+        rows = misses(folder, model, test, times)
+        T.append(values)
+        seen += rows
+        titles += [f"{t / 60:.0f} min, {words}{largest(row)}" for t, row in zip(times, rows, strict=True)]
+    moving(folder.built.machine, nodes, np.concatenate(T), gif, titles=titles, sensors=seen, width=WIDTH,
+           frames_per_second=PER_SECOND, tell=lambda k: print(f"\r{k}", end=""))  # fmt: skip
+    assert gif.stat().st_size <= LARGEST, f"{gif.stat().st_size / 1e6:.1f} MB"
+
+
+if __name__ == "__main__":
+    draw(Path(sys.argv[1]), Path(sys.argv[2]) if len(sys.argv) > 2 else Path(__file__).parent / "road-test.gif")

@@ -1,0 +1,53 @@
+"""thermoscope show plan CASE"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from geom.errors import InputError
+from thermoscope.case_folder.folder import Folder
+from thermoscope.commands.open_case import open_case
+from thermoscope.commands.show.pages import made
+from thermoscope.commands.stored_diagnosis import saved_diagnosis
+from thermoscope.console.answer import Answer
+from thermoscope.console.terminal import give, progress
+
+MOST = 3  # effects of a diagnosis that are compared: each costs a calibration
+
+
+def plan(case: str, effects: Sequence[str], test: str | None, out: Path | None, target: str | None) -> int:
+    """A page to pin on the bench: what to drive next, and what each hypothesis predicts for it."""
+    from validation.planning.predicted_curves import hypotheses, predicted_curves, schedule
+    from viz.pages.bench_page import BenchPage, write_bench_page
+
+    if out is not None and (out.suffix != ".html" or out.is_dir()):
+        raise InputError("is no name of a page", f"--out {out}", "a file NAME.html")
+    with progress() as tell:
+        folder = open_case(case, tell)
+        models = hypotheses(folder.case, effects or suspected(folder), tell)
+        tell("predicting tests")
+        found = predicted_curves(folder.case, models, test)
+        file = out or Path("out") / f"{folder.case.name}-plan.html"
+        last = folder.case.tests[-1]
+        write_bench_page(BenchPage(folder.case.name, found, last.name, schedule(found.test, last), made()), file)
+    document = {
+        "case": folder.case.name, "test": found.experiment.name, "hours": found.experiment.hours,
+        "hypotheses": list(found.curves), "closest_sigma": found.closest(), "page": str(file),
+        "sensors": [{"channel": c.name, "apart_K": found.spread_K(c.name)} for c in found.test.channels],
+    }  # fmt: skip
+    give(document, target, lambda: Answer(f"{file}: {found.experiment.name}, {found.experiment.hours:g} h"))
+    return 0
+
+
+def suspected(folder: Folder) -> list[str]:
+    """The effects that the last diagnosis of this model holds for possible, most probable first."""
+    document = saved_diagnosis(folder)
+    if document is None:
+        right = f"thermoscope explain diagnose {folder.case.name} first, or --effect EFFECT@PLACE"
+        raise InputError("has no diagnosis of the model as it stands", folder.case.name, right)
+    ranked = sorted(document["candidates"], key=lambda c: -c["score"])
+    likely = [c["effect"] for c in ranked if c["decision"] != "no"] or [c["effect"] for c in ranked]
+    if not likely:
+        raise InputError("has a diagnosis without candidates", folder.case.name, "--effect EFFECT@PLACE")
+    return likely[:MOST]

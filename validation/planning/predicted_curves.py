@@ -1,0 +1,101 @@
+"""What each hypothesis predicts for a planned test: the model as it is, and with one effect more, calibrated again."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geom.errors import InputError, ThermoscopeError
+from validation.calibration.calibrate import no_progress
+from validation.calibration.unknowns import working
+from validation.case import Case, Model, Test
+from validation.comparison.predict import predict
+from validation.planning.candidate_tests import Experiment, candidate_tests
+from validation.revision.revise import add
+
+Array = NDArray[np.float64]
+Progress = Callable[[str], None]
+UNCHANGED = "nothing missing"  # the hypothesis that the model is right as it is
+
+
+@dataclass(frozen=True)
+class PredictedCurves:
+    """experiment, test : what would be driven;  curves : hypothesis -> channel -> (n_time,) degC"""
+
+    experiment: Experiment
+    test: Test
+    curves: Mapping[str, Mapping[str, Array]]
+
+    def spread_K(self, channel: str) -> float:
+        """Largest rms difference between two hypotheses at a channel."""
+        own = [y[channel] for y in self.curves.values()]
+        return max((float(np.sqrt(np.mean((a - b) ** 2))) for a, b in combinations(own, 2)), default=0.0)
+
+    def closest(self) -> float:
+        """Root mean square over the channels, in their one-sigma, by which the two that stay closest differ."""
+        sigma = {c.name: float(np.hypot(c.sigma_K, c.model_K)) for c in self.test.channels}
+        gaps = [
+            np.sqrt(np.mean([np.mean(((a[n] - b[n]) / s) ** 2) for n, s in sigma.items()]))
+            for a, b in combinations(self.curves.values(), 2)
+        ]
+        return float(min(gaps, default=0.0))
+
+
+def hypotheses(case: Case, effects: Sequence[str], tell: Progress = no_progress) -> dict[str, Model]:
+    """Hypothesis -> model: as it is, and with each effect 'kind@place' added and all calibrated again."""
+    out = {UNCHANGED: case.model}
+    for name in effects:
+        tell(f"calibrating with {name}")
+        out[name] = add(case, name).model
+    return out
+
+
+def predicted_curves(case: Case, models: Mapping[str, Model], experiment: str | None = None) -> PredictedCurves:
+    """Of the named experiment, or of the one that per hour sets the closest two hypotheses furthest apart."""
+    planned = candidate_tests(case.tests[-1], working(case)[0])
+    names = [e.name for e, _ in planned]
+    if experiment is not None and experiment not in names:
+        raise InputError(f"unknown test '{experiment}'", case.name, f"one of: {'; '.join(names)}")
+    tried = [p for e, test in planned if experiment in (None, e.name) if (p := _predicted(case, models, e, test))]
+    if not tried:
+        raise InputError("has no test that every hypothesis survives", case.name, "fewer hypotheses, or another test")
+    return max(tried, key=lambda p: p.closest() / p.experiment.hours)
+
+
+def _predicted(case: Case, models: Mapping[str, Model], experiment: Experiment, test: Test) -> PredictedCurves | None:
+    """None where a model runs away: it lacks what would cool it."""
+    curves = {}
+    try:
+        for name, model in models.items():
+            network = working(replace(case, model=model))[0]
+            known = {p.name for p in network.parameters}
+            y = predict(network, test, {k: v for k, v in model.values.items() if k in known}).y
+            curves[name] = {c.name: y[:, j] for j, c in enumerate(test.channels)}
+    except ThermoscopeError:
+        return None
+    return PredictedCurves(experiment, test, curves)
+
+
+def schedule(test: Test, before: Test) -> list[tuple[str, float, float, float]]:
+    """What to hold when, of the inputs and boundaries that the plan changes: name, from and to (s), value (SI).
+
+    before : a test as it was driven; what the plan holds for the whole of it or in steps is listed, nothing else
+    """
+    out: list[tuple[str, float, float, float]] = []
+    for name, values in (*test.inputs.items(), *test.boundaries.items()):
+        value = np.broadcast_to(np.asarray(values, float), test.time.shape)
+        starts = np.flatnonzero(np.diff(value, prepend=np.nan))
+        own = before.inputs.get(name, before.boundaries.get(name))
+        driven = own is not None and len(np.unique(np.asarray(own, float))) == len(np.unique(value))
+        if len(starts) > STEPS or driven:
+            continue
+        ends = [*starts[1:], len(value) - 1]
+        out += [(name, float(test.time[a]), float(test.time[b]), float(value[a])) for a, b in zip(starts, ends)]
+    return out
+
+
+STEPS = 12  # of one input: what changes more often is a record that is driven again

@@ -1,0 +1,54 @@
+"""A planned test: what each hypothesis predicts at the sensors that tell them apart."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from viz.colours import BLUE, GREEN, LIGHT, ORANGE, PURPLE, VERMILION
+from viz.data import LONG_S, POINTS, short
+from viz.figures import paper
+from viz.labels import end_labels
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from validation.planning.predicted_curves import PredictedCurves
+
+COLOURS = (BLUE, VERMILION, GREEN, PURPLE, ORANGE)
+SENSORS = 4
+
+
+@paper.styled
+def predicted(plan: PredictedCurves, *, sensors: int = SENSORS, png: str | Path | None = None) -> Figure:
+    """One panel per sensor, those first that tell most: a line per hypothesis with the sensor's own 2-sigma band."""
+    chosen = sorted(plan.test.channels, key=lambda c: -plan.spread_K(c.name))[:sensors]
+    time = np.asarray(plan.test.time, float)
+    unit, unit_s = ("min", 60.0) if time[-1] - time[0] < LONG_S else ("h", 3600.0)
+    thin = slice(None, None, max(1, -(-len(time) // POINTS)))
+    t = (time - time[0])[thin] / unit_s
+    rows = -(-len(chosen) // 2)
+    figure, axes = paper.subplots(8.6, 2.6 * rows + 0.4, rows, 2)
+    for ax, channel in zip(axes, chosen, strict=False):
+        for colour, curves in zip(COLOURS, plan.curves.values(), strict=False):
+            y, band = curves[channel.name][thin], 2 * float(np.hypot(channel.sigma_K, channel.model_K))
+            ax.fill_between(t, y - band, y + band, color=colour, alpha=0.15, lw=0)
+            ax.plot(t, y, color=colour)
+        ax.set_title(f"{short(channel.name)}: up to {_largest(plan, channel.name):.1f} K apart")
+        ax.margins(x=0)
+        ends = [float(curves[channel.name][-1]) for curves in plan.curves.values()][: len(COLOURS)]
+        end_labels(ax, ends, [f"{end:.1f}" for end in ends], COLOURS)
+    for ax in axes[len(chosen) :]:
+        ax.set_visible(False)
+    for i, (name, colour) in enumerate(zip(plan.curves, COLOURS, strict=False)):
+        axes[0].text(0.03, 0.97 - 0.1 * i, name, transform=axes[0].transAxes, va="top", color=colour, fontsize=8.5)
+    figure.supxlabel(f"time ({unit})", fontsize=9.5, color=LIGHT.ink)
+    figure.supylabel("temperature (°C)", fontsize=9.5, color=LIGHT.ink)
+    return paper.saved(figure, png)
+
+
+def _largest(plan: PredictedCurves, channel: str) -> float:
+    every = np.array([curves[channel] for curves in plan.curves.values()])
+    return float(np.ptp(every, axis=0).max())

@@ -1,0 +1,73 @@
+"""One page to pin on the bench: what to drive tomorrow, and what each hypothesis predicts for it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from geom.disk_cache import atomic_write
+from viz.data import short
+from viz.figures.experiment import SENSORS, predicted
+from viz.pages import html
+
+if TYPE_CHECKING:
+    from validation.planning.predicted_curves import PredictedCurves
+
+DECISIVE = 2.0  # one-sigma distances from which a reading speaks for one of two
+
+
+@dataclass(frozen=True)
+class BenchPage:
+    """driven : name of the test that the plan changes;  made : date and versions
+    holding : what to hold when: name, from and to (s), value in the unit of its name
+    """
+
+    case: str
+    plan: PredictedCurves
+    driven: str
+    holding: list[tuple[str, float, float, float]]
+    made: str = ""
+
+
+def write_bench_page(page: BenchPage, path: str | Path) -> Path:
+    """Write the page and return its path."""
+    path, text = Path(path), render(page)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with atomic_write(path) as partial:
+        partial.write_text(text, encoding="utf-8")
+    return path
+
+
+def render(page: BenchPage) -> str:
+    """The page as text."""
+    plan = page.plan
+    head = f"<h1>{escape(page.case)}</h1>"
+    head += f'<p class="verdict">Tomorrow: {escape(plan.experiment.name)}, {plan.experiment.hours:g} h</p>'
+    apart = plan.closest()
+    word = "decides" if apart >= DECISIVE else "does not decide"
+    says = f"The two closest hypotheses come apart by {apart:.1f} of the sensors' own sigma (rms): this test {word}."
+    rows = [(name, _clock(a), _clock(b), value) for name, a, b, value in page.holding]
+    driven = html.table(["hold", "from", "to", "at"], rows)
+    driven += html.text(f"All else as in the record of {page.driven}, again and again until the time is over.")
+    caption = "Predicted by each hypothesis, with the sensor's 2-sigma band; the numbers are those at the end."
+    parts = [
+        head + html.text(says), html.section("Drive", driven),
+        html.section("What to expect", html.plot(predicted(plan), "predicted", caption), _ends(plan)),
+        f"<footer>{escape(page.made)}</footer>" if page.made else "",
+    ]  # fmt: skip
+    return html.page(f"thermoscope: {plan.experiment.name}", parts)
+
+
+def _ends(plan: PredictedCurves) -> str:
+    """Temperatures at the end by hypothesis; a column to write into."""
+    chosen = sorted(plan.test.channels, key=lambda c: -plan.spread_K(c.name))[: 2 * SENSORS]
+    rows: list[list[html.Cell]] = [
+        [short(c.name), *(round(float(y[c.name][-1]), 1) for y in plan.curves.values()), ""] for c in chosen
+    ]
+    return "<h3>At the end (°C)</h3>" + html.table(["sensor", *plan.curves, "read"], rows)
+
+
+def _clock(second: float) -> str:
+    return f"{second / 60:.0f} min"
