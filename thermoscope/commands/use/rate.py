@@ -241,7 +241,9 @@ def answer(document: Mapping[str, Any]) -> Answer:
     first, reference = document["ratings"][0], document["reference"]
     main = reference["input"]
     band = "" if first["ci95"] is None else f" ({first['ci95'][0]:.4g} to {first['ci95'][1]:.4g})"
-    sentence = f"Continuous: {main} = {first['value']:.4g}{band}, limited by {first['at'] or 'nothing'}."
+    sentence = f"Continuous: {main} = {first['value']:.4g}{band}, limited by {first['at']}."
+    if not np.isfinite(first["value"]):
+        sentence = f"Continuous: no {main} that this model knows reaches a limit."
     rows = [[r["form"], r["value"], *(r["ci95"] or (None, None)), r["at"], r["before"], r["change_percent"]]
             for r in document["ratings"]]  # fmt: skip
     headers = ["form", main, "95 % from", "to", "limited by", "before", "change (%)"]
