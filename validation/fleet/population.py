@@ -18,7 +18,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import norm
 
-from validation.doubt import USUAL
 from validation.fleet.unit import UnitHistory
 
 Array = NDArray[np.float64]
@@ -52,7 +51,7 @@ class Population:
     """names (p,);  mean, mean_sd, spread (p,) of the logarithm at t0;  spread_probability (p,) if all were equal
 
     drift, drift_sd, drift_spread (p,) per year; None where no motor was recorded at two dates. All motors of one date
-    share its loads, by which a model of this kind may be wrong by the slow misfit: drift_sd holds that as well
+    share its loads, and with them what the model gets wrong under these: of the drift they tell no more than one motor
     units, posterior (u, p), posterior_sd (u, p), unit_drift, unit_drift_sd : motor by motor
     """
 
@@ -134,7 +133,7 @@ def population(units: Sequence[UnitHistory]) -> Population:
     p, (m, P) = len(names), found.posterior()
     sd = np.sqrt(np.einsum("uii->ui", P))
     own = _mean_sd(found, weights)
-    own[p:] = np.hypot(own[p:], USUAL["slow"] / np.sqrt(np.sum((np.unique(years) - middle) ** 2) or np.inf))
+    own[p:] = _mean_sd(found, weights / weights.sum())[p:]
     later = {} if not drifts else {
         "drift": found.mean[p:], "drift_sd": own[p:], "drift_spread": np.sqrt(found.variance[p:]),
         "unit_drift": m[:, p:], "unit_drift_sd": sd[:, p:],
