@@ -3,7 +3,7 @@ export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 BIN := .venv/bin
 
-.PHONY: demo test docs benchmark setup check lock clean
+.PHONY: demo test docs benchmark designs setup check lock clean
 
 demo: setup  ## the whole loop on the shipped hidden-effect case
 	@$(BIN)/thermoscope demo --out out/demo
@@ -22,6 +22,10 @@ benchmark: setup  ## every benchmark at a small size, results in out/benchmarks;
 	@echo "== diagnosis"; $(BIN)/python benchmarks/diagnosis.py --samples 400000 --json out/benchmarks/diagnosis.json
 	@echo "== hidden_effects"; $(BIN)/python benchmarks/hidden_effects.py --seeds dev --count 2 --classes nothing one --json out/benchmarks/hidden_effects.json
 
+designs: setup  ## Pareto sets of the three cooling layouts of the first paper, in out/designs
+	@for layout in air jacket-one jacket-two; do \
+	  $(BIN)/thermoscope use optimise series-dc-100kw-$$layout --limit winding=155 --torque 50 --out out/designs/$$layout || exit 1; done
+
 setup:
 	@scripts/setup
 
@@ -29,7 +33,7 @@ check: setup  ## what this computer lacks, with the command that fixes it
 	@$(BIN)/thermoscope check
 
 lock: setup  ## refresh the locked dependencies from pyproject.toml
-	@$(BIN)/uv pip compile pyproject.toml --universal --generate-hashes --group dev --no-annotate --no-header --quiet -o requirements.lock
+	@$(BIN)/uv pip compile pyproject.toml --universal --generate-hashes --extra cad --extra view --extra bench --group dev --no-annotate --no-header --quiet -o requirements.lock
 
 clean:
 	rm -rf out .pytest_cache .mypy_cache .ruff_cache .hypothesis dist

@@ -68,7 +68,7 @@ def hour(points: np.ndarray) -> tuple[Comparison, dict[str, tuple[float, ...]]]:
     channels = tuple(Channel(n, n, row, model[n] + rng.normal(0.0, 0.3, t.size)) for n in names)
     test = Test("hour", "hold-out", t, {}, {"ambient": np.full(t.size, 20.0)}, channels)
     at = {n: tuple(points[i * len(points) // SENSORS].tolist()) for i, n in enumerate(names)}
-    return Comparison(test, model), at
+    return Comparison(test, model, dict.fromkeys(names, 1.0)), at
 
 
 def pictures(mesh: NamedMesh) -> tuple[SplitMesh, list[dict[str, Any]]]:

@@ -6,12 +6,14 @@ Every trial runs one command on a fresh copy of a small case in a process of its
 moment, or as soon as a file is half written (aimed), or its disk (a small tmpfs, in a mount namespace of its own) is
 filled up at a random moment. A trial hits when the command was still at work; trials go on until so many have hit.
 After it the case has to open, all inputs be what they were, all earlier revisions be there, and nothing that counts lie
-about. `new` makes its case beside the recordings: after it there is none, or one that opens.
+about. `new` makes its case beside the recordings: after it there is none, or one that opens. `serve` is the workbench
+of the case with the button "Calibrate" of a tab pressed.
 """
 
 from __future__ import annotations
 
 import argparse
+import asyncio
 import datetime
 import json
 import os
@@ -32,11 +34,14 @@ from typing import Any
 ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "thermoscope")]
 
+from aiohttp import web  # noqa: E402
 from small_case import small_case  # noqa: E402
 
 from thermoscope.case_folder.folder import load_case  # noqa: E402
 from thermoscope.cli import main as command_line  # noqa: E402
 from thermoscope.commands.stored_diagnosis import fingerprint  # noqa: E402
+from thermoscope.workbench.application import bench  # noqa: E402
+from thermoscope.workbench.tabs import Tabs  # noqa: E402
 
 COMMANDS = {
     "calibrate": ("calibrate", "{case}", "--anyway"),
@@ -46,6 +51,7 @@ COMMANDS = {
     "new": ("new", "{case}/tests/stand.csv", "{case}/tests/road.csv", "--network", "{case}/network.toml", "--yes",
             "--out", "{case}/../made"),
 }  # fmt: skip
+SERVE = "serve"
 MADE = "made"
 MISSES = 5  # trials for every hit at most: a command may end before it is struck
 SPACE = 2**23  # bytes of the disk that fills
@@ -72,12 +78,33 @@ def started(name: str, case: Path) -> int:
         with Path(os.devnull).open("w") as nowhere:
             os.dup2(nowhere.fileno(), 1)
             os.dup2(nowhere.fileno(), 2)
-            sys.argv = ["thermoscope", *(word.format(case=case) for word in COMMANDS[name])]
-            command_line()
-    except SystemExit as end:
-        code = int(end.code or 0)
+            code = asyncio.run(pressed(case)) if name == SERVE else ran(name, case)
     finally:
         os._exit(code)
+
+
+def ran(name: str, case: Path) -> int:
+    """Exit code of a command in this process."""
+    sys.argv = ["thermoscope", *(word.format(case=case) for word in COMMANDS[name])]
+    try:
+        command_line()
+    except SystemExit as end:
+        return int(end.code or 0)
+    return 0
+
+
+async def pressed(case: Path) -> int:
+    """The workbench with a tab in which "Calibrate" is pressed; 2 where the page then shows an error."""
+    os.environ["TRAME_ARGS"] = "--server"
+    tabs = Tabs(bench(load_case(case), lambda message: None))
+    with suppress(web.HTTPFound):  # on to the tab that was made
+        await tabs.new(None)  # type: ignore[arg-type]
+    session = next(iter(tabs.open.values())).session
+    await session.step("calibrate")
+    await session.keep_anyway()
+    failed = bool(session.state.error)
+    await tabs.close()
+    return 2 if failed else 0
 
 
 def ended(child: int) -> int | None:
@@ -188,15 +215,11 @@ def usual_time(name: str, home: Path, original: Path) -> float:
 
 def loaded(name: str, home: Path, original: Path) -> None:
     """Run a command here once: what it loads and compiles, every child has from its start."""
+    if name == SERVE:  # a server of processes is of the process that started it
+        return
     case = Path(shutil.copytree(original, home / "case"))
-    sys.argv = ["thermoscope", *(word.format(case=case) for word in COMMANDS[name])]
-    with (
-        Path(os.devnull).open("w") as nowhere,
-        redirect_stdout(nowhere),
-        redirect_stderr(nowhere),
-        suppress(SystemExit),
-    ):
-        command_line()
+    with Path(os.devnull).open("w") as nowhere, redirect_stdout(nowhere), redirect_stderr(nowhere):
+        ran(name, case)
     cleared(home)
 
 
@@ -227,7 +250,7 @@ def measured(hits: int, seed: int) -> list[Trial]:
     rng, out = random.Random(seed), []
     with tempfile.TemporaryDirectory() as work, disk(Path(work) / "disk") as mounted:
         home, original = Path(work), prepared(Path(work))
-        for name in COMMANDS:
+        for name in (*COMMANDS, SERVE):
             loaded(name, home, original)
             usual = usual_time(name, home, original)
             strikes = {"killed": home, "aimed": home, **({"full disk": home / "disk"} if mounted else {})}

@@ -18,6 +18,8 @@ from geom.errors import InputError
 from geom.families import Family, families
 from geom.solids.step import import_step
 
+LARGEST_MM = 1e6  # as all lengths of a machine file
+
 LIBRARY = Path(__file__).parent / "machines"
 _HEADER = ("name", "family", "description", "source", "assumed")
 
@@ -38,7 +40,7 @@ def load_machine(source: str | Path) -> Machine:
         return import_step(path)
     if path.suffix != ".toml" or not path.is_file():
         raise InputError(f"no machine {str(source)!r}", "", f"a .toml or .step file, or one of: {', '.join(library())}")
-    return machine_from(read_toml(path, "a machine file with [machine] and [geometry]"), path.name)
+    return machine_from(read_toml(path, "a machine file with [machine] and [geometry]"), str(path))
 
 
 def machine_from(sections: Mapping[str, Any], where: str = "machine") -> Machine:
@@ -79,7 +81,7 @@ def _refuse_outside_envelope(machine: Machine, where: str) -> None:
     if allowed is None:
         return
     place = f"{where} [ratings] envelope_mm"
-    if not isinstance(allowed, list) or len(allowed) != 3 or not all(isinstance(v, (int, float)) for v in allowed):
+    if not isinstance(allowed, list) or len(allowed) != 3 or not all(_is_size(v) for v in allowed):
         raise InputError(f"{allowed!r} is not an envelope", place, "write [length, width, height]")
     for word, size, limit in zip(("length", "width", "height"), machine.extent, allowed):
         if size * 1e3 > limit + 1e-6:
@@ -88,10 +90,17 @@ def _refuse_outside_envelope(machine: Machine, where: str) -> None:
             )
 
 
+def _is_size(value: Any) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and 0.0 < value <= LARGEST_MM
+
+
 def _family(header: Mapping[str, Any], where: str) -> Family:
     for key in header:
         if key not in _HEADER:
             raise InputError(f"unknown key {key!r}", f"{where} [machine]", f"known: {', '.join(_HEADER)}")
+    for key, value in header.items():
+        if not isinstance(value, str):
+            raise InputError(f"{key} = {str(value)[:60]} is no text", f"{where} [machine]", "words in quotes")
     known = families()
     if header.get("family") not in known:
         where = f"{where} [machine] family"

@@ -1,16 +1,54 @@
-"""lumped: how does the whole machine warm up?"""
+"""lumped: how does the whole machine warm up?
 
-from lumped.declarations.network import load_circuits, load_network
-from lumped.drives.coupled import Coupled, coupled
-from lumped.integration.audit import Audit, audit
-from lumped.integration.balance import Balance, balance
-from lumped.integration.ensemble import dask_cluster, ensemble
-from lumped.integration.simulate import Record, Run, simulate
-from lumped.integration.steady import Steady, steady
-from lumped.model.build import bare_network, node_link, node_source, stream
-from lumped.model.multipliers import multipliers
-from lumped.model.network import Link, Network, Parameter, Place, Recovery, Row, Source
+Names are loaded when they are used: a command pays for nothing else.
+"""
 
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from lumped.declarations.network import load_circuits, load_network
+    from lumped.drives.coupled import Coupled, coupled
+    from lumped.integration.audit import Audit, audit
+    from lumped.integration.balance import Balance, balance
+    from lumped.integration.ensemble import dask_cluster, ensemble
+    from lumped.integration.simulate import Record, Run, simulate
+    from lumped.integration.steady import Steady, steady
+    from lumped.model.build import bare_network, node_link, node_source, stream
+    from lumped.model.multipliers import multipliers
+    from lumped.model.network import Link, Network, Parameter, Place, Recovery, Row, Source
+
+_HOME = {
+    "Audit": "lumped.integration.audit",
+    "Balance": "lumped.integration.balance",
+    "Coupled": "lumped.drives.coupled",
+    "Link": "lumped.model.network",
+    "Network": "lumped.model.network",
+    "Parameter": "lumped.model.network",
+    "Place": "lumped.model.network",
+    "Record": "lumped.integration.simulate",
+    "Recovery": "lumped.model.network",
+    "Row": "lumped.model.network",
+    "Run": "lumped.integration.simulate",
+    "Source": "lumped.model.network",
+    "Steady": "lumped.integration.steady",
+    "audit": "lumped.integration.audit",
+    "balance": "lumped.integration.balance",
+    "bare_network": "lumped.model.build",
+    "coupled": "lumped.drives.coupled",
+    "dask_cluster": "lumped.integration.ensemble",
+    "ensemble": "lumped.integration.ensemble",
+    "load_circuits": "lumped.declarations.network",
+    "load_network": "lumped.declarations.network",
+    "multipliers": "lumped.model.multipliers",
+    "node_link": "lumped.model.build",
+    "node_source": "lumped.model.build",
+    "simulate": "lumped.integration.simulate",
+    "steady": "lumped.integration.steady",
+    "stream": "lumped.model.build",
+}
 __all__ = [
     "Audit",
     "Balance",
@@ -40,3 +78,13 @@ __all__ = [
     "steady",
     "stream",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module 'lumped' has no attribute '{name}'; known: {', '.join(__all__)}")
+    return getattr(import_module(_HOME[name]), name)
+
+
+def __dir__() -> list[str]:
+    return __all__

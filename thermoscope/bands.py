@@ -24,6 +24,7 @@ from thermoscope.case_folder.folder import Folder, Progress
 from thermoscope.case_folder.runs import named_rows
 from validation.bands import Bands, ParameterPosterior, Place, bands, parameter_posterior
 from validation.bands.band import NORMAL_95
+from validation.bands.posterior import rows_read
 from validation.case import RUNNING, Recorded, Test
 
 Array = NDArray[np.float64]
@@ -39,7 +40,7 @@ def wanted(network: Network, asked: bool | None) -> bool:
 
 def posterior_of(folder: Folder, progress: Progress) -> ParameterPosterior:
     """Of the model as it stands, from the cache where this very case was looked at before."""
-    file = cache_folder() / f"belief-{_key(folder)}.npz"
+    file = cache_folder() / f"belief-{case_key(folder)}.npz"
     kept = recalled(file, lambda path: _kept(folder, path))
     if kept is not None:
         return kept
@@ -56,10 +57,13 @@ def _kept(folder: Folder, file: Path) -> ParameterPosterior:
         names, fitted = json.loads(str(held["said"]))
         bare = replace(folder.case, model=replace(folder.case.model, revision=0))
         covariance = held["covariance"]
-    return replace(parameter_posterior(bare), names=tuple(names), covariance=covariance, fitted=tuple(fitted))
+    read = rows_read([t for t in folder.case.tests if t.name in fitted])
+    return replace(
+        parameter_posterior(bare), names=tuple(names), covariance=covariance, fitted=tuple(fitted), read=read
+    )
 
 
-def _key(folder: Folder) -> str:
+def case_key(folder: Folder) -> str:
     """Of everything that decides: the case's files, the machine, and what was calibrated."""
     settings, model = folder.settings, folder.case.model
     content = hashlib.sha256(repr((LAYOUT, model.effects, sorted(model.values.items()), model.revision)).encode())

@@ -8,9 +8,11 @@ import subprocess
 import sys
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
+from functools import partial
 
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import give, progress
+from thermoscope.extras import EXTRAS, lacking
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "microsoft-edge")
 VULKAN = "apt-get install -y libvulkan1 mesa-vulkan-drivers"
@@ -35,6 +37,10 @@ class Finding:
 def findings() -> list[Finding]:
     """Everything that is looked for, in the order of importance."""
     return [
+        *(
+            _finding(f"[{e.name}]", partial(_installed, e.name), e.needed_for, False, e.install)
+            for e in EXTRAS.values()
+        ),
         _finding("off-screen OpenGL", _gl, "pictures (render, report, demo)", True, _gl_fix()),
         _finding("rerun viewer", _rerun, "opening .rrd recordings", False, "uv pip install rerun-sdk"),
         _finding("Vulkan driver", _vulkan, "screenshots from the rerun viewer without a display", False, VULKAN),
@@ -50,6 +56,10 @@ def _finding(name: str, there: Callable[[], bool], needed_for: str, needed: bool
 def as_root(command: str) -> str:
     """The same command for someone who is not root."""
     return f"sudo {command}" if command.startswith("apt-get") and os.geteuid() != 0 else command
+
+
+def _installed(extra: str) -> bool:
+    return not lacking(extra)
 
 
 def _gl() -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -13,6 +13,7 @@ from geom.errors import ThermoscopeError
 from thermoscope.case_folder.files import checked_out, checked_target, message_of, printable
 from thermoscope.console.answer import LINES, within
 from thermoscope.console.groups import grouped, old_name
+from thermoscope.extras import explained
 
 app = typer.Typer(
     help="See where your motor's thermal model is wrong, and why.",
@@ -21,6 +22,8 @@ app = typer.Typer(
     no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False, rich_markup_mode=None,
 )  # fmt: skip
 
+UsageError: Any = typer.BadParameter.__base__  # of click, wherever this version of typer keeps it
+LATEST_S = 1e9  # as [test] from_s in a sheet
 ANYWHERE = ("--all", "--debug")  # options of every command
 
 # Read when NumPy is imported. The matrices of a diagnosis are small: threads of BLAS would mostly wait for each other.
@@ -35,7 +38,9 @@ Json = Annotated[
 Anyway = Annotated[bool, typer.Option("--anyway", help="Write it even if it is not accepted.")]
 Draws = Annotated[int | None, typer.Option("--draws", hidden=True, help="Of older versions; nothing is drawn now.")]
 Machine = Annotated[str, typer.Argument(metavar="MACHINE", help="A machine or STEP file, or a name that comes along.")]
-Accuracy = Annotated[float, typer.Option(min=0.01, help="Percent of a part's rise; means within half of it.")]
+Accuracy = Annotated[
+    float, typer.Option(min=0.01, max=100.0, help="Percent of a part's rise; means within half of it.")
+]
 Limit = Annotated[
     list[str] | None,
     typer.Option("--limit", metavar="PLACE=DEGC", help="For example winding=155; several are possible."),
@@ -70,9 +75,13 @@ def new(
     constants: Annotated[
         list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="What was not recorded: ambient=21.5.")
     ] = None,
-    period: Annotated[float | None, typer.Option(min=1e-6, help="Seconds between rows without a clock.")] = None,
-    start: Annotated[float, typer.Option("--from", min=0.0, help="The tests begin here (s from the first row).")] = 0.0,
-    end: Annotated[float | None, typer.Option("--to", min=0.0, help="And end here.")] = None,
+    period: Annotated[
+        float | None, typer.Option(min=1e-6, max=1e7, help="Seconds between rows without a clock.")
+    ] = None,
+    start: Annotated[
+        float, typer.Option("--from", min=0.0, max=LATEST_S, help="The tests begin here (s from the first row).")
+    ] = 0.0,
+    end: Annotated[float | None, typer.Option("--to", min=0.0, max=LATEST_S, help="And end here.")] = None,
     json: Json = None,
 ) -> None:
     """A case from your own recordings: guesses each column, asks what it cannot know. Same columns: one test a file."""
@@ -195,8 +204,8 @@ def calibrate(
     case: Case,
     anyway: Anyway = False,
     profile: Annotated[list[str] | None, typer.Option(metavar="GLOB", help="Profile these parameters too.")] = None,
-    starts: Annotated[int | None, typer.Option(min=1, help="Fits from so many points of the prior.")] = None,
-    seed: Annotated[int | None, typer.Option(min=0, help="Of the points.")] = None,
+    starts: Annotated[int | None, typer.Option(min=1, max=1000, help="Fits from so many points of the prior.")] = None,
+    seed: Annotated[int | None, typer.Option(min=0, max=2**32 - 1, help="Of the points.")] = None,
     json: Json = None,
 ) -> None:
     """Fit the declared parameters to the calibration tests, with intervals and what the data cannot identify."""
@@ -341,7 +350,8 @@ def two_paths(
 @app.command()
 def curves(
     case: Case,
-    resolution: Annotated[float, typer.Option(min=1e-3, help="K, of the thermocouples.")] = 0.5, json: Json = None,
+    resolution: Annotated[float, typer.Option(min=1e-3, max=100.0, help="K, of the thermocouples.")] = 0.5,
+    json: Json = None,
 ) -> None:  # fmt: skip
     """Warming curves: equilibrium, tau_95, the 3 to 4 % rule, equal tests pooled; exit code 1 if these two fail."""
     from thermoscope.commands.bench.curves import curves as run
@@ -374,9 +384,9 @@ def rate(
     limit: Limit = None,
     at: Annotated[list[str] | None, typer.Option("--at", metavar="NAME=VALUE", help="Input or boundary.")] = None,
     losses: Annotated[Path | None, typer.Option(metavar="CSV", help="Loss map over torque and speed.")] = None,
-    voltage: Annotated[float | None, typer.Option(help="Of the map's slices.")] = None,
-    overload: Annotated[float, typer.Option(min=100.1, help="Percent of the continuous rating.")] = 150.0,
-    top: Annotated[float | None, typer.Option(min=0.0, metavar="RPM", help="Largest speed of the envelope.")] = None,
+    voltage: Annotated[float | None, typer.Option(min=0.0, max=1e7, help="Of the map's slices.")] = None,
+    overload: Annotated[float, typer.Option(min=100.1, max=1e4, help="Percent of the continuous rating.")] = 150.0,
+    top: Annotated[float | None, typer.Option(min=0.0, max=1e6, metavar="RPM", help="Of the envelope.")] = None,
     load: Annotated[list[str] | None, typer.Option(metavar="INPUT", help="What the load multiplies.")] = None,
     cycle: Annotated[str | None, typer.Option(metavar="FILE|NAME", help="A drive cycle to repeat.")] = None,
     mapped: Annotated[bool, typer.Option("--map", help="How long at every speed and load.")] = False,
@@ -391,19 +401,74 @@ def rate(
 
 
 @app.command()
+def optimise(
+    name: Annotated[str, typer.Argument(metavar="CASE|MACHINE", help="A case, or a machine with nothing measured.")],
+    limit: Limit = None,
+    torque: Annotated[float | None, typer.Option(min=0.0, metavar="NM", help="Required, for ever.")] = None,
+    at: Annotated[list[str] | None, typer.Option("--at", metavar="NAME=VALUE", help="Input or boundary.")] = None,
+    vary: Annotated[
+        list[str] | None, typer.Option(metavar="NAME[=LOW:HIGH]", help="Else flows, jacket and fins.")
+    ] = None,
+    method: Annotated[str, typer.Option(help="nsga2 or unsga3.")] = "nsga2",
+    population: Annotated[int, typer.Option(min=8, help="Designs per generation.")] = 48,
+    generations: Annotated[int, typer.Option(min=1)] = 30,
+    seed: Annotated[int, typer.Option(min=0)] = 1,
+    cluster: Annotated[str | None, typer.Option(metavar="ADDRESS", help="Of a Dask scheduler.")] = None,
+    cycle: Annotated[str | None, typer.Option(metavar="FILE|NAME", help="A vehicle's, with its gains.")] = None,
+    robust: Annotated[bool, typer.Option("--robust", help="Temperatures at the upper end of their bands.")] = False,
+    out: Out = None, json: Json = None,
+) -> None:  # fmt: skip
+    """Designs that trade peak temperature, settling time, copper loss and auxiliary power; each a machine file."""
+    from thermoscope.commands.use.optimise import optimise as run
+    from validation.optimisation.search import Effort
+
+    given = tuple(limit or ()), torque, tuple(at or ()), tuple(vary or ()), method
+    raise typer.Exit(run(name, *given, Effort(population, generations, seed), cluster, cycle, robust, out, json))
+
+
+@app.command()
+def watch(
+    case: Case,
+    follow: Annotated[str, typer.Option("--follow", metavar="FILE|-", help="A CSV file, or - for rows from a pipe.")],
+    sensor: Annotated[list[str] | None, typer.Option(metavar="NAME", help="Use these sensors alone.")] = None,
+    like: Annotated[str | None, typer.Option(metavar="TEST", help="Columns as in this test; else the first.")] = None,
+    out: Out = None, json: Json = None,
+) -> None:  # fmt: skip
+    """Beside a running machine: all temperatures and missing heat from its sensors, and where the model fails."""
+    from thermoscope.commands.use.watch import watch as run
+
+    raise typer.Exit(run(case, follow, tuple(sensor or ()), like, out, json))
+
+
+@app.command()
+def fleet(
+    case: Case,
+    recordings: Annotated[list[Path], typer.Argument(metavar="RECORDINGS...", help="UNIT@2026-03.csv, or folders.")],
+    like: Annotated[str | None, typer.Option(metavar="TEST", help="Columns as in this test; else the first.")] = None,
+    cluster: Annotated[str | None, typer.Option(metavar="ADDRESS", help="Of a Dask scheduler.")] = None,
+    json: Json = None,
+) -> None:
+    """Motors that should be equal: what differs between them, what drifts over the months, which one stands out."""
+    from thermoscope.commands.use.fleet import fleet as run
+
+    raise typer.Exit(run(case, recordings, like, cluster, json))
+
+
+@app.command()
 def export(
     case: Case,
     out: Out = None,
-    form: Annotated[str, typer.Option("--as", help="xlsx, csv: results; c, fmu, json, matlab: the model.")] = "xlsx",
+    form: Annotated[str, typer.Option("--as", help="xlsx, csv: results; c, fmu, json, matlab; observer: C.")] = "xlsx",
     limit: Limit = None,
     fmi: Annotated[int, typer.Option(help="Version of an FMU: 2 or 3.")] = 2,
+    sensor: Annotated[list[str] | None, typer.Option(metavar="NAME", help="Of an observer; else all.")] = None,
     csv: Annotated[bool, typer.Option("--csv", hidden=True, help="As --as csv.")] = False,
     json: Json = None,
 ) -> None:
     """Results as a workbook or CSV files; or the model to run elsewhere: C99, FMU, JSON or MAT file."""
     from thermoscope.commands.use.export import export as run
 
-    raise typer.Exit(run(case, out, "csv" if csv else form, tuple(limit or ()), fmi, json))
+    raise typer.Exit(run(case, out, "csv" if csv else form, tuple(limit or ()), fmi, json, tuple(sensor or ())))
 
 
 @app.command()
@@ -452,10 +517,21 @@ def main() -> None:
     if note := old_name(arguments):
         print(f"note: {note}", file=sys.stderr)
     try:
-        with within(None if "--all" in sys.argv else LINES):
-            app(arguments, prog_name="thermoscope")
-    except (ThermoscopeError, OSError) as fault:
+        with within(None if "--all" in sys.argv else LINES), explained():
+            code = app(arguments, prog_name="thermoscope", standalone_mode=False)
+    except (ThermoscopeError, OSError, UsageError) as fault:
         if "--debug" in sys.argv:
             raise
-        print(f"error: {printable(message_of(fault))}", file=sys.stderr)
+        print(one_line(fault), file=sys.stderr)
         raise SystemExit(2) from None
+    except typer.Abort:
+        raise SystemExit(1) from None
+    raise SystemExit(code if isinstance(code, int) else 0)
+
+
+def one_line(fault: Exception) -> str:
+    """One line that says what is wrong; the help itself where nothing at all was asked for."""
+    if not isinstance(fault, UsageError):
+        return f"error: {printable(message_of(fault))}"
+    message, command = fault.format_message().rstrip("."), fault.ctx.command_path if fault.ctx else "thermoscope"
+    return message if "\n" in message else f"error: {printable(f'{command}: {message}; {command} --help')}"

@@ -31,7 +31,7 @@ EFFECTS = """
 
 def page() -> str:
     """The page as Markdown."""
-    rows = [f"| `{n}` | {', '.join(q.units)} | {HELD[n]} | {q.feeds} |" for n, q in QUANTITIES.items()]
+    rows = [f"| `{n}` | {', '.join(q.units)} | {HELD[n]} | {q.feeds} |" for n, q in QUANTITIES.items() if n in HELD]
     own = {name: kind for name, kind in kinds().items() if kind.__module__.startswith("validation.")}
     effects = [f"| `{n}` | {k.title} | {k.sits} | {', '.join(k.needs)} |" for n, k in own.items()]
     return HEAD + "\n".join(rows) + "\n" + EFFECTS + "\n".join(effects) + "\n"

@@ -1,12 +1,41 @@
-"""Does the model agree with the measurements, and if not, what is missing?"""
+"""Does the model agree with the measurements, and if not, what is missing?
 
-from validation.case import AddedEffect, Case, Channel, Model, Test
-from validation.comparison.compare import Comparison, compare
-from validation.diagnosis.result import Diagnosis
-from validation.effects import Effect, Scene, catalogue, effect, kinds
-from validation.inference.diagnose import diagnose
-from validation.revision.revise import Revision, add, calibrate, remove
+Names are loaded when they are used: a command pays for nothing else.
+"""
 
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from validation.case import AddedEffect, Case, Channel, Model, Test
+    from validation.comparison.compare import Comparison, compare
+    from validation.diagnosis.result import Diagnosis
+    from validation.effects import Effect, Scene, catalogue, effect, kinds
+    from validation.inference.diagnose import diagnose
+    from validation.revision.revise import Revision, add, calibrate, remove
+
+_HOME = {
+    "AddedEffect": "validation.case",
+    "Case": "validation.case",
+    "Channel": "validation.case",
+    "Comparison": "validation.comparison.compare",
+    "Diagnosis": "validation.diagnosis.result",
+    "Effect": "validation.effects",
+    "Model": "validation.case",
+    "Revision": "validation.revision.revise",
+    "Scene": "validation.effects",
+    "Test": "validation.case",
+    "add": "validation.revision.revise",
+    "calibrate": "validation.revision.revise",
+    "catalogue": "validation.effects",
+    "compare": "validation.comparison.compare",
+    "diagnose": "validation.inference.diagnose",
+    "effect": "validation.effects",
+    "kinds": "validation.effects",
+    "remove": "validation.revision.revise",
+}
 __all__ = [
     "AddedEffect",
     "Case",
@@ -27,3 +56,13 @@ __all__ = [
     "kinds",
     "remove",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module 'validation' has no attribute '{name}'; known: {', '.join(__all__)}")
+    return getattr(import_module(_HOME[name]), name)
+
+
+def __dir__() -> list[str]:
+    return __all__

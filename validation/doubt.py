@@ -98,11 +98,15 @@ RARE: Mapping[str, Odds] = MappingProxyType({
     "coupling": Odds(0.3, "two solids that touch are seldom forgotten"),
     "mass": Odds(0.3, "masses are weighed"),
     "input.factor": Odds(1.0, "wrong ranges and shunts are as frequent as sensors that are off"),
+    "input.offset": Odds(0.3, "a zero is set before a test more often than a range is"),
     "law": Odds(0.3, "exponents and factors of a law are off more often than its shape"),
     "loss.factor": Odds(0.3, "calibration moves declared losses already"),
 })  # fmt: skip
 
-TEMPER = Odds(1.75, "divides log evidence: no model is quite right; any six of seven machine kinds ask for it")
+TEMPER = Odds(
+    2.0,
+    "divides log evidence: no model is quite right; seven kinds of machine ask for 2 to 2.5, another generator for 1.5",
+)
 SIZES = (0.3, 1.0, 3.0)  # of an effect's usual size: nobody knows it better than within a decade
 
 # What a statement costs; a wrong name is one.

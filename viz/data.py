@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError
 from validation.case import Channel, Test
-from validation.comparison.tolerance import limit_K
 
 Array = NDArray[np.float64]
 LONG_S = 5 * 3600.0
@@ -22,7 +21,7 @@ class Sensor:
     """A thermocouple on the machine.
 
     xyz : position (m);  residual_K : measured - modelled, None where only the position is known
-    limit_K : the largest error that counts as agreement, see validation.comparison.tolerance
+    limit_K : the largest error that counts as agreement, see validation.comparison.uncertainty
     rmse_K : error of the whole test, which decides; None where only one instant is shown
     """
 
@@ -53,11 +52,13 @@ class Comparison:
     """One test held against a model.
 
     model : channel name -> (n_time,) degC;  before : the same of an earlier revision, if it is to be shown
+    limits : channel name -> the largest error that counts as agreement (K), as `compare` has it
     events : when something was, or may have been, different, from and to (s)
     """
 
     test: Test
     model: Mapping[str, Array]
+    limits: Mapping[str, float]
     before: Mapping[str, Array] | None = None
     events: tuple[tuple[float, float], ...] = ()
 
@@ -86,6 +87,10 @@ class Comparison:
         """Measured - modelled (K), NaN where nothing was read."""
         return np.asarray(channel.y, float) - np.asarray(self.model[channel.name], float)
 
+    def limit_K(self, channel: Channel) -> float:
+        """The largest error of a sensor that counts as agreement (K)."""
+        return self.limits[channel.name]
+
     def rmse(self, channel: Channel) -> float:
         return float(np.sqrt(np.nanmean(self.residual(channel) ** 2)))
 
@@ -104,5 +109,5 @@ def sensors(comparison: Comparison, positions: Mapping[str, Sequence[float]]) ->
             late = comparison.residual(c)[int(0.8 * len(comparison.test.time)) :]
             late = late[np.isfinite(late)]
             residual = float(late.mean()) if late.size else None
-            out.append(Sensor(c.name, (x, y, z), residual, limit_K(c), comparison.rmse(c)))
+            out.append(Sensor(c.name, (x, y, z), residual, comparison.limit_K(c), comparison.rmse(c)))
     return tuple(out)

@@ -8,6 +8,7 @@ from typing import Any
 from hidden.answer import answer
 from hidden.cases import Label, hidden_in
 from hidden.kinds import KINDS
+from hidden.odds import unordered
 from hidden.truth.archetype import measured
 from hidden.truth.menu import MENU, carried_out
 from hidden.user import test_of
@@ -27,7 +28,8 @@ def worth(case: Case, label: Label, found: Answer) -> dict[str, float] | None:
         return None
     base = calibrate(case, roles=("calibrate", "validate"))
     ready, before = replace(case, model=base.model), held_out(base)
-    true = next((n for n in label.right[0] if n in possible(case)), None)
+    names = set(unordered(label.right[0]))
+    true = next((n for n in possible(case) if unordered(n) in names), None)
     best = held_out(add(ready, true)) if true else before
     claims = found["verdict"] in ("named", "group", "several") and found["groups"]
     if not claims:
@@ -37,9 +39,9 @@ def worth(case: Case, label: Label, found: Answer) -> dict[str, float] | None:
     return {"before": before, "claimed": claimed, "best": best}
 
 
-def possible(case: Case) -> set[str]:
+def possible(case: Case) -> list[str]:
     """Every effect of the catalogue that can sit somewhere in a case."""
-    return {one.name for one in candidates(case)}
+    return [one.name for one in candidates(case)]
 
 
 def held_out(done: Revision) -> float:

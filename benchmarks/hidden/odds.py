@@ -25,6 +25,21 @@ DATA = ("sensor.", "time.", "ambient.", "input.", "frozen", "clipped", "clock")
 EDGES = (0.0, 0.2, 0.4, 0.6, 0.8, 1.0)
 
 
+def unordered(x: Any) -> Any:
+    """A document in which the places of an effect between two are in the order of the alphabet: they have none."""
+    if isinstance(x, str):
+        return " + ".join(_unordered(name) for name in x.split(" + ")) if "@" in x and "|" in x else x
+    if isinstance(x, Mapping):
+        return {unordered(key): unordered(value) for key, value in x.items()}
+    return [unordered(one) for one in x] if isinstance(x, list | tuple) else x
+
+
+def _unordered(name: str) -> str:
+    kind, _, rest = name.partition("@")
+    places, within, gate = rest.partition(" in ")
+    return f"{kind}@{'|'.join(sorted(places.split('|')))}{within}{gate}"
+
+
 @dataclass(frozen=True)
 class Said:
     """A hypothesis and its probability. effects : kind@place;  tests, span : where it holds, if not everywhere"""

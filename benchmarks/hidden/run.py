@@ -28,8 +28,8 @@ def answered(out: Path) -> dict[str, dict]:
 
 def pairs(out: Path) -> list[tuple[dict, dict]]:
     """Labels and answers that belong together."""
-    done = answered(out)
-    labels = {label["case"]: label for label in _lines(out / LABELS)}
+    done = odds.unordered(answered(out))
+    labels = {label["case"]: odds.unordered(label) for label in _lines(out / LABELS)}
     return [(labels[name], found) for name, found in done.items() if name in labels]
 
 
@@ -96,6 +96,7 @@ def line(label: Label, found: dict) -> str:
     lead = ", ".join(found["groups"][0][:3]) if found["groups"] else "-"
     more = f" (+{len(found['groups'][0]) - 3})" if found["groups"] and len(found["groups"][0]) > 3 else ""
     best = max((c["score"] for c in found["candidates"].values()), default=0.0)
-    cost = f"{odds.nats(label.document(), found):.1f} nats  {found['made_s']:.0f}+{found['cpu_s']:.0f} s"
+    nats = odds.nats(odds.unordered(label.document()), odds.unordered(found))
+    cost = f"{nats:.1f} nats  {found['made_s']:.0f}+{found['cpu_s']:.0f} s"
     told = f"{best:.1f}/{found['threshold']:.1f}  rmse {found['rmse_K']:.2f}/{found['floor_K']:.2f} K"
     return f"{label.case:24s} {truth + size:44s} {found['verdict']:9s} {lead}{more}  {told}  {cost}"

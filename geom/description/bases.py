@@ -46,7 +46,10 @@ def _with_base(machine: Machine, name: str, other: Machine, where: str) -> Machi
     sections["contacts"] = {**_contacts(other, renamed), **sections.get("contacts", {})}
     films, theirs = sections.get("films", {}), other.sections.get("films", {}).get("outer", {})
     outer = {renamed[piece]: theirs[piece] for piece in PIECES if piece in theirs}
-    sections["films"] = {**films, "outer": {**films.get("outer", {}), **outer}}
+    mine = films.get("outer", {})
+    if not isinstance(mine, Mapping):
+        raise InputError(f"outer = {str(mine)[:60]} is no table", f"{machine.name} [films]", "PART = W/m2/K pairs")
+    sections["films"] = {**films, "outer": {**mine, **outer}}
     return replace(machine, parts=(*machine.parts, *more), sections=sections)
 
 

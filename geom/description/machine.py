@@ -65,13 +65,9 @@ class Machine:
     @property
     def extent(self) -> tuple[float, float, float]:
         """Overall size (m): along the axis, across it, and high."""
-        import shapely
-
-        profiles = [profile for part in self.parts for profile, _, _ in part.prisms]
-        grid = ArcGrid(profiles, 72)
-        x0, y0, x1, y1 = shapely.total_bounds([profile.to_polygon(grid) for profile in profiles])
+        x0, y0, x1, y1 = zip(*(profile.bounds for part in self.parts for profile, _, _ in part.prisms))
         spans = [part.span for part in self.parts]
-        return max(z1 for _, z1 in spans) - min(z0 for z0, _ in spans), float(x1 - x0), float(y1 - y0)
+        return max(z1 for _, z1 in spans) - min(z0 for z0, _ in spans), max(x1) - min(x0), max(y1) - min(y0)
 
     def point_in(self, name: str) -> tuple[float, float, float]:
         """A point (m) well inside the part: in the plane inside its largest prism, at half its length."""

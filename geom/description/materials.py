@@ -68,7 +68,7 @@ def material_table() -> Mapping[str, Material]:
 
 def material(name: str) -> Material:
     """One material; InputError names the known ones."""
-    if name not in material_table():
+    if not isinstance(name, str) or name not in material_table():
         raise InputError(f"unknown material {name!r}", "[materials]", f"known: {', '.join(sorted(material_table()))}")
     return material_table()[name]
 

@@ -37,6 +37,14 @@ class Arc:
     def at(self, angle: float) -> tuple[float, float]:
         return self.x + self.radius * math.cos(angle), self.y + self.radius * math.sin(angle)
 
+    def extremes(self) -> Iterator[tuple[float, float]]:
+        """Its points furthest left, right, up and down, as far as the arc has them."""
+        sign = math.copysign(1.0, self.sweep)
+        for quarter in range(4):
+            away = (sign * (quarter * math.pi / 2 - self.start)) % (2 * math.pi)
+            if away <= abs(self.sweep):
+                yield self.at(quarter * math.pi / 2)
+
 
 @dataclass(frozen=True)
 class Profile:
@@ -57,6 +65,14 @@ class Profile:
     def area(self) -> float:
         """Exact area (m2), arcs included."""
         return abs(loop_area(self.outer)) - sum(abs(loop_area(hole)) for hole in self.holes)
+
+    @property
+    def bounds(self) -> tuple[float, float, float, float]:
+        """Exact x0, y0, x1, y1 (m), arcs included."""
+        points = [(x, y) for x, y, _ in self.outer]
+        points += [p for _, arc in edges(self.outer) if arc is not None for p in arc.extremes()]
+        x, y = zip(*points)
+        return min(x), min(y), max(x), max(y)
 
     def rotated(self, angle: float) -> Profile:
         """The same profile turned about the axis by `angle` (rad, anticlockwise)."""
@@ -155,6 +171,12 @@ def loop_area(loop: Loop) -> float:
         if arc is not None:
             area += arc.radius**2 * (arc.sweep - math.sin(arc.sweep)) / 2
     return area
+
+
+def loop_length(loop: Loop) -> float:
+    """Length of a closed loop (m), arcs included."""
+    pieces = zip(edges(loop), (*loop[1:], loop[0]))
+    return sum(math.dist(v[:2], w[:2]) if arc is None else arc.radius * abs(arc.sweep) for (v, arc), w in pieces)
 
 
 def _arc_ends(profile: Profile) -> dict[int, set[float]]:

@@ -14,7 +14,7 @@ from geom.machine_file import library, load_machine, machine_from
 
 _JACKETS = (
     "Jackets in the mesh and in CAD files: channels around the axis are rings in the mesh, in the table of "
-    "areas and in the drawing, and a helix of the same pitch, width, ribs and volume in STEP, STL and GLB; its "
+    "areas and in the drawing. In STEP, STL and GLB they are a helix of the same pitch, width, ribs and volume; its "
     "wetted area is within 2 % of the rings'. It widens against the end walls where it begins and ends, and "
     "takes up to 0.8 ribs from them. Ports are square in the mesh and round in CAD files, with bores of the "
     "same cross-section. `NAME-prisms.step` holds what is meshed; `build` reads it back.",

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from geom.families.family import Family
+from geom.plugins import plugins
 
 
 def families() -> dict[str, Family]:
-    """All families by name."""
+    """All families by name, those of other packages too (entry points "thermoscope.families")."""
     from geom.families import radial_flux, series_dc
 
-    return {family.name: family for family in (series_dc.FAMILY, radial_flux.PMSM, radial_flux.TEFC)}
+    own = (series_dc.FAMILY, radial_flux.PMSM, radial_flux.TEFC)
+    return {family.name: family for family in (*own, *plugins("families").values())}

@@ -22,7 +22,6 @@ Closed voids between the solids become the fluid "air.inside".
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Iterable, Mapping
 from fnmatch import fnmatchcase
 from functools import cache
@@ -32,9 +31,11 @@ from typing import TYPE_CHECKING, Any
 from geom.description.identity import Identity
 from geom.description.machine import SECTIONS, Machine
 from geom.description.materials import material
+from geom.description.names import checked_name
 from geom.description.part import Part, Prism
 from geom.description.reading import read_geometry
 from geom.description.roles import Role
+from geom.description.toml_file import read_toml
 from geom.errors import InputError
 from geom.solids.slicing import sliced
 
@@ -66,7 +67,7 @@ def import_step(path: str | Path) -> Machine:
     made_of = {name: _material(name, said.get("materials", {}), str(beside)) for name in prisms if name not in fluids}
     header = said.get("machine", {})
     return Machine(
-        name=header.get("name", path.stem),
+        name=checked_name(header["name"], f"{beside} [machine] name") if "name" in header else path.stem,
         family="step",
         description=header.get("description", f"imported from {path.name}"),
         parts=tuple(
@@ -127,10 +128,7 @@ def step_sidecar(path: Path | str) -> Path:
 def _read_sidecar(path: Path) -> dict[str, Any]:
     if not path.is_file():
         return {}
-    try:
-        said = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InputError(f"not valid TOML: {error}", str(path)) from error
+    said = read_toml(path, "what a STEP file does not say: [materials], [fluids], [losses.NAME] ...")
     known = ("import", "fluids", "roles", *(section for section in SECTIONS if section != "geometry"))
     for section, table in said.items():
         if section not in known or not isinstance(table, Mapping):

@@ -5,14 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from geom.errors import InputError
 from lumped.model.network import Array, Row
+
+if TYPE_CHECKING:
+    from scipy.spatial import cKDTree
 
 Ints = NDArray[np.int64]
 SNAP_M = 3e-3  # a thermocouple this far outside its part is taken to sit on the surface
@@ -43,6 +45,8 @@ class PartShape:
 
     @cached_property
     def tree(self) -> cKDTree:
+        from scipy.spatial import cKDTree
+
         return cKDTree(self.xyz[self.tets].mean(1))
 
 

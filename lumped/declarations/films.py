@@ -9,6 +9,7 @@ from functools import partial
 
 import numpy as np
 
+from geom.plugins import plugins
 from lumped.correlations import Info, RangeWarning, film_tabulated, tabulated
 from lumped.schemas.reader import Table
 from lumped.transfer.laws import Array, FilmTable, Fixed, Inputs, Law
@@ -58,7 +59,8 @@ def natural(table: Table) -> Law:
 def natural_film(table: Table) -> tuple[FilmTable | TableLaw, float]:
     """The film of still air, and the factor on it. The air's properties follow its film temperature, or, where the
     table says `fluid_degC`, are those of surfaces in air of that temperature."""
-    film, factor = NATURAL[table.word("surface", None, NATURAL)](table, _air(table)), table.number("factor", 1.0)
+    known = {**NATURAL, **plugins("still_air")}
+    film, factor = known[table.word("surface", None, known)](table, _air(table)), table.number("factor", 1.0)
     if "fluid_degC" not in table:
         return film_tabulated(film), factor
     return tabulated(film, fluid_temperature=table.number("fluid_degC")), factor
@@ -185,7 +187,8 @@ FORCED: dict[str, Callable[[Table, Fluid], Film]] = {
 def over(table: Table) -> FilmOver:
     """Air, or a coolant, moving over a known surface; its speed is `m_s_per_unit` times an input."""
     fluid = _coolant(table) if "coolant" in table else film_air(table, 30.0)
-    film = FORCED[table.word("surface", None, FORCED)](table, fluid)
+    known = {**FORCED, **plugins("moving_air")}
+    film = known[table.word("surface", None, known)](table, fluid)
     scale = table.number("m_s_per_unit", 1.0)
     return FilmOver(table.word("speed"), partial(_scaled, film, scale), table.number("up_to_m_s", 50.0) / scale)
 

@@ -39,7 +39,7 @@ def _copper(table: Table) -> Law:
     ac = table.raw("ac")
     speed, at, coefficients = _ac(Table(ac, f"{table.where} ac")) if ac is not None else (None, 1.0, (1.0,))
     return CopperLoss(
-        table.number(given[0]), table.words("currents"), table.number("factor", 1.0),
+        table.number(given[0]), table.members("currents"), table.number("factor", 1.0),
         _coefficient(table, reference, ALPHA_CU), reference, coefficients, speed, at,
     )  # fmt: skip
 

@@ -17,7 +17,7 @@ from lumped.declarations.parameters import read_parameters
 from lumped.declarations.roles import read_identities, read_quantities
 from lumped.model.build import bare_network, node_link, node_source, stream, surface_place
 from lumped.model.network import Link, Network, Place, Source
-from lumped.model.soundness import checked_network, checked_path
+from lumped.model.soundness import checked_names, checked_network, checked_path
 from lumped.schemas.reader import Table, known
 from lumped.sources.loss_measured import Negative
 from lumped.transfer.laws import Law
@@ -26,6 +26,7 @@ from lumped.transfer.reversal import Direction, OneWay
 if TYPE_CHECKING:
     from lumped.transfer.circuit import Circuit
 
+NAMED = ("nodes", "surfaces", "means", "links", "streams", "losses", "circuits", "parameters")
 RIGHT = "a network.toml (docs/network-toml.md)"
 
 
@@ -58,8 +59,11 @@ def _read(data: Mapping[str, Any], where: str) -> Network:
     head, nodes = top.table("network"), top.tables("nodes")
     if not nodes:
         raise top.error("no nodes", "[nodes.NAME] with C_J_K = ...")
-    name, boundaries, settles = head.word("name"), head.words("boundaries"), head.number("settles_s", 3600.0)
+    name, boundaries, settles = head.word("name"), head.members("boundaries"), head.number("settles_s", 3600.0)
     head.close()
+    for key in NAMED:
+        checked_names(top.tables(key), f"{where} [{key}]")
+    checked_names(boundaries, f"{where} [network] boundaries")
     circuits = _circuits(top, nodes, boundaries)
     cells = {n: C for c in circuits.values() for n, C in c.capacities().items()}
     network = bare_network(name, {n: _capacity(t) for n, t in nodes.items()} | cells, boundaries)
@@ -117,6 +121,8 @@ def _places(network: Network, top: Table, nodes: Mapping[str, Table], cells: Ite
 def _mean(network: Network, name: str, table: Table) -> Place:
     """A sensor place that averages nodes, e.g. a winding's resistance."""
     shares = table.shares("of")
+    if not shares:
+        raise table.error("of = {} averages nothing", "shares of nodes that sum to 1")
     states = np.array([network.column(_end(network, table, node)) for node in shares])
     weights = np.array(list(shares.values()))
     if abs(weights.sum() - 1.0) > 1e-9 or states.max() >= len(network.states):
@@ -128,7 +134,7 @@ def _mean(network: Network, name: str, table: Table) -> Place:
 def _end(network: Network, table: Table, name: str) -> str:
     names = [*network.states, *network.boundaries]
     if name not in names:
-        raise table.error(f"joins unknown node '{name}'", known(name, names))
+        raise table.error(f"unknown node '{name}'", known(name, names))
     return name
 
 

@@ -19,6 +19,10 @@ MAPPINGS = {
 def read_parameters(network: Network, top: Table, nodes: Mapping[str, Table]) -> tuple[Parameter, ...]:
     """All parameters of a file."""
     declared = (*_inline(network, top, nodes), *_of_circuits(network, top), *_parameters(top))
+    names = [p.name for p in declared]
+    for name in (n for n in names if names.count(n) > 1):
+        raise top.error(f"two parameters are called '{name}': prior_sd in a table makes one of that name",
+                        "prior_sd there, or [parameters.NAME] of another name")  # fmt: skip
     return tuple(replace(p, targets=(*p.targets, *_companions(network, p))) for p in declared)
 
 
@@ -73,7 +77,9 @@ def _parameter(name: str, table: Table) -> Parameter:
     mapping = table.word("mapping", "log", MAPPINGS)
     neutral, low, high = MAPPINGS[mapping]
     listed = isinstance(table.raw("acts_on"), list)
-    targets = dict.fromkeys(table.words("acts_on"), 1.0) if listed else table.shares("acts_on", of="acts_on")
+    targets = dict.fromkeys(table.members("acts_on"), 1.0) if listed else table.shares("acts_on", of="acts_on")
+    if not targets:
+        raise table.error("acts_on = {} names nothing", 'acts_on = ["link:NAME", ...]')
     found = Parameter(
         name, tuple(targets.items()), table.number("value", neutral), table.word("unit", "1"),
         table.number("low", low), table.number("high", high), table.number("prior_sd", 0.3, of="parameters.prior_sd"),

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 CURVED = 1e-3  # of the largest factor of an interval: what a parabola may miss, times its share of the interval
+MISSED = 0.01  # and however short that is: a cell of 0.1 J/K follows at once (to |x|^0.8 from 0 on it misses 0.024)
 SMALL = 1e-2  # of the largest factor of a record: less than that counts as that
 FINEST = 1e-3  # of an interval
 QUARTERS = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
@@ -81,7 +82,7 @@ def curve(
     bulge = np.zeros(nt)
     bulge[1:] = middle - 0.5 * (value[:-1] + value[1:])
     bulge[np.abs(bulge) <= 1e-12 * scale] = 0.0  # rounding
-    wrong = _missed(five, SMALL * scale) > CURVED
+    wrong = _too_curved(five, 1.0, SMALL * scale)
     if skip is not None:
         wrong &= ~skip[1:]
 
@@ -93,6 +94,12 @@ def curve(
         warnings.simplefilter("ignore")  # what is out of range was said of the samples
         inserted = _inserted(again, steps[wrong], turns, SMALL * scale) if np.any(wrong) else NONE
     return Curve(value, bulge, inserted)
+
+
+def _too_curved(five: Array, width: Array | float, small: float) -> NDArray[np.bool_]:
+    """(n,) whether a parabola misses too much of a factor in an interval of that width, a share of that of samples."""
+    missed = _missed(five, small)
+    return np.asarray((width * missed > CURVED) | (missed > MISSED))
 
 
 def _missed(five: Array, small: float) -> Array:
@@ -110,7 +117,7 @@ def _inserted(factor: Callable[[Array], Array], samples: Array, turns: Array, sm
     left, width, out = ends[:-1][kept], np.diff(ends)[kept], [corners]
     while left.size:
         at = left[:, None] + width[:, None] * QUARTERS
-        cut = (width * _missed(factor(at.ravel()).reshape(at.shape), small) > CURVED) & (width > FINEST)
+        cut = _too_curved(factor(at.ravel()).reshape(at.shape), width, small) & (width > FINEST)
         left, width = left[cut], 0.5 * width[cut]
         out.append(left + width)
         left, width = np.concatenate([left, left + width]), np.tile(width, 2)

@@ -16,10 +16,11 @@ def failure(network: Network, core: Compiled, forcing: Forcing, at: Position) ->
     node, where = network.states[int(at.at[NODE])], f"{network.title}: "
     if status == HOT and (growing := _growing(network)):
         tables = ", ".join(f"[losses.{name}]" for name in growing)
-        why = f"{tables} grow faster with temperature than its cooling"
+        why = f"{tables} grow faster with temperature than its cooling: check the units of their inputs"
         return f"{where}thermal runaway at t = {t:g} s: '{node}' passes {hottest:g} degC; {why}"
     if status == HOT:
-        return f"{where}'{node}' passes {hottest:g} degC at t = {t:g} s: more heat than its links carry away"
+        cure = "check the units of its inputs, its losses and its links"
+        return f"{where}'{node}' passes {hottest:g} degC at t = {t:g} s: more heat than its links carry away; {cure}"
     if status == OUTSIDE:
         what = f"no step keeps '{node}' within what boundaries, start and sources allow at t = {t:g} s"
         return f"{where}{what}{_moving(network, core, forcing, at)}"

@@ -148,11 +148,13 @@ class Signals(dict[str, Array]):
         """The factor at positions, or at the samples of the whole record."""
         size = self.nt if at is None else at.size
         given = self if at is None else self.source.between(at) if self.source else Between(self, at)
-        value = np.asarray(law.factor(given), float)
-        if value.shape not in ((), (size,)) or not np.all(np.isfinite(value)):
-            raise InputError(
-                f"the input factor is not finite or has shape {value.shape}", f"'{name}'", f"finite, () or ({size},)"
-            )
+        with np.errstate(all="ignore"):  # what comes of it is looked at
+            value = np.asarray(law.factor(given), float)
+        if value.shape not in ((), (size,)):
+            raise InputError(f"the input factor has shape {value.shape}", f"'{name}'", f"() or ({size},)")
+        if not np.all(np.isfinite(value)):
+            raise InputError("is not finite at the inputs of this run", f"'{name}'",
+                             f"check {', '.join(law.reads) or 'its numbers'}: no negative exponent of 0")  # fmt: skip
         return value
 
 

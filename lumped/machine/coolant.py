@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from geom.description.profile import loop_length
 from lumped.correlations.ducts import duct_film, schmidt_helical
 from lumped.machine.laws import Interpolated
 from lumped.machine.path import cells_of, stem
@@ -113,16 +114,7 @@ def channel_of(machine: Any, jacket: str) -> Channel:
         high, wide = outer - inner, z1 - z0
         turn = math.pi * (outer + inner)
         return Channel(high * wide, 2 * high * wide / (high + wide), turn, outer + inner)
-    return Channel(profile.area, 4 * profile.area / _perimeter(profile.outer), z1 - z0, 0.0)
-
-
-def _perimeter(loop: Any) -> float:
-    """m; the edge that leaves a vertex with bulge b is an arc of 4 atan(b)."""
-    total = 0.0
-    for (x, y, bulge), (u, v, _) in zip(loop, (*loop[1:], loop[0]), strict=True):
-        half = 2 * math.atan(bulge)
-        total += math.hypot(u - x, v - y) * (half / math.sin(half) if abs(half) > 1e-9 else 1.0)
-    return total
+    return Channel(profile.area, 4 * profile.area / loop_length(profile.outer), z1 - z0, 0.0)
 
 
 def _flows(cooling: Cooling) -> tuple[float, ...]:

@@ -30,6 +30,11 @@ def sources(machine: Any, network: Network) -> list[Source]:
     return [_source(network, name, kind, parts, law, probe) for name, kind, parts, law, probe in _declared(machine)]
 
 
+def checked_losses(machine: Any) -> None:
+    """InputError for a table of losses that cannot be; to be asked before minutes are spent on a mesh."""
+    _declared(machine)
+
+
 def loss_shares(machine: Any, network: Network) -> dict[str, dict[str, float]]:
     """Source -> share of its watts per part, zone or fluid of the network."""
     out: dict[str, dict[str, float]] = {}
@@ -52,6 +57,7 @@ def loss_watts(machine: Any, network: Network, inputs: Mapping[str, float]) -> d
 
 
 Declared = tuple[str, str, Shares, Law, str]
+ASSUMED = "loss:assumed"
 ASSUMED_W = 100.0  # of a machine that declares no losses, so that it can be looked at
 
 
@@ -60,9 +66,10 @@ def _declared(machine: Any) -> list[Declared]:
     plain = not any(isinstance(value, Mapping) for value in section.values())
     if plain and machine.family == "series-dc":
         losses = read(Losses, section, f"{machine.name} [losses]")
-        return _series(losses, machine.sections["ratings"])
+        rated = Table(machine.sections.get("ratings", {}), f"{machine.name} [ratings]")
+        return _series(losses, {key: rated.number(key) for key in ("current_A", "speed_rpm")})
     if not section:
-        return [("assumed", "constant", _everywhere(machine), PowerLoss(((ASSUMED_W, ()),)), "")]
+        return [(ASSUMED.partition(":")[2], "constant", _everywhere(machine), PowerLoss(((ASSUMED_W, ()),)), "")]
     where = f"{machine.name} [losses"
     tables = {name: Table(data, f"{where}.{name}]") for name, data in section.items()}
     laws = loss_laws(tables)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -138,6 +139,7 @@ def _stands(e: Extent) -> tuple[str, float]:
     return "vertical plate", high
 
 
+@lru_cache(256)
 def still_air(outer: Outer) -> FilmTable:
     """Film of still air (W/m2/K) over difference and film temperature; none without a difference."""
     size = outer.size

@@ -7,7 +7,6 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
-from geom.description.profile import ArcGrid
 from geom.description.roles import Role
 
 DIRECTED = 3.0  # a conductivity this many times the other one has a direction
@@ -38,11 +37,8 @@ class Extent:
 
 
 def extent(part: Any) -> Extent:
-    import shapely
-
-    grid = ArcGrid([profile for profile, _, _ in part.prisms], 72)
-    x0, y0, x1, y1 = shapely.total_bounds([profile.to_polygon(grid) for profile, _, _ in part.prisms])
-    return Extent(float(x0), float(x1), float(y0), float(y1), *part.span)
+    x0, y0, x1, y1 = zip(*(profile.bounds for profile, _, _ in part.prisms))
+    return Extent(min(x0), max(x1), min(y0), max(y1), *part.span)
 
 
 def wound(machine: Any, part: str) -> bool:

@@ -164,7 +164,6 @@ class Network:
     capacity_group : for every state the name of its capacity group (a part and its shapes share one)
     boundaries : names of the temperatures given from outside ("ambient", "coolant.in", ...)
     parameters : what calibration may move
-    inputs : names of the signals the laws read (e.g. "current_A"), with their units in the name
     settles_s : time constant (s) of the whole, roughly; with C it says how large a missing path usually is
     declared : what parts, nodes, fluids and boundaries are said to be, by name
     quantities : input -> what it measures ("speed");  signals : quantity -> the input of the machine's own
@@ -206,6 +205,12 @@ class Network:
     def signal(self, quantity: str) -> str:
         """The input that carries a quantity of the machine, e.g. "speed"; the usual one where nothing says."""
         return self.signals.get(quantity, INPUTS[quantity])
+
+    @property
+    def inputs(self) -> set[str]:
+        """Names of the signals that the laws read (e.g. "current_A"), with their units in the name."""
+        items: list[Link | Source] = [*self.links, *self.sources]
+        return {name for item in items for name in item.law.reads}
 
     @property
     def size(self) -> int:

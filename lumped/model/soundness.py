@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
 from geom.errors import InputError
 from lumped.model.network import Network
+from lumped.schemas.reader import shown
+
+RESERVED = set("@#")  # of effects at places, and of shapes inside parts
 
 
 def checked_network(network: Network, where: str) -> Network:
@@ -20,6 +23,14 @@ def checked_network(network: Network, where: str) -> Network:
     if not np.any(network.C > 0.0):
         raise InputError("no node has a heat capacity", where, "[nodes.NAME] C_J_K = ..., or mass_kg with cp_J_kgK")
     return network
+
+
+def checked_names(names: Iterable[str], where: str) -> None:
+    """InputError for a name that messages, tables and effects (KIND@PLACE) could not tell apart."""
+    for name in names:
+        if not name.strip() or not name.isprintable() or name.strip() != name or set(name) & RESERVED:
+            raise InputError(f"{shown(name)} cannot be a name", where, "letters that can be printed, none of "
+                             f"{' '.join(sorted(RESERVED))}, no space at either end")  # fmt: skip
 
 
 def islands(network: Network) -> Iterator[list[str]]:

@@ -1,4 +1,4 @@
-"""Dense LU that skips zeros: condensed networks are one third to nine tenths zeros and n is at most some hundreds."""
+"""Dense LU that skips zeros: condensed networks are two thirds to nine tenths zeros and n is at most some hundreds."""
 
 from __future__ import annotations
 
@@ -16,18 +16,25 @@ _GEMM: Any = types.ExternalFunction("numba_xxgemm", types.intc(
     types.voidptr, *_POINTERS,
 ))  # fmt: skip
 _DOUBLE, _AS_IS = (int(np.frombuffer(c, np.int8)[0]) for c in (b"d", b"n"))
+GAP = 8  # columns: a loop over as many zeros costs less than to begin another
 FACTORS = np.array([0.0, 1.0])  # of what a product is put on: it replaces that, or is added
 
 
 @inner
-def lu(A, pivot):
-    """LU in place, rows swapped only where the diagonal is below a tenth of its column; False if singular."""
+def lu(A, pivot, spans):
+    """LU in place, rows swapped only where the diagonal is below a tenth of its column; False if singular.
+
+    spans (3, n) : scratch for the rows that a pivot reaches and for the columns, first and last, that its row spans
+    """
     n = len(A)
     for k in range(n):
-        best = k
+        best, reached = k, 0
         for i in range(k + 1, n):
-            if abs(A[i, k]) > abs(A[best, k]):
-                best = i
+            if A[i, k] != 0.0:
+                spans[0, reached] = i
+                reached += 1
+                if abs(A[i, k]) > abs(A[best, k]):
+                    best = i
         best = k if abs(A[k, k]) >= 0.1 * abs(A[best, k]) else best
         pivot[k] = best
         if A[best, k] == 0.0 or not np.isfinite(A[best, k]):
@@ -35,14 +42,30 @@ def lu(A, pivot):
         if best != k:
             for j in range(n):
                 A[k, j], A[best, j] = A[best, j], A[k, j]
+        found = _spanned(A[k], k + 1, spans)
         inverse = 1.0 / A[k, k]
-        for i in range(k + 1, n):
-            if A[i, k] != 0.0:
-                factor = A[i, k] * inverse
-                A[i, k] = factor
-                for j in range(k + 1, n):
+        for r in range(reached):
+            i = spans[0, r]
+            factor = A[i, k] * inverse
+            A[i, k] = factor
+            for s in range(found):
+                for j in range(spans[1, s], spans[2, s]):
                     A[i, j] -= factor * A[k, j]
     return True
+
+
+@inner
+def _spanned(a, first, spans):
+    """How many stretches of a row, from a column on, hold its entries; zeros between two are taken along up to GAP."""
+    found, last = 0, -GAP
+    for j in range(first, a.size):
+        if a[j] != 0.0:
+            if j - last > GAP or found == 0:
+                found += 1
+                spans[1, found - 1] = j
+            last = j
+            spans[2, found - 1] = j + 1
+    return found
 
 
 @inner
@@ -71,6 +94,16 @@ def solve(A, pivot, b):
         for j in range(i + 1, n):
             acc += A[i, j] * b[j]
         b[i] = (b[i] - acc) / A[i, i]
+
+
+@inner_reordered
+def matvec(A, x, out):
+    """out = -A x."""
+    for i in range(out.size):
+        acc = 0.0
+        for j in range(x.size):
+            acc += A[i, j] * x[j]
+        out[i] = -acc
 
 
 @inner

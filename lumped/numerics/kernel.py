@@ -152,7 +152,7 @@ def _euler(T, K0, C, h, a, q):
     flow(T, K0, a.z[1], q.f[1], a.tau[1], a.v[1], q.F[1])
     conductances(T, K0, q.f[1], a.tau[1], q.G)
     shifted(q.G, h, C, q.W)
-    if not lu(q.W, q.pivot):
+    if not lu(q.W, q.pivot, q.spans):
         return False
     for i in range(n):
         a.w[0, i], a.w[1, i], a.w[2, i] = h * q.F[1, i], 0.0, 0.0
@@ -233,7 +233,7 @@ def _tried(T, K0, C, kind, h, build, L, P, a, q):
     else:
         if build:
             shifted(q.G, GAMMA * h, C, q.W)
-            if not lu(q.W, q.pivot):
+            if not lu(q.W, q.pivot, q.spans):
                 P.at[STATUS] = SINGULAR
                 P.clock[FACTORED] = -1.0
                 return 1e300

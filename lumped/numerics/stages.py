@@ -66,6 +66,7 @@ class Work(NamedTuple):
     G: Floats
     H: Floats
     pivot: Ints
+    spans: Ints
     error: Floats
     heat: Floats
     D: Floats
@@ -98,8 +99,9 @@ def work(n: int, nb: int, T: Terms, p: int) -> Work:
     """Scratch for n states, nb boundaries, some terms and p tangents."""
     ne = T.m.size
     W, G, H, X, M = np.zeros((5, n, n))
-    return Work(np.zeros((2, ne)), np.zeros(ne), np.zeros(nb), np.zeros((3, n)), W, G, H, np.zeros(n, np.int64),
-                np.zeros((2, n)), np.zeros((2, n)), np.zeros((n, p)), np.zeros((4, n, p)), X, M, FACTORS,
+    ints, twice = np.zeros((4, n), np.int64), np.zeros((2, 2, n))
+    return Work(np.zeros((2, ne)), np.zeros(ne), np.zeros(nb), np.zeros((3, n)), W, G, H, ints[0], ints[1:],
+                twice[0], twice[1], np.zeros((n, p)), np.zeros((4, n, p)), X, M, FACTORS,
                 np.zeros((T.row.size + 2 * ne, p)))  # fmt: skip
 
 

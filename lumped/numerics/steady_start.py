@@ -26,7 +26,7 @@ def _newton(T, K0, C, f, a, q):
                 q.F[0, i] = 0.0
                 clear(q.W[i : i + 1])
                 q.W[i, i] = 1.0
-        if not lu(q.W, q.pivot):
+        if not lu(q.W, q.pivot, q.spans):
             return False
         solve(q.W, q.pivot, q.F[0])
         largest = 0.0

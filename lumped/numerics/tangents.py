@@ -119,7 +119,7 @@ def _euler(T, S, K0, C, h, x0, U, a, q):
     patterns(T, a.w[0], a.vw[0])
     conductances(T, K0, q.f[1], a.tau[1], q.G)
     shifted(q.G, h, C, q.W)
-    lu(q.W, q.pivot)
+    lu(q.W, q.pivot, q.spans)
     jacobian(T, K0, q.f[1], a.tau[1], a.v[1], q.G)
     clear(q.H)
     for e in range(T.m.size):
@@ -184,7 +184,7 @@ def differentiate(Q, C, K0, T, S, R, curved, X, steps, knot, until, a, q, dy):
             if Q.renew[j] == 2 or (Q.renew[j] == 1 and X.start[k] == 0.0) or h != last:
                 jacobian(T, K0, q.f[0], a.tau[0], a.v[0], q.G)
                 shifted(q.G, GAMMA * h, C, q.W)
-                lu(q.W, q.pivot)
+                lu(q.W, q.pivot, q.spans)
                 if 3 * q.D[0].size >= C.size:
                     inverse(q.W, q.pivot, q.X)
             last = h

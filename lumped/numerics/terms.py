@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.numerics.dense import axpy
+from lumped.numerics.dense import axpy, matvec
 from lumped.numerics.jit import inner, pasted
 from lumped.transfer.laws import FILMS, FIRST_C, STEP_K
 
@@ -181,11 +181,7 @@ def flow(T, K0, z, f, tau, v, out):
     """out = F = -K0 z - sum of the dynamic terms at z, whose tau and v = P z are left; f (ne,) input factors."""
     patterns(T, z, v)
     _evaluate(T, v, tau)
-    for i in range(out.size):
-        acc = 0.0
-        for j in range(z.size):
-            acc += K0[i, j] * z[j]
-        out[i] = -acc
+    matvec(K0, z, out)
     for e in range(T.m.size):
         if T.kind[e, DYNAMIC] and T.m[e] != 0.0:
             c = T.m[e] * f[e] * tau[e, 0]

@@ -121,6 +121,15 @@ class Table:
             raise self.error(f"{key} = {shown(value)} is not possible", "a list of words")
         return tuple(value)
 
+    def members(self, key: str) -> tuple[str, ...]:
+        """A list of words of which none is empty or comes twice, and that holds one at least."""
+        words = self.words(key)
+        again = next((w for i, w in enumerate(words) if w in words[:i] or not w.strip()), None)
+        if not words or again is not None:
+            what = f"names {shown(again)} twice" if words and again and again.strip() else "names nothing"
+            raise self.error(f"{key} = {shown(list(words))} {what}", f"{key} = [one name or more, each once]")
+        return words
+
     def shares(self, key: str, of: str = "shares") -> dict[str, float]:
         """A name, or a table of name -> number, each within the bounds of `of`."""
         value = self._needed(key, None, '"node" or { node = share, ... }')

@@ -7,7 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from geom.description import shapes
-from geom.description.profile import ArcGrid, Profile
+from geom.description.profile import ArcGrid, Profile, loop_length
+from geom.machine_file import load_machine
 
 angles = st.floats(0.05, 3.0)
 
@@ -61,3 +62,18 @@ def test_faceted_circle_loses_the_area_of_an_inscribed_polygon():
 def test_thin_ring_keeps_its_area_though_only_one_side_has_fins():
     shell = Profile(shapes.finned_loop(0.24, 0.004, 0.26, shapes.evenly(36)), (shapes.circle_loop(0.234),))
     assert shell.to_polygon(ArcGrid([shell], 36)).area == pytest.approx(shell.area, rel=0.02)
+
+
+@pytest.mark.parametrize("name", ["series-dc-100kw-jacket-one", "tefc-industrial-radial", "pmsm-m1"])
+def test_bounds_are_those_of_a_fine_polygon(name):
+    """Chords of 1 / 720 turn stay within R (1 - cos(pi / 720)), 3 um of 300 mm, inside."""
+    for part in load_machine(name).parts:
+        for profile, _, _ in part.prisms:
+            fine = profile.to_polygon(ArcGrid([profile], 720)).bounds
+            assert profile.bounds == pytest.approx(fine, abs=4e-6)
+
+
+def test_the_length_of_a_loop_counts_its_arcs():
+    disc = shapes.circle_loop(0.1)
+    assert loop_length(disc) == pytest.approx(2.0 * math.pi * 0.1, rel=1e-12)
+    assert loop_length(shapes.rectangle(0.0, 0.3, 0.0, 0.2).outer) == pytest.approx(1.0, rel=1e-12)

@@ -1,10 +1,13 @@
 """What an installation cannot do without is free to be used with closed programs."""
 
 import re
+import sys
 import tomllib
 from importlib.metadata import metadata
 
 import pytest
+
+from scripts import licences
 
 
 def required(root):
@@ -30,3 +33,20 @@ def test_nothing_that_is_required_is_gpl(root):
 @pytest.mark.parametrize("name", ["nptdms", "asammdf"])
 def test_the_check_reads_licences(name):
     assert "GPL" in licence(name)
+
+
+def test_nothing_that_the_core_brings_is_gpl():
+    """Its own requirements, theirs, and so on."""
+    core = licences.closure(licences.needed(None))
+    assert {"numpy", "numba", "llvmlite"} <= core, "what is required by what is required is found"
+    assert [name for name in core if "GPL" in f"{licences.licence(name)} {licence(name)}"] == []
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems bring other packages")
+def test_the_table_of_licences_is_of_what_is_installed(root):
+    """python scripts/licences.py writes it."""
+    assert (root / "docs/reference/licences.md").read_text() == licences.page()
+
+
+def test_every_licence_is_known():
+    assert [name for name in licences.parts_of() if licences.licence(name) == "see its licence file"] == []

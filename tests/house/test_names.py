@@ -20,6 +20,8 @@ ALLOWED = {  # file -> what its strings are, none of them a user's name for a pa
     "thermoscope/case_folder/doctor.py": "shapes that the network names itself, PART#1",
     "thermoscope/recordings/csv_file.py": "endings of files",
     "thermoscope/console/groups.py": "options on the command line",
+    "thermoscope/console/progress_bar.py": "options on the command line",
+    "thermoscope/workbench/dropped.py": "columns that the page names itself, FILE:COLUMN",
     "thermoscope/commands/stored_diagnosis.py": "hidden files",
     "geom/solids/step.py": "labels of a STEP assembly",
     "validation/effects/time_window.py": "events that the tool names itself, TEST:BEGIN-END",
@@ -66,6 +68,7 @@ ALLOWED = {  # file -> what its strings are, none of them a user's name for a pa
     "thermoscope/recordings/formats.py": "endings of files",
     "thermoscope/verification/hand_formulas.py": "contacts, A|B",
     "thermoscope/case_folder/runs.py": "effects by their own name, KIND@PLACE",
+    "thermoscope/design/machine_keys.py": "keys of a machine file, geometry.GROUP.NAME",
     "thermoscope/workbench/access_control.py": "hosts of requests",
 }  # fmt: skip
 

@@ -126,3 +126,16 @@ def test_compare_says_the_first_things_that_look_wrong(tmp_path, monkeypatch, ca
     err = capsys.readouterr().err
     assert "note: stand, T_flange: 1 readings leap" in err
     assert "more such things" not in err
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [(lambda v: 10.0 * v, "tenths of a degree"), (lambda v: v / 10.0, "tenths of a degree"),
+     (lambda v: 40.0 - v, "wires swapped"), (lambda v: v.where(v.index == 100), "was read 1 time in the whole test"),
+     (lambda v: v.where(v.index % 200 == 0), "was read 2 times")],
+)  # fmt: skip
+def test_a_sensor_of_another_scale_or_hardly_read(tmp_path, monkeypatch, capsys, change, words):
+    case = case_of(tmp_path)
+    changed(case, "stand", lambda table: table.__setitem__("T_flange", change(table["T_flange"])))
+    _, found = asked(monkeypatch, capsys, case)
+    assert [(f["test"], f["where"]) for f in found["doubts"] if words in f["what"]] == [("stand", "T_flange")]

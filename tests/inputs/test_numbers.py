@@ -3,12 +3,16 @@
 import math
 
 import pytest
+import tomlkit
+from command_line import refusal
 from documents import ROOT, documented, key_of, numbers, put, shipped
+from recordings import case_of
 
 from geom.errors import InputError
 from geom.machine_file import machine_from
-from lumped.declarations.network import read_network
+from lumped.declarations.network import load_network, read_network
 from lumped.schemas.bounds import KEYS, UNITS, Bounds, bounds
+from thermoscope.case_folder.cycle import load_cycle
 from thermoscope.recordings.sheet import read_sheet
 
 NO_NUMBER = {
@@ -26,6 +30,10 @@ SHEET = {
     "means": {"M": {"of": ["T"], "place": "x", "sigma_K": 0.3, "lag_s": 9.0}},
     "inputs": {"current_A": 8.0}, "boundaries": {"ambient": 21.0},
     "recorders": {"daq": {"file": "daq.csv", "shift_s": 3.0, "limit_s": 60.0}},
+}  # fmt: skip
+CYCLE = {
+    "cycle": {"initial_degC": 20.0}, "boundaries": {"ambient": 20.0}, "load": {"current_A": 100.0},
+    "duty": {"type": "S3", "period_s": 600.0, "duty_percent": 40.0, "cycles": 3, "step_s": 10.0},
 }  # fmt: skip
 MACHINE = shipped("cases/pmsm-bases/machine.toml")
 
@@ -50,21 +58,48 @@ def test_the_documents_are_right():
     read_sheet(SHEET, "sheet.toml")
 
 
+@pytest.fixture(scope="module")
+def untested(tmp_path_factory):
+    """A case of a network alone."""
+    case = tmp_path_factory.mktemp("untested")
+    (case / "case.toml").write_text('[case]\nnetwork = "network.toml"\n')
+    return case
+
+
+@pytest.fixture(scope="module")
+def tested(tmp_path_factory):
+    return case_of(tmp_path_factory.mktemp("tested"))
+
+
 @pytest.mark.parametrize("value", NO_NUMBER.values(), ids=NO_NUMBER)
 @pytest.mark.parametrize(("name", "way"), WAYS, ids=[f"{n}:{'.'.join(map(str, w))}" for n, w in WAYS])
-def test_no_number_of_a_network_is_refused_by_key(name, way, value):
-    with pytest.raises(InputError, match=key_of(way)) as refused:
-        read_network(put(NETWORKS[name], way, value))
-    assert len(str(refused.value)) < 1000
-    assert "network.toml" in str(refused.value)
-    assert refused.value.right
+def test_no_number_of_a_network_is_refused_by_file_and_key(untested, name, way, value):
+    file = untested / "network.toml"
+    file.write_text(tomlkit.dumps(put(NETWORKS[name], way, value)))
+    message = refusal(untested, "use", "simulate", untested)
+    assert str(file) in message
+    assert key_of(way) in message
 
 
 @pytest.mark.parametrize("value", NO_NUMBER.values(), ids=NO_NUMBER)
 @pytest.mark.parametrize("way", list(numbers(SHEET)), ids=lambda way: ".".join(map(str, way)))
-def test_no_number_of_a_sheet_is_refused_by_key(way, value):
-    with pytest.raises(InputError, match=key_of(way)):
-        read_sheet(put(SHEET, way, value), "sheet.toml")
+def test_no_number_of_a_sheet_is_refused_by_file_and_key(tested, way, value):
+    file = tested / "tests/stand.toml"
+    file.write_text(tomlkit.dumps(put(SHEET, way, value)))
+    message = refusal(tested, "test", "compare", tested)
+    assert str(file) in message
+    assert key_of(way) in message
+
+
+@pytest.mark.parametrize("value", NO_NUMBER.values(), ids=NO_NUMBER)
+@pytest.mark.parametrize("way", list(numbers(CYCLE)), ids=lambda way: ".".join(map(str, way)))
+def test_no_number_of_a_cycle_is_refused_by_file_and_key(tested, way, value):
+    file = tested / "cycle.toml"
+    file.write_text(tomlkit.dumps(put(CYCLE, way, value)))
+    network = load_network(tested / "network.toml")
+    with pytest.raises(InputError, match=key_of(way)) as fault:
+        load_cycle(file, network, {})
+    assert str(file) in str(fault.value)
 
 
 @pytest.mark.parametrize("value", NO_NUMBER.values(), ids=NO_NUMBER)

@@ -66,6 +66,21 @@ def test_an_air_cell_on_a_fan_that_starts_stays_between_its_neighbours():
     assert z[:, 1].max() < 51.0 + PRINCIPLE
 
 
+def test_a_cell_of_a_tenth_of_a_joule_sees_the_last_of_a_flow_that_falls():
+    """Its time constant is a hundredth of the sample: what a parabola misses there is not averaged out."""
+    net = bare_network("cell", {"wall": 1e4, "cell": 0.1}, ("inlet",))
+    links = [
+        node_link(net, "film", "film", "wall", "cell", InputPower(3.0, (("flow_l_min", 4.0, 0.8),))),
+        node_link(net, "out", "film", "cell", "inlet", InputPower(60.0, (("flow_l_min", 1.0, 1.0),))),
+        node_link(net, "leak", "film", "cell", "inlet", Fixed(1.0)),
+    ]
+    flow = {"flow_l_min": np.array([7.586, 0.0142, 4.06])}
+    record = Record(np.array([0.0, 3.62, 7.24]), flow, {"inlet": 20.0}, {"wall": 80.0, "cell": 40.0})
+    z = simulate(net.extended(links), record, keep_states=True).z
+    exact = simulate(net.extended(links), finer(record, 500), keep_states=True).z[::500]
+    assert_allclose(z, exact, atol=0.03)
+
+
 @pytest.mark.parametrize("seed", SEEDS)
 def test_a_random_network_is_where_radau_has_it(seed):
     """Equations, Jacobian and integrator of their own; none outside what surroundings and start allow."""

@@ -180,6 +180,33 @@ def test_tabs_do_not_disturb_each_other(browser, served, page):
     assert faults == []
 
 
+DROP = """(text) => {
+  const files = new DataTransfer();
+  files.items.add(new File([text], "own.csv", { type: "text/csv" }));
+  document.querySelector("#errors").dispatchEvent(
+    new DragEvent("drop", { dataTransfer: files, bubbles: true, cancelable: true }));
+}"""
+
+
+def test_dropped_files_become_a_case(page, served):
+    """Dropped on the page, a channel dragged to its part, written, and opened in place of the old case."""
+    rows = [f"{10 * k},80,12,20.5,{20 + 0.2 * k:.1f},{20 + 0.1 * k:.1f}" for k in range(200)]
+    page.evaluate(DROP, "\n".join(["time_s,I [A],wind [km/h],ambient,T_winding,channel 7", *rows]))
+    page.wait_for_selector("#dropped")
+    assert "T_winding" in page.inner_text("#part-winding")
+    page.drag_and_drop("[id='column-channel 7']", "#part-flange")
+    page.wait_for_function("document.querySelector('#part-flange').innerText.includes('channel 7')")
+    page.select_option("select[aria-label='where T_winding is']", "yoke")  # by keyboard too
+    page.wait_for_function("document.querySelector('#part-yoke').innerText.includes('T_winding')")
+    page.click("#make-case")
+    page.wait_for_selector("#open-made, #error")
+    assert not page.is_visible("#error"), page.inner_text("#error")
+    assert (served[1].parent / "own" / "case.toml").is_file()
+    page.click("#open-made")
+    page.wait_for_selector("#error-own")
+    assert page.inner_text("h1") == "own"
+
+
 def test_the_machine_plays_in_the_browsers_own_gl(root, served):
     """In the page, under its policy; the frame has nothing of the page around it, and goes when it is not wanted."""
     said = []

@@ -11,8 +11,10 @@ import pytest
 from aiohttp import ClientSession, CookieJar, web
 from motor_case import with_motor
 from small_case import small_case
+from yarl import URL
 
 from geom.errors import InputError
+from thermoscope.commands.show.serve import serve
 from thermoscope.workbench.access_control import AccessControl, loopback, served
 from thermoscope.workbench.serve import application, token_for
 from thermoscope.workbench.tabs import MOST
@@ -84,7 +86,10 @@ def test_files_outside_the_served_folders_do_not_exist(tmp_path):
         assert served(folders, name) is None, name
 
 
-def test_without_the_token_nothing_is_shown(folder):
+@pytest.mark.parametrize("host", ["0.0.0.0", "127.0.0.1", "localhost"])
+def test_without_the_token_nothing_is_shown(folder, host):
+    """On this computer neither: other users and programs share its ports."""
+
     async def questions(address, session):
         seen = []
         for path in ("/", "/tab/x/index.html", "/tab/x/ws", "/tab/x/report.html", "/?token=wrong"):
@@ -97,7 +102,7 @@ def test_without_the_token_nothing_is_shown(folder):
             page = await answer.text()
         return seen, kept, page
 
-    seen, kept, page = asked(folder, AccessControl("0.0.0.0", TOKEN), questions)
+    seen, kept, page = asked(folder, AccessControl(host, TOKEN), questions)
     assert seen == [401] * 5 + [302]
     assert "HttpOnly" in kept
     assert "SameSite=Strict" in kept
@@ -136,6 +141,48 @@ def test_paths_do_not_lead_out(folder):
     assert seen.pop("index.html") == 200
     assert seen.pop("unknown") == "/"
     assert set(seen.values()) == {404}
+
+
+ODD = (
+    ("GET", "/%00"), ("GET", "/%2e%2e/%00"), ("GET", "/tab/%00/index.html"), ("GET", "/tab/%00/%00"),
+    ("GET", "/tab//x"),
+    ("GET", "/tab/{tab}/%00/%00"), ("GET", "/tab/{tab}/..%00/case.toml"), ("GET", "/tab/{tab}/report.html%00"),
+    ("GET", "/tab/{tab}/" + "%61/" * 1000), ("GET", "/tab/{tab}/%ed%a0%80"), ("GET", "/tab/{tab}/CON"),
+    ("GET", "/tab/{tab}/ws"), ("POST", "/tab/%00/paraview/"), ("POST", "/tab/unknown/paraview/"), ("POST", "/"),
+    ("PUT", "/tab/{tab}/index.html"), ("DELETE", "/tab/{tab}/index.html"), ("OPTIONS", "/"), ("TRACE", "/"),
+    ("GET", "/?token=%00"), ("GET", "/?token=" + "x" * 5000), ("GET", "/?token=%ff"), ("GET", "//evil.example/%00"),
+)  # fmt: skip
+
+
+def test_no_request_breaks_the_server(folder):
+    """Whatever is asked is answered, never with an error of the server's own, and the page still opens after it."""
+
+    async def questions(address, session):
+        async with session.get(f"{address}/?token={TOKEN}") as answer:
+            tab = str(answer.url).split("/tab/")[1].partition("/")[0]
+        seen = {}
+        for method, path in ODD:
+            url = URL(address + path.format(tab=tab), encoded=True)
+            async with session.request(method, url, allow_redirects=False) as answer:
+                seen[method, path[:40]] = answer.status
+        async with session.get(f"{address}/tab/{tab}/index.html") as answer:
+            return seen, answer.status
+
+    seen, after = asked(folder, AccessControl("127.0.0.1", TOKEN), questions)
+    assert {request: status for request, status in seen.items() if status >= 500} == {}
+    assert after == 200
+
+
+def test_serve_always_asks_for_a_token(folder, monkeypatch):
+    """The command makes one on loopback too, and prints it with the address."""
+    gates = []
+    monkeypatch.delenv("THERMOSCOPE_TOKEN", raising=False)
+    monkeypatch.setattr("thermoscope.workbench.serve.application", lambda folder, gate, tell: gates.append(gate))
+    monkeypatch.setattr("thermoscope.workbench.serve.serve", lambda *given: None)
+    for host in ("127.0.0.1", "localhost", "::1", "0.0.0.0"):
+        assert serve(str(folder.settings.path), host, 0) == 0
+    assert all(len(gate.token) >= 32 for gate in gates)
+    assert len({gate.token for gate in gates}) == len(gates) == 4
 
 
 def test_a_duplicated_tab_gets_a_session_of_its_own(folder):

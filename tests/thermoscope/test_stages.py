@@ -1,8 +1,13 @@
 """Share and time left of long work, from how long its stages took the last time."""
 
+import json
+import re
+import time
+
 import pytest
 
-from thermoscope.console.progress_bar import ProgressBar, progress
+from thermoscope.console import progress_bar
+from thermoscope.console.progress_bar import ProgressBar, one_bar, progress
 
 
 class Clock:
@@ -49,8 +54,45 @@ def test_the_share_never_falls():
     assert seen[-1] == 0.99
 
 
-def test_a_pipe_has_one_line_a_stage(capsys):
+def test_a_pipe_has_one_line_a_stage(capsys, tmp_path, monkeypatch):
+    monkeypatch.setenv("THERMOSCOPE_CACHE", str(tmp_path))
     with progress() as tell:
         for message, _ in STEPS:
             tell(message)
     assert capsys.readouterr().err.splitlines() == ["reading a", "fitting step 1", "drawing"]
+
+
+def test_time_left_follows_the_pace_of_this_run():
+    """The last time 10 s in all; this run took twice as long for the first half: what is left takes twice as long."""
+    clock = Clock()
+    stages = ProgressBar({"reading": 5.0, "fitting": 5.0}, clock)
+    worked(stages, clock, [("reading", 10.0), ("fitting", 0.0)])
+    assert stages.left() == (pytest.approx(0.5), pytest.approx(10.0))
+
+
+def test_several_pieces_of_work_have_one_bar(tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv("THERMOSCOPE_CACHE", str(tmp_path))
+    monkeypatch.setattr("thermoscope.console.progress_bar.WORTH_S", 1e-3)
+    monkeypatch.setattr("sys.argv", ["thermoscope", "demo", "--out", "x"])
+    monkeypatch.setattr("thermoscope.console.progress_bar._usual", dict)
+    for _ in range(2):
+        with one_bar():
+            for _ in range(2):
+                with progress() as tell:
+                    tell("reading a")
+                    time.sleep(0.02)
+    kept = json.loads((tmp_path / "stages.json").read_text())
+    assert list(kept) == ["demo"], "the options are no part of its name"
+    assert len(kept["demo"]) == 2, "the same word in two pieces of work is two stages"
+    shares = [int(n) for n in re.findall(r"\((\d+) %", capsys.readouterr().err)]
+    assert shares == sorted(shares)
+    assert len(shares) == 2, "of the second run, each stage one line"
+    assert shares[-1] > 30
+
+
+def test_the_first_run_of_long_commands_knows_a_share(tmp_path, monkeypatch):
+    """Before anything was remembered on this computer."""
+    monkeypatch.setenv("THERMOSCOPE_CACHE", str(tmp_path))
+    known = progress_bar._usual()
+    assert {"demo", "explain diagnose 0", "model build 0", "model calibrate 0", "model add 0"} <= set(known)
+    assert all(sum(stages.values()) > progress_bar.WORTH_S for stages in known.values())

@@ -1,11 +1,11 @@
 """What held in one test or for a while: its gate, its response in closed form, and the posterior that finds it."""
 
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 import pytest
 from one_body import C, G, P, measured, one_node
+from two_bodies import LID, OPEN, bench, two_bodies
 
 from geom.errors import InputError
 from lumped.integration.simulate import Record, simulate
@@ -13,6 +13,7 @@ from validation import diagnose
 from validation.case import Case, Channel, Model, Test
 from validation.comparison.predict import predict
 from validation.conditions.hat_functions import Path, hat_scores
+from validation.conditions.refine import repeats
 from validation.conditions.windows import best_stretch, joined, pulses
 from validation.diagnosis.missing_heat import scan
 from validation.effects import Scene, effect
@@ -128,46 +129,6 @@ def test_neighbours_of_one_sign_are_one_pulse():
     ]  # fmt: skip
 
 
-LID, OPEN = (2000.0, 2600.0), 3.0  # s, W/K
-
-
-@cache
-def bench(held=(("noon", (LID,)),), size=OPEN, seed=0):
-    """Two bodies in three tests; while a lid is open one cools more."""
-
-    rng = np.random.default_rng(seed)
-    case_tests, net = [], two_bodies()
-    open_lid = effect(f"convection.constant@body in {Event.of(dict(held)).name}") if held else None
-    truth = open_lid.extend(net) if open_lid else net
-    values = {truth.parameters[-1].name: size} if open_lid else {}
-    for name in ("noon", "dawn", "dusk"):
-        time = np.arange(0.0, 6000.0, 20.0)
-        load = rng.uniform(0.2, 1.0, 6)[(time / 1000.0).astype(int)]
-        around = {"ambient": np.full_like(time, 20.0)}
-        test = Test(name, "calibrate", time, {"load": load}, around, (), 20.0)
-        rows = [net.places[p].mean for p in ("body", "core")]
-        y = simulate(truth, Record(time, test.signals, around, 20.0), values, rows).y
-        y = y + 0.05 * rng.standard_normal(y.shape)
-        channels = tuple(Channel(p, p, r, y[:, i], 0.3) for i, (p, r) in enumerate(zip(("body", "core"), rows)))
-        case_tests.append(replace(test, channels=channels))
-    return Case("bench", Model(net), tuple(case_tests))
-
-
-def two_bodies():
-    from lumped.declarations.network import read_network
-
-    return read_network({
-        "network": {"name": "two", "boundaries": ["ambient"], "settles_s": 2000},
-        "nodes": {"body": {"C_J_K": 4000, "prior_sd": 0.1}, "core": {"C_J_K": 1500, "prior_sd": 0.1}},
-        "links": {
-            "joint": {"between": ["body", "core"], "G_W_K": 4.0, "prior_sd": 0.3},
-            "film": {"between": ["body", "ambient"], "G_W_K": 2.0, "prior_sd": 0.3},
-        },
-        "losses": {"heat": {"kind": "constant", "at": "core", "P_W": 80.0, "prior_sd": 0.1,
-                            "of": {"input": "load", "at": 1.0, "exponent": 1.0}}},
-    })  # fmt: skip
-
-
 def test_all_stretches_by_cumulated_sums_are_those_weighed_one_by_one():
     case = bench()
     fit = calibrated_case(case)
@@ -199,6 +160,17 @@ def test_a_lid_open_three_times_is_one_event():
     told = event(name.split(" in ")[1])
     assert name.startswith("convection.constant@body")
     assert np.array(told.spans["noon"]) == pytest.approx(np.array(spans), abs=40.0)
+
+
+def test_a_repeat_that_the_others_do_not_predict_is_left_out():
+    spans = [(1000.0, 1400.0), (2400.0, 2800.0), (4000.0, 4400.0)]
+    case = bench((("noon", tuple(spans)),), 5.0)
+    fit = calibrated_case(case)
+    e = scored(case, candidates(case, ["convection.constant"]), fit)
+    lid = effect("convection.constant@body")
+    more = Event.of({"noon": [*spans, (5200.0, 5600.0)], "dusk": [(1000.0, 1400.0)]})
+    assert repeats(e, lid, more, fit.values) == Event.of({"noon": spans})
+    assert repeats(e, lid, Event.of({"noon": spans[:1]}), fit.values) == Event.of({"noon": spans[:1]})
 
 
 def test_a_fan_in_one_test_is_named_with_its_test():

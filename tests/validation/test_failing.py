@@ -7,6 +7,7 @@ import pytest
 from one_body import LOSS, G, P, measured, one_node
 
 from validation.case import Case, Model
+from validation.comparison.compare import compare
 from validation.comparison.residuals import dependence, ljung_box, periodogram
 from validation.comparison.uncertainty import uncertainties
 from validation.diagnosis.discrepancy import discrepancies
@@ -85,7 +86,9 @@ def test_inputs_move_by_their_share():
 def test_all_tests_and_sensors_are_looked_at():
     """Where heat is missing is tested on a motor, in test_diagnose; here: held-out rows, heat for every node."""
     tests = (measured(loss=1.4), measured("other", "hold-out"))
-    found = discrepancies(Case("one", Model(one_node(LOSS)), tests)).document()
-    assert [(u["test"], u["explained"]) for u in found["uncertainty"]] == [("warm", False), ("other", True)]
+    case = Case("one", Model(one_node(LOSS)), tests)
+    judged = [u for test in compare(case).tests for u in test.uncertainty]
+    assert [(u.test, u.explained) for u in judged] == [("warm", False), ("other", True)]
+    found = discrepancies(case).document()
     assert [p["test"] for p in found["patterns"]] == ["warm", "other"]
     assert [h["place"] for h in found["where"]] == ["body"]

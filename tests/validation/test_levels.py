@@ -9,6 +9,7 @@ from everything import machine, warm_test
 from lumped.model.network import Parameter
 from lumped.transfer.laws import InputPower
 from validation.calibration.unknowns import at_level
+from validation.comparison.predict import predict
 from validation.effects import effect
 from validation.effects.build import heat
 
@@ -45,3 +46,24 @@ def test_a_temperature_coefficient_has_one_prior_whatever_the_current():
     net = effect("copper.feedback@copper.winding.field").extend(machine())
     p = at_level(net, {net.parameters[-1].name}, [warm_test(machine())]).parameters[-1]
     assert (p.prior_sd, p.high) == pytest.approx((0.00393, 0.0125))
+
+
+@pytest.mark.parametrize("scale", [0.1, 10.0])
+def test_an_input_offset_has_its_prior_on_the_level_of_the_input(scale):
+    test = warm_test(machine())
+    louder = replace(test, inputs={**test.inputs, "current_A": scale * test.inputs["current_A"]})
+    net = effect("input.offset@current_A").extend(machine())
+    p = at_level(net, {net.parameters[-1].name}, [louder]).parameters[-1]
+    level = scale * float(np.sqrt(np.mean(test.inputs["current_A"] ** 2)))
+    assert (p.prior_sd, p.low, p.high) == pytest.approx((0.05 * level, -0.5 * level, 0.5 * level))
+
+
+def test_an_input_offset_is_what_the_input_itself_does():
+    """A current that is 2 A larger in truth, by the law's own run and by the effect."""
+    net, test = machine(), warm_test(machine())
+    grown = effect("input.offset@current_A").extend(net)
+    more = replace(test, inputs={**test.inputs, "current_A": test.inputs["current_A"] + 2.0})
+    told = predict(grown, test, {grown.parameters[-1].name: 2.0}).y
+    assert told == pytest.approx(
+        predict(net, more, {}).y, abs=0.05 * float(np.ptp(told - predict(net, test, {}).y)) + 1e-6
+    )

@@ -1,10 +1,14 @@
 """Channel operators against closed forms."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from everything import machine, warm_test
+from one_body import measured, one_node
 
 from lumped.model.network import Parameter
+from validation.calibration.unknowns import nuisances
 from validation.comparison.predict import Watch, predict
 from validation.measurement.operators import behind
 
@@ -87,3 +91,12 @@ def test_a_test_looked_at_in_stretches_is_the_test_as_a_whole(delay, stop):
     parts = [watch.until(min(n + stop, len(test.time))) for n in range(0, len(test.time), stop)]
     np.testing.assert_allclose(np.concatenate([p.y for p in parts]), whole.y, rtol=1e-11)
     np.testing.assert_allclose(np.concatenate([p.J for p in parts]), whole.J, atol=1e-7 * np.abs(whole.J).max())
+
+
+def test_a_lag_is_bounded_by_the_test_where_it_is_least():
+    """No reading comes before its heat, in any test: a fit may take off no more than the smallest declared lag."""
+    network = one_node()
+    late, prompt = measured("late"), measured("prompt")
+    late = replace(late, channels=tuple(replace(c, lag_s=19.5) for c in late.channels))
+    for tests in ((late, prompt), (prompt, late)):
+        assert [p.low for p in nuisances(network, tests) if p.name.startswith("lag of")] == [0.0]

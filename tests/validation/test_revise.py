@@ -115,6 +115,8 @@ def test_comparison_document():
         "sigma_K",
         "percent_of_rise",
         "limit_K",
+        "u_input_K",
+        "u_numeric_K",
         "verdict",
     } == set(row)
 

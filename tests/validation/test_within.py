@@ -1,45 +1,104 @@
-"""One sign, one rms, one rule: the same in the comparison, in the dots, in the curves."""
+"""One sign, one rms, one rule: the same in the comparison, in dots, curves, bars and pages."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from one_body import measured
+from one_body import measured, one_node
 
-from validation.comparison.compare import channel_error
-from validation.comparison.tolerance import limit_K, rise_K
+from thermoscope.workbench import tables
+from thermoscope.workbench.appearance import Appearance
+from validation.case import Case, Model
+from validation.comparison.compare import Comparison as Errors
+from validation.comparison.compare import channel_error, compare, errors
+from validation.comparison.uncertainty import COVERAGE, RULE
+from validation.doubt import USUAL, widened
 from viz.colours import LIGHT, VERMILION
 from viz.data import Comparison, sensors
-from viz.figures.curves import wrongness
+from viz.figures.curves import residuals, wrongness
+from viz.pages import report
 
 
-def channel(sigma):
-    one = measured().channels[0]
-    return replace(one, y=np.linspace(20.0, 60.0, len(one.y)), sigma_K=sigma)
+def case(off=0.0, sigma=0.3, doubt=USUAL) -> Case:
+    """A body that reads `off` more than its model says."""
+    test = measured()
+    model = np.asarray(test.channels[0].y, float)
+    channel = replace(test.channels[0], y=model + off, sigma_K=sigma)
+    return Case("one", Model(one_node()), (replace(test, channels=(channel,)),), doubt=doubt)
 
 
-@pytest.mark.parametrize(("sigma", "limit"), [(0.5, 1.6), (2.0, 4.0)])
-def test_two_sigma_or_four_percent_of_the_rise(sigma, limit):
-    """40 K of rise: 4 % are 1.6 K; two sigma of 2 K are 4 K."""
-    one = channel(sigma)
-    assert rise_K(one) == pytest.approx(40.0)
-    assert limit_K(one) == pytest.approx(limit)
+def row(of: Case, **more):
+    return compare(of, **more).tests[0].channels[0]
 
 
-@pytest.mark.parametrize("off", [-3.0, -1.5, 1.5, 3.0])
-def test_table_dot_and_curve_say_the_same(off):
-    one = channel(0.5)
-    test = replace(measured(), channels=(one,))
-    model = {one.name: one.y - off}
-    row = channel_error(one, model[one.name])
-    comparison = Comparison(test, model)
-    (dot,) = sensors(comparison, {one.name: (0.0, 0.0, 0.0)})
-    assert row.bias_K == pytest.approx(off), "measured - model: positive where the machine is hotter"
-    assert dot.residual_K == pytest.approx(off)
-    assert comparison.rmse(one) == pytest.approx(row.rmse_K)
-    assert (row.verdict == "within") == (dot.verdict == "within") == (abs(off) <= row.limit_K)
-    colour = wrongness(comparison.residual(one), row.limit_K)
-    assert (colour == LIGHT.faint) == (row.verdict == "within")
-    if off > row.limit_K:
-        assert dot.verdict == "hot"
+def test_the_limit_is_the_expanded_uncertainty_of_reading_inputs_and_arithmetic():
+    found = row(case())
+    assert found.limit_K == pytest.approx(COVERAGE * np.sqrt(0.3**2 + found.u_input_K**2 + found.u_numeric_K**2))
+    assert found.u_input_K > 0.1, "the room is off by half a kelvin"
+
+
+def test_what_the_models_own_numbers_may_be_wrong_by_counts_as_an_expanded_uncertainty():
+    plain, budgeted = row(case()), row(case(), budgets={"warm": {case().tests[0].channels[0].name: 4.0}})
+    assert budgeted.u_numeric_K == pytest.approx(2.0)
+    assert budgeted.limit_K > plain.limit_K
+
+
+def test_a_wider_doubt_of_the_case_is_a_wider_limit():
+    assert row(case(doubt=widened({"boundary": 5.0}))).limit_K > 2 * row(case()).limit_K
+
+
+def test_an_input_no_law_reads_moves_nothing():
+    one = case()
+    more = replace(one, tests=(replace(one.tests[0], inputs={**one.tests[0].inputs, "vehicle_speed_mps": np.ones(
+        one.tests[0].time.size)}),))  # fmt: skip
+    assert row(more).limit_K == row(one).limit_K
+
+
+def test_errors_alone_are_not_judged():
+    found = errors(case()).tests[0].channels[0]
+    assert found.verdict == "unknown"
+    assert found.rmse_K == row(case()).rmse_K
+
+
+@pytest.mark.parametrize("off", [-3.0, -0.5, 0.5, 3.0])
+def test_table_dot_curve_bar_and_page_say_the_same(off):
+    one = case(off)
+    found: Errors = compare(one)
+    (test,), mine = one.tests, found.tests[0].channels[0]
+    (channel,) = test.channels
+    shown = Comparison(test, {channel.name: channel.y - mine.bias_K}, found.limits[test.name])
+    (dot,) = sensors(shown, {channel.name: (0.0, 0.0, 0.0)})
+    look = Appearance(found.document(), {test.name: shown}, {})
+    (bar,) = tables.channels(look, test.name, 1.0)
+    assert mine.bias_K == pytest.approx(off, abs=0.02), "measured - model: positive where the machine is hotter"
+    assert dot.residual_K == pytest.approx(mine.bias_K)
+    assert shown.rmse(channel) == pytest.approx(mine.rmse_K, abs=0.02)
+    assert mine.verdict == ("within" if abs(off) < mine.limit_K else "over")
+    assert (mine.verdict == "within") == (dot.verdict == "within") == (bar["tone"] == "within")
+    colour = wrongness(shown.residual(channel), shown.limit_K(channel))
+    assert (colour == LIGHT.faint) == (mine.verdict == "within")
+    if off > mine.limit_K:
+        assert dot.verdict == bar["tone"] == "hot"
         assert colour == VERMILION
+    page = report._sensors(SimpleNamespace(comparison=found.document()))
+    assert f">{mine.verdict}<" in page
+    assert f"{mine.limit_K:.3g}" in page
+
+
+def test_the_rule_is_said_where_it_is_used():
+    one = case()
+    shown = Comparison(one.tests[0], {c.name: c.y for c in one.tests[0].channels}, compare(one).limits["warm"])
+    said = [t.get_text() for ax in residuals(shown).axes for t in (ax.title, ax._right_title)]
+    assert any(RULE in words for words in said)
+    assert RULE in report._sensors(SimpleNamespace(comparison=compare(one).document()))
+
+
+def test_one_rms_of_a_test():
+    """Over all readings: a sensor read twice as often counts twice."""
+    one = measured().channels[0]
+    few = replace(one, y=np.where(np.arange(len(one.y)) % 2, np.nan, one.y))
+    a, b = channel_error(one, one.y - 1.0), channel_error(few, one.y - 2.0)
+    both = Errors("two", 0, (), (compare(case()).tests[0],))
+    pooled = replace(both.tests[0], channels=(a, b)).rmse_K
+    assert pooled == pytest.approx(np.sqrt((a.n * 1.0 + b.n * 4.0) / (a.n + b.n)))

@@ -6,6 +6,7 @@ from lumped.model.network import Row
 from validation.case import Channel, Test
 from viz.data import Comparison
 
+LIMIT_K = 1.0  # of every sensor: two deviations of its reading
 TIME = np.arange(0.0, 3601.0, 30.0)
 PLACES = ("flange.left", "flange.right", "winding.field", "yoke", "housing")
 POSITIONS = {
@@ -41,7 +42,9 @@ def comparison(wrong_K: float = 6.2, before: bool = False) -> Comparison:
         {"ambient": np.full(len(TIME), 20.0)},
         channels,
     )
-    return Comparison(test, model, {p: y + 4.0 for p, y in model.items()} if before else None)
+    return Comparison(
+        test, model, dict.fromkeys(PLACES, LIMIT_K), {p: y + 4.0 for p, y in model.items()} if before else None
+    )
 
 
 def candidate(effect: str, score: float, decision: str) -> dict:

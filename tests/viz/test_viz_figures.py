@@ -82,7 +82,7 @@ def test_long_test_is_drawn_in_hours_with_few_points():
     channels = tuple(replace(ch, y=np.interp(time, 10 * c.test.time, ch.y)) for ch in c.test.channels)
     test = replace(c.test, time=time, channels=channels)
     model = {k: np.interp(time, 10 * c.test.time, y) for k, y in c.model.items()}
-    svg = paper.svg(curves.measured_and_model(Comparison(test, model)), "long")
+    svg = paper.svg(curves.measured_and_model(Comparison(test, model, c.limits)), "long")
     assert "time (h)" in svg
     assert len(svg) < 400_000
 
@@ -112,9 +112,24 @@ def test_labels_keep_their_distance_and_order():
 def test_channel_without_model_curve_is_named():
     c = comparison()
     with pytest.raises(InputError, match=r"no model curve for flange\.right"):
-        Comparison(c.test, {k: v for k, v in c.model.items() if k != "flange.right"})
+        Comparison(c.test, {k: v for k, v in c.model.items() if k != "flange.right"}, c.limits)
 
 
 def test_empty_history_is_refused():
     with pytest.raises(InputError, match="at least one revision"):
         errors.staircase([])
+
+
+def test_what_would_have_to_differ_is_drawn_with_what_cannot(tmp_path):
+    row = {"test": "run4", "unit": "1", "nats": 9.0}
+    found = {"limit": 3.0, "differences": [
+        {**row, "parameter": "capacity.stator", "others": 1.0, "here": 2.7, "sd": 6.0, "possible": False,
+         "relative": True},
+        {**row, "parameter": "bias of T", "others": 0.1, "here": -0.9, "sd": -4.0, "possible": True, "relative": False,
+         "unit": "K"}]}  # fmt: skip
+    figure = scores.differences(found, png=tmp_path / "differences.png")
+    (ax,) = figure.axes
+    assert [t.get_text() for t in ax.get_yticklabels()] == ["bias of T in run4", "capacity.stator in run4"]
+    assert [t.get_text().strip("\u00a0") for t in ax.texts] == ["-1 K", "x 2.7"]
+    colours = [bar.get_facecolor() for bar in ax.patches]
+    assert colours[0] != colours[1]

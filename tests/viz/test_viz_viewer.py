@@ -32,7 +32,9 @@ def recorded(before: bool = True) -> Recorded:
     model = {n: 20.0 + 30.0 * (1 - np.exp(-TIMES / 900.0)) for n in PLACE}
     channels = tuple(Channel(n, n, row, model[n] + 5.0) for n in PLACE)
     test = Test("hour", "hold-out", TIMES, {}, {"ambient": np.full(TIMES.size, 20.0)}, channels)
-    return Recorded(Comparison(test, model), TIMES, warming(60.0), warming(50.0) if before else None)
+    return Recorded(
+        Comparison(test, model, dict.fromkeys(model, 1.0)), TIMES, warming(60.0), warming(50.0) if before else None
+    )
 
 
 def test_mixed_shapes_are_the_fields():

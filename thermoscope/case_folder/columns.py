@@ -13,6 +13,7 @@ from pathlib import Path
 from geom.errors import InputError
 from thermoscope.case_folder.files import write_whole
 from thermoscope.case_folder.folder import Folder
+from thermoscope.case_folder.settings import Entry
 from thermoscope.recordings.formats import stem_of
 from validation.effects import effect
 from validation.effects.during import During
@@ -26,7 +27,7 @@ def write_columns(folder: Folder, effects: Sequence[str]) -> list[Path]:
     held = [one.gate for name in effects if isinstance(one := effect(name), During) and one.event]
     tests, written = {t.name: t for t in folder.case.tests}, []
     for entry in folder.settings.tests:
-        file, test = entry.file.with_name(f"{stem_of(entry.file)}.derived.csv"), tests[entry.name]
+        file, test = _file(entry), tests[entry.name]
         own = [gate for gate in dict.fromkeys(held) if (found := event(gate)) and test.name in found.spans]
         ours(file)
         if own:
@@ -41,11 +42,23 @@ def write_columns(folder: Folder, effects: Sequence[str]) -> list[Path]:
     return written
 
 
+def checked_columns(folder: Folder) -> None:
+    """InputError where one of these files would go over something else: to be asked before a step is written."""
+    for entry in folder.settings.tests:
+        ours(_file(entry))
+
+
+def _file(entry: Entry) -> Path:
+    return entry.file.with_name(f"{stem_of(entry.file)}.derived.csv")
+
+
 def ours(file: Path) -> None:
     """A file of that name is one of these, or it stays."""
     if not file.exists():
         return
-    with file.open(encoding="utf-8", newline="") as lines:
+    if not file.is_file():
+        raise InputError("is no file", str(file), "another name for it")
+    with file.open(encoding="utf-8", errors="replace", newline="") as lines:
         header = next(csv.reader(lines), [])
     if header[:1] != [TIME] or not all(event(name) for name in header[1:]):
         raise InputError("is there already and is no column of an event: it stays", str(file), "another name for it")

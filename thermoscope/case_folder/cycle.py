@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,8 @@ from lumped.integration.signals import Signals
 from lumped.integration.simulate import Record
 from lumped.model.network import Network
 from lumped.schemas.reader import Table, known
+from thermoscope.recordings.consistency import is_amount
+from thermoscope.recordings.grid import LEAST, MOST, bridged
 from thermoscope.recordings.sheet import read_sheet
 from thermoscope.recordings.tables import load_table
 
@@ -29,12 +32,30 @@ WINDING, MAGNET = "winding", "magnet"
 
 @dataclass(frozen=True)
 class Cycle:
-    """record : what is known beforehand;  drive : gives the rest from the temperatures of the places it watches"""
+    """record : what is known beforehand;  drive : gives the rest from the temperatures of the places it watches
+
+    series : what a vehicle with a series machine is, where the cycle has one
+    notes : doubts about its file
+    """
 
     name: str
     record: Record
     drive: Drive | None = None
     watched: Mapping[str, str] = field(default_factory=dict)
+    series: Series | None = None
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Series:
+    """wanted (nt,) m/s, slope (nt,) rise over run;  reference_degC : of the machine's resistance"""
+
+    machine: SeriesMachine
+    vehicle: Vehicle
+    controller: Controller
+    wanted: Array
+    slope: Array
+    reference_degC: float
 
 
 def find_cycle(case: Path, name: str) -> Path:
@@ -54,18 +75,41 @@ def load_cycle(path: Path, network: Network, ratings: Mapping[str, float]) -> Cy
     head.word("description", "")
     step = head.number("step_s", 1.0)
     columns = None if "duty" in top else _columns(path, top, head)
-    time, inputs, boundaries = _duty(top) if columns is None else columns.every(step)
-    inputs |= {n: np.full(time.size, v) for n, v in top.table("inputs").constants("inputs").items()}
-    boundaries |= {n: np.full(time.size, v) for n, v in top.table("boundaries").constants("boundaries").items()}
+    time, inputs, boundaries = _duty(top) if columns is None else columns.every(step, str(path))
+    inputs |= _constants(top, "inputs", time, inputs)
+    boundaries |= _constants(top, "boundaries", time, boundaries)
+    for name in boundaries:
+        if name not in network.boundaries:
+            raise top.error(f"no boundary is called '{name}'", known(name, network.boundaries))
     start = head.number("initial_degC", _usual(network, boundaries, str(path)))
-    drive, watched = _drive(top, network, ratings, time, inputs)
+    drive, watched, series = _drive(top, network, ratings, time, inputs)
     head.close()
     top.close()
     if columns is not None and drive is None:
         inputs = columns.signals(inputs, time)
-    cycle = Cycle(path.stem, Record(time, inputs, boundaries, start), drive, watched)
+    notes = (*(columns.notes if columns is not None else ()), *_unread(network, inputs, drive, str(path)))
+    cycle = Cycle(path.stem, Record(time, inputs, boundaries, start), drive, watched, series, notes)
     _complete(network, cycle, str(path))
     return cycle
+
+
+def _constants(top: Table, key: str, time: Array, given: Mapping[str, Array]) -> dict[str, Array]:
+    """What stays as it is; InputError for what the columns or the duty give already."""
+    found = top.table(key).constants(key)
+    for name in found:
+        if name in given:
+            raise top.error(f"'{name}' is given twice", f"[{key}] {name}, or a column or [load] of that name")
+    return {name: np.full(time.size, value) for name, value in found.items()}
+
+
+def _unread(network: Network, inputs: Mapping[str, Array], drive: Drive | None, where: str) -> Iterator[str]:
+    """Notes on inputs that no law reads; InputError for a negative power that a loss would take the amount of."""
+    for name, values in inputs.items():
+        if drive is None and name not in network.inputs:
+            yield f"{where}: no law of the model reads '{name}'"
+        if values.min() < 0.0 and is_amount(network, name):
+            what = f"{values.min():g} is negative, and the loss that reads '{name}' would heat by it"
+            raise InputError(what, where, "a power that is not negative")
 
 
 def _usual(network: Network, boundaries: Mapping[str, Array], where: str) -> float:
@@ -78,14 +122,16 @@ def _usual(network: Network, boundaries: Mapping[str, Array], where: str) -> flo
 
 @dataclass(frozen=True)
 class Columns:
-    """A cycle's table as recorded: time (n,) s, inputs and boundaries (n,)."""
+    """A cycle's table as recorded: time (n,) s, inputs and boundaries (n,).  notes : doubts about it"""
 
     time: Array
     inputs: dict[str, Array]
     boundaries: dict[str, Array]
+    notes: tuple[str, ...]
 
-    def every(self, step: float) -> tuple[Array, dict[str, Array], dict[str, Array]]:
+    def every(self, step: float, where: str) -> tuple[Array, dict[str, Array], dict[str, Array]]:
         """Time, inputs and boundaries at steps (s)."""
+        _counted(float(self.time[-1]) / step + 1.0, where)
         time = np.arange(0.0, self.time[-1] + 1e-9, step)
 
         def at(of: dict[str, Array]) -> dict[str, Array]:
@@ -102,15 +148,24 @@ class Columns:
 def _columns(path: Path, top: Table, head: Table) -> Columns:
     """Inputs and boundaries of the cycle's table."""
     keys = {key: head.raw(key) for key in ("time", "time_unit", "period_s", "worksheet") if key in head}
-    sheet = read_sheet({"test": keys, "columns": top.raw("columns", {})}, str(path), path.parent)
+    sheet = read_sheet({"cycle": keys, "columns": top.raw("columns", {})}, str(path), path.parent, "cycle")
     samples = load_table(path.parent / head.word("file", f"{path.stem}.csv"), sheet)
     inputs: dict[str, Array] = {}
     boundaries: dict[str, Array] = {}
+    notes = list(samples.notes)
     for c in sheet.columns:
-        seen = np.isfinite(samples.values[c.name])
-        values = np.interp(samples.time, samples.time[seen], samples.values[c.name][seen])
+        where = f"{samples.file} column '{c.header}'"
+        values, doubts = bridged(samples.time, samples.values[c.name], sheet.max_gap_s, where)
+        notes += doubts
         (boundaries if c.is_temperature else inputs)[c.place if c.is_temperature else c.feeds] = values
-    return Columns(samples.time, inputs, boundaries)
+    return Columns(samples.time, inputs, boundaries, tuple(notes))
+
+
+def _counted(instants: float, where: str) -> None:
+    """A cycle has so many instants that a run of it makes sense and fits into memory."""
+    if not LEAST <= instants <= MOST:
+        raise InputError(f"the cycle has {instants:.3g} instants", where,
+                         f"{LEAST} to {MOST:.0g}: check step_s, durations and time_unit")  # fmt: skip
 
 
 def _duty(top: Table) -> tuple[Array, dict[str, Array], dict[str, Array]]:
@@ -118,12 +173,22 @@ def _duty(top: Table) -> tuple[Array, dict[str, Array], dict[str, Array]]:
     t, load = top.table("duty"), top.table("load")
     kind, step = t.word("type", None, ("S1", "S2", "S3", "S6")), t.number("step_s", 10.0)
     if kind == "S1":
-        time, share = s1(t.number("duration_s"), step)
+        of: tuple[float, ...] = (t.number("duration_s"),)
+        duty: Callable[..., tuple[Array, Array]] = partial(s1, *of)
     elif kind == "S2":
-        time, share = s2(t.number("on_s"), t.number("rest_s"), step)
+        of = t.number("on_s"), t.number("rest_s")
+        duty = partial(s2, *of)
     else:
-        of = t.number("period_s"), t.number("duty_percent") / 100, int(t.number("cycles"))
-        time, share = s3(*of, step) if kind == "S3" else s6(*of, t.number("no_load"), step)
+        period, part, cycles = t.number("period_s"), t.number("duty_percent") / 100, int(t.number("cycles"))
+        of = (period * cycles,)
+        duty = (
+            partial(s3, period, part, cycles)
+            if kind == "S3"
+            else partial(s6, period, part, cycles, t.number("no_load"))
+        )
+        _counted(4.0 * cycles, t.where)
+    _counted(max(sum(of) / step, LEAST), t.where)
+    time, share = duty(step=step)
     inputs = {name: share * full for name, full in load.constants("load").items()}
     if not inputs:
         raise load.error("no input follows the duty", "[load] current_A = ... at full load")
@@ -133,15 +198,15 @@ def _duty(top: Table) -> tuple[Array, dict[str, Array], dict[str, Array]]:
 
 def _drive(
     top: Table, network: Network, ratings: Mapping[str, float], time: Array, inputs: dict[str, Array]
-) -> tuple[Drive | None, dict[str, str]]:
+) -> tuple[Drive | None, dict[str, str], Series | None]:
     if "vehicle" in top:
         return _series(top, network, ratings, time, inputs)
-    return _permanent(top, network, inputs) if "pm-machine" in top else (None, {})
+    return (*_permanent(top, network, inputs), None) if "pm-machine" in top else (None, {}, None)
 
 
 def _series(
     top: Table, network: Network, ratings: Mapping[str, float], time: Array, inputs: dict[str, Array]
-) -> tuple[Drive, dict[str, str]]:
+) -> tuple[Drive, dict[str, str], Series]:
     m, v, c = top.table("series-machine"), top.table("vehicle"), top.table("controller")
     rated = [m.number(k, ratings.get(k)) for k in ("power_W", "speed_rpm", "voltage_V", "current_A")]
     machine = SeriesMachine.from_ratings(
@@ -165,7 +230,8 @@ def _series(
     slope = inputs["slope_percent"] / 100
     wanted = inputs.pop("vehicle_speed_mps")
     drive = series_drive(machine, vehicle, control, time, wanted, slope, reference)
-    return _mixed(drive, {WINDING: places}), {p: p for p in places}
+    series = Series(machine, vehicle, control, np.asarray(wanted, float), np.asarray(slope, float), reference)
+    return _mixed(drive, {WINDING: places}), {p: p for p in places}, series
 
 
 def _permanent(top: Table, network: Network, inputs: dict[str, Array]) -> tuple[Drive, dict[str, str]]:

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from lumped.model.network import Link, Network, Source
 from lumped.transfer.laws import InputPower
-from thermoscope.recordings.consistency import read_by
 from thermoscope.recordings.sheet import Sheet
 from thermoscope.recordings.tables import Samples
 
@@ -24,6 +23,9 @@ UNEVEN = 0.5  # of a long step of a clock, between nine in ten and one in ten of
 RATES = 10.0  # times the rows of another test
 STORED = 20.0  # times the heat that came in; capacities are known within a factor of 2 or 3
 WARM_K = 3.0
+LEAST_READINGS = 3  # of a sensor in a test, as of rows
+WIDE_K = 10.0  # 1-sigma that no sensor of a machine has
+ONE = np.ones(2)  # of every input
 SWITCHES = ((0.0, 1.0), (0.0, 100.0))  # levels of an input that is switched: as a number, in percent
 
 
@@ -70,12 +72,12 @@ def examined(patients: list[Patient], network: Network) -> tuple[Finding, ...]:
     each = [finding for p in patients for check in CHECKS for finding in check(p)]
     power = [finding for p in patients for finding in _power(p, network)]
     inputs = [*_unused(patients, network), *_switched(patients, network)]
-    return (*each, *power, *_rates(patients), *_copies(patients), *inputs, *_stores(network))
+    return (*each, *power, *_rates(patients), *_copies(patients), *_cold(network), *inputs, *_stores(network))
 
 
 def _units(p: Patient) -> Iterator[Finding]:
     """A column that starts where the others would in kelvin or Fahrenheit."""
-    starts = {n: float(np.median(v[np.isfinite(v)][:FIRST])) for n, v in p.temperatures.items() if np.isfinite(v).any()}
+    starts = _starts(p)
     for name, start in starts.items():
         others = [s for n, s in starts.items() if n != name]
         usual = float(np.median(others)) if others else 20.0
@@ -85,6 +87,66 @@ def _units(p: Patient) -> Iterator[Finding]:
             yield p.found(name, f"starts at {start:.0f} degC, the others at {usual:.0f}: kelvin?", 'unit = "K"')
         elif abs((start - 32.0) / 1.8 - usual) < OFF_K / 3:
             yield p.found(name, f"starts at {start:.0f} degC, the others at {usual:.0f}: Fahrenheit?", 'unit = "degF"')
+
+
+def _scale(p: Patient) -> Iterator[Finding]:
+    """A column that starts at ten times, or a tenth, of where the others do: a logger's tenths of a degree."""
+    starts = _starts(p)
+    for name, start in starts.items():
+        usual = float(np.median([s for n, s in starts.items() if n != name] or [start]))
+        for factor, cure in ((10.0, "divide the column by 10"), (0.1, "multiply the column by 10")):
+            if abs(start - factor * usual) < 0.1 * abs(factor * usual) and abs(start - usual) > APART_K:
+                yield p.found(name, f"starts at {start:.4g} degC, the others at {usual:.4g}: tenths of a degree?", cure)
+
+
+def _reversed(p: Patient) -> Iterator[Finding]:
+    """A sensor that falls as the others rise: a thermocouple with its wires swapped."""
+    moves = {n: float(v[seen[-1]] - v[seen[0]]) for n, v in p.temperatures.items()
+             if (seen := np.flatnonzero(np.isfinite(v))).size}  # fmt: skip
+    for name, move in moves.items():
+        others = [m for n, m in moves.items() if n != name]
+        if move < -WARM_K and others and min(others) > -WARM_K / 3 and float(np.median(others)) > WARM_K:
+            yield p.found(name, f"falls by {-move:.0f} K while the others rise: are its wires swapped?",
+                          "use = false, or the wires the right way round")  # fmt: skip
+
+
+def _sparse(p: Patient) -> Iterator[Finding]:
+    """Sensors that were hardly read."""
+    after = {c.name for c in p.sheet.columns if c.electrical is not None}  # one reading says the end, and is meant so
+    for name, values in p.temperatures.items():
+        count = int(np.isfinite(values).sum())
+        if count < LEAST_READINGS and name not in after:
+            yield p.found(name, f"was read {count} {'time' if count == 1 else 'times'} in the whole test: that "
+                          "says next to nothing of the model", "readings over the test, or use = false")  # fmt: skip
+
+
+def _declared(p: Patient) -> Iterator[Finding]:
+    """What the sheet says of a test or a sensor, against what was read."""
+    starts, span = _starts(p), float(p.samples.time[-1])
+    given = p.sheet.initial
+    for c in (c for c in p.sheet.columns if c.name in starts):
+        first = given if isinstance(given, float) else given.get(c.place) if not isinstance(given, str) else None
+        if first is not None and abs(first - starts[c.name]) > APART_K:
+            yield p.found(c.name, f"starts at {starts[c.name]:.0f} degC, the sheet says initial = {first:g}",
+                          'initial = "first-readings"')  # fmt: skip
+        values, lag = p.samples.values[c.name], c.lag_s
+        move = float(np.nanmax(values) - np.nanmin(values))
+        if c.sigma_K > max(move, WIDE_K):
+            yield p.found(c.name, f"its sigma_K = {c.sigma_K:g} is more than it moves ({move:.3g} K): no error of the "
+                          "model could show", "the 1-sigma of the sensor's data sheet")  # fmt: skip
+        if lag > span:
+            yield p.found(c.name, f"its lag of {lag:g} s is longer than the test ({span:g} s)",
+                          "lag_s and filter_s in seconds")  # fmt: skip
+    for name, events in p.sheet.events.items():
+        if events.at_s[-1] > p.samples.start_s + span:
+            yield p.found(name, f"switches at {events.at_s[-1]:g} s, after the test has ended",
+                          "at_s in seconds from the first row")  # fmt: skip
+
+
+def _starts(p: Patient) -> dict[str, float]:
+    """Column -> what its first readings say (degC)."""
+    seen = {n: v[np.isfinite(v)] for n, v in p.temperatures.items()}
+    return {n: float(np.median(v[:FIRST])) for n, v in seen.items() if v.size}
 
 
 def _clock(p: Patient) -> Iterator[Finding]:
@@ -117,7 +179,7 @@ def _frozen(p: Patient) -> Iterator[Finding]:
     moves = {n: float(np.nanmax(v) - np.nanmin(v)) for n, v in p.temperatures.items() if np.isfinite(v).any()}
     if max(moves.values(), default=0.0) > WARM_K:
         for name, move in moves.items():
-            if move == 0.0:
+            if move == 0.0 and np.isfinite(p.temperatures[name]).sum() >= LEAST_READINGS:
                 yield p.found(name, "never moves while others do: frozen?", "use = false, or another sensor")
 
 
@@ -137,7 +199,7 @@ def _noted(p: Patient) -> Iterator[Finding]:
             yield p.found("", note, "look at it; use = false leaves a column out")
 
 
-CHECKS = (_noted, _units, _clock, _spikes, _frozen, _twins)
+CHECKS = (_noted, _units, _scale, _reversed, _sparse, _declared, _clock, _spikes, _frozen, _twins)
 
 
 def _power(p: Patient, network: Network) -> Iterator[Finding]:
@@ -145,7 +207,7 @@ def _power(p: Patient, network: Network) -> Iterator[Finding]:
     rises = [float(np.nanmax(v) - v[np.isfinite(v)][0]) for v in p.temperatures.values() if np.isfinite(v).any()]
     rise, span = float(np.median(rises)) if rises else 0.0, float(p.samples.time[-1])
     stored = float(network.C.sum()) * rise
-    columns = [c for c in p.sheet.columns if c.quantity == "power" and c.feeds in read_by(network)]
+    columns = [c for c in p.sheet.columns if c.quantity == "power" and c.feeds in network.inputs]
     came = sum(float(np.nanmean(np.abs(p.samples.values[c.name]))) for c in columns) * span
     if columns and rise > WARM_K and 0.0 < STORED * came < stored:
         names = ", ".join(c.name for c in columns)
@@ -173,14 +235,15 @@ def _copies(patients: list[Patient]) -> Iterator[Finding]:
 
 def _unused(patients: list[Patient], network: Network) -> Iterator[Finding]:
     """Inputs that no law reads, and inputs that no test moves."""
-    read = read_by(network)
-    fed = {name: c for p in patients for c in p.sheet.columns for name in [c.feeds] if name}
+    read = network.inputs
+    fed = {name: c.name for p in patients for c in p.sheet.columns for name in [c.feeds] if name}
+    fed |= {name: "" for p in patients for name in p.sheet.events}
     squared = {column for p in patients for of in p.sheet.squares.values() for column in of}
     for name, column in sorted(fed.items()):
-        if name not in read and column.name not in squared:
+        if name not in read and column not in squared:
             yield Finding("", name, "no law of the network reads this input; an effect may",
                           "input = the name that a law reads, or leave it for effects", True)  # fmt: skip
-    for name in sorted(read & set(fed)):
+    for name in sorted(n for n in read & set(fed) if fed[n]):
         values = np.concatenate([p.inputs[name] for p in patients if name in p.inputs])
         if np.unique(values[np.isfinite(values)]).size < 2:
             yield Finding("", name, "no test moves this input: what depends on it cannot be told",
@@ -189,7 +252,7 @@ def _unused(patients: list[Patient], network: Network) -> Iterator[Finding]:
 
 def _switched(patients: list[Patient], network: Network) -> Iterator[Finding]:
     """Inputs that are only ever on or off in a law that raises them to a power: 0 and 1 are the same to any power."""
-    for name in sorted(read_by(network)):
+    for name in sorted(network.inputs):
         seen = [p.inputs[name] for p in patients if name in p.inputs]
         seen += [p.sheet.events[name].value for p in patients if name in p.sheet.events]
         levels = np.unique(np.concatenate(seen)) if seen else np.zeros(0)
@@ -202,6 +265,14 @@ def _switched(patients: list[Patient], network: Network) -> Iterator[Finding]:
             for _, _, exponent in (t for t in terms if t[0] == name and t[2] != 1.0):
                 yield Finding("", name, f"is only on or off: the exponent {exponent:g} in '{item.name}' says nothing",
                               "exponent = 1.0, or a column that says how much")  # fmt: skip
+
+
+def _cold(network: Network) -> Iterator[Finding]:
+    """A network that nothing can heat."""
+    laws = [source.law for source in network.sources]
+    if not any(np.any(np.asarray(law.factor({n: ONE for n in law.reads})) != 0.0) for law in laws):
+        what = "no loss of the network gives any heat" if laws else "the network has no loss: nothing heats it"
+        yield Finding("", "losses", what, "[losses.NAME] with kind, at and its numbers")
 
 
 def _stores(network: Network) -> Iterator[Finding]:

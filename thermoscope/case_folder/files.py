@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import re
 import time
@@ -14,6 +15,7 @@ from geom.errors import InputError
 CASE = "case.toml"
 INPUTS = ("tests", "cycles")  # folders of a case
 LONGEST_WORD = 300  # characters of a word in a message: longer than most paths
+CURES = {errno.ENAMETOOLONG: "a shorter name", errno.ELOOP: "a file, not a link to itself"}
 YOUNG_S = 5.0  # a folder may be made and not yet locked
 
 
@@ -26,7 +28,9 @@ def write_whole(path: Path, text: str | bytes) -> Path:
             partial.write_bytes(text if isinstance(text, bytes) else text.encode("utf-8"))
     except OSError as fault:
         right = "a folder you may write to, with room in it"
-        raise InputError(f"cannot be written: {fault.strerror}", str(path), right) from None
+        raise InputError(
+            f"cannot be written: {fault.strerror}", str(path), CURES.get(fault.errno or 0, right)
+        ) from None
     return path
 
 
@@ -82,7 +86,7 @@ def message_of(fault: Exception) -> str:
     """The message of a fault; of the system's own with the file it was about and the cure."""
     if not isinstance(fault, OSError) or not fault.strerror:
         return str(fault)
-    cure = "a file or folder you may read and write, with room on its disk"
+    cure = CURES.get(fault.errno or 0, "a file or folder you may read and write, with room on its disk")
     return f"{fault.filename2 or fault.filename or 'the disk'}: {fault.strerror}; {cure}"
 
 
@@ -109,6 +113,12 @@ def _is_document(path: Path) -> bool:
         return file.read(64).lstrip()[:1] in (b"{", b"")
 
 
+def within_inputs(path: Path) -> bool:
+    """Does a path lie where a case keeps its inputs?"""
+    whole = path.absolute()
+    return any(p.name in INPUTS and (p.parent / CASE).exists() for p in (whole, *whole.parents))
+
+
 def checked_out(out: Path | None) -> Path | None:
     """Where files are to go: a folder, new or of results; never one where a case keeps its inputs."""
     if out is None:
@@ -116,6 +126,6 @@ def checked_out(out: Path | None) -> Path | None:
     right = "a folder for results, such as out/NAME"
     if not str(out) or "\0" in str(out) or (out.exists() and not out.is_dir()):
         raise InputError("is no folder", f"--out {out}", right)
-    if (out / CASE).exists() or (out.name in INPUTS and (out.parent / CASE).exists()):
+    if (out / CASE).exists() or within_inputs(out):
         raise InputError("a case keeps its inputs there: results would be mixed with them", f"--out {out}", right)
     return out

@@ -2,29 +2,34 @@
 
 from __future__ import annotations
 
+import pickle
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from geom.errors import InputError
-from lumped.machine.losses import ASSUMED_W
+from lumped.machine.losses import ASSUMED, ASSUMED_W, checked_losses
 from lumped.model.network import Network, Parameter
 from lumped.schemas.reader import known
 from thermoscope.case_folder.doctor import Finding, Patient, examined
 from thermoscope.case_folder.history import History, checked_values, load_history
 from thermoscope.case_folder.settings import Entry, Settings, read_settings
+from thermoscope.recordings.formats import recording
 from thermoscope.recordings.quantities import with_quantities
 from thermoscope.recordings.readings import read_test
 from thermoscope.recordings.sheet import Sheet, load_sheet
-from thermoscope.recordings.tables import load_table
+from thermoscope.recordings.tables import Samples, load_table
 from validation.calibration.unknowns import matching
 from validation.case import AddedEffect, Case, Model, Test
 from validation.measurement.sampling import SampleStep
 
 if TYPE_CHECKING:
     from geom import Machine
+    from lumped.condensation.error_budget import ErrorBudget
     from thermoscope.pipeline import Built
+    from validation.comparison.compare import Comparison
 
 Progress = Callable[[str], None]
 
@@ -44,6 +49,25 @@ class Folder:
     built: Built | None = None
     findings: tuple[Finding, ...] = ()
     steps: Mapping[str, SampleStep] = field(default_factory=dict)
+
+    @cached_property
+    def budgets(self) -> Mapping[str, ErrorBudget]:
+        """Test -> what mesh, condensation and time steps may put wrong in the model's numbers; computed once."""
+        from thermoscope.verification.error_budget import budgets_of_tests
+
+        return budgets_of_tests(self)
+
+    @property
+    def numeric_K(self) -> dict[str, dict[str, float]]:
+        """Test -> channel -> the sum of its error budget (K)."""
+        return {name: dict(budget.total_K) for name, budget in self.budgets.items()}
+
+    @cached_property
+    def compared(self) -> Comparison:
+        """The model against every test: the one comparison that tables, pictures and pages show; computed once."""
+        from validation.comparison.compare import compare
+
+        return compare(self.case, budgets=self.numeric_K)
 
 
 def _once(settings: Settings, files: Mapping[str, Path]) -> None:
@@ -67,8 +91,7 @@ def load_case(
     history = History() if bare else load_history(settings.model_file)
     patients: dict[str, Patient] = {}
     for entry in settings.tests:
-        progress(f"reading {entry.name}")
-        patients[entry.name] = patient_of(entry)
+        patients[entry.name] = patient_of(entry, progress)
     _once(settings, {name: one.samples.file for name, one in patients.items()})
     network, built = network_of(settings, progress)
     read = [
@@ -76,7 +99,7 @@ def load_case(
         for e in settings.tests
     ]
     findings = examined(list(patients.values()), network)
-    notes = tuple(dict.fromkeys([*_assumed(built), *(note for one in read for note in one.notes)]))
+    notes = tuple(dict.fromkeys([*_assumed(network, settings), *(note for one in read for note in one.notes)]))
     frees = {e.name: e.frees for e in settings.tests}
     tests = tuple(replace(_allowing(r.test, settings.model_K), frees=frees[r.test.name]) for r in read)
     sheets = [one.sheet for one in patients.values()]
@@ -84,20 +107,43 @@ def load_case(
     case = Case(settings.name, _model(network, history), tests, _free(network, settings), settings.doubt,
                 history.last.answers)  # fmt: skip
     steps = {r.test.name: r.step for r in read}
-    return Folder(settings, _checked(case, history), history, notes, _positions(sheets), built, findings, steps)
+    return Folder(
+        settings, _checked(case, history, settings), history, notes, _positions(sheets), built, findings, steps
+    )
 
 
-def patient_of(entry: Entry) -> Patient:
-    """A test as its files have it."""
+READ = 32  # recordings that a process keeps: a command, or the demo, works on one case
+_read: dict[tuple, Samples] = {}  # by sheet and files: nothing that is asked for has changed
+
+
+def patient_of(entry: Entry, progress: Progress = lambda message: None) -> Patient:
+    """A test as its files have it; a recording that has not changed is read once in a process."""
     sheet = load_sheet(entry.sheet)
-    return Patient(entry.name, sheet, load_table(entry.file, sheet))
+    files = (recording(entry.file), *(recording(r.file) for r in sheet.recorders.values()))
+    key = (pickle.dumps(sheet), *(_stamp(file) for file in files))
+    if key not in _read:
+        progress(f"reading {entry.name}")
+        while len(_read) >= READ:
+            _read.pop(next(iter(_read)))
+        _read[key] = load_table(entry.file, sheet)
+    return Patient(entry.name, sheet, _read[key])
 
 
-def _assumed(built: Built | None) -> list[str]:
-    """Losses that nobody declared."""
-    if built is None or built.machine.sections.get("losses"):
+def _stamp(file: Path) -> tuple[str, int, int, int]:
+    """What changes when a file is written: name, number on the disk, length, instant (ns)."""
+    found = file.stat()
+    return str(file.resolve()), found.st_ino, found.st_size, found.st_mtime_ns
+
+
+def _assumed(network: Network, settings: Settings) -> list[str]:
+    """A note on losses that nobody declared; InputError where measurements are to be held against them."""
+    if all(source.name != ASSUMED for source in network.sources):
         return []
-    return [f"{built.machine.name} declares no losses: {ASSUMED_W:g} W in its windings are assumed ([losses.NAME])"]
+    what, right = "the machine declares no losses", "[losses.NAME] with kind, at and its numbers"
+    if settings.tests:
+        where = str(settings.machine)
+        raise InputError(f"{what}: nothing says what heated it in the tests", where, right)
+    return [f"{what}: {ASSUMED_W:g} W in its windings are assumed; {right}"]
 
 
 def _allowing(test: Test, model_K: float) -> Test:
@@ -158,7 +204,12 @@ def load_machine_file(path: Path) -> Machine:
     from geom import library, load_machine
 
     if path.exists():
-        return load_machine(path)
+        machine = load_machine(path)
+        try:
+            checked_losses(machine)
+        except InputError as fault:
+            raise InputError(fault.what, f"{path}, {fault.where}", fault.right) from None
+        return machine
     shipped = library()
     name = path.name.removesuffix(".toml")
     if name in shipped:
@@ -174,12 +225,22 @@ def _model(network: Network, history: History) -> Model:
     return Model(network, effects, dict(last.values), last.number)
 
 
-def _checked(case: Case, history: History) -> Case:
-    """The model's effects can sit where model.toml has them, and its values belong to parameters."""
+def _checked(case: Case, history: History, settings: Settings) -> Case:
+    """The model's effects can sit where model.toml has them, its values belong to parameters, as what tests free."""
+    from validation.calibration.staged_fit import fit_stages
     from validation.calibration.unknowns import scene_of, working
     from validation.effects import effect
 
-    for one in case.model.effects:
-        effect(one.name, scene_of(case))
-    checked_values(history.last, working(case)[0].parameters, "model.toml")
+    where = f"{settings.model_file} revision {history.last.number}"
+    try:
+        for one in case.model.effects:
+            effect(one.name, scene_of(case))
+        network, unknowns = working(case)
+    except InputError as fault:
+        raise (
+            fault if not case.model.effects else InputError(fault.what, f"{where}, {fault.where}", fault.right)
+        ) from None
+    checked_values(history.last, network.parameters, where)
+    if any(test.frees for test in case.tests):
+        fit_stages(case, case.tests, unknowns)
     return case

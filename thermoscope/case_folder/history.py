@@ -84,7 +84,7 @@ class History:
 
 def load_history(path: Path) -> History:
     """The history of a case; none when there is no model.toml yet."""
-    if not path.exists():
+    if not path.exists() and not path.is_symlink():
         return History()
     top = Table(read_toml(path, "a model.toml written by thermoscope"), str(path))
     revisions = tuple(_revision(t) for t in top.listed("revision"))
@@ -120,7 +120,13 @@ def _text(history: History) -> str:
 
 def checked_values(revision: Revision, parameters: Iterable[Parameter], where: str) -> None:
     """Every value belongs to a parameter the model has, and lies within that parameter's bounds."""
-    have, place = {p.name: p for p in parameters}, f"{where} revision {revision.number}"
+    have, place = {p.name: p for p in parameters}, where
+    again = next((e for i, e in enumerate(revision.effects) if e in revision.effects[:i]), None)
+    if again is not None:
+        raise InputError(f"effect '{again}' is in the model twice", place, "each effect once")
+    for name in revision.intervals:
+        if name not in revision.values:
+            raise InputError(f"intervals: '{name}' has no value", place, known(name, revision.values))
     for name, value in revision.values.items():
         if name not in have:
             raise InputError(f"unknown parameter '{name}'", place, known(name, have))
@@ -158,8 +164,8 @@ def _pairs(table: Table) -> dict[str, Pair]:
     out = {}
     for name in table.data:
         pair = table.numbers(name, of="intervals")
-        if len(pair) != 2:
-            raise table.error(f"{name} has {len(pair)} numbers", "[low, high]")
+        if len(pair) != 2 or pair[0] > pair[1]:
+            raise table.error(f"{name} = {list(pair)} is no interval", "[low, high]")
         out[name] = (pair[0], pair[1])
     return out
 

@@ -60,7 +60,9 @@ def held(folder: Folder, test: Test) -> Comparison:
 
     earlier = before_last(folder)
     before = None if earlier is None else readings(earlier, test)
-    return Comparison(test, readings(folder.case, test), before, accepted(folder.case, test))
+    return Comparison(
+        test, readings(folder.case, test), folder.compared.limits[test.name], before, accepted(folder.case, test)
+    )
 
 
 def accepted(case: Case, test: Test) -> tuple[tuple[float, float], ...]:
@@ -151,7 +153,11 @@ def sensors(folder: Folder) -> dict[str, Channel]:
     return {c.name: c for test in folder.case.tests for c in test.channels}
 
 
+def mean_rows(network: Network) -> dict[str, Row]:
+    """The means of parts, nodes and fluids."""
+    return {n: p.mean for n, p in network.places.items() if p.kind != "surface" and "#" not in n}
+
+
 def named_rows(network: Network, folder: Folder) -> dict[str, Row]:
     """Named temperatures: the means of parts and nodes, then where the sensors of the case sit."""
-    means = {n: p.mean for n, p in network.places.items() if p.kind != "surface" and "#" not in n}
-    return means | {f"sensor {name}": c.row for name, c in sensors(folder).items()}
+    return mean_rows(network) | {f"sensor {name}": c.row for name, c in sensors(folder).items()}

@@ -6,10 +6,10 @@ from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from pathlib import Path
 
-from geom.description.names import checked_name
+from geom.description.names import LONGEST, checked_name
 from geom.description.toml_file import read_toml
 from geom.errors import InputError
-from lumped.schemas.reader import Table, known
+from lumped.schemas.reader import Table, known, shown
 from thermoscope.recordings.formats import stem_of
 from validation.case import Role
 from validation.doubt import USUAL, Doubt, widened
@@ -72,15 +72,17 @@ def read_settings(path: Path, untested: bool = False) -> Settings:
     head, tests, calibration = top.table("case"), top.tables("tests"), top.table("calibration")
     diagnosis, doubt = top.table("diagnosis"), top.table("doubt").constants("doubt")
     top.close()
-    name, description = head.word("name", path.name), head.word("description", "")
+    name, description = _title(head, path.name), head.word("description", "")
     machine, network = (path / head.word(key) if key in head else None for key in ("machine", "network"))
     if (machine is None) == (network is None):
         raise head.error(
             "neither or both of machine and network given", 'machine = "NAME.toml" or network = "network.toml"'
         )
-    sample, free = head.number("sample_s") if "sample_s" in head else None, calibration.words("free", [])
+    sample, free = head.number("sample_s") if "sample_s" in head else None, _all_or(calibration, "free")
     model_K = head.number("model_error_K", 0.0)
     axial_m = head.number("axial_mm") / 1e3 if "axial_mm" in head else None
+    if axial_m is not None and machine is None:
+        raise head.error("axial_mm is of a machine's mesh, and this case has a network", "no axial_mm")
     starts, seed = int(calibration.number("starts", 1)), int(calibration.number("seed", 0))
     kinds = _kinds(diagnosis)
     for table in (head, calibration, diagnosis):
@@ -94,6 +96,19 @@ def read_settings(path: Path, untested: bool = False) -> Settings:
     )  # fmt: skip
 
 
+def _title(head: Table, usual: str) -> str:
+    """The name of the case: one short line."""
+    name = head.word("name", usual)
+    if not 0 < len(name.strip()) <= LONGEST or not name.isprintable():
+        raise head.error(f"name = {shown(name)} is not possible", f"one line of 1 to {LONGEST} letters")
+    return name
+
+
+def _all_or(table: Table, key: str) -> tuple[str, ...]:
+    """Globs; () where the file has none, which means all."""
+    return table.members(key) if key in table else ()
+
+
 def _kinds(table: Table) -> tuple[str, ...] | None:
     """The kinds of effects that the globs of `catalogue` mean; a glob that means none is an error."""
     if "catalogue" not in table:
@@ -101,7 +116,7 @@ def _kinds(table: Table) -> tuple[str, ...] | None:
     from validation.effects import kinds
 
     found: dict[str, None] = {}
-    for glob in table.words("catalogue"):
+    for glob in table.members("catalogue"):
         matched = [kind for kind in kinds() if fnmatchcase(kind, glob)]
         if not matched:
             raise table.error(f"catalogue: '{glob}' is no kind of effect", known(glob, kinds()))
@@ -112,8 +127,8 @@ def _kinds(table: Table) -> tuple[str, ...] | None:
 def _entry(path: Path, name: str, table: Table) -> Entry:
     file = path / table.word("file", f"tests/{checked_name(name, table.where)}")
     role, beside = table.word("role", None, ROLES), file.with_name(f"{stem_of(file)}.toml")
-    sheet, frees = path / table.word("sheet") if "sheet" in table else beside, table.words("frees", [])
+    sheet, frees = path / table.word("sheet") if "sheet" in table else beside, _all_or(table, "frees")
     if frees and role != "calibrate":
         raise table.error(f"frees parameters though its role is {role}", 'role = "calibrate"')
     table.close()
-    return Entry(name, role, file, sheet, tuple(frees))  # type: ignore[arg-type]
+    return Entry(name, role, file, sheet, frees)  # type: ignore[arg-type]

@@ -24,9 +24,7 @@ def tables(folder: Folder) -> dict[str, pd.DataFrame]:
     """Worksheet -> table: parameters, errors, and for each test its inputs and its results side by side."""
     import pandas as pd
 
-    from validation.comparison.compare import compare
-
-    result = compare(folder.case)
+    result = folder.compared
     errors = [{"test": t.name, "role": t.role, **c.document()} for t in result.tests for c in t.channels]
     model = folder.case.model
     parameters = [

@@ -1,6 +1,7 @@
 """Long work on stderr: one bar with share and time left on a terminal, one line a stage in a pipe.
 
-How long the stages took the last time is kept in the user's cache; until then only the time that has passed is known.
+How long the stages took the last time is kept in the user's cache; the first time, what they took on the computer that
+`usual_stages.json` was written on. Either is scaled by how fast this run has been so far.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from contextvars import ContextVar
 from dataclasses import dataclass, field
 from itertools import count
 from pathlib import Path
@@ -18,7 +20,9 @@ Progress = Callable[[str], None]
 FILE = "stages.json"
 MOST = 200  # pieces of work that are remembered
 WORTH_S = 2.0  # shorter work has no share and no time left
+USUAL = "usual_stages.json"  # beside this file: what two cores took
 _blocks = count()  # of this process: `demo` has many
+_whole: ContextVar[ProgressBar | None] = ContextVar("whole", default=None)
 
 
 @dataclass
@@ -26,6 +30,8 @@ class ProgressBar:
     """The stages of one piece of work: how long each took so far, and the last time.
 
     last : stage -> s of the last time, in their order;  clock : s, rising
+    block : which of several pieces of work that have one bar, 0 of a single one; the same word in two of them is two
+    stages
     """
 
     last: dict[str, float]
@@ -33,10 +39,12 @@ class ProgressBar:
     took: dict[str, float] = field(default_factory=dict)
     now: str = ""
     since: float = 0.0
+    block: int = 0
 
     def enter(self, message: str) -> bool:
         """Whether another stage begins; messages that begin with the same word are of one stage."""
-        stage = message.split()[0].rstrip(":,") if message.split() else ""
+        word = message.split()[0].rstrip(":,") if message.split() else ""
+        stage = f"{self.block} {word}" if self.block and word else word
         if stage == self.now:
             return False
         self.leave()
@@ -51,14 +59,20 @@ class ProgressBar:
         self.since, self.now = instant, ""
 
     def left(self) -> tuple[float, float] | None:
-        """Share done and seconds left as the last time tells; None where there was none worth it."""
+        """Share done, and seconds left at the pace so far, as the last time tells; None where there was none worth it.
+
+        A stage that takes longer than the last time counts as done when it ends, so the share never falls.
+        """
         total = sum(self.last.values())
         if total < WORTH_S:
             return None
-        running = min(self.clock() - self.since, self.last.get(self.now, 0.0))
+        here = self.clock() - self.since if self.now else 0.0
+        running = min(here, self.last.get(self.now, 0.0))
         done = running + sum(min(self.took.get(s, 0.0), t) if s == self.now else t
                              for s, t in self.last.items() if s in self.took)  # fmt: skip
-        return min(done / total, 0.99), max(total - done, 0.0)
+        spent = here + sum(self.took.values())
+        pace = spent / done if done > WORTH_S else 1.0
+        return min(done / total, 0.99), max(total - done, 0.0) * pace
 
     def words(self, message: str) -> str:
         """The message with share and time left."""
@@ -73,17 +87,45 @@ def _span(seconds: float) -> str:
 @contextmanager
 def progress() -> Iterator[Progress]:
     """A function that says what is going on."""
-    key = f"{' '.join(sys.argv[1:3])} {next(_blocks)}"
-    known = _remembered()
-    stages = ProgressBar(known.get(key, {}))
-    try:
-        with _shown(stages) as tell:
+    whole = _whole.get()
+    if whole is not None:
+        whole.block += 1
+        with _shown(whole) as tell:
             yield tell
+        whole.leave()
+        return
+    with _remembering(f"{_command()} {next(_blocks)}") as stages, _shown(stages) as tell:
+        yield tell
+
+
+@contextmanager
+def one_bar() -> Iterator[None]:
+    """Several pieces of work, each with its `progress`, have one bar: share and time left are of all of them."""
+    with _remembering(_command()) as stages:
+        token = _whole.set(stages)
+        try:
+            yield
+        finally:
+            _whole.reset(token)
+
+
+@contextmanager
+def _remembering(key: str) -> Iterator[ProgressBar]:
+    """Stages that know how long they took the last time; what they take now is kept for the next."""
+    known = _remembered()
+    stages = ProgressBar(known.get(key) or _usual().get(key, {}))
+    try:
+        yield stages
         stages.leave()
         if sum(stages.took.values()) > WORTH_S:
             _remember({**{k: v for k, v in known.items() if k != key}, key: stages.took})
     finally:
         stages.leave()
+
+
+def _command() -> str:
+    """The words of the command: "explain diagnose"."""
+    return " ".join(word for word in sys.argv[1:3] if not word.startswith("-"))
 
 
 @contextmanager
@@ -124,8 +166,16 @@ def _file() -> Path:
 
 def _remembered() -> dict[str, dict[str, float]]:
     """What the cache knows; nothing where it is damaged or was never written."""
+    return _stages_in(_file())
+
+
+def _usual() -> dict[str, dict[str, float]]:
+    return _stages_in(Path(__file__).with_name(USUAL))
+
+
+def _stages_in(file: Path) -> dict[str, dict[str, float]]:
     with suppress(OSError, ValueError, TypeError, AttributeError):
-        found = json.loads(_file().read_text(encoding="utf-8"))
+        found = json.loads(file.read_text(encoding="utf-8"))
         return {str(k): {str(s): float(t) for s, t in v.items()} for k, v in found.items()}
     return {}
 
@@ -135,6 +185,6 @@ def _remember(known: dict[str, dict[str, float]]) -> None:
         file = _file()
         file.parent.mkdir(parents=True, exist_ok=True)
         newest = dict(list(known.items())[-MOST:])
-        partial = file.with_name(f".{file.name}.{next(_blocks)}-{time.time_ns()}")
+        partial = file.with_name(f".{file.name}.{time.time_ns()}")
         partial.write_text(json.dumps(newest), encoding="utf-8")
         partial.replace(file)

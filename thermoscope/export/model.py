@@ -22,7 +22,7 @@ from thermoscope.export.tables import Ranges, factors
 from thermoscope.recordings.units import QUANTITIES
 from thermoscope.verification.error_budget import model_of
 from validation.case import RUNNING, Test
-from validation.comparison.compare import compare
+from validation.comparison.compare import errors
 
 Array = NDArray[np.float64]
 USUAL_C = 20.0  # where a run starts unless it is told
@@ -169,7 +169,7 @@ def _errors(folder: Folder) -> dict[str, tuple[float | None, str]]:
     """Sensor -> rms error (K) over the tests of the strictest role that has any, and that role."""
     if not folder.case.tests:
         return {}
-    rows = [(t.role, c) for t in compare(folder.case).tests for c in t.channels]
+    rows = [(t.role, c) for t in errors(folder.case).tests for c in t.channels]
     out: dict[str, tuple[float | None, str]] = {}
     for role in ("calibrate", "validate", "hold-out"):
         for name in dict.fromkeys(c.channel for r, c in rows if r == role):

@@ -15,14 +15,14 @@ from geom.errors import InputError
 from thermoscope.importing.cells import EMPTY, SWITCH, number, split_unit
 from thermoscope.importing.rows import layout
 from thermoscope.importing.text import text_rows
-from thermoscope.recordings.formats import TIME, opened, read_frame
+from thermoscope.recordings.formats import READERS, TIME, opened, read_frame
 
 if TYPE_CHECKING:
     import pandas as pd
 
 Array = NDArray[np.float64]
 TEXT = 0.2  # share of cells that are words from which a column holds no readings
-BINARY = (".tdms", ".mf4", ".parquet")
+BINARY = (".tdms", ".mf4", ".parquet", *(f".{name}" for name in READERS))
 BOOKS = (".xlsx", ".xlsm")
 
 

@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 from geom.description.roles import Role
 from lumped.model.network import Network
 from thermoscope.importing.words import INLET, roles_of, tokens
-from thermoscope.recordings.consistency import read_by
 from thermoscope.recordings.units import QUANTITIES
 
 WORD, ROLE, DIGIT, EXTRA = 2.0, 1.5, 1.0, 0.1  # worth of a shared word, of a role, of a number; of a word too many
@@ -50,7 +49,7 @@ def target_of(network: Network) -> Target:
     identities = network.identities
     roles = {name: identity.role for name, identity in identities.items()}
     places = {n: roles.get(n, roles.get(p.part)) for n, p in network.places.items() if n not in network.boundaries}
-    inputs = {n: network.measures(n) or UNITS.get(n.rpartition("_")[2], "") for n in sorted(read_by(network))}
+    inputs = {n: network.measures(n) or UNITS.get(n.rpartition("_")[2], "") for n in sorted(network.inputs)}
     inputs.pop("time_s", None)
     return Target(places, {b: roles.get(b) for b in network.boundaries}, inputs)
 

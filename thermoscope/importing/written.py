@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import json
 import os
 import re
@@ -16,7 +15,7 @@ from uuid import uuid4
 import numpy as np
 
 from geom.errors import InputError
-from thermoscope.case_folder.files import abandoned, locked, write_whole
+from thermoscope.case_folder.files import abandoned, locked, within_inputs, write_whole
 from thermoscope.importing.aligned import Recording
 from thermoscope.importing.draft import Draft, sample_of
 from thermoscope.importing.guess import Guess
@@ -35,6 +34,8 @@ def folder_whole(folder: Path) -> Iterator[Path]:
 
     What a killed process left of it is hidden, counts for nothing, and goes with the next one of that name.
     """
+    if within_inputs(folder):
+        raise InputError("a case keeps its inputs there", str(folder), "--out with a folder beside that case")
     if folder.exists():
         raise InputError("is there already", str(folder), "--out with the name of a new folder")
     if not folder.parent.is_dir():
@@ -77,12 +78,7 @@ def write_test(folder: Path, draft: Draft) -> None:
 
 def _csv(table: pd.DataFrame) -> bytes:
     """Shortest numbers that read back the same, empty cells where there is none."""
-    import pyarrow
-    from pyarrow.csv import write_csv
-
-    memory = io.BytesIO()
-    write_csv(pyarrow.Table.from_pandas(table, preserve_index=False), memory)
-    return memory.getvalue()
+    return table.to_csv(index=False).encode()
 
 
 def _file(draft: Draft, i: int) -> str:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from geom.errors import InputError
 from thermoscope.case_folder.folder import Folder, find_case, load_case
 from thermoscope.case_folder.history import History, save_history
+from thermoscope.extras import explained
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -75,10 +76,11 @@ class Case:
         return catalogue(scene_of(self.folder.case), self.folder.settings.kinds)
 
     def compare(self) -> Comparison:
-        """The model against every test: error per sensor (K) against the sensor's uncertainty and 4 % of its rise."""
-        from validation.comparison.compare import compare
+        """The model against every test: error per sensor (K) against the uncertainty of reading, inputs, arithmetic.
 
-        return compare(self.folder.case)
+        Source: ASME V&V 20-2009 (expanded uncertainty).
+        """
+        return self.folder.compared
 
     def diagnose(self) -> Diagnosis:
         """Which effect is missing, with its probability and size; kept in the case's out/, as the command does.
@@ -131,6 +133,7 @@ class Case:
         write_columns(self.folder, history.last.effects)
         return replace(self, folder=replace(self.folder, history=history), saved=history, steps=())
 
+    @explained()
     def plot(self, test: str | None = None, png: str | Path | None = None) -> Figure:
         """Measured and modelled (degC) over time, a panel per sensor; beside the model before the last step.
 

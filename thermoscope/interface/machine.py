@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError
 from thermoscope.case_folder.folder import load_machine_file
+from thermoscope.extras import explained
 
 if TYPE_CHECKING:
     import pyvista
@@ -57,6 +58,7 @@ class Field:
         """|heat in - heat out| / heat in."""
         return self.check.energy_balance
 
+    @explained()
     def plot(self, png: str | Path | None = None) -> pyvista.Plotter:
         """The machine cut open, coloured by temperature (degC). Raises MissingDependency without OpenGL."""
         from viz import cutaway, require_gl, split
@@ -111,6 +113,7 @@ class Machine:
         return Field(b, crosscheck(b.field, b.network, point, ambient_C, shares=loss_shares(b.machine, b.network)))
 
 
+@explained()
 def build(
     machine: str | Path, accuracy: float | None = None, size_m: float = 0.06, progress: Progress = silent
 ) -> Machine:

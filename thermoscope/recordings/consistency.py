@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
-from lumped.model.network import Link, Network, Source
+from lumped.model.network import Network
 from lumped.schemas.reader import known
 from thermoscope.recordings.duplicates import twice
 from thermoscope.recordings.formats import cell
@@ -43,15 +43,9 @@ def _boundaries(sheet: Sheet, network: Network) -> None:
                          "one of them: use = false, or delete the constant")  # fmt: skip
 
 
-def read_by(network: Network) -> set[str]:
-    """Inputs that a law of the network reads."""
-    items: list[Link | Source] = [*network.links, *network.sources]
-    return {name for item in items for name in item.law.reads}
-
-
 def _unread(sheet: Sheet, network: Network) -> Iterator[str]:
     """Notes on constants that no law reads; a slip of a name that one does read is refused."""
-    read, usual = read_by(network), {quantity.feeds for quantity in QUANTITIES.values()}
+    read, usual = network.inputs, {quantity.feeds for quantity in QUANTITIES.values()}
     fed = {c.feeds for c in sheet.columns}
     for name in set(sheet.inputs) - read - usual:
         near = difflib.get_close_matches(name, sorted(read - fed - set(sheet.inputs)), n=1, cutoff=NEAR)
@@ -71,6 +65,11 @@ def without_sign(network: Network, name: str) -> bool:
     return False
 
 
+def is_amount(network: Network, name: str) -> bool:
+    """Whether an input is a power or a share that a loss takes the amount of."""
+    return name.endswith(AMOUNTS) and without_sign(network, name)
+
+
 def checked_heat(
     sheet: Sheet, samples: Samples, inputs: Mapping[str, Array], network: Network
 ) -> tuple[dict[str, Array], list[str]]:
@@ -79,7 +78,7 @@ def checked_heat(
     for name, values in inputs.items():
         read = samples.values[columns[name].name] if name in columns else values
         lowest = float(np.nanmin(read))
-        if name.endswith(AMOUNTS) and lowest < 0.0 and without_sign(network, name):
+        if lowest < 0.0 and is_amount(network, name):
             where = _cell(columns[name], samples) if name in columns else f"{sheet.where} [inputs] {name}"
             if lowest < -NOISE * float(np.nanmax(np.abs(read))):
                 raise InputError(f"{lowest:g} is negative, and the loss that reads '{name}' would heat by it",

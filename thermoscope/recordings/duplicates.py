@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from geom.errors import InputError
+from lumped.transfer.laws import CLOCK
 
 if TYPE_CHECKING:
     from thermoscope.recordings.sheet import Sheet
@@ -20,6 +21,8 @@ def twice(names: Iterable[str]) -> list[str]:
 def declared_once(sheet: Sheet) -> None:
     """InputError for an input fed twice, a sensor declared twice, a mean that takes a column's name."""
     fed = [c.feeds for c in sheet.columns if c.feeds]
+    if CLOCK in (*fed, *sheet.inputs, *sheet.squares, *sheet.events):
+        raise InputError(f"input '{CLOCK}' is the clock of the test itself", sheet.where, "another name for it")
     for name in twice([*fed, *sheet.inputs, *sheet.squares, *sheet.events]):
         raise InputError(f"input '{name}' is fed twice", sheet.where, "one column or constant per input: "
                          "use = false for the others")  # fmt: skip

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
+from lumped.schemas.bounds import bounds
 from lumped.schemas.reader import Table, known, shown
 
 Array = NDArray[np.float64]
@@ -54,8 +55,8 @@ def read_events(name: str, table: Table, folder: Path) -> Events:
 
 def _value(word: Any, where: str) -> float:
     found = WORDS.get(word.strip().lower()) if isinstance(word, str) else word
-    if isinstance(found, str) or found is None or isinstance(found, bool) or not np.isfinite(found):
-        raise InputError(f"{word!r} is no state of an input", where, '"on", "off" or a number')
+    if found is None or not bounds("inputs").hold(found):
+        raise InputError(f"{shown(word)} is no state of an input", where, f'"on", "off", or {bounds("inputs").words}')
     return float(found)
 
 
@@ -85,6 +86,6 @@ def _checked(at: list[float], values: list[float], where: str) -> Events:
     if not at or at[0] != 0.0:
         raise InputError("the first event is not at the start, so what held before it is unknown", where,
                          "at_s = [0, ...] with the state at the start")  # fmt: skip
-    if any(b <= a for a, b in itertools.pairwise(at)):
-        raise InputError("events do not follow each other in time", where, "at_s that rises")
+    if not all(b > a for a, b in itertools.pairwise(at)):
+        raise InputError("events do not follow each other in time", where, "at_s that rises, a time for each")
     return Events(np.array(at), np.array(values))

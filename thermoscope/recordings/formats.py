@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError, MissingDependency
+from geom.plugins import plugins
 from lumped.schemas.reader import known
 from thermoscope.recordings.csv_file import read_csv
 
@@ -21,8 +23,11 @@ if TYPE_CHECKING:
     import pandas as pd
 
 Array = NDArray[np.float64]
-SUFFIXES = (".csv", ".csv.gz", ".xlsx", ".tdms", ".mf4", ".parquet")
+Reader = Callable[[Path], "pd.DataFrame"]
+READERS: Mapping[str, Reader] = plugins("formats")  # of other packages: name without its dot -> reader
+SUFFIXES = (".csv", ".csv.gz", ".xlsx", ".tdms", ".mf4", ".parquet", *(f".{name}" for name in READERS))
 TIME = "time_s"  # of formats that carry their own time
+SHEETS = (".xlsx", ".tdms")  # formats of several tables
 HEADER = 2  # line of the first row of numbers
 GRAIN = 1e-6  # s, below which two instants are one
 Signal = tuple[str, Array, Array]
@@ -34,18 +39,25 @@ def recording(path: Path) -> Path:
         return path
     if path.exists():
         raise InputError("is no file", str(path), "a recording")
-    twins = [twin for suffix in SUFFIXES if (twin := path.with_name(stem_of(path) + suffix)).exists()]
+    here = sorted(path.parent.iterdir()) if path.parent.is_dir() else []
+    stem = stem_of(path)
+    twins = [p for p in here if _suffix(p) and p.name[: len(stem)] == stem and stem_of(p) == stem]
     for twin in twins:
         if not twin.is_file():
-            raise InputError("is no file", str(twin), "a recording")
+            what = "is a link that leads nowhere" if not twin.exists() else "is no file"
+            raise InputError(what, str(twin), "a recording")
     if len(twins) > 1:
         names = " and ".join(twin.name for twin in twins)
         raise InputError(f"{names} are both there", str(path), f'one of them, or file = "tests/{twins[0].name}"')
     if twins:
         return twins[0]
-    beside = sorted(p.name for p in path.parent.glob("*") if p.name.endswith(SUFFIXES)) if path.parent.exists() else []
+    beside = [p.name for p in here if _suffix(p) or (p.stem == stem and p.suffix != ".toml")]
     asked = path if _suffix(path) else path.with_name(f"{path.name}.csv")
-    raise InputError("no such file", str(asked), f"found there: {', '.join(beside) or 'no recording at all'}")
+    raise InputError(
+        "no such file",
+        str(asked),
+        f"one of {', '.join(SUFFIXES)}; found there: {', '.join(beside) or 'no recording at all'}",
+    )
 
 
 def _suffix(path: Path) -> str:
@@ -68,8 +80,13 @@ def read_frame(file: Path, worksheet: str = "", least: int = 3) -> pd.DataFrame:
         ".csv": lambda: read_csv(file), ".csv.gz": lambda: read_csv(file), ".xlsx": lambda: _xlsx(file, worksheet),
         ".tdms": lambda: _tdms(file, worksheet), ".mf4": lambda: _mf4(file), ".parquet": lambda: _parquet(file),
     }  # fmt: skip
+    for name, read in READERS.items():
+        readers[f".{name}"] = partial(opened, file, f"a .{name} file", name, partial(read, file))
     if suffix not in readers:
         raise InputError(f"files ending in '{file.suffix}' are not read", str(file), f"one of {', '.join(SUFFIXES)}")
+    if worksheet and suffix not in SHEETS:
+        raise InputError(f"'{worksheet}' is asked for, and such a file has no worksheets", str(file),
+                         f"no worksheet, or a file ending in {' or '.join(SHEETS)}")  # fmt: skip
     table = readers[suffix]()
     table.columns = [str(c).strip() for c in table.columns]
     twice = [name for name, count in Counter(table.columns).items() if count > 1]
@@ -110,7 +127,8 @@ def _xlsx(file: Path, worksheet: str) -> pd.DataFrame:
 def _parquet(file: Path) -> pd.DataFrame:
     import pandas as pd
 
-    return opened(file, "Parquet", "pyarrow", lambda: pd.read_parquet(file))
+    table: pd.DataFrame = opened(file, "Parquet", "pyarrow", lambda: pd.read_parquet(file))
+    return table.reset_index() if table.index.name else table
 
 
 def _tdms(file: Path, group: str) -> pd.DataFrame:
@@ -119,8 +137,10 @@ def _tdms(file: Path, group: str) -> pd.DataFrame:
 
         with TdmsFile.read(file) as tdms:
             groups = [g for g in tdms.groups() if not group or g.name == group]
-            if not groups:
+            if not groups and group:
                 raise InputError(f"no group '{group}'", str(file), known(group, [g.name for g in tdms.groups()]))
+            if not groups:
+                raise InputError("holds no channels", str(file), "a TDMS file with readings")
             channels = [(g.name, c) for g in groups for c in g.channels() if len(c)]
             names = [c.name for _, c in channels]
             return joined(
@@ -165,7 +185,9 @@ def joined(signals: Iterable[Signal]) -> pd.DataFrame:
     return pd.DataFrame(columns)
 
 
-def merged(frame: pd.DataFrame, time: str, others: Mapping[str, tuple[pd.DataFrame, str, float]]) -> pd.DataFrame:
+def merged(
+    frame: pd.DataFrame, time: str, others: Mapping[str, tuple[pd.DataFrame, str, float]], where: str
+) -> pd.DataFrame:
     """The main table with those of other recorders beside it, on all instants (in the main clock).
 
     others : recorder -> (table, its time column, seconds to add to its clock); columns that exist already are refused
@@ -177,7 +199,9 @@ def merged(frame: pd.DataFrame, time: str, others: Mapping[str, tuple[pd.DataFra
         moved = table.rename(columns={own: time}).assign(**{time: table[own].to_numpy(float) + shift})
         twice = [c for c in moved.columns if c in out.columns and c != time]
         if twice:
-            raise InputError(f"column '{twice[0]}' is recorded twice", f"[recorders.{name}]", "columns of other names")
+            raise InputError(
+                f"column '{twice[0]}' is recorded twice", f"{where} [recorders.{name}]", "columns of other names"
+            )
         out = pd.merge(out, moved, on=time, how="outer", sort=True)
     return out
 
@@ -187,6 +211,8 @@ def numbers(table: pd.DataFrame, name: str, file: Path) -> Array:
     import pandas as pd
 
     column = table[name]
+    if column.dtype.kind in "mM":
+        raise InputError("holds instants, no numbers", f"{file} column '{name}'", "numbers, or another column")
     found = np.array(pd.to_numeric(column, errors="coerce"), float)
     bad = np.flatnonzero(np.isnan(found) & column.notna().to_numpy())
     if bad.size:

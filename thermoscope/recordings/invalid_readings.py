@@ -21,6 +21,9 @@ LEAST = 50.0  # in the unit of the file, of that distance
 def coded(values: Array) -> NDArray[np.bool_]:
     """Which readings (as the file has them) are a logger's codes: of that very value, and far from all others."""
     exact = np.isin(values, CODES) | (np.abs(values) >= ENDLESS)
+    read = np.isfinite(values)
+    if read.sum() > 1 and np.all(exact[read]) and np.unique(values[read]).size == 1:
+        return exact  # never read at all
     others = values[~exact & np.isfinite(values)]
     if not exact.any() or not others.size:
         return np.zeros(values.size, bool)

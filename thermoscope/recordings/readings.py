@@ -151,6 +151,8 @@ def _complete(network: Network, inputs: Mapping[str, Array], boundaries: Mapping
 
 def row_of(network: Network, place: str, position_mm: tuple[float, ...], where: str) -> Row:
     """Where a sensor looks: a point of a part when its position is known, else the mean of its place."""
+    if place in network.boundaries:
+        raise InputError(f"'{place}' is a boundary", where, f"a place of the machine: {', '.join(network.places)}")
     if place not in network.places:
         raise InputError(f"unknown place '{place}'", where, known(place, [*network.places, *network.boundaries]))
     if not position_mm or network.recovery is None:
@@ -173,11 +175,14 @@ def _channels(sheet: Sheet, samples: Samples, network: Network) -> list[Sensor]:
 
 
 def _means(sheet: Sheet, network: Network) -> list[Sensor]:
-    named: dict[str, Column] = {c.name: c for c in sheet.columns if c.is_temperature}
+    named: dict[str, Column] = {
+        c.name: c for c in sheet.columns if c.is_temperature and c.place not in network.boundaries
+    }
     for mean in sheet.means:
         for name in mean.of:
             if name not in named:
-                raise InputError(f"averages unknown temperature column '{name}'", mean.where, known(name, named))
+                what = f"averages '{name}', which is no temperature column of the machine"
+                raise InputError(what, mean.where, known(name, named))
     return [
         Sensor(Channel(m.name, m.place, row_of(network, m.place, (), m.where), NONE, m.sigma_K, m.lag_s), m.of)
         for m in sheet.means

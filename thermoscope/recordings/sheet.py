@@ -44,12 +44,17 @@ class Column:
 
     @property
     def is_temperature(self) -> bool:
-        return self.quantity == "temperature" or self.electrical is not None
+        return self.electrical is not None or of_temperature(self.quantity)
 
     @property
     def header(self) -> str:
         """The column's name in the recording."""
         return self.written or self.name
+
+
+def of_temperature(quantity: str) -> bool:
+    """Does such a column say how warm something is?"""
+    return quantity == "temperature" or QUANTITIES[quantity].degC is not None
 
 
 @dataclass(frozen=True)
@@ -120,10 +125,10 @@ def load_sheet(path: Path) -> Sheet:
     return read_sheet(data, str(path), path.parent)
 
 
-def read_sheet(data: Mapping[str, Any], where: str, folder: Path = Path()) -> Sheet:
-    """A sheet; InputError for unknown keys, forgotten units and contradictions."""
+def read_sheet(data: Mapping[str, Any], where: str, folder: Path = Path(), head: str = "test") -> Sheet:
+    """A sheet; InputError for unknown keys, forgotten units and contradictions.  head : the table of its clock"""
     top = Table(data, where)
-    test, columns, means = top.table("test"), top.tables("columns"), top.tables("means")
+    test, columns, means = top.table(head), top.tables("columns"), top.tables("means")
     inputs, boundaries = top.table("inputs").constants("inputs"), top.table("boundaries").constants("boundaries")
     squares, recorders, events = top.table("root_sum_square"), top.tables("recorders"), top.tables("events")
     top.close()
@@ -136,7 +141,7 @@ def read_sheet(data: Mapping[str, Any], where: str, folder: Path = Path()) -> Sh
         test.word("description", ""), _initial(test), test.number("max_gap_s", MAX_GAP_S),
         tuple(c for name, table in columns.items() if (c := _column(name, table, filtered, folder)) is not None),
         tuple(_mean(name, table, filtered) for name, table in means.items()),
-        {name: squares.words(name) for name in squares.data}, inputs, boundaries, test.word("worksheet", ""),
+        {name: squares.members(name) for name in squares.data}, inputs, boundaries, test.word("worksheet", ""),
         {name: _recorder(table, folder) for name, table in recorders.items()},
         {name: read_events(name, table, folder) for name, table in events.items()}, *_window(test),
     )  # fmt: skip
@@ -166,12 +171,12 @@ def _column(name: str, table: Table, filtered: float, folder: Path) -> Column | 
     if not table.flag("use", True):
         return None
     of = table.kind("quantity", None, QUANTITIES)
-    unit, hot = checked_unit(of, table.raw("unit"), table.where), of == "temperature" or of in ELECTRICAL
+    unit, hot = checked_unit(of, table.raw("unit"), table.where), of_temperature(of) or of in ELECTRICAL
     electrical = read_electrical(of, name, table, folder) if of in ELECTRICAL else None
     kind = table.kind("sensor", "resistance" if electrical else "thermocouple", SENSORS)
     place, feeds = table.word("place", None if hot else ""), "" if hot else table.word("input", QUANTITIES[of].feeds)
     of = of if hot else held_as(of, checked_input(of, feeds, table.where))
-    usual = 0.0 if electrical else SENSORS[kind]
+    usual = 0.0 if electrical else QUANTITIES[of].sigma_K if QUANTITIES[of].degC else SENSORS[kind]
     sigma = table.number("sigma_K") if "sigma_K" in table else usual
     lag, written = table.number("lag_s", 0.0) + filtered, table.word("column", name)
     position = table.numbers("position_mm", [])
@@ -197,9 +202,7 @@ def _recorder(table: Table, folder: Path) -> Recorder:
 
 
 def _mean(name: str, table: Table, filtered: float) -> Mean:
-    of, place = table.words("of"), table.word("place")
+    of, place = table.members("of"), table.word("place")
     sigma, lag = table.number("sigma_K", 0.5), table.number("lag_s", 0.0) + filtered
     table.close()
-    if not of:
-        raise table.error("of = [] averages nothing", "of = [two or more columns]")
     return Mean(name, of, place, sigma, lag, table.where)

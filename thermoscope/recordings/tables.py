@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 GAP = 3.5  # times the usual step
 FROZEN_SHARE, FROZEN_MOVE_K = 0.2, 2.0
+SWITCHED = ("share", "fraction")  # what true and false can be
 LEAST = 3  # rows of a test
 LARGEST = 1e9  # of anything that is no temperature, in the unit of memory
 
@@ -67,12 +68,24 @@ def load_table(path: Path, sheet: Sheet) -> Samples:
         if (codes := coded(raw)).any():
             notes.append(code_note(f"{file.name} column '{column.header}'", raw, codes, HEADER + rows.start))
             raw = np.where(codes, np.nan, raw)
-        read = converted(raw, column.quantity, column.unit)
-        values[column.name] = read if column.electrical is None else column.electrical.temperature(read)
-        if column.electrical is not None and not column.sigma_K:
-            sigma[column.name] = column.electrical.sigma(read)
+        if table[column.header].dtype.kind == "b" and column.quantity not in SWITCHED:
+            raise InputError(f"holds true and false, no {column.quantity}", f"{file} column '{column.header}'",
+                             "numbers, or another column")  # fmt: skip
+        values[column.name], own = _in_memory(column, converted(raw, column.quantity, column.unit), file)
+        if own is not None:
+            sigma[column.name] = own
         notes += _look(column, values[column.name], file, rows.start)
     return Samples(file, time, values, gaps, (*notes, *_frozen(sheet.columns, time, values, file)), sigma, start)
+
+
+def _in_memory(column: Column, read: Array, file: Path) -> tuple[Array, float | None]:
+    """Values as memory holds them, and the 1-sigma that follows from electrical readings where the sheet gives none."""
+    if column.electrical is None:
+        return read, None
+    try:
+        return column.electrical.temperature(read), None if column.sigma_K else column.electrical.sigma(read)
+    except InputError as fault:
+        raise InputError(fault.what, f"{file} column '{column.header}'", fault.right) from None
 
 
 def _frame(file: Path, sheet: Sheet) -> pd.DataFrame:
@@ -82,7 +95,7 @@ def _frame(file: Path, sheet: Sheet) -> pd.DataFrame:
         return main
     time = sheet.time or "time_s"
     main = main.assign(**{time: _times(main, sheet, file)})
-    return merged(main, time, {name: _beside(main, time, r) for name, r in sheet.recorders.items()})
+    return merged(main, time, {name: _beside(main, time, r) for name, r in sheet.recorders.items()}, sheet.where)
 
 
 def _beside(main: pd.DataFrame, time: str, recorder: Recorder) -> tuple[pd.DataFrame, str, float]:
@@ -110,7 +123,7 @@ def _has(table: pd.DataFrame, names: Sequence[str], where: str) -> None:
 def _times(table: pd.DataFrame, sheet: Sheet, file: Path) -> Array:
     if not sheet.time:
         return np.asarray(np.arange(len(table)) * sheet.period_s, float)
-    t: Array = converted(numbers(table, sheet.time, file), "time", sheet.time_unit)
+    t = _seconds(table, sheet, file)
     missing = np.flatnonzero(np.isnan(t))
     if missing.size:
         raise InputError("a time is missing", cell(file, sheet.time, int(missing[0])), "a time in every row")
@@ -122,6 +135,19 @@ def _times(table: pd.DataFrame, sheet: Sheet, file: Path) -> Array:
         raise InputError(f"time {written.iloc[row]} {what}{count}", cell(file, sheet.time, row),
                          "times that rise from row to row: sort the file by time and delete repeated rows")  # fmt: skip
     return np.asarray(t - t[0], float)
+
+
+def _seconds(table: pd.DataFrame, sheet: Sheet, file: Path) -> Array:
+    """Of the column of times: numbers in its unit, or instants where the format has such."""
+    column = table[sheet.time]
+    if column.dtype.kind in "mM":
+        since = column - column.min() if column.dtype.kind != "m" else column
+        return np.asarray(since.dt.total_seconds(), float)
+    try:
+        return np.asarray(converted(numbers(table, sheet.time, file), "time", sheet.time_unit))
+    except InputError as fault:
+        right = f"{fault.right}; instants in words are read by thermoscope test new {file}"
+        raise InputError(fault.what, fault.where, right) from None
 
 
 def _gaps(time: Array) -> tuple[tuple[float, float], ...]:

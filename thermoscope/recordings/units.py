@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass
 from functools import cache
 from math import isfinite, pi
 from typing import Any
@@ -16,20 +15,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
+from geom.plugins import plugins
 from lumped.schemas.reader import known, shown
+from thermoscope.recordings.quantity import Quantity
 
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class Quantity:
-    """units : unit -> (factor, offset) into the unit of memory;  feeds : the network input it drives by default"""
-
-    units: dict[str, tuple[float, float]]
-    feeds: str = ""
-
-
-QUANTITIES = {
+QUANTITIES: dict[str, Quantity] = {
     "temperature": Quantity({"degC": (1, 0), "K": (1, -273.15), "degF": (5 / 9, -160 / 9)}),
     "current": Quantity({"A": (1, 0), "mA": (1e-3, 0), "kA": (1e3, 0)}, "current_A"),
     "speed": Quantity({"rpm": (1, 0), "1/min": (1, 0), "rad/s": (30 / pi, 0), "Hz": (60, 0)}, "speed_rpm"),
@@ -45,9 +38,10 @@ QUANTITIES = {
     "share": Quantity({"%": (1, 0), "1": (100, 0)}, "share_percent"),
     "fraction": Quantity({"1": (1, 0), "%": (0.01, 0)}),
     "time": Quantity({"s": (1, 0), "ms": (1e-3, 0), "min": (60, 0), "h": (3600, 0)}),
+    **plugins("quantities"),
 }
 
-HELD = {name: next(unit for unit, how in q.units.items() if how == (1, 0)) for name, q in QUANTITIES.items()} | {
+HELD = {name: next((unit for unit, how in q.units.items() if how == (1, 0)), "") for name, q in QUANTITIES.items()} | {
     "share": "% where the input's name ends in _percent, else 0 to 1",
 }  # what memory holds
 
@@ -101,9 +95,10 @@ def held_as(of: str, name: str) -> str:
 
 
 def converted(values: Array, of: str, unit: str) -> Array:
-    """Values in the unit of memory."""
+    """Values in the unit of memory; of a sensor of another quantity degC."""
     factor, offset = QUANTITIES[of].units.get(unit) or _by_pint(of, unit) or (1.0, 0.0)
-    return values * factor + offset
+    held, degC = values * factor + offset, QUANTITIES[of].degC
+    return held if degC is None else np.asarray(degC(held), float)
 
 
 @cache

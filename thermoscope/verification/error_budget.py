@@ -15,12 +15,12 @@ from lumped.condensation.error_budget import ErrorBudget, PlaceError
 from lumped.condensation.recovery import Shapes
 from lumped.integration.simulate import Record, simulate
 from lumped.model.network import Array, Network, Row
-from thermoscope.case_folder.folder import Folder, Progress
 from validation.calibration.unknowns import working
 from validation.case import Channel, Test
 from validation.comparison.predict import record, thermal
 
 if TYPE_CHECKING:
+    from thermoscope.case_folder.folder import Folder, Progress
     from thermoscope.verification.rated_errors import Rated
 
 
@@ -53,7 +53,7 @@ def error_budgets(folder: Folder, records: Mapping[str, Record], progress: Progr
     return {name: _of_run(network, values, run, rows, found) for name, run in records.items()}
 
 
-def budgets_of_tests(folder: Folder, progress: Progress) -> dict[str, ErrorBudget]:
+def budgets_of_tests(folder: Folder, progress: Progress = lambda message: None) -> dict[str, ErrorBudget]:
     """Test -> its budget."""
     return error_budgets(folder, {test.name: _record(test) for test in folder.case.tests}, progress)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from geom import Machine
@@ -12,28 +12,35 @@ from lumped.condensation.reduction_error import Accuracy
 from lumped.machine.bases import on_all
 from lumped.machine.motor import motor_network
 from lumped.machine.zones import motor_zones
-from thermoscope.pipeline import ACROSS, Built, Progress, prepared, reduced, silent
+from thermoscope.pipeline import ACROSS, AXIAL, Built, Meshing, Progress, prepared, reduced, silent
 from thermoscope.verification.load_cases import load_cases
+from thermoscope.verification.mesh_choice import MeshChoice, chosen_mesh
 
 FINE = Recipe(tolerance=0.01, random_points=8, local_points=12, local_states=16)
 ROUNDS = 3
 LOOKS = 3  # random points, and extreme ones, at which every size is checked
 JOINTS = (0.2, 5.0)  # times all contacts, as well
+SEGMENTS = 48  # chords per turn
+LEAST = 0.25  # of the wish, asked of the condensation even where the mesh has used it up
 
 
 @dataclass(frozen=True)
 class SizedNetwork:
-    """built : with the network that was kept;  reduction : with the points it learned from;  sizes : the table"""
+    """built : with the network that was kept;  reduction : with the points it learned from;  sizes : the table
+
+    mesh : how it was chosen, and its error; None where it was given
+    """
 
     built: Built
     reduction: Reduction
     wish: Accuracy
     sizes: tuple[Size, ...]
     adapted: Enrichment | None
+    mesh: MeshChoice | None = None
 
     @property
     def met(self) -> bool:
-        return self.adapted is None or self.adapted.met
+        return (self.adapted is None or self.adapted.met) and (self.mesh is None or self.mesh.met)
 
     def document(self) -> dict[str, Any]:
         """Errors in percent of a part's own rise, at nominal coefficients and at random ones."""
@@ -44,12 +51,25 @@ class SizedNetwork:
             "states": len(self.built.network.states),
             "sizes": [size.document() for size in self.sizes],
             "guard": [r.document() for r in rounds],
+            "mesh": None if self.mesh is None else self.mesh.document(),
         }
 
 
 def accuracy_of(accuracy: float) -> Accuracy:
     """Hot spots and points within `accuracy` percent of a part's own rise, means within half of it."""
     return Accuracy(accuracy / 2, accuracy, accuracy)
+
+
+def accurate_network(
+    machine: Machine, accuracy: float, size_m: float = 0.06, progress: Progress = silent
+) -> SizedNetwork:
+    """Mesh and condensation together within `accuracy` percent of a part's own rise: what the mesh leaves of it, the
+    condensation may use.  size_m : of the triangles of the first mesh that is looked at (m)"""
+    mesh = chosen_mesh(on_all(machine), accuracy, Meshing(size_m, SEGMENTS, ACROSS, AXIAL * size_m), progress)
+    how, left = mesh.meshing, max(accuracy - mesh.worst, LEAST * accuracy)
+    found = smallest_network(machine, left, how.size_m, how.segments, progress=progress, across=how.across,
+                             axial_m=how.axial_m)  # fmt: skip
+    return replace(found, mesh=mesh)
 
 
 def smallest_network(

@@ -44,12 +44,10 @@ class Appearance:
 
 def appearance_of(folder: Folder, surface: Surface | None) -> Appearance:
     """Run the model on every test."""
-    from validation.comparison.compare import compare
-
     curves = {test.name: held(folder, test) for test in folder.case.tests}
     frames: dict[str, Frames] = {}
     if surface is not None:
         for test in folder.case.tests:
             times, T = fields(folder.case, test, surface.nodes, FRAMES)
             frames[test.name] = times, surface.values(T.T).T.astype(np.float32)
-    return Appearance(compare(folder.case).document(), curves, frames)
+    return Appearance(folder.compared.document(), curves, frames)

@@ -16,6 +16,9 @@ if TYPE_CHECKING:
     from viz.rendering.cut import Surface
 
 
+NO_MACHINE = "This case has a network declared by hand, so there is no machine to show."
+
+
 @dataclass(frozen=True)
 class Bench:
     """folder : the case as opened;  first : its model when it was opened
@@ -43,7 +46,7 @@ def bench(folder: Folder, tell: Progress) -> Bench:
 
 def _surface(folder: Folder) -> tuple[Surface | None, str]:
     if folder.built is None:
-        return None, "This case has a network declared by hand, so there is no machine to show."
+        return None, NO_MACHINE
     from viz import require_gl, split
     from viz.rendering.cut import cut_away
 

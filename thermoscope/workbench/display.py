@@ -28,6 +28,7 @@ START: dict[str, Any] = {
     "tests": [], "test": "", "test_names": [], "sensors": [], "sensor": "", "curve": NOTHING, "dark": False,
     "effects": [], "revision": 0, "steps": [], "can_undo": False, "frame": 0, "frames": 0, "minute": "",
     "verdict": None, "candidates": [], "confusion": NOTHING, "has_confusion": False, "rms": "", "floor": "",
+    "drop": None, "dragged": "", "made": "",
 }  # fmt: skip
 
 

@@ -13,6 +13,7 @@ from trame.widgets import vuetify3 as v3
 
 from thermoscope.workbench.display import debounced
 from thermoscope.workbench.session import Session, started
+from validation.comparison.uncertainty import RULE
 
 KEYS = (
     ("j", "next"), ("k", "previous"), ("d", "diagnose"), ("u", "undo"), ("r", "report"), ("left", "left"),
@@ -28,6 +29,7 @@ TURNS = {
 def draw(session: Session) -> None:
     """Build the page; afterwards only the state changes."""
     css = files("thermoscope.workbench").joinpath("page.css").read_text(encoding="utf-8")
+    _browser_code(session)
     session.state.trame__title = f"thermoscope: {session.state.case_name}"
     with VAppLayout(session.shown.server, theme=("dark ? 'dark' : 'light'",)):
         client.Style(css)
@@ -43,7 +45,14 @@ def draw(session: Session) -> None:
                     _errors()
                 _sensors(session)
                 _missing(session)
+                _recordings(session)
                 _steps()
+
+
+def _browser_code(session: Session) -> None:
+    """What the page runs besides its templates, from this package and nowhere else."""
+    code = str(files("thermoscope.workbench").joinpath("browser"))
+    session.shown.server.enable_module({"serve": {"__thermoscope": code}, "scripts": ["__thermoscope/drop.js"]})
 
 
 def told(attribute: str, value: str) -> dict[str, list[str]]:
@@ -182,6 +191,7 @@ def _errors() -> None:
 def _sensors(session: Session) -> None:
     with html.Div(classes="card", id="sensors"):
         html.H2("Sensors in {{ test }}")
+        html.P(RULE, classes="faint")
         with html.Button(
             v_for="s in sensors", key="s.name", type="button",
             classes=("'bar sensor ' + s.tone + (s.name === sensor ? ' chosen' : '')",), id=("'sensor-' + s.name",),
@@ -211,6 +221,59 @@ def _missing(session: Session) -> None:
                 )  # fmt: skip
             html.P("{{ verdict.unseen }}", classes="faint")
             html.P("{{ a }}", v_for="a in verdict.ahead", key="a", classes="faint")
+
+
+def _recordings(session: Session) -> None:
+    """Files dropped on the page: a channel goes where it is dragged, or where its list says."""
+    session.shown.server.controller.trigger("edit_dropped")(session.edit_dropped)
+    with html.Div(classes="card", id="own"):
+        html.H2("Recordings of your own")
+        html.Label("Drop files anywhere on this page, or choose them: ", raw_attrs=['for="recordings"'])
+        html.Input(type="file", id="recordings", raw_attrs=["multiple"])
+        html.P("{{ made }} is written; new tabs show it.", v_if=("made",), id="made")
+        html.A("open it", v_if=("made",), href="/", id="open-made")
+        with html.Div(v_if=("drop",), id="dropped"):
+            html.P("{{ drop.files }}: drag a channel to its part, or choose the part from its list", classes="faint")
+            _channels()
+            _targets()
+            with html.P(v_for="n in drop.missing", key="n"):
+                html.Span("{{ n }} was not recorded; constant: ")
+                html.Input(
+                    raw_attrs=[
+                        ':aria-label="n"',
+                        ':value="drop.constants[n]"',
+                        "@change=\"trigger('edit_dropped', ['constant', n, $event.target.value])\"",
+                    ]
+                )
+            _button("Make a case of them", "make-case", "mdi-folder-plus",
+                    lambda: started(session.make_case()), "busy")  # fmt: skip
+            _button("Not these", "not-these", "mdi-close", lambda: session.show_dropped(None), "busy")
+
+
+def _channels() -> None:
+    """Every column of the files, to drag, with a list of where it can go."""
+    moved = "@change=\"trigger('edit_dropped', ['move', c.key, $event.target.value])\""
+    with html.Div(classes="scroll"), html.Table(), html.Tbody(), html.Tr(v_for="c in drop.columns", key="c.key"):
+        with html.Td():
+            html.Span("{{ c.name }}", classes="chip", id=("'column-' + c.name",), raw_attrs=[
+                'draggable="true"', "@dragstart=\"dragged = c.key; $event.dataTransfer.setData('text/plain', c.key)\""
+            ])  # fmt: skip
+        with html.Td(), html.Select(raw_attrs=[':value="c.goes"', ":aria-label=\"'where ' + c.name + ' is'\"", moved]):
+            html.Option("left out", value="")
+            html.Option("{{ p.name }}", v_for="p in drop.parts", key="p.name", value=("p.name",))
+        html.Td("{{ c.quantity }} {{ c.unit }}")
+        html.Td("{{ c.doubt }}", classes="faint")
+
+
+def _targets() -> None:
+    """Parts, surroundings and inputs of the model, to drop channels on."""
+    drop = "@drop.prevent.stop=\"trigger('edit_dropped', ['move', dragged, p.name])\""
+    with html.Div(classes="targets"), html.Div(
+        v_for="p in drop.parts", key="p.name", classes=("'target ' + p.kind",), id=("'part-' + p.name",),
+        raw_attrs=['@dragover.prevent=""', drop],
+    ):  # fmt: skip
+        html.B("{{ p.name }}")
+        html.Span("{{ p.columns.join(', ') }}")
 
 
 def _candidates(session: Session) -> None:

@@ -38,6 +38,7 @@ def application(folder: Folder, gate: AccessControl, tell: Progress) -> web.Appl
     app.router.add_get("/", tabs.new)
     app.router.add_get("/tab/{tab}/{name:.+}", tabs.fetch)
     app.router.add_post("/tab/{tab}/paraview/", tabs.address)
+    app.router.add_post("/tab/{tab}/recordings", tabs.receive)
 
     async def sweeping(_: web.Application) -> AsyncIterator[None]:
         async def sweep() -> None:
@@ -65,11 +66,22 @@ async def _serve(app: web.Application, gate: AccessControl, port: int, ready: Ca
         asyncio.get_running_loop().add_signal_handler(number, end.set)
     await runner.setup()
     try:
-        await web.TCPSite(runner, gate.host, port).start()
+        await _listening(runner, gate.host, port)
         ready(_address(gate, runner.addresses[0][1]))
         await end.wait()
     finally:
         await runner.cleanup()
+
+
+async def _listening(runner: web.AppRunner, host: str, port: int) -> None:
+    """Open the port; InputError for a name that is none of this computer's, and for a port that is taken."""
+    try:
+        await web.TCPSite(runner, host, port).start()
+    except OSError as fault:
+        right = "--host 127.0.0.1, or a name of this computer; --port 0 takes a free port"
+        raise InputError(
+            f"cannot listen there: {fault.strerror or fault}", f"--host {host} --port {port}", right
+        ) from None
 
 
 def _address(gate: AccessControl, port: int) -> str:

@@ -5,19 +5,20 @@ from __future__ import annotations
 import asyncio
 import re
 import time
-from collections.abc import Callable, Coroutine
+from collections.abc import Callable, Coroutine, Sequence
 from pathlib import Path
 from typing import Any
 
-from geom.errors import ThermoscopeError
+from geom.errors import InputError, ThermoscopeError
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import History, Revision, load_history, save_history
 from thermoscope.commands.stored_diagnosis import save_diagnosis, saved_diagnosis
 from thermoscope.workbench import revisions as ledger
 from thermoscope.workbench import steps
 from thermoscope.workbench.appearance import Appearance
-from thermoscope.workbench.application import Bench, at
+from thermoscope.workbench.application import NO_MACHINE, Bench, at
 from thermoscope.workbench.display import Display
+from thermoscope.workbench.dropped import Dropped
 from thermoscope.workbench.jobs import FailedError, Job, StoppedError
 
 REMEMBERED = 8
@@ -27,11 +28,13 @@ TITLES = {"add": "Adding", "remove": "Taking out", "calibrate": "Calibrating"}
 class Session:
     """What the buttons of a tab do."""
 
-    def __init__(self, bench: Bench, server: Any) -> None:
-        self.bench, self.shown = bench, Display(bench, server)
+    def __init__(self, bench: Bench, server: Any, turn_to: Callable[[Bench], None] = lambda bench: None) -> None:
+        """turn_to : makes another case the one that new tabs open"""
+        self.bench, self.shown, self.turn_to = bench, Display(bench, server), turn_to
         self.state = self.shown.state
         self.history: History = bench.folder.history
         self.diagnosis: dict[str, Any] | None = None
+        self.dropped: Dropped | None = None
         self.viewer_page = ""
         self._refused: Revision | None = None
         self._job: Job | None = None
@@ -109,6 +112,41 @@ class Session:
         if await self._calculate("Writing the report", steps.reported, self.folder) is not None:
             with self.state:
                 self.state.report = f"report.html?{time.time_ns()}"
+
+    async def take_in(self, files: Sequence[Path]) -> None:
+        """Show what the columns of dropped files are taken for."""
+        found = await self._calculate("Reading the recordings", steps.recordings, files, self.folder.case.model.network)
+        if found is not None:
+            self.show_dropped(found)
+
+    def show_dropped(self, found: Dropped | None) -> None:
+        """The columns on the page, None for none any more."""
+        self.dropped = found
+        with self.state:
+            self.state.drop, self.state.error = found and found.document, ""
+
+    def edit_dropped(self, change: str, key: str, value: str) -> None:
+        """A column dragged to a part ("move"), or what was not recorded ("constant")."""
+        if self.dropped is None or change not in ("move", "constant"):
+            return
+        try:
+            act = self.dropped.moved if change == "move" else self.dropped.constant
+            self.show_dropped(act(key, value))
+        except InputError as fault:
+            self._complain(str(fault))
+
+    async def make_case(self) -> None:
+        """A new case of the dropped files beside this one; new tabs open it."""
+        case, bench = self.folder, self.bench
+        made = await self._calculate(
+            "Writing the case", steps.made, self.dropped, case.settings, case.case.model.network, bench.surface
+        )
+        if made is not None:
+            folder, look = made
+            drawn = (bench.surface, bench.why_flat) if folder.built is not None else (None, NO_MACHINE)
+            self.turn_to(Bench(folder, look, *drawn))
+            with self.state:
+                self.state.drop, self.state.made = None, str(folder.settings.path)
 
     async def view(self) -> None:
         """The model on the machine in the browser's own GL, instead of the pictures from here; then back again."""

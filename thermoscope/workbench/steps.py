@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +13,9 @@ from thermoscope.workbench.appearance import Appearance, appearance_of
 from thermoscope.workbench.application import at
 
 if TYPE_CHECKING:
+    from lumped.model.network import Network
+    from thermoscope.case_folder.settings import Settings
+    from thermoscope.workbench.dropped import Dropped
     from viz.rendering.cut import Surface
 
 
@@ -44,6 +47,24 @@ def stepped(
     revision = recorded(result, evidence(folder, result))
     after = at(folder, folder.history.and_then(revision))
     return revision, result.document(), seen(after, surface, tell)
+
+
+def recordings(files: Sequence[Path], network: Network, tell: Progress) -> Dropped:
+    """What the columns of dropped files are taken for."""
+    from thermoscope.workbench.dropped import read
+
+    return read(files, network, tell)
+
+
+def made(
+    dropped: Dropped, settings: Settings, network: Network, surface: Surface | None, tell: Progress
+) -> tuple[Folder, Appearance]:
+    """A new case of dropped files, opened, and its first comparison."""
+    from thermoscope.case_folder.folder import load_case
+    from thermoscope.workbench.dropped import write
+
+    folder = load_case(write(dropped, settings, network, tell), tell)
+    return folder, seen(folder, None if folder.built is None else surface, tell)
 
 
 def viewed(folder: Folder, tell: Progress) -> str:

@@ -47,9 +47,9 @@ def placed(look: Appearance, test: str, positions: Mapping[str, tuple[float, ...
 
 
 def worst(look: Appearance) -> tuple[str, str]:
-    """(test, channel) with the largest error against the sensor's uncertainty, never-used tests first."""
+    """(test, channel) with the largest error against its limit, never-used tests first."""
     ranked = [
-        (t["role"] == "hold-out", c["rmse_K"] / c["sigma_K"], t["name"], c["channel"])
+        (t["role"] == "hold-out", c["rmse_K"] / c["limit_K"], t["name"], c["channel"])
         for t in look.errors["tests"] for c in t["channels"]
     ]  # fmt: skip
     return max(ranked)[2:]

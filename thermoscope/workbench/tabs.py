@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import asyncio
 import secrets
+import shutil
+import tempfile
 import time
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -13,6 +16,7 @@ from aiohttp import WSMsgType, web
 
 from thermoscope.workbench.access_control import served
 from thermoscope.workbench.application import Bench
+from thermoscope.workbench.dropped import stored
 from thermoscope.workbench.policy import policy, report_policy, viewer_policy
 from thermoscope.workbench.session import Session
 
@@ -23,7 +27,7 @@ IDLE_S = 900.0
 class Tab:
     """A session behind a trame server of its own, reached through this process's one port."""
 
-    def __init__(self, bench: Bench, name: str) -> None:
+    def __init__(self, bench: Bench, name: str, turn_to: Callable[[Bench], None]) -> None:
         from trame.app import get_server
 
         from thermoscope.workbench.page import draw
@@ -31,7 +35,7 @@ class Tab:
 
         self.name, self.connected, self.left = name, 0, time.monotonic()
         server: Any = get_server(name, client_type="vue3")
-        self.session = Session(bench, server)
+        self.session = Session(bench, server, turn_to)
         if bench.surface is not None:
             self.session.shown.stage = Stage(bench.surface, bench.first.limits, self._picked)
         draw(self.session)
@@ -92,7 +96,7 @@ class Tabs:
         if len(self.open) >= MOST:
             raise web.HTTPServiceUnavailable(text=f"{MOST} tabs are open; close one and try again in a minute")
         name = secrets.token_hex(12)  # the browser side of trame writes addresses in small letters
-        self.open[name] = Tab(self.bench, name)
+        self.open[name] = Tab(self.bench, name, self.turn_to)
         return name
 
     async def fetch(self, request: web.Request) -> web.StreamResponse:
@@ -112,7 +116,7 @@ class Tabs:
                 headers={"Content-Security-Policy": viewer_policy()},
             )
         if name == "report.html":
-            path: Path | None = self.bench.folder.settings.out / "report.html"
+            path: Path | None = tab.session.bench.folder.settings.out / "report.html"
         else:
             path = served(tab.folders, name)
         if path is None or not path.is_file():
@@ -123,6 +127,24 @@ class Tabs:
                 report_policy() if name == "report.html" else policy(path, request.host)
             )
         return web.FileResponse(path, headers=headers)
+
+    def turn_to(self, bench: Bench) -> None:
+        """The case that new tabs open from now on; those that are open keep theirs."""
+        self.bench = bench
+
+    async def receive(self, request: web.Request) -> web.Response:
+        """Recordings dropped on a page; the page's state says what became of them."""
+        tab = self.open.get(request.match_info["tab"])
+        if tab is None or not request.content_type.startswith("multipart/"):
+            raise web.HTTPNotFound()
+        folder = Path(tempfile.mkdtemp(prefix="thermoscope-drop-"))
+        try:
+            files = await stored(await request.multipart(), folder)
+            if files:
+                await tab.session.take_in(files)
+        finally:
+            shutil.rmtree(folder, ignore_errors=True)
+        return web.Response(status=204)
 
     async def address(self, request: web.Request) -> web.Response:
         """Where the page finds its session, which trame's browser side asks for first.

@@ -24,6 +24,8 @@ Keep = Callable[[Mapping[str, float]], None]
 STATIONARY = 0.1  # of a posterior standard deviation
 WORTH = 0.1  # nats: the error of time steps moves an objective by about as much, so that no fit can settle closer
 ROUGH = 1.0  # nats: a fit under a noise that is only guessed
+SHORTER, MORE, LESS = 0.01, 30.0, 10.0  # damping of the first shorter step; growth where that fails, fall where not
+SHORTEST, BORROWED = 1e6, 1e3  # damping beyond which no step gains; a borrowed Jacobian is given up before
 FORETOLD = 0.5  # of the predicted gain: a Jacobian that delivers less is made anew
 
 
@@ -139,6 +141,8 @@ def minimise(
 ) -> Fit:
     """Fit `unknowns` to the tests from `theta` under a given noise (by default that of uncalibrated sensors).
 
+    iterations : steps that gain
+
     The Jacobian costs ten times a run, so it is held as long as steps do what it foretells, and made anew before the
     end (unless `draft`); `known`: one to begin with; `centre`: prior mean (p,), 0 by default; `worth`: gain (nats) for
     which one more step is made; `keep` is told the values after every step, so that an interrupted fit can go on;
@@ -227,24 +231,33 @@ class Iterate:
         self.weigh()
 
     def step(self) -> bool:
-        """One step; True when there is nothing more to gain."""
-        H, g = self.slope()
-        new = bounded_step(H + self.damping * np.diag(np.diag(H)), g, self.theta, self.low, self.high)
-        predicted = float(g @ (new - self.theta) - 0.5 * (new - self.theta) @ H @ (new - self.theta))
-        if predicted < self.enough:
-            return self.stop()
+        """One step that gains, shortened until it does; True when there is nothing more to gain."""
+        while True:
+            H, g = self.slope()
+            new = bounded_step(H + self.damping * np.diag(np.diag(H)), g, self.theta, self.low, self.high)
+            predicted = float(g @ (new - self.theta) - 0.5 * (new - self.theta) @ H @ (new - self.theta))
+            if predicted < self.enough:
+                return self.stop()
+            gained, trial = self.tried(new)
+            if predicted > ROUGH and trial:
+                self.foretold = min(self.foretold, gained / predicted)
+            if gained > 0.0:
+                return self.taken(new, trial, gained, predicted)
+            if self.back():
+                return True
+
+    def tried(self, new: Array) -> tuple[float, list[Segment]]:
+        """What a step would gain, and the residuals at its end; none where the machine runs away there."""
         try:
             trial = self.residuals(new, self.parts)
-        except NoSolution:  # a step into values at which the machine runs away
-            return self.back()
-        value = 0.5 * (self.measure.square(trial) + self.strain(new))
-        gained = self.objective - value
-        if predicted > ROUGH:
-            self.foretold = min(self.foretold, gained / predicted)
-        if not gained > 0.0:
-            return self.back()
+        except NoSolution:
+            return -np.inf, []
+        return self.objective - 0.5 * (self.measure.square(trial) + self.strain(new)), trial
+
+    def taken(self, new: Array, trial: list[Segment], gained: float, predicted: float) -> bool:
+        """Go there; a Jacobian that promised too much is made anew."""
         self.theta, self.parts, self.fresh = new, trial, False
-        self.damping = self.damping / 10.0 if self.damping > 1e-3 else 0.0
+        self.damping = self.damping / LESS if self.damping > SHORTER else 0.0
         if gained < FORETOLD * predicted and not self.borrowed:
             self.renew()
         else:
@@ -260,12 +273,15 @@ class Iterate:
         return True
 
     def back(self) -> bool:
-        """A step that made things worse: a true Jacobian first, then a shorter step."""
+        """A step that made things worse: a true Jacobian first, then a shorter step; True when it can be no shorter.
+
+        A borrowed Jacobian that fails at a short step points elsewhere: another fit goes on with one of its own.
+        """
         if not (self.fresh or self.borrowed):
             self.renew()
         else:
-            self.damping = max(10.0 * self.damping, 0.01)
-        return self.damping > 1e6
+            self.damping = max(MORE * self.damping, SHORTER)
+        return self.damping > (BORROWED if self.borrowed else SHORTEST)
 
     def fit(self) -> Fit:
         if not (self.fresh or self.draft):

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from geom.errors import InputError
 from validation.case import Case
-from validation.comparison.compare import Comparison, compare, pooled
+from validation.comparison.compare import Comparison, compare, errors, pooled
 
 RANGE = (0.25, 4.0)
 
@@ -35,12 +35,14 @@ def one_factor_fit(case: Case, parameter: str, channel: str | None = None) -> On
     now = dict(case.model.values)
     start = now.get(parameter, known[parameter])
 
-    def moved(log_factor: float) -> Comparison:
-        return compare(case, {**now, parameter: start * float(np.exp(log_factor))})
+    def moved(log_factor: float) -> dict[str, float]:
+        return {**now, parameter: start * float(np.exp(log_factor))}
+
+    watched = replace(case, tests=tuple(t for t in case.tests if t.role == "validate"))
 
     def error(log_factor: float) -> float:
-        tests = [t for t in moved(log_factor).tests if t.role == "validate"]
+        tests = errors(watched, moved(log_factor)).tests
         return pooled([c for t in tests for c in t.channels if channel in (None, c.channel)])
 
     best = minimize_scalar(error, bounds=tuple(np.log(RANGE)), method="bounded", options={"xatol": 0.01})
-    return OneFactorFit(parameter, float(np.exp(best.x)), moved(float(best.x)))
+    return OneFactorFit(parameter, float(np.exp(best.x)), compare(case, moved(float(best.x))))

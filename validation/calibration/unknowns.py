@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 
 from lumped.model.network import Network, Parameter
 from lumped.transfer.laws import Law
-from validation.calibration.model_form import with_model_form
+from validation.calibration.model_form import levels, with_model_form
 from validation.case import Case, Channel, Model, Test
 from validation.doubt import USUAL, Doubt
 from validation.effects import Effect, Scene, effect, extended
+from validation.effects.sensors.input_offset import Shift
 
 Array = NDArray[np.float64]
 FREE = 30.0  # prior deviations of what the data alone shall say: wide enough to leave no trace
@@ -60,9 +61,11 @@ def to_value(p: Parameter, theta: float) -> float:
 
 def nuisances(network: Network, tests: Sequence[Test], doubt: Doubt = USUAL) -> list[Parameter]:
     """What no measurement is free of: bias, slope and lag of sensors, bias of boundary sensors, start, clock."""
-    channels = {c.name: c for test in tests for c in test.channels}
+    channels: dict[str, list[Channel]] = {}
+    for c in (c for test in tests for c in test.channels):
+        channels.setdefault(c.name, []).append(c)
     boundaries = dict.fromkeys(b for test in tests for b in test.boundaries)
-    sensors = [p for c in channels.values() for p in _sensor(network, c, doubt)]
+    sensors = [p for same in channels.values() for p in _sensor(network, same, doubt)]
     air = [_offset(f"bias of {b}", f"boundary:{b}", doubt["boundary"], "sensor of the boundary") for b in boundaries]
     start = [_offset(f"start of {t.name}", f"initial:{t.name}", doubt["start"], "uneven start") for t in tests]
     clocks = [_offset(f"clock of {t.name}", f"delay:{t.name}", clock(t, doubt), "logger's clock", "s") for t in tests]
@@ -74,13 +77,15 @@ def clock(test: Test, doubt: Doubt) -> float:
     return float(np.hypot(doubt["clock"], doubt["step in sample"] * test.step_s))
 
 
-def _sensor(network: Network, c: Channel, doubt: Doubt) -> list[Parameter]:
-    bias = _offset(f"bias of {c.name}", f"bias:{c.name}", c.sigma_K, "calibration of the sensor")
+def _sensor(network: Network, same: Sequence[Channel], doubt: Doubt) -> list[Parameter]:
+    """Of one sensor, as it is declared in each of its tests. Its lag is below zero in none of them."""
+    c, lags = same[0], [c.lag_s for c in same]
+    bias = _offset(f"bias of {c.name}", f"bias:{c.name}", max(c.sigma_K for c in same), "calibration of the sensor")
     stream = c.place in network.places and network.places[c.place].kind == "fluid"
     sd = doubt["gain of stream" if stream else "gain"]
     gain = _offset(f"slope of {c.name}", f"gain:{c.name}", sd, "placement of the sensor")
-    lag = _offset(f"lag of {c.name}", f"lag:{c.name}", max(doubt["lag"], 0.3 * c.lag_s), "mounting of the sensor")
-    return [bias, replace(gain, unit="1"), replace(lag, unit="s", low=-c.lag_s)]
+    lag = _offset(f"lag of {c.name}", f"lag:{c.name}", max(doubt["lag"], 0.3 * max(lags)), "mounting of the sensor")
+    return [bias, replace(gain, unit="1"), replace(lag, unit="s", low=-min(lags))]
 
 
 def _offset(name: str, target: str, sd: float, source: str, unit: str = "K") -> Parameter:
@@ -106,8 +111,10 @@ def at_level(network: Network, names: Collection[str], tests: Sequence[Test]) ->
     """The network with the priors and upper bounds of losses that effects bring in for the heat in these tests.
 
     Declared for the loss's reference (1000 rpm, 100 A), they would be a hundred times too narrow on a motor of 10 A.
-    What is no power, such as a temperature coefficient, has a prior that no test changes.
+    Those of an input's offset are shares of its level. What is no power, such as a temperature coefficient, has a prior
+    that no test changes.
     """
+    network = _offsets_at_level(network, names, tests)
     laws = {s.name: s.law for s in network.sources}
     watts = [p for p in network.parameters if p.name in names and p.unit.split(" at ")[0] == "W"]
     mean = {p.name: _mean_factor([laws[t] for t, _ in p.targets if t in laws], tests) for p in watts}
@@ -115,6 +122,19 @@ def at_level(network: Network, names: Collection[str], tests: Sequence[Test]) ->
         replace(p, prior_sd=p.prior_sd / f, high=p.high / f) if (f := mean.get(p.name, 0.0)) > 0 else p
         for p in network.parameters
     ))  # fmt: skip
+
+
+def _offsets_at_level(network: Network, names: Collection[str], tests: Sequence[Test]) -> Network:
+    laws: dict[str, Law] = {x.name: x.law for x in network.links}
+    laws |= {s.name: s.law for s in network.sources}
+    level = levels(tests)
+
+    def scaled(p: Parameter) -> Parameter:
+        law = laws.get(p.targets[0][0]) if p.name in names else None
+        f = level.get(law.input, 1.0) if isinstance(law, Shift) else 1.0
+        return p if f == 1.0 else replace(p, prior_sd=f * p.prior_sd, low=f * p.low, high=f * p.high)
+
+    return replace(network, parameters=tuple(scaled(p) for p in network.parameters))
 
 
 def freed(network: Network, names: Collection[str]) -> Network:

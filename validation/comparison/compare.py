@@ -1,27 +1,32 @@
-"""The model against each test: error per sensor against the sensor's uncertainty and the 3-4 % rule."""
+"""The model against each test: error per sensor against the uncertainty of reading, inputs and arithmetic."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from geom.description.identity import Identity
 from geom.errors import ThermoscopeError
 from lumped.integration.runaway import checked_run
+from lumped.model.network import Network
 from validation.calibration.unknowns import nuisances, working
 from validation.case import Case, Channel, Test
 from validation.comparison.predict import predict
-from validation.comparison.tolerance import limit, rise_K
+from validation.comparison.uncertainty import Uncertainty, uncertainties
+from validation.doubt import USUAL, Doubt
+
+Budget = Mapping[str, float]
 
 
 @dataclass(frozen=True)
 class ChannelError:
     """Error of one sensor in one test, measured - model (K).
 
-    percent_of_rise : rmse over the largest rise measured in the test;  limit_K : see validation.comparison.tolerance
-    verdict : "within" when rmse is no more than limit_K, else "over"
+    percent_of_rise : rmse over the largest rise measured in the test;  u_input_K, u_numeric_K : standard uncertainties
+    limit_K : expanded uncertainty, see validation.comparison.uncertainty; None where only the errors were asked for
+    verdict : "within" when rmse is no more than limit_K, "over" when it is, "unknown" without a limit
     """
 
     channel: str
@@ -32,10 +37,14 @@ class ChannelError:
     max_abs_K: float
     sigma_K: float
     percent_of_rise: float
-    limit_K: float
+    limit_K: float | None = None
+    u_input_K: float | None = None
+    u_numeric_K: float | None = None
 
     @property
     def verdict(self) -> str:
+        if self.limit_K is None:
+            return "unknown"
         return "within" if self.rmse_K <= self.limit_K else "over"
 
     def document(self) -> dict:
@@ -44,11 +53,12 @@ class ChannelError:
 
 @dataclass(frozen=True)
 class TestError:
-    """Errors of one test."""
+    """Errors of one test, and where they were judged what they were held against, channel by channel."""
 
     name: str
     role: str
     channels: tuple[ChannelError, ...]
+    uncertainty: tuple[Uncertainty, ...] = ()
     __test__ = False
 
     @property
@@ -83,6 +93,12 @@ class Comparison:
         return float(np.sqrt(np.average([c.sigma_K**2 for c in channels], weights=[c.n for c in channels])))
 
     @property
+    def limits(self) -> dict[str, dict[str, float]]:
+        """Test -> channel -> the largest error that counts as agreement (K)."""
+        rows = {t.name: t.channels for t in self.tests}
+        return {name: {c.channel: c.limit_K for c in own if c.limit_K is not None} for name, own in rows.items()}
+
+    @property
     def agrees(self) -> bool:
         return all(c.verdict == "within" for t in self.tests for c in t.channels)
 
@@ -113,11 +129,29 @@ def pooled(channels: list[ChannelError] | tuple[ChannelError, ...]) -> float:
     return float(np.sqrt(np.average([c.rmse_K**2 for c in channels], weights=[c.n for c in channels])))
 
 
-def compare(case: Case, values: Mapping[str, float] | None = None) -> Comparison:
-    """Run the model as it stands on every test. Fitted sensor biases are not used: the raw reading counts."""
+def compare(
+    case: Case, values: Mapping[str, float] | None = None, budgets: Mapping[str, Budget] | None = None
+) -> Comparison:
+    """Run the model as it stands on every test. Fitted sensor biases are not used: the raw reading counts.
+
+    budgets : test -> channel -> what the model's own numbers may be wrong by (K), see `uncertainties`
+    """
+
+    def judged(network: Network, test: Test, now: Mapping[str, float]) -> TestError:
+        return judged_error(network, test, now, case.doubt, None if budgets is None else budgets[test.name])
+
+    return _of_every_test(case, values, judged)
+
+
+def errors(case: Case, values: Mapping[str, float] | None = None) -> Comparison:
+    """The errors alone, for searches: nothing says whether they are within the uncertainty."""
+    return _of_every_test(case, values, test_error)
+
+
+def _of_every_test(case: Case, values: Mapping[str, float] | None, error_of: Callable[..., TestError]) -> Comparison:
     network, _ = working(case)
     now = physical(case, values)
-    tests = tuple(test_error(network, t, now) for t in case.tests)
+    tests = tuple(error_of(network, t, now) for t in case.tests)
     effects = tuple(e.name for e in case.model.effects)
     return Comparison(case.name, case.model.revision, effects, tests, case.model.network.identities)
 
@@ -128,32 +162,53 @@ def physical(case: Case, values: Mapping[str, float] | None = None) -> dict[str,
     return {k: v for k, v in (case.model.values if values is None else values).items() if k not in measured}
 
 
-def test_error(network, test: Test, values: Mapping[str, float]) -> TestError:
+def judged_error(
+    network: Network, test: Test, values: Mapping[str, float], doubt: Doubt = USUAL, budget: Budget | None = None
+) -> TestError:
+    """The errors of a test, each with the expanded uncertainty it is held against."""
+    y = _checked(network, test, values)
+    known = uncertainties(network, test, values, doubt, budget, y)
+    rows = tuple(_against(row, u) for row, u in zip(_rows(test, y), known, strict=True))
+    return TestError(test.name, test.role, rows, tuple(known))
+
+
+def test_error(network: Network, test: Test, values: Mapping[str, float]) -> TestError:
+    """The errors of a test alone."""
+    return TestError(test.name, test.role, tuple(_rows(test, _checked(network, test, values))))
+
+
+def _checked(network: Network, test: Test, values: Mapping[str, float]) -> np.ndarray:
     names = tuple(c.name for c in test.channels)
     try:
-        y = checked_run(predict(network, test, values).y, test.time, names, network)
+        return checked_run(predict(network, test, values).y, test.time, names, network)
     except ThermoscopeError as fault:
         raise type(fault)(f"test '{test.name}': {fault}") from None
-    rows = [channel_error(c, y[:, j]) for j, c in enumerate(test.channels) if np.isfinite(c.y).any()]
-    return TestError(test.name, test.role, tuple(rows))
+
+
+def _rows(test: Test, y: np.ndarray) -> list[ChannelError]:
+    return [channel_error(c, y[:, j]) for j, c in enumerate(test.channels) if np.isfinite(c.y).any()]
+
+
+def _against(row: ChannelError, u: Uncertainty) -> ChannelError:
+    return replace(row, limit_K=u.limit_K, u_input_K=u.input_K, u_numeric_K=u.numeric_K)
 
 
 def channel_error(channel: Channel, predicted: np.ndarray) -> ChannelError:
+    """The error of one sensor.  predicted : (n_time,) degC"""
     read = np.isfinite(channel.y)
     e = channel.y[read] - predicted[read]
     rmse, rise = float(np.sqrt(np.mean(e**2))), rise_K(channel)
     percent = 100.0 * rmse / rise if rise > 0 else float("inf")
     return ChannelError(
-        channel.name,
-        channel.place,
-        int(read.sum()),
-        rmse,
-        float(e.mean()),
-        float(np.abs(e).max()),
-        channel.sigma_K,
+        channel.name, channel.place, int(read.sum()), rmse, float(e.mean()), float(np.abs(e).max()), channel.sigma_K,
         percent,
-        limit(channel.sigma_K, rise),
-    )
+    )  # fmt: skip
+
+
+def rise_K(channel: Channel) -> float:
+    """How far a sensor went from its first reading (K); 0 where it was never read."""
+    seen = channel.y[np.isfinite(channel.y)]
+    return float(np.max(np.abs(seen - seen[0]))) if seen.size else 0.0
 
 
 test_error.__test__ = False  # type: ignore[attr-defined]

@@ -1,34 +1,39 @@
-"""How far a comparison can be believed: uncertainty of readings, inputs and arithmetic, per sensor and test.
+"""When a model agrees with a sensor: one rule for tables, bars, dots, curves and the report.
 
-    u_val^2 = u_reading^2 + u_input^2 + u_numeric^2 ,   model error = -(E +- 2 u_val) ,   E = reading - model
+    u_val^2 = u_reading^2 + u_input^2 + u_numeric^2 ,   within: rms of (measured - model) <= 2 u_val
 
-Inputs are moved one at a time by their own standard uncertainty; the arithmetic is what the integrator leaves.
-Source: ASME V&V 20-2009, chapter 3 (inputs, sampled one at a time).
+Inputs are moved one at a time by their own standard uncertainty. The arithmetic is the error budget of mesh,
+condensation and time steps where there is one, else what the integrator leaves.
+Source: ASME V&V 20-2009, chapters 3 and 6; JCGM 100 (expanded uncertainty).
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from itertools import chain
 
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.errors import ThermoscopeError
 from lumped.integration.simulate import simulate
 from lumped.model.network import Network
 from validation.case import Test
+from validation.comparison.moved_inputs import moved_boundaries, moved_inputs
 from validation.comparison.predict import predict, record, thermal
-from validation.doubt import USUAL
+from validation.doubt import USUAL, Doubt
 
 Array = NDArray[np.float64]
-COVERAGE = 2.0
+COVERAGE = 2.0  # standard uncertainties: 95 %
+RULE = f"within: rms up to {COVERAGE:g} u, u of reading, inputs and arithmetic"
 
 
 @dataclass(frozen=True)
 class Uncertainty:
     """Standard uncertainties (K, rms over the test) of one sensor, and what is left of the error.
 
-    inputs : what each input contributes;  error_K : rms of reading minus model
+    inputs : what each input contributes;  error_K : rms of measured - model
     """
 
     test: str
@@ -47,9 +52,14 @@ class Uncertainty:
         return float(np.sqrt(self.reading_K**2 + self.input_K**2 + self.numeric_K**2))
 
     @property
+    def limit_K(self) -> float:
+        """The expanded uncertainty (K): the largest error that counts as agreement."""
+        return COVERAGE * self.u_val_K
+
+    @property
     def explained(self) -> bool:
         """Is the error no more than what all this leaves open?"""
-        return self.error_K <= COVERAGE * self.u_val_K
+        return self.error_K <= self.limit_K
 
     def document(self) -> dict:
         own = {"reading_K": self.reading_K, "input_K": self.input_K, "numeric_K": self.numeric_K}
@@ -57,35 +67,49 @@ class Uncertainty:
         return {"test": self.test, "channel": self.channel, **own, **total, "inputs": dict(self.inputs)}
 
 
-def uncertainties(network: Network, test: Test, values: Mapping[str, float]) -> list[Uncertainty]:
-    """One row per channel that was read."""
-    y = predict(network, test, values).y
-    moved = {name: predict(network, other, values).y - y for name, other in shifted_inputs(test)}
-    late = _late(network, test, values)
+def uncertainties(
+    network: Network, test: Test, values: Mapping[str, float], doubt: Doubt = USUAL,
+    budget: Mapping[str, float] | None = None, y: Array | None = None,
+) -> list[Uncertainty]:  # fmt: skip
+    """One row per channel that was read.
+
+    budget : channel -> what the model's own numbers may be wrong by (K), None for the integrator's estimate alone
+    y : (n_time, n_channel) degC, the prediction where it is known already
+    """
+    plain = predict(network, test, values).y if y is None else y
+    moved = dict(_contributions(network, test, values, doubt, plain))
+    numeric = _time_steps(network, test, values) if budget is None else budget
     out = []
     for j, c in enumerate(test.channels):
-        if np.isfinite(c.y).any():
-            inputs = {name: _rms(d[:, j]) for name, d in moved.items()}
-            error = _rms((c.y - y[:, j])[np.isfinite(c.y)])
-            out.append(Uncertainty(test.name, c.name, c.sigma_K, inputs, late[j], error))
+        read = np.isfinite(c.y)
+        if read.any():
+            inputs = {name: float(u[j]) for name, u in moved.items()}
+            # estimates of discretisation errors are bounds, as Roache's factor of 3 makes them: expanded uncertainties
+            own = numeric.get(c.name, 0.0) / COVERAGE
+            out.append(Uncertainty(test.name, c.name, c.sigma_K, inputs, own, _rms((c.y - plain[:, j])[read])))
     return out
 
 
-def _late(network: Network, test: Test, values: Mapping[str, float]) -> list[float]:
+def _contributions(
+    network: Network, test: Test, values: Mapping[str, float], doubt: Doubt, plain: Array
+) -> Iterator[tuple[str, Array]]:
+    """Input or boundary -> what its standard uncertainty does to every channel (K)."""
+    for name, other in chain(moved_inputs(network, test, doubt), moved_boundaries(test, doubt)):
+        try:
+            change = predict(network, other, values).y - plain
+        except ThermoscopeError:  # a thermal runaway within the input's uncertainty: nothing bounds the temperature
+            change = np.full_like(plain, np.inf)
+        change = np.where(np.isfinite(change), change, np.inf)
+        yield name.removeprefix("input ").removeprefix("boundary:"), np.sqrt(np.mean(change**2, axis=0))
+
+
+def _time_steps(network: Network, test: Test, values: Mapping[str, float]) -> dict[str, float]:
     """Error of the time steps at every channel (K)."""
     bare = thermal(network)
     heat = {p.name: values[p.name] for p in bare.parameters if p.name in values}
-    return simulate(bare, record(test, {}), heat, [c.row for c in test.channels]).time_error_K.tolist()
+    late = simulate(bare, record(test, {}), heat, [c.row for c in test.channels]).time_error_K
+    return dict(zip((c.name for c in test.channels), late.tolist(), strict=True))
 
 
 def _rms(a: Array) -> float:
     return float(np.sqrt(np.mean(a**2)))
-
-
-def shifted_inputs(test: Test) -> Iterator[tuple[str, Test]]:
-    """The test with one input or boundary at a time off by its standard uncertainty."""
-    for name, u in test.inputs.items():
-        if np.any(u):
-            yield name, test.scaled({name: 1.0 + USUAL["input"]})
-    for name, u in test.boundaries.items():
-        yield name, replace(test, boundaries={**test.boundaries, name: np.asarray(u, float) + USUAL["boundary"]})

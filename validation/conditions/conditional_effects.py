@@ -18,7 +18,7 @@ from validation.calibration.unknowns import scene_of
 from validation.case import Case
 from validation.conditions.candidate_conditions import single_test_effects, temporary_effects
 from validation.conditions.hat_functions import Interval, hat_scores
-from validation.conditions.refine import columns, refined
+from validation.conditions.refine import columns, refined, repeats
 from validation.conditions.windows import ALIKE, distinct, stretches, worth
 from validation.diagnosis.missing_heat import MissingHeat, Scan
 from validation.doubt import PRIOR, USUAL
@@ -123,7 +123,8 @@ def explained(
 ) -> tuple[Event, list[Condition]]:
     """An event with its ends at the samples, and all that it may have been, exactly run."""
     reach = {t: 1.5 * float(looked.knots[t][1] - looked.knots[t][0]) for t in s.event.spans}
-    timed = refined(evidence, likeness(evidence, bases, s, known), s.event, reach, known)
+    like = likeness(evidence, bases, s, known)
+    timed = refined(evidence, like, repeats(evidence, like, s.event, known), reach, known)
     share = 0.5 / (len(bases) * len(evidence.tests)) * float(np.exp(max(timed.log_share, -600.0)))
     effects = [During.of(base, timed.event.name, share) for base in bases]
     return timed.event, scored_in(evidence, effects, known, odds_against_nothing(share))
@@ -159,4 +160,4 @@ def joined(evidence: Evidence, effects: Sequence[Effect], known: Mapping[str, fl
     parameters = (*e.parameters, *network.parameters[-len(effects) :])
     new = columns(evidence, effects, known)
     parts = tuple(replace(s, J=np.column_stack([s.J, n.J[:, p:]])) for s, n in zip(e.parts, new, strict=True))
-    return weighed(e.tests, fit, network, (*e.effects, *effects), parameters, parts, e.jumps)
+    return weighed(e.tests, fit, network, (*e.effects, *effects), parameters, parts, e.jumps, e.large)

@@ -36,14 +36,12 @@ def answered(evidence: Evidence, hypotheses: Sequence[Hypothesis], answers: Mapp
     """The hypotheses with what the user said as evidence."""
     wrong = USUAL["answer"]
     out = list(hypotheses)
-    for about, yes in answers.items():
-        says = [np.log(1.0 - wrong if holds(evidence, h, about) == yes else wrong) for h in out]
-        out = [replace(h, log_prior=h.log_prior + float(x)) for h, x in zip(out, says, strict=True)]
+    for about, said in answers.items():
+        yes = [concerns(e, about) for e in evidence.effects]
+        agrees = [any(yes[k] for k in h.members) == said for h in out]
+        out = [replace(h, log_prior=h.log_prior + float(np.log(1.0 - wrong if a else wrong)))
+               for h, a in zip(out, agrees, strict=True)]  # fmt: skip
     return out
-
-
-def holds(evidence: Evidence, h: Hypothesis, about: str) -> bool:
-    return any(concerns(evidence.effects[k], about) for k in h.members)
 
 
 def concerns(effect: Effect, about: str) -> bool:
@@ -73,7 +71,9 @@ def best_question(posterior: Posterior) -> Question | None:
 
 
 def yes_of(posterior: Posterior, P: Array, about: str) -> float:
-    return float(sum(p for p, h in zip(P, posterior.hypotheses, strict=True) if holds(posterior.evidence, h, about)))
+    """Probability that the answer is yes."""
+    yes = [concerns(e, about) for e in posterior.evidence.effects]
+    return float(sum(p for p, h in zip(P, posterior.hypotheses, strict=True) if any(yes[k] for k in h.members)))
 
 
 def information(yes: float) -> float:

@@ -17,7 +17,7 @@ from validation.effects.during import During
 from validation.effects.time_window import Event, Span
 from validation.inference.evidence import Evidence, extended_prior, projected
 from validation.inference.posterior import one_size
-from validation.inference.score import score, total
+from validation.inference.score import Score, score, total
 
 Array = NDArray[np.float64]
 Known = Mapping[str, float]
@@ -75,6 +75,34 @@ def pulse(u: Array, V: Array, a: NDArray[np.int64], b: NDArray[np.int64]) -> tup
     rest = u.size - 1
     own = V[a, a] + V[b, b] - 2.0 * V[a, b]
     return u[a] - u[b] + u[rest], own + V[rest, rest] + 2.0 * (V[a, rest] - V[b, rest])
+
+
+def repeats(evidence: Evidence, base: Effect, event: Event, known: Known) -> Event:
+    """The event without the repeats that the others do not predict; of one that does not repeat nothing is left out.
+
+    Each is left out in turn: at the amplitude of the others it must fit better than without. The worst goes first.
+    """
+    every = [(t, span) for t, own in event.spans.items() for span in own]
+    if len(every) < 2:
+        return event
+    effects = [During.of(base, Event.of({t: [span]}).name) for t, span in every]
+    theta, sd = extended_prior(evidence.fit)
+    parts = columns(evidence, effects, known)
+    found = score(total(projected(evidence.fit, parts)), theta, sd, np.zeros(len(every), int))
+    stays = list(range(len(every)))
+    while len(stays) > 1 and min(gain := [gained(found, i, stays) for i in stays]) <= 0.0:
+        stays.remove(stays[int(np.argmin(gain))])
+    spans: dict[str, list[Span]] = {}
+    for i in stays:
+        spans.setdefault(every[i][0], []).append(every[i][1])
+    return Event.of(spans)
+
+
+def gained(found: Score, i: int, every: Sequence[int]) -> float:
+    """Log likelihood that a repeat gains at the amplitude of the others."""
+    others = [j for j in every if j != i]
+    a = float(np.sum(found.u[others]) / np.sum(found.V[np.ix_(others, others)]))
+    return a * (float(found.u[i]) - a * float(np.sum(found.V[i, others]))) - 0.5 * a**2 * float(found.V[i, i])
 
 
 def log_bayes(u: Array, V: Array, evidence: Evidence, base: Effect) -> Array:

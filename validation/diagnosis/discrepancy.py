@@ -1,4 +1,4 @@
-"""Where a comparison fails: uncertainty, whiteness, inputs the error follows, and the heat that would mend it."""
+"""Where a comparison fails: whiteness, inputs the error follows, and the heat that would mend it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ from validation.case import Case
 from validation.comparison.compare import physical
 from validation.comparison.linearisation import segments
 from validation.comparison.residuals import Pattern, patterns
-from validation.comparison.uncertainty import Uncertainty, uncertainties
 from validation.conditions.contradiction import Contradiction, contradiction
 from validation.conditions.windows import pulses
 from validation.diagnosis.missing_heat import MissingHeat, missing_heat
@@ -26,14 +25,12 @@ class Discrepancy:
     contradiction : what would have to differ between the tests that are fitted
     """
 
-    uncertainty: tuple[Uncertainty, ...]
     patterns: tuple[Pattern, ...]
     heat: tuple[MissingHeat, ...]
     contradiction: Contradiction
 
     def document(self) -> dict:
         return {
-            "uncertainty": [u.document() for u in self.uncertainty],
             "patterns": [p.document() for p in self.patterns],
             "where": [{**h.document(), "pulses": steps(h)} for h in self.heat],
             "contradiction": self.contradiction.document(),
@@ -45,13 +42,11 @@ def discrepancies(case: Case, progress: Callable[[str], None] = no_progress) -> 
     """The model as it stands; the scan for heat is made after calibration, or it would find what calibration mends."""
     network, _ = working(case)
     now = physical(case)
-    progress("moving every input by its uncertainty")
-    rows = tuple(u for test in case.tests for u in uncertainties(network, test, now))
     left = patterns(segments(network, case.tests, now), case.tests)
     fit = calibrated_case(case, progress)
     progress("looking for where heat is missing")
     tests = diagnosing(case)
-    return Discrepancy(rows, tuple(left), tuple(missing_heat(fit, tests)), contradiction(fit, tests))
+    return Discrepancy(tuple(left), tuple(missing_heat(fit, tests)), contradiction(fit, tests))
 
 
 def steps(heat: MissingHeat) -> list[dict]:

@@ -1,7 +1,8 @@
 """Where and when heat is missing: a free heat input at each node in turn, as hat functions of time.
 
-log evidence of a heat input q ~ N(0, s^2) per hat at node i, nuisances projected out; 10 nats locate it.
-Source: Sarkka, Alvarez and Lawrence 2019 (latent force models); Rasmussen and Williams 2006, 5.4.
+log evidence of a heat input q ~ N(0, s^2 R) of the hats at node i, nuisances projected out; 10 nats locate it. R has
+heat last for a while within a test, or follow smoothly what the machine does, in all tests alike.
+Source: Sarkka, Alvarez and Lawrence 2019 (latent force models); Rasmussen and Williams 2006, 4.2 and 5.4.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from validation.case import Test
 from validation.comparison.linearisation import Segment, segments
 from validation.effects.build import Shaped, heat, power_scale
 from validation.effects.sites import solids
-from validation.inference.model_error import ModelError
+from validation.inference.model_error import ModelError, nodes
 from validation.inference.score import Gram, gram
 from validation.measurement.blocks import INSTANTS
 from validation.measurement.noise import Noise
@@ -31,6 +32,8 @@ from validation.measurement.noise import Noise
 Array = NDArray[np.float64]
 KNOT_S = 180.0
 MEMORY_S = (60.0, 1200.0)
+REACH = 1.0  # of an input's range: heat over an input is a gentle curve, as the laws of losses and films are
+JITTER = 1e-6
 LOCATED = 10.0  # nats
 
 
@@ -72,6 +75,7 @@ class Scan:
 
     knots : test -> instants (s) of its hats;  parts : derivatives by calibrated parameters (standard deviations `sd` of
     their priors), then by every place's hats;  scale : usual heat (W)
+    doing : (m, k) what the machine does at all knots, inputs over their ranges;  T : (m, n) temperatures of the places
     """
 
     places: tuple[str, ...]
@@ -79,6 +83,8 @@ class Scan:
     parts: tuple[Segment, ...]
     sd: Array
     scale: float
+    doing: Array
+    T: Array
 
     def read(
         self, residual: Sequence[Segment], noise: Noise, theta: Array, error: ModelError | None = None
@@ -106,6 +112,12 @@ class Scan:
         forms = [_correlation(list(self.knots.values()), memory) for memory in MEMORY_S]
         return [np.asarray(np.linalg.cholesky(R), float) for R in forms]
 
+    def following(self, i: int) -> Array:
+        """The same of heat at a place that is a smooth function of what the machine does and how warm the place is."""
+        x = np.column_stack([self.doing, over_range(self.T[:, i : i + 1])])
+        R = np.exp(-0.5 * np.sum((x[:, None, :] - x[None, :, :]) ** 2, axis=2) / REACH**2)
+        return np.asarray(np.linalg.cholesky(R + JITTER * np.eye(len(x))), float)
+
     def _at(self, i: int, grams: Mapping[str, Gram], cov: Array, Jr: Array) -> MissingHeat:
         size = [len(k) for k in self.knots.values()]
         start = np.concatenate([[0], np.cumsum(size)])
@@ -116,7 +128,7 @@ class Scan:
             A[block, block], u[block], JZ[:, block] = g.ZZ[own, own], g.Zr[own], g.JZ[:, own]
         A, u = A - JZ.T @ cov @ JZ, u - JZ.T @ cov @ Jr
         sizes = self.scale * 10.0 ** np.arange(-3.0, 1.5, 0.5)
-        tried = [_evidence(A, u, sizes, root) for root in self.roots]
+        tried = [_evidence(A, u, sizes, root) for root in (*self.roots, self.following(i))]
         nats, q, sd = max(tried, key=lambda x: x[0].max())
         best, mean = nats.max(), logsumexp([x[0] for x in tried]) - np.log(len(tried) * sizes.size)
         cut = [slice(a, b) for a, b in pairwise(start)]
@@ -145,7 +157,8 @@ def missing_heat(fit: Fit, tests: Sequence[Test], knot_s: float = KNOT_S) -> lis
 
 def scan(fit: Fit, tests: Sequence[Test], knot_s: float = KNOT_S) -> Scan:
     """Hats every `knot_s`, or as many in a long test as its residual has instants to tell apart."""
-    places, knots = tuple(p.name for p in solids(fit.network)), {}
+    own, knots = solids(fit.network), {}
+    places = tuple(p.name for p in own)
     parts: list[Segment] = []
     for test in tests:
         span = test.time[-1] - test.time[0]
@@ -153,7 +166,29 @@ def scan(fit: Fit, tests: Sequence[Test], knot_s: float = KNOT_S) -> Scan:
         knots[test.name] = test.time[0] + np.linspace(0.0, span, count)
         network, hats = with_heat_inputs(fit.network, places, knots[test.name])
         parts += segments(network, [test], fit.values, (*fit.unknowns.parameters, *hats))
-    return Scan(places, knots, tuple(parts), fit.unknowns.sd, power_scale(fit.network))
+    T = [at_knots(t, nodes(fit.network, t, fit.values, own), knots[t.name]) for t in tests]
+    return Scan(places, knots, tuple(parts), fit.unknowns.sd, power_scale(fit.network), doing(tests, knots),
+                np.vstack(T))  # fmt: skip
+
+
+def doing(tests: Sequence[Test], knots: Mapping[str, Array]) -> Array:
+    """(m, k) all inputs that every test records, at the knots of all tests, each over its range; constants left out."""
+    common = [n for n in tests[0].inputs if all(n in t.inputs for t in tests)]
+    rows = [np.column_stack([*(at_knots(t, t.inputs[n], knots[t.name]) for n in common), np.zeros(knots[t.name].size)])
+            for t in tests]  # fmt: skip
+    return over_range(np.vstack(rows))
+
+
+def at_knots(test: Test, series: Array, knots: Array) -> Array:
+    """A series (n, ...) of a test at some instants."""
+    columns = np.reshape(np.asarray(series, float), (test.time.size, -1))
+    return np.column_stack([np.interp(knots, test.time, c) for c in columns.T])
+
+
+def over_range(x: Array) -> Array:
+    """Columns that vary, each from 0 to 1."""
+    span = np.ptp(x, axis=0)
+    return np.asarray((x[:, span > 0] - x.min(axis=0)[span > 0]) / span[span > 0])
 
 
 def with_heat_inputs(network: Network, places: Sequence[str], knots: Array) -> tuple[Network, list[Parameter]]:

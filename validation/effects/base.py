@@ -74,9 +74,9 @@ class Effect(ABC):
         return f"{self.kind}@{self.place}"
 
     @property
-    def typical_loss(self) -> float | None:
-        """A share that something typically loses where it only can lose: large enough to leave its tangent behind."""
-        return self.typical[0] if self.mapping == "relative" and self.sign < 0 else None
+    def large(self) -> tuple[float, ...]:
+        """Usual amplitudes that leave the tangent behind: the share that something loses where it only can lose."""
+        return self.typical[:1] if self.mapping == "relative" and self.sign < 0 else ()
 
     @classmethod
     def places(cls, scene: Scene) -> tuple[str, ...]:

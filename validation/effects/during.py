@@ -81,8 +81,9 @@ class During(Effect):
         new = {x.name: f"{x.name}{IN}{self.gate}" for x in items}
         parameters = tuple(
             replace(p, targets=tuple((new.get(t, t), e) for t, e in p.targets))
+            if any(t in new for t, _ in p.targets) else p
             for p in (*grown.parameters[:-1], replace(own, name=self.name))
-        )
+        )  # fmt: skip
         return replace(
             network, parameters=parameters,
             links=(*network.links, *(replace(x, name=new[x.name], law=self._law(x.law)) for x in links)),

@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from importlib import import_module
-from importlib.metadata import entry_points
 from pathlib import Path
 from pkgutil import walk_packages
 from typing import Any
 
 from geom.errors import InputError
+from geom.plugins import plugins
 from lumped.model.network import Network
 from validation.effects.above import KIND, Above
 from validation.effects.base import Effect, Scene
 from validation.effects.during import IN, During
 from validation.effects.time_window import event
 
-GROUP = "thermoscope.effects"
 HERE = Path(__file__).parent
 
 
@@ -34,7 +34,7 @@ def kinds() -> dict[str, type[Effect]]:
     root: Any = Effect
     found = [c for c in _concrete(root) if hasattr(c, "kind")]  # one that holds for a while has that of another
     own = {c.kind: c for c in found if c.__module__.startswith("validation.effects.")}
-    return dict(sorted(own.items())) | {c.kind: c for c in (entry.load() for entry in entry_points(group=GROUP))}
+    return dict(sorted(own.items())) | {c.kind: c for c in plugins("effects").values()}
 
 
 def catalogue(scene: Scene, only: Iterable[str] | None = None) -> tuple[Effect, ...]:
@@ -82,7 +82,8 @@ def _known(gate: str, scene: Scene | None, name: str) -> str:
 
 
 def extended(network: Network, effects: Iterable[Effect]) -> Network:
-    """The network with several effects at zero amplitude."""
+    """The network with several effects at zero amplitude. They sit by what the network is without them."""
+    grown = replace(network, declared=network.identities)
     for one in effects:
-        network = one.extend(network)
-    return network
+        grown = one.extend(grown)
+    return replace(grown, declared=network.declared)

@@ -7,6 +7,7 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import permutations
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,7 +35,9 @@ Array = NDArray[np.float64]
 TWIN = 0.9995  # cosine from which a calibrated parameter does the same as an effect
 ENOUGH = 0.1  # nats: evidence is read to a few tenths
 STRAIGHT = 0.9  # of the gain that tangents foretold: a refit that got it needs none of its own
-LEAN = 0.5  # nats that a tangent gains at an effect's typical loss before it pays for its own size
+HOPELESS = 20.0  # nats worse than nothing after a first refit: no second one makes up for that
+LEAN = 0.5  # nats that a tangent gains at a large amplitude before it pays for its own size
+SECOND = 6  # steps of a refit under tangents of its own: with three, some stopped tens of nats short
 ROUNDS = 4  # steps of a calibration that goes on under the model error
 
 
@@ -44,7 +47,8 @@ class Evidence:
 
     network : the model with all candidates at zero;  parts : segments with nuisance, then candidate columns
     grams : per test, of [nuisances and model error, candidates, residual] under the fit's noise
-    jumps : effect -> what it does to every segment (K) at its typical loss, where a tangent says too little
+    jumps : effect -> what it does to every segment (K) at a large amplitude, where a tangent says too little
+    large : effect -> that amplitude
     whole : (K,) evidence (nats) of a finite amplitude where a tangent says too little, -inf elsewhere
     """
 
@@ -57,6 +61,7 @@ class Evidence:
     grams: Mapping[str, Gram]
     score: Score
     jumps: Mapping[int, Sequence[Array]]
+    large: Mapping[int, float]
     whole: Array
 
     @property
@@ -126,24 +131,36 @@ def scored(case: Case, effects: Sequence[Effect], fit: Fit) -> Evidence:
     own = [replace(s, J=s.J[:, :p]) for s in parts]
     fit = minimise(fit.network, tests, fit.unknowns, fit.theta, fit.noise, values_of(fit.network, fit.values), 0,
                    KnownSegments(own, nearby=False), error=fit.error)  # fmt: skip
-    evidence = weighed(tests, fit, network, tuple(effects), parameters, parts, {})
+    evidence = weighed(tests, fit, network, tuple(effects), parameters, parts, {}, {})
     there = {}
-    for k in likely(evidence):
+    for k, a in likely(evidence):
         with suppress(NoSolution):  # so large it cannot be: the machine would run away
-            there[k] = segments(network, tests, {**values, effects[k].name: effects[k].typical_loss or 0.0})
-    jumps = {k: [old.r - new.r for old, new in zip(parts, moved, strict=True)] for k, moved in there.items()}
-    return weighed(tests, fit, network, tuple(effects), parameters, parts, jumps)
+            there[k, a] = jump(evidence, k, {**values, effects[k].name: a})
+    worth = dict(zip(there, finite(fit, parts, there), strict=True))
+    best = {k: max((a for i, a in there if i == k), key=lambda a, k=k: worth[k, a]) for k, _ in there}  # type: ignore[misc]
+    jumps = {k: there[k, a] for k, a in best.items()}
+    return weighed(tests, fit, network, tuple(effects), parameters, parts, jumps, best)
 
 
-def likely(evidence: Evidence) -> list[int]:
-    """The effects with a typical loss that the readings lean to, by their tangents: others need no run at that loss."""
-    far = [(k, e.typical_loss) for k, e in enumerate(evidence.effects) if e.typical_loss is not None]
-    return [k for k, a in far if a * evidence.score.u[k] > LEAN]
+def likely(evidence: Evidence) -> list[tuple[int, float]]:
+    """Effects and large amplitudes that the readings lean to, by their tangents, and those of clocks: others need no
+    run so large."""
+    far = [(k, a) for k, e in enumerate(evidence.effects) for a in e.large]
+    return [(k, a) for k, a in far if a * evidence.score.u[k] > LEAN or evidence.effects[k].fault]
+
+
+def jump(evidence: Evidence, k: int, values: Mapping[str, float]) -> list[Array]:
+    """What an effect does to every segment (K) at some values; a clock is of its own test alone."""
+    place = evidence.effects[k].place
+    acted = [t for t in evidence.tests if t.name == place] or evidence.tests
+    new = {(s.test, s.channel): s.r for s in segments(evidence.network, acted, values)}
+    return [s.r - new.get((s.test, s.channel), s.r) for s in evidence.parts]
 
 
 def weighed(
     tests: tuple[Test, ...], fit: Fit, network: Network, effects: tuple[Effect, ...],
     parameters: tuple[Parameter, ...], parts: tuple[Segment, ...], jumps: Mapping[int, Sequence[Array]],
+    large: Mapping[int, float],
 ) -> Evidence:  # fmt: skip
     """The score under the fit's noise and model error."""
     sign = np.array([q.sign for q in parameters], int)
@@ -152,7 +169,7 @@ def weighed(
     found = score(total(grams), theta, sd, sign)
     whole = np.where([e.whole for e in effects], found.u - 0.5 * np.diag(found.V), -np.inf)
     whole[list(jumps)] = finite(fit, parts, jumps)
-    return Evidence(tests, fit, network, effects, parameters, parts, grams, found, jumps, whole)
+    return Evidence(tests, fit, network, effects, parameters, parts, grams, found, jumps, large, whole)
 
 
 def projected(fit: Fit, parts: Sequence[Segment]) -> dict[str, Gram]:
@@ -168,8 +185,8 @@ def extended_prior(fit: Fit) -> tuple[Array, Array]:
     return np.concatenate([fit.theta, np.zeros(d)]), np.concatenate([fit.unknowns.sd, np.ones(d)])
 
 
-def finite(fit: Fit, parts: Sequence[Segment], jumps: Mapping[int, Sequence[Array]]) -> Array:
-    """Evidence (nats) that some effects are there at their typical loss: a joint at a fifth of its conductance bends
+def finite(fit: Fit, parts: Sequence[Segment], jumps: Mapping[Any, Sequence[Array]]) -> Array:
+    """Evidence (nats) that some effects are there at a large amplitude: a joint at a fifth of its conductance bends
     the machine more than its tangent foretells."""
     if not jumps:
         return np.zeros(0)
@@ -192,6 +209,25 @@ def exchange(parts: Sequence[Segment], effects: Sequence[Effect], p: int) -> Non
         for s in (s for s in parts if s.channel == a and (s.test, b) in known):
             t = known[s.test, b]
             s.J[:, p + k] = s.r - np.interp(s.time, t.time, t.r) - s.J[:, p + k]
+
+
+def mended_by_exchange(evidence: Evidence) -> dict[int, float]:
+    """All-or-nothing effects that take half or more off the squares they touch, of the model before any calibration,
+    with what they take; a model calibrated to exchanged readings hides that they were."""
+    e, few = evidence, [k for k, x in enumerate(evidence.effects) if x.whole]
+    try:
+        parts = segments(e.network, e.tests, {q.name: q.value for q in e.network.parameters},
+                         [e.parameters[k] for k in few])  # fmt: skip
+    except NoSolution:  # the declared values alone run away
+        return {}
+    exchange(parts, [e.effects[k] for k in few], 0)
+    out = {}
+    for i, k in enumerate(few):
+        own = [(s.r / s.weight, s.J[:, i] / s.weight) for s in parts if np.any(s.J[:, i])]
+        before, after = sum(float(r @ r) for r, _ in own), sum(float((r - J) @ (r - J)) for r, J in own)
+        if after < 0.5 * before:
+            out[k] = before - after
+    return out
 
 
 def log_evidence(fit: Fit, parts: Sequence[Segment]) -> float:
@@ -231,7 +267,7 @@ def under(evidence: Evidence, noise: Noise) -> Evidence:
                    KnownSegments(e.parts_of([]), nearby=True), worth=ENOUGH, error=fit.error)  # fmt: skip
     left = {(s.test, s.channel): s.r for s in new.parts}
     parts = tuple(replace(s, r=left[s.test, s.channel]) for s in e.parts)
-    return weighed(e.tests, new, e.network, e.effects, e.parameters, parts, e.jumps)
+    return weighed(e.tests, new, e.network, e.effects, e.parameters, parts, e.jumps, e.large)
 
 
 def noise_beside(evidence: Evidence, members: Sequence[int]) -> Noise:
@@ -260,9 +296,10 @@ def refit(evidence: Evidence, members: Sequence[int], theta: Array, tangents: Se
     free, fit = free_of(evidence, members), evidence.fit
     rough = minimise(network, evidence.tests, unknowns, theta, fit.noise, held, 8,
                      KnownSegments(tangents or evidence.parts_of(free)), worth=ENOUGH, error=fit.error)  # fmt: skip
-    if rough.foretold > STRAIGHT:
+    far = any(evidence.effects[k].whole for k in members)  # exchanged plugs begin where the calibration is wrong
+    if rough.foretold > STRAIGHT or (rough.objective > fit.objective + HOPELESS and not far):
         return rough
-    return minimise(network, evidence.tests, unknowns, rough.theta, fit.noise, held, 3, draft=True, worth=ENOUGH,
+    return minimise(network, evidence.tests, unknowns, rough.theta, fit.noise, held, SECOND, draft=True, worth=ENOUGH,
                     error=fit.error)  # fmt: skip
 
 
@@ -293,12 +330,14 @@ def with_members(evidence: Evidence, members: Sequence[int]) -> tuple[Network, U
 
 
 def starts(evidence: Evidence, members: Sequence[int]) -> list[Array]:
-    """Where a refit may begin: at the linear amplitudes, and where a tangent says too little at the typical loss."""
+    """Where a refit may begin: at the linear amplitudes, and where a tangent says too little at large ones."""
     free = free_of(evidence, members)
     first = first_amplitudes(evidence, free)
-    far = [evidence.effects[k].typical_loss for k in free]
+    far = [evidence.large.get(k) for k in free]
     points = [first]
-    if any(a is not None for a in far):
+    if len(free) == 1 and far[0] is not None:
+        points += [np.array([a]) for a in evidence.effects[free[0]].large]
+    elif any(a is not None for a in far):
         points.append(np.array([f if a is None else a for a, f in zip(far, first, strict=True)]))
     return [np.concatenate([evidence.fit.theta, a]) for a in points]
 

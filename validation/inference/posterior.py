@@ -102,9 +102,15 @@ def singles(evidence: Evidence) -> list[Hypothesis]:
     return [Hypothesis(log_prior=float(np.log(PRIOR["nothing"].share))), *one]
 
 
+def by_tangent(evidence: Evidence) -> Array:
+    """(K,) log Bayes factor of each effect against nothing by its tangent alone."""
+    return log_bayes_of(evidence.score, np.array([q.prior_sd for q in evidence.parameters]))
+
+
 def linear(evidence: Evidence) -> Array:
-    """(K,) log Bayes factor of each effect against nothing; of a joint also at its typical loss, of plugs exchanged."""
-    tangent = log_bayes_of(evidence.score, np.array([q.prior_sd for q in evidence.parameters]))
+    """(K,) log Bayes factor of each effect against nothing; of a joint or a clock also at a large amplitude, of plugs
+    exchanged."""
+    tangent = by_tangent(evidence)
     must = np.array([e.whole for e in evidence.effects])
     both = np.logaddexp(tangent, evidence.whole) - np.where(np.isfinite(evidence.whole), np.log(2.0), 0.0)
     return np.asarray(np.where(must, evidence.whole, both))
@@ -135,7 +141,8 @@ def pairs(evidence: Evidence, ones: Sequence[Hypothesis]) -> list[Hypothesis]:
     share = prior[a] * prior[b]
     every = (np.sum(prior) ** 2 - np.sum(prior**2)) / 2.0
     log_prior = np.log(PRIOR["two"].share * share / every)
-    bayes = two(e, a, b)
+    more = np.maximum(linear(e) - by_tangent(e), 0.0)  # what a large amplitude gains beyond its tangent
+    bayes = two(e, a, b) + np.maximum(more[a], more[b])
     return [Hypothesis((int(k), int(m)), "", float(p), float(v)) for k, m, p, v in zip(a, b, log_prior, bayes)]
 
 

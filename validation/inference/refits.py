@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import replace
 
@@ -13,13 +15,13 @@ from scipy.special import logsumexp
 from geom.errors import NoSolution
 from validation.calibration.calibrate import Fit, no_progress
 from validation.doubt import SIZES
-from validation.inference.evidence import Evidence, free_of, refit, refit_beside, starts
+from validation.inference.evidence import Evidence, free_of, mended_by_exchange, refit, refit_beside, starts
 from validation.inference.posterior import Hypothesis, probabilities, told
 
 Array = NDArray[np.float64]
 WEIGHT = 0.01  # posterior probability from which a hypothesis is refitted
 ROUNDS, MOST = 4, 8  # what a refit promotes is refitted too; so many at once
-GREAT, NEAR = 50.0, 0.6  # nats beyond which tangents mislead, and the share of the best from which a rival is refitted
+GREAT, NEAR = 10.0, 0.5  # nats beyond which tangents mislead, and the share of the best from which a rival is refitted
 IMPOSSIBLE = -1e3  # nats: as good as excluded, and a number that a document can hold
 NEARLY, TRIED = 0.4, 3  # linear amplitude, and how many, of effects that happen whole or not at all
 
@@ -29,18 +31,26 @@ def refitted(
 ) -> list[Hypothesis]:
     """The hypotheses with those that carry weight refitted, until none does that is not."""
     out = list(hypotheses)
-    for i in (*exchanged(evidence, out), *rivals(out)):
-        progress(f"refitting {out[i].name(evidence)}")
-        out[i] = laplace(evidence, out[i])
+    together(evidence, out, [*exchanged(evidence, out), *rivals(out)], progress)
     for _ in range(ROUNDS):
         P = shares(promised(hypotheses, out))
         due = [i for i in np.argsort(-P) if P[i] > WEIGHT and out[i].members and out[i].fit is None][:MOST]
         if not due:
             break
-        for i in sorted(due, key=lambda i: len(out[i].members)):
-            progress(f"refitting {out[i].name(evidence)}")
-            out[i] = laplace(evidence, out[i], fitted_alone(out, out[i].members))
+        for size in (1, 2):  # two begin where one of them was fitted alone
+            together(evidence, out, [i for i in due if len(out[i].members) == size], progress)
     return out
+
+
+def together(evidence: Evidence, out: list[Hypothesis], due: Sequence[int], progress: Callable[[str], None]) -> None:
+    """Refit some hypotheses side by side (the kernel frees the GIL); none depends on another of them."""
+    for i in due:
+        progress(f"refitting {out[i].name(evidence)}")
+    near = [fitted_alone(out, out[i].members) for i in due]
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        found = list(pool.map(lambda i, alone: laplace(evidence, out[i], alone), due, near))
+    for i, h in zip(due, found, strict=True):
+        out[i] = h
 
 
 def promised(before: Sequence[Hypothesis], after: Sequence[Hypothesis]) -> list[Hypothesis]:
@@ -74,13 +84,16 @@ def rivals(hypotheses: Sequence[Hypothesis]) -> list[int]:
 
 
 def exchanged(evidence: Evidence, hypotheses: Sequence[Hypothesis]) -> list[int]:
-    """All-or-nothing effects that come near: they are too large for tangents, so they are refitted in any case."""
-    a = evidence.score.amplitude
+    """All-or-nothing effects that come near, or that mend the model before its calibration: they are too large for
+    tangents, so they are refitted in any case."""
+    a, mended = evidence.score.amplitude, mended_by_exchange(evidence)
     whole = [
-        (i, h.log_bayes) for i, h in enumerate(hypotheses)
-        if len(h.members) == 1 and evidence.effects[h.members[0]].whole and a[h.members[0]] > NEARLY
+        (i, h.members[0]) for i, h in enumerate(hypotheses)
+        if len(h.members) == 1 and evidence.effects[h.members[0]].whole
     ]  # fmt: skip
-    return [i for i, _ in sorted(whole, key=lambda x: -x[1])[:TRIED]]
+    near = sorted((x for x in whole if a[x[1]] > NEARLY), key=lambda x: -hypotheses[x[0]].log_bayes)[:TRIED]
+    before = sorted((x for x in whole if x[1] in mended), key=lambda x: -mended[x[1]])[:TRIED]
+    return [i for i, _ in dict.fromkeys([*near, *before])]
 
 
 def laplace(evidence: Evidence, h: Hypothesis, near: tuple[int, Fit] | None = None) -> Hypothesis:

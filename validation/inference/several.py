@@ -18,7 +18,7 @@ from validation.inference.evidence import Evidence, scored
 from validation.inference.posterior import Hypothesis, prior_shares, singles
 from validation.inference.refits import laplace
 
-MOST = 5  # effects at once: who forgot more begins with another model
+MOST = 3  # effects at once: who forgot more begins with another model
 
 
 def further(

@@ -186,7 +186,9 @@ def _row(e: Evidence, h: Hypothesis, share: float, limit: float, size: float, be
     if h.fit is None:
         return row
     before, after, p = rmse(e.fit.parts), rmse(h.fit.parts), e.p
-    if not e.effects[k].whole:
+    if e.effects[k].whole:
+        row = replace(row, value=1.0, ci95=(1.0, 1.0))
+    else:
         a = float(h.fit.theta[p])
         row = replace(row, value=a, ci95=interval(a, float(h.fit.sd[p]), scatter(e, k)))
     new = left_on(beside.tests, h.fit)
@@ -299,7 +301,9 @@ def _group(posterior: Posterior, group: tuple[int, ...], rows: Sequence[Candidat
         if isinstance(effect, Above):
             return f"{effect.words(best.value)} ({percent(best.probability)})"
         place = effect.words if isinstance(effect, During) else f"at {effect.place}"
-        return f"missing: {best.title} {place}, {best.value:.3g} {best.unit} ({percent(best.probability)})"
+        unit = "" if best.unit == "1" else f" {best.unit}"
+        size = "" if effect.whole else f", {best.value:.3g}{unit}"
+        return f"{'fault' if effect.fault else 'missing'}: {best.title} {place}{size} ({percent(best.probability)})"
     return "one of " + ", ".join(told) + "; these tests and sensors cannot tell them apart"
 
 

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError
 from lumped.model.network import Network, Source
+from lumped.schemas.bounds import UNITS
 from lumped.sources.loss_map import MapLoss
 from lumped.transfer.laws import Linear
 
@@ -46,6 +47,8 @@ def loss_grid(columns: Mapping[str, Array], where: str, voltage: float | None = 
     columns = _at_voltage(dict(columns), where, voltage)
     ones = np.zeros_like(columns[TORQUE])
     axes = [np.unique(c) for c in (columns.get("temperature_degC", ones), columns[SPEED], columns[TORQUE])]
+    if min(axes[1].size, axes[2].size) < 2:
+        raise InputError(f"the map has {axes[2].size} torques and {axes[1].size} speeds", where, "two or more of each")
     index = [
         np.searchsorted(axis, c)
         for axis, c in zip(axes, (columns.get("temperature_degC", ones), columns[SPEED], columns[TORQUE]), strict=True)
@@ -59,8 +62,9 @@ def loss_grid(columns: Mapping[str, Array], where: str, voltage: float | None = 
     watts = {n: np.zeros(count.shape) for n in names}
     for n in names:
         watts[n][tuple(index)] = columns[f"{n}_W"]
-        if not np.all(watts[n] >= 0.0):
-            raise InputError(f"'{n}_W' has negative or missing values", where, "watts that become heat")
+        if not np.all((watts[n] >= 0.0) & (watts[n] <= UNITS["W"].high)):
+            raise InputError(f"'{n}_W' has negative, missing or impossible values", where,
+                             f"watts that become heat, {UNITS['W'].words}")  # fmt: skip
     _balanced(columns, names, where)
     return LossGrid(axes[2], axes[1], axes[0], watts)
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from validation.calibration.calibrate import no_progress
 from validation.calibration.unknowns import with_model
 from validation.case import Case
-from validation.comparison.compare import Comparison, compare
+from validation.comparison.compare import Comparison, errors
 from validation.diagnosis.result import Candidate, Diagnosis
 from validation.effects import effect
 from validation.inference.diagnose import diagnose
@@ -100,7 +100,7 @@ def improve(
 
     A model that was never calibrated is calibrated first. What the diagnosis cannot tell is not offered.
     """
-    stairs = [Step(compare(case), {})]
+    stairs = [Step(errors(case), {})]
     if not case.model.values:
         progress("calibrating")
         case = _kept(case, calibrate(case, progress=progress), guide, {}, stairs)

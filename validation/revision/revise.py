@@ -15,7 +15,7 @@ from validation.calibration.profile import profiles
 from validation.calibration.staged_fit import Search, belongs, merged, staged_fit
 from validation.calibration.unknowns import FREE, scene_of, working
 from validation.case import AddedEffect, Case, Model, Test
-from validation.comparison.compare import Comparison, compare
+from validation.comparison.compare import Comparison, errors
 from validation.effects import Effect, effect
 from validation.effects.during import During
 from validation.effects.time_window import checked
@@ -133,7 +133,7 @@ def _revised(
     profiled: Sequence[str] = (), search: Search | None = None,
 ) -> Revision:  # fmt: skip
     case = replace(case, tests=without(case.tests, broken_channels(case.tests)))
-    before = compare(case)
+    before = errors(case)
     tests = [t for t in case.tests if t.role in roles]
     if not tests:
         raise InputError(
@@ -142,7 +142,7 @@ def _revised(
     grown = replace(case.training(), model=model)
     fits = staged_fit(grown, tests if action == "calibrate" else _plain(tests), start(grown), search, progress)
     new = replace(model, values=_values(model, fits), revision=case.model.revision + 1)
-    after = compare(replace(case, model=new))
+    after = errors(replace(case, model=new))
     changes = tuple(Change(b.name, b.role, b.rmse_K, a.rmse_K) for b, a in zip(before.tests, after.tests, strict=True))
     sure = [_sure(fit, tests, new, case) for fit in fits]
     made = checks(sure[-1], name) if action == "add" and name else ()

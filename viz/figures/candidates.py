@@ -54,6 +54,37 @@ def posterior(odds: Sequence[Mapping[str, Any]], *, most: int = 10, png: str | P
 
 
 @paper.styled
+def differences(found: Mapping[str, Any], *, most: int = 10, png: str | Path | None = None) -> Figure:
+    """What would have to differ between tests, in standard deviations; what cannot differ is red.
+
+    found : the contradiction of a diagnosis or comparison
+    """
+    rows = found["differences"][:most][::-1]
+    figure, (ax,) = paper.subplots(8.4, 0.3 * len(rows) + 1.2)
+    ax.barh(range(len(rows)), [d["sd"] for d in rows], height=0.62,
+            color=[BLUE if d["possible"] else VERMILION for d in rows])  # fmt: skip
+    for y, d in enumerate(rows):
+        ax.text(
+            d["sd"], y, f"\u00a0{factor(d)}\u00a0", va="center", ha="left" if d["sd"] > 0 else "right", fontsize=8.5
+        )
+    for limit in (-found["limit"], found["limit"]):
+        ax.axvline(limit, color=LIGHT.ink, lw=1.0, ls=":")
+    ax.axvline(0.0, color=LIGHT.ink, lw=1.0)
+    ax.set_yticks(range(len(rows)), [f"{d['parameter']} in {d['test']}" for d in rows])
+    ax.grid(False, axis="y")
+    ax.margins(x=0.25, y=0.04)
+    ax.set(xlabel="standard deviations from the other tests; blue can differ, red cannot; dotted: chance")
+    return paper.saved(figure, png)
+
+
+def factor(d: Mapping[str, Any]) -> str:
+    """How much a parameter would have to differ: times the others, or beside them."""
+    if d["relative"]:
+        return f"x {d['here'] / d['others']:.2g}"
+    return f"{d['here'] - d['others']:+.2g}{'' if d['unit'] == '1' else ' ' + d['unit']}"
+
+
+@paper.styled
 def confusion(names: Sequence[str], cosine: NDArray[np.float64], *, png: str | Path | None = None) -> Figure:
     """|cosine| between the signatures of candidate effects: 1 cannot be told apart with these sensors and tests.
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geom.errors import InputError
-from validation.comparison.tolerance import limit_K
+from validation.comparison.uncertainty import RULE
 from viz.colours import BLUE, LIGHT, ORANGE, VERMILION
 from viz.data import Comparison, short
 from viz.figures import paper
@@ -43,7 +43,7 @@ def measured_and_model(comparison: Comparison, *, columns: int = 3, png: str | P
 
 @paper.styled
 def residuals(comparison: Comparison, *, png: str | Path | None = None) -> Figure:
-    """Measured - modelled per sensor over time; those that are over (see tolerance.py) are coloured, named in bold."""
+    """Measured - modelled per sensor over time; those that are over are coloured, named in bold."""
     figure, (ax,) = paper.subplots(8.4, 3.8)
     (t, unit), thin = comparison.clock, comparison.thin
     channels = _read(comparison)
@@ -53,7 +53,7 @@ def residuals(comparison: Comparison, *, png: str | Path | None = None) -> Figur
     colours = []
     for channel in channels:
         r = comparison.residual(channel)
-        colours.append(wrongness(r, limit_K(channel)))
+        colours.append(wrongness(r, comparison.limit_K(channel)))
         ax.plot(t[thin], r[thin], color=colours[-1], lw=1.6 if colours[-1] != LIGHT.faint else 1.0)
     ends = [float(r[np.isfinite(r)][-1]) for r in map(comparison.residual, channels)]
     end_labels(ax, ends, [short(c.name) for c in channels], [LIGHT.ink if c == LIGHT.faint else c for c in colours])
@@ -62,7 +62,7 @@ def residuals(comparison: Comparison, *, png: str | Path | None = None) -> Figur
     ax.set(
         xlabel=f"time ({unit})", ylabel="measured − model (K)", title=f"{comparison.test.name}: what the model misses"
     )
-    ax.set_title("grey: within 2 sigma, or 4 % of the rise", loc="right", fontweight="normal", fontsize=8.5)
+    ax.set_title(f"grey is {RULE}", loc="right", fontweight="normal", fontsize=8.5)
     return paper.saved(figure, png)
 
 
@@ -83,7 +83,7 @@ def _panel(ax: Axes, comparison: Comparison, channel: Channel) -> None:
     ax.plot(t, comparison.model[channel.name][thin], color=BLUE)
     ax.set_title(short(channel.name))
     ax.margins(x=0)
-    over = comparison.rmse(channel) > limit_K(channel)
+    over = comparison.rmse(channel) > comparison.limit_K(channel)
     colour = VERMILION if over else LIGHT.ink
     ax.set_title(
         f"rms {comparison.rmse(channel):.1f} K", loc="right", color=colour, fontweight="bold" if over else "normal"

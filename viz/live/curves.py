@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geom.errors import InputError
-from validation.comparison.tolerance import limit_K
 from viz.colours import BLUE, LIGHT, ORANGE, Theme
 from viz.data import Comparison, short
 from viz.figures.curves import wrongness
@@ -55,12 +54,12 @@ def sensor(comparison: Comparison, channel: str, *, theme: Theme = LIGHT) -> go.
 
 
 def residuals(comparison: Comparison, *, theme: Theme = LIGHT) -> go.Figure:
-    """Measured - modelled of every sensor over time (K); those that are over are coloured (tolerance.py)."""
+    """Measured - modelled of every sensor over time (K); those that are over are coloured."""
     (t, unit), thin = comparison.clock, comparison.thin
     out = figure(theme, title={"text": f"{comparison.test.name}: what the model misses", "x": 0.02})
     for c in comparison.channels:
         r = comparison.residual(c)
-        colour = wrongness(r, limit_K(c))
+        colour = wrongness(r, comparison.limit_K(c))
         _line(out, plain(t[thin]), r[thin], short(c.name), theme.faint if colour == LIGHT.faint else colour, 1)
     out.update_xaxes(title=f"time ({unit})")
     out.update_yaxes(title="measured − model (K)", zeroline=True, zerolinecolor=theme.ink)

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from geom.disk_cache import atomic_write
-from validation.comparison.tolerance import WORDS
+from validation.comparison.uncertainty import RULE
 from viz.data import Comparison
 from viz.figures import candidates, curves, errors, heat
 from viz.machine.missing import placed
@@ -171,7 +171,9 @@ def _contradiction(diagnosis: Document) -> str:
     ]  # fmt: skip
     headers = ["test", "parameter", "other tests", "this test", "unit", "standard deviations", "can it differ?"]
     table = html.table(headers, rows, [d["possible"] is False for d in found["differences"][:12]])
-    return f"<h3>Tests that contradict each other</h3>{html.text(found['words'])}{html.more('In numbers', table)}"
+    drawn = html.plot(candidates.differences(found), "differences", "What would have to differ between tests.")
+    head = f"<h3>Tests that contradict each other</h3>{html.text(found['words'])}"
+    return f"{head}{drawn}{html.more('In numbers', table)}"
 
 
 _HEADERS = ["effect", "decision", "score", "threshold", "size", "95 % interval", "error (K)", "held-out (K)"]
@@ -247,7 +249,7 @@ def _sensors(r: Report) -> str:
         ]
         name = f"{test['name']} ({test['role']}), rms {test['rmse_K']:.2f} K"
         parts.append(html.more(name, html.table(headers, rows), opened=test["role"] == "hold-out"))
-    rule = f"<p>Error is measured − model; {WORDS}.</p>"
+    rule = f"<p>Error is measured − model; {RULE}.</p>"
     return html.section("Every sensor", rule, *parts)
 
 

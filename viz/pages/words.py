@@ -77,7 +77,10 @@ def _agreement(comparison: Document | None) -> tuple[str, str]:
         [] if comparison is None else [c for t in comparison["tests"] for c in t["channels"] if c["verdict"] == "over"]
     )
     if comparison is None or not over:
-        return "good", "The model agrees with the measurements within the sensors' uncertainty."
+        return (
+            "good",
+            "The model agrees with the measurements within the uncertainty of readings, inputs, arithmetic.",
+        )
     places = sorted({c["place"] for c in over})
     return "warn", f"The model disagrees with the measurements at {spoken(places)}."
 

@@ -19,7 +19,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError, MissingDependency
-from validation.comparison.tolerance import limit_K
 from viz.colours import BLUE, LIGHT, ORANGE, VERDICT, heat
 from viz.data import Comparison, Sensor, short
 from viz.figures.curves import wrongness
@@ -143,25 +142,27 @@ def _sensors(
         radii=rr.Radius.ui_points(5.0), show_labels=False,
     )  # fmt: skip
     stream.log("machine/sensors", points, static=True)
-    named = sorted(placed, key=lambda channel: -c.rmse(channel) / limit_K(channel))[:LABELS]
+    named = sorted(placed, key=lambda channel: -c.rmse(channel) / c.limit_K(channel))[:LABELS]
     labels = rr.Points3D(
         [positions[channel.name] for channel in named], labels=[short(channel.name) for channel in named],
         radii=rr.Radius.ui_points(0.0), show_labels=True,
     )  # fmt: skip
     stream.log("machine/names", labels, static=True)
     residual = np.stack([np.interp(times, c.test.time, c.residual(channel)) for channel in placed], axis=1)
-    _markers(stream, placed, rr.TimeColumn(TIME, duration=times), residual)
+    _markers(stream, c, placed, rr.TimeColumn(TIME, duration=times), residual)
     if revisions:
         ends = np.array([[row.get(channel.name, np.nan) for channel in placed] for row in revisions])
-        _markers(stream, placed, rr.TimeColumn(REVISION, sequence=range(len(ends))), ends)
+        _markers(stream, c, placed, rr.TimeColumn(REVISION, sequence=range(len(ends))), ends)
 
 
-def _markers(stream: rr.RecordingStream, placed: Sequence[Channel], index: Any, residual: Array) -> None:
+def _markers(
+    stream: rr.RecordingStream, c: Comparison, placed: Sequence[Channel], index: Any, residual: Array
+) -> None:  # fmt: skip
     """Colours of the sensors for every entry of `index`, from residuals (n, n_sensors) K."""
     import rerun as rr
 
     colours = [
-        _rgba(VERDICT[Sensor(channel.name, (0, 0, 0), r, limit_K(channel)).verdict])
+        _rgba(VERDICT[Sensor(channel.name, (0, 0, 0), r, c.limit_K(channel)).verdict])
         for row in residual
         for channel, r in zip(placed, row, strict=True)
     ]
@@ -176,7 +177,7 @@ def _curves(stream: rr.RecordingStream, c: Comparison) -> None:
         if c.before is not None:
             earlier = c.before[channel.name]
             _series(stream, f"curves/{channel.name}/earlier", c.test.time, earlier, ORANGE, "earlier model")
-        colour = wrongness(c.residual(channel), limit_K(channel))
+        colour = wrongness(c.residual(channel), c.limit_K(channel))
         _series(stream, f"residual/{channel.name}", c.test.time, c.residual(channel), colour, short(channel.name))
 
 
@@ -210,7 +211,7 @@ def _rgba(colour: str) -> int:
     return int(colour[1:] + "ff", 16)
 
 
-_LEGEND = """Sensors: green within their uncertainty, vermilion where the machine is hotter than the model,
+_LEGEND = """Sensors: green within the uncertainty, vermilion where the machine is hotter than the model,
 blue where it is colder. Six have names, those furthest beyond their uncertainty; the others under the pointer.
 
 Timelines (chosen at the bottom left): **test_time** runs through the test; for the tab *revisions* choose **revision**.

@@ -122,13 +122,11 @@ def _tests(tests: Sequence[Recorded], found: LowRank, positions: Mapping[str, Se
 
 def _sensors(test: Recorded, positions: Mapping[str, Sequence[float]]) -> list[dict[str, Any]]:
     """Readings at the page's instants; null where nothing was read."""
-    from validation.comparison.tolerance import limit_K
-
     shown, clock = test.comparison, np.asarray(test.comparison.test.time, float)
     at = np.clip(np.searchsorted(clock, test.times), 0, len(clock) - 1)
     return [
         {
-            "name": short(c.name), "xyz": [float(x) for x in positions[c.name]], "limit": limit_K(c),
+            "name": short(c.name), "xyz": [float(x) for x in positions[c.name]], "limit": shown.limit_K(c),
             "measured": _digits(np.asarray(c.y, float)[at], 2),
             "model": _digits(np.asarray(shown.model[c.name])[at], 2),
             "before": None if shown.before is None else _digits(np.asarray(shown.before[c.name])[at], 2),

@@ -91,6 +91,30 @@ class Record:
     start: float
 
 
+@dataclass(frozen=True)
+class Heated:
+    """What happened in one test.  at : logging times (s);  fine : those of T (n_fine, cells) degC;  rng : goes on
+
+    inputs : at the logging times;  driving : all that drives the machine, at the fine ones
+    """
+
+    machine: Machine
+    at: Array
+    fine: Array
+    inputs: Mapping[str, Array]
+    driving: Mapping[str, Array]
+    T: Array
+    rng: np.random.Generator
+
+    def at_spot(self, spot: Spot) -> Array:
+        """Temperature (degC) at a spot at the logging times."""
+        return np.interp(self.at, self.fine, self.T[:, self.machine.skeleton.cell(spot.body, spot.position)])
+
+    def mean(self, body: str) -> Array:
+        """Mean temperature (degC) of a body at the logging times; its cells are equal."""
+        return np.interp(self.at, self.fine, self.T[:, self.machine.skeleton.cells(body)].mean(axis=1))
+
+
 def measured(kind: Archetype, seed: int, change: Change, plans: tuple[Plan, ...] | None = None) -> tuple[Record, ...]:
     """All tests of one true machine."""
     return tuple(_logged(kind, plan, seed, change.during(plan.name)) for plan in plans or kind.plans)
@@ -118,13 +142,20 @@ def truly(kind: Archetype, plan: Plan, seed: int, change: Change) -> tuple[Array
     return at, inputs, {**driving, **{k: signal(fine) for k, signal in change.signals.items()}}
 
 
-def _logged(kind: Archetype, plan: Plan, seed: int, change: Change) -> Record:
-    draw = Draw(seed, change.factors)
-    machine, rng = kind.build(draw, change), np.random.default_rng([seed, 1, *plan.name.encode()])
+def heated(kind: Archetype, plan: Plan, seed: int, change: Change) -> Heated:
+    """A true machine through one test, from a start that is uneven by what a night leaves."""
+    machine, rng = kind.build(Draw(seed, change.factors), change), np.random.default_rng([seed, 1, *plan.name.encode()])
     at, inputs, driving = truly(kind, plan, seed, change)
-    fine, room = fine_times(at, kind.logger.fine), driving["T_ambient"]
-    start = float(room[0] + rng.uniform(-0.5, 1.0))
+    fine = fine_times(at, kind.logger.fine)
+    start = float(driving["T_ambient"][0] + rng.uniform(-0.5, 1.0))
     T = machine.run(fine, driving, start + 0.2 * rng.standard_normal(machine.skeleton.C.size))
+    return Heated(machine, at, fine, inputs, driving, T, rng)
+
+
+def _logged(kind: Archetype, plan: Plan, seed: int, change: Change) -> Record:
+    true, draw = heated(kind, plan, seed, change), Draw(seed, change.factors)
+    machine, at, fine, inputs, T, rng = true.machine, true.at, true.fine, true.inputs, true.T, true.rng
+    room = true.driving["T_ambient"]
     readings = {s.name: read(s, kind.logger, fine, T[:, s.cell], room, at, rng)
                 for s in sensors(kind, machine, draw, change)}  # fmt: skip
     readings |= {name: shows(readings[name]) for name, shows in change.shown.items()}

@@ -145,7 +145,8 @@ WORDS = {
     "draught@case": ("convection.constant@Gehaeuse",), "shaft fan@case": ("convection.fan@Gehaeuse",
     "convection.rotation@Gehaeuse"),
     "coupling heat@rotor": ("conduction.shaft@Rotor",), "windage@rotor": ("windage@Rotor",),
-    "bearing friction@rotor": ("bearing.friction@Rotor", "bearing.friction@Gehaeuse"),
+    # that the declared friction is a factor too small is the same heat by the same law at the same node
+    "bearing friction@rotor": ("bearing.friction@Rotor", "bearing.friction@Gehaeuse", "loss.factor@loss:Lager"),
     "ac copper@copper": ("copper.ac@Wicklung",),
     "inverter iron@case": ("iron.pwm@Gehaeuse",),
     "no tempco@copper": ("copper.feedback@Kupfer",), "heat@case": ("loss.constant@Gehaeuse",),

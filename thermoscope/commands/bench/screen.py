@@ -109,6 +109,8 @@ def two_paths(case: str, winding: str, machine: str, target: str | None) -> int:
     """R_ext and R_w of the case's network at the mean load of every test."""
     from validation.procedure.reduction.two_paths import of_test
 
+    if winding == machine:
+        raise InputError(f"'{winding}' is both", "--winding, --machine", "two places of the network")
     with progress() as tell:
         folder = open_case(case, tell)
         found = {t.name: of_test(folder.case, t, winding, machine).document() for t in folder.case.tests}

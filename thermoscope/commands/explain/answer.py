@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 from geom.errors import InputError
@@ -11,6 +12,8 @@ from thermoscope.commands.open_case import open_case_for_writing
 from thermoscope.commands.stored_diagnosis import last_diagnosis
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import give, progress
+from validation.case import Test
+from validation.effects import kinds
 from validation.effects.time_window import checked, event
 
 WORDS = {"yes": True, "y": True, "no": False, "n": False}
@@ -42,6 +45,13 @@ def asked(folder: Folder) -> str:
     return str(question["about"])
 
 
+def _fault(about: str, tests: Mapping[str, Test]) -> bool:
+    """Is it a fault of one of the sensors, or an effect, at a place?"""
+    kind, at, place = about.partition("@")
+    channels = {c.name for t in tests.values() for c in t.channels}
+    return bool(at) and (place in channels or kind in kinds())
+
+
 def known(folder: Folder, about: str) -> str:
     """A test, an event inside the tests, a fault, or an input."""
     tests, found = {t.name: t for t in folder.case.tests}, event(about)
@@ -50,6 +60,6 @@ def known(folder: Folder, about: str) -> str:
             if test not in tests:
                 raise InputError(f"unknown test '{test}'", f"--about {about}", f"known: {', '.join(tests)}")
             checked(found, test, float(tests[test].time[0]), float(tests[test].time[-1]), f"--about {about}")
-    elif about not in tests and "@" not in about and not any(about in t.inputs for t in tests.values()):
+    elif about not in tests and not _fault(about, tests) and not any(about in t.inputs for t in tests.values()):
         raise InputError(f"'{about}' is no test, event or fault", "--about", f"one of {', '.join(tests)}, or as asked")
     return about

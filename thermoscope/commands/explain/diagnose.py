@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from shlex import quote
 from typing import TYPE_CHECKING, Any
 
 from thermoscope.commands.bench.bases import bases_tried
@@ -28,18 +29,18 @@ def diagnose(case: str, target: str | None, older: bool = False) -> int:
         notes(["--draws is no longer needed: nothing is drawn"])
     with progress() as tell:
         found, document = diagnosed(open_case(case, tell), tell)
-    give(document, target, lambda: answer(document))
+    give(document, target, lambda: answer(document, case))
     return 0 if found.verdict in ("named", "group", "several") else 1
 
 
 def diagnosed(folder: Folder, tell: Progress) -> tuple[Diagnosis, dict[str, Any]]:
     """What is missing in an open case, and the document of it, which is kept in the case's out/."""
     from lumped.condensation.error_budget import ErrorBudget
-    from thermoscope.verification.error_budget import budgets_of_tests, documents
+    from thermoscope.verification.error_budget import documents
     from validation import diagnose as search
 
     checked_diagnosis(folder)
-    budgets = budgets_of_tests(folder, tell)
+    budgets = folder.budgets
     found = search(folder.case, folder.settings.kinds, tell, budget=ErrorBudget.worst(budgets.values()).total_K)
     named = {"case": folder.case.name, "revision": folder.case.model.revision}
     document = {**named, **found.document(), "error_budget": documents(budgets), **sampling(folder)}
@@ -47,9 +48,9 @@ def diagnosed(folder: Folder, tell: Progress) -> tuple[Diagnosis, dict[str, Any]
     return found, document
 
 
-def answer(document: Mapping[str, Any]) -> Answer:
-    """The verdict; of a wrong base only that, for it comes first."""
-    sentence, case = f"{document['verdict']}: {document['words']}", document.get("case", "CASE")
+def answer(document: Mapping[str, Any], called: str) -> Answer:
+    """The verdict; of a wrong base only that, for it comes first.  called : what the user calls the case"""
+    sentence, case = f"{document['verdict']}: {document['words']}", quote(called)
     bases, steps = document.get("bases", []), document.get("sampling", {})
     if any(h["declared"] and h["excluded"] for h in bases):
         return Answer(sentence, [bases_tried(bases)], f"--json FILE; thermoscope bench bases {case}")
@@ -61,17 +62,17 @@ def answer(document: Mapping[str, Any]) -> Answer:
     found = document["candidates"]
     parts = [_odds(document), remaining, _candidates(found), *_leader(found), *events(document),
              *contradiction(document.get("contradiction")), next_tests(document), *_lost(found, named),
-             in_short(document.get("error_budget", {}), steps), unseen, question(document)]  # fmt: skip
+             in_short(document.get("error_budget", {}), steps), unseen, question(document, case)]  # fmt: skip
     rest = [*budget(document.get("error_budget", {}), steps), *hidden]
     return Answer(sentence, parts, f"{step}; --json FILE; thermoscope show report {case}", rest)
 
 
-def question(document: Mapping[str, Any]) -> str:
+def question(document: Mapping[str, Any], case: str) -> str:
     """What to ask the user, if an answer would tell more than a guess."""
     found = document.get("question")
     if not found:
         return ""
-    return f"One question: {found['words']} Then: thermoscope explain answer {document.get('case', 'CASE')} yes|no"
+    return f"One question: {found['words']} Then: thermoscope explain answer {case} yes|no"
 
 
 def _odds(document: Mapping[str, Any]) -> Grid:
@@ -82,8 +83,8 @@ def _odds(document: Mapping[str, Any]) -> Grid:
 
 def _candidates(found: Sequence[Mapping[str, Any]]) -> Grid:
     """Size with interval and detection limit, and what it buys."""
-    headers = ["effect", "%", "size (95 %)", "unit", "seen from", "error (K)", "held out (K)", "decision"]
-    keep = ["size (95 %)", "%", "unit", "error (K)"]
+    headers = ["effect", "%", "size (95 %)", "unit", "detectable", "error (K)", "held out (K)", "decision"]
+    keep = ["size (95 %)", "%", "detectable", "unit", "error (K)"]
     rows = [_row(c) for c in found if c["probability"] > SHOWN or c["decision"] != "no"] or [_row(c) for c in found[:1]]
     return Grid("Candidates", headers, rows[:ROWS], ["named", "group"], keep)
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Mapping, Sequence
+from shlex import quote
 from typing import TYPE_CHECKING, Any
 
-from thermoscope.case_folder.columns import write_columns
+from thermoscope.case_folder.columns import checked_columns, write_columns
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import History, save_history
 from thermoscope.commands.explain.next_tests import next_tests
@@ -29,13 +30,14 @@ def improve(case: str, yes: bool, most: int, target: str | None) -> int:
 
     with progress() as tell:
         folder = open_case_for_writing(case, tell)
+        checked_columns(folder)
         ledger = Ledger(folder)
         guide = Supervisor(singletons if yes else asked, ledger.keep)
         done = improve(folder.case, guide, most, tell, folder.settings.kinds)
     found = {"case": folder.case.name, "revision": ledger.history.last.number, **done.diagnosis.document()}
     save_diagnosis(folder, json.loads(json.dumps(found, default=float)))
     document = {"case": folder.case.name, **done.document(), "written": ledger.written}
-    give(document, target, lambda: answer(document, folder))
+    give(document, target, lambda: answer(document, folder, case))
     return 0 if done.adequate else 1
 
 
@@ -60,7 +62,7 @@ def asked(found: Diagnosis, choice: Sequence[Candidate]) -> str | None:
         print(f"  would decide: {further.kind} {further.what} ({further.hours:.3g} h)", file=sys.stderr)
     print("add which? (number, or Enter to stop) ", end="", file=sys.stderr, flush=True)
     word = sys.stdin.readline().strip()
-    return choice[int(word) - 1].effect if word.isdigit() and 1 <= int(word) <= len(choice) else None
+    return choice[int(word) - 1].effect if word.isdecimal() and 1 <= int(word) <= len(choice) else None
 
 
 def offer(c: Candidate) -> str:
@@ -70,7 +72,7 @@ def offer(c: Candidate) -> str:
     return f"{c.effect}: {c.title}, {size}, probability {100 * c.probability:.0f} %{fell}"
 
 
-def answer(document: Mapping[str, Any], folder: Folder) -> Answer:
+def answer(document: Mapping[str, Any], folder: Folder, called: str) -> Answer:
     """Why it ended, the error step by step, and what would decide if it stopped."""
     steps = document["stairs"]
     headers = ["step", *(f"{t['name']} ({t['role']}, K)" for t in steps[0]["tests"]), "all (K)", "probability"]
@@ -87,5 +89,5 @@ def answer(document: Mapping[str, Any], folder: Folder) -> Answer:
     written = f"{document['written']} revisions written to {folder.settings.model_file}"
     kept = written if document["written"] else "nothing written"
     further = "" if document["adequate"] else next_tests(document["diagnosis"])
-    more = f"thermoscope model undo {document['case']} takes a step back; thermoscope show report {document['case']}"
+    more = f"thermoscope model undo {quote(called)} takes a step back; thermoscope show report {quote(called)}"
     return Answer(f"{document['verdict']}: {document['why']}; {kept}.", [errors, further], more)

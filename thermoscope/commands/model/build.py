@@ -28,7 +28,8 @@ ERRORS = ("mean", "hot", "point")
 def build(machine: str, out: Path | None, target: str | None, accuracy: float | None = None) -> int:
     """Solids, mesh and network of a machine to a folder, and the network against the field.
 
-    accuracy : percent of a part's own rise; the smallest network that meets it is kept. None: the size a case runs.
+    accuracy : percent of a part's own rise, mesh included; the smallest network that meets it is kept.
+        None: the mesh and the size that a case runs.
     """
     from geom import check_cad, export_cad, write_vtu
 
@@ -73,11 +74,11 @@ def built_from(
     """At the size a case runs, or at the smallest that is accurate enough.  size_m : of the mesh's triangles (m)"""
     from lumped.machine.bases import on_all
     from thermoscope.pipeline import build as usual
-    from thermoscope.verification.network_size import smallest_network
+    from thermoscope.verification.network_size import accurate_network
 
     if accuracy is None:
         return usual(on_all(described), size_m, progress=tell), None
-    found = smallest_network(described, accuracy, size_m, progress=tell)
+    found = accurate_network(described, accuracy, size_m, tell)
     return found.built, found
 
 
@@ -142,13 +143,16 @@ def _sizes(sizes: Mapping[str, Any]) -> list[Grid | str]:
     ]
     title = f"Error in % of a part's rise (wish: means {wish['mean']:g}, hot spots and points {wish['hot']:g})"
     headers = ["network", "states", "mean", "hot spot", "point", "mean, random", "hot, random", "point, random", "met"]
-    missed: list[Grid | str] = []
-    if not sizes["met"]:
+    notes: list[Grid | str] = []
+    if mesh := sizes["mesh"]:
+        left = f"{mesh['worst']:.2g} % of the rise at the hot spot of {mesh['worst_part']}"
+        notes.append(f"The mesh of {mesh['unknowns']} unknowns leaves {left}.")
+    if sizes["guard"] and not sizes["guard"][-1]["met"]:
         bad = sizes["guard"][-1]["random"]
-        missed = [
+        notes.append(
             f"The wish is missed: mean {bad['mean_part']}, hot spot {bad['hot_part']}, point {bad['point_part']}."
-        ]
-    return [Grid(title, headers, rows, keep=["states", "mean, random", "hot, random", "met"]), *missed]
+        )
+    return [Grid(title, headers, rows, keep=["states", "mean, random", "hot, random", "met"]), *notes]
 
 
 def _errors(size: Mapping[str, Any]) -> Sequence[Any]:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from geom.errors import InputError
+from lumped.schemas.reader import known
 from thermoscope.case_folder.folder import Folder
 from thermoscope.commands.model.revise import revised
 from thermoscope.commands.stored_diagnosis import fingerprint, store, stored
@@ -36,12 +39,23 @@ def calibrate(
         unfinished = Unfinished(folder)
         usual = folder.settings
         many, drawn = usual.starts if starts is None else starts, usual.seed if seed is None else seed
+        _profilable(folder, profile)
         search = Search(many, drawn, unfinished.values(tell), unfinished.keep)
         result = fitted(folder.case, progress=tell, profiled=profile, search=search)
         unfinished.done()
         return result
 
     return revised(case, step, anyway, target)
+
+
+def _profilable(folder: Folder, globs: Sequence[str]) -> None:
+    """InputError for a glob that means no free parameter."""
+    from validation.calibration.unknowns import working
+
+    names = working(folder.case)[1].names
+    for glob in globs:
+        if not any(fnmatchcase(name, glob) for name in names):
+            raise InputError(f"'{glob}' is no free parameter", "--profile", known(glob, names))
 
 
 class Unfinished:

@@ -27,12 +27,12 @@ SHOWN = 12  # rows of a long table on the screen; the files hold all
 
 def crosscheck(machine: str, out: Path | None, accuracy: float, target: str | None) -> int:
     """Where network and field disagree, which link is responsible, and every hand formula beside the field's value."""
-    from thermoscope.verification.network_size import smallest_network
+    from thermoscope.verification.network_size import accurate_network
 
     described = load_machine_file(Path(machine))
     folder = out or Path("out") / described.name
     with progress() as tell:
-        found = smallest_network(described, accuracy, progress=tell)
+        found = accurate_network(described, accuracy, progress=tell)
         document = {"machine": described.name, **checked(found.built, found, tell)}
         save(document, folder)
     give(document, target, lambda: answer(document, folder))

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from shlex import quote
 from typing import TYPE_CHECKING, Any
 
 from geom.errors import InputError
-from thermoscope.case_folder.columns import write_columns
+from thermoscope.case_folder.columns import checked_columns, write_columns
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import Revision, save_history
 from thermoscope.case_folder.runs import at_revision
@@ -14,7 +15,7 @@ from thermoscope.commands.open_case import open_case_for_writing
 from thermoscope.commands.stored_diagnosis import saved_diagnosis
 from thermoscope.console.answer import Answer, Grid, cell
 from thermoscope.console.terminal import give, notes, progress
-from validation.comparison.compare import compare
+from validation.comparison.compare import errors
 from validation.measurement.faults import broken_channels
 
 if TYPE_CHECKING:
@@ -58,18 +59,19 @@ def undo(case: str, number: int | None, target: str | None) -> int:
     """One revision more, equal to the one before the last, or to `number`; nothing is forgotten."""
     with progress() as tell:
         folder = open_case_for_writing(case, tell)
+        checked_columns(folder)
         last = folder.history.last.number
         if number is None and last == 0:
             raise InputError("there is no step to undo", str(folder.settings.model_file), "a case that was revised")
         history = folder.history.back_to(last - 1 if number is None else number)
         after = at_revision(folder, history.last)
         tell("running the model")
-        errors = {t.name: t.rmse_K for t in compare(after).tests}
+        rms = {t.name: t.rmse_K for t in errors(after).tests}
     save_history(folder.settings.model_file, history, folder.history)
     write_columns(folder, history.last.effects)
     model = {"case": folder.case.name, "revision": history.last.number, "why": history.last.why}
-    document = {**model, "effects": list(history.last.effects), "rmse_K": errors}
-    sentence, rows = f"Revision {history.last.number}: {history.last.why}.", list(errors.items())
+    document = {**model, "effects": list(history.last.effects), "rmse_K": rms}
+    sentence, rows = f"Revision {history.last.number}: {history.last.why}.", list(rms.items())
     give(document, target, lambda: Answer(sentence, [Grid("", ["test", "rms (K)"], rows)]))
     return 0
 
@@ -78,6 +80,7 @@ def revised(case: str, step: Callable[..., revise.Revision], anyway: bool, targe
     """Open, take the step, keep it if it is accepted, show it. `step` is given folder and progress."""
     with progress() as tell:
         folder = open_case_for_writing(case, tell)
+        checked_columns(folder)
         notes(f"{f.words}; those readings are left out" for f in broken_channels(folder.case.tests))
         result = step(folder, tell)
     keep = result.accepted or anyway
@@ -86,7 +89,7 @@ def revised(case: str, step: Callable[..., revise.Revision], anyway: bool, targe
         save_history(folder.settings.model_file, longer, folder.history)
         write_columns(folder, longer.last.effects)
     document = {**result.document(), "case": folder.case.name, "written": keep}
-    give(document, target, lambda: answer(document, folder))
+    give(document, target, lambda: answer(document, folder, case))
     return 0 if keep else 1
 
 
@@ -129,7 +132,7 @@ def note(p: Mapping[str, Any]) -> str:
     return "at its bound" if p["at_bound"] else f"trades with {p['partner']}" if p["partner"] else ""
 
 
-def answer(document: Mapping[str, Any], folder: Folder) -> Answer:
+def answer(document: Mapping[str, Any], folder: Folder, called: str) -> Answer:
     """Whether it stands, the error before and after, and the values that the data fixed."""
     name = f"{document['action']} {document['effect'] or ''}".strip()
     verdict = "accepted" if document["accepted"] else "not accepted"
@@ -143,7 +146,7 @@ def answer(document: Mapping[str, Any], folder: Folder) -> Answer:
     return Answer(
         f"{name}: {verdict}; {document['why']}; {kept}.",
         parts,
-        f"Next: thermoscope {step} {document['case']}; --json FILE",
+        f"Next: thermoscope {step} {quote(called)}; --json FILE",
     )
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError
 from thermoscope.case_folder.folder import Folder
-from thermoscope.case_folder.runs import before_last, by_interest, fields, readings
+from thermoscope.case_folder.runs import before_last, by_interest, fields, held, readings
 from thermoscope.commands.open_case import open_case
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import give, progress
@@ -33,7 +33,7 @@ def film(case: str, out: Path | None, target: str | None) -> int:
 
         folder = open_case(case, tell)
         if folder.built is None:
-            right = f"a case with a machine; or: thermoscope show picture {folder.case.name} curves"
+            right = f"a case with a machine; or: thermoscope show picture {folder.settings.path} curves"
             raise InputError("has a network declared by hand, and so no geometry", folder.case.name, right)
         nodes, test, earlier = split(folder.built.mesh), by_interest(folder)[0], before_last(folder)
         file = out or Path("out") / f"{folder.case.name}.gif"
@@ -74,9 +74,9 @@ def largest(sensors: Sequence[Sensor]) -> str:
 
 def misses(folder: Folder, model: Case, test: Test, times: NDArray[np.float64]) -> list[tuple[Sensor, ...]]:
     """At each of the times (s): the sensors with a place, and what the model misses there."""
-    from validation.comparison.tolerance import limit_K
     from viz.data import Sensor
 
+    shown = held(folder, test)
     read, at = readings(model, test), np.searchsorted(test.time, times).clip(0, len(test.time) - 1)
     out = []
     for i in at:
@@ -84,6 +84,6 @@ def misses(folder: Folder, model: Case, test: Test, times: NDArray[np.float64]) 
         for c in test.channels:
             if c.name in folder.positions:
                 x, y, z = folder.positions[c.name]
-                row.append(Sensor(c.name, (x, y, z), float(c.y[i] - read[c.name][i]), limit_K(c)))
+                row.append(Sensor(c.name, (x, y, z), float(c.y[i] - read[c.name][i]), shown.limit_K(c)))
         out.append(tuple(row))
     return out

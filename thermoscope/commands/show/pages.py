@@ -61,20 +61,18 @@ def report(case: str, out: Path | None, target: str | None) -> int:
 
 def write_page(folder: Folder, case: str, into: Path, tell: Progress) -> Path:
     """Write into/report.html with its pictures; `case` is what the commands on it call the case."""
-    from thermoscope.verification.error_budget import budgets_of_tests, documents
-    from validation.comparison.compare import compare
+    from thermoscope.verification.error_budget import documents
     from viz.pages.report import Report, write_report
 
-    tell("running the model")
-    result, (diagnosis, earlier) = compare(folder.case), _diagnosis(folder)
+    tell("running the model and its error budget")
+    result, (diagnosis, earlier) = folder.compared, _diagnosis(folder)
     curves = [marked(held(folder, test), diagnosis) for test in by_interest(folder)]
-    budgets = budgets_of_tests(folder, tell)
     tell("drawing")
     viewed = "" if folder.built is None else viewer_page(folder, tell)
     page = Report(
         folder.case.name, folder.settings.description, result.document(), diagnosis, steps(folder),
         parameters(folder), curves, _pictures(folder, into, None if earlier else diagnosis), assumptions(folder),
-        commands(folder, case), made(), earlier, documents(budgets), viewed,
+        commands(folder, case), made(), earlier, documents(folder.budgets), viewed,
     )  # fmt: skip
     return write_report(page, into / "report.html")
 
@@ -91,17 +89,25 @@ def render(case: str, out: Path | None, target: str | None) -> int:
     with progress() as tell:
         folder = open_case_for_writing(case, tell)
         into = out or folder.settings.out
-        into.mkdir(parents=True, exist_ok=True)
-        tell("drawing curves")
-        files = [*_plots(folder, into), *_pictures(folder, into, saved_diagnosis(folder)).values()]
-        if folder.built is not None:
-            tell("writing the recording")
-            files.append(_recording(folder, into))
+        files = rendered(folder, into, tell)
     if folder.built is None:
         notes(["this case has no geometry (a hand-declared network): no field and no recording"])
     document = {"case": folder.case.name, "files": [str(f) for f in files]}
     give(document, target, lambda: Answer(f"{len(files)} files in {into}.", [str(f.name) for f in files]))
     return 0
+
+
+def rendered(folder: Folder, into: Path, tell: Progress) -> list[Path]:
+    """The pictures of an open case, and its recording."""
+    into.mkdir(parents=True, exist_ok=True)
+    tell("running the model and its error budget")
+    _ = folder.compared
+    tell("drawing curves")
+    files = [*_plots(folder, into), *_pictures(folder, into, saved_diagnosis(folder)).values()]
+    if folder.built is not None:
+        tell("writing the recording")
+        files.append(_recording(folder, into))
+    return files
 
 
 def _diagnosis(folder: Folder) -> tuple[Mapping[str, Any] | None, bool]:

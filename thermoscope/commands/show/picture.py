@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
+from geom.plugins import plugins
 from lumped.integration.balance import balance
 from lumped.integration.simulate import simulate
 from lumped.schemas.reader import known
@@ -34,15 +35,16 @@ Array = NDArray[np.float64]
 
 def picture(case: str, what: str, out: Path | None, target: str | None) -> int:
     """One picture of a case, at the end of its most telling test, as a PNG file."""
-    if what not in PICTURES:
-        raise InputError(f"unknown picture '{what}'", "show picture", known(what, PICTURES))
+    pictures = {**PICTURES, **plugins("pictures")}
+    if what not in pictures:
+        raise InputError(f"unknown picture '{what}'", "show picture", known(what, pictures))
     if out is not None and (out.suffix != ".png" or out.is_dir()):
         raise InputError("is no name of a picture", f"--out {out}", "a file NAME.png")
     with progress() as tell:
         subject = Subject(open_case(case, tell))
         file = out or Path("out") / f"{subject.folder.case.name}-{what}.png"
         tell(f"drawing {file}")
-        PICTURES[what](subject, file)
+        pictures[what](subject, file)
     give({"case": subject.folder.case.name, "picture": what, "file": str(file)}, target, lambda: Answer(f"{file}"))
     return 0
 

@@ -48,7 +48,7 @@ def viewer_page(folder: Folder, tell: Progress) -> str:
     from viz.viewer.page import document, render
 
     if folder.built is None:
-        right = f"a case with a machine; or: thermoscope show picture {folder.case.name} curves"
+        right = f"a case with a machine; or: thermoscope show picture {folder.settings.path} curves"
         raise InputError("has a network declared by hand, and so no geometry", folder.case.name, right)
     nodes, earlier, tests = split(folder.built.mesh), before_last(folder), []
     for test in by_interest(folder):

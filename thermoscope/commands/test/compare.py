@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from shlex import quote
+from typing import TYPE_CHECKING, Any
 
 from thermoscope.commands.model.error_budget import budget, in_short, sampling
 from thermoscope.commands.open_case import open_case
 from thermoscope.console.answer import Answer, Grid
-from thermoscope.console.terminal import give, progress
-from validation.comparison.tolerance import WORDS
+from thermoscope.console.terminal import Progress, give, progress
+from validation.comparison.uncertainty import RULE
+
+if TYPE_CHECKING:
+    from thermoscope.case_folder.folder import Folder
+    from validation.comparison.compare import Comparison
 
 EVIDENT = 10.0  # nats
 WHITE = 0.01
@@ -18,26 +23,39 @@ TURNS = {True: "yes", False: "no", None: ""}
 
 
 def compare(case: str, target: str | None, why: bool = False, sure: bool | None = None) -> int:
-    """Exit code 1 when a sensor is outside its uncertainty and outside the 4 % rule."""
-    from thermoscope.bands import of_tests, wanted
-    from thermoscope.verification.error_budget import budgets_of_tests, documents
-    from validation.comparison.compare import compare as held_against
-    from validation.diagnosis.discrepancy import discrepancies
-
+    """Exit code 1 when a sensor's error is beyond the uncertainty of reading, inputs and arithmetic."""
     with progress() as tell:
-        folder = open_case(case, tell)
-        tell("running the model")
-        result = held_against(folder.case)
-        more = discrepancies(folder.case, tell).document() if why else {}
-        budgets = budgets_of_tests(folder, tell)
-        bands = {"bands": of_tests(folder, tell)} if wanted(folder.case.model.network, sure) else {}
-    document = {**result.document(), **more, "error_budget": documents(budgets), **sampling(folder), **bands}
-    give(document, target, lambda: answer(document))
+        result, document = compared(open_case(case, tell), tell, why, sure)
+    give(document, target, lambda: answer(document, case))
     return 0 if result.agrees else 1
 
 
-def answer(document: Mapping[str, Any]) -> Answer:
-    """How many sensors are over, which, and what the rest looks like."""
+def compared(
+    folder: Folder, tell: Progress, why: bool = False, sure: bool | None = None
+) -> tuple[Comparison, dict[str, Any]]:
+    """An open case's model against its tests, and the document of it."""
+    from thermoscope.bands import of_tests, wanted
+    from thermoscope.verification.error_budget import documents
+    from validation.diagnosis.discrepancy import discrepancies
+
+    tell("error of mesh and condensation" if folder.built else "error of the time steps")
+    budgets = folder.budgets
+    tell("running the model")
+    result = folder.compared
+    more = {**uncertainty(result), **discrepancies(folder.case, tell).document()} if why else {}
+    bands = {"bands": of_tests(folder, tell)} if wanted(folder.case.model.network, sure) else {}
+    return result, {
+        **result.document(), **more, "error_budget": documents(budgets), **sampling(folder), **bands,
+    }  # fmt: skip
+
+
+def uncertainty(result: Comparison) -> dict[str, Any]:
+    """What reading, inputs and arithmetic leave open at every sensor, for a document."""
+    return {"uncertainty": [u.document() for test in result.tests for u in test.uncertainty]}
+
+
+def answer(document: Mapping[str, Any], called: str) -> Answer:
+    """How many sensors are over, which, and what the rest looks like.  called : what the user calls the case"""
     records = [{"test": t["name"], **c} for t in document["tests"] for c in t["channels"]]
     over = sorted((r for r in records if r["verdict"] == "over"), key=lambda r: -r["rmse_K"] / r["limit_K"])
     model = document["model"]
@@ -46,18 +64,19 @@ def answer(document: Mapping[str, Any]) -> Answer:
     sentence = (f"{document['case']}, revision {model['revision']}{effects}: {found}; rms {document['rmse_K']:.2f} K, "
                 f"the sensors' own uncertainty explains {document['floor_K']:.2f} K.")  # fmt: skip
     why = _why(document) if "patterns" in document else []
-    parts = [*why, tests(document["tests"]), records_of("Over: error is measured - model", over),
+    parts = [*why, records_of("Over: error is measured - model", over), tests(document["tests"]),
              in_short(document["error_budget"], document["sampling"]), roles_in_short(document["roles"])]  # fmt: skip
     rest = [*(records_of(f"{t['name']} ({t['role']})", [{"test": t["name"], **c} for c in t["channels"]])
               for t in document["tests"]), roles(document["roles"]),
              *budget(document["error_budget"], document["sampling"]), bands_of(document.get("bands", ()))]  # fmt: skip
-    return Answer(sentence, parts, f"{WORDS}; --why, --json FILE; thermoscope show report {document['case']}", rest)
+    return Answer(sentence, parts, f"{RULE}; --why, --json FILE; thermoscope show report {quote(called)}", rest)
 
 
 def tests(found: Sequence[Mapping[str, Any]]) -> Grid:
-    """A row per test."""
+    """A row per test, those with most sensors over first."""
     rows = [[t["name"], t["role"], len(t["channels"]), sum(c["verdict"] == "over" for c in t["channels"]), t["rmse_K"]]
             for t in found]  # fmt: skip
+    rows.sort(key=lambda row: -row[3])
     return Grid("", ["test", "role", "sensors", "over", "rms (K)"], rows, keep=["rms (K)", "over"])
 
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,9 +12,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from geom.errors import InputError
+from lumped.machine.losses import ASSUMED
 from thermoscope.case_folder.files import write_whole
 from thermoscope.console.answer import Answer, Grid
-from thermoscope.console.terminal import Progress, give, progress
+from thermoscope.console.terminal import Progress, give, notes, progress
+from thermoscope.extras import message as missing_extra
 from thermoscope.importing.aligned import Recording, grouped, shift
 from thermoscope.importing.cells import number
 from thermoscope.importing.clock import Clock, clock_of
@@ -24,9 +27,11 @@ from thermoscope.importing.source import Source, read_source, signature
 from thermoscope.importing.starter import starter
 from thermoscope.importing.target import Target, target_of
 from thermoscope.importing.written import folder_whole, quoted, write_case
+from thermoscope.recordings.grid import LONGEST_S
 
 if TYPE_CHECKING:
     from lumped.model.network import Network
+    from thermoscope.case_folder.settings import Settings
     from viz.figures.columns import Panel
 
 PICTURE = "columns.png"
@@ -64,13 +69,21 @@ def new(files: Sequence[Path], wishes: Wishes, target: str | None) -> int:
         raise InputError("a machine and a network are both given", "--machine, --network", "one of the two")
     folder = wishes.out or Path(test_name(files[0], []))
     with progress() as tell:
-        read = [_read(file, wishes, tell) for file in dict.fromkeys(files)]
+        _window(wishes)
+        read = [read_recording(file, wishes.period_s, tell) for file in dict.fromkeys(files)]
         model = _model(wishes, read, tell)
     drafts = _drafts(read, model, wishes)
     with progress() as tell:
-        document = _written(folder, model, drafts, tell)
+        document = written(folder, model, drafts, tell)
     give(document, target, lambda: answer(document))
     return 0
+
+
+def _window(wishes: Wishes) -> None:
+    """The part that is asked for runs forwards."""
+    start, end = wishes.window_s
+    if end is not None and end <= start:
+        raise InputError(f"{start:g} is not before {end:g}", "--from, --to", "--from below --to")
 
 
 def settings(words: Sequence[str]) -> dict[str, float]:
@@ -84,10 +97,26 @@ def settings(words: Sequence[str]) -> dict[str, float]:
     return out
 
 
-def _read(file: Path, wishes: Wishes, tell: Progress) -> tuple[Source, Clock]:
+def read_recording(file: Path, period_s: float | None, tell: Progress) -> tuple[Source, Clock]:
+    """A file and its clock.  period_s : between rows, where it has none"""
     tell(f"reading {file.name}")
     source = read_source(file)
-    return source, clock_of(source, wishes.period_s)
+    clock = clock_of(source, period_s)
+    span = float(np.nanmax(clock.seconds) - np.nanmin(clock.seconds))
+    if span > LONGEST_S:
+        raise InputError(f"its rows span {span:.3g} s", str(file), "at most a year: the clock in seconds, or --period")
+    return source, clock
+
+
+def model_of_case(settings: Settings, network: Network) -> Model:
+    """The machine or the network of a case that is there, for another one."""
+    if settings.network is not None:
+        return Model(network, target_of(network), _copied("network", settings.network, "network.toml"))
+    assert settings.machine is not None, "a case has a machine or a network"
+    if settings.machine.suffix == ".toml" and settings.machine.exists():
+        return Model(network, target_of(network), _copied("machine", settings.machine, "machine.toml"))
+    name = settings.machine.name.removesuffix(".toml")
+    return Model(network, target_of(network), lambda folder: f"machine = {quoted(name)}")
 
 
 def _model(wishes: Wishes, read: Sequence[tuple[Source, Clock]], tell: Progress) -> Model:
@@ -106,6 +135,9 @@ def _machine(machine: str, tell: Progress) -> Model:
     from thermoscope.pipeline import build
 
     network = build(load_machine_file(Path(machine)), progress=tell).network
+    if any(source.name == ASSUMED for source in network.sources):
+        raise InputError("declares no losses: nothing says what heated it in the tests", machine,
+                         "[losses.NAME] with kind, at and its numbers")  # fmt: skip
     path = Path(machine)
     if not path.exists():
         name = path.name.removesuffix(".toml")
@@ -145,38 +177,69 @@ def _drafts(read: Sequence[tuple[Source, Clock]], model: Model, wishes: Wishes) 
         Recording(source, clock, dialogue.settled(source, guesses(source, clock.columns, model.target)))
         for source, clock in read
     ]
+    return drafts_of(records, dialogue, wishes.window_s)
+
+
+def drafts_of(
+    records: Sequence[Recording], dialogue: Dialogue, window_s: tuple[float, float | None] = (0.0, None)
+) -> list[Draft]:
+    """A test from each group of recordings that ran together; their clocks are aligned."""
     out: list[Draft] = []
-    for first, *others in grouped(records, [signature(r.source) for r in records]):
+    for first, *others in grouped(list(records), [signature(r.source) for r in records]):
         moved = [replace(r, shift_s=s, how=how) for r in others for s, how in [shift(first, r)]]
-        draft = Draft(test_name(first.source.file, [d.name for d in out]), (first, *moved),
-                      window_s=wishes.window_s)  # fmt: skip
+        draft = Draft(test_name(first.source.file, [d.name for d in out]), (first, *moved), window_s=window_s)
         out.append(dialogue.completed(draft))
     return out
 
 
-def _written(folder: Path, model: Model, drafts: Sequence[Draft], tell: Progress) -> dict[str, Any]:
+def written(folder: Path, model: Model, drafts: Sequence[Draft], tell: Progress) -> dict[str, Any]:
     """Write the case, read it as compare would, draw its columns; the document of the command."""
     from thermoscope.case_folder.doctor import examined
     from thermoscope.case_folder.folder import patient_of
     from thermoscope.case_folder.settings import read_settings
     from thermoscope.recordings.readings import read_test
-    from viz.figures.columns import columns
 
     with folder_whole(folder) as partial:
         tell("writing the case")
         write_case(partial, folder.name, model.put, drafts)
         settings = read_settings(partial)
-        patients = [patient_of(entry) for entry in settings.tests]
-        for entry, one in zip(settings.tests, patients, strict=True):
-            read_test(entry.name, entry.role, one.samples, one.sheet, model.network, settings.sample_s)
+        with _as_recorded(partial, drafts):
+            patients = [patient_of(entry) for entry in settings.tests]
+            for entry, one in zip(settings.tests, patients, strict=True):
+                read_test(entry.name, entry.role, one.samples, one.sheet, model.network, settings.sample_s)
         findings = [f for f in examined(patients, model.network) if not f.remark]
         tell("drawing the columns")
-        columns(panels(drafts[0]), f"{drafts[0].name}: what each column was taken for", png=partial / "out" / PICTURE)
+        _draw(drafts[0], partial / "out" / PICTURE)
     return {
         "case": folder.name, "folder": str(folder), "invented_network": model.invented,
         "sample_s": settings.sample_s, "findings": [f.document() for f in findings],
         "tests": [_document(d, e.role) for d, e in zip(drafts, settings.tests, strict=True)],
     }  # fmt: skip
+
+
+def _draw(draft: Draft, png: Path) -> None:
+    """The columns as a picture, a note where nothing can draw."""
+    try:
+        from viz.figures.columns import columns
+
+        columns(panels(draft), f"{draft.name}: what each column was taken for", png=png)
+    except ModuleNotFoundError as fault:
+        notes([f"no picture of the columns: {missing_extra(fault) or fault}"])
+
+
+@contextmanager
+def _as_recorded(folder: Path, drafts: Sequence[Draft]) -> Iterator[None]:
+    """What is wrong with a test that was to be written is said of the recording it comes from."""
+    try:
+        yield
+    except InputError as fault:
+        where = fault.where
+        for draft in drafts:
+            files = ", ".join(str(r.source.file) for r in draft.records)
+            for name in (f"{draft.name}.csv", f"{draft.name}.toml"):
+                where = where.replace(str(folder / "tests" / name), files)
+        right = f"{fault.right}; or a part of it by --from and --to, other values by --set; nothing was written"
+        raise InputError(fault.what, where.replace(str(folder), "the new case"), right) from None
 
 
 def _document(draft: Draft, role: str) -> dict[str, Any]:

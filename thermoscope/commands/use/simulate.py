@@ -26,7 +26,7 @@ from thermoscope.commands.model.error_budget import budget, in_short
 from thermoscope.commands.open_case import PACKAGE, open_case
 from thermoscope.commands.use.simulate_readings import readings, short_of
 from thermoscope.console.answer import Answer, Grid
-from thermoscope.console.terminal import Progress, give, progress
+from thermoscope.console.terminal import Progress, give, notes, progress
 from validation.bands import Bands, ParameterPosterior
 
 Array = NDArray[np.float64]
@@ -72,7 +72,9 @@ def _cycles(folder: Folder, network: Network, cycle: str | None) -> Iterable[Cyc
     if cycle is None:
         return [Cycle(test.name, record(test, {})) for test in folder.case.tests]
     ratings = folder.built.machine.sections.get("ratings", {}) if folder.built is not None else {}
-    return [load_cycle(find_cycle(folder.settings.path, cycle), network, ratings)]
+    found = load_cycle(find_cycle(folder.settings.path, cycle), network, ratings)
+    notes(found.notes)
+    return [found]
 
 
 def _ran(

@@ -12,6 +12,7 @@ from lumped.transfer.laws import Array, Inputs, Law, TemperatureLaw
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import copy_link, copy_source
 
+COUNTED = ("speed", "frequency")  # by encoder or clock: a wrong number of pulses is a factor, and seen at once
 STEP = 0.1  # of the input: a chord of laws that bend, as wide as such faults are
 
 
@@ -43,13 +44,20 @@ def read(network: Network) -> list[tuple[str, Link | Source]]:
     return [(name, x) for x in items if not x.origin and not x.law.looks_at_all for name in x.law.reads]
 
 
+def metered(scene: Scene) -> list[str]:
+    """Inputs that laws read and that an instrument measured; what is counted, such as a speed, is not a few per cent
+    off."""
+    names = dict.fromkeys(name for name, _ in read(scene.network))
+    return [n for n in names if n in scene.inputs and scene.network.measures(n) not in COUNTED]
+
+
 @dataclass(frozen=True)
 class InputFactor(Effect):
     """An input is in truth 1 + a times what was written down: a wrong range, a wrong shunt, a worn flow meter."""
 
     kind = "input.factor"
     title = "an input is recorded too small or too large"
-    sits = "an input that a law of the network reads"
+    sits = "an input that a law of the network reads, but none that is counted (speed, frequency)"
     unit = "1"
     source = "definition; the laws that read it follow it"
     isolating_test = "read the input with a second instrument"
@@ -63,7 +71,7 @@ class InputFactor(Effect):
 
     @classmethod
     def where(cls, scene: Scene) -> list[str]:
-        return [name for name in dict.fromkeys(n for n, _ in read(scene.network)) if name in scene.inputs]
+        return metered(scene)
 
     def extend(self, network: Network) -> Network:
         names = []

@@ -16,10 +16,14 @@ FLOWS = {AIR: "flow of air", LIQUID: "flow of liquid"}
 
 
 def moved_inputs(network: Network, test: Test, doubt: Doubt) -> Iterator[tuple[str, Test]]:
-    """The record with one input at a time off by its standard uncertainty; flows of one kind are off together."""
+    """The record with one input at a time off by its standard uncertainty; flows of one kind are off together.
+
+    What no law reads, and what is zero throughout, moves nothing and is left out.
+    """
+    read = network.inputs
     groups: dict[str, list[str]] = {}
     for name, u in test.inputs.items():
-        if np.any(u):
+        if name in read and np.any(u):
             groups.setdefault(FLOWS.get(network.measures(name), f"input {name}"), []).append(name)
     for group, names in groups.items():
         share = doubt["flow" if group in FLOWS.values() else "input"]

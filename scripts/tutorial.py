@@ -1,0 +1,78 @@
+"""Runs the commands of docs/tutorial.md and writes under each what it printed: python scripts/tutorial.py [--keep DIR]
+
+Commands stand in ```sh blocks; what they print follows in a ```text block. Those that wait for a browser are not run.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+PAGE = ROOT / "docs" / "tutorial.md"
+BLOCK = re.compile(r"```sh\n(.*?)```\n(?:\n```text\n.*?```\n)?", re.DOTALL)
+TOOK = re.compile(r"(<!-- took:begin -->\n).*?(<!-- took:end -->)", re.DOTALL)
+WAITING = ("thermoscope show serve",)
+
+
+def commands(page: str) -> list[str]:
+    """The commands of the page, one a line, without remarks."""
+    return [line for block in BLOCK.findall(page) for line in _lines(block)]
+
+
+def _lines(block: str) -> list[str]:
+    return [line.partition("  #")[0].strip() for line in block.splitlines() if line.strip()]
+
+
+def with_outputs(page: str, printed: dict[str, list[str]]) -> str:
+    """The page with what the commands printed.  printed : command -> an output for every time it stands there"""
+
+    def block(match: re.Match[str]) -> str:
+        out = "\n".join(text for line in _lines(match[1]) if line in printed and (text := printed[line].pop(0)))
+        return f"```sh\n{match[1]}```\n" + (f"\n```text\n{out}\n```\n" if out else "")
+
+    return BLOCK.sub(block, page)
+
+
+def run(lines: list[str], folder: Path) -> dict[str, list[str]]:
+    """Every command in the folder, at 80 columns, as a reader would; stdout without trailing blanks."""
+    (folder / "cases").symlink_to(ROOT / "cases")
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    printed: dict[str, list[str]] = {}
+    for line in lines:
+        if line.startswith(WAITING):
+            continue
+        begun = time.monotonic()
+        done = subprocess.run(
+            line, shell=True, cwd=folder, env={**os.environ, "PATH": path, "COLUMNS": "80"}, text=True,
+            stdout=subprocess.PIPE,
+        )  # fmt: skip
+        print(f"{time.monotonic() - begun:6.0f} s  exit {done.returncode}  {line}", file=sys.stderr)
+        if done.returncode > 1:
+            raise SystemExit(f"{line} ended with {done.returncode}")
+        printed.setdefault(line, []).append(done.stdout.rstrip())
+    return printed
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--keep", type=Path, help="folder to run in; else one that is thrown away")
+    folder = parser.parse_args().keep or Path(tempfile.mkdtemp())
+    folder.mkdir(parents=True, exist_ok=True)
+    page, begun = PAGE.read_text(encoding="utf-8"), time.monotonic()
+    page = with_outputs(page, run(commands(page), folder))
+    minutes = (time.monotonic() - begun) / 60
+    words = (
+        f"All commands of this page took {minutes:.0f} min on {os.cpu_count()} cores ({time.strftime('%Y-%m-%d')}).\n"
+    )
+    PAGE.write_text(TOOK.sub(lambda m: m[1] + words + m[2], page), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

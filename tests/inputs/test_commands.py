@@ -1,0 +1,249 @@
+"""Options, drive cycles, loss maps and recordings of `new`: what makes no sense is refused before anything is done."""
+
+import os
+import tomllib
+
+import pytest
+from command_line import answered, refusal
+from documents import ROOT
+from recordings import case_of
+
+from lumped.declarations.network import read_network
+from lumped.model.build import node_source
+from lumped.sources.losses import PowerLoss
+
+CYCLE = "[cycle]\nstep_s = 10\n[boundaries]\nambient = 20\n"
+DUTY = '[duty]\ntype = "S3"\nperiod_s = 600\nduty_percent = 40\ncycles = 3\nstep_s = 10\n[load]\ncurrent_A = 100\n'
+COLUMN = '[columns.I]\nquantity = "current"\nunit = "A"\n'
+ROWS = "t,I\n" + "".join(f"{10 * i},100\n" for i in range(30))
+MAP = "torque_Nm,speed_rpm,copper_W\n"
+POINTS = [(q, n) for q in (0, 50, 100) for n in (0, 1000, 2000)]
+RATE = "use rate {case} --limit winding=155 --no-bands"
+OPTIONS = {
+    "compare {case} {case}": "extra argument", "compare": "Missing argument", "compre {case}": "No such command",
+    "test compare {case} --jsn -": "--jsn", "test compare {case} --json /": "is no file to write to",
+    "test compare {case} --json {case}/tests": "is no file to write to",
+    "use simulate {case} --out {case}": "a case keeps its inputs there",
+    "use simulate {case} --out {case}/tests/x": "a case keeps its inputs there",
+    "use simulate {case} --out {case}/cycles/x": "a case keeps its inputs there",
+    "use simulate {case} --out {case}/case.toml": "is no folder",
+    "use simulate {case} --cycle nosuch": "no such cycle", "use simulate {case} --cycle {case}/case.toml": "case.toml",
+    "model calibrate {case} --seed -1": "--seed", "model calibrate {case} --seed 99999999999": "--seed",
+    "model calibrate {case} --starts 0": "--starts", "model calibrate {case} --starts 9999": "--starts",
+    "model calibrate {case} --profile nosuch": "'nosuch' is no free parameter",
+    "model add {case} convektion@flange": "unknown effect", "model add {case} convection@mars": "it can sit at",
+    "model add {case} convection": "it can sit at", "model add {case} event@0": "no event '0'",
+    "model remove {case} convection@flange": "not in the model", "model undo {case}": "no step to undo",
+    "model undo {case} --to 5": "no revision 5", "model undo {case} --to x": "--to",
+    "explain answer {case} maybe": "is no answer", "explain answer {case} yes": "asked nothing",
+    "explain answer {case} yes --about mars": "no test, event or fault",
+    "explain answer {case} yes --about a@b": "no test, event or fault",
+    "explain improve {case} --yes --most 0": "--most",
+    "use export {case} --as pdf": "no form to export", "use export {case} --as fmu --fmi 5": "2 or 3",
+    "use export {case} --as c --limit winding": "is no limit", "use export {case} --as c --limit mars=3": "known",
+    "use export {case} --as c --limit winding=3 --limit winding=4": "given twice",
+    "use rate {case}": "no limit is given", f"{RATE} --limit winding=120": "given twice",
+    "use rate {case} --limit winding=nan": "is no limit", "use rate {case} --limit winding=-300": "is no limit",
+    "use rate {case} --limit winding=10 --no-bands": "without any load",
+    f"{RATE} --load mars": "is no input", f"{RATE} --at mars=3": "is no input or boundary",
+    f"{RATE} --at ambient=nan": "is no operating point", f"{RATE} --at ambient=20 --at ambient=30": "given twice",
+    f"{RATE} --overload inf": "--overload", f"{RATE} --overload nan": "--overload", f"{RATE} --top inf": "--top",
+    f"{RATE} --voltage 100": "is of a loss map", f"{RATE} --losses nosuch.csv": "no such file",
+    "bench curves {case} --resolution inf": "--resolution", "bench curves {case} --resolution nan": "--resolution",
+    "bench two-paths {case} --winding yoke --machine yoke": "'yoke' is both",
+    "bench two-paths {case} --winding mars --machine yoke": "unknown place", "bench bases {case}": "no bases",
+    "bench carry {case} nosuch": "no such case folder", "bench protocol nosuch.toml": "no such file",
+    "bench screen nosuch": "no such machine", "bench screen pmsm-m1 --design nosuch": "no design",
+    "model build nosuch": "no such machine", "model build {case}/network.toml": "unknown section",
+    "model build pmsm-m1 --accuracy inf": "--accuracy", "model machines --out {case}": "a case keeps its inputs there",
+    "show picture {case} nosuch": "unknown picture", "show viewer {case}": "no geometry",
+    "show serve {case} --port 99999": "--port", "show serve nosuch": "no such case folder",
+    "test doctor {case}/tests/stand.csv": "is a file", "test compare /dev/null": "is a file",
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def shared(tmp_path_factory):
+    return case_of(tmp_path_factory.mktemp("commands"))
+
+
+@pytest.mark.parametrize("words", OPTIONS, ids=OPTIONS)
+def test_an_option_without_sense_is_refused(shared, tmp_path, monkeypatch, words):
+    monkeypatch.chdir(tmp_path)
+    assert OPTIONS[words] in refusal(shared.parent, *(word.format(case=shared) for word in words.split()))
+
+
+def test_a_port_of_another_computer(shared, monkeypatch):
+    monkeypatch.setattr("thermoscope.workbench.serve.prepare", lambda: None)
+    message = refusal(shared.parent, "show", "serve", shared, "--host", "nosuch.invalid")
+    assert "--host nosuch.invalid" in message
+
+
+def duty(old="", new=""):
+    return CYCLE + DUTY.replace(old, new), None
+
+
+def columns(rows=ROWS, head="", more="", step="10"):
+    return CYCLE.replace("step_s = 10", f'step_s = {step}\ntime = "t"\n{head}') + COLUMN + more, rows
+
+
+CYCLES = {
+    "no duty type": (duty("S3", "S9"), "type = 'S9'"), "more than all": (duty("40", "150"), "duty_percent = 150"),
+    "a step of nothing": (duty("step_s = 10", "step_s = 0"), "step_s = 0"),
+    "without end": (duty("cycles = 3", "cycles = 100000"), "instants"),
+    "a nanosecond": ((CYCLE + '[duty]\ntype = "S1"\nduration_s = 1e9\nstep_s = 1e-3\n[load]\ncurrent_A = 1\n', None),
+                     "1e+12 instants"),
+    "no load": (duty("current_A = 100", ""), "no input follows"), "another load": (duty("current_A", "x"), "current_A"),
+    "a load twice": ((CYCLE + "[inputs]\ncurrent_A = 5\n" + DUTY, None), "'current_A' is given twice"),
+    "no surroundings": ((CYCLE.replace("ambient = 20", "") + DUTY, None), "nothing gives the boundary"),
+    "a slip": ((CYCLE.replace("ambient = 20", "ambient = 20\nwater = 30") + DUTY, None), "is called 'water'"),
+    "a cold place": ((CYCLE.replace("20", "-150") + DUTY, None), "ambient = -150"),
+    "nothing": (("", None), "'time' is missing"), "no text": (("\x00", None), "TOML"),
+    "no rows": (columns(None), "no such file"), "no numbers": (columns(ROWS.replace(",100", ",")), "holds no number"),
+    "a long hole": (columns("t,I\n" + "".join(f"{10 * i},{'' if 3 < i < 27 else 100}\n" for i in range(30))), "I"),
+    "milliseconds": (columns(head='time_unit = "ms"'), "1.03 instants"),
+    "too fine": (columns(head='time_unit = "h"', step="0.001"), "instants"),
+    "a node as its surroundings": (columns(ROWS.replace("t,I", "t,I,T").replace(",100", ",100,20"), more=(
+        '[columns.T]\nquantity = "temperature"\nunit = "degC"\nplace = "yoke"\n')), "no boundary is called 'yoke'"),
+    "two currents": (columns(ROWS.replace("t,I", "t,I,J").replace(",100", ",100,20"), more=COLUMN.replace("I]", "J]")),
+                     "fed twice"),
+    "a duty and columns": ((columns()[0] + DUTY, ROWS), "unknown key 'time'"),
+    "half a vehicle": (columns(more="[vehicle]\nmass_kg = 1000\n"), "series-machine"),
+    "half a machine": (columns(more="[pm-machine]\npole_pairs = 4\n"), "pm-machine"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("files", "words"), CYCLES.values(), ids=CYCLES)
+def test_a_cycle_that_cannot_be_run_is_refused(tmp_path, files, words):
+    case = case_of(tmp_path)
+    (case / "cycles").mkdir()
+    text, rows = files
+    (case / "cycles/x.toml").write_text(text)
+    if rows is not None:
+        (case / "cycles/x.csv").write_text(rows)
+    message = refusal(tmp_path, "use", "simulate", case, "--cycle", "x")
+    assert "cycles" + os.sep + "x." in message
+    assert words in message
+
+
+def test_what_a_cycle_says_and_nobody_reads_is_told(tmp_path):
+    case = case_of(tmp_path)
+    (case / "x.toml").write_text(CYCLE + DUTY.replace("current_A = 100", "current_A = 100\nfan_on = 1"))
+    code, _, err = answered("use", "simulate", case, "--cycle", case / "x.toml", "--no-bands")
+    assert code == 0
+    assert [line for line in err if line.startswith("note: ") and "no law of the model reads 'fan_on'" in line]
+
+
+MAPS = {
+    "nothing": ("", "is empty"), "noise": (bytes(range(256)).decode("latin-1"), "map.csv"),
+    "words": (f"{MAP}a,b,c\n", "no number"), "one point": (f"{MAP}1,2,3\n", "1 torques and 1 speeds"),
+    "a hole": (MAP + "".join(f"{q},{n},{q}\n" for q, n in POINTS[:-1]), "1 of 9 points are missing"),
+    "a point twice": (MAP + "".join(f"{q},{n},{q}\n" for q, n in [*POINTS, POINTS[0]]), "given twice"),
+    "cold": (MAP + "".join(f"{q},{n},{-q}\n" for q, n in POINTS), "negative"),
+    "no numbers": (MAP + "".join(f"{q},{n},nan\n" for q, n in POINTS), "no number"),
+    "endless": (MAP + "".join(f"{q},{n},inf\n" for q, n in POINTS), "no number"),
+    "a sun": (MAP + "".join(f"{q},{n},1e30\n" for q, n in POINTS), "from 0 to 1e+09"),
+    "another loss": (MAP.replace("copper", "iron") + "".join(f"{q},{n},{q}\n" for q, n in POINTS), "is no loss"),
+    "no loss": ("torque_Nm,speed_rpm\n" + "".join(f"{q},{n}\n" for q, n in POINTS), "no losses"),
+    "semicolons": (MAP.replace(",", ";") + "1;2;3\n", "separated by ';'"),
+    "two voltages": (MAP.replace("copper_W", "voltage_V,copper_W") + "".join(
+        f"{q},{n},{v},{q}\n" for v in (1, 2) for q, n in POINTS), "2 voltages"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "words"), MAPS.values(), ids=MAPS)
+def test_a_loss_map_that_is_none_is_refused(tmp_path, text, words):
+    case = case_of(tmp_path)
+    (case / "map.csv").write_text(text, encoding="utf-8")
+    message = refusal(tmp_path, "use", "rate", case, "--limit", "winding=155", "--losses", case / "map.csv")
+    assert "map.csv" in message
+    assert words in message
+
+
+LOSSES = {
+    "no kind": ("{ at = 'base', P_W = 3 }", "'kind' is missing"),
+    "no place": ("{ kind = 'constant', P_W = 3 }", "'at'"),
+    "a kind unheard of": ("{ at = 'base', kind = 'magic', P_W = 3 }", "kind = 'magic'"),
+    "a negative power": ("{ at = 'base', kind = 'constant', P_W = -3 }", "P_W = -3"),
+    "more than a whole": ("{ at = { base = 0.7, foot = 0.7 }, kind = 'constant', P_W = 3 }", "sum to 1.4"),
+    "no table": ("3", "3 is no table"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("declared", "words"), LOSSES.values(), ids=LOSSES)
+def test_losses_of_a_machine_are_checked_before_it_is_meshed(tmp_path, monkeypatch, declared, words):
+    monkeypatch.setattr("thermoscope.pipeline.build_mesh", lambda *given: pytest.fail("it was meshed"))
+    text = (ROOT / "cases/pmsm-bases/machine.toml").read_text()
+    (tmp_path / "mine.toml").write_text(text.replace("[losses.", f"[losses]\nx = {declared}\n[losses.", 1))
+    for command in ("model build", "model crosscheck", "use rate --limit winding=155"):
+        message = refusal(tmp_path, *command.split(), tmp_path / "mine.toml")
+        assert str(tmp_path / "mine.toml") in message
+        assert "losses.x" in message
+        assert words in message
+
+
+def test_a_machine_without_losses_is_held_against_nothing(tmp_path, monkeypatch):
+    """A made-up loss would make measurements accuse the cooling; `rate` says what it assumes."""
+    case = case_of(tmp_path)
+    heat = ("assumed", "constant", {"winding": 1.0}, PowerLoss(((100.0, ()),)))
+    network = read_network(tomllib.loads((case / "network.toml").read_text().partition("[losses")[0]))
+    assumed = network.extended([], [node_source(network, "loss:assumed", heat[1], heat[2], heat[3], "winding")], [])
+    monkeypatch.setattr("thermoscope.case_folder.folder.network_of", lambda settings, tell: (assumed, None))
+    assert "declares no losses" in refusal(tmp_path, "test", "compare", case)
+    (case / "case.toml").write_text('[case]\nnetwork = "network.toml"\n')
+    _, _, err = answered("use", "rate", case, "--limit", "winding=155", "--no-bands")
+    assert [line for line in err if line.startswith("note: ") and "100 W in its windings are assumed" in line]
+
+
+def test_a_rating_without_end_is_said_in_words(tmp_path):
+    case = case_of(tmp_path)
+    (case / "map.csv").write_text(MAP + "".join(f"{q},{n},{q / 100}\n" for q, n in POINTS))
+    code, out, _ = answered("use", "rate", case, "--limit", "winding=155", "--losses", case / "map.csv", "--no-bands")
+    assert code == 0
+    assert out.startswith("Continuous: no torque_Nm that this model knows reaches a limit.")
+
+
+def record(make, head="time,T winding,I"):
+    return head + "\n" + "".join(f"{make(i)}\n" for i in range(60))
+
+
+RECORDS = {
+    "nothing": ("", "no record"), "a letter": ("hello", "no record"), "one row": ("a,b,c\n1,2,3\n", "no record"),
+    "words": ("t,T\n" + "x,y\n" * 50, "no record"),
+    "a clock that runs back": (record(lambda i: f"{i % 10},{20 + i},5"), "runs back"),
+    "a clock turned over": (record(lambda i: f"{60 - i},{20 + i},5"), "runs back"),
+    "a century": (record(lambda i: f"{i * 1e9},{20 + i},5"), "at most a year"),
+    "only air": (record(lambda i: f"{i},{20 + i},5", "time,T ambient,I"), "no column is a temperature"),
+    "a reversed clamp": (record(lambda i: f"{i},{20 + i},-5", "time,T winding,Power"), "is a clamp reversed?"),
+    "a name with an escape code": (record(lambda i: f"{i},{20 + i},5", "time,\x1b[31mT winding,I"), r"\x1b[31m"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "words"), RECORDS.values(), ids=RECORDS)
+def test_a_record_that_is_none_is_refused(tmp_path, text, words):
+    (tmp_path / "mine.csv").write_text(text)
+    message = refusal(tmp_path, "test", "new", tmp_path / "mine.csv", "--yes", "--out", tmp_path / "made")
+    assert "mine.csv" in message
+    assert words in message
+    assert [p.name for p in tmp_path.iterdir()] == ["mine.csv"]
+
+
+NEW = {
+    "--set ambient=nan": "is no NAME=VALUE", "--set ambient": "is no NAME=VALUE", "--set mars=3": "the model reads no",
+    "--set ambient=1e9": "ambient = 1000000000", "--from 5000": "0 rows", "--from 100 --to 50": "100 is not before 50",
+    "--from inf": "--from", "--to inf": "--to", "--period inf": "--period", "--period 0": "--period",
+    "--machine pmsm-m1": "one of the two", "--json {case}/case.toml": "it stays",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("words", NEW, ids=NEW)
+def test_a_wish_of_new_without_sense_is_refused(shared, words):
+    given = [word.format(case=shared) for word in words.split()]
+    files = [shared / "tests/stand.csv", "--yes", "--network", shared / "network.toml", "--out", shared.parent / "made"]
+    assert NEW[words] in refusal(shared.parent, "test", "new", *files, *given)
+
+
+@pytest.mark.parametrize("where", ["", "tests/x", "case.toml/x", "../" + "m" * 300])
+def test_a_new_case_goes_nowhere_else(shared, where):
+    files = [shared / "tests/stand.csv", "--yes", "--network", shared / "network.toml"]
+    assert "; " in refusal(shared.parent, "test", "new", *files, "--out", shared / where)

@@ -1,0 +1,105 @@
+"""thermoscope use watch: rows from a file and from a pipe; what is wrong with them is one message."""
+
+import gzip
+import json
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from command_line import RUN
+from small_case import HEADER, measured, small_case, write_csv
+
+
+@pytest.fixture(scope="module")
+def case(tmp_path_factory):
+    return small_case(tmp_path_factory.mktemp("watch"), strength=0.0)
+
+
+@pytest.fixture(scope="module")
+def rows(case):
+    file = case.parent / "live.csv"
+    write_csv(file, measured(7, False, 0.0, step=2.0))
+    return file
+
+
+@pytest.fixture(scope="module")
+def document(thermoscope, case, rows):
+    done = thermoscope("use", "watch", case, "--follow", rows, "--sensor", "T_winding", "--sensor", "T_yoke",
+                       "--json", "-", cwd=case.parent)  # fmt: skip
+    assert done.code == 0, done.err
+    return done.document
+
+
+def test_the_document_says_what_was_estimated(case, rows, document):
+    assert document["case"] == "three"
+    assert document["like"] == "stand"
+    assert document["samples"] == 1500
+    assert [(s["sensor"], s["given"]) for s in document["sensors"]] == [
+        ("T_winding", True), ("T_yoke", True), ("T_flange", False),
+    ]  # fmt: skip
+    last = np.loadtxt(rows, delimiter=",", skiprows=1)[-1]
+    winding = next(p for p in document["places"] if p["place"] == "winding")
+    assert abs(winding["end_C"] - last[4]) < 0.5
+    assert {h["place"] for h in document["missing_heat"]} == {"winding", "yoke", "flange"}
+    assert document["events"] == []
+    assert document["withheld"][0]["sensor"] == "T_flange"
+    assert document["withheld"][0]["rmse_K"] < 1.0
+    table = np.genfromtxt(case.parent / document["file"], delimiter=",", names=True)
+    assert table.size == 1500
+
+
+def test_a_pipe_gives_what_the_file_gives(case, rows, document):
+    """A line a minute, and the same temperatures."""
+    command = [sys.executable, "-c", RUN, "use", "watch", str(case), "--follow", "-", "--sensor", "T_winding",
+               "--sensor", "T_yoke", "--json", "pipe.json"]  # fmt: skip
+    done = subprocess.run(command, cwd=case.parent, input=rows.read_text(), capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stderr
+    assert sum(" min  winding " in line for line in done.stdout.splitlines()) == 50
+    piped = json.loads((case.parent / "pipe.json").read_text())
+    for a, b in zip(piped["places"], document["places"], strict=True):
+        assert abs(a["end_C"] - b["end_C"]) < 0.01
+
+
+BAD = {
+    "no column": (HEADER.replace("current", "amps") + "\n0,1,2,3,4,5,6\n", "column 'current' is not in the header"),
+    "a word": (f"{HEADER}\n0,1,0,20,20,293,20\n1,one,0,20,20,293,20\n", "'one' is no number"),
+    "time": (f"{HEADER}\n0,1,0,20,20,293,20\n0,1,0,20,20,293,20\n", "time 0 does not come after the one before"),
+    "begins": (f"{HEADER}\n0,,0,20,20,293,20\n", "column 'current' begins with no number"),
+    "empty": ("", "holds no row"),
+    "header alone": (HEADER + "\n", "holds no row"),
+    "sensors": ("time_s,current,air\n0,1,20\n", "no sensor of the machine"),
+}
+
+
+@pytest.mark.parametrize("kind", BAD)
+def test_wrong_rows_are_one_message(thermoscope, case, tmp_path, kind):
+    text, message = BAD[kind]
+    (tmp_path / "live.csv").write_text(text)
+    done = thermoscope("use", "watch", case, "--follow", "live.csv", cwd=tmp_path)
+    assert done.code == 2
+    assert message in done.err
+    assert done.err.count("error:") == 1
+    assert not list(tmp_path.glob("**/watch-*"))
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--follow", "nothing.csv"], "no such file"),
+        (["--follow", "{rows}", "--sensor", "T_rotor"], "no sensor 'T_rotor'"),
+        (["--follow", "{rows}", "--like", "moon"], "no test 'moon'"),
+    ],
+)
+def test_wrong_options_are_one_message(thermoscope, case, rows, tmp_path, options, message):
+    done = thermoscope("use", "watch", case, *(o.format(rows=rows) for o in options), cwd=tmp_path)
+    assert (done.code, done.err.count("error:")) == (2, 1)
+    assert message in done.err
+
+
+def test_packed_rows_are_read(thermoscope, case, rows, tmp_path):
+    file = tmp_path / "live.csv.gz"
+    file.write_bytes(gzip.compress("\n".join(rows.read_text().splitlines()[:60]).encode()))
+    done = thermoscope("use", "watch", case, "--follow", file, "--json", "-", cwd=tmp_path)
+    assert done.code == 0, done.err
+    assert done.document["samples"] == 59

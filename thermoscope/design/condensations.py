@@ -1,0 +1,98 @@
+"""Networks of other geometries, condensed anew on a coarse mesh: what they say beside the scaled network.
+
+Both sides of a ratio are of the same mesh, so what is coarse about it cancels to first order.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from lumped.condensation.reduction import Recipe
+from lumped.model.network import Network
+from thermoscope.design.machine_keys import short_key
+from validation.optimisation.corrections import Corrections, errors, learned
+from validation.optimisation.hot_spots import hot_spots
+from validation.optimisation.problem import COPPER, SETTLING, Problem
+from validation.optimisation.scaling import Scaling, design_parameters
+
+Progress = Callable[[str], None]
+SIZE_M, ACROSS = 0.12, 0.5  # elements twice as large as those of a case; temperatures differ by 2 % of the rise
+COARSE = Recipe(tolerance=0.03, max_states=110, shifts=(1 / 20, 1 / 700), random_points=1)
+
+
+def coarse_network(machine: Any, progress: Progress) -> Network:
+    """Seconds; from the cache where it was made before."""
+    from lumped.machine.motor import motor_network
+    from thermoscope.pipeline import prepared, reduced
+
+    ready = prepared(machine, SIZE_M, 48, progress, across=ACROSS)
+    return motor_network(machine, reduced(ready, COARSE).network(max_states=COARSE.max_states))
+
+
+class Condensations:
+    """Ratios condensed / scaled of one problem, at any of its geometries."""
+
+    def __init__(self, problem: Problem, progress: Progress) -> None:
+        self.problem, self.progress = problem, progress
+        self.usual = {v.name: v.usual for v in problem.space.variables}
+
+    @cached_property
+    def reference(self) -> Problem:
+        """The problem on the coarse network of the reference, scaled."""
+        assert self.problem.machine_at is not None
+        machine = self.problem.machine_at(self.usual)
+        self.progress("coarse network of the reference")
+        bare = self._on(coarse_network(machine, self.progress))
+        return replace(bare, scaling=Scaling(bare.network, machine))
+
+    def _on(self, network: Network) -> Problem:
+        grown = network.extended(parameters=design_parameters(network))
+        rows = {n: p.mean for n, p in grown.places.items()}
+        spots = hot_spots(grown, rows, {s.name: s.limit for s in self.problem.spots})
+        inputs = {n: u for n, u in self.problem.inputs.items() if n in _reads(grown)}
+        taken = tuple(n for n in self.problem.taken if n in inputs)
+        return replace(
+            self.problem, network=grown, values={}, inputs=inputs, spots=spots, scaling=None, sure=None, taken=taken
+        )
+
+    def ratios(self, named: Mapping[str, float]) -> dict[str, float]:
+        """Quantity -> condensed over scaled, at values of the variables."""
+        assert self.problem.machine_at is not None
+        machine = self.problem.machine_at(named)
+        scaled = self.reference.judged(named, machine)
+        self.progress("network of " + ", ".join(f"{short_key(n)} {u:.4g}" for n, u in self._geometry(named)))
+        condensed = self._on(coarse_network(self._machine(named), self.progress)).judged(named, machine)
+        around = float(np.mean(list(self.problem.boundaries.values())))
+        out = {n: (T - around) / (scaled.places[n] - around) for n, T in condensed.places.items()}
+        return out | {q: condensed.objectives[q] / scaled.objectives[q] for q in (COPPER, SETTLING)}
+
+    def _machine(self, named: Mapping[str, float]) -> Any:
+        """Of the geometry alone: films and streams follow the inputs, so that the cache serves every flow."""
+        assert self.problem.machine_at is not None
+        return self.problem.machine_at({**self.usual, **dict(self._geometry(named))})
+
+    def _geometry(self, named: Mapping[str, float]) -> list[tuple[str, float]]:
+        return [(v.name, named[v.name]) for v in self.problem.space.variables if v.conducts]
+
+    def learn(self) -> Corrections:
+        """One geometry per variable that changes conduction, at its bound that is further away."""
+        points = []
+        for v in (v for v in self.problem.space.variables if v.conducts):
+            far = v.high if v.high - v.usual > v.usual - v.low else v.low
+            points.append({**self.usual, v.name: float(round(far)) if v.whole else far})
+        return learned([self.problem.space.share(p) for p in points], [self.ratios(p) for p in points])
+
+    def verified(self, designs: Sequence[Mapping[str, float]]) -> dict[str, float]:
+        """Quantity -> the largest relative error of the interpolation at designs that it was not learned from."""
+        space = self.problem.space
+        return errors(self.problem.corrections, [space.share(d) for d in designs], [self.ratios(d) for d in designs])
+
+
+def _reads(network: Network) -> set[str]:
+    laws = [*(x.law for x in network.links), *(x.law for x in network.sources)]
+    return {n for law in laws for n in law.reads}

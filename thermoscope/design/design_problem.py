@@ -1,0 +1,164 @@
+"""What is asked of an optimisation, and the problem that says it: of a case as it stands, or of a machine file."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from geom.errors import InputError
+from lumped.model.network import Network
+from lumped.schemas.reader import known
+from thermoscope.bands import posterior_of
+from thermoscope.case_folder.folder import Folder, Progress
+from thermoscope.case_folder.runs import named_rows
+from thermoscope.design.condensations import Condensations
+from thermoscope.design.machine_keys import FLOWS, MachineFile
+from thermoscope.rating import places, rated_point
+from thermoscope.verification.error_budget import model_of
+from validation.bands.at_rest import AtRest
+from validation.comparison.predict import thermal
+from validation.optimisation.driven import GAINS, Driven
+from validation.optimisation.electrics import electrics_of, wanted_inputs
+from validation.optimisation.hot_spots import hot_spots
+from validation.optimisation.problem import COPPER, OBJECTIVES, PEAK, SETTLING, Problem
+from validation.optimisation.scaling import Scaling, design_parameters
+from validation.optimisation.space import Space, Variable
+from validation.rating.operation import flows, operation
+
+GAIN_RANGE = (0.25, 4.0)  # of a controller's gain
+INPUT_RANGE = (0.5, 2.0)  # of an input's value at the operating point, where nothing else is said
+
+
+@dataclass(frozen=True)
+class Asked:
+    """limits : place -> degC, the first is what peaks;  torque (N m);  at : input or boundary -> value
+
+    vary : variable -> its bounds, or None for the usual ones; empty for all usual variables
+    cycle : of a vehicle, whose controller's gains are varied too, in place of a torque
+    robust : temperatures at the upper end of their 95 % band
+    """
+
+    limits: Mapping[str, float]
+    torque: float | None = None
+    at: Mapping[str, float] | None = None
+    vary: Mapping[str, tuple[float, float] | None] | None = None
+    robust: bool = False
+    cycle: str | None = None
+
+
+def design_problem(folder: Folder, asked: Asked, progress: Progress) -> tuple[Problem, MachineFile | None]:
+    """The problem with what its reduced model gets wrong about other geometries learned, and the file of its machine.
+
+    Raises InputError for what is not known, and where a limit is exceeded without any load.
+    """
+    network, values = model_of(folder)
+    file = None if folder.settings.machine is None else MachineFile.read(folder.settings.machine)
+    op = operation(network, folder.case.tests, asked.at or {}, (), rated_point(folder, network))
+    sections = {} if file is None else file.sections
+    electrics = electrics_of(
+        "" if file is None else file.machine.family, sections.get("ratings", {}), sections.get("losses", {})
+    )
+    inputs = wanted_inputs(op.inputs, asked.torque, electrics)
+    grown, sure = _grown(folder, network, asked.robust, progress)
+    rows = named_rows(network, folder)
+    limits = places(asked.limits, rows, network.identities)
+    first = len(places(dict(list(asked.limits.items())[:1]), rows, network.identities))
+    driven = None if asked.cycle is None else _driven(folder, network, asked, sections.get("ratings", {}))
+    space = Space(tuple(_variables(grown, inputs, file, asked.vary or {}, driven)))
+    machine = {} if file is None else _of_machine(grown, file, space, inputs)
+    aimed = (PEAK, SETTLING, COPPER) if file is None else OBJECTIVES
+    problem = Problem(
+        grown, values, inputs, op.boundaries, space, hot_spots(grown, rows, limits), first, electrics, sure=sure,
+        driven=driven, aimed=aimed, **machine,
+    )  # fmt: skip
+    _refuse_hot_at_no_load(problem, op.loads)
+    if file is not None and any(v.conducts for v in space.variables):
+        problem = replace(problem, corrections=Condensations(problem, progress).learn())
+    return problem, file
+
+
+def _grown(folder: Folder, network: Network, robust: bool, progress: Progress) -> tuple[Network, AtRest | None]:
+    """The network with the parameters of a design; for a robust one with those of the table of doubt too."""
+    if not robust:
+        return network.extended(parameters=design_parameters(network)), None
+    of = posterior_of(folder, progress)
+    grown = thermal(of.network)
+    grown = grown.extended(parameters=design_parameters(grown))
+    return grown, AtRest(of, grown)
+
+
+def _variables(
+    network: Network, inputs: Mapping[str, float], file: MachineFile | None, vary: Mapping[str, Any],
+    driven: Driven | None,
+) -> list[Variable]:  # fmt: skip
+    if not vary:
+        usual = file.usual() if file is not None else [_input(n, inputs, None) for n in flows(network, inputs)]
+        usual += [] if driven is None else [_gain(key, driven, None) for key in GAINS]
+        if not usual:
+            raise InputError("nothing that a design could change", "--vary", "--vary NAME=LOW:HIGH")
+        return usual
+    out = []
+    for name, bounds in vary.items():
+        if file is not None and file.knows(name):
+            out.append(file.variable(name, bounds))
+        elif driven is not None and name in GAINS:
+            out.append(_gain(name, driven, bounds))
+        elif name in inputs:
+            out.append(_input(name, inputs, bounds))
+        else:
+            here = [
+                *inputs,
+                *(GAINS if driven is not None else ()),
+                *([v.name for v in file.usual()] if file is not None else []),
+            ]
+            raise InputError(f"'{name}' is nothing that a design could change", "--vary", known(name, here))
+    return out
+
+
+def _input(name: str, inputs: Mapping[str, float], bounds: tuple[float, float] | None) -> Variable:
+    low, high = bounds or tuple(share * inputs[name] for share in INPUT_RANGE)
+    return Variable(name, low, high, inputs[name])
+
+
+def _gain(key: str, driven: Driven, bounds: tuple[float, float] | None) -> Variable:
+    low, high = bounds or tuple(share * driven.usual(key) for share in GAIN_RANGE)
+    return Variable(key, low, high, driven.usual(key))
+
+
+def _driven(folder: Folder, network: Network, asked: Asked, ratings: Mapping[str, float]) -> Driven:
+    """The vehicle of a cycle, its windings at the first limit."""
+    from thermoscope.case_folder.cycle import find_cycle, load_cycle
+
+    cycle = load_cycle(find_cycle(folder.settings.path, str(asked.cycle)), network, ratings)
+    s = cycle.series
+    if s is None:
+        raise InputError("the cycle has no controller", f"--cycle {asked.cycle}", "a cycle with [vehicle]")
+    found = Driven(s.machine, s.vehicle, s.controller, np.asarray(cycle.record.time, float), s.wanted, s.slope)
+    return found.at(next(iter(asked.limits.values())), s.reference_degC)
+
+
+def _of_machine(network: Network, file: MachineFile, space: Space, inputs: Mapping[str, float]) -> dict[str, Any]:
+    names = {v.name for v in space.variables}
+    taken = tuple(n for key, n in FLOWS.items() if key in names and n in inputs)
+    return {"machine_at": partial(_machine_at, file), "scaling": Scaling(network, file.machine), "taken": taken}
+
+
+def _machine_at(file: MachineFile, values: Mapping[str, float]) -> Any:
+    return file.at(values)
+
+
+def _refuse_hot_at_no_load(problem: Problem, loads: tuple[str, ...]) -> None:
+    """A limit that the reference exceeds without any load no design can keep."""
+    idle = replace(problem, inputs={**problem.inputs, **dict.fromkeys(loads, 0.0)}, sure=None)
+    usual = {v.name: v.usual for v in problem.space.variables if v.name not in loads}
+    found = idle.judged(usual, None if problem.machine_at is None else problem.machine_at(usual))
+    for s in problem.spots:
+        if found.places[s.name] >= s.limit:
+            raise InputError(
+                f"the limit of '{s.name}', {s.limit:g} degC, is exceeded without any load "
+                f"({found.places[s.name]:.1f} degC)", "--limit", "a higher limit, cooler surroundings or a lower speed",
+            )  # fmt: skip

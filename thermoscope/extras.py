@@ -1,0 +1,58 @@
+"""The parts of the tool that are installed on demand, and the one message of each where it is missing."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from importlib.util import find_spec
+
+from geom.errors import MissingDependency
+
+
+@dataclass(frozen=True)
+class Extra:
+    """packages : what it brings, as they are imported;  needed_for : what does not work without it"""
+
+    name: str
+    packages: tuple[str, ...]
+    needed_for: str
+
+    @property
+    def install(self) -> str:
+        return f"pip install 'thermoscope[{self.name}]'"
+
+
+EXTRAS = {
+    e.name: e for e in (
+        Extra("cad", ("cadquery", "OCP", "meshio", "pyamg", "skfem", "shapely", "trimesh"),
+              "machines from a file of dimensions: solids, mesh, field"),
+        Extra("view", ("aiohttp", "kaleido", "matplotlib", "PIL", "plotly", "pyvista", "vtk", "vtkmodules", "rerun",
+                       "trame"), "pictures, the report, the workbench"),
+        Extra("bench", ("asammdf", "nptdms", "pyarrow", "SALib"),
+              "recordings in TDMS, MF4 and Parquet; sensitivities of a screening"),
+    )
+}  # fmt: skip
+
+
+def lacking(name: str) -> list[str]:
+    """The packages of an extra that are not installed."""
+    return [package for package in EXTRAS[name].packages if find_spec(package) is None]
+
+
+def message(fault: ModuleNotFoundError) -> str:
+    """What to install where an extra's package is missing; "" where it belongs to none."""
+    package = (fault.name or "").partition(".")[0]
+    extra = next((e for e in EXTRAS.values() if package in e.packages), None)
+    return "" if extra is None else f"'{package}' is not installed: {extra.install} ({extra.needed_for})"
+
+
+@contextmanager
+def explained() -> Iterator[None]:
+    """A missing package of an extra becomes a MissingDependency that says what to install."""
+    try:
+        yield
+    except ModuleNotFoundError as fault:
+        if not message(fault):
+            raise
+        raise MissingDependency(message(fault)) from None

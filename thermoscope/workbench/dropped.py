@@ -1,0 +1,156 @@
+"""Recordings dropped on the page: what each column is taken for, columns dragged to other parts, a case of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+from uuid import uuid4
+
+from aiohttp import BodyPartReader, MultipartReader, web
+
+from geom.errors import InputError
+from thermoscope.commands.test.new import drafts_of, model_of_case, read_recording, written
+from thermoscope.console.terminal import Progress
+from thermoscope.importing.aligned import Recording
+from thermoscope.importing.cells import number
+from thermoscope.importing.dialogue import Dialogue
+from thermoscope.importing.draft import Draft, missing_boundaries, missing_inputs, squares_of, test_name
+from thermoscope.importing.guess import Guess, guesses
+from thermoscope.importing.target import Target, target_of
+from thermoscope.recordings.units import QUANTITIES
+
+if TYPE_CHECKING:
+    from lumped.model.network import Network
+    from thermoscope.case_folder.settings import Settings
+
+LARGEST = 2**30  # bytes of one drop: an hour at 1 kHz in text, twice over
+CHUNK = 2**20
+
+
+@dataclass(frozen=True)
+class Dropped:
+    """records : files with what each column is taken for;  target : what the open case's model offers
+
+    constants : what was not recorded, input or boundary -> value
+    """
+
+    records: tuple[Recording, ...]
+    target: Target
+    constants: Mapping[str, float] = field(default_factory=dict)
+
+    def moved(self, key: str, to: str) -> Dropped:
+        """With a column (its key in `rows`) at another place or input, "" to leave it out.
+
+        Raises InputError where it cannot go there.
+        """
+        i, column = _at(key)
+        if i >= len(self.records) or all(g.column != column for g in self.records[i].guesses):
+            raise InputError(f"no column '{column}'", "recordings", "one of those that were dropped")
+        single = to in self.target.inputs or to in self.target.boundaries
+        records = []
+        for j, r in enumerate(self.records):
+            own = [
+                dragged(g, r, to, self.target) if (j, g.column) == (i, column)
+                else g.without(f"{column} gives {to}") if single and to in (g.place, g.feeds) else g
+                for g in r.guesses
+            ]  # fmt: skip
+            records.append(replace(r, guesses=own))
+        return replace(self, records=tuple(records))
+
+    def constant(self, name: str, text: str) -> Dropped:
+        """With the value of something that was not recorded, "" for none again."""
+        value = number(text)
+        if text.strip() and value != value:
+            raise InputError(f"'{text}' is no number", name, "such as 21.5")
+        rest = {k: v for k, v in self.constants.items() if k != name}
+        return replace(self, constants={**rest, name: value} if text.strip() else rest)
+
+    @property
+    def rows(self) -> list[dict[str, str]]:
+        """Every column as the page lists it."""
+        return [
+            {"key": f"{i}:{g.column}", "name": g.column, "file": r.name, "goes": g.place or g.feeds, "unit": g.unit,
+             "quantity": g.quantity.replace("_", " "), "doubt": g.doubt}
+            for i, r in enumerate(self.records) for g in r.guesses
+        ]  # fmt: skip
+
+    @property
+    def document(self) -> dict[str, Any]:
+        """As the page's state holds it."""
+        goes: dict[str, list[str]] = {}
+        for row in self.rows:
+            goes.setdefault(row["goes"], []).append(row["name"])
+        kinds = (("part", self.target.places), ("surroundings", self.target.boundaries), ("input", self.target.inputs))
+        parts = [{"name": n, "kind": kind, "columns": goes.get(n, [])} for kind, names in kinds for n in names]
+        known = [p["name"] for p in parts]
+        others = [{"name": n, "kind": "input", "columns": c} for n, c in goes.items() if n and n not in known]
+        return {"files": ", ".join(r.name for r in self.records), "columns": self.rows, "parts": [*parts, *others],
+                "missing": self.missing, "constants": {n: f"{v:g}" for n, v in self.constants.items()}}  # fmt: skip
+
+    @property
+    def missing(self) -> list[str]:
+        """Inputs and boundaries of the model that no column gives."""
+        draft = Draft("drop", self.records)
+        draft = replace(draft, squares=squares_of(draft.guesses, self.target))
+        return [*missing_inputs(draft, self.target), *missing_boundaries(draft, self.target)]
+
+
+def read(files: Sequence[Path], network: Network, tell: Progress) -> Dropped:
+    """Recordings with the guesses of `thermoscope test new`. Raises InputError for a file that is no record."""
+    target = target_of(network)
+    found = [read_recording(file, None, tell) for file in files]
+    return Dropped(tuple(Recording(s, c, guesses(s, c.columns, target)) for s, c in found), target)
+
+
+def dragged(g: Guess, record: Recording, to: str, target: Target) -> Guess:
+    """A column where the user puts it; "" leaves it out. Raises InputError where it cannot be what is wanted there."""
+    if not to:
+        return g.without("left out by hand")
+    if not record.source.is_numeric(g.column):
+        raise InputError("holds words, not numbers", g.column, "a column of readings")
+    if to in target.places or to in target.boundaries:
+        wanted = "temperature"
+    elif to in target.inputs:
+        wanted = target.inputs[to] or g.quantity
+    else:
+        raise InputError(f"the model has no '{to}'", g.column, ", ".join([*target.places, *target.inputs][:8]))
+    if g.quantity and wanted != g.quantity:
+        raise InputError(f"is a {g.quantity}, '{to}' wants a {wanted}".replace("_", " "), g.column, "another column")
+    unit = g.unit or ("degC" if wanted == "temperature" else next(iter(QUANTITIES[wanted].units), ""))
+    place, feeds = (to, "") if wanted == "temperature" and to not in target.inputs else ("", to)
+    return replace(g, quantity=wanted, unit=unit, place=place, feeds=feeds, doubt="")
+
+
+def write(dropped: Dropped, settings: Settings, network: Network, tell: Progress) -> Path:
+    """A new case beside the open one, with its machine or network; the folder."""
+    taken = [p.name for p in settings.path.resolve().parent.iterdir()]
+    folder = settings.path.resolve().parent / test_name(dropped.records[0].source.file, taken)
+    dialogue = Dialogue(dropped.target, False, dict(dropped.constants))
+    written(folder, model_of_case(settings, network), drafts_of(dropped.records, dialogue), tell)
+    return folder
+
+
+async def stored(parts: MultipartReader, folder: Path) -> list[Path]:
+    """The files of an upload, under their own names but nowhere else. HTTP 413 for more than LARGEST bytes."""
+    files, size = [], 0
+    async for part in parts:
+        if not isinstance(part, BodyPartReader) or not part.filename:
+            continue
+        name = "".join(c for c in Path(part.filename).name if c.isprintable()).lstrip(".") or "recording"
+        inside = folder / uuid4().hex  # two files of one name
+        inside.mkdir()
+        files.append(inside / name)
+        with files[-1].open("wb") as out:
+            while chunk := await part.read_chunk(CHUNK):
+                size += len(chunk)
+                if size > LARGEST:
+                    raise web.HTTPRequestEntityTooLarge(LARGEST, size)
+                out.write(chunk)
+    return files
+
+
+def _at(key: str) -> tuple[int, str]:
+    i, _, column = key.partition(":")
+    return (int(i) if i.isdigit() else len(key), column)

@@ -1,0 +1,216 @@
+"""The observer: sample by sample all temperatures and the missing heat, dropped sensors, and where the model fails."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import ndtr
+
+from lumped.integration.record import Record
+from lumped.integration.simulate import initial_state
+from lumped.model.network import Row
+from validation.case import Channel
+from validation.doubt import USUAL
+from validation.observer.hypotheses import ALLOWED, OVER, SURE, Hypotheses, hypotheses
+from validation.observer.kalman import Filter, begun
+from validation.observer.process import Driven, Process
+from validation.observer.process_noise import ProcessNoise
+from validation.observer.sensor_faults import SensorState
+
+Array = NDArray[np.float64]
+HELD_S = 60.0  # a reading's error lasts about a minute: more readings within it are no more evidence
+
+
+@dataclass(frozen=True)
+class Event:
+    """A sensor that is dropped, or a body where the model fails.  amplitude : K or W, the largest
+
+    kind : "lost", "frozen", "drifting" or "model";  to_s : None while it lasts;  probability : the largest
+    """
+
+    kind: str
+    where: str
+    from_s: float
+    to_s: float | None
+    probability: float
+    amplitude: float
+    unit: str
+
+
+@dataclass(frozen=True)
+class Sample:
+    """time_s;  x (n,) degC all states;  u (nb,) boundaries;  heat, heat_sd (m,) W
+
+    mean (N,), S (N, N) : of slow states and heats, S S' their covariance;  predicted : both before the readings
+    transition (N, N) : from the sample before, where a smoother asks for it
+    """
+
+    time_s: float
+    x: Array
+    u: Array
+    heat: Array
+    heat_sd: Array
+    S: Array
+    along: Array
+    mean: Array
+    predicted: tuple[Array, Array]
+    transition: Array
+
+    def at(self, row: Row) -> tuple[float, float]:
+        """Temperature (degC) and its deviation (K) at a row over z = [x; u]."""
+        z = np.concatenate([self.x, self.u])
+        own = row.index < self.x.size
+        h = row.weights[own] @ self.along[row.index[own]]
+        return float(row.weights @ z[row.index]), float(np.linalg.norm(h @ self.S[: h.size]))
+
+
+@dataclass
+class Observer:
+    """What it is made of and how it stands; `follow` takes it over a record.
+
+    table_sd (m,) W that the table of doubt allows the bodies;  sensors : channels, whose readings do not matter
+    lagged (s,) degC that each sensor would show by its own inertia;  open : hypothesis -> what was said of it
+    """
+
+    filter: Filter
+    table_sd: Array
+    sensors: tuple[Channel, ...]
+    states: list[SensorState]
+    tests: Hypotheses
+    lagged: Array
+    started: bool = False
+    likelihood: float = 0.0
+    open: dict[int, Event] = field(default_factory=dict)
+    events: list[Event] = field(default_factory=list)
+
+    def follow(self, record: Record, readings: Array) -> list[Sample]:
+        """Samples of a record, its first being where the last record ended (or the start).
+
+        readings (nt, s) degC, NaN where nothing was read
+        """
+        by, out = self.filter.process.driven(record), []
+        for k in range(1 if self.started else 0, by.time.size):
+            seconds = float(by.time[k] - by.time[k - 1]) if k else 0.0
+            if k:
+                self.filter.predict(by, k)
+                self.tests.forget(seconds)
+            predicted = self.filter.mean, self.filter.S
+            self._update(by, k, readings[k], seconds)
+            out.append(self._sample(by, k, predicted))
+            self.started = True
+        return out
+
+    def _update(self, by: Driven, k: int, readings: Array, seconds: float) -> None:
+        z = np.concatenate([self.filter.x, by.u[k]])
+        shown = np.array([c.row.weights @ z[c.row.index] for c in self.sensors])
+        lag = np.array([c.lag_s for c in self.sensors])
+        keeps = np.exp(-seconds / np.maximum(lag, 1e-9)) if self.started else np.zeros(lag.size)
+        self.lagged = shown + keeps * (self.lagged - shown)
+        change = np.zeros(len(self.filter.S))
+        for j in range(len(self.sensors)):
+            self._reading(j, float(readings[j]), change, float(by.time[k]), seconds or 1.0)
+        self.filter.correct(change)
+        n = self.filter.process.slow.size
+        for j, c in enumerate(self.sensors):
+            self.lagged[j] += self.filter.process.seen(c.row, self.filter.along) @ change[:n]
+        self._judge(float(by.time[k]))
+
+    def _reading(self, j: int, reading: float, change: Array, time: float, seconds: float) -> None:
+        """One reading into the filter; change (N,) grows by what it moves."""
+        c, state, f = self.sensors[j], self.states[j], self.filter
+        h = np.zeros(len(f.S))
+        h[: f.process.slow.size] = f.process.seen(c.row, f.along)
+        variance, expected = c.sigma_K**2 * max(HELD_S / seconds, 1.0), float(self.lagged[j] + h @ change)
+        sd, was = float(np.sqrt(np.sum((f.S.T @ h) ** 2) + variance)), state.dropped
+        sigma = np.array([one.sigma_K for one in self.sensors])
+        used = state.take(reading, expected, sd, self.lagged.copy(), sigma, time, seconds)
+        if state.dropped != was:
+            self._dropped(j, time)
+        if not used:
+            return
+        gain, total = f.gain(h, variance)
+        innovation, signature = reading - expected, h @ f.error
+        signature[j] += 1.0
+        self.likelihood -= 0.5 * (innovation**2 / total + np.log(total))
+        self.tests.weigh(signature, innovation, total)
+        f.error = f.error - np.outer(gain, signature)
+        change += gain * innovation
+
+    def _dropped(self, j: int, time: float) -> None:
+        """A sensor is dropped or comes back."""
+        state = self.states[j]
+        if j in self.open:
+            self._close(j, time)
+        if state.dropped:
+            self._say(j, Event(state.dropped, self.sensors[j].name, state.since_s, None, 1.0, float("nan"), "K"))
+
+    def _say(self, i: int, event: Event) -> None:
+        self.open[i] = event
+        self.events.append(event)
+
+    def _close(self, i: int, time: float) -> None:
+        event = self.open.pop(i)
+        self.events[self.events.index(event)] = replace(event, to_s=time)
+
+    def _judge(self, time: float) -> None:
+        """Say what has become sure, withdraw what no longer is."""
+        count = len(self.sensors)
+        for i, chance in enumerate(self.beyond_doubt, count):
+            size = float(self.filter.q[i - count])
+            if i not in self.open:
+                if chance > SURE:
+                    self._say(i, Event("model", self.tests.names[i], time, None, float(chance), size, "W"))
+            elif chance < OVER:
+                self._close(i, time)
+            elif abs(size) > abs(self.open[i].amplitude):
+                event = replace(self.open[i], probability=float(chance), amplitude=size)
+                self.events[self.events.index(self.open[i])] = self.open[i] = event
+        drifts = self.tests.probability[:count]
+        if count and drifts.max() > SURE:
+            self._drop_drifting(int(drifts.argmax()), time, float(drifts.max()))
+
+    @property
+    def beyond_doubt(self) -> Array:
+        """(m,) probability that the missing heat of a body is more than the table of doubt allows."""
+        sd = np.linalg.norm(self.filter.S[self.filter.process.slow.size :], axis=1)
+        return np.asarray(ndtr((np.abs(self.filter.q) - ALLOWED * self.table_sd) / np.maximum(sd, 1e-9)))
+
+    def _drop_drifting(self, j: int, time: float, chance: float) -> None:
+        """Without the sensor; where it has led the estimate is forgotten."""
+        size = float(self.tests.amplitude[j])
+        self.filter.restart(abs(size))
+        self.states[j].dropped, self.states[j].since_s = "drifting", time
+        if j in self.open:
+            self._close(j, time)
+        self._say(j, Event("drifting", self.sensors[j].name, time, None, chance, size, "K"))
+        self.tests.clear()
+
+    def _sample(self, by: Driven, k: int, predicted: tuple[Array, Array]) -> Sample:
+        f = self.filter
+        sd = np.linalg.norm(f.S[f.process.slow.size :], axis=1)
+        return Sample(float(by.time[k]), f.x.copy(), by.u[k], f.q.copy(), sd, f.S, f.along, f.mean, predicted,
+                      f.transition)  # fmt: skip
+
+
+def observer(
+    process: Process, noise: ProcessNoise, table_sd: Array, sensors: Sequence[Channel], readings: Array,
+    boundaries: Mapping[str, float], rise_K: float,
+) -> Observer:  # fmt: skip
+    """At its start, from the first readings (s,): places without a sensor begin at the mean of the others.
+
+    table_sd (m,) W that the table of doubt allows;  rise_K : usual rise, of which a sensor may miss a share
+    """
+    known = {c.place: float(y) for c, y in zip(sensors, readings, strict=True) if np.isfinite(y)}
+    x = initial_state(process.network, known or float(np.mean([*boundaries.values()])))
+    around = np.array([*known.values(), *boundaries.values()])
+    sd = {int(i): USUAL["start"] for c in sensors if c.place in known for i in c.row.index}
+    count, m = len(sensors), len(process.bodies)
+    heats = np.hstack([np.zeros((m, count)), np.eye(m)])
+    kept = begun(process, noise, x, sd, float(np.hypot(USUAL["start"], np.std(around))), heats)
+    sigma = np.array([c.sigma_K for c in sensors])
+    allowed = np.hypot(sigma, USUAL["gain"] * rise_K)
+    tests = hypotheses(tuple(c.name for c in sensors), sigma, allowed, process.bodies, table_sd)
+    return Observer(kept, table_sd, tuple(sensors), [SensorState() for _ in sensors], tests, np.zeros(count))

@@ -1,0 +1,1 @@
+"""Designs that trade temperature, settling time, loss and auxiliary power against each other, from one network."""

@@ -1,0 +1,65 @@
+"""What moves coolant and air costs: pressure along their ways times flow over the efficiency of pump or fan."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from lumped.machine.coolant import FLOW, INLET, Cooling, channel_of
+from lumped.machine.films import surroundings
+from lumped.transfer.hydraulics import pressure_drop, pumping_power
+from lumped.transfer.properties import air
+
+EFFICIENCY = 0.5  # of pump or fan with its motor: small wet-rotor pumps and axial fans reach 0.4 to 0.6
+FAN = "fan_flow_m3h"
+
+
+@dataclass(frozen=True)
+class Way:
+    """A jacket as what pressure needs to know: all its channels one after the other."""
+
+    section: float
+    diameter: float
+    length: float
+    bends: int
+    coil: float
+
+
+def auxiliary_power(machine: Any, inputs: Mapping[str, float]) -> float:
+    """Electrical power (W) of the coolant's pump and of the fan at an operating point.
+
+    A fan on the shaft ([fans.cowl]) takes its power as windage, which is among the losses.
+    """
+    around = surroundings(machine, ())
+    out = 0.0 if around.cooling is None else _pump(machine, around.cooling, inputs[FLOW] / 60000.0)
+    if around.fan is not None and around.ducts and inputs[FAN] > 0.0:
+        flow, (way, duct) = inputs[FAN] / 3600.0, next(iter(around.ducts.items()))  # all ways drop the same pressure
+        drop = pressure_drop(duct, around.shares[way] * flow, air(around.fan.air_C))
+        out += pumping_power(drop, flow, EFFICIENCY)
+    return out
+
+
+def _pump(machine: Any, cooling: Cooling, flow: float) -> float:
+    """flow (m3/s): jackets that the inlet feeds lie side by side, those that another feeds one after the other."""
+    ends = [j for j in cooling.feeds if j not in cooling.feeds.values()]
+    drops = [
+        sum(_drop(machine, j, cooling.share(j) * flow, cooling) for j in (end, *cooling.before(end)) if j != INLET)
+        for end in ends
+    ]
+    return pumping_power(max(drops, default=0.0), flow, EFFICIENCY)
+
+
+def _drop(machine: Any, jacket: str, flow: float, cooling: Cooling) -> float:
+    return pressure_drop(way_of(machine, jacket), flow, cooling.liquid) if flow > 0.0 else 0.0
+
+
+def way_of(machine: Any, jacket: str) -> Way:
+    """Axial channels joined by two bends of 90 degrees each, or the turns of a helix."""
+    channel, prisms = channel_of(machine, jacket), machine.part(jacket).prisms
+    if prisms[0][0].holes:
+        turns = sum(bool(profile.holes) for profile, _, _ in prisms)
+        return Way(channel.area, channel.diameter, turns * channel.length, 0, channel.coil)
+    spans = [(z0, z1) for _, z0, z1 in prisms]
+    number, (first, last) = max(spans.count(s) for s in spans), machine.part(jacket).span
+    return Way(channel.area, channel.diameter, number * (last - first), 2 * (number - 1), 0.0)

@@ -1,0 +1,98 @@
+"""What another geometry does to a network without a new condensation: its films, wetted areas and masses.
+
+Conduction stays that of the reference; what its change does is learned apart (corrections.py).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from geom.description.profile import loop_length
+from lumped.machine.coolant import FLOW, MOST_UNITS, channel_of, grown
+from lumped.machine.films import Surroundings, face_films, surroundings
+from lumped.machine.path import stem
+from lumped.model.network import Network, Parameter, Place
+from lumped.transfer.laws import Law
+from lumped.transfer.terms_value import temperature_value
+
+DIFFERENCE_K = 30.0  # at which still films of two sizes are compared: both go with the difference to the same power
+
+
+def design_parameters(network: Network) -> list[Parameter]:
+    """A neutral multiplier for every film and every capacity, for `Scaling` to set."""
+    films = [link.name for link in network.links if link.kind == "film"]
+    groups = [f"capacity:{g}" for g in dict.fromkeys(network.capacity_group)]
+    return [Parameter(f"design {t}", ((t, 1.0),), source="a design") for t in (*films, *groups)]
+
+
+class Scaling:
+    """Of the network of one machine; what the machine itself is needs to be looked at once."""
+
+    def __init__(self, network: Network, machine: Any) -> None:
+        self.machine, self.places = machine, [p for p in network.places.values() if p.kind == "surface" and p.fluid]
+        self.volumes = {p.name: p.volume for p in machine.parts}
+        self.walls = {p.name: _walls(p) for p in (*machine.parts, *machine.fluids)}
+        self.liquids = {p.name for p in machine.fluids if p.material != "air"}
+        self.around = surroundings(machine, ())
+        self.known = {f"design {link.name}" for link in network.links}
+
+    def of(self, machine: Any, inputs: Mapping[str, float]) -> dict[str, float]:
+        """Values of `design_parameters` that make the network one of another machine, at an operating point.
+
+        Only faces are looked at whose part or fluid has another shape.
+        """
+        moved = changed(self.machine, machine)
+        if not moved:
+            return {}
+        around = surroundings(machine, ())
+        out = {f"design capacity:{p.name}": p.volume / self.volumes[p.name] for p in machine.parts if p.name in moved}
+        for face in self.places:
+            if face.part in moved or stem(str(face.fluid)) in moved:
+                out |= self._face(face, around, inputs)
+        return out
+
+    def _face(self, face: Place, around: Surroundings, inputs: Mapping[str, float]) -> dict[str, float]:
+        fluid, areas = stem(str(face.fluid)), self.area_ratio(around.machine, face.part, stem(str(face.fluid)))
+        if fluid in self.liquids:
+            cell = sum(p.area or 0.0 for p in self.places if p.fluid == face.fluid)
+            a, b = (_conductance(w, fluid, cell * s, inputs) for w, s in ((self.around, 1.0), (around, areas)))
+            return {f"design film:{face.name}": b / a if a > 0.0 else areas}
+        old, new = (face_films(face.part, fluid, w) for w in (self.around, around))
+        names = {m: f"design film:{face.name}" + (f":{m}" if m else "") for m in old}
+        ratio = {m: _value(new[m], inputs) / max(_value(old[m], inputs), 1e-12) for m in old if m in new}
+        return {names[m]: areas * r for m, r in ratio.items() if names[m] in self.known}
+
+    def area_ratio(self, machine: Any, part: str, fluid: str) -> float:
+        """Of the faces between a part and a fluid: a jacket's by its own walls, the rest by those of the part."""
+        name = fluid if fluid in self.liquids else part
+        return _walls(machine.part(name)) / self.walls[name]
+
+
+def changed(old: Any, new: Any) -> set[str]:
+    """Parts and fluids with other prisms."""
+    before = {p.name: p.prisms for p in (*old.parts, *old.fluids)}
+    return {p.name for p in (*new.parts, *new.fluids) if before.get(p.name) != p.prisms}
+
+
+def _conductance(where: Surroundings, jacket: str, area: float, inputs: Mapping[str, float]) -> float:
+    """Of one cell's walls onto what leaves it (W/K)."""
+    cooling = where.cooling
+    assert cooling is not None
+    flow, liquid = cooling.share(jacket) * inputs[FLOW], cooling.liquid
+    film = channel_of(where.machine, jacket).film(flow, liquid) * area
+    rate = liquid.rho * liquid.cp * flow / 60000.0
+    return film * float(grown(np.minimum(np.array([film / rate]), MOST_UNITS))[0]) if rate > 0.0 else film
+
+
+def _value(law: Law, inputs: Mapping[str, float]) -> float:
+    at = {name: np.array([float(u)]) for name, u in inputs.items()}
+    return float(np.mean(law.factor(at))) * temperature_value(law.temperature, 20.0 + DIFFERENCE_K, 20.0)
+
+
+def _walls(part: Any) -> float:
+    """Area (m2) of all walls along the axis, and of the ends of rings."""
+    sides = sum(loop_length(loop) * (z1 - z0) for profile, z0, z1 in part.prisms for loop in profile.loops)
+    return float(sides + sum(2.0 * profile.area for profile, _, _ in part.prisms if profile.holes))
