@@ -13,8 +13,9 @@ from geom.errors import InputError
 from lumped.machine.losses import ASSUMED, ASSUMED_W, checked_losses
 from lumped.model.network import Network, Parameter
 from lumped.schemas.reader import known
-from thermoscope.case_folder.doctor import Finding, Patient, examined
+from thermoscope.case_folder.doctor import examined
 from thermoscope.case_folder.history import History, checked_values, load_history
+from thermoscope.case_folder.recording_checks import Finding, Patient
 from thermoscope.case_folder.settings import Entry, Settings, read_settings
 from thermoscope.recordings.formats import recording
 from thermoscope.recordings.quantities import with_quantities

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError
 from thermoscope.case_folder.folder import Folder
-from thermoscope.case_folder.runs import before_last, by_interest, fields, held, readings
+from thermoscope.case_folder.runs import before_last, by_interest, fields, readings
 from thermoscope.commands.open_case import open_case
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import give, progress
@@ -76,7 +76,7 @@ def misses(folder: Folder, model: Case, test: Test, times: NDArray[np.float64]) 
     """At each of the times (s): the sensors with a place, and what the model misses there."""
     from viz.data import Sensor
 
-    shown = held(folder, test)
+    limit_K = folder.compared.limits[test.name]
     read, at = readings(model, test), np.searchsorted(test.time, times).clip(0, len(test.time) - 1)
     out = []
     for i in at:
@@ -84,6 +84,6 @@ def misses(folder: Folder, model: Case, test: Test, times: NDArray[np.float64]) 
         for c in test.channels:
             if c.name in folder.positions:
                 x, y, z = folder.positions[c.name]
-                row.append(Sensor(c.name, (x, y, z), float(c.y[i] - read[c.name][i]), shown.limit_K(c)))
+                row.append(Sensor(c.name, (x, y, z), float(c.y[i] - read[c.name][i]), limit_K[c.name]))
         out.append(tuple(row))
     return out
