@@ -145,7 +145,7 @@ def _sensors(
     named = sorted(placed, key=lambda channel: -c.rmse(channel) / c.limit_K(channel))[:LABELS]
     labels = rr.Points3D(
         [positions[channel.name] for channel in named], labels=[short(channel.name) for channel in named],
-        radii=rr.Radius.ui_points(0.0), show_labels=True,
+        radii=rr.Radius.ui_points(0.0), show_labels=True, colors=[255, 255, 255],
     )  # fmt: skip
     stream.log("machine/names", labels, static=True)
     residual = np.stack([np.interp(times, c.test.time, c.residual(channel)) for channel in placed], axis=1)
