@@ -57,7 +57,7 @@ def ours(nodes: SplitMesh, folder: Path) -> Path:
     at = {f"T{i}": tuple(nodes.points[i * nodes.size // 11].tolist()) for i in range(11)}
     channels = tuple(Channel(n, n, row, model + i - 5.0) for i, n in enumerate(at))
     test = Test("hour", "hold-out", times, {}, {"ambient": np.full(FRAMES, 20.0)}, channels)
-    comparison = Comparison(test, dict.fromkeys(at, model))
+    comparison = Comparison(test, dict.fromkeys(at, model), dict.fromkeys(at, 1.0))
     return write_viewer(folder / "viewer.html", "motor", nodes, [Recorded(comparison, times, fields)], at)
 
 

@@ -27,7 +27,7 @@ def blueprint(comparison: Comparison, first: str, points: NDArray[np.float64], w
     below: list[Any] = [_over_time("inputs", "inputs", end)] if comparison.test.inputs else []
     below += [rrb.TextLogView(origin="events", name="events")] if comparison.events else []
     right = rrb.Vertical(curves, _over_time("residual", "measured − model (K)", end), *below)
-    shown = rrb.Horizontal(_machine(comparison, points), _bar(), column_shares=[8, 1])
+    shown = rrb.Horizontal(_machine(comparison, points), _bar(), column_shares=[6, 1])
     left = rrb.Vertical(shown, _text("legend", "legend"), row_shares=[5, 1])
     layout: Any = rrb.Horizontal(left, right, column_shares=[3, 2], name="test")
     if with_history:

@@ -145,7 +145,7 @@ def _sensors(
     named = sorted(placed, key=lambda channel: -c.rmse(channel) / c.limit_K(channel))[:LABELS]
     labels = rr.Points3D(
         [positions[channel.name] for channel in named], labels=[short(channel.name) for channel in named],
-        radii=rr.Radius.ui_points(0.0), show_labels=True,
+        radii=rr.Radius.ui_points(0.0), show_labels=True, colors=[255, 255, 255],
     )  # fmt: skip
     stream.log("machine/names", labels, static=True)
     residual = np.stack([np.interp(times, c.test.time, c.residual(channel)) for channel in placed], axis=1)
@@ -211,10 +211,8 @@ def _rgba(colour: str) -> int:
     return int(colour[1:] + "ff", 16)
 
 
-_LEGEND = """
-
-Sensors: green within the uncertainty, vermilion where the machine is hotter than the model, blue where it is colder.
-Six have names, those furthest beyond their uncertainty; the others say theirs under the pointer.
+_LEGEND = """Sensors: green within the uncertainty, vermilion where the machine is hotter than the model,
+blue where it is colder. Six have names, those furthest beyond their uncertainty; the others under the pointer.
 
 Timelines (chosen at the bottom left): **test_time** runs through the test; for the tab *revisions* choose **revision**.
 """
