@@ -1,6 +1,6 @@
 """Network time stepping against general ODE solvers: same network, same record, same run.
 
-    python benchmarks/network.py [--json FILE]
+    python benchmarks/network.py [--only peers] [--json FILE]
 
 30 nodes, 3,600 s at 1 s with radiation, natural convection and copper feedback, on three records: a road (inputs change
 every second, so no solver may step over a sample), steps (a minute or five apart) and smooth inputs.
@@ -192,12 +192,17 @@ def shown(r: dict[str, Any], to: TextIO) -> None:
     print(f"{r['case']:36s} {r['measure']:22s} {r['ours']:.4g} {r['unit']}{peer}", file=to, flush=True)
 
 
+PARTS = {"compiling": compiling, "sizes": sizes, "ensembles": ensembles, "peers": against_peers}
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--json", metavar="FILE", help="write the rows there; - is stdout")
-    target = parser.parse_args().json
+    parser.add_argument("--only", choices=list(PARTS), nargs="+", default=list(PARTS), help="parts of the benchmark")
+    given = parser.parse_args()
+    target = given.json
     rows: list[dict[str, Any]] = []
-    for part in (compiling, sizes, ensembles, against_peers):
+    for part in (PARTS[name] for name in given.only):
         found = part()
         rows += found
         for r in found:

@@ -1,10 +1,11 @@
 """Random networks against SciPy's Radau: how far off, whether any node leaves what is allowed, what the estimate says.
 
-    python benchmarks/time_steps.py [--first SEED] [--count 1000] [--json FILE] [--references FOLDER]
+    python benchmarks/time_steps.py [--first SEED] [--count 1000] [--tangents 3] [--json FILE] [--references FOLDER]
 
 Networks, equations and reference are those of tests/lumped/random_networks.py: 3 to 40 nodes, capacities over six
 decades and none, cells of 0.1 J/K, samples of 1 to 60 s, inputs in steps and ramps, streams through zero and reversed,
 copper losses that follow temperature. Radau goes from sample to sample at rtol 1e-9 with equations of its own.
+Tangents of some of a network's parameters are held against central differences on the steps of the run.
 """
 
 from __future__ import annotations
@@ -16,12 +17,15 @@ from pathlib import Path
 
 import numpy as np
 
+from lumped.integration.record import Record
 from lumped.integration.simulate import simulate
+from lumped.model.network import Network, Row
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "lumped"))
 from random_networks import Machine, admissible, built, machine, reference
 
 WRONG_K, WRONG_SHARE, OUTSIDE_K = 0.1, 1e-3, 0.01
+STEP, WRONG_TANGENT = 1e-4, 1e-5  # of log(parameter);  of the largest tangent: rounding leaves 1e-7 to 1e-6
 
 
 def exactly(m: Machine, seed: int, folder: Path | None) -> np.ndarray:
@@ -35,25 +39,42 @@ def exactly(m: Machine, seed: int, folder: Path | None) -> np.ndarray:
     return np.load(file)
 
 
-def measured(seed: int, folder: Path | None = None) -> dict[str, float]:
-    """One network: error (K), what is allowed (K), how far outside (K), estimate (K), steps per sample."""
+def measured(seed: int, folder: Path | None = None, parameters: int = 0) -> dict[str, float]:
+    """One network: error (K), what is allowed (K), how far outside (K), estimate (K), steps per sample, tangents."""
     m = machine(seed)
     network, record = built(m)
-    run = simulate(network, record, rows=[network.place(n).mean for n in network.states], keep_states=True)
+    rows = [network.place(n).mean for n in network.states]
+    run = simulate(network, record, rows=rows, keep_states=True)
     assert run.z is not None
     x, exact, (low, high) = run.z[:, : m.C.size], exactly(m, seed, folder), admissible(m)
     span = max(exact.max(), m.around.max()) - min(exact.min(), m.around.min())
     return {
         "seed": seed, "error_K": float(np.abs(x - exact).max()), "allowed_K": max(WRONG_K, WRONG_SHARE * span),
         "outside_K": float(max(low - x.min(), x.max() - high, 0.0)), "estimate_K": float(run.time_error_K.max()),
-        "steps": run.steps.knot.size / m.time.size,
+        "steps": run.steps.knot.size / m.time.size, "tangent": tangent_error(network, record, rows, parameters),
     }  # fmt: skip
+
+
+def tangent_error(network: Network, record: Record, rows: list[Row], count: int) -> float:
+    """Largest difference of tangents to central differences on the same steps, over the largest tangent."""
+    every = network.parameters
+    some = every[:: max(1, len(every) // count)][:count] if count else ()
+    if not some:
+        return 0.0
+    run = simulate(network, record, rows=rows, tangents=some)
+    assert run.dy is not None
+    worst = 0.0
+    for k, p in enumerate(some):
+        up, down = (simulate(network, record, {p.name: np.exp(h)}, rows, steps=run.steps).y for h in (STEP, -STEP))
+        worst = max(worst, float(np.abs(run.dy[:, :, k] - (up - down) / (2 * STEP)).max()))
+    return worst / max(float(np.abs(run.dy).max()), 1e-3)
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--count", type=int, default=1000)
+    parser.add_argument("--tangents", type=int, default=3, help="parameters of each network")
     parser.add_argument("--json", type=Path, metavar="FILE", help="one row per network")
     parser.add_argument(
         "--references", type=Path, metavar="FOLDER", help="keep Radau's answers there for the next time"
@@ -61,8 +82,10 @@ def main() -> None:
     given = parser.parse_args()
     rows = []
     for seed in range(given.first, given.first + given.count):
-        rows.append(measured(seed, given.references))
+        rows.append(measured(seed, given.references, given.tangents))
         r = rows[-1]
+        if r["tangent"] > WRONG_TANGENT:
+            print(f"seed {seed}: tangents {r['tangent']:.1e} from finite differences", flush=True)
         if r["error_K"] > r["allowed_K"] or r["outside_K"] > OUTSIDE_K:
             print(f"seed {seed}: error {r['error_K']:.4f} K, outside by {r['outside_K']:.4f} K", flush=True)
     error, estimate = (np.array([r[k] for r in rows]) for k in ("error_K", "estimate_K"))
@@ -72,6 +95,10 @@ def main() -> None:
     print(f"error (K): median {np.median(error):.4f}, 99 % {np.quantile(error, 0.99):.4f}, largest {error.max():.4f}")
     print(f"estimate above the error in {100 * np.mean(estimate >= error):.1f} %, median ratio "
           f"{np.median(estimate / error):.1f}; {np.mean([r['steps'] for r in rows]):.1f} steps per sample")  # fmt: skip
+    apart = np.array([r["tangent"] for r in rows])
+    print(
+        f"tangents from finite differences, over the largest: median {np.median(apart):.1e}, largest {apart.max():.1e}"
+    )
     if given.json:
         given.json.write_text(json.dumps(rows, indent=1))
 

@@ -39,7 +39,7 @@ from viz.viewer.page import Recorded, write_viewer
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 ARGUMENTS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 MEASURES = (("bytes sent", "MB"), ("first picture", "s"), ("pictures a second while turned", "1/s"))
-FRAMES, WAIT_S, COLOURS = 61, 120, 500
+FRAMES, WAIT_S, COLOURS = 61, 120, 100
 COUNT = "window.drawn = 0; const count = () => { window.drawn += 1; requestAnimationFrame(count); }; count();"
 
 

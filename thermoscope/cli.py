@@ -441,19 +441,34 @@ def watch(
 
 
 @app.command()
+def fleet(
+    case: Case,
+    recordings: Annotated[list[Path], typer.Argument(metavar="RECORDINGS...", help="UNIT@2026-03.csv, or folders.")],
+    like: Annotated[str | None, typer.Option(metavar="TEST", help="Columns as in this test; else the first.")] = None,
+    cluster: Annotated[str | None, typer.Option(metavar="ADDRESS", help="Of a Dask scheduler.")] = None,
+    json: Json = None,
+) -> None:
+    """Motors that should be equal: what differs between them, what drifts over the months, which one stands out."""
+    from thermoscope.commands.use.fleet import fleet as run
+
+    raise typer.Exit(run(case, recordings, like, cluster, json))
+
+
+@app.command()
 def export(
     case: Case,
     out: Out = None,
-    form: Annotated[str, typer.Option("--as", help="xlsx, csv: results; c, fmu, json, matlab: the model.")] = "xlsx",
+    form: Annotated[str, typer.Option("--as", help="xlsx, csv: results; c, fmu, json, matlab; observer: C.")] = "xlsx",
     limit: Limit = None,
     fmi: Annotated[int, typer.Option(help="Version of an FMU: 2 or 3.")] = 2,
+    sensor: Annotated[list[str] | None, typer.Option(metavar="NAME", help="Of an observer; else all.")] = None,
     csv: Annotated[bool, typer.Option("--csv", hidden=True, help="As --as csv.")] = False,
     json: Json = None,
 ) -> None:
     """Results as a workbook or CSV files; or the model to run elsewhere: C99, FMU, JSON or MAT file."""
     from thermoscope.commands.use.export import export as run
 
-    raise typer.Exit(run(case, out, "csv" if csv else form, tuple(limit or ()), fmi, json))
+    raise typer.Exit(run(case, out, "csv" if csv else form, tuple(limit or ()), fmi, json, tuple(sensor or ())))
 
 
 @app.command()

@@ -15,7 +15,7 @@ GROUPS: dict[str, tuple[str, tuple[str, ...]]] = {
     "explain": ("What is missing, and what would show it.", ("diagnose", "improve", "effects", "answer")),
     "show": ("Report, pictures, the workbench in the browser.",
              ("report", "render", "picture", "film", "viewer", "serve", "plan")),
-    "use": ("Run the model, and take it elsewhere.", ("simulate", "export", "rate", "optimise", "watch")),
+    "use": ("Run the model, and take it elsewhere.", ("simulate", "export", "rate", "optimise", "watch", "fleet")),
     "bench": ("The published test procedure, from resistances to screened models.",
               ("protocol", "curves", "bases", "screen", "two-paths", "carry")),
 }  # fmt: skip

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -56,13 +57,13 @@ def data(model: Model) -> str:
     rows = [o.row for o in model.outputs]
     starts = np.concatenate([[0], np.cumsum([r.index.size for r in rows])]).astype(int)
     parts = [
-        _reals("C", model.C), _matrix("K0", model.K0), _reals("UNIT", model.unit), _ints("NODE", model.node),
-        _ints("ENTRY_START", T.start[:, ENTRIES]), _ints("ENTRY_TO", T.to), _ints("ENTRY_AT", T.at),
-        _reals("ENTRY_WEIGHT", T.weight), _ints("ROW_START", T.start[:, ROWS]), _ints("ROW", T.row),
-        _ints("LAW", T.kind[:, 0]), _reals("LAW_A", T.par[:, 0]), _reals("LAW_B", T.par[:, 1]),
-        _ints("POINT_START", T.start[:, POINTS]), _reals("POINT_X", T.point[:, 0]), _reals("POINT_Y", T.point[:, 1]),
-        *_functions(F), _ints("OUTPUT_START", starts), _ints("OUTPUT_AT", _joined(r.index for r in rows)),
-        _reals("OUTPUT_WEIGHT", _joined(r.weights for r in rows)), f"#define FILMS {FILMS}",
+        reals("C", model.C), _matrix("K0", model.K0), reals("UNIT", model.unit), ints("NODE", model.node),
+        ints("ENTRY_START", T.start[:, ENTRIES]), ints("ENTRY_TO", T.to), ints("ENTRY_AT", T.at),
+        reals("ENTRY_WEIGHT", T.weight), ints("ROW_START", T.start[:, ROWS]), ints("ROW", T.row),
+        ints("LAW", T.kind[:, 0]), reals("LAW_A", T.par[:, 0]), reals("LAW_B", T.par[:, 1]),
+        ints("POINT_START", T.start[:, POINTS]), reals("POINT_X", T.point[:, 0]), reals("POINT_Y", T.point[:, 1]),
+        *_functions(F), ints("OUTPUT_START", starts), ints("OUTPUT_AT", joined(r.index for r in rows)),
+        reals("OUTPUT_WEIGHT", joined(r.weights for r in rows)), f"#define FILMS {FILMS}",
         f"#define FILM_FIRST ((thermal_real){FIRST_C})", f"#define FILM_STEP ((thermal_real){STEP_K})",
     ]  # fmt: skip
     return "\n".join(["/* The numbers of the model; see thermal_network_sizes.h. */", *parts, ""])
@@ -70,13 +71,13 @@ def data(model: Model) -> str:
 
 def _functions(F: Flat) -> list[str]:
     return [
-        _ints("PRODUCT_START", F.product_start), _reals("PRODUCT", F.coefficient),
-        _ints("FUNCTION_START", F.function_start), _matrix("FUNCTION", F.function, "int"),
-        _matrix("FUNCTION_A", F.parameters), _reals("FUNCTION_X", F.x), _reals("FUNCTION_Y", F.y),
+        ints("PRODUCT_START", F.product_start), reals("PRODUCT", F.coefficient),
+        ints("FUNCTION_START", F.function_start), _matrix("FUNCTION", F.function, "int"),
+        _matrix("FUNCTION_A", F.parameters), reals("FUNCTION_X", F.x), reals("FUNCTION_Y", F.y),
     ]  # fmt: skip
 
 
-def _joined(parts: Iterable[np.ndarray]) -> np.ndarray:
+def joined(parts: Iterable[np.ndarray]) -> np.ndarray:
     return np.concatenate([np.empty(0), *parts])
 
 
@@ -84,12 +85,12 @@ def _broken(words: Sequence[str]) -> str:
     return ",\n".join(", ".join(words[i : i + WIDE]) for i in range(0, len(words), WIDE))
 
 
-def _reals(name: str, values: np.ndarray) -> str:
+def reals(name: str, values: Any) -> str:
     words = [f"{v:.17g}" for v in np.ravel(values)] or EMPTY
     return f"static const thermal_real {name}[] = {{{_broken(words)}}};"
 
 
-def _ints(name: str, values: np.ndarray) -> str:
+def ints(name: str, values: Any) -> str:
     words = [str(int(v)) for v in np.ravel(values)] or EMPTY
     return f"static const int {name}[] = {{{_broken(words)}}};"
 

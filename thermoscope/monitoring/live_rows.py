@@ -140,7 +140,7 @@ class LiveTable:
 
     def _times(self, lines: Sequence[Sequence[str]], first: int) -> Array:
         if not self.sheet.time:
-            return (first - 2.0 + np.arange(len(lines))) * self.sheet.period_s
+            return np.asarray((first - 2.0 + np.arange(len(lines))) * self.sheet.period_s, float)
         at = self.header.index(self.sheet.time)
         raw = np.array([self._number(line, at, self.sheet.time, first + i) for i, line in enumerate(lines)])
         time = np.asarray(converted(raw, "time", self.sheet.time_unit), float)

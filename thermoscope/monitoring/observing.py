@@ -12,7 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.disk_cache import recalled
+from geom.errors import InputError
 from lumped.integration.record import Record
+from lumped.schemas.reader import known
 from lumped.transfer.laws import CLOCK
 from thermoscope.bands import case_key, posterior_of
 from thermoscope.caches import cache_folder
@@ -75,6 +77,17 @@ def _kept(file: Path) -> tuple[tuple[str, ...], ProcessNoise, Array]:
 
 def _key(folder: Folder, at_hand: Sequence[str]) -> str:
     return hashlib.sha256(repr((LAYOUT, case_key(folder), sorted(at_hand))).encode()).hexdigest()[:20]
+
+
+def chosen(here: Sequence[Channel], given: Sequence[str], where: str) -> list[Channel]:
+    """The sensors that are asked for, by default all that are there."""
+    names = [c.name for c in here]
+    for name in given:
+        if name not in names:
+            raise InputError(f"no sensor '{name}'", "--sensor", known(name, names or ["no sensor in the rows"]))
+    if not here:
+        raise InputError("no sensor of the machine", where, "a temperature column that the test's sheet knows")
+    return [c for c in here if c.name in given or not given]
 
 
 def record_of(rows: Rows, folder: Folder) -> Record:

@@ -125,7 +125,8 @@ def at_level(network: Network, names: Collection[str], tests: Sequence[Test]) ->
 
 
 def _offsets_at_level(network: Network, names: Collection[str], tests: Sequence[Test]) -> Network:
-    laws = {x.name: x.law for x in (*network.links, *network.sources)}
+    laws: dict[str, Law] = {x.name: x.law for x in network.links}
+    laws |= {s.name: s.law for s in network.sources}
     level = levels(tests)
 
     def scaled(p: Parameter) -> Parameter:

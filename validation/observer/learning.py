@@ -53,7 +53,7 @@ def calibrated_noise(
     best, least = ProcessNoise(table, TIMES_S[2]), np.inf
     for time_s in TIMES_S if tests else ():
         progress(f"process noise of {time_s:g} s")
-        found = _learned(process, tests, table, time_s)
+        found = learned(process, tests, table, time_s)
         places = {c.place for t in tests for c in t.channels if c.name in at_hand}
         seen = np.array([b in places for b in process.bodies], bool)
         of_tests = [found.without(i, table) for i in range(len(tests))]
@@ -75,7 +75,7 @@ def _apart(W: Array, seen: NDArray[np.bool_]) -> Array:
     return np.where(both | np.eye(len(W), dtype=bool), W, 0.0)
 
 
-def _learned(process: Process, tests: Sequence[Test], table: Array, time_s: float) -> Moments:
+def learned(process: Process, tests: Sequence[Test], table: Array, time_s: float) -> Moments:
     """Moments that have settled."""
     W = table
     for _ in range(ROUNDS):

@@ -16,16 +16,23 @@ from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import Progress, give, plain, progress
 
 WORKBOOKS = ("xlsx", "csv")
-MODELS = ("c", "fmu", "json", "matlab")
+MODELS = ("c", "fmu", "json", "matlab", "observer")
 VERSIONS = (2, 3)
 
 
-def export(case: str, out: Path | None, form: str, limits: Sequence[str], version: int, target: str | None) -> int:
-    """A workbook, CSV files, or the model as C, FMU, JSON or MAT file."""
+def export(
+    case: str, out: Path | None, form: str, limits: Sequence[str], version: int, target: str | None,
+    sensors: Sequence[str] = (),
+) -> int:  # fmt: skip
+    """A workbook, CSV files, the model as C, FMU, JSON or MAT file, or its observer.  sensors : of the observer"""
     if form not in (*WORKBOOKS, *MODELS):
         raise InputError(f"'{form}' is no form to export", "--as", known(form, (*WORKBOOKS, *MODELS)))
     if version not in VERSIONS:
         raise InputError(f"FMI {version} is not written", "--fmi", "2 or 3")
+    if sensors and form != "observer":
+        raise InputError(f"--as {form} has no sensors", "--sensor", "--as observer")
+    if form == "observer":
+        return _observer(case, out, read_limits(limits), sensors, target)
     if form in MODELS:
         return _model(case, out, form, read_limits(limits), version, target)
     with progress() as tell:
@@ -78,6 +85,36 @@ def _model(
         "difference_K": apart,
     }  # fmt: skip
     give(document, target, lambda: answer(document))
+    return 0
+
+
+def _observer(
+    case: str, out: Path | None, limits: Mapping[str, float], given: Sequence[str], target: str | None
+) -> int:
+    """The observer of a case in C99."""
+    from thermoscope.export.model import outputs
+    from thermoscope.export.observer_code import observer_files, observer_model
+    from thermoscope.monitoring.observing import chosen, designed
+    from thermoscope.verification.error_budget import model_of
+
+    with progress() as tell:
+        folder = open_case(case, tell)
+        channels = {c.name: c for t in folder.case.tests for c in t.channels}
+        sensors = chosen([*channels.values()], given, str(folder.settings.path))
+        design = designed(folder, [c.name for c in sensors], tell)
+        tell("writing the observer")
+        looks = outputs(model_of(folder)[0], folder, limits)
+        of = observer_model(design.process, design.noise, design.table_sd, design.rise_K, sensors,
+                            folder.case.tests, looks)  # fmt: skip
+    where = out or folder.settings.out / "observer"
+    written = [write_whole(where / name, text) for name, text in observer_files(of).items()]
+    document = {
+        "case": folder.case.name, "revision": folder.case.model.revision, "as": "observer",
+        "files": [str(p) for p in written], "state_bytes": of.bytes, "inputs": of.given,
+        "sensors": [c.name for c in sensors], "missing_heat": of.process.bodies, "outputs": [o.name for o in looks],
+    }  # fmt: skip
+    sentence = f"An observer of {len(sensors)} sensors, {of.bytes} bytes from step to step."
+    give(document, target, lambda: Answer(sentence, [str(p) for p in written], "--json FILE"))
     return 0
 
 

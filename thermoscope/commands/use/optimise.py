@@ -116,7 +116,7 @@ def _write(
     folder: Path, problem: Problem, designs: Sequence[Design], document: Mapping[str, Any], file: MachineFile | None
 ) -> list[str]:
     """pareto.csv, pareto.html, and a machine file per design of the chosen ones."""
-    from viz.live.pareto import page
+    from viz.live.designs import page
 
     rows = [{"design": d["design"], **{o: d[o] for o in problem.aimed}, **d["values"]} for d in document["designs"]]
     text = io.StringIO()

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError
 from lumped.integration.simulate import initial_state
-from lumped.schemas.reader import known
 from thermoscope.case_folder.files import write_whole
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.runs import mean_rows
@@ -21,7 +20,7 @@ from thermoscope.commands.open_case import PACKAGE, open_case
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import STDOUT, give, progress
 from thermoscope.monitoring.live_rows import PIPE, TOGETHER, Rows, opened, table_of, together
-from thermoscope.monitoring.observing import ObserverDesign, designed, joined, record_of
+from thermoscope.monitoring.observing import ObserverDesign, chosen, designed, joined, record_of
 from thermoscope.recordings.formats import stem_of
 from thermoscope.recordings.sheet import load_sheet
 from validation.case import Channel
@@ -41,7 +40,7 @@ def watch(case: str, follow: str, given: Sequence[str], like: str | None, out: P
             name, table, lines = table_of(stream, follow, sheets, network, like)
             channels = {c.name: c for t in folder.case.tests if t.name == name for c in t.channels}
             here = [c for n, c in channels.items() if n in table.sensors()]
-            sensors = _chosen(here, given, follow)
+            sensors = chosen(here, given, follow)
             design = designed(folder, [c.name for c in sensors], tell)
         session = Session(folder, design, sensors, [c for c in here if c not in sensors], target != STDOUT)
         with suppress(KeyboardInterrupt):
@@ -60,16 +59,6 @@ def watch(case: str, follow: str, given: Sequence[str], like: str | None, out: P
 
 def _shipped(folder: Folder) -> bool:
     return PACKAGE in folder.settings.path.resolve().parents
-
-
-def _chosen(here: Sequence[Channel], given: Sequence[str], where: str) -> list[Channel]:
-    names = [c.name for c in here]
-    for name in given:
-        if name not in names:
-            raise InputError(f"no sensor '{name}'", "--sensor", known(name, names or ["no sensor in the rows"]))
-    if not here:
-        raise InputError("no sensor of the machine", where, "a temperature column that the test's sheet knows")
-    return [c for c in here if c.name in given or not given]
 
 
 @dataclass

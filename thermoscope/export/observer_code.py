@@ -1,0 +1,168 @@
+"""The observer in C99: the network's code with missing heat as an input, the filter (runtime/), and its numbers."""
+
+from __future__ import annotations
+
+import ctypes
+import tempfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geom.errors import InputError, ThermoscopeError
+from lumped.model.network import Network
+from lumped.schemas.bounds import COLDEST, HOTTEST
+from lumped.sources.loss_measured import MeasuredLoss
+from thermoscope.export.c_code import RUNTIME, c_files, ints, joined, reals
+from thermoscope.export.compilers import here, library
+from thermoscope.export.model import Model, Output, packed
+from validation.case import Channel, Test
+from validation.doubt import TEMPER, USUAL
+from validation.effects.build import heat
+from validation.observer import hypotheses as tests_of
+from validation.observer import sensor_faults as faults
+from validation.observer.hypotheses import hypotheses
+from validation.observer.observer import HELD_S
+from validation.observer.process import LONGEST_S, Process
+from validation.observer.process_noise import ProcessNoise
+
+Array = NDArray[np.float64]
+MOST_BYTES = 10_000  # of what has to live from step to step on a controller
+FILES = ("thermal_observer.h", "thermal_observer.c")
+REAL, SINGLE = 8, 4  # bytes
+
+
+@dataclass(frozen=True)
+class ObserverModel:
+    """model : the network with the missing heat of every body as an input;  given : the inputs that a user sets
+
+    table_sd (m,) W that the table of doubt allows;  rise_K : usual rise of the tests
+    """
+
+    model: Model
+    process: Process
+    noise: ProcessNoise
+    table_sd: Array
+    rise_K: float
+    sensors: tuple[Channel, ...]
+    heats: tuple[str, ...]
+
+    @property
+    def given(self) -> tuple[str, ...]:
+        return tuple(s.name for s in self.model.signals if s.name not in self.heats)
+
+    @property
+    def bytes(self) -> int:
+        """Of thermal_observer, as a C compiler lays it out, but for a few bytes between its parts."""
+        n, m, s = self.process.size, len(self.process.bodies), len(self.sensors)
+        doubles = len(self.model.states) + len(self.model.signals) + 2 + s + 1
+        singles = n * n + n * (s + m) + 2 * (s + m) + 3 * (m + 1) + s + 1 + (s + 1) * (s + 7)
+        return REAL * doubles + SINGLE * singles
+
+
+def observer_model(
+    process: Process, noise: ProcessNoise, table_sd: Array, rise_K: float, sensors: Sequence[Channel],
+    tests: Sequence[Test], looks: Sequence[Output],
+) -> ObserverModel:  # fmt: skip
+    """Raises InputError where it would not fit on a controller."""
+    network, names = with_missing_heat(process.network, process.bodies)
+    model = packed(network, process.values, tests, looks)
+    made = ObserverModel(model, process, noise, table_sd, rise_K, tuple(sensors), names)
+    if made.bytes > MOST_BYTES:
+        what = (
+            f"an observer of {process.size} temperatures and heats with {len(sensors)} sensors takes {made.bytes} bytes"
+        )
+        raise InputError(what, "--as observer", f"at most {MOST_BYTES}: fewer sensors (--sensor), or a smaller network")
+    return made
+
+
+def with_missing_heat(network: Network, bodies: Sequence[str]) -> tuple[Network, tuple[str, ...]]:
+    """The network with an input (W) for the missing heat of every body."""
+    names = tuple(f"missing heat {body}" for body in bodies)
+    laws = [MeasuredLoss(((1.0, (name,)),)) for name in names]
+    sources = [heat(network, n, "missing", b, law) for n, b, law in zip(names, bodies, laws, strict=True)]
+    return network.extended(sources=sources), names
+
+
+def observer_files(of: ObserverModel) -> dict[str, str]:
+    """File name -> text: everything that has to be compiled (thermal_observer.c takes thermal_network.c in)."""
+    fixed = {name: (RUNTIME / name).read_text(encoding="utf-8") for name in FILES}
+    return {**c_files(of.model), **fixed, "thermal_observer_sizes.h": _sizes(of), "thermal_observer_data.h": _data(of)}
+
+
+def _sizes(of: ObserverModel) -> str:
+    counts = {"SLOW": of.process.slow.size, "BODIES": len(of.process.bodies), "SENSORS": len(of.sensors),
+              "GIVEN": len(of.given)}  # fmt: skip
+    said = [
+        f"Observer of '{of.model.name}': {of.bytes} bytes from step to step; single precision but for temperatures.",
+        f"Inputs u, in this order: {', '.join(of.given)}.",
+        f"Sensors y (degC, NAN where nothing was read), in this order: {', '.join(c.name for c in of.sensors)}.",
+        f"Missing heat q (W), in this order: {', '.join(of.process.bodies)}.",
+    ]
+    lines = [f"#define THERMAL_{name} {n}" for name, n in counts.items()]
+    guard = "THERMAL_OBSERVER_SIZES_H"
+    about = "\n   ".join(said).replace("*/", "* /")
+    return "\n".join([f"/* {about} */", f"#ifndef {guard}", f"#define {guard}", *lines, "#endif", ""])
+
+
+def _data(of: ObserverModel) -> str:
+    signals = [s.name for s in of.model.signals]
+    network, rows = of.process.network, [c.row for c in of.sensors]
+    sigma = np.array([c.sigma_K for c in of.sensors])
+    names = tuple(c.name for c in of.sensors)
+    odds = hypotheses(names, sigma, np.hypot(sigma, USUAL["gain"] * of.rise_K), of.process.bodies, of.table_sd)
+    places = [network.places[c.place].part if c.place in network.places else c.place for c in of.sensors]
+    numbers: Mapping[str, float] = {
+        "NOISE_S": of.noise.time_s, "LONGEST_S": LONGEST_S, "HELD_FOR_S": HELD_S, "START_K": USUAL["start"],
+        "COLDEST_C": COLDEST, "HOTTEST_C": HOTTEST, "OUTLIER_SD": faults.OUTLIER, "LOST_AFTER_S": faults.LOST_S,
+        "BACK_AFTER_S": faults.BACK_S, "FROZEN_AFTER_S": faults.FROZEN_S, "LONGER_RUN": faults.LONGER,
+        "MOVED_SD": faults.MOVED, "FORGETS_AFTER_S": tests_of.FORGETS_S, "SURE_FROM": tests_of.SURE,
+        "DOUBT_SD": tests_of.ALLOWED, "TEMPER_BY": TEMPER.share,
+    }  # fmt: skip
+    m = len(of.process.bodies)
+    root = "},\n{".join(", ".join(f"{v:.9g}" for v in row) for row in of.noise.root)
+    return "\n".join([
+        "/* The numbers of the observer; see thermal_observer_sizes.h. */",
+        *(f"#define {name} {value:.17g}" for name, value in numbers.items()),
+        ints("SLOW", of.process.slow), ints("BODY_STATE", [network.column(b) for b in of.process.bodies]),
+        ints("HEAT_SIGNAL", [signals.index(n) for n in of.heats]),
+        ints("GIVEN_SIGNAL", [signals.index(n) for n in of.given]),
+        f"static const double NOISE_ROOT[][{max(m, 1)}] = {{{{{root or '0'}}}}};",
+        ints("SENSOR_START", np.concatenate([[0], np.cumsum([r.index.size for r in rows])])),
+        ints("SENSOR_AT", joined(r.index for r in rows)), reals("SENSOR_WEIGHT", joined(r.weights for r in rows)),
+        ints("SENSOR_STATE", [network.column(p) for p in places]), reals("SENSOR_SD", sigma),
+        reals("LAG_S", [c.lag_s for c in of.sensors]), reals("TABLE_SD", of.table_sd),
+        reals("ALLOWED_SD", odds.allowed), reals("SPREAD_SD", odds.spread), reals("LOG_PRIOR", odds.prior), "",
+    ])  # fmt: skip
+
+
+class CompiledObserver:
+    """The observer's C code for this computer."""
+
+    def __init__(self, of: ObserverModel, extra: Sequence[str] = ()) -> None:
+        self.of = of
+        taken_in = {**observer_files(of)}
+        network = taken_in.pop("thermal_network.c")
+        main = taken_in.pop("thermal_observer.c").replace('#include "thermal_network.c"', network)
+        run = (RUNTIME / "thermal_observer_run.c").read_text(encoding="utf-8")
+        files = {**taken_in, "run.c": run.replace('#include "thermal_observer.c"', main)}
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / f"observer{here().ending}"
+            file.write_bytes(library(files, here(), extra))
+            self.code = ctypes.CDLL(str(file))
+
+    @property
+    def bytes(self) -> int:
+        return int(self.code.thermal_observer_bytes())
+
+    def run(self, time: Array, u: Array, y: Array) -> tuple[Array, Array, Array]:
+        """Temperatures (n, outputs), missing heat (n, m) and what is dropped (n, s) from inputs and readings."""
+        n = time.size
+        out = [np.empty((n, k)) for k in (len(self.of.model.outputs), len(self.of.heats), len(self.of.sensors))]
+        arrays = [np.ascontiguousarray(a, float) for a in (time, u, y)]
+        pointers = [a.ctypes.data_as(ctypes.c_void_p) for a in (*arrays, *out)]
+        if self.code.thermal_observer_run(ctypes.c_int(n), *pointers):
+            raise ThermoscopeError(f"the observer in C of '{self.of.model.name}' finds no step")
+        return out[0], out[1], out[2]
