@@ -29,6 +29,7 @@ class Recipe:
     shifts : Laplace shifts (1/s) at which losses are solved, so that the early minutes are resolved
     flux_shifts : shifts at which a unit flux through every face is solved too
     random_points : points with every film and contact times spread ** U(-1, 1): shapes know changed coefficients
+    film_factors : least and largest factor on films at these points, where they are to reach further than contacts
     flux_points : solve the unit fluxes at the random points too
     local_points : further points at which each part is solved for alone, between neighbours in `local_states` states
     max_states : largest number of mean nodes and shapes together; parts compete for shapes by energy
@@ -44,6 +45,14 @@ class Recipe:
     spread: float = 5.0
     seed: int = 1
     max_states: int | None = None
+    film_factors: tuple[float, float] | None = None
+
+    def other_films(self, films: Mapping[str, float], rng: np.random.Generator) -> dict[str, float]:
+        """Those of a random point."""
+        if self.film_factors is None:
+            return drawn(films, self.spread, rng)
+        low, high = np.log(self.film_factors)
+        return {name: value * float(np.exp(rng.uniform(low, high))) for name, value in films.items()}
 
 
 DEFAULT = Recipe()
@@ -83,7 +92,7 @@ def snapshots(
     out += [solver.factor(nominal, shift)(fluxes) for shift in recipe.flux_shifts]
     rng = np.random.default_rng(recipe.seed)
     for _ in range(recipe.random_points):
-        h, g = drawn(films, recipe.spread, rng), drawn(contacts, recipe.spread, rng)
+        h, g = recipe.other_films(films, rng), drawn(contacts, recipe.spread, rng)
         out.append(
             solver.factor(field.stiffness(h, g))(np.column_stack([loads, fluxes]) if recipe.flux_points else loads)
         )

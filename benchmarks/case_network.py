@@ -1,0 +1,114 @@
+"""The network that a case runs against its field, at the hot spot of every heated part, away from where it was made.
+
+    python benchmarks/case_network.py [MACHINE ...] [--recipe wide] [--states N ...] [--json FILE]
+
+Points: nominal; all films x0.3 and x10; all contacts x0.2 and x5; every film and contact drawn between x0.2 and x5.
+Steady, errors are in percent of the part's own rise, at least a tenth of the machine's largest. After a step of loss,
+from 30 s to two hours, in percent of the machine's largest rise at that time. Rated losses, fluids and streams.
+The recipe "wide" learns from films x0.3 to x10 and keeps 200 means and shapes.
+"""
+
+from __future__ import annotations
+
+import argparse
+import datetime
+import json
+import platform
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from lumped.condensation.reduction import Recipe
+from lumped.machine.bases import on_all, on_every_base
+from lumped.machine.motor import motor_network
+from lumped.model.network import Array, Network
+from thermoscope.case_folder.folder import load_machine_file
+from thermoscope.pipeline import ACROSS, AXIAL, SMALL, Meshing, Prepared, meshed, reduced
+from thermoscope.verification.crosscheck import FLOOR
+from thermoscope.verification.fixed_coefficients import FixedCoefficients, rated
+
+EARLY = 2  # steps of 10 s that are left out
+WIDE = Recipe(tolerance=0.003, random_points=8, max_states=200, film_factors=(0.3, 10.0))
+RECIPES = {"default": SMALL, "wide": WIDE}
+
+
+def points(nominal: FixedCoefficients) -> dict[str, FixedCoefficients]:
+    """What is compared, by name."""
+    out = {"nominal": nominal}
+    for f in (0.3, 10.0):
+        out[f"films x{f:g}"] = replace(nominal, films={k: f * v for k, v in nominal.films.items()})
+    for f in (0.2, 5.0):
+        out[f"contacts x{f:g}"] = replace(nominal, contacts={k: f * v for k, v in nominal.contacts.items()})
+    return {**out, "drawn x0.2 to x5": nominal.moved(5.0, seed=7)}
+
+
+def fields(ready: Prepared, asked: dict[str, FixedCoefficients]) -> dict[str, list[Array]]:
+    """The field at every point, and after the steps of loss at two of them."""
+    out = {name: [point.of_field(ready.field)] for name, point in asked.items()}
+    for name in ("nominal", "contacts x5"):
+        out[f"step of loss, {name}"] = list(asked[name].steps_of_field(ready.field))[EARLY:]
+    return out
+
+
+def errors(
+    ready: Prepared, network: Network, asked: dict[str, FixedCoefficients], exact: dict[str, list[Array]]
+) -> Iterator[tuple[str, str, float]]:
+    """(point, the part that is furthest off, percent)"""
+    for name, curve in exact.items():
+        step = name.startswith("step of loss, ")
+        point = asked[name.removeprefix("step of loss, ")]
+        own = (
+            list(point.steps_of_network(network, ready.field))[EARLY:]
+            if step
+            else [point.of_network(network, ready.field)]
+        )
+        off = dict.fromkeys(point.watts, 0.0)
+        for T, x in zip(curve, own, strict=True):
+            largest = float(T[: ready.field.n].max())
+            for part in off:
+                dofs = ready.field.blocks[part].dofs
+                rise = largest if step else max(float(T[dofs].max()), FLOOR * largest)
+                off[part] = max(off[part], 100.0 * abs(float(T[dofs].max() - x[dofs].max())) / rise)
+        worst = max(off, key=lambda part: off[part])
+        yield name, worst, off[worst]
+
+
+def rows(machine: str, recipe: Recipe, states: list[int]) -> Iterator[dict[str, Any]]:
+    described = on_all(load_machine_file(Path(machine)))
+    ready = meshed(described, Meshing(0.06, 48, ACROSS, 0.06 * AXIAL))
+    reduction = reduced(ready, recipe)
+    networks = [on_every_base(motor_network(described, reduction.network(max_states=n))) for n in states]
+    asked = points(rated(described, networks[0], ready.films, ready.contacts))
+    exact = fields(ready, asked)
+    for network in networks:
+        for point, part, percent in errors(ready, network, asked, exact):
+            case = f"{machine}, {len(network.states)} states, {point}"
+            yield {"case": case, "measure": f"hot spot of {part}", "unit": "%", "ours": round(percent, 3)}
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("machines", nargs="*", default=["series-dc-100kw"], metavar="MACHINE")
+    parser.add_argument("--recipe", choices=list(RECIPES), default="default")
+    parser.add_argument(
+        "--states", type=int, nargs="+", metavar="N", help="means and shapes; else as the recipe has it"
+    )
+    parser.add_argument("--json", type=Path, metavar="FILE")
+    given = parser.parse_args()
+    found = []
+    for machine in given.machines:
+        recipe = RECIPES[given.recipe]
+        for row in rows(machine, recipe, given.states or [recipe.max_states]):
+            found.append(row)
+            print(f"{row['case']:60} {row['ours']:6.2f} {row['unit']}  {row['measure']}", flush=True)
+    if given.json:
+        computer = f"{platform.machine()}, Python {platform.python_version()}, NumPy {np.__version__}"
+        head = {"benchmark": "case_network", "computer": computer, "date": datetime.date.today().isoformat()}
+        given.json.write_text(json.dumps({**head, "rows": found}, indent=1))
+
+
+if __name__ == "__main__":
+    main()
