@@ -65,8 +65,10 @@ TAKEN = {
         "rate --limit winding=155 --no-bands",
     ),
 }
-MACHINE_COMMANDS = {"build", "crosscheck", "screen", "machines"}  # below, tests/thermoscope/test_build_command.py, geom
-NO_FILE = {"new", "quantities", "protocol", "answer", "remove", "undo", "serve"}  # of recordings, of what went before
+# Below, and in tests/geom, tests/thermoscope/test_build_command.py, test_optimise_command.py.
+MACHINE_COMMANDS = {"build", "crosscheck", "screen", "machines", "optimise"}
+# Of recordings that are not shipped, of what went before; tests/fleet, tests/thermoscope/test_plan_command.py.
+NO_FILE = {"new", "quantities", "protocol", "answer", "remove", "undo", "serve", "plan", "fleet", "watch"}
 
 
 # What a case has not: one message, which says so.
