@@ -10,9 +10,9 @@ import numpy as np
 
 from lumped.integration.steady import steady
 from lumped.model.network import Network, Row
-from validation.bands.inputs import moved_boundaries, moved_inputs
 from validation.bands.posterior import ParameterPosterior
 from validation.case import Test
+from validation.comparison.moved_inputs import moved_boundaries, moved_inputs
 from validation.measurement.operators import head
 
 

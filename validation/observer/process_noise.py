@@ -20,9 +20,9 @@ from lumped.integration.simulate import simulate
 from lumped.model.multipliers import multipliers, slopes, values_of
 from lumped.model.network import Network, Parameter
 from lumped.transfer.terms_value import temperature_value
-from validation.bands.inputs import moved_boundaries, moved_inputs
 from validation.bands.posterior import ParameterPosterior, acting
 from validation.case import Test
+from validation.comparison.moved_inputs import moved_boundaries, moved_inputs
 from validation.comparison.predict import record, thermal
 from validation.measurement.operators import head
 
