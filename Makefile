@@ -20,11 +20,14 @@ benchmark: setup  ## every benchmark at a small size, results in out/benchmarks;
 	@echo "== condensation"; $(BIN)/python benchmarks/condensation.py series-dc-100kw --coarse --json out/benchmarks/condensation.json
 	@echo "== robustness"; $(BIN)/python benchmarks/robustness.py --hits 1 --json out/benchmarks/robustness.json
 	@echo "== diagnosis"; $(BIN)/python benchmarks/diagnosis.py --samples 400000 --json out/benchmarks/diagnosis.json
+	@echo "== bands"; $(BIN)/python benchmarks/bands.py --kinds servo --count 2 --json out/benchmarks/bands.json
 	@echo "== hidden_effects"; $(BIN)/python benchmarks/hidden_effects.py --seeds dev --count 2 --classes nothing one --json out/benchmarks/hidden_effects.json
 
 designs: setup  ## Pareto sets of the three cooling layouts of the first paper, in out/designs
-	@for layout in air jacket-one jacket-two; do \
-	  $(BIN)/thermoscope use optimise series-dc-100kw-$$layout --limit winding=155 --torque 50 --out out/designs/$$layout || exit 1; done
+	@$(MAKE) -j2 designs-air designs-jacket-one designs-jacket-two
+
+designs-%:
+	@$(BIN)/thermoscope use optimise series-dc-100kw-$* --limit winding=155 --torque 50 --out out/designs/$*
 
 setup:
 	@scripts/setup

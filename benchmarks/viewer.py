@@ -39,7 +39,7 @@ from viz.viewer.page import Recorded, write_viewer
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 ARGUMENTS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 MEASURES = (("bytes sent", "MB"), ("first picture", "s"), ("pictures a second while turned", "1/s"))
-FRAMES, WAIT_S, COLOURS = 61, 120, 500
+FRAMES, WAIT_S, COLOURS = 61, 120, 100
 COUNT = "window.drawn = 0; const count = () => { window.drawn += 1; requestAnimationFrame(count); }; count();"
 
 
@@ -57,7 +57,7 @@ def ours(nodes: SplitMesh, folder: Path) -> Path:
     at = {f"T{i}": tuple(nodes.points[i * nodes.size // 11].tolist()) for i in range(11)}
     channels = tuple(Channel(n, n, row, model + i - 5.0) for i, n in enumerate(at))
     test = Test("hour", "hold-out", times, {}, {"ambient": np.full(FRAMES, 20.0)}, channels)
-    comparison = Comparison(test, dict.fromkeys(at, model))
+    comparison = Comparison(test, dict.fromkeys(at, model), dict.fromkeys(at, 1.0))
     return write_viewer(folder / "viewer.html", "motor", nodes, [Recorded(comparison, times, fields)], at)
 
 

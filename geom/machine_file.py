@@ -40,7 +40,7 @@ def load_machine(source: str | Path) -> Machine:
         return import_step(path)
     if path.suffix != ".toml" or not path.is_file():
         raise InputError(f"no machine {str(source)!r}", "", f"a .toml or .step file, or one of: {', '.join(library())}")
-    return machine_from(read_toml(path, "a machine file with [machine] and [geometry]"), path.name)
+    return machine_from(read_toml(path, "a machine file with [machine] and [geometry]"), str(path))
 
 
 def machine_from(sections: Mapping[str, Any], where: str = "machine") -> Machine:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import argparse
 import os
 import re
+import resource
 import subprocess
 import sys
 import tempfile
@@ -65,12 +66,11 @@ def main() -> None:
     parser.add_argument("--keep", type=Path, help="folder to run in; else one that is thrown away")
     folder = parser.parse_args().keep or Path(tempfile.mkdtemp())
     folder.mkdir(parents=True, exist_ok=True)
-    page, begun = PAGE.read_text(encoding="utf-8"), time.monotonic()
+    page = PAGE.read_text(encoding="utf-8")
     page = with_outputs(page, run(commands(page), folder))
-    minutes = (time.monotonic() - begun) / 60
-    words = (
-        f"All commands of this page took {minutes:.0f} min on {os.cpu_count()} cores ({time.strftime('%Y-%m-%d')}).\n"
-    )
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)  # other programs may run beside
+    minutes = (used.ru_utime + used.ru_stime) / 60
+    words = f"All commands of this page together need {minutes:.0f} min of one core ({time.strftime('%Y-%m-%d')}).\n"
     PAGE.write_text(TOOK.sub(lambda m: m[1] + words + m[2], page), encoding="utf-8")
 
 

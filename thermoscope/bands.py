@@ -24,6 +24,7 @@ from thermoscope.case_folder.folder import Folder, Progress
 from thermoscope.case_folder.runs import named_rows
 from validation.bands import Bands, ParameterPosterior, Place, bands, parameter_posterior
 from validation.bands.band import NORMAL_95
+from validation.bands.posterior import rows_read
 from validation.case import RUNNING, Recorded, Test
 
 Array = NDArray[np.float64]
@@ -56,7 +57,10 @@ def _kept(folder: Folder, file: Path) -> ParameterPosterior:
         names, fitted = json.loads(str(held["said"]))
         bare = replace(folder.case, model=replace(folder.case.model, revision=0))
         covariance = held["covariance"]
-    return replace(parameter_posterior(bare), names=tuple(names), covariance=covariance, fitted=tuple(fitted))
+    read = rows_read([t for t in folder.case.tests if t.name in fitted])
+    return replace(
+        parameter_posterior(bare), names=tuple(names), covariance=covariance, fitted=tuple(fitted), read=read
+    )
 
 
 def case_key(folder: Folder) -> str:

@@ -49,5 +49,6 @@ def draw(built: Built) -> None:
 if __name__ == "__main__":
     draw(build(load_machine("series-dc-100kw")))
     for png in sorted(HERE.glob("*.png")):
-        Image.open(png).convert("RGB").save(png, optimize=True)
+        if Image.open(png).mode != "P":  # what has a palette is small already
+            Image.open(png).convert("RGB").save(png, optimize=True)
         print(f"{png.name}  {png.stat().st_size / 1000:.0f} kB")

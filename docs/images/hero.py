@@ -21,7 +21,7 @@ def draw(case: Path, png: Path) -> None:
     test, earlier, last = by_interest(folder)[0], before_last(folder), folder.history.last
     assert earlier is not None, "a case whose model has had a step"
     now = held(folder, test)
-    wrong = sensors(Comparison(test, now.before), folder.positions)  # type: ignore[arg-type]
+    wrong = sensors(Comparison(test, now.before, now.limits), folder.positions)  # type: ignore[arg-type]
     nodes = split(folder.built.mesh)  # type: ignore[union-attr]
     before, after = last.rmse_K[test.name]
     title = f"{test.name}: measured minus modelled"

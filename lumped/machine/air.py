@@ -18,7 +18,7 @@ import numpy as np
 from lumped.correlations.air_gap import taylor_film
 from lumped.correlations.ducts import duct_film
 from lumped.correlations.end_space import end_space
-from lumped.machine.laws import Interpolated
+from lumped.machine.laws import Interpolated, film_over
 from lumped.machine.settings import Fan, Films
 from lumped.machine.shapes import Gap
 from lumped.model.network import Link, Network, Row
@@ -30,6 +30,7 @@ from lumped.transfer.reversal import OneWay
 AIR_HEAT = 1.205 * 1006.0  # rho cp of the air the fan takes in at 20 degC, J/m3/K
 BETWEEN_POLES, IN_ROTOR, AT_FAN = "air.interpolar", "air.ducts", "air.fan"
 STEPS = 121
+GAP_C, DUCT_C = 80.0, 40.0  # film temperatures at which tables over speed and flow are made
 
 
 @dataclass(frozen=True)
@@ -90,17 +91,24 @@ def stirred(share: float, films: Films, radius: float, top_rpm: float) -> Law:
 
 
 def gap_film(gap: Gap, top_rpm: float) -> Law:
-    """One wall of the air gap."""
-    speed = np.linspace(0.0, top_rpm, STEPS)
-    h = [taylor_film(n * 2 * np.pi / 60, gap.rotor_radius, gap.width)[0] for n in speed]
-    return Interpolated("speed_rpm", tuple(speed), tuple(h))
+    """One wall of the air gap. It follows its film temperature as it does at half of `top_rpm`."""
+
+    def film(rpm: float, T: float) -> float:
+        return taylor_film(rpm * 2 * np.pi / 60, gap.rotor_radius, gap.width, air(T))[0]
+
+    return film_over("speed_rpm", np.linspace(0.0, top_rpm, STEPS).tolist(), film, 0.5 * top_rpm, GAP_C)
 
 
-def channel_film(duct: Duct, share: float = 1.0) -> Law:
-    """Walls along the axis that `share` of the fan's air passes; a turning duct is taken to stand still."""
-    flow = np.linspace(0.0, 600.0, 61)
-    h = [duct_film(share * q / 3600 / duct.section, duct.diameter, duct.length)[0] for q in flow]
-    return Interpolated("fan_flow_m3h", tuple(flow), tuple(h))
+def channel_film(duct: Duct, share: float, usual: float) -> Law:
+    """Walls along the axis that `share` of the fan's air passes; a turning duct is taken to stand still.
+
+    usual : flow (m3/h)
+    """
+
+    def film(flow: float, T: float) -> float:
+        return duct_film(share * flow / 3600 / duct.section, duct.diameter, duct.length, air(T))[0]
+
+    return film_over("fan_flow_m3h", np.linspace(0.0, 600.0, 61).tolist(), film, usual, DUCT_C)
 
 
 def fan_streams(network: Network, shares: Mapping[str, float], usual: float) -> list[Link]:

@@ -38,6 +38,11 @@ class Surroundings:
     def fan(self) -> Fan | None:
         return read_fan(self.machine)
 
+    @property
+    def usual_flow(self) -> float:
+        """Of the fan (m3/h)."""
+        return 0.0 if self.fan is None else self.fan.flow_m3_h
+
     @cached_property
     def gap(self) -> Gap | None:
         return gap_of(self.machine)
@@ -91,10 +96,10 @@ def face_films(part: str, fluid: str, around: Surroundings) -> dict[str, Law]:
     if gap is not None and fluid in around.gaps:
         return {"": gap_film(gap, around.top_rpm)}
     if fluid == IN_ROTOR and fluid in around.shares:
-        return {"axial": channel_film(around.ducts[fluid], around.shares[fluid])}
+        return {"axial": channel_film(around.ducts[fluid], around.shares[fluid], around.usual_flow)}
     if fluid == BETWEEN_POLES and fluid in around.ducts:
         past = 1.0 - around.shares.get(IN_ROTOR, 0.0)  # the gap's air mixes with that between the poles
-        axial = {} if around.fan is None else {"axial": channel_film(around.ducts[fluid], past)}
+        axial = {} if around.fan is None else {"axial": channel_film(around.ducts[fluid], past, around.usual_flow)}
         return {**axial, "stirred": stirred(films.channel_wall_share, films, around.tip_radius, around.top_rpm)}
     share = films.moving_wall_share if part in around.turning else films.still_wall_share
     return {"": stirred(share, films, around.tip_radius, around.top_rpm)}

@@ -30,6 +30,11 @@ def sources(machine: Any, network: Network) -> list[Source]:
     return [_source(network, name, kind, parts, law, probe) for name, kind, parts, law, probe in _declared(machine)]
 
 
+def checked_losses(machine: Any) -> None:
+    """InputError for a table of losses that cannot be; to be asked before minutes are spent on a mesh."""
+    _declared(machine)
+
+
 def loss_shares(machine: Any, network: Network) -> dict[str, dict[str, float]]:
     """Source -> share of its watts per part, zone or fluid of the network."""
     out: dict[str, dict[str, float]] = {}

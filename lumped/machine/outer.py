@@ -19,15 +19,17 @@ from lumped.correlations.forced import flat_plate
 from lumped.correlations.info import Info
 from lumped.correlations.natural import churchill_chu_cylinder, churchill_chu_plate, mcadams_plate
 from lumped.correlations.tabulate import film_tabulated
-from lumped.machine.laws import Interpolated
+from lumped.machine.laws import film_over
 from lumped.machine.settings import Films
 from lumped.machine.shapes import Extent, Fins, extent, fins_of
 from lumped.schemas.reader import Table
 from lumped.transfer.laws import FILMS, FilmTable, Fixed, Law, Radiation
+from lumped.transfer.properties import air
 from lumped.transfer.shaft_fan import shaft_fan
 
 SURFACES = ("horizontal cylinder", "vertical plate", "horizontal plate", "radial fins")
 STILL_AIR_K = tuple(np.concatenate([[0.0], [0.5], np.geomspace(1.0, 200.0, 30)]))
+BLOWN_C = 40.0  # film temperature at which tables over speed are made
 CROWDED = 0.8  # still air along axial fins, over the bare cylinder's film (assumed)
 END_SHIELD = 0.35  # a turned body shorter than this share of its diameter is a vertical plate
 
@@ -166,10 +168,10 @@ def _blown(machine: Any, part: str, cowl: Cowl) -> Law | None:
     if part == "housing" and fins is not None:
         share, diameter = mean_of_decay(cowl.end_share), fins.hydraulic_diameter
         length = fins.length if fins.axial else np.pi * (fins.root + fins.height)
-        return _of_speed(cowl, share, lambda v: heiles(v, diameter, length, cowl.turbulence)[0])
+        return _of_speed(cowl, share, lambda v, T: heiles(v, diameter, length, cowl.turbulence, air(T))[0])
     if e.turned and e.size[2] < END_SHIELD * e.size[1]:
         share = cowl.rear_share if _on_left(machine, e) is (cowl.rear == "left") else cowl.front_share
-        return _of_speed(cowl, share, lambda v: flat_plate(v, e.size[1])[0])
+        return _of_speed(cowl, share, lambda v, T: flat_plate(v, e.size[1], air(T))[0])
     return None
 
 
@@ -179,9 +181,10 @@ def _on_left(machine: Any, e: Extent) -> bool:
     return e.z0 + e.z1 < min(a for a, _ in spans) + max(b for _, b in spans)
 
 
-def _of_speed(cowl: Cowl, share: float, film: Callable[[float], float]) -> Law:
-    speed = np.linspace(0.0, 2.0 * cowl.at_rpm, 61)
-    return Interpolated("speed_rpm", tuple(speed), tuple(film(share * cowl.air_speed * n / cowl.at_rpm) for n in speed))
+def _of_speed(cowl: Cowl, share: float, film: Callable[[float, float], float]) -> Law:
+    """A film of the air's speed and of its film temperature, over the shaft's speed."""
+    speed, per_rpm = np.linspace(0.0, 2.0 * cowl.at_rpm, 61).tolist(), share * cowl.air_speed / cowl.at_rpm
+    return film_over("speed_rpm", speed, lambda n, T: film(per_rpm * n, T), cowl.at_rpm, BLOWN_C)
 
 
 __all__ = ["Cowl", "Fins", "Outer", "cowl_of", "outer_films", "outer_of", "still_air"]

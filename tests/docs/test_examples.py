@@ -33,6 +33,12 @@ REFERENCE = {
     "short_time_duty": 0.05,  # s of 518: the curve is nearly straight within a sample of 1 s
     "delta_star": 1e-6,  # K: both are exact
     "iron_loss": 1e-6,  # W: linear
+    "reciprocity": 1e-12,  # K/W of 0.1: rounding
+    "locked_rotor": 1e-3,  # s of 23: the curve is nearly straight within a sample of 0.1 s
+    "ramp": 1e-4,  # K of 30: steps of the integrator
+    "switched_fan": 0.016,  # K: an input is straight between samples, so the fan starts 0.5 s early; it takes 0.03 K/s
+    "thermal_wave": 0.1,  # K of 30: what is left of the start, and the first cell, a tenth of d, by (1/10)^2 / 12 of 30
+    "superposition": 0.01,  # K of 57: steps of the integrator
 }
 TESTED_ELSEWHERE = {"hust", "tclab"}
 

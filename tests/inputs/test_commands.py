@@ -1,10 +1,16 @@
 """Options, drive cycles, loss maps and recordings of `new`: what makes no sense is refused before anything is done."""
 
 import os
+import tomllib
 
 import pytest
 from command_line import answered, refusal
+from documents import ROOT
 from recordings import case_of
+
+from lumped.declarations.network import read_network
+from lumped.model.build import node_source
+from lumped.sources.losses import PowerLoss
 
 CYCLE = "[cycle]\nstep_s = 10\n[boundaries]\nambient = 20\n"
 DUTY = '[duty]\ntype = "S3"\nperiod_s = 600\nduty_percent = 40\ncycles = 3\nstep_s = 10\n[load]\ncurrent_A = 100\n'
@@ -152,6 +158,49 @@ def test_a_loss_map_that_is_none_is_refused(tmp_path, text, words):
     message = refusal(tmp_path, "use", "rate", case, "--limit", "winding=155", "--losses", case / "map.csv")
     assert "map.csv" in message
     assert words in message
+
+
+LOSSES = {
+    "no kind": ("{ at = 'base', P_W = 3 }", "'kind' is missing"),
+    "no place": ("{ kind = 'constant', P_W = 3 }", "'at'"),
+    "a kind unheard of": ("{ at = 'base', kind = 'magic', P_W = 3 }", "kind = 'magic'"),
+    "a negative power": ("{ at = 'base', kind = 'constant', P_W = -3 }", "P_W = -3"),
+    "more than a whole": ("{ at = { base = 0.7, foot = 0.7 }, kind = 'constant', P_W = 3 }", "sum to 1.4"),
+    "no table": ("3", "3 is no table"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("declared", "words"), LOSSES.values(), ids=LOSSES)
+def test_losses_of_a_machine_are_checked_before_it_is_meshed(tmp_path, monkeypatch, declared, words):
+    monkeypatch.setattr("thermoscope.pipeline.build_mesh", lambda *given: pytest.fail("it was meshed"))
+    text = (ROOT / "cases/pmsm-bases/machine.toml").read_text()
+    (tmp_path / "mine.toml").write_text(text.replace("[losses.", f"[losses]\nx = {declared}\n[losses.", 1))
+    for command in ("model build", "model crosscheck", "use rate --limit winding=155"):
+        message = refusal(tmp_path, *command.split(), tmp_path / "mine.toml")
+        assert str(tmp_path / "mine.toml") in message
+        assert "losses.x" in message
+        assert words in message
+
+
+def test_a_machine_without_losses_is_held_against_nothing(tmp_path, monkeypatch):
+    """A made-up loss would make measurements accuse the cooling; `rate` says what it assumes."""
+    case = case_of(tmp_path)
+    heat = ("assumed", "constant", {"winding": 1.0}, PowerLoss(((100.0, ()),)))
+    network = read_network(tomllib.loads((case / "network.toml").read_text().partition("[losses")[0]))
+    assumed = network.extended([], [node_source(network, "loss:assumed", heat[1], heat[2], heat[3], "winding")], [])
+    monkeypatch.setattr("thermoscope.case_folder.folder.network_of", lambda settings, tell: (assumed, None))
+    assert "declares no losses" in refusal(tmp_path, "test", "compare", case)
+    (case / "case.toml").write_text('[case]\nnetwork = "network.toml"\n')
+    _, _, err = answered("use", "rate", case, "--limit", "winding=155", "--no-bands")
+    assert [line for line in err if line.startswith("note: ") and "100 W in its windings are assumed" in line]
+
+
+def test_a_rating_without_end_is_said_in_words(tmp_path):
+    case = case_of(tmp_path)
+    (case / "map.csv").write_text(MAP + "".join(f"{q},{n},{q / 100}\n" for q, n in POINTS))
+    code, out, _ = answered("use", "rate", case, "--limit", "winding=155", "--losses", case / "map.csv", "--no-bands")
+    assert code == 0
+    assert out.startswith("Continuous: no torque_Nm that this model knows reaches a limit.")
 
 
 def record(make, head="time,T winding,I"):

@@ -1,8 +1,12 @@
 """case.toml, sheets, network.toml and model.toml that contradict themselves or the data: refused, or said."""
 
+import os
+
 import pytest
 from command_line import answered, refusal
 from recordings import case_of, edited
+
+from thermoscope.commands.stored_diagnosis import fingerprint
 
 STAND = "tests/stand.toml"
 TIME = 'time = "time_s"'
@@ -32,6 +36,14 @@ def model(text):
 
 def mapped(at_speed, at_torque, P_W):
     return loss(f'kind = "map"\nat_speed = {at_speed}\nat_torque = {at_torque}\nP_W = {P_W}')
+
+
+def events(rows):
+    def write(case):
+        more(STAND, '[events.fan_on]\nfile = "ev.csv"\n')(case)
+        (case / "tests/ev.csv").write_text(rows)
+
+    return write
 
 
 def sensor(line):
@@ -107,6 +119,12 @@ SHEETS = {
        for value in ('"maybe"', "[1]", "{ x = 1 }", "nan", "inf", "1e308", "9" * 400, "2020-01-01", "true")},
     "events that begin late": (more(STAND, '[events.x]\nat_s = [5]\nvalue = ["on"]\n'), [STAND, "at the start"]),
     "events that go back": (more(STAND, '[events.x]\nat_s = [0, 9, 3]\nvalue = [0, 1, 0]\n'), [STAND, "rises"]),
+    **{f"an events file with {kind}": (events(rows), ["ev.csv", words]) for kind, rows, words in (
+        ("no column", "time_s,x\n0,off\n", "'fan_on' is not in the file"),
+        ("a slip", "time_s,fan_on\n0,offf\n", "'offf'"),
+        ("a word for a time", "time_s,fan_on\nnow,off\n", "line 2"), ("no end", "time_s,fan_on\n0,inf\n", "no state"),
+        ("a time left out", "time_s,fan_on\n0,off\n,on\n", "rises"), ("nothing", "", "is empty"),
+        ("a time before", "time_s,fan_on\n-5,off\n0,on\n", "at the start"))},
     "events of no file": (more(STAND, '[events.x]\nfile = "no.csv"\n'), ["no.csv", "no such file"]),
     "events of a column's input": (more(STAND, "[events.current_A]\nat_s = [0]\nvalue = [1]\n"), ["fed twice"]),
 }  # fmt: skip
@@ -189,3 +207,15 @@ def test_accepted_with_a_note(tmp_path, change, note):
     assert code == 1
     assert out.startswith("three, revision 0")
     assert [line for line in err if line.startswith("note: ") and note in line]
+
+
+def test_what_else_lies_in_a_case_does_not_matter(tmp_path):
+    """A name that is no text, a pipe, a link to the folder itself, a film of 2 GB (with holes)."""
+    case = case_of(tmp_path)
+    with open(os.fsencode(case) + b"/\xff\xfe.txt", "wb"):
+        pass
+    os.mkfifo(case / "pipe")
+    (case / "loop").symlink_to(case)
+    with (case / "film.bin").open("wb") as film:
+        film.truncate(2 * 10**9)
+    assert len(fingerprint(case)) == 64

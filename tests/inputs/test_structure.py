@@ -6,11 +6,12 @@ import tomllib
 
 import pytest
 import tomlkit
-from documents import documented, put
+from documents import documented, put, shipped
 from recordings import case_of, original
 from test_numbers import SHEET
 
 from geom.errors import ThermoscopeError
+from geom.machine_file import machine_from
 from lumped.declarations.network import load_network, read_network
 from thermoscope.case_folder.cycle import load_cycle
 from thermoscope.case_folder.folder import load_case
@@ -99,6 +100,15 @@ def test_network(way):
 @pytest.mark.parametrize("way", **named(SHEET))
 def test_sheet(way):
     accepted_or_refused(lambda document: read_sheet(document, "sheet.toml"), SHEET, way, "sheet.toml")
+
+
+MACHINE = shipped("cases/pmsm-bases/machine.toml")
+OUTSIDE = [way for way in ways(MACHINE) if way[0] != "geometry" and len(way) < 3]
+
+
+@pytest.mark.parametrize("way", OUTSIDE, ids=[".".join(way) for way in OUTSIDE])
+def test_machine(way):
+    accepted_or_refused(lambda document: machine_from(document, "machine.toml"), MACHINE, way)
 
 
 CASE = {

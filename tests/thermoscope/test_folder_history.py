@@ -1,6 +1,9 @@
 """model.toml: what is written comes back, revisions are only added, and a broken file is refused."""
 
 import errno
+import os
+import sys
+from pathlib import Path
 
 import pytest
 
@@ -66,3 +69,24 @@ def test_failed_write_leaves_the_old_file(tmp_path, monkeypatch):
         write_whole(path, "new")
     assert path.read_text() == "old"
     assert [p.name for p in tmp_path.iterdir()] == ["model.toml"]
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="asks /proc which file it is")
+def test_a_file_is_on_the_disk_before_it_takes_its_place(tmp_path, monkeypatch):
+    """A power cut leaves the old file or the new one: content synced, file renamed, folder synced."""
+    done, fsync, replace = [], os.fsync, Path.replace
+
+    def synced(handle):
+        done.append(os.readlink(f"/proc/self/fd/{handle}"))
+        fsync(handle)
+
+    def renamed(path, target):
+        done.append("renamed")
+        return replace(path, target)
+
+    monkeypatch.setattr("os.fsync", synced)
+    monkeypatch.setattr(Path, "replace", renamed)
+    write_whole(tmp_path / "model.toml", "new")
+    content, rename, folder = done
+    assert ".part" in content
+    assert (rename, folder) == ("renamed", str(tmp_path))

@@ -306,3 +306,24 @@ def test_nobody_answers(tmp_path, network, monkeypatch):
     with pytest.raises(InputError, match="--yes takes the guesses"):
         new([text(tmp_path, GOOD.replace(",air,", ",remark,"))], Wishes(network=network, out=tmp_path / "made"), None)
     assert not (tmp_path / "made").exists()
+
+
+def test_a_power_that_changes_sign_passes_through_and_heats_nothing(tmp_path, capsys):
+    """A machine that brakes: the first network takes its current for what heats."""
+    t = np.arange(0.0, 2000.0, 10.0)
+    power, current = 4000.0 * np.sin(t / 200.0), 50.0 + 0.0 * t
+    rows = "\n".join(",".join(f"{x:.2f}" for x in row) for row in zip(t, power, current, 20.0 + 0.01 * t))
+    (tmp_path / "a.csv").write_text(f"time_s,P_el [W],I [A],T_winding [degC]\n{rows}\n")
+    case = made(tmp_path, tmp_path / "a.csv")
+    assert {"current_A"} == case.model.network.inputs
+    assert np.isfinite(compare(case).rmse_K)
+
+
+def test_what_many_tests_lack_is_said_once(tmp_path, capsys):
+    for i in range(4):
+        rows = "\n".join(f"{10 * k},10,{20 + i + 0.1 * k}" for k in range(100))
+        (tmp_path / f"t{i}.csv").write_text(f"time_s,I [A],T_winding [degC]\n{rows}\n")
+    made(tmp_path, *(tmp_path / f"t{i}.csv" for i in range(4)))
+    said = " ".join(capsys.readouterr().out.split())
+    assert said.count("was not recorded") == 1
+    assert "4 tests alike" in said

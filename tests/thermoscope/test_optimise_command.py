@@ -1,6 +1,7 @@
 """thermoscope use optimise: a small case end to end, machine files that build, and what is wrong as one message."""
 
 import csv
+import json
 from pathlib import Path
 
 import pytest
@@ -109,3 +110,19 @@ def test_bounds_are_read():
     assert read_bounds(["a=1:2", "b"]) == {"a": (1.0, 2.0), "b": None}
     with pytest.raises(InputError, match="is no range"):
         read_bounds(["a=1"])
+
+
+def test_a_robust_design_is_judged_by_the_upper_end_of_its_band(tmp_path):
+    """The copper's own prior of 5 % and the bands of the table widen every temperature."""
+    asked = ["--limit", "winding=400", "--vary", "current_A=40:90", "--population", "8", "--generations", "1"]
+    found = {}
+    for word in ("--robust", ""):
+        out, file = tmp_path / f"designs{word}", tmp_path / f"{word}.json"
+        case = small_case(tmp_path / f"case{word}")
+        given = [*asked, *filter(None, [word]), "--at", "ambient=20", "--out", str(out), "--json", str(file)]
+        done = CliRunner().invoke(app, ["optimise", str(case), *given])
+        assert done.exit_code == 0, done.exception
+        found[word] = json.loads(file.read_text())["reference"]
+    rise = found[""]["peak_degC"] - 20.0
+    assert 0.1 < (found["--robust"]["peak_degC"] - found[""]["peak_degC"]) / rise < 1.0
+    assert found["--robust"]["copper_W"] == pytest.approx(found[""]["copper_W"], rel=1e-9)

@@ -10,7 +10,9 @@ from lumped.model.build import bare_network, node_link, node_source
 from lumped.model.network import Parameter, Row
 from lumped.transfer.laws import Fixed
 from validation.bands import Place, bands, parameter_posterior
+from validation.bands.at_rest import AtRest
 from validation.case import Case, Channel, Model, Test
+from validation.comparison.predict import thermal
 from validation.doubt import USUAL
 from validation.revision.revise import calibrate
 
@@ -81,6 +83,27 @@ def test_what_trades_in_the_fit_does_not_widen_what_was_measured(calibrated):
     apart = replace(known, covariance=np.diag(np.diag(known.covariance)))
     tied, loose = (bands(k, case.tests[0], places(case.model.network)).sd[-1, 1] for k in (known, apart))
     assert tied < 0.8 * loose
+
+
+def test_where_no_sensor_reads_a_place_differs_from_its_node(calibrated):
+    """2 % of the rise everywhere, 3 % more where nothing was held against it; a field's places are what they say."""
+    case, _ = calibrated
+    known = parameter_posterior(case)
+    core, shell = (p.row for p in places(case.model.network))
+    assert known.slow(shell) == USUAL["slow"]
+    assert_allclose(known.slow(core), np.hypot(USUAL["slow"], USUAL["gain"]))
+
+
+def test_at_rest_the_band_is_that_of_a_long_record(calibrated):
+    """20 time constants of the chain; a constant load."""
+    case, _ = calibrated
+    known, core = parameter_posterior(case), places(case.model.network)[0]
+    time = np.linspace(0.0, 400_000.0, 400)
+    long = Test("rest", "hold-out", time, {}, {"air": np.full(time.size, 20.0)}, (), 20.0)
+    network = thermal(known.network)
+    values = {p.name: known.values.get(p.name, p.value) for p in network.parameters}
+    sd = AtRest(known, network).sd(values, {}, {"air": 20.0}, core.row)
+    assert_allclose(sd, bands(known, long, [core]).sd[-1, 0], rtol=0.03)
 
 
 def test_the_start_is_as_sure_as_its_doubt(calibrated):

@@ -16,6 +16,8 @@ from viz.figures.flows import Heat
 from viz.live import (
     against_input,
     confusion,
+    objective_space,
+    parallel_coordinates,
     pareto,
     parity,
     posterior,
@@ -34,6 +36,11 @@ ODDS = [
     {"hypothesis": "heat@yoke", "effects": [], "probability": 0.015},
     {"hypothesis": "others", "effects": [], "probability": 0.004},
 ]
+AIMED = ("peak_degC", "settling_s", "copper_W", "auxiliary_W")
+DESIGNS = [
+    {"design": f"design-{k}", "flow": 4.0 + k, **dict(zip(AIMED, (130.0 - k, 900.0, 80.0 - k, float(k**3))))}
+    for k in range(3)
+]
 DRAW = {
     "sensor": lambda **o: sensor(comparison(before=True), "flange.right", **o),
     "residuals": lambda **o: residuals(comparison(), **o),
@@ -44,6 +51,8 @@ DRAW = {
     "confusion": lambda **o: confusion(["a@x", "b@y"], np.array([[1.0, -0.83], [-0.83, 1.0]]), **o),
     "pareto": lambda **o: pareto(candidates(), **o),
     "sankey": lambda **o: sankey(HEAT, **o),
+    "parallel_coordinates": lambda **o: parallel_coordinates(DESIGNS, AIMED, {"flow": "flow (l/min)"}, **o),
+    "objective_space": lambda **o: objective_space(DESIGNS, AIMED, **o),
 }
 
 
@@ -63,6 +72,14 @@ def test_figure_is_plain_json_on_light_and_dark_paper(name):
 
 def test_every_public_figure_is_tested_here_or_beside():
     assert set(viz.live.__all__) == {*DRAW, "saved", "sensitivity"}
+
+
+def test_designs_are_lines_and_points():
+    lines, points = data(DRAW["parallel_coordinates"]())[0], data(DRAW["objective_space"]())[0]
+    assert [axis["label"] for axis in lines["dimensions"]][-2:] == ["pump and fan (W)", "flow (l/min)"]
+    assert lines["dimensions"][-1]["values"] == [4.0, 5.0, 6.0]
+    assert [points[a] for a in "xyz"] == [[130.0, 129.0, 128.0], [900.0] * 3, [0.0, 1.0, 8.0]]
+    assert points["marker"]["color"] == [80.0, 79.0, 78.0]  # the objective that no axis shows
 
 
 def test_sensor_shows_readings_model_and_their_difference():

@@ -3,6 +3,7 @@
 import re
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -24,7 +25,7 @@ def recording(tmp_path_factory):
     fields = 20.0 + 50.0 * (times / 3600.0)[:, None] * np.linspace(0.2, 1.0, NODES.size)
     path = tmp_path_factory.mktemp("rrd") / "road.rrd"
     return write_recording(
-        path, NODES, comparison(), (times, fields), POSITIONS, history=HISTORY,
+        path, NODES, replace(comparison(), events=((600.0, 1200.0),)), (times, fields), POSITIONS, history=HISTORY,
         revision_fields=np.stack([fields[-1] + k for k in (4.0, 2.0, 0.0)]),
     )  # fmt: skip
 
@@ -53,11 +54,18 @@ def test_geometry_is_written_once(recording):
     assert positions == [1]
 
 
-def test_every_sensor_has_its_curves(recording):
+def test_every_sensor_has_its_curves_and_every_input(recording):
     series = {entity for n, entity, column in chunks(recording) if column == "scalars" and n == len(TIME)}
-    assert series == {
+    assert series == {"/inputs/current_A"} | {
         f"/{kind}" for p in PLACES for kind in (f"curves/{p}/measured", f"curves/{p}/model", f"residual/{p}")
     }
+
+
+def test_colours_and_events_are_explained(recording):
+    """A bar with its marks; an event leaves a line where it begins and one where it ends."""
+    entities = {entity for _, entity, _ in chunks(recording)}
+    assert {"/scale/bar", "/scale/marks", "/legend", "/machine/names"} <= entities
+    assert sum(n for n, entity, column in chunks(recording) if entity == "/events" and column == "text") == 2
 
 
 def test_a_broken_file_is_not_valid(recording, tmp_path):

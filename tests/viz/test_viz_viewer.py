@@ -10,9 +10,10 @@ from lumped.model.network import Row
 from validation.case import Channel, Test
 from viz import split
 from viz.data import Comparison
+from viz.viewer.flux import nodal_flux
 from viz.viewer.low_rank import ERROR_K, low_rank
 from viz.viewer.packing import packed_integers, packed_numbers, unpacked
-from viz.viewer.page import Recorded, document, write_viewer
+from viz.viewer.page import Recorded, document, render, write_viewer
 
 NODES = split(motor(24))
 TIMES = np.linspace(0.0, 3600.0, 13)
@@ -109,3 +110,33 @@ def test_a_browser_draws_it_without_complaint(tmp_path):
             assert sensor[0] in page.inner_text("#hover")
         browser.close()
     assert said == []
+
+
+def test_flux_of_a_linear_field_is_the_conductivity_times_its_slope():
+    """Fourier: 100 K/m along the axis and 50 K/m across it in parts of their own conductivities, to rounding."""
+    k = {part: (2.0 + i, 30.0 + i) for i, part in enumerate(NODES.parts)}
+    across, along = np.array(list(k.values()))[NODES.owner].T
+    assert nodal_flux(NODES, 100.0 * NODES.points[:, 2], k) == pytest.approx(0.1 * along)
+    assert nodal_flux(NODES, 50.0 * NODES.points[:, 1], k) == pytest.approx(0.05 * across)
+
+
+@pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
+def test_the_browser_mixes_the_same_heat_flux(tmp_path):
+    """Node by node within what rounding of the shapes leaves: 0.1 K over the shortest edge."""
+    playwright = pytest.importorskip("playwright.sync_api")
+    one, k = recorded(before=False), {part: (2.0 + i, 30.0 + i) for i, part in enumerate(NODES.parts)}
+    file = tmp_path / "viewer.html"
+    file.write_text(render(document("motor", NODES, [one], PLACE, k)), encoding="utf-8")
+    expected = nodal_flux(NODES, one.fields[-1], k)
+    with playwright.sync_playwright() as engine:
+        arguments = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+        browser = engine.chromium.launch(executable_path=BROWSER, args=arguments)
+        page = browser.new_page()
+        page.goto(file.as_uri())
+        page.wait_for_function("window.viewer && viewer.frames > 0")
+        page.select_option("#layer", "2")
+        assert page.inner_text("#unit") == "kW/m²"
+        found = np.array(page.evaluate("Array.from(viewer.values)"))[: 2 * NODES.size : 2]
+        assert page.evaluate("viewer.range[1]") >= np.quantile(expected, 0.95)
+        browser.close()
+    assert np.abs(found - expected).max() < 0.02 * expected.max()

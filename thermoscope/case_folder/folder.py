@@ -10,11 +10,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from geom.errors import InputError
-from lumped.machine.losses import ASSUMED, ASSUMED_W
+from lumped.machine.losses import ASSUMED, ASSUMED_W, checked_losses
 from lumped.model.network import Network, Parameter
 from lumped.schemas.reader import known
-from thermoscope.case_folder.doctor import Finding, Patient, examined
+from thermoscope.case_folder.doctor import examined
 from thermoscope.case_folder.history import History, checked_values, load_history
+from thermoscope.case_folder.recording_checks import Finding, Patient
 from thermoscope.case_folder.settings import Entry, Settings, read_settings
 from thermoscope.recordings.formats import recording
 from thermoscope.recordings.quantities import with_quantities
@@ -204,7 +205,12 @@ def load_machine_file(path: Path) -> Machine:
     from geom import library, load_machine
 
     if path.exists():
-        return load_machine(path)
+        machine = load_machine(path)
+        try:
+            checked_losses(machine)
+        except InputError as fault:
+            raise InputError(fault.what, f"{path}, {fault.where}", fault.right) from None
+        return machine
     shipped = library()
     name = path.name.removesuffix(".toml")
     if name in shipped:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,7 @@ from thermoscope.case_folder.files import checked_result, write_whole
 from thermoscope.case_folder.folder import Folder
 from thermoscope.commands.open_case import PACKAGE
 from thermoscope.console.terminal import notes, plain
+from thermoscope.recordings.csv_file import LARGEST
 
 NAME = "diagnosis.json"
 SEAL = "sha256"
@@ -21,8 +23,11 @@ def fingerprint(case: Path, but: str = "") -> str:
     """Of everything a result depends on: all files of the case outside out/, but one."""
     digest = hashlib.sha256()
     for path in sorted(p for p in case.rglob("*") if p.is_file() and "out" not in p.relative_to(case).parts):
-        if path.name != but and not path.name.startswith("."):  # a hidden file is what a killed process left
-            digest.update(str(path.relative_to(case)).encode() + b"\0" + path.read_bytes())
+        if path.name == but or path.name.startswith(".") or path.stat().st_size > LARGEST:
+            continue  # a hidden file is what a killed process left; what is larger is no input
+        with path.open("rb") as file:
+            content = hashlib.file_digest(file, "sha256").digest()
+        digest.update(os.fsencode(path.relative_to(case)) + b"\0" + content)
     return digest.hexdigest()
 
 

@@ -20,6 +20,7 @@ from thermoscope.design.machine_keys import FLOWS, MachineFile
 from thermoscope.rating import places, rated_point
 from thermoscope.verification.error_budget import model_of
 from validation.bands.at_rest import AtRest
+from validation.comparison.predict import thermal
 from validation.optimisation.driven import GAINS, Driven
 from validation.optimisation.electrics import electrics_of, wanted_inputs
 from validation.optimisation.hot_spots import hot_spots
@@ -85,7 +86,8 @@ def _grown(folder: Folder, network: Network, robust: bool, progress: Progress) -
     if not robust:
         return network.extended(parameters=design_parameters(network)), None
     of = posterior_of(folder, progress)
-    grown = of.network.extended(parameters=design_parameters(of.network))
+    grown = thermal(of.network)
+    grown = grown.extended(parameters=design_parameters(grown))
     return grown, AtRest(of, grown)
 
 

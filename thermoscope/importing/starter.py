@@ -17,6 +17,7 @@ from thermoscope.importing.guess import Guess, in_memory
 from thermoscope.importing.source import Source
 from thermoscope.importing.words import QUANTITY, WANTED, roles_of, tokens
 
+NOISE = 0.02  # of the largest: as far below zero a power meter may read when nothing flows
 ASSUMED_W = 100.0  # heat of a machine of which nobody recorded any
 SETTLES = 0.3  # of the record: most tests last three time constants
 POWERS = {"power": 1.0, "current": 2.0, "share": 1.0}  # of a loss that follows it
@@ -65,7 +66,8 @@ def rise(source: Source, g: Guess) -> float:
 
 def _heat(columns: Columns, at: str) -> tuple[str, float]:
     """The losses as lines of TOML, and their mean (W)."""
-    fed = {q: [(s, g) for s, g in columns if g.quantity == q and g.feeds] for q in HEATS}
+    through = {g.feeds for s, g in columns if g.feeds and not _heats(s, g)}
+    fed = {q: [(s, g) for s, g in columns if g.quantity == q and g.feeds and g.feeds not in through] for q in HEATS}
     kind = next((q for q in HEATS if fed[q]), "")
     if not kind:
         return _loss("heat", at, ASSUMED_W, ""), ASSUMED_W
@@ -79,6 +81,12 @@ def _heat(columns: Columns, at: str) -> tuple[str, float]:
         lines.append(_loss(f"heat-{i}" if len(chosen) > 1 else "heat", at, watts, of))
         total += watts
     return "\n".join(lines), total
+
+
+def _heats(source: Source, g: Guess) -> bool:
+    """Can it be what heats? A power that changes its sign is one that passes through, as of a machine that brakes."""
+    values = in_memory(source, g)
+    return g.quantity != "power" or float(np.nanmin(values)) >= -NOISE * float(np.nanmax(np.abs(values)))
 
 
 def _loss(name: str, at: str, watts: float, of: str) -> str:

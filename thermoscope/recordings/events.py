@@ -86,6 +86,6 @@ def _checked(at: list[float], values: list[float], where: str) -> Events:
     if not at or at[0] != 0.0:
         raise InputError("the first event is not at the start, so what held before it is unknown", where,
                          "at_s = [0, ...] with the state at the start")  # fmt: skip
-    if any(b <= a for a, b in itertools.pairwise(at)):
-        raise InputError("events do not follow each other in time", where, "at_s that rises")
+    if not all(b > a for a, b in itertools.pairwise(at)):
+        raise InputError("events do not follow each other in time", where, "at_s that rises, a time for each")
     return Events(np.array(at), np.array(values))

@@ -18,7 +18,7 @@ from validation.measurement.operators import head
 
 @dataclass(frozen=True)
 class AtRest:
-    """of : what is known of the model;  network : of its own kind, with more parameters perhaps
+    """of : what is known of the model;  network : its own, perhaps with more parameters, none of them a sensor's
 
     Thermometers of the boundaries are as unsure as the table of doubt says, whatever a calibration made of their bias.
     """
@@ -41,7 +41,7 @@ class AtRest:
         sd = np.array([p.prior_sd for p in free]) / size
         Sigma = self.of.of(list(columns), np.concatenate([sd, np.ones(len(columns) - len(free))]))
         J, rise = np.array(list(columns.values())), float(at.y[0] - np.mean(list(boundaries.values())))
-        return float(np.sqrt(max(J @ Sigma @ J, 0.0) + (self.of.doubt["slow"] * rise) ** 2))
+        return float(np.sqrt(max(J @ Sigma @ J, 0.0) + (self.of.slow(row) * rise) ** 2))
 
     @cached_property
     def _thermal(self) -> set[str]:

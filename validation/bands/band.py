@@ -62,7 +62,7 @@ def bands(of: ParameterPosterior, test: Test, places: Sequence[Place]) -> Bands:
     Sigma = of.of([*(p.name for p in free), *moved], np.concatenate([sd, np.ones(len(moved))]))
     beside = np.stack([*moved.values()], axis=2) if moved else np.zeros((*plain.shape, 0))
     variance = _variance(Watch(network, asked, now, free), size, beside, _root(Sigma))
-    slow = of.doubt["slow"] * np.abs(plain - plain[0])
+    slow = np.array([of.slow(p.row) for p in places]) * np.abs(plain - plain[0])
     return Bands(test.time, tuple(p.name for p in places), plain, np.sqrt(variance + slow**2))
 
 

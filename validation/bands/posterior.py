@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.model.network import Network, Parameter
+from lumped.model.network import Network, Parameter, Row
 from validation.calibration.calibrate import Fit, KnownSegments, minimise, with_model_error
 from validation.calibration.unknowns import working
 from validation.case import Case, Test
@@ -37,6 +37,7 @@ class ParameterPosterior:
 
     names (p,) : of the covariance (p, p): parameters in fitting coordinates, doubts and inputs in deviations
     doubts : of the network;  fitted : tests that it was calibrated on;  doubt : the table of doubt
+    read : what sensors read in these tests, as rows over z
     """
 
     network: Network
@@ -46,6 +47,17 @@ class ParameterPosterior:
     doubts: tuple[str, ...]
     fitted: tuple[str, ...]
     doubt: Doubt
+    read: tuple[Row, ...] = ()
+
+    def slow(self, row: Row) -> float:
+        """Share of its rise by which a temperature is off for reasons that no parameter has.
+
+        What a sensor read was held against it. Elsewhere the place has another share of the rise than its node's mean,
+        as a thermocouple's has; a mean or point of a field is what it says.
+        """
+        alike = any(np.array_equal(row.index, r.index) and np.allclose(row.weights, r.weights) for r in self.read)
+        known = alike or self.network.recovery is not None
+        return self.doubt["slow"] if known else float(np.hypot(self.doubt["slow"], self.doubt["gain"]))
 
     def of(self, names: Sequence[str], sd: Array) -> Array:
         """(k, k) covariance of some names; those that it does not know are independent with the given deviations."""
@@ -81,8 +93,13 @@ def parameter_posterior(case: Case, progress: Progress = silent) -> ParameterPos
     inputs = input_columns(network, tests, values, case.doubt, parts)
     names = (*unknowns.names, *uncertain_names(grown, doubts, tests[0], values, fit, case.doubt), *inputs)
     return ParameterPosterior(
-        grown, values, names, joint(fit, inputs), of_network, tuple(t.name for t in tests), case.doubt
+        grown, values, names, joint(fit, inputs), of_network, tuple(t.name for t in tests), case.doubt, rows_read(tests)
     )
+
+
+def rows_read(tests: Sequence[Test]) -> tuple[Row, ...]:
+    """Of all channels."""
+    return tuple({c.name: c.row for t in tests for c in t.channels}.values())
 
 
 def input_columns(

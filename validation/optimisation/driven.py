@@ -17,7 +17,7 @@ from lumped.sources.losses import ALPHA_CU
 
 Array = NDArray[np.float64]
 GAINS = {"controller.Kp": "Kp", "controller.Ki": "Ki"}  # keys of a cycle that a design may change
-LAG = 0.05  # of the cycle's mean speed: how far the vehicle may be off on average
+LAG = 0.05  # of the cycle's mean speed: what the vehicle may lack on average; it coasts where it is too fast
 
 
 @dataclass(frozen=True)
@@ -53,5 +53,5 @@ class Driven:
         step = np.diff(self.time, prepend=self.time[0]) / (self.time[-1] - self.time[0])
         mean = {name: float(step @ u) for name, u in done.inputs().items()}
         mean["current_A"] = float(step @ done.current_A**2) ** 0.5
-        off = float(step @ np.abs(done.vehicle_speed_mps - self.wanted)) / float(step @ self.wanted)
-        return mean, {f"speed kept within {100.0 * LAG:g} %": off / LAG - 1.0}
+        short = float(step @ np.maximum(self.wanted - done.vehicle_speed_mps, 0.0)) / float(step @ self.wanted)
+        return mean, {f"speed kept within {100.0 * LAG:g} %": short / LAG - 1.0}

@@ -13,6 +13,7 @@ from viz.rendering.scene import View
 if TYPE_CHECKING:
     import rerun.blueprint as rrb
 
+SPEED = 360.0  # times as fast as the test: an hour in ten seconds
 DISTANCE = 1.02  # of the machine's diagonal: fills the view at rerun's own angle of view
 
 
@@ -23,15 +24,27 @@ def blueprint(comparison: Comparison, first: str, points: NDArray[np.float64], w
     end = float(comparison.test.time[-1])
     names = sorted((c.name for c in comparison.channels), key=lambda name: name != first)
     curves = rrb.Tabs(*(_over_time(f"curves/{name}", f"{short(name)} (°C)", end) for name in names), active_tab=0)
-    right = rrb.Vertical(curves, _over_time("residual", "measured − model (K)", end))
-    left = rrb.Vertical(_machine(comparison, points), _text("legend", "legend"), row_shares=[5, 1])
+    below: list[Any] = [_over_time("inputs", "inputs", end)] if comparison.test.inputs else []
+    below += [rrb.TextLogView(origin="events", name="events")] if comparison.events else []
+    right = rrb.Vertical(curves, _over_time("residual", "measured − model (K)", end), *below)
+    shown = rrb.Horizontal(_machine(comparison, points), _bar(), column_shares=[6, 1])
+    left = rrb.Vertical(shown, _text("legend", "legend"), row_shares=[5, 1])
     layout: Any = rrb.Horizontal(left, right, column_shares=[3, 2], name="test")
     if with_history:
         error = rrb.TimeSeriesView(origin="error", name="rms error (K)")
         beside = rrb.Vertical(error, _text("step", "what was done"), row_shares=[3, 1])
         revisions = rrb.Horizontal(_machine(comparison, points), beside, column_shares=[3, 2], name="revisions")
         layout = rrb.Tabs(layout, revisions, active_tab=0)
-    return rrb.Blueprint(layout, rrb.TimePanel(timeline="test_time", state="collapsed"), collapse_panels=True)
+    plays = rrb.TimePanel(
+        timeline="test_time", state="collapsed", play_state="playing", loop_mode="all", playback_speed=SPEED
+    )
+    return rrb.Blueprint(layout, plays, collapse_panels=True)
+
+
+def _bar() -> rrb.Spatial2DView:
+    import rerun.blueprint as rrb
+
+    return rrb.Spatial2DView(origin="scale", name="°C", background=[255, 255, 255])
 
 
 def _machine(comparison: Comparison, points: NDArray[np.float64]) -> rrb.Spatial3DView:

@@ -23,6 +23,8 @@ from viz.colours import BLUE, LIGHT, ORANGE, VERDICT, heat
 from viz.data import Comparison, Sensor, short
 from viz.figures.curves import wrongness
 from viz.figures.errors import PALE, error_paths
+from viz.machine.thermocouples import LABELS
+from viz.recordings import scale
 from viz.recordings.arrangement import blueprint
 from viz.rendering.cut import QUARTER, Surface, Wedge, cut_away
 from viz.rendering.edges import outline_strips
@@ -70,6 +72,9 @@ def write_recording(
     surface = cut_away(nodes, wedge)
     stream.save(path, default_blueprint=blueprint(comparison, worst, surface.points, bool(history)))
     _machine(stream, surface, times, fields, revision_fields)
+    scale.colour_bar(stream, *rounded(float(fields.min()), float(fields.max())))
+    scale.inputs(stream, comparison, TIME)
+    scale.events(stream, comparison, TIME)
     _sensors(stream, comparison, times, positions, revision_residuals)
     _curves(stream, comparison)
     _revisions(stream, history)
@@ -104,8 +109,7 @@ def _machine(
     stream.log("machine/field", mesh, static=True)
     lines = rr.LineStrips3D(list(outline_strips(surface)), colors=[31, 41, 51, 150], radii=rr.Radius.ui_points(0.6))
     stream.log("machine/edges", lines, static=True)
-    scale = f"# Colours\n\nblue {low:.0f} °C … magenta {(low + high) / 2:.0f} °C … yellow {high:.0f} °C"
-    stream.log("legend", rr.TextDocument(scale + _LEGEND, media_type="text/markdown"), static=True)
+    stream.log("legend", rr.TextDocument(_LEGEND, media_type="text/markdown"), static=True)
     _colours(stream, surface, rr.TimeColumn(TIME, duration=times), fields, (low, high))
     if revisions is not None:
         steps = rr.TimeColumn(REVISION, sequence=range(len(revisions)))
@@ -135,9 +139,15 @@ def _sensors(
         return
     points = rr.Points3D(
         [positions[channel.name] for channel in placed], labels=[short(channel.name) for channel in placed],
-        radii=rr.Radius.ui_points(5.0), show_labels=True,
+        radii=rr.Radius.ui_points(5.0), show_labels=False,
     )  # fmt: skip
     stream.log("machine/sensors", points, static=True)
+    named = sorted(placed, key=lambda channel: -c.rmse(channel) / c.limit_K(channel))[:LABELS]
+    labels = rr.Points3D(
+        [positions[channel.name] for channel in named], labels=[short(channel.name) for channel in named],
+        radii=rr.Radius.ui_points(0.0), show_labels=True, colors=[255, 255, 255],
+    )  # fmt: skip
+    stream.log("machine/names", labels, static=True)
     residual = np.stack([np.interp(times, c.test.time, c.residual(channel)) for channel in placed], axis=1)
     _markers(stream, c, placed, rr.TimeColumn(TIME, duration=times), residual)
     if revisions:
@@ -201,9 +211,8 @@ def _rgba(colour: str) -> int:
     return int(colour[1:] + "ff", 16)
 
 
-_LEGEND = """
-
-Sensors: green within the uncertainty, vermilion where the machine is hotter than the model, blue where it is colder.
+_LEGEND = """Sensors: green within the uncertainty, vermilion where the machine is hotter than the model,
+blue where it is colder. Six have names, those furthest beyond their uncertainty; the others under the pointer.
 
 Timelines (chosen at the bottom left): **test_time** runs through the test; for the tab *revisions* choose **revision**.
 """

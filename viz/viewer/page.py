@@ -14,10 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.disk_cache import atomic_write
-from viz.colours import VERDICT, heat, missing, part_colours
+from viz.colours import VERDICT, heat, missing, part_colours, power
 from viz.data import Comparison, short
 from viz.rendering.nodes import SplitMesh
 from viz.rendering.scale import marks, rounded
+from viz.viewer.flux import nodal_flux
 from viz.viewer.low_rank import LowRank, low_rank
 from viz.viewer.packing import packed_integers, packed_numbers
 
@@ -49,9 +50,10 @@ def write_viewer(
 
 
 def document(
-    title: str, nodes: SplitMesh, tests: Sequence[Recorded], positions: Mapping[str, Sequence[float]]
-) -> dict[str, Any]:
-    """All the page draws."""
+    title: str, nodes: SplitMesh, tests: Sequence[Recorded], positions: Mapping[str, Sequence[float]],
+    conductivity: Mapping[str, tuple[float, float]] | None = None,
+) -> dict[str, Any]:  # fmt: skip
+    """All the page draws. conductivity : part -> across and along the axis (W/m/K), for heat flux"""
     found = low_rank(np.concatenate([part for t in tests for part in (t.fields, t.before) if part is not None]))
     triangles, part = nodes.boundary()
     order = np.argsort(part, kind="stable")
@@ -63,8 +65,10 @@ def document(
         "triangles": packed_integers(triangles[order]), "owner": packed_integers(nodes.owner[:, None]),
         "parts": [{"name": name, "colour": colours[name]} for name in nodes.parts],
         "mean": packed_numbers(found.mean[:, None]), "shapes": packed_numbers(found.shapes.T, found.steps(STEP_K)),
-        "tests": _tests(tests, found, positions), "range": [low, high], "marks": marks(low, high),
+        "tests": _tests(tests, found, positions), "marks": marks(low, high),
         "change_marks": _change(tests), "heat": _palette(heat()), "missing": _palette(missing()),
+        "k": conductivity and [conductivity[name] for name in nodes.parts], "power": _palette(power()),
+        "flux_marks": conductivity and _flux(nodes, tests, conductivity),
         "tints": [[int(c[i : i + 2], 16) / 255 for i in (1, 3, 5)] for c in VERDICT.values()],
     }  # fmt: skip
 
@@ -87,6 +91,12 @@ def _change(tests: Sequence[Recorded]) -> list[float]:
     """Round marks for now minus before (K), as far below zero as above."""
     changes = [float(np.abs(t.fields - t.before).max()) for t in tests if t.before is not None]
     return marks(*rounded(-max(changes, default=1.0), max(changes, default=1.0)))
+
+
+def _flux(nodes: SplitMesh, tests: Sequence[Recorded], conductivity: Mapping[str, tuple[float, float]]) -> list[float]:
+    """Round marks for the heat flux (kW/m2) of every test's end, the densest twentieth of the nodes left out."""
+    ends = [nodal_flux(nodes, t.fields[-1], conductivity) for t in tests]
+    return marks(*rounded(0.0, max(float(np.quantile(q, 0.95)) for q in ends)))
 
 
 def _by_part(nodes: SplitMesh) -> NDArray[np.int64]:

@@ -159,23 +159,23 @@ class Viewer {
   }
   choose(k) {
     this.test = data.tests[k];
-    if (!this.test.before && $("layer").value === "1") $("layer").value = "0";
-    $("layer").disabled = !this.test.before; $("wiping").hidden = !this.test.before;
+    const options = $("layer").options;
+    options[1].disabled = !this.test.before; options[2].disabled = !data.k;
+    if (options[$("layer").selectedIndex].disabled) $("layer").value = "0";
+    $("wiping").hidden = !this.test.before;
     this.recolour();
     this.move(this.time);
   }
   recolour() {
-    const gl = this.gl, change = $("layer").value === "1", rgb = change ? data.missing : data.heat;
+    const gl = this.gl, layer = +$("layer").value, rgb = [data.heat, data.missing, data.power][layer];
     gl.activeTexture(gl.TEXTURE1);
     gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGB, 256, 1, 0, gl.RGB, gl.UNSIGNED_BYTE, new Uint8Array(rgb));
     const ramp = $("ramp").getContext("2d"), picture = ramp.createImageData(1, 256);
     for (let i = 0; i < 256; i++) picture.data.set([...rgb.slice(3 * (255 - i), 3 * (255 - i) + 3), 255], 4 * i);
     ramp.putImageData(picture, 0, 0);
-    this.range = data.range; this.marks = data.marks;
-    if (change) {
-      this.marks = data.change_marks; this.range = [this.marks[0], this.marks[this.marks.length - 1]];
-    }
-    $("unit").textContent = change ? "K" : "°C";
+    this.marks = [data.marks, data.change_marks, data.flux_marks][layer];
+    this.range = [this.marks[0], this.marks[this.marks.length - 1]];
+    $("unit").textContent = ["°C", "K", "kW/m²"][layer];
     $("marks").replaceChildren(...this.marks.map((m) => {
       const s = document.createElement("span");
       s.textContent = m; s.style.bottom = `${100 * (m - this.range[0]) / (this.range[1] - this.range[0])}%`;
@@ -200,6 +200,7 @@ class Viewer {
       for (let k = 0; k < r; k++) { const x = this.shapes[node * r + k]; a += now[k] * x; b += before[k] * x; }
       v[2 * node] = a; v[2 * node + 1] = b;
     }
+    if ($("layer").value === "2") this.fluxes(v);
     const gl = this.gl;
     gl.activeTexture(gl.TEXTURE0);
     gl.texImage2D(gl.TEXTURE_2D, 0, gl.RG32F, this.wide, this.high_, 0, gl.RG, gl.FLOAT, v);
@@ -207,6 +208,36 @@ class Viewer {
     $("time").value = 1000 * time;
     this.readings();
     this.dirty = true;
+  }
+  slopes() {  // of every tetrahedron a, b, c, d: grad T = (T_b - T_a) u + (T_c - T_a) v + (T_d - T_a) w; u, v, w, volume
+    const t = this.tets, p = this.points, out = new Float32Array(10 * t.length / 4);
+    for (let i = 0; i < t.length; i += 4) {
+      const edge = [1, 2, 3].map((k) => [0, 1, 2].map((m) => p[3 * t[i + k] + m] - p[3 * t[i] + m]));
+      const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+      const u = cross(edge[1], edge[2]), det = u[0] * edge[0][0] + u[1] * edge[0][1] + u[2] * edge[0][2];
+      const all = [...u, ...cross(edge[2], edge[0]), ...cross(edge[0], edge[1])];
+      for (let k = 0; k < 9; k++) out[10 * i / 4 + k] = all[k] / det;
+      out[10 * i / 4 + 9] = Math.abs(det) / 6;
+    }
+    return out;
+  }
+  fluxes(v) {  // temperatures become |k grad T| in kW/m2: the mean vector of the tetrahedra around a node, by volume
+    this.gradients ??= this.slopes();
+    const t = this.tets, n = this.owner.length, g = this.gradients, sum = new Float64Array(7 * n);
+    for (let i = 0, j = 0; i < t.length; i += 4, j += 10) {
+      const [across, along] = data.k[this.owner[t[i]]], volume = g[j + 9];
+      for (let side = 0; side < 2; side++) {
+        const a = v[2 * t[i] + side], b = v[2 * t[i + 1] + side] - a, c = v[2 * t[i + 2] + side] - a, d = v[2 * t[i + 3] + side] - a;
+        for (let m = 0; m < 3; m++) {
+          const q = volume * (m < 2 ? across : along) * (b * g[j + m] + c * g[j + 3 + m] + d * g[j + 6 + m]);
+          for (let k = 0; k < 4; k++) sum[7 * t[i + k] + 3 * side + m] += q;
+        }
+      }
+      for (let k = 0; k < 4; k++) sum[7 * t[i + k] + 6] += volume;
+    }
+    for (let i = 0; i < n; i++)
+      for (let side = 0; side < 2; side++)
+        v[2 * i + side] = Math.hypot(sum[7 * i + 3 * side], sum[7 * i + 3 * side + 1], sum[7 * i + 3 * side + 2]) / sum[7 * i + 6] / 1000;
   }
   readings() {
     const k = Math.round(this.place);
@@ -272,7 +303,7 @@ class Viewer {
     gl.useProgram(s.p);
     gl.uniformMatrix4fv(s.view, false, this.matrix());
     gl.uniform4fv(s.plane, this.cutting); gl.uniform3fv(s.eye, this.eye); gl.uniform2fv(s.range, this.range);
-    gl.uniform1i(s.layer, +$("layer").value); gl.uniform1i(s.mode, mode); gl.uniform1i(s.wide, this.wide);
+    gl.uniform1i(s.layer, $("layer").value === "1" ? 1 : 0); gl.uniform1i(s.mode, mode); gl.uniform1i(s.wide, this.wide);
     gl.uniform1i(s.field, 0); gl.uniform1i(s.palette, 1);
     gl.uniform1f(s.wipe, this.test.before ? $("wipe").value / 1000 * $("gl").width : 0);
     for (const shown of mode ? [1] : [1, 0.5]) {
@@ -395,7 +426,7 @@ function wired(v) {
   const c = $("gl"), again = () => { v.dirty = true; };
   $("test").replaceChildren(...data.tests.map((t, k) => new Option(t.name, k)));
   $("test").onchange = (e) => v.choose(+e.target.value);
-  $("layer").onchange = () => v.recolour();
+  $("layer").onchange = () => { v.recolour(); v.move(v.time); };
   $("wipe").oninput = again;
   $("axis").onchange = $("cut").oninput = () => { v.slice(); again(); };
   $("time").oninput = (e) => { v.play(false); v.move(e.target.value / 1000); };

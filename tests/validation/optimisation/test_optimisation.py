@@ -1,12 +1,13 @@
 """Design problems of one node against closed forms; the searched set against a brute-force grid."""
 
+import sys
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from geom.errors import InputError
+from geom.errors import InputError, MissingDependency
 from geom.machine_file import load_machine
 from lumped.drives.drive import Controller, SeriesMachine, Vehicle
 from lumped.integration.simulate import Record, simulate
@@ -215,3 +216,9 @@ def test_a_cycle_at_constant_speed_takes_the_current_of_its_torque():
     assert max(lag.values()) < 0.0
     weak = cycle.inputs({"controller.Kp": 0.5, "controller.Ki": 0.001})[1]
     assert max(weak.values()) > 0.0
+
+
+def test_without_pymoo_the_message_says_what_to_install(monkeypatch):
+    monkeypatch.setitem(sys.modules, "pymoo", None)
+    with pytest.raises(MissingDependency, match=r"pip install 'thermoscope\[optimise\]'"):
+        pareto_set(two(), nsga2, Effort(8, 1))

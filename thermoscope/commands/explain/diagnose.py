@@ -60,7 +60,7 @@ def answer(document: Mapping[str, Any], called: str) -> Answer:
     unseen = f"{len(hidden)} effects could be there unseen: {', '.join(hidden[:2])}, ..." if hidden else ""
     remaining = " ".join(row["words"] for row in document.get("remainder", []))
     found = document["candidates"]
-    parts = [_odds(document), remaining, _candidates(found), *_leader(found), *events(document),
+    parts = [_odds(document), _candidates(found), *_leader(found), remaining, *events(document),
              *contradiction(document.get("contradiction")), next_tests(document), *_lost(found, named),
              in_short(document.get("error_budget", {}), steps), unseen, question(document, case)]  # fmt: skip
     rest = [*budget(document.get("error_budget", {}), steps), *hidden]
@@ -83,18 +83,19 @@ def _odds(document: Mapping[str, Any]) -> Grid:
 
 def _candidates(found: Sequence[Mapping[str, Any]]) -> Grid:
     """Size with interval and detection limit, and what it buys."""
-    headers = ["effect", "%", "size (95 %)", "unit", "detectable", "error (K)", "held out (K)", "decision"]
+    headers = ["effect", "%", "size (95 %)", "detectable", "unit", "error (K)", "held out (K)", "decision"]
     keep = ["size (95 %)", "%", "detectable", "unit", "error (K)"]
     rows = [_row(c) for c in found if c["probability"] > SHOWN or c["decision"] != "no"] or [_row(c) for c in found[:1]]
     return Grid("Candidates", headers, rows[:ROWS], ["named", "group"], keep)
 
 
 def _leader(found: Sequence[Mapping[str, Any]]) -> list[str]:
-    """What the leader buys and looks like, and the experiment that proves it."""
+    """From which size the leader shows, what it buys and looks like, and the experiment that proves it."""
     if not found or found[0]["probability"] <= SHOWN:
         return []
     first = found[0]
-    lines = [bought(first)] if first.get("tests") and first["decision"] != "no" else []
+    lines = [f"Detection limit: these tests show {first['effect']} from {limit(first)} on."]
+    lines += [bought(first)] if first.get("tests") and first["decision"] != "no" else []
     lines += [f"Proof: {first['isolating_test']}."] if first["isolating_test"] else []
     if first["confused_with"]:
         lines.append(f"{first['effect']} looks like {', '.join(first['confused_with'])} to these tests and sensors.")
@@ -105,6 +106,12 @@ def _lost(found: Sequence[Mapping[str, Any]], named: Sequence[str]) -> list[str]
     """Why the rivals lost."""
     return [f"Against {c['effect']}: it {c['note']} than {found[0]['effect']}." for c in found[1:ROWS]
             if c["note"] and c["probability"] > SHOWN and c["effect"] not in named]  # fmt: skip
+
+
+def limit(candidate: Mapping[str, Any]) -> str:
+    """The smallest size that the tests would show, with its unit."""
+    unit = candidate["amplitude"]["unit"]
+    return f"{cell(candidate['smallest_detectable'])} {'' if unit == '1' else unit}".strip()
 
 
 def bought(candidate: Mapping[str, Any]) -> str:
@@ -128,8 +135,8 @@ def events(document: Mapping[str, Any]) -> list[Grid]:
 def _row(c: Mapping[str, Any]) -> list[Any]:
     size, share = c["amplitude"], f"{100 * c['probability']:.1f}"
     return [
-        c["effect"], share, sized(size["value"], *size["ci95"]), "" if size["unit"] == "1" else size["unit"],
-        cell(c["smallest_detectable"]), _arrow(c["rmse_K"]), _arrow(c["holdout_rmse_K"]), c["decision"],
+        c["effect"], share, sized(size["value"], *size["ci95"]), cell(c["smallest_detectable"]),
+        "" if size["unit"] == "1" else size["unit"], _arrow(c["rmse_K"]), _arrow(c["holdout_rmse_K"]), c["decision"],
     ]  # fmt: skip
 
 

@@ -141,7 +141,7 @@ def _sizes(sizes: Mapping[str, Any]) -> list[Grid | str]:
     rows += [
         ["learned", g["states"], "-", "-", "-", *(g["random"][k] for k in ERRORS), _word(g)] for g in sizes["guard"]
     ]
-    title = f"Error in % of a part's rise (wish: means {wish['mean']:g}, hot spots and points {wish['hot']:g})"
+    title = f"Error in % of a part's rise (asked: means {wish['mean']:g}, hot spots and points {wish['hot']:g})"
     headers = ["network", "states", "mean", "hot spot", "point", "mean, random", "hot, random", "point, random", "met"]
     notes: list[Grid | str] = []
     if mesh := sizes["mesh"]:
@@ -150,7 +150,7 @@ def _sizes(sizes: Mapping[str, Any]) -> list[Grid | str]:
     if sizes["guard"] and not sizes["guard"][-1]["met"]:
         bad = sizes["guard"][-1]["random"]
         notes.append(
-            f"The wish is missed: mean {bad['mean_part']}, hot spot {bad['hot_part']}, point {bad['point_part']}."
+            f"The accuracy is missed: mean {bad['mean_part']}, hot spot {bad['hot_part']}, point {bad['point_part']}."
         )
     return [Grid(title, headers, rows, keep=["states", "mean, random", "hot, random", "met"]), *notes]
 

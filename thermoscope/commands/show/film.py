@@ -74,10 +74,9 @@ def largest(sensors: Sequence[Sensor]) -> str:
 
 def misses(folder: Folder, model: Case, test: Test, times: NDArray[np.float64]) -> list[tuple[Sensor, ...]]:
     """At each of the times (s): the sensors with a place, and what the model misses there."""
-    from validation.comparison.tolerance import limit_K
-
     from viz.data import Sensor
 
+    limit_K = folder.compared.limits[test.name]
     read, at = readings(model, test), np.searchsorted(test.time, times).clip(0, len(test.time) - 1)
     out = []
     for i in at:
@@ -85,6 +84,6 @@ def misses(folder: Folder, model: Case, test: Test, times: NDArray[np.float64]) 
         for c in test.channels:
             if c.name in folder.positions:
                 x, y, z = folder.positions[c.name]
-                row.append(Sensor(c.name, (x, y, z), float(c.y[i] - read[c.name][i]), limit_K(c)))
+                row.append(Sensor(c.name, (x, y, z), float(c.y[i] - read[c.name][i]), limit_K[c.name]))
         out.append(tuple(row))
     return out

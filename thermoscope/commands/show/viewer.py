@@ -54,7 +54,8 @@ def viewer_page(folder: Folder, tell: Progress) -> str:
     for test in by_interest(folder):
         tell(f"running {test.name}")
         tests.append(_recorded(folder, test, nodes, earlier))
-    return render(document(folder.case.name, nodes, tests, folder.positions))
+    conductivity = {part.name: folder.built.machine.conductivity(part.name) for part in folder.built.machine.parts}
+    return render(document(folder.case.name, nodes, tests, folder.positions, conductivity))
 
 
 def _recorded(folder: Folder, test: Test, nodes: SplitMesh, earlier: Case | None) -> Recorded:

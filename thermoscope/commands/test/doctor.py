@@ -6,9 +6,10 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from geom.errors import InputError
-from thermoscope.case_folder.doctor import Finding, examined
+from thermoscope.case_folder.doctor import examined
 from thermoscope.case_folder.folder import find_case, network_of, patient_of
 from thermoscope.case_folder.history import load_history
+from thermoscope.case_folder.recording_checks import Finding
 from thermoscope.case_folder.settings import Entry, Settings, read_settings
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import Progress, give, progress

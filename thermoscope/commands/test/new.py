@@ -303,4 +303,8 @@ def _said(document: Mapping[str, Any]) -> list[str]:
                     "orders of magnitude")  # fmt: skip
     if document["findings"]:
         said.append(f"{len(document['findings'])} things look wrong: thermoscope test doctor {document['folder']}")
-    return [f"Note: {note}." for note in dict.fromkeys(said)]
+    alike: dict[str, list[str]] = {}
+    for note in dict.fromkeys(said):
+        alike.setdefault(note.partition(":")[0], []).append(note)
+    more = {what: f"; {len(notes)} tests alike" if len(notes) > 1 else "" for what, notes in alike.items()}
+    return [f"Note: {notes[0]}{more[what]}." for what, notes in alike.items()]

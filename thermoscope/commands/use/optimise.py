@@ -93,8 +93,8 @@ def document_of(problem: Problem, designs: Sequence[Design], method: str, effort
         "objectives": list(problem.aimed),
         "robust": problem.sure is not None,
         "limits": [{"place": s.name, "degC": s.limit} for s in problem.spots],
-        "operating_point": {"inputs": dict(problem.inputs), "boundaries": dict(problem.boundaries)},
-        "torque_Nm": problem.electrics.torque(problem.inputs.get("current_A", 0.0)),
+        "operating_point": {"inputs": dict(reference.inputs), "boundaries": dict(problem.boundaries)},
+        "torque_Nm": None if problem.driven else problem.electrics.torque(problem.inputs.get("current_A", 0.0)),
         "variables": [{"name": v.name, "low": v.low, "high": v.high, "usual": v.usual}
                       for v in problem.space.variables],
         "reference": {"values": usual, **dict(reference.objectives), "feasible": reference.feasible,
@@ -116,7 +116,7 @@ def _write(
     folder: Path, problem: Problem, designs: Sequence[Design], document: Mapping[str, Any], file: MachineFile | None
 ) -> list[str]:
     """pareto.csv, pareto.html, and a machine file per design of the chosen ones."""
-    from viz.live.pareto import page
+    from viz.live.designs import page
 
     rows = [{"design": d["design"], **{o: d[o] for o in problem.aimed}, **d["values"]} for d in document["designs"]]
     text = io.StringIO()

@@ -25,6 +25,9 @@ from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import Progress, give, notes, progress
 from thermoscope.rating import Asked, Rated, rated_model
 from validation.bands import ParameterPosterior
+from validation.bands.at_rest import AtRest
+from validation.bands.band import NORMAL_95
+from validation.comparison.predict import thermal
 from validation.rating.derating import deratings
 from validation.rating.envelope import FORMS, TIMES, Rating, rated, until
 from validation.rating.holding_map import holding_times
@@ -33,6 +36,7 @@ from validation.rating.repeated_cycle import Lap, share_for_ever, time_to_limit
 
 POINTS = 6  # speeds of the envelope
 LOADS = 8  # loads of the map
+ENVELOPES = ("S1", "S2 60 s", "S2 10 s")
 WARM = 0.75  # load at rest from which an overload begins warm
 SETTLED = 20.0  # time constants
 
@@ -106,18 +110,19 @@ def document_of(folder: Folder, asked: Asked, sure: bool | None, tell: Progress)
     model, op, limits = it.model, it.op, it.limits
     tell("ratings")
     here = {form: rated(model, op, limits, form, None) for form in FORMS}
-    before = _before(folder, asked, tell)
+    old = _before(folder, asked, tell)
+    before = {} if old is None else {form: _loaded(old, form, None) for form in FORMS}
     belief = posterior_of(folder, tell) if asked.losses is None and wanted(model.network, sure) else None
     tell("envelope over the speed")
     speeds = _speeds(folder, op, asked)
-    envelope = [rated(model, op, limits, form, n) for form in ("S1", "S2 60 s", "S2 10 s") for n in speeds]
+    envelope = [rated(model, op, limits, form, n) for form in ENVELOPES for n in speeds]
     tell("derating")
     load, main = here["S1"].load, op.inputs[op.main]
     return {
         "limits": [{"place": p, "degC": T} for p, T in limits.items()],
         "reference": {"input": op.main, "value": main, "inputs": dict(op.inputs), "boundaries": dict(op.boundaries)},
         "ratings": [_row(folder, op, r, before.get(f), belief) for f, r in here.items()],
-        "envelope": [{"form": r.form, "speed_rpm": r.speed, "value": r.load * main, "at": r.at} for r in envelope],
+        "envelope": [_point(folder, op, r, old, belief) for r in envelope],
         "derating": [{"of": d.of, "value": d.value, "unit": d.unit, "share": d.load / load}
                      for d in deratings(model, op, limits)],
         "overload": _overload(it, asked, load),
@@ -126,14 +131,26 @@ def document_of(folder: Folder, asked: Asked, sure: bool | None, tell: Progress)
     }  # fmt: skip
 
 
-def _before(folder: Folder, asked: Asked, tell: Progress) -> dict[str, float]:
-    """The same ratings of the model before its last step (loads); none without a step."""
+def _before(folder: Folder, asked: Asked, tell: Progress) -> Rated | None:
+    """The model before its last step; none without a step."""
     earlier = before_last(folder)
     if earlier is None:
-        return {}
+        return None
     tell("ratings of the model before its last step")
-    old = rated_model(replace(folder, case=earlier), asked)
-    return {form: rated(old.model, old.op, old.limits, form, None).load for form in FORMS}
+    return rated_model(replace(folder, case=earlier), asked)
+
+
+def _loaded(old: Rated, form: str, speed: float | None) -> float:
+    """What an earlier model says of a form (load)."""
+    return rated(old.model, old.op, old.limits, form, speed).load
+
+
+def _point(
+    folder: Folder, op: Operation, r: Rating, old: Rated | None, of: ParameterPosterior | None
+) -> dict[str, Any]:  # fmt: skip
+    """A point of the envelope as a rating has it."""
+    row = _row(folder, op, r, None if old is None else _loaded(old, r.form, r.speed), of)
+    return {"form": r.form, "speed_rpm": r.speed, **{k: v for k, v in row.items() if k != "form"}}
 
 
 def _map(it: Rated, ends: tuple[float, float], speeds: Sequence[float], tell: Progress) -> dict[str, Any]:
@@ -194,13 +211,19 @@ def _row(
 def _half95(folder: Folder, op: Operation, r: Rating, of: ParameterPosterior) -> float:
     """Half the 95 % band of a load. Duties take that of rest: their mean heat is what counts."""
     network = of.network
+    row = named_rows(network, folder)[r.at]
+    if r.form == "S1":
+        bare = thermal(network)
+        values = {p.name: of.values.get(p.name, p.value) for p in bare.parameters}
+        at = {n: float(u) for n, u in op.at(r.load, r.speed).items()}
+        return NORMAL_95 * AtRest(of, bare).sd(values, at, op.boundaries, row) / r.slope
     span = TIMES.get(r.form, SETTLED * network.settles_s)
     time = np.concatenate([[0.0], span * np.geomspace(1e-3, 1.0, 40)])
     load = r.load if r.form == "S1" or r.form in TIMES else r.load * 0.4**0.5
-    inputs = {n: np.full(time.size, u) for n, u in op.at(load).items()}
+    inputs = {n: np.full(time.size, u) for n, u in op.at(load, r.speed).items()}
     air = {b: np.full(time.size, T) for b, T in op.boundaries.items()}
     found = along(of, "rating", Record(time, inputs, air, float(np.mean(list(op.boundaries.values())))),
-                  {r.at: named_rows(network, folder)[r.at]})  # fmt: skip
+                  {r.at: row})  # fmt: skip
     return float(found.half95[-1, 0] / r.slope)
 
 
@@ -218,7 +241,9 @@ def answer(document: Mapping[str, Any]) -> Answer:
     first, reference = document["ratings"][0], document["reference"]
     main = reference["input"]
     band = "" if first["ci95"] is None else f" ({first['ci95'][0]:.4g} to {first['ci95'][1]:.4g})"
-    sentence = f"Continuous: {main} = {first['value']:.4g}{band}, limited by {first['at'] or 'nothing'}."
+    sentence = f"Continuous: {main} = {first['value']:.4g}{band}, limited by {first['at']}."
+    if not np.isfinite(first["value"]):
+        sentence = f"Continuous: no {main} that this model knows reaches a limit."
     rows = [[r["form"], r["value"], *(r["ci95"] or (None, None)), r["at"], r["before"], r["change_percent"]]
             for r in document["ratings"]]  # fmt: skip
     headers = ["form", main, "95 % from", "to", "limited by", "before", "change (%)"]
@@ -233,8 +258,10 @@ def answer(document: Mapping[str, Any]) -> Answer:
     parts += [_of_map(document["map"], main)] if document["map"] else []
     derated = [[d["of"], d["value"], d["unit"], 100.0 * d["share"]] for d in document["derating"]]
     parts.append(Grid("Continuous rating elsewhere", ["over", "value", "unit", "% of it"], derated))
-    envelope = [[e["form"], e["speed_rpm"], e["value"], e["at"]] for e in document["envelope"]]
-    parts.append(Grid("Over the speed", ["form", "speed (1/min)", main, "limited by"], envelope))
+    envelope = [[e["form"], e["speed_rpm"], e["value"], *(e["ci95"] or (None, None)), e["at"], e["before"]]
+                for e in document["envelope"]]  # fmt: skip
+    over_speed = ["form", "speed (1/min)", main, "95 % from", "to", "limited by", "before"]
+    parts.append(Grid("Over the speed", over_speed, envelope, keep=["speed (1/min)", main]))
     return Answer(sentence, parts, "--json FILE; --limit, --at, --losses, --cycle, --map")
 
 

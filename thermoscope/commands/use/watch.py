@@ -18,7 +18,7 @@ from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.runs import mean_rows
 from thermoscope.commands.open_case import PACKAGE, open_case
 from thermoscope.console.answer import Answer, Grid
-from thermoscope.console.terminal import STDOUT, give, progress
+from thermoscope.console.terminal import STDOUT, give, progress, say
 from thermoscope.monitoring.live_rows import PIPE, TOGETHER, Rows, opened, table_of, together
 from thermoscope.monitoring.observing import ObserverDesign, chosen, designed, joined, record_of
 from thermoscope.recordings.formats import stem_of
@@ -132,7 +132,7 @@ class Session:
         self.last = sample
         if self.loud and sample.time_s - self.spoken >= MINUTE - 1e-6:
             self.spoken = sample.time_s
-            print(self._line(sample, seen), flush=True)
+            say(self._line(sample, seen))
 
     def _line(self, sample: Sample, seen: dict[str, tuple[float, float]]) -> str:
         """One line for the terminal."""

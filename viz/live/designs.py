@@ -17,7 +17,7 @@ WORDS = {"peak_degC": "peak (degC)", "settling_s": "settling (s)", "copper_W": "
 Row = Mapping[str, Any]
 
 
-def parallel(
+def parallel_coordinates(
     rows: Sequence[Row], objectives: Sequence[str], variables: Mapping[str, str], *, theme: Theme = LIGHT
 ) -> go.Figure:
     """Designs as lines over objectives and variables, coloured by the first objective; ranges can be brushed."""
@@ -27,12 +27,12 @@ def parallel(
     words = {**{o: WORDS.get(o, o) for o in objectives}, **variables}
     axes = [{"label": word, "values": [float(r[n]) for r in rows]} for n, word in words.items()]
     line = {"color": [float(r[objectives[0]]) for r in rows], "colorscale": SCALE, "showscale": False}
-    out = go.Figure(go.Parcoords(dimensions=axes, line=line, labelangle=-25, labelside="bottom"), layout=out.layout)
-    out.update_layout(margin={"l": 70, "r": 40, "t": 60, "b": 120}, height=480)
+    out = go.Figure(go.Parcoords(dimensions=axes, line=line, labelangle=-20, labelside="top"), layout=out.layout)
+    out.update_layout(margin={"l": 70, "r": 70, "t": 150, "b": 40}, height=480)
     return out
 
 
-def space(rows: Sequence[Row], objectives: Sequence[str], *, theme: Theme = LIGHT) -> go.Figure:
+def objective_space(rows: Sequence[Row], objectives: Sequence[str], *, theme: Theme = LIGHT) -> go.Figure:
     """Designs in the space of three objectives, the first, second and last; the fourth is the colour."""
     import plotly.graph_objects as go
 
@@ -54,7 +54,7 @@ def space(rows: Sequence[Row], objectives: Sequence[str], *, theme: Theme = LIGH
 
 def page(rows: Sequence[Row], objectives: Sequence[str], variables: Mapping[str, str], title: str) -> str:
     """Both figures as one HTML page that needs no network.  variables : column of the rows -> its label"""
-    first = parallel(rows, objectives, variables).to_html(full_html=False, include_plotlyjs=True)
-    second = space(rows, objectives).to_html(full_html=False, include_plotlyjs=False)
+    first = parallel_coordinates(rows, objectives, variables).to_html(full_html=False, include_plotlyjs=True)
+    second = objective_space(rows, objectives).to_html(full_html=False, include_plotlyjs=False)
     head = f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{title}</title></head>'
     return f"{head}<body>{first}{second}</body></html>\n"

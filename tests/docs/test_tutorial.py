@@ -1,0 +1,52 @@
+"""The tutorial shows what each of its commands prints: scripts/tutorial.py runs them and writes it there."""
+
+import re
+import shlex
+
+import pytest
+from typer.testing import CliRunner
+
+from scripts import tutorial
+from thermoscope.cli import app
+from thermoscope.console.answer import LINES
+
+PAGE = tutorial.PAGE.read_text(encoding="utf-8")
+RUN = [c for c in tutorial.commands(PAGE) if c.startswith("thermoscope")]
+SHOWN = re.findall(r"```sh\n(.*?)```\n(?:\n```text\n(.*?)\n```\n)?", PAGE, re.DOTALL)
+
+
+def test_it_goes_from_the_machine_through_add_to_the_report():
+    words = [" ".join(c.split()[1:3]) for c in RUN]
+    assert words == ["model build", "model calibrate", "test compare", "explain diagnose", "model add", "test compare",
+                     "show serve", "show report", "show render"]  # fmt: skip
+
+
+@pytest.mark.parametrize("command", RUN)
+def test_every_command_exists_with_its_options(command):
+    """--help ends before anything is done."""
+    done = CliRunner().invoke(app, [*shlex.split(command)[1:], "--help"])
+    assert done.exit_code == 0, done.output
+
+
+@pytest.mark.parametrize(("commands", "printed"), SHOWN)
+def test_what_a_command_prints_stands_under_it_and_fits_a_screen(commands, printed):
+    if not commands.startswith("thermoscope") or commands.startswith(tutorial.WAITING):
+        assert printed == ""
+        return
+    lines = printed.splitlines()
+    assert lines, "python scripts/tutorial.py writes it"
+    assert max(map(len, lines)) <= 80
+    count = sum(line.startswith("thermoscope") for line in commands.splitlines())
+    assert len(lines) <= count * (LINES + 5), "a sentence of some lines, and at most 25 after it"
+
+
+def test_it_takes_less_than_a_quarter_of_an_hour():
+    assert int(re.search(r"need (\d+) min of one core", PAGE)[1]) <= 15
+
+
+def test_outputs_replace_what_stood_there():
+    page = "x\n```sh\na b  # said\nc\n```\n\n```text\nold\n```\ny\n```sh\nc\n```\n"
+    printed = {"a b": ["one"], "c": ["two", "three"]}
+    out = tutorial.with_outputs(page, printed)
+    assert out == ("x\n```sh\na b  # said\nc\n```\n\n```text\none\ntwo\n```\ny\n```sh\nc\n```\n\n```text\nthree\n```\n")
+    assert tutorial.commands(out) == ["a b", "c", "c"]

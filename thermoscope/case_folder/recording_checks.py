@@ -1,0 +1,153 @@
+"""What looks wrong in one recording by itself: units, clock, spikes, sensors that stand still or were hardly read."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermoscope.recordings.sheet import Sheet
+from thermoscope.recordings.tables import Samples
+
+Array = NDArray[np.float64]
+FIRST = 5  # readings that say where a column starts
+KELVIN, OFF_K = 273.15, 15.0  # how near a start has to be to that of the others in another unit
+APART_K = 12.0  # how far it has to be as it stands
+SPIKE_K, SPIKE_TIMES = 8.0, 20.0  # a reading that leaps and comes back, in K and in usual steps of its column
+UNEVEN = 0.5  # of a long step of a clock, between nine in ten and one in ten of all
+WARM_K = 3.0
+LEAST_READINGS = 3  # of a sensor in a test, as of rows
+
+
+@dataclass(frozen=True)
+class Finding:
+    """test : "" for the case as a whole;  where : column, input or node;  cure : what to do about it
+
+    remark : may well be as meant
+    """
+
+    test: str
+    where: str
+    what: str
+    cure: str
+    remark: bool = False
+
+    def document(self) -> dict[str, str | bool]:
+        return dict(vars(self))
+
+
+@dataclass(frozen=True)
+class Patient:
+    """One test as it was read."""
+
+    name: str
+    sheet: Sheet
+    samples: Samples
+
+    @property
+    def temperatures(self) -> dict[str, Array]:
+        return {c.name: self.samples.values[c.name] for c in self.sheet.columns if c.is_temperature}
+
+    @property
+    def inputs(self) -> dict[str, Array]:
+        """Input -> its readings, of all columns that feed one."""
+        return {c.feeds: self.samples.values[c.name] for c in self.sheet.columns if c.feeds}
+
+    def found(self, where: str, what: str, cure: str) -> Finding:
+        return Finding(self.name, where, what, cure)
+
+
+def first_readings(p: Patient) -> dict[str, float]:
+    """Column -> what its first readings say (degC)."""
+    seen = {n: v[np.isfinite(v)] for n, v in p.temperatures.items()}
+    return {n: float(np.median(v[:FIRST])) for n, v in seen.items() if v.size}
+
+
+def _units(p: Patient) -> Iterator[Finding]:
+    """A column that starts where the others would in kelvin or Fahrenheit."""
+    starts = first_readings(p)
+    for name, start in starts.items():
+        others = [s for n, s in starts.items() if n != name]
+        usual = float(np.median(others)) if others else 20.0
+        if abs(start - usual) < APART_K:
+            continue
+        if abs(start - KELVIN - usual) < OFF_K:
+            yield p.found(name, f"starts at {start:.0f} degC, the others at {usual:.0f}: kelvin?", 'unit = "K"')
+        elif abs((start - 32.0) / 1.8 - usual) < OFF_K / 3:
+            yield p.found(name, f"starts at {start:.0f} degC, the others at {usual:.0f}: Fahrenheit?", 'unit = "degF"')
+
+
+def _scale(p: Patient) -> Iterator[Finding]:
+    """A column that starts at ten times, or a tenth, of where the others do: a logger's tenths of a degree."""
+    starts = first_readings(p)
+    for name, start in starts.items():
+        usual = float(np.median([s for n, s in starts.items() if n != name] or [start]))
+        for factor, cure in ((10.0, "divide the column by 10"), (0.1, "multiply the column by 10")):
+            if abs(start - factor * usual) < 0.1 * abs(factor * usual) and abs(start - usual) > APART_K:
+                yield p.found(name, f"starts at {start:.4g} degC, the others at {usual:.4g}: tenths of a degree?", cure)
+
+
+def _sparse(p: Patient) -> Iterator[Finding]:
+    """Sensors that were hardly read."""
+    after = {c.name for c in p.sheet.columns if c.electrical is not None}  # one reading says the end, and is meant so
+    for name, values in p.temperatures.items():
+        count = int(np.isfinite(values).sum())
+        if count < LEAST_READINGS and name not in after:
+            yield p.found(name, f"was read {count} {'time' if count == 1 else 'times'} in the whole test: that "
+                          "says next to nothing of the model", "readings over the test, or use = false")  # fmt: skip
+
+
+def _clock(p: Patient) -> Iterator[Finding]:
+    low, high = np.percentile(np.diff(p.samples.time), [10.0, 90.0])
+    if high - low > UNEVEN * high:
+        yield p.found("clock", f"rows come unevenly, {low:g} to {high:g} s apart",
+                      "check the recorder's clock; readings are averaged onto the grid as they stand")  # fmt: skip
+    for a, b in p.samples.gaps:
+        yield p.found("clock", f"no rows from {a:g} to {b:g} s", "split the test there if the machine ran on")
+
+
+def _spikes(p: Patient) -> Iterator[Finding]:
+    """Single readings that leap and come back at once."""
+    for name, values in p.temperatures.items():
+        seen = np.flatnonzero(np.isfinite(values))
+        if seen.size < 10:
+            continue
+        y = values[seen]
+        leap = np.minimum(np.abs(y[1:-1] - y[:-2]), np.abs(y[1:-1] - y[2:]))
+        back = np.abs(y[2:] - y[:-2]) < 0.5 * leap
+        out = np.flatnonzero(back & (leap > max(SPIKE_K, SPIKE_TIMES * float(np.median(np.abs(np.diff(y)))))))
+        if out.size:
+            at = p.samples.time[seen[out[0] + 1]]
+            yield p.found(name, f"{out.size} readings leap by {leap[out].max():.0f} K and come back, first at {at:g} s",
+                          "empty those cells; look for a loose contact")  # fmt: skip
+
+
+def _frozen(p: Patient) -> Iterator[Finding]:
+    """Sensors that never move while others do; what stands still for a while is noted where the file is read."""
+    moves = {n: float(np.nanmax(v) - np.nanmin(v)) for n, v in p.temperatures.items() if np.isfinite(v).any()}
+    if max(moves.values(), default=0.0) > WARM_K:
+        for name, move in moves.items():
+            if move == 0.0 and np.isfinite(p.temperatures[name]).sum() >= LEAST_READINGS:
+                yield p.found(name, "never moves while others do: frozen?", "use = false, or another sensor")
+
+
+def _twins(p: Patient) -> Iterator[Finding]:
+    """Columns with the very same readings."""
+    values = {c.name: p.samples.values[c.name] for c in p.sheet.columns}
+    for a, b in combinations(values, 2):
+        x, y = values[a], values[b]
+        if np.array_equal(x, y, equal_nan=True) and np.unique(x[np.isfinite(x)]).size > 2:
+            yield p.found(f"{a}, {b}", "are the same readings throughout", "one of them; check the logger's channels")
+
+
+def _noted(p: Patient) -> Iterator[Finding]:
+    """Doubts of the reader that are no gaps."""
+    for note in p.samples.notes:
+        if "no rows from" not in note:
+            yield p.found("", note, "look at it; use = false leaves a column out")
+
+
+RECORDING_CHECKS = (_noted, _units, _scale, _sparse, _clock, _spikes, _frozen, _twins)

@@ -1,0 +1,56 @@
+"""What explains a recording beside the machine: a colour bar with round numbers, the inputs, what happened when."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from viz.colours import BLUE, heat
+from viz.data import Comparison
+from viz.rendering.scale import decimals, marks
+
+if TYPE_CHECKING:
+    import rerun as rr
+
+WIDE, HIGH = 24, 256  # pixels of the bar
+GAP = 14  # pixels from the bar to its numbers
+
+
+def colour_bar(stream: rr.RecordingStream, low: float, high: float) -> None:
+    """A picture of the scale from a rounded range (degC), its marks beside it."""
+    import rerun as rr
+
+    ramp = (np.asarray(heat()(np.linspace(1.0, 0.0, HIGH)))[:, :3] * 255).astype(np.uint8)
+    stream.log("scale/bar", rr.Image(np.repeat(ramp[:, None], WIDE, axis=1)), static=True)
+    at = marks(low, high)
+    height = [HIGH * (1 - (m - low) / (high - low)) for m in at]
+    words = [f"{m:.{decimals(high - low)}f} °C" for m in at]
+    points = rr.Points2D(
+        [[WIDE + GAP, h] for h in height], labels=words, show_labels=True, radii=rr.Radius.ui_points(0.0),
+        colors=[31, 41, 51],
+    )  # fmt: skip
+    stream.log("scale/marks", points, static=True)
+
+
+def inputs(stream: rr.RecordingStream, comparison: Comparison, timeline: str) -> None:
+    """A curve for each input of the test."""
+    import rerun as rr
+
+    test = comparison.test
+    for name, values in test.inputs.items():
+        value = np.broadcast_to(np.asarray(values, float), np.shape(test.time))
+        stream.log(f"inputs/{name}", rr.SeriesLines(colors=int(BLUE[1:] + "ff", 16), names=name), static=True)
+        index = rr.TimeColumn(timeline, duration=np.asarray(test.time, float))
+        stream.send_columns(f"inputs/{name}", indexes=[index], columns=rr.Scalars.columns(scalars=value))
+
+
+def events(stream: rr.RecordingStream, comparison: Comparison, timeline: str) -> None:
+    """When something was different: a line of text where each event begins and ends."""
+    import rerun as rr
+
+    for begin, end in comparison.events:
+        for second, word in ((begin, "begins"), (end, "ends")):
+            stream.set_time(timeline, duration=float(second))
+            stream.log("events", rr.TextLog(f"something is different: {word} ({second / 60:.0f} min)", level="WARN"))
+    stream.reset_time()
