@@ -103,3 +103,25 @@ def test_packed_rows_are_read(thermoscope, case, rows, tmp_path):
     done = thermoscope("use", "watch", case, "--follow", file, "--json", "-", cwd=tmp_path)
     assert done.code == 0, done.err
     assert done.document["samples"] == 59
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [(["--as", "c", "--sensor", "T_yoke"], "--as c has no sensors"),
+     (["--as", "observer", "--sensor", "T_rotor"], "no sensor 'T_rotor'")],
+)  # fmt: skip
+def test_a_wrong_observer_to_export_is_one_message(thermoscope, case, tmp_path, options, message):
+    done = thermoscope("use", "export", case, *options, "--out", tmp_path / "c", cwd=tmp_path)
+    assert (done.code, done.err.count("error:")) == (2, 1)
+    assert message in done.err
+    assert not (tmp_path / "c").exists()
+
+
+def test_an_exported_observer_says_what_it_takes(thermoscope, case, tmp_path):
+    done = thermoscope("use", "export", case, "--as", "observer", "--sensor", "T_winding", "--sensor", "T_yoke",
+                       "--out", tmp_path, "--json", "-", cwd=tmp_path)  # fmt: skip
+    assert done.code == 0, done.err
+    assert done.document["sensors"] == ["T_winding", "T_yoke"]
+    assert done.document["inputs"] == ["current_A", "ambient"]
+    assert done.document["state_bytes"] < 10_000
+    assert "Sensors y (degC, NAN" in (tmp_path / "thermal_observer_sizes.h").read_text()
