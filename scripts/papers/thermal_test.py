@@ -96,7 +96,7 @@ def figure_4() -> Section:
     ways = (rule_150(curve), semilog_at(curve), exponentials(curve))
     rows = tuple(Row(w.method, "-", f"{w.value:.1f} +- {1.96 * w.sd:.1f} degC", w.words) for w in ways)
     words = (
-        "A winding at 100 degC that falls as the figure says, 5 K in the first minute and 3 K in the second, read "
+        "A winding at 100 degC falls as the figure says, 5 K in the first minute and 3 K in the second. It is read "
         "every 15 s from 30 s to 5 min. Its falls stand as 5 to 3, not 1.5 to 1, so the rule of 150 % reads half a "
         "kelvin low. One straight line in the logarithm cannot follow a winding that cools into a warm core: it "
         "reads low by kelvins, and its own interval does not tell. The exponentials, which can follow, are exact "
@@ -144,9 +144,9 @@ def with_gap() -> Section:
     table += [(found.words(letters), f"{found.effects[letters]:+.1f}") for letters in top]
     gap, cross = found.effects["H"], found.effects["DH"]
     words = (
-        f"{2 ** len(WITH_GAP)} runs: table I and the liner gap from 0.7 to 1.4 mm, the range of table II, which the "
-        "paper calibrates but does not screen. As concluded there, impregnation and liner gap set the step. The gap is "
-        "one of the voids that the bath fills: of air and resin in the share that factor D says. Hence it is worth "
+        f"{2 ** len(WITH_GAP)} runs: table I and the liner gap from 0.7 to 1.4 mm. That is the range of table II, "
+        "which the paper calibrates but does not screen. As concluded there, impregnation and liner gap set the step. "
+        "The gap is one of the voids that the bath fills: of air and resin in the share that factor D says. Hence it is worth "
         f"{gap - cross:.1f} K at an impregnation of 0.2, and {gap + cross:.1f} K at 0.8, as little as films and base; "
         "the machine files take it as filled with resin throughout."
     )

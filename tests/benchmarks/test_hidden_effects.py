@@ -74,7 +74,8 @@ def test_plan_keeps_the_proportions_and_never_shares_seeds():
 @pytest.mark.parametrize("kind", KINDS.values(), ids=lambda k: k.name)
 def test_hidden_effects_have_a_name_in_the_catalogue_and_a_size(kind):
     known, network = kinds(), case_of("", kind.name, ()).model.network
-    sites = {*network.states, *(i.name.split(":", 1)[1] for i in (*network.links, *network.sources))}
+    named = [i.name for i in (*network.links, *network.sources)]
+    sites = {*network.states, *named, *(name.split(":", 1)[1] for name in named)}
     for hidden in (*kind.missing, *kind.passing):
         told = [name.split("@") for name in right(kind, hidden.name)]
         assert any(effect in known for effect, _ in told), hidden.name

@@ -47,7 +47,7 @@ def error_budgets(folder: Folder, records: Mapping[str, Record], progress: Progr
     if folder.built is not None and isinstance(network.recovery, Shapes):  # only then the field's packages are loaded
         from thermoscope.verification.rated_errors import cached_errors, hot_rows
 
-        progress("error of mesh and condensation")
+        progress("estimating the error of mesh and condensation")
         found = cached_errors(folder.built, looks)
         rows |= hot_rows(network, found)
     return {name: _of_run(network, values, run, rows, found) for name, run in records.items()}

@@ -94,7 +94,7 @@ def _looked_for(machine: Machine, share: float, first: Meshing, progress: Progre
 
 
 def _said(progress: Progress, message: str) -> None:
-    progress(f"error of the mesh: {message}")
+    progress(f"estimating the error of the mesh: {message}")
 
 
 def _left(here: float, there: float) -> float:

@@ -38,7 +38,7 @@ def compared(
     from thermoscope.verification.error_budget import documents
     from validation.diagnosis.discrepancy import discrepancies
 
-    tell("error of mesh and condensation" if folder.built else "error of the time steps")
+    tell(f"estimating the error of {'mesh and condensation' if folder.built else 'the time steps'}")
     budgets = folder.budgets
     tell("running the model")
     result = folder.compared
