@@ -147,8 +147,8 @@ def with_gap() -> Section:
         f"{2 ** len(WITH_GAP)} runs: table I and the liner gap from 0.7 to 1.4 mm. That is the range of table II, "
         "which the paper calibrates but does not screen. As concluded there, impregnation and liner gap set the step. "
         "The gap is one of the voids that the bath fills: of air and resin in the share that factor D says. "
-        f"Hence it is worth {gap - cross:.1f} K at an impregnation of 0.2, and {gap + cross:.1f} K at 0.8, as little as films and base; "
-        "the machine files take it as filled with resin throughout."
+        f"Hence it is worth {gap - cross:.1f} K at an impregnation of 0.2, and {gap + cross:.1f} K at 0.8, "
+        "as little as films and base; the machine files take it as filled with resin throughout."
     )
     return Section("Table I with the liner gap", words, table=tuple(table))
 
