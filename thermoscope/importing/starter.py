@@ -84,9 +84,11 @@ def _heat(columns: Columns, at: str) -> tuple[str, float]:
 
 
 def _heats(source: Source, g: Guess) -> bool:
-    """Can it be what heats? A power that changes its sign is one that passes through, as of a machine that brakes."""
+    """Can it be what heats? A power that changes its sign is one that passes through, as of a machine that brakes; one
+    that is always below zero is a reversed clamp, which is refused."""
     values = in_memory(source, g)
-    return g.quantity != "power" or float(np.nanmin(values)) >= -NOISE * float(np.nanmax(np.abs(values)))
+    noise = NOISE * float(np.nanmax(np.abs(values)))
+    return g.quantity != "power" or not (np.nanmin(values) < -noise and np.nanmax(values) > noise)
 
 
 def _loss(name: str, at: str, watts: float, of: str) -> str:
