@@ -6,8 +6,8 @@ from pathlib import Path
 
 TESTS = Path(__file__).parents[1]
 sys.path.append(str(TESTS / "thermoscope"))
-_command = importlib.util.spec_from_file_location("command_line", TESTS / "thermoscope" / "conftest.py")
+_command = importlib.util.spec_from_file_location("thermoscope_command_line", TESTS / "thermoscope" / "conftest.py")
 command_line = importlib.util.module_from_spec(_command)
-sys.modules["command_line"] = command_line
+sys.modules["thermoscope_command_line"] = command_line
 _command.loader.exec_module(command_line)
 thermoscope = command_line.thermoscope
