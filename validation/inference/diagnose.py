@@ -38,6 +38,7 @@ from validation.inference.posterior import (
     pairs,
     singles,
     unknown_heat,
+    weights,
 )
 from validation.inference.refits import refitted
 from validation.inference.several import further
@@ -135,8 +136,12 @@ def sharpened(evidence: Evidence, rounds: int = 2) -> Evidence:
 def noise_of_leader(evidence: Evidence) -> Noise | None:
     """The noise left beside the effect that, with its own noise, has most evidence; None where nothing has more."""
     e = evidence
-    ordered = sorted(singles(e)[1:], key=lambda h: -h.weight)
-    few = [h for h in ordered if not e.effects[h.members[0]].whole][:CONTENDERS]
+    ones = singles(e)
+    few = [
+        h
+        for h in (ones[i] for i in np.argsort(-weights(ones), kind="stable") if ones[i].members)
+        if not e.effects[h.members[0]].whole
+    ][:CONTENDERS]
     best, worth = None, log_evidence(e.fit, e.parts) + singles(e)[0].log_prior
     for h in few:
         noise = noise_beside(e, h.members)
