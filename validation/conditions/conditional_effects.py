@@ -47,13 +47,13 @@ class Condition:
 def conditions(
     evidence: Evidence, case: Case, looked: Scan, heat: Sequence[MissingHeat], only: Sequence[str] | None = None,
     progress: Callable[[str], None] = no_progress,
-) -> tuple[list[During], tuple[Event, ...]]:  # fmt: skip
-    """The conditions that could carry weight, most probable first, and the events they hold in.  only : kinds"""
+) -> list[During]:  # fmt: skip
+    """The conditions that could carry weight, most probable first.  only : kinds, None for all"""
     known = {**case.model.values, **evidence.fit.values}
     scene = replace(scene_of(case), network=evidence.fit.network)
     bases = [e for e in temporary_effects(scene) if only is None or e.kind in only]
     if not bases:
-        return [], ()
+        return []
     progress("looking for what held in one test or for a while")
     whole = [e for e in single_test_effects(scene) if only is None or e.kind in only]
     chosen, events = best(single_test_conditions(evidence, whole, known), TESTS), []
@@ -66,7 +66,7 @@ def conditions(
         chosen += best(scored_in(evidence, effects, known, odds_against_nothing(share / len(bases))), EACH)
     ordered = sorted(chosen, key=lambda c: -c.worth)
     once = {c.effect.name: c.effect for c in reversed(ordered)}  # two stretches may come to the same ends
-    return list(reversed(once.values())), tuple({e.name: e for e in events}.values())
+    return list(reversed(once.values()))
 
 
 def declared_conditions(case: Case, evidence: Evidence, events: Sequence[Event]) -> list[tuple[str, float]]:

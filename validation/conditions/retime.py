@@ -1,5 +1,5 @@
-"""When exactly, once an event is in the model at its size: a large one bends the machine, so that its ends by tangents of
-a model without it are off by some samples.
+"""When exactly, once an event is in the model at its size: a large one bends the machine, so that by tangents of
+a model without it the ends are off by some samples.
 
 Beginning earlier is the same effect for a little longer: about the fitted state that is linear, whatever the size.
 """
@@ -88,7 +88,7 @@ def moved_gain(u: Array, V: Array, a: float, i: NDArray[np.int64], j: NDArray[np
 
 
 def steps(fit: Fit, base: Effect, test: Test, at: Array) -> tuple[Array, Array]:
-    """Score and covariance of an effect that begins at some instants of a test and lasts, beside all that was fitted."""
+    """Score and covariance of an effect that begins at some instants of a test and lasts, beside what was fitted."""
     last = float(test.time[-1]) + 1.0
     instants, where = np.unique(at, return_inverse=True)
     effects = [During.of(base, Event.of({test.name: [(t, last)]}).name) for t in instants]

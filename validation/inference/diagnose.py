@@ -110,7 +110,7 @@ def infer(case: Case, kinds: Sequence[str] | None = None, progress: Progress = n
     progress("looking for where heat is missing")
     looked = scan(evidence.fit, evidence.tests)
     heat = looked.read(evidence.fit.parts, evidence.fit.noise, evidence.fit.theta, evidence.fit.error)
-    chosen, events = conditions(quiet(evidence), case, looked, heat, kinds, progress)
+    chosen = conditions(quiet(evidence), case, looked, heat, kinds, progress)
     known = {**case.model.values, **evidence.fit.values}
     bent = laws(evidence, known) if kinds is None or KIND in kinds else []
     first = len(evidence.effects)
@@ -122,7 +122,7 @@ def infer(case: Case, kinds: Sequence[str] | None = None, progress: Progress = n
         begun = {h.members: h.fit.theta for h in found if h.fit and h.members}
         found, heat = weighed(case, evidence, looked, fit.noise, progress, begun)
     every = further(case, evidence, found, progress)
-    return Posterior(evidence, tuple(against_nothing(every)), tuple(heat), events, against)
+    return Posterior(evidence, tuple(against_nothing(every)), tuple(heat), against)
 
 
 def weighed(

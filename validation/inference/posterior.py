@@ -25,7 +25,6 @@ from validation.doubt import PRIOR, RARE, SIZES, temper
 from validation.effects import Effect
 from validation.effects.above import Above
 from validation.effects.during import During
-from validation.effects.time_window import Event
 from validation.inference.evidence import Evidence
 from validation.inference.score import Score
 
@@ -215,14 +214,13 @@ def inclusion(hypotheses: Sequence[Hypothesis], count: int) -> Array:
 class Posterior:
     """What follows from the readings.
 
-    heat : of unknown cause at each place, most evident first;  events : when something may have been different
+    heat : of unknown cause at each place, most evident first
     against : what would have to differ between the tests
     """
 
     evidence: Evidence
     hypotheses: tuple[Hypothesis, ...]
     heat: tuple[MissingHeat, ...]
-    events: tuple[Event, ...] = ()
     against: Contradiction | None = None
 
     @property
