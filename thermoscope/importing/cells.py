@@ -70,9 +70,7 @@ def in_thousands(columns: Sequence[Sequence[object]]) -> dict[int, list[object]]
     text = {j: [c for c in cells if isinstance(c, str)] for j, cells in enumerate(columns)}
     marked = {j: found for j, cells in text.items() if (found := [c for c in cells if "," in c or "." in c])}
     groups = {j: sign for j, cells in marked.items() if (sign := _grouping(cells))}
-    decimals = {
-        found[1] for j, cells in marked.items() if j not in groups for c in cells if (found := DECIMAL.search(c))
-    }
+    decimals = {m[1] for j, cells in marked.items() if j not in groups for c in cells if (m := DECIMAL.search(c))}
     if len(decimals) != 1:
         return {}
     return {
@@ -83,6 +81,8 @@ def in_thousands(columns: Sequence[Sequence[object]]) -> dict[int, list[object]]
 
 def _grouping(cells: Sequence[str]) -> str:
     """The sign that stands before three digits in every cell that has one, "" if a cell says otherwise."""
+    if not ONE_GROUP.fullmatch(cells[0].strip()):
+        return ""  # most columns
     signs = {match[1] if (match := ONE_GROUP.fullmatch(c.strip())) else "" for c in cells}
     return signs.pop() if len(signs) == 1 else ""
 
