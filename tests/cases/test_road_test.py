@@ -2,11 +2,14 @@
 
 import shutil
 
+import pytest
+
 from thermoscope.case_folder.folder import load_case
 from validation import calibrate, diagnose
 from validation.calibration.unknowns import with_model
 
 
+@pytest.mark.heavy
 def test_the_wind_on_the_right_flange_is_named(root, tmp_path):
     folder = tmp_path / "road-test"
     shutil.copytree(root / "cases" / "road-test", folder, ignore=shutil.ignore_patterns("out", "model.toml"))

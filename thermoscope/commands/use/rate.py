@@ -112,7 +112,7 @@ def document_of(folder: Folder, asked: Asked, sure: bool | None, tell: Progress)
     here = {form: rated(model, op, limits, form, None) for form in FORMS}
     old = _before(folder, asked, tell)
     before = {} if old is None else {form: _loaded(old, form, None) for form in FORMS}
-    belief = posterior_of(folder, tell) if asked.losses is None and wanted(model.network, sure) else None
+    posterior = posterior_of(folder, tell) if asked.losses is None and wanted(model.network, sure) else None
     tell("envelope over the speed")
     speeds = _speeds(folder, op, asked)
     envelope = [rated(model, op, limits, form, n) for form in ENVELOPES for n in speeds]
@@ -121,8 +121,8 @@ def document_of(folder: Folder, asked: Asked, sure: bool | None, tell: Progress)
     return {
         "limits": [{"place": p, "degC": T} for p, T in limits.items()],
         "reference": {"input": op.main, "value": main, "inputs": dict(op.inputs), "boundaries": dict(op.boundaries)},
-        "ratings": [_row(folder, op, r, before.get(f), belief) for f, r in here.items()],
-        "envelope": [_point(folder, op, r, old, belief) for r in envelope],
+        "ratings": [_row(folder, op, r, before.get(f), posterior) for f, r in here.items()],
+        "envelope": [_point(folder, op, r, old, posterior) for r in envelope],
         "derating": [{"of": d.of, "value": d.value, "unit": d.unit, "share": d.load / load}
                      for d in deratings(model, op, limits)],
         "overload": _overload(it, asked, load),
