@@ -54,7 +54,7 @@ def designed(folder: Folder, at_hand: Sequence[str], progress: Progress) -> Obse
     network, values = model_of(folder)
     tests = [t for t in folder.case.tests if t.role == "calibrate"]
     file = cache_folder() / f"noise-{_key(folder, at_hand)}.npz"
-    held = recalled(file, _kept)
+    held = recalled(file, _from_cache)
     if held is None:
         posterior = posterior_of(folder, progress)
         progress("missing heat that the table of doubt allows")
@@ -69,7 +69,7 @@ def designed(folder: Folder, at_hand: Sequence[str], progress: Progress) -> Obse
     return ObserverDesign(Process(network, values, bodies), noise, sd, usual_rise(tests))
 
 
-def _kept(file: Path) -> tuple[tuple[str, ...], ProcessNoise, Array]:
+def _from_cache(file: Path) -> tuple[tuple[str, ...], ProcessNoise, Array]:
     with np.load(file) as held:
         noise = ProcessNoise(held["covariance"], float(held["time_s"]))
         return tuple(str(b) for b in held["bodies"]), noise, held["sd"]
