@@ -20,3 +20,27 @@ ROOT = Path(__file__).resolve().parents[1]
 def root() -> Path:
     """The folder of the checkout."""
     return ROOT
+
+
+@pytest.fixture(scope="session")
+def thermoscope():
+    """thermoscope(*words, cwd=folder) -> Answer of the command line, in this process: starting one costs seconds."""
+    from command_line import answered
+
+    return answered
+
+
+@pytest.fixture
+def contents():
+    """contents(folder) -> every file and its bytes."""
+    from command_line import contents
+
+    return contents
+
+
+@pytest.fixture
+def case(tmp_path) -> Path:
+    """A case whose model lacks convection at the flange."""
+    from small_case import small_case
+
+    return small_case(tmp_path)

@@ -7,7 +7,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from small_case import small_case
 
-from thermoscope.cli import main
 from thermoscope.console.answer import LINES, Answer, Grid, folded, lay_out
 from thermoscope.console.terminal import notes, notes_once
 
@@ -87,15 +86,12 @@ def three(tmp_path_factory):
 
 
 @pytest.mark.parametrize("words", CHEAP)
-def test_every_command_at_80_columns(three, words, monkeypatch, capsys, tmp_path):
+def test_every_command_at_80_columns(thermoscope, three, words, monkeypatch, tmp_path):
     """At most two lines of sentence, no line wider than the terminal but for a path; --all is longer."""
-    monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "80")
-    monkeypatch.setattr("sys.argv", ["thermoscope", *(str(three) if w == "CASE" else w for w in words.split())])
-    with pytest.raises(SystemExit) as end:
-        main()
-    lines = capsys.readouterr().out.splitlines()
-    assert end.value.code in (0, 1)
+    done = thermoscope(*(three if w == "CASE" else w for w in words.split()), cwd=tmp_path)
+    lines = done.out.splitlines()
+    assert done.code in (0, 1)
     if "--all" in words:
         assert len(lines) > LINES
         return

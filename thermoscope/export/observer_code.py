@@ -121,7 +121,8 @@ def _data(of: ObserverModel) -> str:
         "COLDEST_C": COLDEST, "HOTTEST_C": HOTTEST, "OUTLIER_SD": faults.OUTLIER, "LOST_AFTER_S": faults.LOST_S,
         "BACK_AFTER_S": faults.BACK_S, "FROZEN_AFTER_S": faults.FROZEN_S, "LONGER_RUN": faults.LONGER,
         "MOVED_SD": faults.MOVED, "FORGETS_AFTER_S": tests_of.FORGETS_S, "SURE_FROM": tests_of.SURE,
-        "DOUBT_SD": tests_of.ALLOWED, "TEMPER_BY": TEMPER.share,
+        "DOUBT_SD": tests_of.ALLOWED, "TEMPER_BY": TEMPER["temper"].share,
+        "TEMPER_PER_NAT": TEMPER["temper per nat"].share,
     }  # fmt: skip
     m = len(of.process.bodies)
     root = "},\n{".join(", ".join(f"{v:.17g}" for v in row) for row in of.noise.root)

@@ -101,7 +101,10 @@ def repeats(evidence: Evidence, base: Effect, event: Event, known: Known) -> Eve
 def gained(found: Score, i: int, every: Sequence[int]) -> float:
     """Log likelihood that a repeat gains at the amplitude of the others."""
     others = [j for j in every if j != i]
-    a = float(np.sum(found.u[others]) / np.sum(found.V[np.ix_(others, others)]))
+    felt = float(np.sum(found.V[np.ix_(others, others)]))
+    if felt <= 0.0:  # the others move no reading: they predict nothing
+        return 0.0
+    a = float(np.sum(found.u[others])) / felt
     return a * (float(found.u[i]) - a * float(np.sum(found.V[i, others]))) - 0.5 * a**2 * float(found.V[i, i])
 
 

@@ -176,7 +176,7 @@ def _contradiction(diagnosis: Document) -> str:
     return f"{head}{drawn}{html.more('In numbers', table)}"
 
 
-_HEADERS = ["effect", "decision", "score", "threshold", "size", "95 % interval", "error (K)", "held-out (K)"]
+_HEADERS = ["effect", "decision", "score", "threshold", "size", "95 % interval", "refitted, error (K)", "held-out (K)"]
 
 
 def _row(c: Document) -> list[html.Cell]:

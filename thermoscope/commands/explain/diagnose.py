@@ -83,8 +83,8 @@ def _odds(document: Mapping[str, Any]) -> Grid:
 
 def _candidates(found: Sequence[Mapping[str, Any]]) -> Grid:
     """Size with interval and detection limit, and what it buys."""
-    headers = ["effect", "%", "size (95 %)", "detectable", "unit", "error (K)", "held out (K)", "decision"]
-    keep = ["size (95 %)", "%", "detectable", "unit", "error (K)"]
+    headers = ["effect", "%", "size (95 %)", "detectable", "unit", "refitted (K)", "held out (K)", "decision"]
+    keep = ["size (95 %)", "%", "detectable", "unit", "refitted (K)"]
     rows = [_row(c) for c in found if c["probability"] > SHOWN or c["decision"] != "no"] or [_row(c) for c in found[:1]]
     return Grid("Candidates", headers, rows[:ROWS], ["named", "group"], keep)
 
@@ -115,11 +115,11 @@ def limit(candidate: Mapping[str, Any]) -> str:
 
 
 def bought(candidate: Mapping[str, Any]) -> str:
-    """The error (K) in each test without and with the effect."""
+    """The error (K) in each test without and with the effect, all else fitted anew both times."""
     tests = candidate["tests"]
     each = [f"{t['test']}{'*' if t['held_out'] else ''} {t['before']:.2f} -> {t['after']:.2f}" for t in tests]
     star = " (* never used)" if any(t["held_out"] for t in tests) else ""
-    return f"Error (K) with {candidate['effect']}: {', '.join(each)}{star}."
+    return f"Refitted without -> with {candidate['effect']}, error (K): {', '.join(each)}{star}."
 
 
 def events(document: Mapping[str, Any]) -> list[Grid]:

@@ -36,17 +36,22 @@ def compared(
     """An open case's model against its tests, and the document of it."""
     from thermoscope.bands import of_tests, wanted
     from thermoscope.verification.error_budget import documents
-    from validation.diagnosis.discrepancy import discrepancies
 
     tell(f"estimating the error of {'mesh and condensation' if folder.built else 'the time steps'}")
     budgets = folder.budgets
     tell("running the model")
     result = folder.compared
-    more = {**uncertainty(result), **discrepancies(folder.case, tell).document()} if why else {}
+    more = {**uncertainty(result), **_discrepancies(folder, tell)} if why else {}
     bands = {"bands": of_tests(folder, tell)} if wanted(folder.case.model.network, sure) else {}
     return result, {
         **result.document(), **more, "error_budget": documents(budgets), **sampling(folder), **bands,
     }  # fmt: skip
+
+
+def _discrepancies(folder: Folder, tell: Progress) -> dict[str, Any]:
+    from validation.diagnosis.discrepancy import discrepancies
+
+    return discrepancies(folder.case, tell).document()
 
 
 def uncertainty(result: Comparison) -> dict[str, Any]:

@@ -188,11 +188,15 @@ static double evidence(const thermal_observer *o, int k, double variance) {
 
 /* Drop a sensor that drifts, and begin anew without it. */
 static void judge(thermal_observer *o, thermal_observer_work *w) {
-    double top = 0, sum, best = 0;
+    double top = 0, most = 0, sum, best = 0;
     int worst = -1;
     for (int k = 0; k < NK; k++) {
         double own = ALLOWED_SD[k] * ALLOWED_SD[k], wide = SPREAD_SD[k] * SPREAD_SD[k] + own;
-        w->chance[k] = LOG_PRIOR[k] + (evidence(o, k, wide) - evidence(o, k, own)) / TEMPER_BY;
+        w->chance[k] = evidence(o, k, wide) - evidence(o, k, own);
+        most = largest(most, w->chance[k]);
+    }
+    for (int k = 0; k < NK; k++) {
+        w->chance[k] = LOG_PRIOR[k] + w->chance[k] / (TEMPER_BY + TEMPER_PER_NAT * most);
         top = largest(top, w->chance[k]);
     }
     sum = exp(-top);
