@@ -116,7 +116,7 @@ def infer(case: Case, kinds: Sequence[str] | None = None, progress: Progress = n
     loud = under(evidence, fit.noise)
     ones = singles(evidence)
     weighed = [*ones, *pairs(evidence, ones), *unknown_heat({w.place: w.log_bayes for w in heat})]
-    weighed = averaged(weighed, loud, log_evidence(loud.fit, loud.parts) - log_evidence(evidence.fit, evidence.parts))
+    weighed = averaged(weighed, loud, log_evidence(loud) - log_evidence(evidence))
     heard = answered(evidence, weighed, case.answers)
     every = further(case, evidence, refitted(evidence, heard, progress), progress)
     return Posterior(evidence, tuple(against_nothing(every)), tuple(heat), events, against)
@@ -137,7 +137,7 @@ def noise_of_leader(evidence: Evidence) -> Noise | None:
     e = evidence
     ordered = sorted(singles(e)[1:], key=lambda h: -h.weight)
     few = [h for h in ordered if not e.effects[h.members[0]].whole][:CONTENDERS]
-    best, worth = None, log_evidence(e.fit, e.parts) + singles(e)[0].log_prior
+    best, worth = None, log_evidence(e) + singles(e)[0].log_prior
     for h in few:
         noise = noise_beside(e, h.members)
         found = with_noise(e, h.members, noise) + h.log_prior
