@@ -47,7 +47,7 @@ def story(tmp_path_factory):
     return SimpleNamespace(out=out, seen=seen, lines=text.getvalue().splitlines(), code=code)
 
 
-@pytest.mark.timeout(1800)
+@pytest.mark.timeout(3600)
 def test_the_wind_on_the_right_flange_is_named_and_the_error_falls(story):
     found = json.loads((story.out / "diagnose.json").read_text())
     assert found["verdict"] == "named"
