@@ -197,11 +197,11 @@ def _hidden(r: Report) -> str:
     return html.section(
         "What these tests cannot see, and what would help",
         seen and html.more("Effects that could be there unseen", seen),
-        _ahead(r.diagnosis),
+        _next_tests(r.diagnosis),
     )
 
 
-def _ahead(diagnosis: Document) -> str:
+def _next_tests(diagnosis: Document) -> str:
     """Tests and sensors that would tell a group apart, or that no test would."""
     rows = [(o.kind, o.what, ", ".join(o.separates), _number(o.gain), _number(o.hours), o.why)
             for o in deciding(diagnosis)]  # fmt: skip
