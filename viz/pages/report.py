@@ -118,7 +118,9 @@ def _curves(r: Report) -> str:
         name = f"{c.test.name} ({c.test.role})"
         both = html.plot(curves.residuals(c), f"residual{i}", f"{name}: measured − model per sensor.")
         both += html.plot(
-            curves.measured_and_model(c), f"curves{i}", f"{name}: readings, their 2σ band, and the model."
+            curves.measured_and_model(c),
+            f"curves{i}",
+            f"{name}: readings, what counts as within, and the model.",
         )
         parts.append(html.more(name, both, opened=i == 0))
     return html.section("Measured and modelled", *parts)

@@ -68,7 +68,7 @@ def asked(found: Diagnosis, choice: Sequence[Candidate]) -> str | None:
 def offer(c: Candidate) -> str:
     """A candidate as the question shows it."""
     size = f"{sized(c.value, *c.ci95)} {c.unit}".removesuffix(" 1")
-    fell = f", error {c.rmse_K[0]:.2f} -> {c.rmse_K[1]:.2f} K" if c.rmse_K else ""
+    fell = f", refitted {c.rmse_K[0]:.2f} -> {c.rmse_K[1]:.2f} K" if c.rmse_K else ""
     return f"{c.effect}: {c.title}, {size}, probability {100 * c.probability:.0f} %{fell}"
 
 
