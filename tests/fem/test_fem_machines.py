@@ -12,6 +12,8 @@ from fem.solvers.newton import solve_nonlinear
 from fem.solvers.solve import Solver, steady
 from geom import build_mesh, load_machine
 
+pytestmark = pytest.mark.heavy
+
 TINY = {"size_m": 0.1, "segments": 36, "across": 1, "axial_m": 0.2}
 CELLS = 3
 ONE_OF_EACH_FAMILY = ["ipmsm-48s8p-jacket", "pmsm-m1", "series-dc-100kw", "tefc-industrial"]

@@ -22,6 +22,8 @@ from geom import (
 from geom.machine_file import machine_from
 from geom.meshing.mesher import _planned
 
+pytestmark = pytest.mark.heavy
+
 
 @pytest.fixture(scope="module", params=DISTINCT)
 def meshed(request):
