@@ -7,6 +7,8 @@ import sys
 
 import pytest
 
+pytestmark = pytest.mark.heavy
+
 pytest.importorskip("material", reason="needs mkdocs-material: uv pip install mkdocs-material 'mkdocstrings[python]'")
 pytest.importorskip("mkdocstrings")
 
