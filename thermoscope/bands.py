@@ -41,9 +41,9 @@ def wanted(network: Network, asked: bool | None) -> bool:
 def posterior_of(folder: Folder, progress: Progress) -> ParameterPosterior:
     """Of the model as it stands, from the cache where this very case was looked at before."""
     file = cache_folder() / f"belief-{case_key(folder)}.npz"
-    kept = recalled(file, lambda path: _kept(folder, path))
-    if kept is not None:
-        return kept
+    cached = recalled(file, lambda path: _from_cache(folder, path))
+    if cached is not None:
+        return cached
     found = parameter_posterior(folder.case, progress)
     if found.fitted:
         out = io.BytesIO()
@@ -52,7 +52,7 @@ def posterior_of(folder: Folder, progress: Progress) -> ParameterPosterior:
     return found
 
 
-def _kept(folder: Folder, file: Path) -> ParameterPosterior:
+def _from_cache(folder: Folder, file: Path) -> ParameterPosterior:
     with np.load(file) as held:
         names, fitted = json.loads(str(held["said"]))
         bare = replace(folder.case, model=replace(folder.case.model, revision=0))

@@ -39,7 +39,7 @@ def designed(folder: Folder, progress: Progress) -> Design:
     network = narrowed(network, values, folder.case)
     tests = [t for t in folder.case.tests if t.role == "calibrate"]
     file = cache_folder() / f"observer-{_key(folder)}.npz"
-    held = recalled(file, _kept)
+    held = recalled(file, _from_cache)
     if held is not None:
         return design_of(network, values, held, tests, folder.case.doubt)
     progress("missing heat that the table of doubt allows")
@@ -51,7 +51,7 @@ def designed(folder: Folder, progress: Progress) -> Design:
     return design_of(network, values, lesson, tests, folder.case.doubt)
 
 
-def _kept(file: Path) -> Lesson:
+def _from_cache(file: Path) -> Lesson:
     with np.load(file) as held:
         return Lesson(tuple(str(b) for b in held["bodies"]), held["table"], held["constants"])
 

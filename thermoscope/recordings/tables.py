@@ -72,17 +72,18 @@ def load_table(path: Path, sheet: Sheet) -> Samples:
         if table[column.header].dtype.kind == "b" and column.quantity not in SWITCHED:
             raise InputError(f"holds true and false, no {column.quantity}", f"{file} column '{column.header}'",
                              "numbers, or another column")  # fmt: skip
-        values[column.name], own = _in_memory(column, converted(raw, column.quantity, column.unit), file)
+        values[column.name], own = _in_memory(column, raw, file)
         if own is not None:
             sigma[column.name] = own
         notes += _look(column, values[column.name], file, rows.start)
     return Samples(file, time, values, gaps, (*notes, *_frozen(sheet.columns, time, values, file)), sigma, start)
 
 
-def _in_memory(column: Column, read: Array, file: Path) -> tuple[Array, float | None]:
-    """Values as memory holds them, and the 1-sigma that follows from electrical readings where the sheet gives none."""
+def _in_memory(column: Column, raw: Array, file: Path) -> tuple[Array, float | None]:
+    """Values as memory holds them, and the 1-sigma (K) that follows from the readings where the sheet gives none."""
+    read = column.in_memory(raw)
     if column.electrical is None:
-        return read, None
+        return read, column.deviation_K(raw) if column.sigma else None
     try:
         return column.electrical.temperature(read), None if column.sigma_K else column.electrical.sigma(read)
     except InputError as fault:

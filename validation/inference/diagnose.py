@@ -135,7 +135,7 @@ def weighed(
     heat = looked.read(evidence.fit.parts, evidence.fit.noise, evidence.fit.theta, evidence.fit.error)
     loud, ones = under(evidence, loudest), singles(evidence)
     every = [*ones, *pairs(evidence, ones), *unknown_heat({w.place: w.log_bayes for w in heat})]
-    every = averaged(every, loud, log_evidence(loud.fit, loud.parts) - log_evidence(evidence.fit, evidence.parts))
+    every = averaged(every, loud, log_evidence(loud) - log_evidence(evidence))
     return refitted(evidence, answered(evidence, every, case.answers), progress, begun), heat
 
 
@@ -157,7 +157,7 @@ def noise_of_leader(evidence: Evidence, also: Sequence[int] = ()) -> Noise | Non
     e, ones = evidence, singles(evidence)
     leading = [k for i in np.argsort(-weights(ones), kind="stable") for k in ones[i].members if not e.effects[k].whole]
     few = [ones[1 + k] for k in dict.fromkeys([*leading[:CONTENDERS], *also[:CONTENDERS]])]
-    best, worth = None, log_evidence(e.fit, e.parts) + singles(e)[0].log_prior
+    best, worth = None, log_evidence(e) + ones[0].log_prior
     for h in few:
         noise = noise_beside(e, h.members)
         found = with_noise(e, h.members, noise) + h.log_prior

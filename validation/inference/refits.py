@@ -18,8 +18,8 @@ from validation.calibration.calibrate import Fit, no_progress, residual_noise
 from validation.doubt import SIZES
 from validation.inference.evidence import (
     Evidence,
+    evidence_of,
     free_of,
-    log_evidence,
     mended_by_exchange,
     refit,
     refit_beside,
@@ -145,7 +145,7 @@ def noise_of_refits(hypotheses: Sequence[Hypothesis]) -> Noise | None:
     for h in (hypotheses[i] for i in order[:TRIED]):
         assert h.fit is not None
         noise = residual_noise(h.fit)
-        more = log_evidence(replace(h.fit, noise=noise), h.fit.parts) - log_evidence(h.fit, h.fit.parts)
+        more = evidence_of(h.fit, noise) - evidence_of(h.fit, h.fit.noise)
         if h.log_prior + h.log_bayes + more > most:
             best, most, gained = noise, h.log_prior + h.log_bayes + more, more
     return best if gained > GAINED else None

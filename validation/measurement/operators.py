@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 OPERATORS = ("bias", "gain", "lag", "stem", "drift", "delay", "swap")
 SHIFTS = ("boundary", "initial")
 GAIN_ZERO = 20.0
-STEP = {"lag": 0.05, "delay": 0.05, "boundary": 0.5, "initial": 0.5}  # the last two are linear but for the films
+STEP = {"lag": 0.05, "delay": 0.05}
 Memory = dict[str, Array]
 
 

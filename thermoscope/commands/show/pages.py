@@ -112,9 +112,9 @@ def rendered(folder: Folder, into: Path, tell: Progress) -> list[Path]:
 
 def _diagnosis(folder: Folder) -> tuple[Mapping[str, Any] | None, bool]:
     """What the page shows, and whether it is of the model before its last step."""
-    kept = saved_diagnosis(folder)
-    if kept is not None:
-        return kept, False
+    saved = saved_diagnosis(folder)
+    if saved is not None:
+        return saved, False
     last = last_diagnosis(folder)
     return last, last is not None
 

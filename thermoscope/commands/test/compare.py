@@ -161,10 +161,10 @@ def contradiction(found: Mapping[str, Any] | None) -> list[Grid | str]:
 def _pulses(h: Mapping[str, Any]) -> str:
     """Every pulse of a missing-heat curve; of one without any its largest value."""
     if h["pulses"]:
-        told = [
+        pulses = [
             f"{p['heat_W']:+.3g} W from {p['begin_s']:.0f} to {p['end_s']:.0f} s of {p['test']}" for p in h["pulses"]
         ]
-        return ", ".join(told)
+        return ", ".join(pulses)
     name, series = max(h["heat"].items(), key=lambda kv: max(map(abs, kv[1]["heat_W"])))
     k = max(range(len(series["heat_W"])), key=lambda i: abs(series["heat_W"][i]))
     return f"{series['heat_W'][k]:+.3g} W after {series['time_s'][k]:.0f} s of {name}"

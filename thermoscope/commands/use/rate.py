@@ -106,7 +106,7 @@ def document_of(folder: Folder, asked: Asked, sure: bool | None, tell: Progress)
     here = {form: rated(model, op, limits, form, None) for form in FORMS}
     old = _before(folder, asked, tell)
     before = {} if old is None else {form: load_of(old, form, None) for form in FORMS}
-    belief = posterior_of(folder, tell) if asked.losses is None and wanted(model.network, sure) else None
+    posterior = posterior_of(folder, tell) if asked.losses is None and wanted(model.network, sure) else None
     tell("envelope over the speed")
     speeds = _speeds(folder, op, asked)
     envelope = [rated(model, op, limits, form, n) for form in ENVELOPES for n in speeds]
@@ -115,9 +115,9 @@ def document_of(folder: Folder, asked: Asked, sure: bool | None, tell: Progress)
     return {
         "limits": [{"place": p, "degC": T} for p, T in limits.items()],
         "reference": {"input": op.main, "value": main, "inputs": dict(op.inputs), "boundaries": dict(op.boundaries)},
-        "ratings": [row(folder, op, r, before.get(f), belief) for f, r in here.items()],
-        "envelope": [point(folder, op, r, old, belief) for r in envelope],
-        "derating": derated(folder, it, old, load, belief),
+        "ratings": [row(folder, op, r, before.get(f), posterior) for f, r in here.items()],
+        "envelope": [point(folder, op, r, old, posterior) for r in envelope],
+        "derating": derated(folder, it, old, load, posterior),
         "overload": _overload(it, asked, load),
         "cycle": _cycle(folder, it, asked, tell),
         "map": _map(it, (load, here["S2 10 s"].load), speeds, tell) if asked.mapped else {},

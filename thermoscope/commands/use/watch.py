@@ -120,10 +120,10 @@ class Session:
             own = np.array([s.at(c.row)[0] for s in samples])
             without = np.array([c.row.weights @ z[c.row.index] for z in free])
             both = np.column_stack([y - own, y - without])
-            kept = self.errors.setdefault(c.name, [np.zeros(2), np.zeros(2)])
+            sums = self.errors.setdefault(c.name, [np.zeros(2), np.zeros(2)])
             good = np.isfinite(y)
-            kept[0] += np.sum(both[good] ** 2, axis=0)
-            kept[1] += float(good.sum())
+            sums[0] += np.sum(both[good] ** 2, axis=0)
+            sums[1] += float(good.sum())
 
     def _note(self, sample: Sample) -> None:
         seen = {n: sample.at(row) for n, row in self.rows.items()}
