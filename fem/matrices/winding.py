@@ -24,7 +24,7 @@ from geom.description.materials import Mixture, winding_conductivity
 from geom.errors import InputError
 
 Floats = NDArray[np.float64]
-FORMULA_UP_TO = 0.65
+FORMULA_UP_TO = 0.65  # of copper and enamel (Simpson, Wrobel, Mellor 2013); denser wires by their unit cell
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ Floats = NDArray[np.float64]
 Drive = Callable[[float], tuple[float, Mapping[str, float]]]
 GAMMA = 2 - np.sqrt(2)
 ENOUGH = 1e-8  # K, change of the last iteration where terms depend on temperature
-ROUNDS = 60
+ROUNDS = 60  # of one implicit step, whose start is the step before; more would be no convergence
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ import re
 from collections import Counter
 from contextlib import redirect_stdout
 from io import StringIO
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -37,18 +38,19 @@ def counted(patch, module, name, seen, key):
 
 @pytest.fixture(scope="module")
 def story(tmp_path_factory):
-    out, seen, text = tmp_path_factory.mktemp("demo"), Counter(), StringIO()
+    home, out, seen, text = tmp_path_factory.mktemp("demo"), Path("out/demo"), Counter(), StringIO()
     with pytest.MonkeyPatch.context() as patch, redirect_stdout(text):
+        patch.chdir(home)
         patch.setenv("COLUMNS", str(WIDE))
         counted(patch, case_folder, "load_table", seen, lambda path, *rest: (path.stem,))
         counted(patch, pipeline, "build_mesh", seen, lambda machine, *how: (machine.name, *how[:4]))
         counted(patch, pipeline, "reduce", seen, lambda field, *rest: (field.n, repr(rest[4]), rest[7] is None))
         counted(patch, validation, "diagnose", seen, lambda *rest: ())
         code = demo(out, str(out / "demo.json"))
-    return SimpleNamespace(out=out, seen=seen, lines=text.getvalue().splitlines(), code=code)
+    return SimpleNamespace(out=home / out, seen=seen, lines=text.getvalue().splitlines(), code=code)
 
 
-@pytest.mark.timeout(1800)
+@pytest.mark.timeout(3600)
 def test_the_wind_on_the_right_flange_is_named_and_the_error_falls(story):
     found = json.loads((story.out / "diagnose.json").read_text())
     assert found["verdict"] == "named"
@@ -62,7 +64,7 @@ def test_the_wind_on_the_right_flange_is_named_and_the_error_falls(story):
 
 def test_it_is_told_in_eighty_lines_of_eighty_columns(story):
     assert len(story.lines) <= SCREENFUL
-    assert max(len(line) for line in story.lines if not line.startswith("Picture: ")) <= WIDE
+    assert max(map(len, story.lines)) <= WIDE
 
 
 def test_the_five_pictures_are_named_where_they_belong(story):

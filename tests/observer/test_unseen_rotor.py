@@ -12,6 +12,8 @@ from validation.observer.learning import design_of, over, taught, unsettled
 from validation.observer.process import bodies_of
 from validation.observer.process_noise import of_doubt
 
+pytestmark = pytest.mark.heavy
+
 HUST = Path(__file__).parents[2] / "cases" / "hust-ipmsm"
 
 

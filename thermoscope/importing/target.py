@@ -11,7 +11,7 @@ from thermoscope.importing.words import INLET, roles_of, tokens
 from thermoscope.recordings.units import QUANTITIES
 
 WORD, ROLE, DIGIT, EXTRA = 2.0, 1.5, 1.0, 0.1  # worth of a shared word, of a role, of a number; of a word too many
-LEAST = 0.8
+LEAST = 0.8  # likeness of two names below which none is guessed; chosen
 FLUID = frozenset({"air", "gap", "stream"})
 UNITS = {q.feeds.rpartition("_")[2]: name for name, q in QUANTITIES.items() if q.feeds}  # A -> current
 SIDES = (

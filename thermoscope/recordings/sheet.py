@@ -24,7 +24,7 @@ from thermoscope.recordings.units import QUANTITIES, checked_input, checked_unit
 Array = NDArray[np.float64]
 
 FIRST = "first-readings"
-MAX_GAP_S = 120.0
+MAX_GAP_S = 120.0  # over which an input is drawn straight; machines move little in two minutes
 SENSORS = {"thermocouple": 0.5, "pt100": 0.3, "ntc": 0.5, "resistance": 2.0, "infrared": 2.0}  # usual 1-sigma, K
 
 

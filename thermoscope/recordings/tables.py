@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 GAP = 3.5  # times the usual step
-FROZEN_SHARE, FROZEN_MOVE_K = 0.2, 2.0
+FROZEN_SHARE, FROZEN_MOVE_K = 0.2, 2.0  # of the test without a change, while the others move by more
 SWITCHED = ("share", "fraction")  # what true and false can be
 LEAST = 3  # rows of a test
 LARGEST = 1e9  # of anything that is no temperature, in the unit of memory

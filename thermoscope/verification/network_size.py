@@ -17,7 +17,7 @@ from thermoscope.verification.load_cases import load_cases
 from thermoscope.verification.mesh_choice import MeshChoice, chosen_mesh
 
 FINE = Recipe(tolerance=0.01, random_points=8, local_points=12, local_states=16)
-ROUNDS = 3
+ROUNDS = 3  # of learning: each solves the field at new points
 LOOKS = 3  # random points, and extreme ones, at which every size is checked
 JOINTS = (0.2, 5.0)  # times all contacts, as well
 SEGMENTS = 48  # chords per turn

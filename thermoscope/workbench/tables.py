@@ -13,7 +13,7 @@ from viz.pages.next_tests import deciding
 from viz.pages.words import verdict
 
 Row = dict[str, Any]
-SHOWN = 12
+SHOWN = 12  # candidates of a tab
 
 
 def tests(look: Appearance, scale: float, before: Mapping[str, float]) -> list[Row]:

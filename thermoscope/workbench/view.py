@@ -20,7 +20,7 @@ from viz.rendering.visibility import covered, obstacle
 if TYPE_CHECKING:
     import pyvista
 
-SIZE = (860, 560)
+SIZE = (860, 560)  # pixels, until the page says its own
 NEAR = 22.0  # pixels from a sensor within which a click means it
 STILL = 5.0  # pixels the mouse may move in a click
 

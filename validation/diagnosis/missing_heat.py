@@ -30,11 +30,11 @@ from validation.measurement.blocks import INSTANTS
 from validation.measurement.noise import Noise
 
 Array = NDArray[np.float64]
-KNOT_S = 180.0
+KNOT_S = 180.0  # between knots of a heat; chosen: shorter ones cost time, and masses smooth what they would show
 SHORT, APART = 20, 3  # stretches that a test has at least, and samples between two knots: a small body is fast
 MEMORY_S = (60.0, 1200.0)
 REACH = 1.0  # of an input's range: heat over an input is a gentle curve, as the laws of losses and films are
-JITTER = 1e-6
+JITTER = 1e-6  # of the variance, so that equal knots have a factor
 LOCATED = 10.0  # nats
 
 

@@ -106,11 +106,12 @@ def infer(case: Case, kinds: Sequence[str] | None = None, progress: Progress = n
     fit = calibrated_case(case, progress)
     progress("scoring the catalogue")
     evidence = sharpened(scored(case, candidates(case, kinds), fit))
-    against = contradiction(evidence.fit, evidence.tests)
+    calm = quiet(evidence)
+    against = contradiction(calm.fit, evidence.tests)
     progress("looking for where heat is missing")
     looked = scan(evidence.fit, evidence.tests)
     heat = looked.read(evidence.fit.parts, evidence.fit.noise, evidence.fit.theta, evidence.fit.error)
-    chosen = conditions(quiet(evidence), case, looked, heat, kinds, progress)
+    chosen = conditions(calm, case, looked, heat, kinds, progress)
     known = {**case.model.values, **evidence.fit.values}
     bent = laws(evidence, known) if kinds is None or KIND in kinds else []
     first = len(evidence.effects)

@@ -15,7 +15,7 @@ from validation.inference.diagnose import diagnose
 from validation.revision.revise import Revision, add, calibrate
 
 Progress = Callable[[str], None]
-MOST = 6
+MOST = 6  # effects at a time: more are a reason to look at the model
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from thermoscope.case_folder.folder import Folder
     from validation.diagnosis.result import Diagnosis
 
-RIVALS = 3
+RIVALS = 3  # named in a sentence
 ODDS, ROWS = 5, 10  # shown of hypotheses and of candidates
 SHOWN = 0.005  # probabilities below half a per cent are in --json
 

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from viz.data import Comparison
     from viz.rendering.nodes import SplitMesh
 
-FRAMES = 61
+FRAMES = 61  # instants of a test that a page can step through
 LIKELY = 0.5  # probability from which an event is drawn
 
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from validation.comparison.compare import Comparison
 
 EVIDENT = 10.0  # nats
-WHITE = 0.01
+WHITE = 0.01  # probability below which a residual is no noise
 DIFFERENCES = 12  # shown
 TURNS = {True: "yes", False: "no", None: ""}
 

@@ -17,7 +17,7 @@ from thermoscope.console.terminal import Progress, give, plain, progress
 
 WORKBOOKS = ("xlsx", "csv")
 MODELS = ("c", "fmu", "json", "matlab", "observer")
-VERSIONS = (2, 3)
+VERSIONS = (2, 3)  # of FMI
 
 
 def export(
