@@ -57,17 +57,25 @@ def pack_rows(rows: Sequence[Row]) -> Rows:
     return Rows(starts([r.index for r in rows]), ints([r.index for r in rows]), floats([r.weights for r in rows]))
 
 
-def _pack_tangents(network: Network, slope: Sequence[Mapping[str, float]], names: Sequence[str]) -> Tangents:
+def _pack_tangents(
+    network: Network, slope: Sequence[Mapping[str, float]], names: Sequence[str], shifts: Sequence[str | None]
+) -> Tangents:
     moved = [(j, names.index(t), s) for j, d in enumerate(slope) for t, s in d.items() if t in names and s != 0.0]
-    dC = (
-        np.stack([network.C * capacity_slopes(network, d) for d in slope], axis=1)
-        if slope
-        else np.zeros((len(network.C), 0))
-    )
+    dC = np.array([network.C * capacity_slopes(network, d) for d in slope]).reshape(len(slope), len(network.C))
+    column, state = np.nonzero(dC)
+    hidden = hidden_states(network)
+    first = np.zeros((hidden.size + len(network.boundaries), len(slope) + len(shifts)))
+    for j, name in enumerate(shifts, len(slope)):
+        first[hidden.size + network.boundaries.index(name) if name else np.flatnonzero(~hidden), j] = 1.0
     return Tangents(
         np.array([x[0] for x in moved], np.int64), np.array([x[1] for x in moved], np.int64),
-        np.array([x[2] for x in moved], float), np.ascontiguousarray(dC),
+        np.array([x[2] for x in moved], float), state, column, dC[column, state], first,
     )  # fmt: skip
+
+
+def hidden_states(network: Network) -> Mask:
+    """(n,) which states are amplitudes of shapes, which have no mean."""
+    return np.array(["#" in s for s in network.states], bool)
 
 
 def capacity_slopes(network: Network, slope: Mapping[str, float]) -> Array:
@@ -83,6 +91,7 @@ def compiled(
     tangents: Sequence[Parameter] = (),
     all_terms: bool = False,
     every_sample: bool = False,
+    shifts: Sequence[str | None] = (),
 ) -> Compiled:
     """The kernel's view. Terms that are steady and that no tangent moves exist in the constant matrix only.
 
@@ -110,7 +119,7 @@ def compiled(
         names,
         terms,
         driven,
-        _pack_tangents(network, slope, names),
+        _pack_tangents(network, slope, names, shifts),
         pack_rows(rows),
         control(network, every, m, factors),
     )
@@ -118,7 +127,7 @@ def compiled(
 
 def control(network: Network, every: Assembly, m: Array, factors: Sequence[Array]) -> Control:
     """What a step has to pass. The maximum principle holds where every acting link has positive coefficients alone."""
-    hidden = np.array(["#" in s for s in network.states], bool)
+    hidden = hidden_states(network)
     acts = [(p, x, f) for p, x, f in zip(every.patterns, m, factors, strict=True) if x != 0.0 and not p.heats]
     holds = not hidden.any() and all(p.monotone and x * _extreme(f, x > 0.0) >= 0.0 for p, x, f in acts)
     return Control(

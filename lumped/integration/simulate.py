@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError, NoSolution
-from lumped.integration.compiled import Compiled, compiled
+from lumped.integration.compiled import Compiled, compiled, hidden_states
 from lumped.integration.failure import failure
 from lumped.integration.record import Record
 from lumped.model.network import Network, Parameter, Row
@@ -29,7 +29,8 @@ PORTION = 4096  # steps whose states are kept for their tangents
 
 @dataclass(frozen=True)
 class Stand:
-    """Where a run stands at its end, and another may begin: x (n_states,) degC, D (n_states, n_tangents).
+    """Where a run stands at its end, and another may begin: x (n_states,) degC, D (n_states + n_boundaries,
+    n_tangents).
 
     error : (n_states,) the estimated error of x;  step : the step wanted next (s);  coldest : of all so far (degC)
     """
@@ -67,7 +68,7 @@ def initial_state(network: Network, initial: float | Mapping[str, float]) -> Arr
 
     Per place: nodes by name (or by a place on them), the others at the mean of the given ones.
     """
-    hidden = np.array(["#" in s for s in network.states], bool)
+    hidden = hidden_states(network)
     if not isinstance(initial, Mapping):
         return np.where(hidden, 0.0, float(initial))
     given: dict[int, list[float]] = {}
@@ -94,6 +95,7 @@ def simulate(
     begin: Stand | None = None,
     steps: Steps | None = None,
     every_sample: bool = False,
+    shifts: Sequence[str | None] = (),
 ) -> Run:
     """Integrate the network over the record.
 
@@ -101,6 +103,7 @@ def simulate(
     rows : linear outputs of z = [x; u] (sensors, before bias, gain and lag)
     tangents : parameters of the network with respect to which y is differentiated: d y / d value for
         mappings "amplitude", "relative" and "offset", d y / d log(value) for "log"
+    shifts : further tangents, by an offset (K) of these boundaries, or of the start (None)
     begin : where another run of the same network, values and tangents ended, at this record's first time
     steps : those of another run over the same record, to be taken here too whatever their errors are
     every_sample : end a step at every sample, whether the inputs ask for that or not: for runs in turn, whose inputs
@@ -108,7 +111,7 @@ def simulate(
 
     Raises ThermoscopeError where a node runs away or no step keeps what physics allows.
     """
-    core = compiled(network, record, values, rows, tangents, every_sample=every_sample)
+    core = compiled(network, record, values, rows, tangents, shifts=shifts, every_sample=every_sample)
     return march(network, record, core, keep_states, begin, steps)
 
 
@@ -134,7 +137,7 @@ class _Course:
         self.network, self.core, self.given, self.taken = network, core, steps, 0
         self.time = np.asarray(record.time, float)
         nt, n, nb, nr = self.time.size, core.C.size, core.forcing.u.shape[1], core.rows.start.size - 1
-        p = core.tangents.dC.shape[1]
+        p = core.tangents.first.shape[1]
         self.z, self.y = np.zeros((nt if keep_states else 0, n + nb)), np.zeros((nt, nr))
         self.dy, self.late = np.zeros((nt, nr, p)), np.zeros(nr)
         x0, u0 = begin.x if begin else initial_state(network, record.initial), core.forcing.u[0]
@@ -145,6 +148,7 @@ class _Course:
         self.position.clock[LOW] = np.append(x0[core.control.node == 1], u0).min()
         self.steps: list[Steps] = []
         self.path: list[Array] | None = None
+        self.moved[1].D[:] = core.tangents.first
         if begin:
             self.moved[1].D[:], self.scratch.error[1] = begin.D, begin.error
             self.position.clock[[NEXT, LOW]] = begin.step, min(begin.coldest, self.position.clock[LOW])

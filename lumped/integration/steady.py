@@ -49,14 +49,14 @@ def steady(
     temperature than the cooling does (thermal runaway).
     """
     core = compiled(network, Record(np.zeros(1), inputs, boundaries), values, rows, tangents)
-    n, p, u = len(network.states), core.tangents.dC.shape[1], core.forcing.u[0]
+    n, p, u = len(network.states), core.tangents.first.shape[1], core.forcing.u[0]
     hidden = np.array(["#" in s for s in network.states], bool)
     x0 = np.where(hidden, 0.0, ABOVE_K + (u.mean() if u.size else 20.0))
     both, scratch = stages(x0, u, core.terms), work(n, u.size, core.terms, p)
     rests = settle(np.zeros(n), core.K0, core.terms, core.tangents, core.forcing.factor[0], both, scratch)
-    if not rests or np.linalg.eigvals(scratch.G).real.min() <= 0:
+    if not rests or np.linalg.eigvals(scratch.G[:, :n]).real.min() <= 0:
         why = "a node nothing holds, or thermal runaway"
         raise ThermoscopeError(f"{network.title} does not come to rest: {why}")
-    z, dz = both.z[0, :-1], np.vstack([scratch.D, np.zeros((u.size, p))])
+    z, dz = both.z[0, :-1], scratch.D
     y, dy = [r.weights @ z[r.index] for r in rows], [r.weights @ dz[r.index] for r in rows]
     return Steady((*network.states, *network.boundaries), z, np.array(y), np.reshape(dy, (len(rows), p)) if p else None)

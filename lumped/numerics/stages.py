@@ -58,9 +58,11 @@ class Stages(NamedTuple):
 class Work(NamedTuple):
     """Scratch.  f (2, ne) input factors at start and end of the step, df (ne,), du (nb,) slopes of both
 
-    F (3, n) right-hand side as z;  W, G, H (n, n), pivot;  error (2, n) of the step and of the run so far
+    F (3, n) right-hand side as z;  W (n, n), G, H (n, n + nb) by states and boundaries, pivot
+    error (2, n) of the step and of the run so far
     heat (2, n) least and most of all sources
-    D (n, p) tangents, R (4, n, p) of the stages and one more, V (nv + 2 ne, p) what all terms see of them
+    D (n + nb, p) tangents of states and boundaries, R (4, n, p) of the stages and one more
+    V (nv + 2 ne, p) what all terms see of them
     """
 
     f: Floats
@@ -103,10 +105,10 @@ def stages(x0: Floats, u0: Floats, T: Terms) -> Stages:
 def work(n: int, nb: int, T: Terms, p: int) -> Work:
     """Scratch for n states, nb boundaries, some terms and p tangents."""
     ne = T.m.size
-    W, G, H, X, M = np.zeros((5, n, n))
+    (W, X), (G, H, M) = np.zeros((2, n, n)), np.zeros((3, n, n + nb))
     twice = np.zeros((2, 2, n))
     return Work(np.zeros((2, ne)), np.zeros(ne), np.zeros(nb), np.zeros((3, n)), W, G, H, np.zeros(n, np.int64),
-                entries(n), twice[0], twice[1], np.zeros((n, p)), np.zeros((4, n, p)), X, M, FACTORS,
+                entries(n), twice[0], twice[1], np.zeros((n + nb, p)), np.zeros((4, n, p)), X, M, FACTORS,
                 np.zeros((T.row.size + 2 * ne, p)))  # fmt: skip
 
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from lumped.numerics.dense import copy, lu, solve, solve_many
-from lumped.numerics.jit import entry, pasted
+from lumped.numerics.dense import axpy, copy, lu, solve, solve_many
+from lumped.numerics.jit import entry, inner, pasted
 from lumped.numerics.stages import finite
 from lumped.numerics.terms import ROWS, clear, flow, jacobian
 
@@ -21,7 +21,7 @@ def _newton(T, K0, C, f, a, q):
         flow(T, K0, a.z[0], f, a.tau[0], a.v[0], q.F[0])
         jacobian(T, K0, f, a.tau[0], a.v[0], q.G)
         for i in range(n):
-            copy(q.G[i], q.W[i])
+            copy(q.G[i, :n], q.W[i])
             if C[i] > 0.0:
                 q.F[0, i] = 0.0
                 clear(q.W[i : i + 1])
@@ -38,6 +38,14 @@ def _newton(T, K0, C, f, a, q):
     return False
 
 
+@inner
+def outside(q, c, out):
+    """out -= c G D of the boundaries."""
+    for i in range(len(out)):
+        for b in range(len(out), len(q.D)):
+            axpy(-c * q.G[i, b], q.D[b], out[i])
+
+
 @pasted
 def _tangents(T, S, C, f, a, q):
     """q.D: tangents of the states without capacity, at the balance found just before."""
@@ -46,6 +54,7 @@ def _tangents(T, S, C, f, a, q):
         e = S.term[i]
         for s in range(T.start[e, ROWS], T.start[e + 1, ROWS]):
             q.R[0, T.row[s], S.tangent[i]] -= S.slope[i] * f[e] * a.tau[0, e, 0] * a.v[0, s]
+    outside(q, 1.0, q.R[0])
     for i in range(C.size):
         if C[i] > 0.0:
             copy(q.D[i], q.R[0, i])

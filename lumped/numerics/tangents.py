@@ -11,6 +11,7 @@ from typing import NamedTuple
 from lumped.numerics.dense import axpy, copy, inverse, lu, product, shifted, solve_many
 from lumped.numerics.jit import entry, inner, pasted
 from lumped.numerics.stages import C21, C31, C32, EULER, GAMMA, forced, inside, restored, slope_of, taken
+from lumped.numerics.steady_start import outside
 from lumped.numerics.terms import (
     BENDS,
     DYNAMIC,
@@ -26,16 +27,24 @@ from lumped.numerics.terms import (
     patterns,
     seen,
     spread,
+    turned,
 )  # fmt: skip
 
 
 class Tangents(NamedTuple):
-    """Which multiplier each tangent moves: d m[term] / d theta[tangent] = slope; dC (n, p) for the capacities."""
+    """Which multiplier each tangent moves: d m[term] / d theta[tangent] = slope; which capacity: d C[state] /
+    d theta[column] = mass.
+
+    first (n + nb, p) : of the states at the start, and of the boundaries all along
+    """
 
     tangent: Ints
     term: Ints
     slope: Floats
-    dC: Floats
+    state: Ints
+    column: Ints
+    mass: Floats
+    first: Floats
 
 
 @inner
@@ -52,7 +61,14 @@ def _earlier(C, S, c, U, dU, out):
     """out += c d(C U), with C moving too."""
     for i in range(C.size):
         axpy(c * C[i], dU[i], out[i])
-        axpy(c * U[i], S.dC[i], out[i])
+    _heavier(S, c, U, out)
+
+
+@inner
+def _heavier(S, c, U, out):
+    """out += c dC U."""
+    for i in range(S.state.size):
+        out[S.state[i], S.column[i]] += c * U[S.state[i]] * S.mass[i]
 
 
 @inner
@@ -67,17 +83,11 @@ def _solved(q, out):
 
 
 @inner
-def _drawn(q, c, keep, out):
-    """out = -c G D, or that added to out."""
-    for i in range(len(q.G)):
-        for j in range(len(q.G)):
-            q.M[i, j] = -c * q.G[i, j]
-    product(q.M, q.D, q.factors, keep, out)
+def _rosenbrock(T, S, C, h, curved, a, q):
+    """Move the tangents q.D over a step whose stages are restored and whose matrix is factored.
 
-
-@inner
-def _rosenbrock(T, S, K0, C, h, curved, a, q):
-    """Move the tangents q.D over a step whose stages are restored and whose matrix is factored."""
+    With W = C + gh G of the start, W^-1 gh G D = D - W^-1 C D: no product with G is needed.
+    """
     n, gh = C.size, GAMMA * h
     if curved:
         seen(T, q.D, q.V)
@@ -86,24 +96,30 @@ def _rosenbrock(T, S, K0, C, h, curved, a, q):
         if curved:
             bend(T, q.f[0], q.df, slope_of(stage) * h, a.tau[0], a.v[0], a.vw[stage], gh, q.V, q.R[stage])
         _moved(T, S, stage, a, q, h, q.R[stage])
-        for i in range(n):
-            axpy(-a.w[stage, i], S.dC[i], q.R[stage, i])
-    _drawn(q, gh, 1, q.R[0])
+        _heavier(S, -1.0, a.w[stage], q.R[stage])
+    outside(q, gh, q.R[0])
+    for i in range(n):
+        axpy(C[i], q.D[i], q.R[0, i])
     _solved(q, q.R[0])
     for i in range(n):
+        axpy(-1.0, q.D[i], q.R[0, i])
         axpy(1.0 / GAMMA, q.R[0, i], q.D[i])
     if curved:
-        jacobian(T, K0, q.f[1], a.tau[1], a.v[1], q.G)
-    _drawn(q, gh, 0, q.R[3])
+        seen(T, q.D, q.V)
     for stage in range(1, 3):
+        if curved:
+            turned(T, q.f, a.tau, a.v, gh, q.V, q.R[stage])
+        outside(q, gh, q.R[stage])
         for i in range(n):
-            axpy(1.0, q.R[3, i], q.R[stage, i])
-    for stage in range(1, 3):
+            axpy(C[i], q.D[i], q.R[stage, i])
         _earlier(C, S, GAMMA * (C21 if stage == 1 else C31), a.w[0], q.R[0], q.R[stage])
-        if stage == 2:
-            _earlier(C, S, GAMMA * C32, a.w[1], q.R[1], q.R[stage])
-        _solved(q, q.R[stage])
+    _solved(q, q.R[1])
     for i in range(n):
+        axpy(-1.0, q.D[i], q.R[1, i])
+    _earlier(C, S, GAMMA * C32, a.w[1], q.R[1], q.R[2])
+    _solved(q, q.R[2])
+    for i in range(n):
+        axpy(-1.0, q.D[i], q.R[2, i])
         axpy(1.0, q.R[2, i], q.D[i])
 
 
@@ -127,7 +143,7 @@ def _euler(T, S, K0, C, h, x0, U, a, q):
             c = T.m[e] * q.f[1, e]
             spread(T, e, 0.0, a.vw[0], c * a.tau[1, e, 1], c * a.tau[1, e, 2], q.H)
     for i in range(n):
-        for j in range(n):
+        for j in range(len(q.D)):
             q.M[i, j] = -h * (q.G[i, j] + q.H[i, j])
     product(q.M, q.D, q.factors, 0, q.R[0])
     for i in range(S.term.size):
@@ -135,8 +151,7 @@ def _euler(T, S, K0, C, h, x0, U, a, q):
         c *= q.f[1, e] * a.tau[1, e, 0]
         for s in range(T.start[e, ROWS], T.start[e + 1, ROWS]):
             q.R[0, T.row[s], j] -= c * (a.v[1, s] + a.vw[0, s])
-    for i in range(n):
-        axpy(-a.w[0, i], S.dC[i], q.R[0, i])
+    _heavier(S, -1.0, a.w[0], q.R[0])
     solve_many(q.W, q.pivot, q.spans, q.R[0])
     for i in range(n):
         axpy(1.0, q.R[0, i], q.D[i])
@@ -163,14 +178,15 @@ def _printed(R, t, until, D, dy):
 @inner
 def _within(Q, R, X, k, t, q, dy):
     """The tangents of the outputs at samples inside a step, whose end is q.D and whose stages are q.R; the next."""
-    j, s0, s1 = X.knot[k], X.start[k], X.share[k]
+    n, j, s0, s1 = len(q.W), X.knot[k], X.start[k], X.share[k]
     while t < Q.first[j + 1] and Q.share[t] < 1.0 and Q.share[t] <= s1:
-        s = (Q.share[t] - s0) / (s1 - s0)
-        for i in range(len(q.D)):
-            copy(q.D[i], q.R[3, i])
-            for stage in range(3):
-                axpy(inside(X.kind[k], s, stage), q.R[stage, i], q.R[3, i])
-        _outputs(R, q.R[3], dy[t])
+        _outputs(R, q.D, dy[t])
+        for stage in range(3):
+            c = inside(X.kind[k], (Q.share[t] - s0) / (s1 - s0), stage)
+            for r in range(len(dy[t])):
+                for i in range(R.start[r], R.start[r + 1]):
+                    if R.at[i] < n:
+                        axpy(c * R.weight[i], q.R[stage, R.at[i]], dy[t, r])
         t += 1
     return t
 
@@ -181,7 +197,7 @@ def differentiate(Q, C, K0, T, S, R, curved, X, steps, t, until, a, q, dy):
 
     curved : whether any dynamic term touches the matrix
     X, steps : the trace of the run and how many steps it holds;  all else as for the kernel
-    a, q : the tangents of the states start at q.D and are left there at the end
+    a, q : the tangents of states and boundaries start at q.D and are left there at the end
     """
     last = -1.0
     for k in range(steps):
@@ -202,7 +218,7 @@ def differentiate(Q, C, K0, T, S, R, curved, X, steps, t, until, a, q, dy):
                 if 3 * q.D[0].size >= C.size:
                     inverse(q.W, q.pivot, q.spans, q.X)
             last = h
-            _rosenbrock(T, S, K0, C, h, curved, a, q)
+            _rosenbrock(T, S, C, h, curved, a, q)
         t = _within(Q, R, X, k, t, q, dy)
         if X.share[k] == 1.0:
             t = _printed(R, t, Q.first[j + 1], q.D, dy)

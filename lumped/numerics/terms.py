@@ -195,10 +195,10 @@ def flow(T, K0, z, f, tau, v, out):
 
 @inner
 def spread(T, e, c, v, by_hot, by_cold, A):
-    """A += c P + v (by_hot hot + by_cold cold)' on the states, for term e."""
+    """A += c P + v (by_hot hot + by_cold cold)' on the columns that A has, for term e."""
     first = T.row.size + 2 * e
     for i in range(T.start[e, ENTRIES], T.start[e + 1, ENTRIES]):
-        if T.at[i] < len(A):
+        if T.at[i] < A[0].size:
             if T.to[i] < first:
                 A[T.row[T.to[i]], T.at[i]] += c * T.weight[i]
             else:
@@ -209,9 +209,9 @@ def spread(T, e, c, v, by_hot, by_cold, A):
 
 @inner
 def jacobian(T, K0, f, tau, v, G):
-    """G = -dF/dx (n, n)."""
+    """G = -dF/dx (n, n), or by boundaries too (n, n + nb)."""
     for i in range(len(G)):
-        for j in range(len(G)):
+        for j in range(G[0].size):
             G[i, j] = K0[i, j]
     for e in range(T.m.size):
         if T.kind[e, DYNAMIC] and T.kind[e, STIFF] and T.m[e] != 0.0:
@@ -249,6 +249,21 @@ def seen(T, D, V):
             for i in range(T.start[e, ENTRIES], T.start[e + 1, ENTRIES]):
                 if T.at[i] < len(D):
                     axpy(T.weight[i], D[T.at[i]], V[T.to[i]])
+
+
+@inner
+def turned(T, f, tau, v, scale, V, out):
+    """out -= scale times how G differs between slots 1 and 0, times D.  V : of `seen`"""
+    rows = T.row.size
+    for e in range(T.m.size):
+        if T.kind[e, DYNAMIC] and T.kind[e, STIFF] and T.m[e] != 0.0:
+            m, a, b, hot, cold = scale * T.m[e], f[0, e], f[1, e], rows + 2 * e, rows + 2 * e + 1
+            other = m * (b * tau[1, e, 0] - a * tau[0, e, 0])
+            for s in range(T.start[e, ROWS], T.start[e + 1, ROWS]):
+                axpy(-other, V[s], out[T.row[s]])
+                if T.kind[e, BENDS]:
+                    axpy(-m * (b * tau[1, e, 1] * v[1, s] - a * tau[0, e, 1] * v[0, s]), V[hot], out[T.row[s]])
+                    axpy(-m * (b * tau[1, e, 2] * v[1, s] - a * tau[0, e, 2] * v[0, s]), V[cold], out[T.row[s]])
 
 
 @inner

@@ -42,6 +42,28 @@ def test_many_tangents_at_once_are_the_tangents_one_by_one():
     assert_allclose(together, np.stack(alone, axis=-1), atol=1e-10)
 
 
+@pytest.mark.parametrize("boundary", [*NETWORK.boundaries, None])
+def test_tangent_of_a_boundary_and_of_the_start(boundary):
+    """By an offset (K), beside tangents of parameters, which it leaves as they are; no two nodes start equally warm,
+    where a table has a kink."""
+    one, h = NETWORK.parameters[:1], 1e-3
+
+    def record(step):
+        air = {n: u + step * (n == boundary) for n, u in RECORD.boundaries.items()}
+        start = {n: T + step * (boundary is None) for n, T in {"a": 44.0, "b": 38.0, "c": 33.0}.items()}
+        return Record(TIME, RECORD.inputs, air, start)
+
+    run = simulate(NETWORK, record(0.0), None, ROWS, one, shifts=[boundary])
+
+    def shifted(step):
+        return simulate(NETWORK, record(step), None, ROWS, steps=run.steps).y
+
+    difference = (8 * (shifted(h) - shifted(-h)) - shifted(2 * h) + shifted(-2 * h)) / (12 * h)
+    assert np.abs(run.dy[:, :, 1]).max() > 1e-2
+    assert_allclose(run.dy[:, :, 1], difference, atol=1e-6 * np.abs(difference).max())
+    assert_allclose(run.dy[:, :, :1], simulate(NETWORK, record(0.0), None, ROWS, one).dy, atol=1e-12)
+
+
 def test_asking_for_tangents_leaves_the_answer_as_it_is():
     assert_array_equal(
         simulate(NETWORK, RECORD, None, ROWS, NETWORK.parameters).y, simulate(NETWORK, RECORD, None, ROWS).y

@@ -8,9 +8,10 @@ from scipy.stats import multivariate_normal
 
 from validation.effects import effect
 from validation.inference.diagnose import sharpened
-from validation.inference.evidence import calibrated_case, log_evidence, scored
-from validation.inference.posterior import Hypothesis, averaged, pairs, singles
+from validation.inference.evidence import calibrated_case, projected, scored, without_effects
+from validation.inference.posterior import Hypothesis, averaged, pairs, probabilities, singles
 from validation.inference.refits import refitted
+from validation.inference.score import total
 from validation.inference.several import further
 from validation.measurement.noise import Level, Noise
 
@@ -44,7 +45,8 @@ def test_log_evidence_is_that_of_the_dense_normal_distribution(evidence):
     dense = multivariate_normal(np.zeros(z.size), S, allow_singular=False).logpdf(z) + 0.5 * z.size * np.log(
         2.0 * np.pi
     )
-    assert log_evidence(fit, few) == pytest.approx(dense + fit.noise.log_prior(few), rel=1e-6)
+    found = without_effects(fit, few, total(projected(fit, few)))
+    assert found == pytest.approx(dense + fit.noise.log_prior(few), rel=1e-6)
 
 
 def test_determinant_of_the_noise(evidence):
@@ -81,6 +83,7 @@ def test_three_effects_are_found_one_beside_the_other(evidence):
     sharp = sharpened(evidence)
     ones = singles(sharp)
     fitted = refitted(sharp, [*ones, *pairs(sharp, ones)])
-    found = max(further(case, sharp, fitted), key=lambda h: h.weight)
+    every = further(case, sharp, fitted)
+    found = every[int(np.argmax(probabilities(every)))]
     assert isinstance(found, Hypothesis)
     assert {sharp.names[k] for k in found.members} == set(NAMES[:3])

@@ -96,7 +96,7 @@ def error_field(folder: Folder, test: Test, nodes: SplitMesh) -> Interpolated:
     values = {k: v for k, v in case.model.values.items() if k in known}
     doubted = [p for p in grown.parameters if p.prior_sd > 0]
     end = simulate(grown, record(test, {}), values, tangents=doubted).end
-    D = end.D * np.array([deviation(p, intervals.get(p.name)) for p in doubted])
+    D = end.D[: len(grown.states)] * np.array([deviation(p, intervals.get(p.name)) for p in doubted])
     recovery: Any = grown.recovery
     there = np.concatenate([recovery.of_part(part, D) for part in nodes.parts])
     model, late, seen = readings(case, test), slice(int(0.8 * len(test.time)), None), []

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import cho_factor, cho_solve
 
 from geom.errors import NoSolution
 from lumped.model.network import Network
@@ -304,7 +303,17 @@ class InnerProduct:
     def __init__(self, parts: Sequence[Segment], noise: Noise, error: ModelError | None) -> None:
         self.parts, self.noise = list(parts), noise
         self.D = self.white([error.of(s) for s in parts]) if error else []
-        self.factor = cho_factor(np.eye(error.size) + sum(d.T @ d for d in self.D)) if error else None
+        self.factor = self._factor(error.size) if error else None
+
+    def _factor(self, size: int) -> tuple[Array, bool]:
+        from scipy.linalg import cho_factor
+
+        return cho_factor(np.eye(size) + sum(d.T @ d for d in self.D))
+
+    def _solved(self, Y: Array) -> Array:
+        from scipy.linalg import cho_solve
+
+        return np.asarray(cho_solve(self.factor, Y))
 
     def white(self, columns: Sequence[Array]) -> list[Array]:
         """Columns (n, k) of each segment under its noise alone."""
@@ -315,7 +324,7 @@ class InnerProduct:
         plain = np.asarray(sum(x.T @ y for x, y in zip(X, Y, strict=True)))
         if self.factor is None:
             return plain
-        return plain - self.along(X).T @ cho_solve(self.factor, self.along(Y))
+        return plain - self.along(X).T @ self._solved(self.along(Y))
 
     def along(self, X: Sequence[Array]) -> Array:
         """D' X of whitened columns."""
@@ -337,7 +346,7 @@ class InnerProduct:
         """(d,) deviations of the doubts that explain residuals best."""
         if self.factor is None:
             return np.zeros(0)
-        return np.asarray(cho_solve(self.factor, self.along(self.white([s.r[:, None] for s in parts])))[:, 0])
+        return self._solved(self.along(self.white([s.r[:, None] for s in parts])))[:, 0]
 
 
 def residual_noise(fit: Fit) -> Noise:

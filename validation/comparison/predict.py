@@ -17,7 +17,6 @@ from validation.case import Test
 from validation.measurement.operators import (
     OPERATORS,
     SHIFTS,
-    STEP,
     Memory,
     Stretch,
     head,
@@ -75,10 +74,10 @@ class Course:
 
     def __init__(
         self, network: Network, test: Test, heat: Mapping[str, float], shift: Mapping[str, float],
-        tangents: Sequence[Parameter] = (),
+        tangents: Sequence[Parameter] = (), shifts: Sequence[str | None] = (),
     ) -> None:  # fmt: skip
         self.network, self.test, self.heat, self.tangents = network, test, heat, tangents
-        self.shift, self.kept = shift, slice(0, 0)
+        self.shift, self.shifts, self.kept = shift, shifts, slice(0, 0)
         self.end: Stand | None = None
         self.T, self.dT = np.empty((0, 0)), np.empty((0, 0, 0))
 
@@ -99,7 +98,7 @@ class Course:
 
     def _run(self, some: slice) -> Run:
         part, rows = stretch_of_record(self.test, self.shift, some), [c.row for c in self.test.channels]
-        return simulate(self.network, part, self.heat, rows, self.tangents, begin=self.end)
+        return simulate(self.network, part, self.heat, rows, self.tangents, begin=self.end, shifts=self.shifts)
 
 
 class Watch:
@@ -116,13 +115,11 @@ class Watch:
         bare, self.heads = thermal(network), [head(p) for p in tangents]
         known = {p.name for p in bare.parameters}
         heat = {k: v for k, v in values.items() if k in known}
-        hot = [p for p, kind in zip(tangents, self.heads, strict=True) if kind == "thermal"]
-        self.course = Course(bare, test, heat, self.now, hot)
-        self.shifted = {
-            i: Course(bare, test, heat, moved(self.now, p)[0])
-            for i, (p, kind) in enumerate(zip(tangents, self.heads, strict=True))
-            if kind in SHIFTS and _felt(test, p)
-        }
+        each = list(enumerate(zip(tangents, self.heads, strict=True)))
+        hot = [i for i, (_, kind) in each if kind == "thermal"]
+        moved_by = {i: _shift(test, p) for i, (p, kind) in each if kind in SHIFTS and _felt(network, test, p)}
+        self.hot = [*hot, *moved_by]
+        self.course = Course(bare, test, heat, self.now, [tangents[i] for i in hot], list(moved_by.values()))
         self.late_s, self.spread = abs(self.now.get(f"delay:{test.name}", 0.0)), test.spread
 
     def until(self, stop: int) -> Prediction:
@@ -134,12 +131,8 @@ class Watch:
         late = self._late(T, some, self.now)
         y = look.read(late, self.now)
         J = np.zeros((*y.shape, len(self.tangents)))
-        hot = [i for i, kind in enumerate(self.heads) if kind == "thermal"]
-        if hot:
-            J[:, :, hot] = look.read(self._late(dT, some, self.now), self.now, "heat", linear=True)
-        for i, shift in self.shifted.items():
-            rise = (shift.over(self.around)[0] - T) / STEP[self.heads[i]]
-            J[:, :, i] = look.read(self._late(rise, some, self.now), self.now, f"shift {i}", linear=True)
+        if self.hot:
+            J[:, :, self.hot] = look.read(self._late(dT, some, self.now), self.now, "heat", linear=True)
         for i, kind in enumerate(self.heads):
             if kind in OPERATORS:
                 J[:, :, i] = self._operator(look, T, late, y, some, i)
@@ -186,8 +179,14 @@ def softened(T: Array, spread: float) -> Array:
     return out
 
 
-def _felt(test: Test, p: Parameter) -> bool:
-    """Is the boundary one of this test's, or the start this test's?"""
+def _shift(test: Test, p: Parameter) -> str | None:
+    """The boundary that a parameter offsets, None for the start."""
+    kind, name = p.targets[0][0].split(":", 1)
+    return name.removesuffix(f" in {test.name}") if kind == "boundary" else None
+
+
+def _felt(network: Network, test: Test, p: Parameter) -> bool:
+    """Is the boundary one of the network's and of this test's, or the start this test's?"""
     target = p.targets[0][0]
-    name = target.split(":", 1)[1]
-    return name in test.boundaries or name == test.name or target in {here(test, b) for b in test.boundaries}
+    both = [b for b in network.boundaries if b in test.boundaries]
+    return target in {f"initial:{test.name}", *(f"boundary:{b}" for b in both), *(here(test, b) for b in both)}

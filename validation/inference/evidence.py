@@ -28,7 +28,7 @@ from validation.calibration.unknowns import Unknowns, at_level, scene_of, widene
 from validation.case import Case, Test
 from validation.comparison.linearisation import Segment, reach, segments
 from validation.effects import Effect, catalogue, extended
-from validation.inference.score import Gram, Score, gram, score, total
+from validation.inference.score import Gram, Score, gram, grams, score, total
 from validation.measurement.noise import Noise, fit_noise
 
 Array = NDArray[np.float64]
@@ -172,11 +172,25 @@ def weighed(
     return Evidence(tests, fit, network, effects, parameters, parts, grams, found, jumps, large, whole)
 
 
+def replaced(evidence: Evidence, by_last: Sequence[int]) -> Evidence:
+    """The evidence whose last effects take the places of some others."""
+    e, p, n = evidence, evidence.p, len(evidence.effects) - len(by_last)
+    order = list(range(n))
+    for last, k in enumerate(by_last):
+        order[k] = n + last
+    parts = tuple(replace(s, J=s.J[:, [*range(p), *(p + k for k in order)]]) for s in e.parts)
+    keep = {k: e.jumps[k] for k in e.jumps if k not in by_last}
+    large = {k: e.large[k] for k in e.large if k not in by_last}
+    return weighed(e.tests, e.fit, e.network, tuple(e.effects[k] for k in order),
+                   tuple(e.parameters[k] for k in order), parts, keep, large)  # fmt: skip
+
+
 def projected(fit: Fit, parts: Sequence[Segment]) -> dict[str, Gram]:
     """Gram matrices whose nuisances are the calibrated parameters and the model error."""
     p, error = len(fit.unknowns.parameters), fit.error
-    wide = parts if error is None else [error.beside(s, p) for s in parts]
-    return gram(wide, fit.noise, p + (error.size if error else 0))
+    if error is None:
+        return gram(parts, fit.noise, p)
+    return grams([(s, (s.J[:, :p], error.of(s), s.J[:, p:])) for s in parts], fit.noise, p + error.size)
 
 
 def extended_prior(fit: Fit) -> tuple[Array, Array]:
@@ -230,14 +244,16 @@ def mended_by_exchange(evidence: Evidence) -> dict[int, float]:
     return out
 
 
-def log_evidence(fit: Fit, parts: Sequence[Segment]) -> float:
-    """Of the readings under a fit's noise (nats), calibration and model error integrated out by tangents; the columns
-    of `parts` behind the calibrated parameters are left out.
+def log_evidence(evidence: Evidence) -> float:
+    """Of the readings under the fit's noise (nats), calibration and model error integrated out by tangents.
 
     With the normalisation of the noise, so that a large noise pays for what it leaves room for.
     """
-    p = len(fit.unknowns.parameters)
-    G = total(projected(fit, [replace(s, J=s.J[:, :p]) for s in parts]))
+    return without_effects(evidence.fit, evidence.parts, total(evidence.grams))
+
+
+def without_effects(fit: Fit, parts: Sequence[Segment], G: Gram) -> float:
+    """The same from the Gram matrix of the segments; what it holds of effects is left out."""
     theta, sd = extended_prior(fit)
     weight = sd**-2.0
     g = G.Jr - weight * theta
@@ -247,16 +263,23 @@ def log_evidence(fit: Fit, parts: Sequence[Segment]) -> float:
     return float(-0.5 * (left + wide) + fit.noise.log_prior(parts))
 
 
+def evidence_of(fit: Fit, noise: Noise) -> float:
+    """Log evidence (nats) of a fit under a noise, all that was fitted integrated out where it stands."""
+    other = replace(fit, noise=noise)
+    return without_effects(other, fit.parts, total(projected(other, fit.parts)))
+
+
 def with_noise(evidence: Evidence, members: Sequence[int], noise: Noise) -> float:
     """Log evidence of some effects of usual size under another noise, by tangents."""
     e = evidence
     fit, parts = replace(e.fit, noise=noise), e.parts_of(members)
     theta, sd = extended_prior(fit)
-    found = score(total(projected(fit, parts)), theta, sd, e.score.sign[list(members)])
+    G = total(projected(fit, parts))
+    found = score(G, theta, sd, e.score.sign[list(members)])
     usual = np.array([e.parameters[k].prior_sd for k in members])
     H = found.V + np.diag(usual**-2.0)
     gain = 0.5 * found.u @ np.linalg.solve(H, found.u) - 0.5 * np.linalg.slogdet(np.diag(usual) @ H @ np.diag(usual))[1]
-    return log_evidence(fit, parts) + float(gain)
+    return without_effects(fit, parts, G) + float(gain)
 
 
 def under(evidence: Evidence, noise: Noise) -> Evidence:

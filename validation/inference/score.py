@@ -43,13 +43,25 @@ class Gram:
 
 def gram(parts: Sequence[Segment], noise: Noise, p: int) -> dict[str, Gram]:
     """One Gram per test; the first p columns of each segment's J are nuisances, the rest effects."""
-    out: dict[str, Gram] = {}
-    for s in parts:
-        X = noise.whiten(s, np.column_stack([s.J, s.r]))
-        G = X.T @ X
-        block = Gram(G[:p, :p], G[:p, p:-1], G[p:-1, p:-1], G[:p, -1], G[p:-1, -1], float(G[-1, -1]))
-        out[s.test] = out[s.test] + block if s.test in out else block
-    return out
+    return grams([(s, (s.J,)) for s in parts], noise, p)
+
+
+def grams(parts: Sequence[tuple[Segment, Sequence[Array]]], noise: Noise, p: int) -> dict[str, Gram]:
+    """The same of segments with their columns in blocks (n, k) side by side, in place of J.
+
+    Most columns are zero in most segments: a bias is of one sensor, a start of one test. Those are left out.
+    """
+    out: dict[str, Array] = {}
+    for s, blocks in parts:
+        columns = [*blocks, s.r[:, None]]
+        seen = [np.flatnonzero(X.any(axis=0)) for X in columns]
+        first = np.cumsum([0, *(X.shape[1] for X in columns)])
+        X = noise.whiten(s, np.column_stack([X[:, k] for X, k in zip(columns, seen, strict=True)]))
+        at = np.concatenate([k + begin for k, begin in zip(seen, first)])
+        G = out.setdefault(s.test, np.zeros((first[-1], first[-1])))
+        G[np.ix_(at, at)] += X.T @ X
+    return {test: Gram(G[:p, :p], G[:p, p:-1], G[p:-1, p:-1], G[:p, -1], G[p:-1, -1], float(G[-1, -1]))
+            for test, G in out.items()}  # fmt: skip
 
 
 def total(grams: Mapping[str, Gram]) -> Gram:

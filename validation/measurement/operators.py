@@ -22,8 +22,8 @@ from validation.measurement.spline import through
 Array = NDArray[np.float64]
 OPERATORS = ("bias", "gain", "lag", "stem", "drift", "delay", "swap")
 SHIFTS = ("boundary", "initial")
-GAIN_ZERO = 20.0
-STEP = {"lag": 0.05, "delay": 0.05, "boundary": 0.5, "initial": 0.5}  # the last two are linear but for the films
+GAIN_ZERO = 20.0  # degC, at which sensors are compared
+STEP = {"lag": 0.05, "delay": 0.05}
 Memory = dict[str, Array]
 
 

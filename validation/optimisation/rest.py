@@ -74,7 +74,7 @@ def rest(
     if not settle(zero, core.K0, core.terms, core.tangents, core.forcing.factor[0], both, scratch):
         return None
     C, z = np.maximum(core.C, SMALLEST * core.C.max()), both.z[0, :-1].copy()
-    stable = bool(np.linalg.eigvals(scratch.G).real.min() > 0.0)
+    stable = bool(np.linalg.eigvals(scratch.G[:, :n]).real.min() > 0.0)
     return Rest(z, _slopes(network, values, inputs, z) / C[:, None], cold, stable)
 
 
