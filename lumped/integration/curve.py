@@ -54,7 +54,7 @@ def moving(inputs: Iterable[Array], nt: int) -> Moves:
     """From inputs (nt,) that are straight lines between the samples."""
     inputs = list(inputs)
     ends = [float(at(x)) for x in inputs for at in (np.argmin, np.argmax)]
-    out = Moves(*np.zeros((2, nt - 1), bool), np.unique(ends))
+    out = Moves(np.zeros(nt - 1, bool), np.zeros(nt - 1, bool), np.unique(ends))
     for x in inputs:
         step = np.abs(np.diff(x))
         np.logical_or(out.at_all, step > 0.0, out=out.at_all)

@@ -143,7 +143,8 @@ class Signals(dict[str, Array]):
 
     def _moves(self, law: Law) -> Moves:
         if self.source:
-            return Moves(*np.ones((2, self.nt - 1), bool), np.arange(self.nt, dtype=float))
+            every = np.ones(self.nt - 1, bool)
+            return Moves(every, every, np.arange(self.nt, dtype=float))
         return moving([self[name] for name in law.reads], self.nt)
 
     def _turns(self, names: Iterable[str]) -> Array:
