@@ -90,9 +90,13 @@ def compiled(
     rows: Sequence[Row] = (),
     tangents: Sequence[Parameter] = (),
     all_terms: bool = False,
+    every_sample: bool = False,
     shifts: Sequence[str | None] = (),
 ) -> Compiled:
-    """The kernel's view. Terms that are steady and that no tangent moves exist in the constant matrix only."""
+    """The kernel's view. Terms that are steady and that no tangent moves exist in the constant matrix only.
+
+    every_sample : drive it from sample to sample, whether the inputs ask for that or not
+    """
     time = checked_time(record.time)
     inputs, u = record.inputs, boundary_table(network, record.boundaries, time.size)
     every, signals = assembly(network), inputs if isinstance(inputs, Signals) else Signals(inputs, time.size)
@@ -108,7 +112,7 @@ def compiled(
     terms = every.packed(live, steady)._replace(m=m[live])
     moving = (m[live] != 0.0) & ~steady[live]
     stiff = moving & (terms.kind[:, STIFF] == 1)
-    driven = forcing(time, u, signals, patterns, moving, stiff, bool(np.any(terms.kind[stiff, BENDS])))
+    driven = forcing(time, u, signals, patterns, moving, stiff, bool(np.any(terms.kind[stiff, BENDS])), every_sample)
     return Compiled(
         network.C * capacity_multipliers(network, acting),
         every.matrix(m * constant),
@@ -125,11 +129,16 @@ def control(network: Network, every: Assembly, m: Array, factors: Sequence[Array
     """What a step has to pass. The maximum principle holds where every acting link has positive coefficients alone."""
     hidden = hidden_states(network)
     acts = [(p, x, f) for p, x, f in zip(every.patterns, m, factors, strict=True) if x != 0.0 and not p.heats]
-    holds = not hidden.any() and all(p.monotone and np.min(x * f) >= 0.0 for p, x, f in acts)
+    holds = not hidden.any() and all(p.monotone and x * _extreme(f, x > 0.0) >= 0.0 for p, x, f in acts)
     return Control(
         state_units(network, hidden), (~hidden).astype(np.int64), np.array([ERROR_K, ERROR_SHARE]),
         np.array([holds], np.int64), np.array([HOTTEST]), np.zeros(1, np.int64),
     )  # fmt: skip
+
+
+def _extreme(f: Array, least: bool) -> float:
+    """The least or the largest of a factor; a number needs no search."""
+    return float(f) if f.ndim == 0 else float(f.min() if least else f.max())
 
 
 def state_units(network: Network, hidden: Mask) -> Array:
