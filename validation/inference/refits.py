@@ -15,7 +15,16 @@ from scipy.special import logsumexp
 from geom.errors import NoSolution
 from validation.calibration.calibrate import Fit, no_progress
 from validation.doubt import SIZES
-from validation.inference.evidence import Evidence, free_of, mended_by_exchange, refit, refit_beside, starts
+from validation.inference.evidence import (
+    Beginning,
+    Evidence,
+    beginning,
+    free_of,
+    mended_by_exchange,
+    refit,
+    refit_beside,
+    starts,
+)
 from validation.inference.posterior import Hypothesis, probabilities, told
 
 Array = NDArray[np.float64]
@@ -46,7 +55,7 @@ def together(evidence: Evidence, out: list[Hypothesis], due: Sequence[int], prog
     """Refit some hypotheses side by side (the kernel frees the GIL); none depends on another of them."""
     for i in due:
         progress(f"refitting {out[i].name(evidence)}")
-    near = [fitted_alone(out, out[i].members) for i in due]
+    near = beginnings(evidence, out, due)
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         found = list(pool.map(lambda i, alone: laplace(evidence, out[i], alone), due, near))
     for i, h in zip(due, found, strict=True):
@@ -65,6 +74,17 @@ def shares(hypotheses: Sequence[Hypothesis]) -> Array:
     """Probabilities; of what has a name those without heat of unknown cause, which is not refitted and may hide it."""
     P, named = probabilities(hypotheses), np.array([not h.heat for h in hypotheses])
     return np.where(named, P / max(float(P[named].sum()), 1e-300), P)
+
+
+def beginnings(evidence: Evidence, out: Sequence[Hypothesis], due: Sequence[int]) -> list[Beginning | None]:
+    """Where each of them may begin if one of its two effects was fitted alone; those that share that share the run."""
+    alone = [fitted_alone(out, out[i].members) for i in due]
+    others: dict[int, list[int]] = {}
+    for i, found in zip(due, alone, strict=True):
+        if found:
+            others.setdefault(found[0], []).extend(k for k in out[i].members if k != found[0])
+    made = {one: beginning(evidence, one, fit, list(dict.fromkeys(others[one]))) for one, fit in filter(None, alone)}
+    return [made[found[0]] if found else None for found in alone]
 
 
 def fitted_alone(hypotheses: Sequence[Hypothesis], members: Sequence[int]) -> tuple[int, Fit] | None:
@@ -96,16 +116,16 @@ def exchanged(evidence: Evidence, hypotheses: Sequence[Hypothesis]) -> list[int]
     return [i for i, _ in dict.fromkeys([*near, *before])]
 
 
-def laplace(evidence: Evidence, h: Hypothesis, near: tuple[int, Fit] | None = None) -> Hypothesis:
+def laplace(evidence: Evidence, h: Hypothesis, near: Beginning | None = None) -> Hypothesis:
     """The hypothesis with the best of its refits and the evidence that follows.
 
-    near : one of two effects and its fit without the other
+    near : where one of two effects was fitted without the other
     """
     points, fits = starts(evidence, h.members), []
     for i, theta in enumerate(points):
         with suppress(NoSolution):  # a machine that would run away there begins elsewhere
             first = near if i == 0 else None
-            fits.append(refit_beside(evidence, h.members, *first) if first else refit(evidence, h.members, theta))
+            fits.append(refit_beside(evidence, h.members, first) if first else refit(evidence, h.members, theta))
     if not fits:
         return replace(h, log_bayes=IMPOSSIBLE, loud=IMPOSSIBLE)
     best = min(fits, key=lambda fit: fit.objective)
