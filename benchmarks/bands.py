@@ -77,7 +77,7 @@ def machine(name: str, seed: int) -> Iterator[Held]:
         found = bands(of, test, asked)
         for k, node in enumerate(nodes):
             spot = spots.get(node)
-            T = true.mean(kind.parts[node]) if spot is None else true.at_spot(spot)
+            T = true.mean(kind.parts[node], kind.spans.get(node, (0.0, 1.0))) if spot is None else true.at_spot(spot)
             off = np.abs(found.y[:, k] - T)
             yield Held(
                 name, seed, node, plan.name, node in measured_places, float(np.mean(off <= found.half95[:, k])),

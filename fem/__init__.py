@@ -5,7 +5,6 @@ found = steady(Solver(field), films, contacts, field.losses(watts), only_fixed(a
 """
 
 from fem.matrices.assembly import FieldModel, assemble
-from fem.matrices.gap import AirGap
 from fem.matrices.material import Conductivity, LoopWound, isotropic, laminated, wound
 from fem.matrices.streams import Stream, cut, flowing
 from fem.matrices.terms import CopperLoss, Radiation, Term, VaryingConductivity
@@ -15,7 +14,6 @@ from fem.solvers.solve import Fluids, Iterative, Solver, Steady, only_fixed, ste
 from fem.solvers.transient import transient
 
 __all__ = [
-    "AirGap",
     "Conductivity",
     "CopperLoss",
     "FieldModel",

@@ -1,4 +1,4 @@
-"""Shared by all tests: one thread per process, caches in a folder that lives as long as the run."""
+"""Shared by all tests: one thread per process, files of long tests first, the command line, the small case."""
 
 import os
 from pathlib import Path
@@ -20,3 +20,33 @@ ROOT = Path(__file__).resolve().parents[1]
 def root() -> Path:
     """The folder of the checkout."""
     return ROOT
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Files with heavy tests begin: one that begins last keeps one of two workers waiting for its end."""
+    heavy = {item.path for item in items if item.get_closest_marker("heavy")}
+    items.sort(key=lambda item: item.path not in heavy)
+
+
+@pytest.fixture(scope="session")
+def thermoscope():
+    """thermoscope(*words, cwd=folder) -> Answer of the command line, in this process: starting one costs seconds."""
+    from command_line import answered
+
+    return answered
+
+
+@pytest.fixture
+def contents():
+    """contents(folder) -> every file and its bytes."""
+    from command_line import contents
+
+    return contents
+
+
+@pytest.fixture
+def case(tmp_path) -> Path:
+    """A case whose model lacks convection at the flange."""
+    from small_case import small_case
+
+    return small_case(tmp_path)

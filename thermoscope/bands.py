@@ -29,7 +29,7 @@ from validation.case import RUNNING, Recorded, Test
 
 Array = NDArray[np.float64]
 SMALL = 40  # states up to which bands cost less than a run's other work
-JUMP_S = 1e-6
+JUMP_S = 1e-6  # far below any step, far above the rounding of a day in seconds
 LAYOUT = 1  # of a kept file: a change here makes old ones be left alone
 
 
@@ -41,9 +41,9 @@ def wanted(network: Network, asked: bool | None) -> bool:
 def posterior_of(folder: Folder, progress: Progress) -> ParameterPosterior:
     """Of the model as it stands, from the cache where this very case was looked at before."""
     file = cache_folder() / f"belief-{case_key(folder)}.npz"
-    kept = recalled(file, lambda path: _kept(folder, path))
-    if kept is not None:
-        return kept
+    cached = recalled(file, lambda path: _from_cache(folder, path))
+    if cached is not None:
+        return cached
     found = parameter_posterior(folder.case, progress)
     if found.fitted:
         out = io.BytesIO()
@@ -52,7 +52,7 @@ def posterior_of(folder: Folder, progress: Progress) -> ParameterPosterior:
     return found
 
 
-def _kept(folder: Folder, file: Path) -> ParameterPosterior:
+def _from_cache(folder: Folder, file: Path) -> ParameterPosterior:
     with np.load(file) as held:
         names, fitted = json.loads(str(held["said"]))
         bare = replace(folder.case, model=replace(folder.case.model, revision=0))

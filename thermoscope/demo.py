@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from validation.calibration.one_factor_fit import OneFactorFit
 
 CASE, KNOB = "road-test", "fan.flow"
-SHORT, LONGER = 7, 14  # lines of a chapter after its first sentence: the whole story is at most 80
+SHORT, LONGER = 7, 13  # lines of a chapter after its first sentence: the whole story is at most 80
 MARKER = ".made-by-thermoscope-demo"
 
 
@@ -58,7 +58,7 @@ def demo(out: Path, target: str | None) -> int:
     headline("3  Held against the road")
     with within(SHORT):
         stages = [Stage("calibrated on the stand", print_comparison(folder))]
-        picture(misses(folder, out), "the motor after an hour on the road, labelled by what the model misses")
+        picture(misses(folder, out), "after an hour on the road, what the model misses")
     headline("4  The old way: turn up the fan's air flow until the right flange agrees")
     turned = old_way(folder)
     stages.append(Stage(f"{KNOB} x {turned.factor:.2f} instead", turned.comparison.document()))

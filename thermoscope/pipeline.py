@@ -151,13 +151,13 @@ def build(
     """Everything from the machine file to the network, at one mesh size; once for each machine in a process."""
     key = hashlib.sha256(pickle.dumps((machine, size_m, segments, recipe, axial_m))).digest()
     if key not in _built:
-        while len(_built) >= KEPT:
+        while len(_built) >= MOST_BUILT:
             _built.pop(next(iter(_built)))
         _built[key] = _anew(machine, size_m, segments, recipe, progress, axial_m)
     return _built[key]
 
 
-KEPT = 2  # machines: a command works on one, `carry` on pairs
+MOST_BUILT = 2  # machines: a command works on one, `carry` on pairs
 _built: dict[bytes, Built] = {}  # by content: nothing that is asked for has changed
 
 

@@ -57,9 +57,9 @@ class Recorded:
         """The recorded inputs of a test; one that was replaced there is as it is there. None on another time axis."""
         if test.time is not self.grid:
             return None
-        kept = {name for name, u in test.inputs.items() if self.seen.get(name) is u}
-        other = {n: np.interp(self.time, test.time, u) for n, u in test.inputs.items() if n not in kept}
-        return other | {n: self.inputs[n] for n in kept}
+        unchanged = {name for name, u in test.inputs.items() if self.seen.get(name) is u}
+        other = {n: np.interp(self.time, test.time, u) for n, u in test.inputs.items() if n not in unchanged}
+        return other | {n: self.inputs[n] for n in unchanged}
 
 
 @dataclass(frozen=True)

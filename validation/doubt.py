@@ -103,10 +103,10 @@ RARE: Mapping[str, Odds] = MappingProxyType({
     "loss.factor": Odds(0.3, "calibration moves declared losses already"),
 })  # fmt: skip
 
-TEMPER = Odds(
-    2.0,
-    "divides log evidence: no model is quite right; seven kinds of machine ask for 2 to 2.5, another generator for 1.5",
-)
+TEMPER: Mapping[str, Odds] = MappingProxyType({
+    "temper": Odds(1.5, "divides log evidence: no model is quite right, so all evidence of one is too sure"),
+    "temper per nat": Odds(0.01, "a law off by 15 % leaves 2 % of what its effect explains: no rival shall live on it"),
+})  # fmt: skip
 SIZES = (0.3, 1.0, 3.0)  # of an effect's usual size: nobody knows it better than within a decade
 
 # What a statement costs; a wrong name is one.
@@ -117,12 +117,27 @@ COSTS: Mapping[str, Odds] = MappingProxyType({
 })  # fmt: skip
 
 
+def temper(nats: float) -> float:
+    """What divides all log evidence where the best explanation has so many nats more than nothing.
+
+    An effect whose law is off by a share q leaves q^2 of its evidence to whatever looks like that; it grows with the
+    effect, so the divisor does too.
+    """
+    return TEMPER["temper"].share + TEMPER["temper per nat"].share * max(nats, 0.0)
+
+
+def nats_worth(log_odds: float) -> float:
+    """Log evidence that counts as some log odds once it is tempered."""
+    return TEMPER["temper"].share * log_odds / (1.0 - TEMPER["temper per nat"].share * log_odds)
+
+
 def markdown() -> str:
     """The table as docs/diagnosis.md shows it."""
     rows = [f"| {name} | {line.sd:g} {line.unit} | {line.reason} |" for name, line in TABLE.items()]
     odds = [f"| {name} | {100.0 * o.share:g} % | {o.reason} |" for name, o in PRIOR.items()]
+    tempers = [f"| {name} | {o.share:g} | {o.reason} |" for name, o in TEMPER.items()]
     rare = [f"| {name} | x {o.share:g} | {o.reason} |" for name, o in RARE.items()]
     costs = [f"| {name} | {o.share:g} | {o.reason} |" for name, o in COSTS.items()]
     head = ["| doubt | one sigma | reason |", "|---|---|---|", *rows, ""]
-    prior = ["| before the readings | share | reason |", "|---|---|---|", *odds, *rare, ""]
+    prior = ["| before the readings | share | reason |", "|---|---|---|", *odds, *rare, *tempers, ""]
     return "\n".join([*head, *prior, "| statement | cost | reason |", "|---|---|---|", *costs])

@@ -13,7 +13,7 @@ from validation.case import Channel, Test
 
 Array = NDArray[np.float64]
 LONG_S = 5 * 3600.0
-POINTS = 700
+POINTS = 700  # a line of a page is some 700 pixels wide
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ from viz.figures import candidates, curves, paper
 from viz.pages import html, words
 from viz.pages.report import Report, render
 
-SHOWN = 10
+SHOWN = 10  # rows of a cell
 
 
 def compared(c: Compared) -> str:

@@ -29,6 +29,7 @@ class Label:
     size : in units of size, 0 where it has none;  amplitude : in the catalogue's units, as it shows, but films in W/K
     area : of the place (m2) where the catalogue counts the first of these per area, 1 where it does not
     place : node where a foreign effect acts;  test, span : where a condition holds, from and to (s) of it
+    step_s : of the record (s)
     """
 
     case: str
@@ -44,6 +45,7 @@ class Label:
     place: str = ""
     test: str = ""
     span: tuple[float, ...] = ()
+    step_s: float = 60.0
 
     def document(self) -> dict:
         return asdict(self)
@@ -62,7 +64,7 @@ def plan(seeds: str, count: int, classes: Sequence[str], machines: Sequence[str]
 
 
 def _label(kind: Archetype, group: str, seed: int, turn: int) -> Label:
-    bare = Label(f"{kind.name}-{group}-{seed}", kind.name, group, seed)
+    bare = Label(f"{kind.name}-{group}-{seed}", kind.name, group, seed, step_s=kind.logger.step)
     return DRAWN[group](kind, bare, turn, np.random.default_rng([seed, 7]))
 
 

@@ -80,6 +80,13 @@ def condition_seen(label: Answer, answer: Answer, size: float) -> bool | None:
     return meets([*label["right"][0], *label["twins"][0]], names)
 
 
+def false_event(label: Answer, answer: Answer) -> bool | None:
+    """Something is said to have held in one test or for a while, and nothing did."""
+    if label["group"] in ("condition", "foreign"):
+        return None
+    return any(" in " in g[0] for g in answer["groups"] if g)
+
+
 def foreign_said(label: Answer, answer: Answer) -> bool | None:
     """Outside the catalogue: said so, or nothing claimed."""
     return answer["verdict"] in ("outside", "absorbed", "adequate") if label["group"] == "foreign" else None

@@ -149,14 +149,15 @@ def surely_nothing(label: Answer, answer: Answer) -> bool | None:
 
 
 def when_right(label: Answer, answer: Answer) -> bool | None:
-    """A condition, rightly named first: is its test told, and of one for a while begin and end within two minutes?"""
+    """A condition, rightly named first: is its test told, and of one for a while begin and end within two samples?"""
     best = said(answer)[0]
     if label["group"] != "condition" or not is_right(label, best):
         return None
     told = best.tests == (label["test"],)
     if label["span"][0] == 0.0 or not told:
         return told
-    return len(best.span) == 2 and max(abs(a - b) for a, b in zip(best.span, label["span"], strict=True)) <= 120.0
+    most = 2.0 * label.get("step_s", 60.0)
+    return len(best.span) == 2 and max(abs(a - b) for a, b in zip(best.span, label["span"], strict=True)) <= most + 1e-6
 
 
 def statements(pairs: Sequence[tuple[Answer, Answer]], least: float = 0.05) -> list[tuple[float, bool]]:

@@ -45,6 +45,7 @@ def promises(pairs: Iterable[Pair]) -> list[tuple[str, str, str, list[bool | Non
            over(judge.truth_inside, s)) for t, s in sizes),
         *((f"kind and place, {t}", {4.0: ">= 0.80"}.get(s, ""), "condition",
            over(judge.condition_seen, s)) for t, s in sizes[1:]),
+        ("false event", "<= 0.05", "all that lasts", over(judge.false_event)),
         ("confidently wrong", "<= 0.01", "all classes", over(judge.confidently_wrong)),
         ("group with both", ">= 0.90", "confounded pair", over(judge.pair_as_group)),
         ("said so or abstained", ">= 0.85", "outside the catalogue", over(judge.foreign_said)),

@@ -1,12 +1,14 @@
 """What the temper would have been, and what it would have brought, on machine kinds that it was not set on.
 
-A temper T divides all log evidence: P ~ prior * evidence^(1 / T). Answers keep evidence and probability of every
-hypothesis, so that another temper needs no case to be asked again.
+A temper T divides all log evidence: P ~ prior * evidence^(1 / T), with T = base + slope * (the largest log evidence
+over nothing). Answers keep evidence and probability of every hypothesis, so that another temper needs no case to be
+asked again.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from itertools import product
 from math import exp
 from typing import Any
 
@@ -16,14 +18,21 @@ from hidden.odds import brier, in_set, nats, surely_another
 from validation.doubt import TEMPER
 
 Pair = tuple[Mapping[str, Any], Mapping[str, Any]]
-TRIED = (1.0, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0)
+Temper = tuple[float, float]
+TRIED: Sequence[Temper] = tuple(product((1.0, 1.25, 1.5, 2.0, 2.5, 3.0), (0.0, 0.003, 0.01, 0.02, 0.04)))
+USED: Temper = (TEMPER["temper"].share, TEMPER["temper per nat"].share)
+NONE: Temper = (1.0, 0.0)
 
 
-def tempered(answer: Mapping[str, Any], temper: float, asked: float = TEMPER.share) -> dict[str, Any]:
+def divisor(temper: Temper, most: float) -> float:
+    return temper[0] + temper[1] * max(most, 0.0)
+
+
+def tempered(answer: Mapping[str, Any], temper: Temper, asked: Temper = USED) -> dict[str, Any]:
     """The answer with its odds under another temper than the one it was asked with; "others" go with the median."""
-    turn = 1.0 / temper - 1.0 / asked
     known = [o["log_evidence"] for o in answer["odds"] if o.get("log_evidence") is not None]
-    middle = float(np.median(known)) if known else 0.0
+    middle, most = (float(np.median(known)), max(known)) if known else (0.0, 0.0)
+    turn = 1.0 / divisor(temper, most) - 1.0 / divisor(asked, most)
     rows = [
         {**o, "probability": o["probability"] * exp(turn * (middle if (b := o.get("log_evidence")) is None else b))}
         for o in answer["odds"]
@@ -33,12 +42,12 @@ def tempered(answer: Mapping[str, Any], temper: float, asked: float = TEMPER.sha
     return {**answer, "odds": rows, "p_nothing": sum(o["probability"] for o in rows if o["hypothesis"] == "nothing")}
 
 
-def log_score(cases: Sequence[Pair], temper: float) -> float:
+def log_score(cases: Sequence[Pair], temper: Temper) -> float:
     """Mean log probability of the truth."""
     return float(np.mean([nats(label, tempered(answer, temper)) for label, answer in cases]))
 
 
-def best(cases: Sequence[Pair]) -> float:
+def best(cases: Sequence[Pair]) -> Temper:
     """The temper of the largest log score."""
     return max(TRIED, key=lambda t: log_score(cases, t))
 
@@ -49,10 +58,10 @@ def folds(cases: Sequence[Pair]) -> list[dict[str, Any]]:
     for kind in sorted({label["machine"] for label, _ in cases}):
         own = [c for c in cases if c[0]["machine"] == kind]
         others = [c for c in cases if c[0]["machine"] != kind]
-        temper = best(others) if others else 1.0
+        temper = best(others) if others else NONE
         then = [(label, tempered(answer, temper)) for label, answer in own]
         out.append({
-            "kind": kind, "n": len(own), "temper": temper, "untempered": log_score(own, 1.0),
+            "kind": kind, "n": len(own), "temper": temper, "untempered": log_score(own, NONE),
             "log_score": log_score(own, temper),
             "brier": float(np.mean([brier(*c) for c in then])), "in_set": float(np.mean([in_set(*c) for c in then])),
             "sure_and_wrong": float(np.mean([surely_another(*c) for c in then])),
@@ -62,10 +71,10 @@ def folds(cases: Sequence[Pair]) -> list[dict[str, Any]]:
 
 def markdown(rows: Sequence[Mapping[str, Any]]) -> list[str]:
     """The folds as a table."""
-    lines = ["| kind left out | cases | temper of the others | log score at 1 | at that temper | Brier | truth in the "
-             "90 % set | sure and wrong |", "|---|---|---|---|---|---|---|---|"]  # fmt: skip
+    lines = ["| kind left out | cases | temper of the others, and per nat | log score at 1 | at that temper | Brier "
+             "| truth in the 90 % set | sure and wrong |", "|---|---|---|---|---|---|---|---|"]  # fmt: skip
     return lines + [
-        f"| {r['kind']} | {r['n']} | {r['temper']:g} | {r['untempered']:.2f} | {r['log_score']:.2f} "
-        f"| {r['brier']:.3f} | {100 * r['in_set']:.0f} % | {100 * r['sure_and_wrong']:.0f} % |"
+        f"| {r['kind']} | {r['n']} | {r['temper'][0]:g} + {r['temper'][1]:g} | {r['untempered']:.2f} "
+        f"| {r['log_score']:.2f} | {r['brier']:.3f} | {100 * r['in_set']:.0f} % | {100 * r['sure_and_wrong']:.0f} % |"
         for r in rows
     ]

@@ -1,4 +1,4 @@
-"""What the site takes from the folders: a gallery of examples/, and every explaining page under "Explained"."""
+"""What the site takes from the folders: a gallery of examples/, a machine to turn, every page under "Explained"."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from typing import Any
 from mkdocs.structure.files import File
 
 ROOT = Path(__file__).resolve().parents[2]
+MACHINE = "road-test-viewer.html"
 PICTURES = ROOT / "docs" / "images" / "gallery"
 
 
@@ -39,14 +40,24 @@ def on_page_markdown(markdown: str, page: Any, config: Any, files: Any) -> str:
 
 
 def on_files(files: Any, config: Any) -> Any:
-    """Add gallery.md."""
+    """Add gallery.md and the machine in the browser's own GL."""
+    files.append(File.generated(config, MACHINE, content=machine()))
     files.append(File.generated(config, "gallery.md", content=gallery(sorted((ROOT / "examples").glob("*.py")))))
     return files
 
 
+def machine() -> str:
+    """The shipped road test, as `thermoscope show viewer road-test` writes it."""
+    from thermoscope.case_folder.folder import find_case, load_case
+    from thermoscope.commands.show.viewer import viewer_page
+
+    return viewer_page(load_case(find_case("road-test")), lambda message: None)
+
+
 def gallery(examples: list[Path]) -> str:
     """One section per example: its first sentence, its pictures, its code."""
-    parts = ["# Gallery", "Each of these runs as it stands: `python examples/NAME.py`. The tests run them too.", ""]
+    parts = ["# Gallery", f"[A motor to turn, cut and play]({MACHINE}), an hour on the road: one file, no network.",
+             "Each of these runs as it stands: `python examples/NAME.py`. The tests run them too.", ""]  # fmt: skip
     return "\n\n".join(parts + [section(path) for path in examples]) + "\n"
 
 

@@ -24,7 +24,7 @@ from geom.description.materials import Mixture, winding_conductivity
 from geom.errors import InputError
 
 Floats = NDArray[np.float64]
-FORMULA_UP_TO = 0.65
+FORMULA_UP_TO = 0.65  # of copper and enamel (Simpson, Wrobel, Mellor 2013); denser wires by their unit cell
 
 
 @dataclass(frozen=True)
@@ -158,12 +158,12 @@ def _mesh(radii: Floats, sides: int, around: int, out: int) -> tuple[MeshTri2, N
 
 def _rounded(mesh: MeshTri, radius: float) -> MeshTri2:
     """The mesh with edges that follow a circle of at most `radius` about the origin bent to it."""
-    bent = MeshTri2.from_mesh(mesh)
+    curved = MeshTri2.from_mesh(mesh)
     ends = np.hypot(*mesh.p[:, mesh.facets])
     follow = (np.abs(ends[0] - ends[1]) < 1e-12) & (ends[0] < radius + 1e-12)
-    middle = bent.doflocs[:, mesh.nvertices :]
+    middle = curved.doflocs[:, mesh.nvertices :]
     middle[:, follow] *= (ends[0] / np.hypot(*middle))[follow]
-    return bent
+    return curved
 
 
 def _periodic(x: Floats, sides: int) -> sp.csr_array:

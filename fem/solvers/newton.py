@@ -22,7 +22,7 @@ from geom.errors import InputError
 Floats = NDArray[np.float64]
 START = 20.0  # degC
 ENOUGH = 1e-9  # K
-ROUNDS = 40
+ROUNDS = 40  # of a method that doubles its digits a round; what takes more has no solution or a poor start
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from fem.matrices.assembly import FieldModel
 from geom.errors import InputError
 
 Floats = NDArray[np.float64]
-POSITIVE_DEFINITE = 2
+POSITIVE_DEFINITE = 2  # PARDISO's word for real, symmetric and positive definite
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ Floats = NDArray[np.float64]
 Drive = Callable[[float], tuple[float, Mapping[str, float]]]
 GAMMA = 2 - np.sqrt(2)
 ENOUGH = 1e-8  # K, change of the last iteration where terms depend on temperature
-ROUNDS = 60
+ROUNDS = 60  # of one implicit step, whose start is the step before; more would be no convergence
 
 
 @dataclass(frozen=True)
@@ -38,8 +38,8 @@ class _System:
 
     def flow(self, T: Floats, t: float) -> Floats:
         """(n,) heat into every node (W)."""
-        carried = self.B @ np.linalg.solve(self.G, self.B.T @ T) if self.B.shape[1] else 0.0
-        return self.forced(t) - self.K @ T + carried - self._heat(T)
+        streamed = self.B @ np.linalg.solve(self.G, self.B.T @ T) if self.B.shape[1] else 0.0
+        return self.forced(t) - self.K @ T + streamed - self._heat(T)
 
     def implicit(self, T: Floats) -> Callable[[Floats, Floats, float], Floats]:
         """Stage solver near T: given M-weighted history r and a guess, solves shift M T = r + flow(T, t)."""

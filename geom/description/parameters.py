@@ -30,6 +30,11 @@ class Scale:
     start: Callable[[Any], float] = lambda g: 0.0
 
 
+def scale(name: str, *of: Callable[[Any], float]) -> Callable[[float, float], Scale]:
+    """scale(name, span, start)(low, high): one length that several parameters are measured in, each in its bounds."""
+    return lambda low, high: Scale(name, low, high, *of)
+
+
 @dataclass(frozen=True)
 class Parameter:
     """One geometric parameter of a family.

@@ -39,7 +39,7 @@ class Views:
         return [part for part in self.machine.fluids if part.material == "air" and part.prisms]
 
     @cached_property
-    def behind(self) -> list[Part]:
+    def uncut(self) -> list[Part]:
         cut = {part.name for part in self.parts if self._here(part) or self._rectangles(part)}
         return [part for part in self.parts if part.name not in cut]
 
@@ -63,7 +63,7 @@ class Views:
     def across(self) -> list[str]:
         """The section normal to the axis."""
         far = [_shape(part, " ".join(path(loop) for p, *_ in part.prisms for loop in p.loops), True)
-               for part in self.behind]  # fmt: skip
+               for part in self.uncut]  # fmt: skip
         near = [_shape(part, " ".join(path(loop) for loop in p.loops)) for part in self.parts for p in self._here(part)]
         return far + [_air(path(p.outer)) for part in self.air for p in self._here(part)] + near
 
@@ -71,7 +71,7 @@ class Views:
         """The section along the axis."""
         import shapely
 
-        far = [_shape(part, _outline(shapely.union_all(self._shadows(part))), True) for part in self.behind]
+        far = [_shape(part, _outline(shapely.union_all(self._shadows(part))), True) for part in self.uncut]
         boxes = {part: [shapely.box(*sides) for sides in self._rectangles(part)] for part in self.parts}
         air = [_air(_outline(shapely.box(*sides))) for part in self.air for sides in self._rectangles(part)]
         return far + air + [_shape(part, _outline(shapely.union_all(cut))) for part, cut in boxes.items() if cut]
@@ -130,8 +130,8 @@ def _outline(region: Any) -> str:
     return " ".join("M" + "L".join(f"{x:.2f} {-y:.2f}" for x, y in ring.coords[:-1]) + "Z" for ring in rings)
 
 
-def _shape(part: Part, d: str, behind: bool = False) -> str:
-    look = ' opacity="0.35" stroke-dasharray="3 2"' if behind else ""
+def _shape(part: Part, d: str, uncut: bool = False) -> str:
+    look = ' opacity="0.35" stroke-dasharray="3 2"' if uncut else ""
     style = f'fill="{fill(part.material)}" fill-rule="evenodd" stroke="#333" stroke-width="0.4"{look}'
     return f'<path d="{d}" {style}><title>{escape(part.name)}</title></path>'
 

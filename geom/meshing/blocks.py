@@ -53,8 +53,8 @@ def find_blocks(cut: Partition) -> list[Block]:
     for slab in range(cut.labels.shape[1]):
         groups = _groups(cut, slab)
         grown = [_continued(cut, growing, faces, slab) for faces in groups]
-        kept = {id(block) for block, _ in grown if block}
-        done += [block for block in growing if id(block) not in kept]
+        grown_ids = {id(block) for block, _ in grown if block}
+        done += [block for block in growing if id(block) not in grown_ids]
         growing = [new for _, new in grown]
     return sorted(done + growing, key=lambda block: (block.first, block.faces[0]))
 

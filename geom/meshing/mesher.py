@@ -42,15 +42,15 @@ def build_mesh(
     Raises InputError where solids overlap or a closed void is not declared as a fluid.
     """
     axial = 1.5 * size_m if axial_m is None else axial_m
-    kept = _kept(machine, (size_m, segments, across, axial), cache)
+    file = _cache_file(machine, (size_m, segments, across, axial), cache)
     known = {part.name: said for part in machine.parts if (said := part.identity) is not None}
-    if kept is not None and (found := recalled(kept, read_npz)) is not None:
+    if file is not None and (found := recalled(file, read_npz)) is not None:
         return replace(found, identities=known)
     plan = _planned((*machine.parts, *machine.fluids), segments)
     flat = triangulate(plan.columns, size_m, across)
     mesh = extrude(plan.cut, plan.blocks, plan.columns, flat, axial, machine.face_name)
-    if kept is not None:
-        write_npz(mesh, kept)
+    if file is not None:
+        write_npz(mesh, file)
     return replace(mesh, identities=known)
 
 
@@ -71,7 +71,7 @@ def _planned(parts: tuple[Part, ...], segments: int) -> _Plan:
     return _Plan(cut, blocks, find_columns(cut, blocks))
 
 
-def _kept(machine: Machine, settings: tuple[float, ...], cache: Path | str | None) -> Path | None:
+def _cache_file(machine: Machine, settings: tuple[float, ...], cache: Path | str | None) -> Path | None:
     """Named by what a mesh depends on: shapes and names, not materials."""
     if cache is None:
         return None

@@ -30,14 +30,14 @@ def solids(part: Part, cache: Path | str | None = None) -> list[cq.Solid]:
     """
     import cadquery as cq
 
-    kept = cache_file(part, cache, "solid", "brep")
-    if kept is None:
+    file = cache_file(part, cache, "solid", "brep")
+    if file is None:
         return _built(part)
-    solid = recalled(kept, lambda path: [cq.Solid(s.wrapped) for s in cq.Shape.importBin(str(path)).Solids()])
+    solid = recalled(file, lambda path: [cq.Solid(s.wrapped) for s in cq.Shape.importBin(str(path)).Solids()])
     if solid:
         return solid
     found = _built(part)
-    with atomic_write(kept) as partial:
+    with atomic_write(file) as partial:
         cq.Compound.makeCompound(found).exportBin(str(partial))
     return found
 

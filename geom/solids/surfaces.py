@@ -35,8 +35,8 @@ def check_cad(machine: Machine, tolerance_mm: float = 0.02, cache: Path | str | 
 
 
 def _checked(part: Part, tolerance_mm: float, cache: Path | str | None) -> CadCheck:
-    kept = cache_file(part, cache, f"check-{tolerance_mm:g}", "json")
-    known = kept and recalled(kept, lambda path: CadCheck(**{**json.loads(path.read_text()), "part": part.name}))
+    file = cache_file(part, cache, f"check-{tolerance_mm:g}", "json")
+    known = file and recalled(file, lambda path: CadCheck(**{**json.loads(path.read_text()), "part": part.name}))
     if known:
         return known
     found = solids(part, cache)
@@ -49,8 +49,8 @@ def _checked(part: Part, tolerance_mm: float, cache: Path | str | None) -> CadCh
         pieces=len(found),
         watertight=all(bool(mesh.is_watertight) for mesh in surfaces),
     )
-    if kept is not None:
-        with atomic_write(kept) as partial:
+    if file is not None:
+        with atomic_write(file) as partial:
             partial.write_text(json.dumps(vars(check)))
     return check
 

@@ -57,12 +57,12 @@ class Size:
     met: bool
 
     @classmethod
-    def of(cls, reduction: Any, asked: int, points: Sequence[Any], cases: LoadCases, wish: Accuracy) -> Size:
+    def of(cls, reduction: Any, asked: int, points: Sequence[Any], cases: LoadCases, allowed: Accuracy) -> Size:
         """points : the nominal one first, then random ones, all solved in full"""
         network = reduction.network(tolerance=0.0, max_states=max(asked, len(reduction.field.blocks)))
         nominal, *drawn = (seen(network, point, cases) for point in points)
         random = merged(drawn)
-        return cls(asked, network, nominal, random, max(excess(nominal, wish), excess(random, wish)) <= RESERVE)
+        return cls(asked, network, nominal, random, max(excess(nominal, allowed), excess(random, allowed)) <= RESERVE)
 
     def document(self) -> dict[str, Any]:
         return {
@@ -72,7 +72,7 @@ class Size:
 
 
 def enrich(
-    reduction: Any, cases: LoadCases, wish: Accuracy, rounds: int = 3, points: Sequence[Any] = (),
+    reduction: Any, cases: LoadCases, allowed: Accuracy, rounds: int = 3, points: Sequence[Any] = (),
     guides: Sequence[Any] = (), fresh: int = 3, tell: Tell = lambda message: None,
 ) -> Enrichment:  # fmt: skip
     """A network that meets the wish at random points it has not seen, or the one the last of `rounds` looked at.
@@ -86,10 +86,10 @@ def enrich(
     reduction = reduction.enriched(learned) if points else reduction
     done: list[Round] = []
     for k in range(rounds):
-        network = allotted_shapes(reduction, [*learned, *guides], cases, wish, weights)
+        network = allotted_shapes(reduction, [*learned, *guides], cases, allowed, weights)
         new = [reduction.random_point(begun + fresh * k + j) for j in range(fresh)]
         found = merged([seen(network, point, cases) for point in new])
-        done.append(Round(len(network.states), tuple(p.name for p in new), found, excess(found, wish) <= 1.0))
+        done.append(Round(len(network.states), tuple(p.name for p in new), found, excess(found, allowed) <= 1.0))
         tell(f"{len(network.states)} states: {found}")
         if done[-1].met or k == rounds - 1:
             break
@@ -98,19 +98,19 @@ def enrich(
     return Enrichment(reduction, network, dict(weights), tuple(done))
 
 
-def excess(found: Errors, wish: Accuracy) -> float:
+def excess(found: Errors, allowed: Accuracy) -> float:
     """1 where the worst part is just good enough."""
-    return max(map(wish.excess, found.parts.values()))
+    return max(map(allowed.excess, found.parts.values()))
 
 
 def allotted_shapes(
-    reduction: Any, learned: Sequence[Any], cases: LoadCases, wish: Accuracy, weights: dict[str, float]
+    reduction: Any, learned: Sequence[Any], cases: LoadCases, allowed: Accuracy, weights: dict[str, float]
 ) -> Network:
     """Deal out shapes until the points already solved are met: parts that miss get more."""
     network = reduction.network(weights=weights)
     for _ in range(FAVOURS):
         found = merged([seen(network, point, cases) for point in learned])
-        missing = {part: wish.excess(e) for part, e in found.parts.items() if wish.excess(e) > MARGIN}
+        missing = {part: allowed.excess(e) for part, e in found.parts.items() if allowed.excess(e) > MARGIN}
         if not missing:
             break
         for part, excess in missing.items():

@@ -148,16 +148,16 @@ def reduce(
     """
     places = {**{part: Zone(part) for part in field.blocks}, **(zones or {})}
     loads = unit_loads(field, places)
-    shelf = BasisCache(cache, _geometry(field, loads, recipe))
+    stored = BasisCache(cache, _geometry(field, loads, recipe))
     centre = Centre({**films}, {**contacts}, {p: float(b.K.diagonal().sum()) for p, b in field.blocks.items()})
-    taken = shelf.find(centre, recipe.spread)
+    taken = stored.find(centre, recipe.spread)
     if taken is None:
         unit = np.column_stack([*loads.values()])
         S = snapshots(field, films, contacts, unit, recipe, solver)
         local = isolated_part(field, films, contacts, S, unit, recipe)
-        taken = shelf.keep(centre, principals(field, S, energies(field, films, contacts), local), recipe.tolerance**2)
-    kept = {part: Principal(*pair) for part, pair in taken.items()}
-    return Reduction(field, films, contacts, places, fluids, boundaries, name, recipe, kept)
+        taken = stored.keep(centre, principals(field, S, energies(field, films, contacts), local), recipe.tolerance**2)
+    principal = {part: Principal(*pair) for part, pair in taken.items()}
+    return Reduction(field, films, contacts, places, fluids, boundaries, name, recipe, principal)
 
 
 def condense(

@@ -7,7 +7,7 @@ import math
 from lumped.correlations.info import Info, checked
 from lumped.transfer.properties import Fluid, air
 
-AXIAL_RE = 3e3
+AXIAL_RE = 3e3  # lower end of what was measured; below, the law is held there
 
 
 def taylor_film(omega: float, rotor_radius: float, gap: float, fluid: Fluid | None = None) -> tuple[float, Info]:

@@ -7,7 +7,7 @@ import math
 from lumped.correlations.info import Info, checked
 from lumped.transfer.properties import Fluid, air
 
-LAMINAR, TURBULENT, COIL_TURBULENT = 2300.0, 4000.0, 22001.0
+LAMINAR, TURBULENT, COIL_TURBULENT = 2300.0, 4000.0, 22001.0  # Reynolds numbers, VDI Heat Atlas G1 and G3
 
 
 def hausen_laminar(Re: float, Pr: float, diameter: float, length: float, developed: float = 3.66) -> float:

@@ -13,7 +13,7 @@ Number = TypeVar("Number", float, NDArray[np.float64])
 
 # Published sets k1 (W/m2/K), k2 ((s/m)^k3), k3.
 SCHUBERT, MELLOR, BOGLIETTI = (15.0, 0.4, 0.9), (15.5, 0.29, 1.0), (41.4, 6.22 / 41.4, 1.0)
-STOKUM, DI_GERLANDO, HAMDI = (33.2, 0.0445, 1.0), (40.0, 0.1, 1.0), (10.0, 0.3, 1.0)
+STOKUM, DI_GERLANDO, HAMDI = (33.2, 0.0445, 1.0), (40.0, 0.1, 1.0), (10.0, 0.3, 1.0)  # published sets
 
 
 def end_space(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from lumped.correlations.info import Info, checked
 from lumped.transfer.properties import Fluid, air
 
-CRITICAL_RE = 5e5
+CRITICAL_RE = 5e5  # of a smooth plate in quiet air (Incropera); a rough one turns turbulent earlier
 
 
 def flat_plate(speed: float, length: float, fluid: Fluid | None = None) -> tuple[float, Info]:

@@ -8,8 +8,8 @@ from collections.abc import Callable
 from lumped.correlations.info import Info, checked
 from lumped.transfer.properties import Fluid, air
 
-G = 9.80665
-MOST_CURVED = 5.0
+G = 9.80665  # m/s2
+MOST_CURVED = 5.0  # end of its range
 Of = Callable[[float], Fluid]
 
 

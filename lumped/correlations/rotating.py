@@ -7,8 +7,8 @@ import math
 from lumped.correlations.info import Info, checked
 from lumped.transfer.properties import Fluid, air
 
-DISC_CRITICAL = 2.4e5
-TORQUE_LAWS = ((10.0, 1.0), (2.0, 0.6), (1.03, 0.5), (0.065, 0.2))
+DISC_CRITICAL = 2.4e5  # of the rim's speed and radius: where a free disc turns turbulent
+TORQUE_LAWS = ((10.0, 1.0), (2.0, 0.6), (1.03, 0.5), (0.065, 0.2))  # Bilgen and Boulos 1973, the largest holds
 
 
 def rotating_disc(omega: float, radius: float, fluid: Fluid | None = None) -> tuple[float, Info]:

@@ -11,7 +11,7 @@ from lumped.transfer.exchanger import ARRANGEMENTS, Flow
 from lumped.transfer.hydraulics import Duct
 from lumped.transfer.properties import air
 
-AIR_AT_C = 30.0
+AIR_AT_C = 30.0  # where a flow in m3/h becomes W/K; 10 K more carry 3 % less
 
 
 def read_circuits(top: Table, nodes: Iterable[str], boundaries: Iterable[str]) -> dict[str, Circuit]:

@@ -16,7 +16,7 @@ from lumped.transfer.laws import Array, FilmTable, Fixed, Inputs, Law
 from lumped.transfer.laws import Table as TableLaw
 from lumped.transfer.properties import Fluid, air
 
-POINTS = 97
+POINTS = 97  # of a table, closer near rest, where a film changes most
 Film = Callable[[float], tuple[float, Info]]
 Still = Callable[[float, float], tuple[float, Info]]
 Of = Callable[[float], Fluid]

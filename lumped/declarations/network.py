@@ -171,13 +171,13 @@ def _streams(network: Network, top: Table) -> list[Link]:
 
 def _both_ways(network: Network, name: str, path: list[str], table: Table) -> list[Link]:
     """A stream; where a column carries its flow and the file says what comes in from behind, backwards too."""
-    law, column, behind = flow_law(table), flow_column(table, network.measures), table.word("backwards_from", "")
+    law, column, upstream = flow_law(table), flow_column(table, network.measures), table.word("backwards_from", "")
     if column is None:
         return [stream(network, f"stream:{name}", path, law)]
-    if not behind and path[0] != path[-1]:
+    if not upstream and path[0] != path[-1]:
         right = f'backwards_from = "NODE": what comes in behind {path[-1]} when the flow turns round'
         return [stream(network, f"stream:{name}", path, OneWay(law, column, table.where, right))]
-    back = [_end(network, table, behind), *path[:0:-1]] if behind else path[::-1]
+    back = [_end(network, table, upstream), *path[:0:-1]] if upstream else path[::-1]
     return [
         stream(network, f"stream:{name}", path, Direction(law, column, 1)),
         stream(network, f"stream:{name}:back", back, Direction(law, column, -1)),

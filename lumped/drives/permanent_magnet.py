@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from lumped.sources.losses import ALPHA_CU
 
 Array = NDArray[np.float64]
-HALVINGS = 50
+HALVINGS = 50  # a current to the last digit
 
 
 @dataclass(frozen=True)

@@ -113,8 +113,8 @@ def _inserted(factor: Callable[[Array], Array], samples: Array, turns: Array, sm
     """Positions that cut the intervals after some samples at their corners, and then in halves as long as needed."""
     corners = turns[np.isin(np.floor(turns), samples)]
     ends = np.unique(np.concatenate([samples, samples + 1.0, corners]))
-    kept = np.isin(np.floor(ends[:-1]), samples)
-    left, width, out = ends[:-1][kept], np.diff(ends)[kept], [corners]
+    sampled = np.isin(np.floor(ends[:-1]), samples)
+    left, width, out = ends[:-1][sampled], np.diff(ends)[sampled], [corners]
     while left.size:
         at = left[:, None] + width[:, None] * QUARTERS
         cut = _too_curved(factor(at.ravel()).reshape(at.shape), width, small) & (width > FINEST)

@@ -35,15 +35,17 @@ def projected(near: Curve, time: Array, fine: Curve, fine_time: Array) -> Curve:
     cell = np.searchsorted(time, fine_time, "right") - 1
     inner = (cell >= 0) & (cell < time.size - 1)
     inner[inner] = (fine_time[inner] > time[cell[inner]]) & full[cell[inner] + 1]
-    value, bulge = _kept(near, time, full, full, fine, fine_time)
+    value, bulge = _equal_integrals(near, time, full, full, fine, fine_time)
     largest, off = _apart(value, bulge, time, cell[inner], fine_time[inner], fine.value[inner])
     cut = off > SWITCH * largest
-    value, bulge = _kept(near, time, full, full & ~cut, fine, fine_time)
+    value, bulge = _equal_integrals(near, time, full, full & ~cut, fine, fine_time)
     edges = _edges(fine.value, cell, inner, largest, cut)
     return Curve(value, bulge, _positions(near, time, full, cut, fine_time[edges], fine, fine_time))
 
 
-def _kept(near: Curve, time: Array, full: Mask, smooth: Mask, fine: Curve, fine_time: Array) -> tuple[Array, Array]:
+def _equal_integrals(
+    near: Curve, time: Array, full: Mask, smooth: Mask, fine: Curve, fine_time: Array
+) -> tuple[Array, Array]:
     """Values and bulges that keep the integral of every interval that is full of finer samples.
 
     smooth (nt,) : intervals between two of which the value is a mean over half of both

@@ -160,10 +160,10 @@ class Signals(dict[str, Array]):
 
 def _forgetting(signals: Signals, law: int) -> Callable[[Any], None]:
     """Called when the law is gone. It must not hold the signals: they would wait for the collector of cycles."""
-    kept = ref(signals)
+    reference = ref(signals)
 
     def forget(_: Any) -> None:
-        if (alive := kept()) is not None:
+        if (alive := reference()) is not None:
             alive.forget(law)
 
     return forget

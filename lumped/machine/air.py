@@ -29,7 +29,7 @@ from lumped.transfer.reversal import OneWay
 
 AIR_HEAT = 1.205 * 1006.0  # rho cp of the air the fan takes in at 20 degC, J/m3/K
 BETWEEN_POLES, IN_ROTOR, AT_FAN = "air.interpolar", "air.ducts", "air.fan"
-STEPS = 121
+STEPS = 121  # of speed in a table of films
 GAP_C, DUCT_C = 80.0, 40.0  # film temperatures at which tables over speed and flow are made
 
 

@@ -49,8 +49,8 @@ def on_every_base(network: Network) -> Network:
     """The network at its nominal values on all bases at once, as `on_all` has the machine; any other as it is."""
     if not any(isinstance(x.law, Switched) for x in network.links):
         return network
-    kept = [x for x in network.links if not isinstance(x.law, Switched) or x.law.closed]
-    joined = [replace(x, law=x.law.base) if isinstance(x.law, Switched) else x for x in kept]
+    present = [x for x in network.links if not isinstance(x.law, Switched) or x.law.closed]
+    joined = [replace(x, law=x.law.base) if isinstance(x.law, Switched) else x for x in present]
     bare = {x.places[0] for x in network.links if isinstance(x.law, Switched) and not x.law.closed}
     places = {name: place for name, place in network.places.items() if name not in bare}
     return replace(network, links=tuple(joined), places=places, parameters=())

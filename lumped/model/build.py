@@ -39,10 +39,10 @@ def _triplets(
     network: Network, ends: Sequence[tuple[int, int]], scale: float
 ) -> tuple[list[int], list[int], list[float]]:
     n = len(network.states)
-    kept = [(p, q) for p, q in ends if p < n]
-    rows = [p for p, _ in kept for _ in range(2)]
-    cols = [c for p, q in kept for c in (p, q)]
-    return rows, cols, [scale, -scale] * len(kept)
+    inner = [(p, q) for p, q in ends if p < n]
+    rows = [p for p, _ in inner for _ in range(2)]
+    cols = [c for p, q in inner for c in (p, q)]
+    return rows, cols, [scale, -scale] * len(inner)
 
 
 def node_link(network: Network, name: str, kind: str, a: str, b: str, law: Law, area: float = 1.0) -> Link:

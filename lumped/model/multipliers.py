@@ -36,15 +36,15 @@ def _known_targets(network: Network) -> set[str]:
 
 
 def _targets(network: Network, parameter: Parameter, known: set[str]) -> list[tuple[str, float]]:
-    kept = [(t, e) for t, e in parameter.targets if not t.startswith(CHANNEL_OPERATORS)]
-    for target, _ in kept:
+    thermal = [(t, e) for t, e in parameter.targets if not t.startswith(CHANNEL_OPERATORS)]
+    for target, _ in thermal:
         if target not in known:
             raise InputError(
                 f"target '{target}' is no link, source or capacity group",
                 f"parameter '{parameter.name}' of {network.title}",
                 f"known: {', '.join(sorted(known))}",
             )
-    return kept
+    return thermal
 
 
 @once

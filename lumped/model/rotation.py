@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import breadth_first_order, maximum_flow
 
 from lumped.model.topology import Topology, conductance, fixed
 
@@ -144,6 +142,9 @@ def _back(before: Mapping[str, str], body: str) -> list[str]:
 
 def cut(top: Topology, turn: Collection[str], stand: Collection[str], bearings: Collection[str]) -> set[str]:
     """The turning side of the weakest cut (W/K) between what turns and what stands; bearings stand."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import breadth_first_order, maximum_flow
+
     bodies = [b for b in top.bodies if b not in bearings]
     at, n = {b: i for i, b in enumerate(bodies)}, len(bodies)
     ties = [(at[a], at[b], G) for (a, b), G in top.joints.items() if a in at and b in at and G > 0.0]

@@ -51,11 +51,11 @@ def islands(network: Network) -> Iterator[list[str]]:
 
 
 def _reached(joined: dict[int, set[int]], start: Sequence[int]) -> set[int]:
-    out, ahead = set(start), list(start)
-    while ahead:
-        new = joined[ahead.pop()] - out
+    out, open_ends = set(start), list(start)
+    while open_ends:
+        new = joined[open_ends.pop()] - out
         out |= new
-        ahead += new
+        open_ends += new
     return out
 
 

@@ -58,7 +58,7 @@ class Circuit:
     follows : whether films change with the coolant's temperature, else they hold at `at_degC`
     of, unit : input that carries the flow and its unit, or None for a flow that never changes
     inlet : a boundary for an open circuit; the node "NAME.reservoir" for a closed one
-    behind : of an open circuit, the boundary that flows in when the flow turns round; "" refuses that
+    upstream : of an open circuit, the boundary that flows in when the flow turns round; "" refuses that
     """
 
     name: str
@@ -73,7 +73,7 @@ class Circuit:
     cooler: Cooler | None = None
     pump_efficiency: float = 0.5
     follows: bool = True
-    behind: str = ""
+    upstream: str = ""
 
     @property
     def heat(self) -> float:
@@ -137,12 +137,12 @@ class Circuit:
     @property
     def _turns(self) -> bool:
         """Whether its flow may turn round."""
-        return self.of is not None and (self.cooler is not None or bool(self.behind))
+        return self.of is not None and (self.cooler is not None or bool(self.upstream))
 
     def _back(self) -> list[Edge]:
         """The edges the other way round."""
         inside = [(b, a, share) for a, b, share in self._edges() if self.cooler is not None or a != self.inlet]
-        return inside if self.cooler is not None else [*inside, (self.behind, self.outlet, 1.0)]
+        return inside if self.cooler is not None else [*inside, (self.upstream, self.outlet, 1.0)]
 
     def _edges(self) -> Iterator[Edge]:
         for branch, share in self.shares.items():

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
@@ -126,18 +125,3 @@ def parallel_shares(branches: Sequence[Sequence[Passage]], flow: float, fluid: F
 def pumping_power(pressure: float, flow: float, efficiency: float = 0.5) -> float:
     """Power taken (W): pressure (Pa) times flow (m3/s) over the efficiency of pump or fan with its motor."""
     return pressure * flow / efficiency
-
-
-def fan_law(speed: float, flow: float, pressure: float, power: float) -> tuple[float, float, float]:
-    """Flow, pressure and power of a fan at `speed` times the speed for which they are given: n, n^2, n^3 (affinity).
-
-    Any units. Range: geometrically the same fan and Re > 1e5 (efficiency unchanged).
-    """
-    s = abs(speed)
-    return flow * s, pressure * s * s, power * s**3
-
-
-def fan_point(shut_off: float, free_flow: float, resistance: float) -> tuple[float, float]:
-    """(flow m3/s, pressure Pa) where p = shut_off (1 - (Q/free_flow)^2) meets p = resistance Q^2 (Pa s2/m6)."""
-    flow = math.sqrt(shut_off / (resistance + shut_off / free_flow**2))
-    return flow, resistance * flow * flow

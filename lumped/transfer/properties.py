@@ -106,7 +106,7 @@ def oil(T: float) -> Fluid:
 
 
 GLYCOL_DENSITY = {"ethylene": 1113.2, "propylene": 1036.1}  # kg/m3 at 20 degC, CRC Handbook
-WATER_DENSITY = 998.2
+WATER_DENSITY = 998.2  # kg/m3 at 20 degC, where glycol is mixed by volume
 
 
 def mass_fraction_of(volume_fraction: float, glycol: str = "ethylene") -> float:

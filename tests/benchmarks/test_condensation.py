@@ -13,6 +13,8 @@ from geom import load_machine
 from lumped.condensation.reduction_error import Errors
 from thermoscope.verification.network_size import smallest_network
 
+pytestmark = pytest.mark.heavy
+
 
 @pytest.fixture(scope="module")
 def pair():

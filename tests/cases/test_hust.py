@@ -13,6 +13,7 @@ from validation.comparison.compare import compare
 from validation.revision.revise import add, calibrate
 
 HELD_OUT = {"id_5", "id_8", "id_11", "id_15"}
+pytestmark = pytest.mark.heavy
 NAMED = ("gap.convection@rotor|stator",)
 
 
@@ -27,6 +28,12 @@ def example(root):
     import hust
 
     return hust
+
+
+@pytest.fixture(scope="module")
+def start(folder):
+    """The comparison of the model as published."""
+    return compare(folder.case)
 
 
 def test_the_held_out_profiles(folder):
@@ -70,6 +77,7 @@ def published(table):
                  + [table["rotor"].iloc[0]])  # fmt: skip
     C, out = np.array([3716.15, 5616.32, 5329.69]), [T]
     i, f = np.hypot(table["IdFbk"], table["IqFbk"]).to_numpy() / 370.0, table["speed"].to_numpy() / 4000.0
+    ambient, coolant = table["ambient"].to_numpy(), table["water_outlet"].to_numpy()
     residual = 4.656e-6 * i + 247.8 * f + 1151.47 * i * f
     share = np.clip(0.8910 + 0.0231 * i - 0.0397 * f - 0.009 * i * f, 0.0, 1.0)
     R_sr = 0.5769 * np.exp(-0.7913 / 4000.0 * f) + 0.007967
@@ -77,8 +85,8 @@ def published(table):
     for n in range(1, len(table)):
         copper = 1.5 * 4.67e-3 * (370.0 * i[n]) ** 2 * (1 + 0.0039 * (T[0] - 20.0))
         copper *= 1 + 0.02174 * f[n] + 0.3874 * f[n] ** 2
-        ws, sr, ra = (T[0] - T[1]) / 0.01375, (T[1] - T[2]) / R_sr[n], (T[2] - table["ambient"].iat[n]) / R_ra[n]
-        sc = (T[1] - table["water_outlet"].iat[n]) / 0.01879
+        ws, sr, ra = (T[0] - T[1]) / 0.01375, (T[1] - T[2]) / R_sr[n], (T[2] - ambient[n]) / R_ra[n]
+        sc = (T[1] - coolant[n]) / 0.01879
         heat = [copper - ws, residual[n] * share[n] + ws - sr - sc, residual[n] * (1 - share[n]) + sr - ra]
         T = T + np.array(heat) / C
         out.append(T)
@@ -86,7 +94,7 @@ def published(table):
 
 
 @pytest.mark.parametrize("profile", [11, 13])
-def test_the_start_is_the_published_model(root, folder, profile):
+def test_the_start_is_the_published_model(root, start, profile):
     """The case's errors are those of the authors' equations, written down once more; the case averages over 20 s
     and has its inputs linear in between, where theirs are held."""
     table = pd.read_csv(root / "cases" / "hust-ipmsm" / "tests" / f"id_{profile}.csv.gz")
@@ -95,14 +103,14 @@ def test_the_start_is_the_published_model(root, folder, profile):
         table["rotor"],
     ])  # fmt: skip
     theirs = np.sqrt(np.mean((published(table) - measured) ** 2, axis=0))
-    ours = next(t for t in compare(folder.case).tests if t.name == f"id_{profile}")
+    ours = next(t for t in start.tests if t.name == f"id_{profile}")
     by_name = {c.channel: c.rmse_K for c in ours.channels}
     assert [by_name[c] for c in ("winding", "stator", "rotor")] == pytest.approx(theirs, abs=0.2)
 
 
-def test_what_is_found_halves_every_error_of_the_published_model_on_profiles_never_used(folder, example):
+def test_what_is_found_halves_every_error_of_the_published_model_on_profiles_never_used(folder, start, example):
     """What the case's README says is named, as `thermoscope model add` adds it."""
-    before = example.errors(compare(folder.case), "hold-out")
+    before = example.errors(start, "hold-out")
     case = with_model(folder.case, calibrate(folder.case).model)
     for name in NAMED:
         case = with_model(case, add(case, name).model)

@@ -12,12 +12,12 @@ from functools import partial
 from pathlib import Path
 
 import pytest
+from command_line import answered
 
 from lumped.condensation.reduction import Recipe
 from lumped.declarations.network import load_network
 from thermoscope import pipeline
 from thermoscope.case_folder.folder import load_machine_file
-from thermoscope.cli import main
 from thermoscope.commands.model.crosscheck import checked
 from thermoscope.console.groups import HOME
 from thermoscope.verification.network_size import smallest_network
@@ -84,15 +84,6 @@ REFUSED = {
 }
 
 
-def answered(monkeypatch, capsys, *words):
-    """Exit code, JSON document and errors of a command in this process."""
-    monkeypatch.setattr(sys, "argv", ["thermoscope", *map(str, words), "--json", "-"])
-    with pytest.raises(SystemExit) as end:
-        main()
-    told = capsys.readouterr()
-    return end.value.code, told.out, [line for line in told.err.splitlines() if line.startswith("error:")]
-
-
 @pytest.fixture(scope="module")
 def home(tmp_path_factory):
     """A copy of all cases, meshes coarse: `report` and the fits write into it."""
@@ -112,24 +103,23 @@ LINES = [
 
 
 @pytest.mark.parametrize(("case", "words"), LINES)
-def test_a_shipped_case_goes_through_the_command(home, tmp_path, monkeypatch, capsys, case, words):
-    monkeypatch.chdir(tmp_path)
+def test_a_shipped_case_goes_through_the_command(home, tmp_path, case, words):
     places = {name: str(home / "cases" / name) for name in TAKEN}
     command, *options = [places.get(word.strip("{}"), word) for word in words.split()]
     if command in WRITING:
         places[case] = str(shutil.copytree(places[case], tmp_path / "case"))
-    code, out, errors = answered(monkeypatch, capsys, command, places[case], *options)
-    assert errors == []
-    assert code in (0, 1)
-    assert finite(json.loads(out))
+    done = answered(command, places[case], *options, "--json", "-", cwd=tmp_path)
+    assert done.errors == []
+    assert done.code in (0, 1)
+    assert finite(done.document)
 
 
 @pytest.mark.parametrize(("case", "words"), REFUSED, ids=[" ".join(key) for key in REFUSED])
-def test_what_a_shipped_case_has_not_is_said(home, tmp_path, monkeypatch, capsys, case, words):
-    monkeypatch.chdir(tmp_path)
-    code, out, errors = answered(monkeypatch, capsys, *words.split()[:1], home / "cases" / case, *words.split()[1:])
-    assert (code, out, len(errors)) == (2, "", 1)
-    assert REFUSED[case, words] in errors[0]
+def test_what_a_shipped_case_has_not_is_said(home, tmp_path, case, words):
+    command, *options = words.split()
+    done = answered(command, home / "cases" / case, *options, "--json", "-", cwd=tmp_path)
+    assert (done.code, done.out, len(done.errors)) == (2, "", 1)
+    assert REFUSED[case, words] in done.errors[0]
 
 
 def finite(document):

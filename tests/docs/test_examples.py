@@ -38,6 +38,7 @@ REFERENCE = {
     "ramp": 1e-4,  # K of 30: steps of the integrator
     "switched_fan": 0.016,  # K: an input is straight between samples, so the fan starts 0.5 s early; it takes 0.03 K/s
     "thermal_wave": 0.1,  # K of 30: what is left of the start, and the first cell, a tenth of d, by (1/10)^2 / 12 of 30
+    "fan_for_a_while": 10.0,  # s: two samples
     "superposition": 0.01,  # K of 57: steps of the integrator
 }
 TESTED_ELSEWHERE = {"hust", "tclab"}

@@ -49,13 +49,38 @@ SENSOR = (
     HOUSE
     + """
 from thermoscope.recordings.sheet import read_sheet
-from thermoscope.recordings.units import converted
+from thermoscope.recordings.tables import load_table
 
-sheet = read_sheet({"test": {"time": "time_s"}, "columns": {
-    "T": {"quantity": "pt1000", "unit": "kohm", "place": "winding"}}}, "a sheet")
-(column,) = sheet.columns
-print(json.dumps({"degC": converted(np.array([1.0, 1.385055]), "pt1000", "kohm").tolist(), "sigma_K": column.sigma_K,
-                  "hot": column.is_temperature, "place": column.place, "feeds": column.feeds}))
+columns = {
+    "pt": {"quantity": "pt1000", "unit": "kohm", "place": "winding"},
+    "ratio": {"quantity": "resistance_ratio", "unit": "%", "place": "winding", "sigma": 0.393, "cold_degC": 25},
+    "spot": {"quantity": "infrared_spot", "unit": "K", "place": "housing", "emissivity": 0.5},
+    "flux": {"quantity": "heat_flux", "unit": "kW/m2"}}
+sheet = read_sheet({"test": {"time": "time_s"}, "columns": columns}, "a sheet")
+file = Path(sys.argv[1]) / "a.csv"
+rows = [(k, 1.385055, 139.3, 293.15 + 60.0 * (k > 1), 2.0 + k) for k in range(4)]
+file.write_text("time_s,pt,ratio,spot,flux\\n" + "".join(",".join(map(str, row)) + "\\n" for row in rows))
+read = load_table(file, sheet)
+first, last = ({n: v[k] for n, v in read.values.items()} for k in (0, -1))
+feeds, hot = {c.name: c.feeds for c in sheet.columns}, [c.name for c in sheet.columns if c.is_temperature]
+print(json.dumps({"first": first, "last": last, "sigma_K": dict(read.sigma_K), "feeds": feeds, "hot": hot}))
+"""
+)
+FLUX = (
+    HOUSE
+    + """
+from lumped.declarations.network import read_network
+from lumped.integration.simulate import Record, simulate
+
+network = read_network({
+    "network": {"name": "plate", "boundaries": ["air"]}, "nodes": {"plate": {"C_J_K": 100.0}},
+    "links": {"film": {"between": ["plate", "air"], "G_W_K": 0.5}},
+    "losses": {"sun": {"at": "plate", "kind": "constant", "P_W": 10.0,
+                       "of": {"input": "heat_flux_W_m2", "at": 1000.0}}}}, "network.toml")
+time = np.linspace(0.0, 4e3, 300)
+record = Record(time, {"heat_flux_W_m2": np.full_like(time, 500.0)}, {"air": np.full_like(time, 20.0)}, 20.0)
+run = simulate(network, record, {}, [network.places["plate"].mean])
+print(json.dumps({"rise": float(run.y[-1, 0]) - 20.0}))
 """
 )
 FILM = (
@@ -118,11 +143,38 @@ def test_a_format_is_read_by_compare_and_by_new(used, tmp_path):
     assert found["last"] == [4.0, 10.0, 24.0]
 
 
-def test_a_sensor_reads_by_its_own_law(used):
-    """IEC 60751: 1385.055 ohm at 100 degC."""
-    found = json.loads(used(SENSOR))
-    assert found["degC"] == pytest.approx([0.0, 100.0], abs=1e-3)
-    assert found == {**found, "sigma_K": 0.3, "hot": True, "place": "winding", "feeds": ""}
+@pytest.fixture(scope="module")
+def read(used, tmp_path_factory):
+    return json.loads(used(SENSOR, tmp_path_factory.mktemp("read")))
+
+
+def test_a_sensor_reads_by_its_own_law(read):
+    """IEC 60751: 1385.055 ohm at 100 degC. Copper at 1.393 times its resistance of 25 degC: 100 K warmer."""
+    assert read["last"]["pt"] == pytest.approx(100.0, abs=1e-3)
+    assert read["last"]["ratio"] == pytest.approx(125.0, abs=1e-9)
+
+
+def test_a_spot_as_warm_as_its_surroundings_is_that_and_a_mirror_is_warmer_than_it_looks(read):
+    """Emissivity 0.5, 80 degC seen: (2 * 353.15^4 - 293.15^4)^(1/4) K, by hand 392.5 K."""
+    assert read["first"]["spot"] == pytest.approx(20.0, abs=1e-9)
+    assert read["last"]["spot"] == pytest.approx(392.46 - 273.15, abs=0.05)
+
+
+def test_a_deviation_is_in_the_unit_of_the_readings(read):
+    """1.2 ohm over 3.79 ohm/K at 100 degC; 0.393 % over 0.393 %/K. A heat flux has none: it drives an input."""
+    assert read["sigma_K"]["pt"] == pytest.approx(1.2 / 3.79, rel=2e-3)
+    assert read["sigma_K"]["ratio"] == pytest.approx(1.0, rel=1e-6)
+    assert set(read["sigma_K"]) == set(read["hot"]) == {"pt", "ratio", "spot"}
+
+
+def test_a_heat_flux_drives_an_input_in_its_own_unit(read):
+    assert read["feeds"] == {"pt": "", "ratio": "", "spot": "", "flux": "heat_flux_W_m2"}
+    assert read["last"]["flux"] == pytest.approx(5000.0)
+
+
+def test_a_loss_follows_the_heat_flux(used):
+    """500 W/m2 into 0.01 m2 leave through 0.5 W/K: 10 K."""
+    assert json.loads(used(FLUX))["rise"] == pytest.approx(10.0, rel=1e-4)
 
 
 def test_a_correlation_carries_heat(used):

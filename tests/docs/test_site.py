@@ -1,10 +1,13 @@
 """The site builds strictly: no broken link, no missing picture, no page left out, every docstring found."""
 
+import json
 import os
 import subprocess
 import sys
 
 import pytest
+
+pytestmark = pytest.mark.heavy
 
 pytest.importorskip("material", reason="needs mkdocs-material: uv pip install mkdocs-material 'mkdocstrings[python]'")
 pytest.importorskip("mkdocstrings")
@@ -33,6 +36,14 @@ def test_reference_comes_from_the_docstrings(site):
 def test_gallery_shows_every_example(root, site):
     text = (site / "gallery.html").read_text()
     assert all(path.name in text for path in (root / "examples").glob("*.py"))
+
+
+def test_a_machine_can_be_turned_in_the_browser(site):
+    page = (site / "road-test-viewer.html").read_text()
+    data = json.loads(page.partition('id="data">')[2].partition("</script>")[0])
+    assert len(data["tests"]) == 5
+    assert {"flange.right", "winding.armature.left"} <= {part["name"] for part in data["parts"]}
+    assert "road-test-viewer.html" in (site / "gallery.html").read_text()
 
 
 def test_pages_ask_no_other_computer_for_anything(site):

@@ -165,6 +165,29 @@ def test_what_is_wrong_is_one_message(arguments, message, thermoscope, tmp_path)
     assert not (case / "out").exists()
 
 
+ONLY_IN_TOWN = """
+[[revision]]
+number = 1
+action = "add"
+effect = "convection@flange in town"
+effects = ["convection@flange in town"]
+why = "by hand"
+[revision.values]
+"convection@flange in town" = 3.0
+"""
+
+
+def test_a_law_that_c_cannot_have_ends_with_exit_code_2(thermoscope, tmp_path):
+    """Convection that held in one test alone: the message names it, and nothing is written."""
+    case = small_case(tmp_path)
+    (case / "model.toml").write_text(ONLY_IN_TOWN)
+    said = thermoscope("export", case, "--as", "c")
+    assert said.code == 2
+    assert said.err.count("error:") == 1
+    assert "convection@flange in town" in said.err.splitlines()[-1]
+    assert not (case / "out").exists()
+
+
 def test_the_command_writes_a_model(tmp_path, thermoscope):
     said = thermoscope("export", small_case(tmp_path), "--as", "json", "--limit", "winding=155", "--json", "-")
     assert said.code == 0, said.err

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from distinct_machines import DISTINCT
 
 from fem.matrices.assembly import assemble
 from fem.matrices.material import Conductivity
@@ -9,7 +10,9 @@ from fem.matrices.streams import Stream, cut, flowing
 from fem.matrices.terms import CopperLoss, Radiation
 from fem.solvers.newton import solve_nonlinear
 from fem.solvers.solve import Solver, steady
-from geom import build_mesh, library, load_machine
+from geom import build_mesh, load_machine
+
+pytestmark = pytest.mark.heavy
 
 TINY = {"size_m": 0.1, "segments": 36, "across": 1, "axial_m": 0.2}
 CELLS = 3
@@ -21,7 +24,7 @@ def losses(machine):
     return {part.name: 100.0 if "winding" in part.name else 20.0 for part in machine.parts}
 
 
-@pytest.fixture(scope="module", params=list(library()))
+@pytest.fixture(scope="module", params=DISTINCT)
 def machine(request):
     return load_machine(request.param)
 

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 import shapely
+from distinct_machines import DISTINCT
 from measures import area, facets_of_tets, keys, tet_volumes
 
 from geom import (
@@ -21,8 +22,10 @@ from geom import (
 from geom.machine_file import machine_from
 from geom.meshing.mesher import _planned
 
+pytestmark = pytest.mark.heavy
 
-@pytest.fixture(scope="module", params=library())
+
+@pytest.fixture(scope="module", params=DISTINCT)
 def meshed(request):
     machine = load_machine(request.param)
     return machine, build_mesh(machine, **COARSE)

@@ -8,6 +8,8 @@ from thinned import thinned
 from geom import check_cad, export_cad, library, load_machine
 from geom.solids.cad import solids
 
+pytestmark = pytest.mark.heavy
+
 
 def only_new_parts():
     """Machines with the parts that no machine before them has."""

@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.heavy
+
 
 def uv() -> str:
     beside = Path(sys.executable).with_name("uv")
@@ -41,6 +43,6 @@ def test_command_answers(elsewhere):
 
 
 def test_shipped_case_runs_without_the_checkout(elsewhere):
-    done = run(elsewhere, "compare", "hust-ipmsm", "--json", "-")
+    done = run(elsewhere, "compare", "tclab", "--no-bands", "--json", "-")
     assert done.returncode in (0, 1), done.stderr
-    assert json.loads(done.stdout)["case"] == "hust-ipmsm"
+    assert json.loads(done.stdout)["case"] == "tclab"

@@ -1,16 +1,12 @@
 """The small case, made once and copied, and ways to change its files."""
 
 import shutil
-import sys
 import tempfile
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 
 import pandas as pd
-
-sys.path.append(str(Path(__file__).resolve().parents[1] / "thermoscope"))
-
 from small_case import small_case
 
 

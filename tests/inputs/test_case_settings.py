@@ -203,10 +203,10 @@ SAID = {
 def test_accepted_with_a_note(tmp_path, change, note):
     case = case_of(tmp_path)
     change(case)
-    code, out, err = answered("test", "compare", case, "--no-bands")
-    assert code == 1
-    assert out.startswith("three, revision 0")
-    assert [line for line in err if line.startswith("note: ") and note in line]
+    done = answered("test", "compare", case, "--no-bands")
+    assert done.code == 1
+    assert done.out.startswith("three, revision 0")
+    assert [line for line in done.notes if note in line]
 
 
 def test_what_else_lies_in_a_case_does_not_matter(tmp_path):

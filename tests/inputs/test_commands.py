@@ -131,7 +131,9 @@ def test_what_a_cycle_says_and_nobody_reads_is_told(tmp_path):
     (case / "x.toml").write_text(CYCLE + DUTY.replace("current_A = 100", "current_A = 100\nfan_on = 1"))
     code, _, err = answered("use", "simulate", case, "--cycle", case / "x.toml", "--no-bands")
     assert code == 0
-    assert [line for line in err if line.startswith("note: ") and "no law of the model reads 'fan_on'" in line]
+    assert [
+        line for line in err.splitlines() if line.startswith("note: ") and "no law of the model reads 'fan_on'" in line
+    ]
 
 
 MAPS = {
@@ -192,7 +194,9 @@ def test_a_machine_without_losses_is_held_against_nothing(tmp_path, monkeypatch)
     assert "declares no losses" in refusal(tmp_path, "test", "compare", case)
     (case / "case.toml").write_text('[case]\nnetwork = "network.toml"\n')
     _, _, err = answered("use", "rate", case, "--limit", "winding=155", "--no-bands")
-    assert [line for line in err if line.startswith("note: ") and "100 W in its windings are assumed" in line]
+    assert [
+        line for line in err.splitlines() if line.startswith("note: ") and "100 W in its windings are assumed" in line
+    ]
 
 
 def test_a_rating_without_end_is_said_in_words(tmp_path):

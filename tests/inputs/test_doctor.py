@@ -1,19 +1,14 @@
 """The doctor: every illness that is put into a sound case is found, by test and column, and a sound case has none."""
 
-import json
-
 import numpy as np
 import pytest
+from command_line import answered
 from recordings import case_of, changed, edited
 
-from thermoscope.cli import main
 
-
-def asked(monkeypatch, capsys, case):
-    monkeypatch.setattr("sys.argv", ["thermoscope", "doctor", str(case), "--json", "-"])
-    with pytest.raises(SystemExit) as end:
-        main()
-    return end.value.code, json.loads(capsys.readouterr().out)
+def asked(case):
+    done = answered("doctor", case, "--json", "-")
+    return done.code, done.document
 
 
 def kelvin(table):
@@ -55,10 +50,10 @@ ILL = {
 
 
 @pytest.mark.parametrize("ill", ILL, ids=lambda ill: ill.__name__)
-def test_an_illness_is_found_with_its_test_and_a_cure(tmp_path, monkeypatch, capsys, ill):
+def test_an_illness_is_found_with_its_test_and_a_cure(tmp_path, ill):
     case = case_of(tmp_path)
     changed(case, "stand", ill)
-    answer, found = asked(monkeypatch, capsys, case)
+    answer, found = asked(case)
     mine = [f for f in found["doubts"] if ILL[ill] in f["what"]]
     assert answer == 1
     assert mine
@@ -66,35 +61,35 @@ def test_an_illness_is_found_with_its_test_and_a_cure(tmp_path, monkeypatch, cap
     assert all(f["cure"] for f in mine)
 
 
-def test_a_sound_case_has_only_the_input_that_no_law_reads(tmp_path, monkeypatch, capsys):
-    _, found = asked(monkeypatch, capsys, case_of(tmp_path))
+def test_a_sound_case_has_only_the_input_that_no_law_reads(tmp_path):
+    _, found = asked(case_of(tmp_path))
     assert found["wrong"] == []
     assert [(f["where"], f["remark"]) for f in found["doubts"]] == [("vehicle_speed_mps", True)]
 
 
-def test_milliseconds_in_one_test_are_found_by_its_rows(tmp_path, monkeypatch, capsys):
+def test_milliseconds_in_one_test_are_found_by_its_rows(tmp_path):
     case = case_of(tmp_path)
     changed(case, "stand", lambda table: table.__setitem__("time_s", 60.0 * table["time_s"]))
-    _, found = asked(monkeypatch, capsys, case)
+    _, found = asked(case)
     assert [f["test"] for f in found["doubts"] if "in the other tests" in f["what"]] == ["stand"]
 
 
-def test_two_names_for_one_recording(tmp_path, monkeypatch, capsys):
+def test_two_names_for_one_recording(tmp_path):
     case = case_of(tmp_path)
     (case / "tests/town.csv").write_bytes((case / "tests/road.csv").read_bytes())
-    _, found = asked(monkeypatch, capsys, case)
+    _, found = asked(case)
     assert [f["test"] for f in found["doubts"] if "two names" in f["what"]] == ["road, town"]
 
 
-def test_an_input_that_no_test_moves(tmp_path, monkeypatch, capsys):
+def test_an_input_that_no_test_moves(tmp_path):
     case = case_of(tmp_path)
     for test in ("stand", "road", "town"):
         changed(case, test, lambda table: table.__setitem__("current", 100.0))
-    _, found = asked(monkeypatch, capsys, case)
+    _, found = asked(case)
     assert "current_A" in [f["where"] for f in found["doubts"] if "moves" in f["what"]]
 
 
-def test_watts_that_are_kilowatts(tmp_path, monkeypatch, capsys):
+def test_watts_that_are_kilowatts(tmp_path):
     """0.2 read as W where 200 W were meant cannot have warmed 11 kJ/K by tens of kelvin."""
     case = case_of(tmp_path)
     old = 'kind = "copper"\nR20_ohm = 0.02\ncurrents = ["current_A"]'
@@ -104,26 +99,23 @@ def test_watts_that_are_kilowatts(tmp_path, monkeypatch, capsys):
         sheet = case / "tests" / f"{test}.toml"
         edited(sheet, 'quantity = "current"\nunit = "A"', 'quantity = "power"\nunit = "W"')
         changed(case, test, lambda table: table.__setitem__("current", 2e-5 * table["current"] ** 2))
-    _, found = asked(monkeypatch, capsys, case)
+    _, found = asked(case)
     assert {f["test"] for f in found["doubts"] if "kW?" in f["what"]} == {"stand", "road", "town"}
 
 
-def test_what_would_be_refused_is_told_for_every_test(tmp_path, monkeypatch, capsys):
+def test_what_would_be_refused_is_told_for_every_test(tmp_path):
     case = case_of(tmp_path)
     for test in ("stand", "road"):
         changed(case, test, lambda table: table.drop(columns="T_yoke", inplace=True))
-    answer, found = asked(monkeypatch, capsys, case)
+    answer, found = asked(case)
     assert answer == 2
     assert [f["test"] for f in found["wrong"]] == ["stand", "road"]
 
 
-def test_compare_says_the_first_things_that_look_wrong(tmp_path, monkeypatch, capsys):
+def test_compare_says_the_first_things_that_look_wrong(tmp_path):
     case = case_of(tmp_path)
     changed(case, "stand", spike)
-    monkeypatch.setattr("sys.argv", ["thermoscope", "compare", str(case), "--json", "-"])
-    with pytest.raises(SystemExit):
-        main()
-    err = capsys.readouterr().err
+    err = answered("compare", case, "--json", "-").err
     assert "note: stand, T_flange: 1 readings leap" in err
     assert "more such things" not in err
 
@@ -134,8 +126,8 @@ def test_compare_says_the_first_things_that_look_wrong(tmp_path, monkeypatch, ca
      (lambda v: 40.0 - v, "wires swapped"), (lambda v: v.where(v.index == 100), "was read 1 time in the whole test"),
      (lambda v: v.where(v.index % 200 == 0), "was read 2 times")],
 )  # fmt: skip
-def test_a_sensor_of_another_scale_or_hardly_read(tmp_path, monkeypatch, capsys, change, words):
+def test_a_sensor_of_another_scale_or_hardly_read(tmp_path, change, words):
     case = case_of(tmp_path)
     changed(case, "stand", lambda table: table.__setitem__("T_flange", change(table["T_flange"])))
-    _, found = asked(monkeypatch, capsys, case)
+    _, found = asked(case)
     assert [(f["test"], f["where"]) for f in found["doubts"] if words in f["what"]] == [("stand", "T_flange")]

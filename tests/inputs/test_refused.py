@@ -6,24 +6,10 @@ import os
 import tarfile
 
 import pytest
+from command_line import answered, contents
 from recordings import case_of, changed, edited
 
-from thermoscope.cli import main
-
 STAND = "tests/stand.toml"
-
-
-def answered(monkeypatch, capsys, *arguments):
-    """Exit code, stdout and the errors of a command in this process."""
-    monkeypatch.setattr("sys.argv", ["thermoscope", *map(str, arguments)])
-    with pytest.raises(SystemExit) as end:
-        main()
-    captured = capsys.readouterr()
-    return end.value.code, captured.out, [line for line in captured.err.splitlines() if line.startswith("error")]
-
-
-def contents(folder):
-    return {p: p.read_bytes() for p in sorted(folder.rglob("*")) if p.is_file()}
 
 
 def swap(file, old, new):
@@ -220,13 +206,13 @@ REFUSED = {
 
 
 @pytest.mark.parametrize(("spoil", "words"), REFUSED.values(), ids=REFUSED)
-def test_one_line_exit_2_files_as_before(tmp_path, monkeypatch, capsys, spoil, words):
+def test_one_line_exit_2_files_as_before(tmp_path, spoil, words):
     case = case_of(tmp_path)
     spoil(case)
     before = contents(tmp_path)
-    code, out, told = answered(monkeypatch, capsys, "compare", case)
-    assert (code, out, len(told)) == (2, "", 1)
-    assert [word for word in words if word not in told[0]] == []
+    done = answered("compare", case)
+    assert (done.code, done.out, len(done.errors)) == (2, "", 1)
+    assert [word for word in words if word not in done.errors[0]] == []
     assert contents(tmp_path) == before
 
 
@@ -236,23 +222,23 @@ def test_one_line_exit_2_files_as_before(tmp_path, monkeypatch, capsys, spoil, w
      ("--json", "tests/stand.toml", "stays"), ("--json", "tests", "no file"), ("--json", "", "no file"),
      ("--out", ".", "inputs"), ("--out", "tests", "inputs"), ("--out", "case.toml", "no folder")],
 )  # fmt: skip
-def test_results_never_go_over_inputs(tmp_path, monkeypatch, capsys, option, name, words):
+def test_results_never_go_over_inputs(tmp_path, option, name, words):
     case = case_of(tmp_path)
     before = contents(tmp_path)
     target = case / name if name else ""
     command = "compare" if option == "--json" else "simulate"
-    code, out, told = answered(monkeypatch, capsys, command, case, option, target)
-    assert (code, out, len(told)) == (2, "", 1)
-    assert words in told[0]
+    done = answered(command, case, option, target)
+    assert (done.code, done.out, len(done.errors)) == (2, "", 1)
+    assert words in done.errors[0]
     assert contents(tmp_path) == before
 
 
-def test_a_document_may_be_written_again(tmp_path, monkeypatch, capsys):
+def test_a_document_may_be_written_again(tmp_path):
     case = case_of(tmp_path)
     for _ in range(2):
-        assert answered(monkeypatch, capsys, "compare", case, "--json", tmp_path / "result.json")[0] == 1
+        assert answered("compare", case, "--json", tmp_path / "result.json")[0] == 1
     assert (tmp_path / "result.json").read_text().startswith("{")
 
 
-def test_a_seed_below_zero(tmp_path, monkeypatch, capsys):
-    assert answered(monkeypatch, capsys, "calibrate", case_of(tmp_path), "--seed", "-1")[0] == 2
+def test_a_seed_below_zero(tmp_path):
+    assert answered("calibrate", case_of(tmp_path), "--seed", "-1")[0] == 2

@@ -18,8 +18,6 @@ from lumped.transfer.coolant import coolant, glycol
 from lumped.transfer.exchanger import counterflow, crossflow, parallel_flow
 from lumped.transfer.hydraulics import (
     Duct,
-    fan_law,
-    fan_point,
     friction,
     helical_friction,
     parallel_shares,
@@ -203,11 +201,7 @@ def test_no_flow_no_pressure():
     assert pressure_drop(Duct(0.02, 0.006, 1.0, 4), 0.0, water(20.0)) == 0.0
 
 
-def test_fan_law_and_operating_point():
-    assert fan_law(2.0, 3.0, 5.0, 7.0) == (6.0, 20.0, 56.0)
-    flow, pressure = fan_point(200.0, 0.1, 3e4)
-    assert pressure == pytest.approx(200.0 * (1 - (flow / 0.1) ** 2))
-    assert fan_point(200.0, 0.1, 0.0)[0] == pytest.approx(0.1)
+def test_power_of_a_pump_by_hand():
     assert pumping_power(2e4, 1e-3, 0.5) == 40.0
 
 

@@ -16,7 +16,7 @@ POINT = {"current_A": 200.0, "speed_rpm": 1000.0, "fan_flow_m3h": 138.0}
 
 @pytest.fixture(scope="module")
 def motor():
-    return build(load_machine("series-dc-100kw"), recipe=Recipe(tolerance=0.03))
+    return build(load_machine("series-dc-100kw"), 0.1, 36, Recipe(tolerance=0.03))
 
 
 def test_uniform_temperature_moves_no_heat(motor):

@@ -4,17 +4,20 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from bare_networks import means_only
 
 from geom import library, load_machine
 from geom.errors import InputError
 from geom.machine_file import machine_from
+from lumped.condensation.reduction import Recipe
 from lumped.integration.balance import balance
 from lumped.integration.simulate import Record
 from lumped.integration.steady import steady
 from lumped.machine.bases import Switched
-from thermoscope.pipeline import build
+from thermoscope.pipeline import build, prepared
 
 LOAD = {"current_A": 8.0, "speed_rpm": 0.0}
+SMALL = Recipe(tolerance=0.1, shifts=(), random_points=0, max_states=60)
 PLACES = ("winding.copper", "magnets", "stator.core")
 
 
@@ -24,9 +27,14 @@ def sections(**bases):
     return {**tomllib.loads(Path(library()["pmsm-m1"]).read_text(encoding="utf-8")), "bases": bases}
 
 
+def coarse(machine):
+    """What is compared here is the same on any mesh."""
+    return build(machine, 0.1, 36, SMALL).network
+
+
 @pytest.fixture(scope="module")
 def both():
-    return build(machine_from(sections(bench="own", plate="pmsm-m1-plate"), "both.toml")).network
+    return coarse(machine_from(sections(bench="own", plate="pmsm-m1-plate"), "both.toml"))
 
 
 def rest(network, **switches):
@@ -37,7 +45,7 @@ def rest(network, **switches):
 @pytest.mark.parametrize(("name", "on"), [("pmsm-m1", (1, 0)), ("pmsm-m1-plate", (0, 1))])
 def test_on_one_base_it_is_that_machine(both, name, on):
     """Within 1 % of the rise: the mesh has other layers, and the other foot's print meets the air."""
-    alone = rest(build(load_machine(name)).network).y - 20.0
+    alone = rest(coarse(load_machine(name))).y - 20.0
     together = rest(both, on_bench=on[0], on_plate=on[1]).y - 20.0
     assert together == pytest.approx(alone, rel=0.01)
 
@@ -52,7 +60,7 @@ def test_a_foot_that_is_not_there_takes_no_heat(both):
 def test_bare_machine_has_the_outer_area_of_one_without_base(both):
     """The face and both footprints together are the face of the machine that was drawn without a base."""
     prints = [both.places[name].area for name in ("stator.core.outer", "foot.print", "foot.plate.print")]
-    bare = build(load_machine("pmsm-m1-no-base")).network.places["stator.core.outer"].area
+    bare = means_only(prepared(load_machine("pmsm-m1-no-base"), 0.1, 36)).places["stator.core.outer"].area
     assert sum(prints) == pytest.approx(bare, rel=1e-3)
 
 

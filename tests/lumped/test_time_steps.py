@@ -19,7 +19,7 @@ from lumped.transfer.laws import Fixed, InputPower, Linear
 PAGE = Path(__file__).parents[2] / "docs" / "network-toml.md"
 DOCUMENTED = read_network(tomllib.loads(re.findall(r"```toml\n(.*?)```", PAGE.read_text(), re.S)[0]))
 PRINCIPLE = 0.01  # K, beyond what is allowed
-SEEDS = range(1000, 1030)
+SEEDS = range(1000, 1012)  # benchmarks/time_steps.py takes a thousand
 
 
 def pump(before, step):

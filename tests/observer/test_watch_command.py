@@ -7,8 +7,8 @@ import sys
 
 import numpy as np
 import pytest
+from command_line import RUN
 from small_case import HEADER, measured, small_case, write_csv
-from thermoscope_command_line import RUN
 
 
 @pytest.fixture(scope="module")

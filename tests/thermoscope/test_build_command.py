@@ -11,6 +11,8 @@ from geom.machine_file import machine_from
 from thermoscope.commands.model import build as command
 from thermoscope.pipeline import build as pipeline
 
+pytestmark = pytest.mark.heavy
+
 FEW = {
     "series-dc-100kw": {"rotor": {"slots": 12}, "housing": {"fins": 8}},
     "pmsm-m1": {"stator": {"slots": 9, "liner_gap_mm": 0.5}, "rotor": {"poles": 6}},

@@ -5,6 +5,7 @@ import subprocess
 import sys
 
 import pytest
+from command_line import RUN
 from small_case import small_case
 
 STRENGTH = 6.0  # W/K at 10 m/s: the convection hidden in the data
@@ -78,7 +79,7 @@ def test_channels_have_the_contract_s_fields(story):
 
 
 def test_progress_goes_to_stderr(story):
-    assert "reading stand" in story[1]["wrong"].err
+    assert "reading stand" in story[1]["calibrate"].err
 
 
 def test_revisions_are_kept_with_evidence(story):
@@ -133,6 +134,18 @@ def test_help_loads_nothing_slow():
     code = "import sys, thermoscope.cli; print([m for m in ('numpy', 'scipy', 'numba', 'pandas') if m in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert done.stdout.strip() == "[]", done.stderr
+
+
+def test_compare_loads_what_runs_a_network_alone(case):
+    """Most of what a comparison of few nodes takes is loading packages: NumPy and Numba are needed, these are not."""
+    slow = ["pandas", "scipy.special", "scipy.sparse", "scipy.optimize", "scipy.stats", "scipy.interpolate", "tkinter",
+            "matplotlib", "plotly", "pint", "CoolProp", "ht", "fluids", "openpyxl", "ruptures", "uncertainties",
+            "jsonschema", "geom.solids", "fem", "viz", "validation.inference.posterior"]  # fmt: skip
+    end = f"atexit.register(lambda: print(*[m for m in {slow} if m in sys.modules], file=sys.stderr))"
+    command = [sys.executable, "-c", f"import atexit, sys; {end}; {RUN}", "test", "compare", str(case)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=500)
+    assert done.returncode == 1, done.stderr
+    assert done.stderr.splitlines()[-1] == ""
 
 
 def test_report_and_pictures_of_a_declared_network(story, thermoscope, tmp_path):

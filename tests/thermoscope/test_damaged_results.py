@@ -7,22 +7,13 @@ import time
 
 import numpy as np
 import pytest
+from command_line import answered
 from small_case import small_case
 
 from geom.disk_cache import recalled
 from lumped.condensation.basis_cache import BasisCache, Centre
 from thermoscope import caches
-from thermoscope.cli import main
 from thermoscope.importing.written import folder_whole
-
-
-def answered(monkeypatch, capsys, *words):
-    """Exit code and errors of a command in this process."""
-    monkeypatch.setattr(sys, "argv", ["thermoscope", *map(str, words)])
-    with pytest.raises(SystemExit) as end:
-        main()
-    told = capsys.readouterr().err.splitlines()
-    return end.value.code, [line for line in told if line.startswith("error:")], "\n".join(told)
 
 
 def folder(file):
@@ -73,10 +64,8 @@ def original(tmp_path_factory):
         patch.setenv("THERMOSCOPE_CACHE", str(tmp_path_factory.mktemp("cache")))
         patch.setattr("viz.write_pdf", lambda page: None)  # a browser reads the page, nothing of out/
         case = small_case(tmp_path_factory.mktemp("original"))
-        for command in ("calibrate", "diagnose"):
-            patch.setattr(sys, "argv", ["thermoscope", command, str(case), *(["--anyway"] * (command == "calibrate"))])
-            with pytest.raises(SystemExit):
-                main()
+        answered("calibrate", case, "--anyway")
+        answered("diagnose", case)
         shutil.copy(case / "out/diagnosis.json", case / "out/calibration.json")
         yield case
 
@@ -85,14 +74,14 @@ def original(tmp_path_factory):
     ("name", "words", "damage"),
     [*((*reader, damage) for reader in READERS for damage in BYTES.values()), (*SLOW, cut)],
 )
-def test_damaged_bytes_are_said_and_not_used(original, tmp_path, monkeypatch, capsys, name, words, damage):
+def test_damaged_bytes_are_said_and_not_used(original, tmp_path, name, words, damage):
     case = shutil.copytree(original, tmp_path / "case")
     damage(case / "out" / name)
-    code, errors, told = answered(monkeypatch, capsys, *words.format(case=case).split())
-    assert f"{name} is damaged and is not used" in told
+    done = answered(*words.format(case=case).split())
+    assert f"{name} is damaged and is not used" in done.err
     asks = words.startswith(("answer", "add"))  # they need a diagnosis: told to make one
-    assert (code, len(errors)) == ((2, 1) if asks else (0, 0))
-    assert not asks or "diagnose first" in errors[0]
+    assert (done.code, len(done.errors)) == ((2, 1) if asks else (0, 0))
+    assert not asks or "diagnose first" in done.errors[0]
 
 
 @pytest.mark.parametrize("damage", PLACES.values(), ids=PLACES)
@@ -100,14 +89,14 @@ def test_damaged_bytes_are_said_and_not_used(original, tmp_path, monkeypatch, ca
     ("name", "words"),
     [*READERS, SLOW, ("diagnosis.json", "diagnose {case}")],
 )
-def test_what_is_no_file_is_named_with_its_cure(original, tmp_path, monkeypatch, capsys, name, words, damage):
+def test_what_is_no_file_is_named_with_its_cure(original, tmp_path, name, words, damage):
     case = shutil.copytree(original, tmp_path / "case")
     damage(case / "out" / name)
     before = (case / "model.toml").read_bytes()
-    code, errors, _ = answered(monkeypatch, capsys, *words.format(case=case).split())
-    assert (code, len(errors)) == (2, 1)
-    assert str(case / "out" / name) in errors[0]
-    assert "delete it" in errors[0]
+    done = answered(*words.format(case=case).split())
+    assert (done.code, len(done.errors)) == (2, 1)
+    assert str(case / "out" / name) in done.errors[0]
+    assert "delete it" in done.errors[0]
     assert (case / "model.toml").read_bytes() == before
 
 
@@ -118,31 +107,31 @@ WRITTEN = {
 
 
 @pytest.mark.parametrize("words", WRITTEN)
-def test_results_go_over_damaged_ones_and_not_over_folders(original, tmp_path, monkeypatch, capsys, words):
+def test_results_go_over_damaged_ones_and_not_over_folders(original, tmp_path, words):
     case = shutil.copytree(original, tmp_path / "case")
     file = case / "out" / WRITTEN[words]
     file.parent.mkdir(parents=True, exist_ok=True)
     file.write_bytes(b"\xff\x00damaged")
     command = words.format(case=case).split()
-    assert answered(monkeypatch, capsys, *command)[:2] == (0, [])
+    assert answered(*command).code == 0
     assert b"damaged" not in file.read_bytes()[:10]
     folder(file)
-    code, errors, _ = answered(monkeypatch, capsys, *command)
-    assert (code, len(errors)) == (2, 1)
-    assert str(file) in errors[0]
+    done = answered(*command)
+    assert (done.code, len(done.errors)) == (2, 1)
+    assert str(file) in done.errors[0]
     assert (file / "a.txt").exists()
 
 
 @pytest.mark.parametrize("damage", BYTES.values(), ids=BYTES)
-def test_a_damaged_cache_is_made_again(original, tmp_path, monkeypatch, capsys, damage):
+def test_a_damaged_cache_is_made_again(original, tmp_path, monkeypatch, damage):
     """What calibration left unsure, which `simulate` draws its bands from."""
     monkeypatch.setenv("THERMOSCOPE_CACHE", str(tmp_path / "cache"))
     case = shutil.copytree(original, tmp_path / "case")
-    assert answered(monkeypatch, capsys, "simulate", case)[0] == 0
+    assert answered("simulate", case).code == 0
     (kept,) = caches.cache_folder().glob("belief-*.npz")
     sound = kept.read_bytes()
     damage(kept)
-    assert answered(monkeypatch, capsys, "simulate", case)[:2] == (0, [])
+    assert answered("simulate", case).code == 0
     assert np.load(kept)["covariance"].shape == np.load(_file(tmp_path, sound))["covariance"].shape
 
 

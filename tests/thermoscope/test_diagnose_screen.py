@@ -2,7 +2,7 @@
 
 import pytest
 
-from thermoscope.commands.explain.diagnose import _candidates, _leader
+from thermoscope.commands.explain.diagnose import _candidates, _leader, _lost, events
 from thermoscope.console.answer import LINES, Answer, lay_out
 
 
@@ -33,3 +33,23 @@ def test_the_detection_limit_stands_beside_the_size(unit):
 
 def test_without_a_likely_leader_there_is_no_limit_of_it():
     assert _leader([candidate("mass@yoke", "kg", 0.001, "no")]) == []
+
+
+def test_why_the_rivals_lost():
+    """A refitted rival by the sensor it fits worse, the others by their evidence beside the leader's."""
+    lead = {**candidate("convection@flange", "W/K"), "note": "", "score": 37.54}
+    close = {**candidate("radiation@flange", "1", 0.2, "no"), "note": "fits T_flange in road worse by 5.1 nats"}
+    far = {**candidate("mass@yoke", "kg", 0.001, "no"), "note": "", "score": -0.16}
+    said = _lost([lead, {**close, "score": 20.0}, far], ["convection@flange"])
+    assert said == [
+        "Against radiation@flange: it fits T_flange in road worse by 5.1 nats than convection@flange.",
+        "Rivals alone have less evidence: mass@yoke -0.2; convection@flange 37.5 nats.",
+    ]
+    assert _lost([far], []) == []
+
+
+def test_improbable_stretches_wait_for_all():
+    row = {"words": "from 9 to 46 min", "effect": "mass@yoke in town", "value": 1.0, "unit": "kg"}
+    document = {"events": [{**row, "probability": 0.0}, {**row, "probability": 0.4}]}
+    assert [r[0] for grid in events(document) for r in grid.rows] == ["event@2"]
+    assert [r[0] for grid in events(document, likely=False) for r in grid.rows] == ["event@1"]

@@ -16,9 +16,8 @@ POINT = {"current_A": 8.0, "speed_rpm": 0.0}
 
 @pytest.fixture(scope="module")
 def built():
-    return build(
-        load_machine("pmsm-m1-no-base"), recipe=Recipe(tolerance=0.1, shifts=(), random_points=0, max_states=60)
-    )
+    small = Recipe(tolerance=0.1, shifts=(), random_points=0, max_states=60)
+    return build(load_machine("pmsm-m1-no-base"), 0.1, 36, small)
 
 
 def test_laws_point_by_point_move_heat_to_where_it_is_hot(built):

@@ -2,13 +2,10 @@
 
 import json
 import shutil
-import sys
 
 import numpy as np
 import pytest
 from small_case import small_case
-
-from thermoscope.cli import main
 
 NETWORK = """
 [network]
@@ -75,20 +72,6 @@ def equal_tests(folder, offsets):
     return folder
 
 
-@pytest.fixture
-def ask(monkeypatch, capsys):
-    """ask(*arguments) -> exit code, stdout, stderr of the command line in this process."""
-
-    def run(*arguments):
-        monkeypatch.setattr(sys, "argv", ["thermoscope", *map(str, arguments)])
-        with pytest.raises(SystemExit) as end:
-            main()
-        captured = capsys.readouterr()
-        return end.value.code, captured.out, captured.err
-
-    return run
-
-
 def test_curves_of_equal_tests(thermoscope, tmp_path):
     """20 h are seven time constants: equilibrium; the rise over ambient follows the two resistances by hand."""
     done = thermoscope("curves", equal_tests(tmp_path / "two", (-0.3, 0.0, 0.3)), "--json", "-")
@@ -105,8 +88,8 @@ def test_curves_of_equal_tests(thermoscope, tmp_path):
     assert (equal["tests"], equal["place"], equal["n"], equal["repeat"]) == (list(RUNS), "core", 3, True)
 
 
-def test_curves_shows_them_and_the_pool(ask, tmp_path):
-    code, out, _ = ask(
+def test_curves_shows_them_and_the_pool(thermoscope, tmp_path):
+    code, out, _ = thermoscope(
         "curves", equal_tests(tmp_path / "two", (-0.3, 0.0, 0.3)), "--all", "--json", tmp_path / "found.json"
     )
     assert code == 0
@@ -115,8 +98,8 @@ def test_curves_shows_them_and_the_pool(ask, tmp_path):
     assert "run-1, run-2, run-3" in out
 
 
-def test_curves_that_do_not_repeat_exit_with_1(ask, tmp_path):
-    code, out, _ = ask("curves", equal_tests(tmp_path / "two", (-4.0, 0.0, 4.0)), "--json", "-")
+def test_curves_that_do_not_repeat_exit_with_1(thermoscope, tmp_path):
+    code, out, _ = thermoscope("curves", equal_tests(tmp_path / "two", (-4.0, 0.0, 4.0)), "--json", "-")
     assert code == 1
     assert '"repeat": false' in out
 
@@ -135,10 +118,10 @@ def test_curves_that_do_not_repeat_exit_with_1(ask, tmp_path):
         (("screen", "pmsm-m1", "--design", "thirds"), "no design 'thirds'"),
     ],
 )
-def test_what_they_refuse(ask, tmp_path, command, words):
+def test_what_they_refuse(thermoscope, tmp_path, command, words):
     """One message on stderr, exit code 2, nothing on stdout."""
     case = small_case(tmp_path)
-    code, out, err = ask(*(case if word == "CASE" else word for word in command))
+    code, out, err = thermoscope(*(case if word == "CASE" else word for word in command))
     assert (code, out) == (2, ""), err
     (message,) = [line for line in err.splitlines() if line.startswith("error:")]
     assert words in message
@@ -151,9 +134,9 @@ def test_resolution_has_to_be_one(thermoscope, case):
     assert "--resolution" in done.err
 
 
-def test_screen_gives_the_effects(ask, tmp_path):
+def test_screen_gives_the_effects(thermoscope, tmp_path):
     """Tables on stdout, and a half-normal plot with its Pareto chart for every response."""
-    code, out, err = ask("screen", "pmsm-m1", "--design", "half", "--all", "--out", tmp_path)
+    code, out, err = thermoscope("screen", "pmsm-m1", "--design", "half", "--all", "--out", tmp_path)
     assert code == 0
     names = {"magnets", "winding", "end-winding", "lamination", "winding-minus-magnets", "R_w"}
     assert {p.stem for p in tmp_path.glob("*.png")} == names
@@ -162,10 +145,10 @@ def test_screen_gives_the_effects(ask, tmp_path):
     assert "high - low (mK/W)" in out
 
 
-def test_two_paths_by_hand(ask, tmp_path):
+def test_two_paths_by_hand(thermoscope, tmp_path):
     """R_w of two nodes is 1 / 20 K/W, R_ext 1 / 5 K/W, and constant resistances leave nothing at other loads."""
     case = equal_tests(tmp_path / "two", (0.0, 0.0, 0.0))
-    code, out, _ = ask("two-paths", case, "--winding", "winding", "--machine", "core", "--json", "-")
+    code, out, _ = thermoscope("two-paths", case, "--winding", "winding", "--machine", "core", "--json", "-")
     found = json.loads(out)["tests"]["run-1"]
     assert code == 0
     assert found["R_w"] == pytest.approx(0.05, rel=1e-6)
@@ -173,14 +156,14 @@ def test_two_paths_by_hand(ask, tmp_path):
     assert found["largest_residual_K"] < 1e-6
 
 
-def test_carry_to_another_case(ask, tmp_path):
+def test_carry_to_another_case(thermoscope, tmp_path):
     """A machine that is the same agrees; one that is read 6 K off does not, and the exit code says so."""
     source = equal_tests(tmp_path / "two", (0.0, 0.0, 0.0))
     other = shutil.copytree(source, tmp_path / "other")
-    assert ask("carry", source, other, "--json", "-")[0] == 0
+    assert thermoscope("carry", source, other, "--json", "-")[0] == 0
     shutil.rmtree(other)
     equal_tests(other, (0.0, 6.0, 0.0))
-    code, out, _ = ask("carry", source, other, "--json", "-")
+    code, out, _ = thermoscope("carry", source, other, "--json", "-")
     assert code == 1
     rows = json.loads(out)["targets"][0]["rows"]
     assert [r["within"] for r in rows] == [True, False, True]

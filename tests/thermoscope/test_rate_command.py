@@ -49,8 +49,27 @@ def test_the_continuous_rating_is_the_rest_of_the_network(thermoscope, tmp_path)
     values = [rows[f]["value"] for f in ("S1", "S6 40 %", "S2 60 s", "S2 10 s")]
     assert values == sorted(values)
     assert 0.0 < document["overload"]["from_warm_s"] < document["overload"]["from_cold_s"]
-    shares = {d["value"]: d["share"] for d in document["derating"] if d["of"] == "ambient"}
-    assert shares[60.0] == pytest.approx(0.6**0.5, rel=5e-3)
+    derated = {(d["of"], d["value"]): d for d in document["derating"]}
+    assert derated["ambient", 60.0]["share"] == pytest.approx(0.6**0.5, rel=5e-3)
+    here = derated["ambient", 20.0]["share_ci95"]
+    assert here == pytest.approx([low / rows["S1"]["value"], high / rows["S1"]["value"]], rel=1e-2)
+    for d in derated.values():
+        assert d["share_ci95"][0] < d["share"] < d["share_ci95"][1]
+        assert d["share_before"] is None
+
+
+def test_ratings_stand_beside_those_of_the_model_before(thermoscope, tmp_path):
+    """Convection that was added carries more away: before it the same surroundings allowed less."""
+    case = small_case(tmp_path)
+    assert thermoscope("add", case, "convection@flange").code == 0
+    asked = ("--limit", "winding=120", "--at", "ambient=20")
+    said = thermoscope("use", "rate", case, *asked, "--json", "-")
+    assert said.code == 0, said.err
+    first = said.document["ratings"][0]
+    derated = {(d["of"], d["value"]): d for d in said.document["derating"]}
+    assert derated["ambient", 20.0]["share_before"] == pytest.approx(first["before"] / first["value"], rel=5e-3)
+    warm = derated["ambient", 60.0]
+    assert 0.0 < warm["share_before"] < warm["share"] < derated["ambient", 20.0]["share"]
 
 
 def test_what_is_wrong_is_one_message(thermoscope, tmp_path):

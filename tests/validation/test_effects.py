@@ -27,8 +27,12 @@ COOLING = [
 HEATING = ["iron", "windage", "bearing.friction", "brush.drop", "brush.friction", "loss.winding", "loss.rotor",
            "loss.constant", "iron.pwm", "copper.ac", "copper.feedback"]  # fmt: skip
 SHARED = {
-    f"validation.effects.{name}" for name in ("above", "base", "build", "during", "time_window", "registry", "sites")
-}
+    f"validation.effects.{name}"
+    for name in (
+        "above", "base", "build", "during", "time_window", "registry", "sites", "losses.added_loss",
+        "films.ambient_film", "sensors.reading_fault", "sensors.input_fault",
+    )
+}  # fmt: skip
 
 
 @pytest.fixture(scope="module")

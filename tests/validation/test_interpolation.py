@@ -10,13 +10,13 @@ def test_one_doubt_and_one_sensor_is_the_textbook_shrinkage():
     """Rasmussen and Williams, eq. 2.25 for one point: mean k / (k + s^2) r, variance told the same share."""
     found = interpolated(np.array([[2.0], [1.0]]), np.array([[2.0]]), np.array([3.0]), np.array([1.0]))
     assert found.mean == pytest.approx([4 / 5 * 3, 2 / 5 * 3])
-    assert found.told == pytest.approx([4 / 5, 4 / 5])
+    assert found.explained == pytest.approx([4 / 5, 4 / 5])
 
 
 def test_a_place_that_shares_no_doubt_with_a_sensor_is_a_guess():
     found = interpolated(np.array([[0.0, 2.0]]), np.array([[1.0, 0.0]]), np.array([3.0]), np.array([0.1]))
     assert found.mean == pytest.approx([0.0])
-    assert found.told == pytest.approx([0.0])
+    assert found.explained == pytest.approx([0.0])
 
 
 def test_without_noise_it_passes_through_the_readings():
@@ -24,7 +24,7 @@ def test_without_noise_it_passes_through_the_readings():
     here = rng.normal(size=(3, 8))
     found = interpolated(here, here, np.array([1.0, -2.0, 0.5]), np.full(3, 1e-6))
     assert found.mean == pytest.approx([1.0, -2.0, 0.5], abs=1e-6)
-    assert found.told == pytest.approx(1.0)
+    assert found.explained == pytest.approx(1.0)
 
 
 def test_what_is_left_has_the_variance_it_says():
@@ -36,5 +36,5 @@ def test_what_is_left_has_the_variance_it_says():
         d = rng.normal(size=6)
         found = interpolated(there, here, here @ d + sigma * rng.normal(size=3), sigma)
         rest.append(there @ d - found.mean)
-    expected = (1 - found.told) * (there**2).sum(axis=1)
+    expected = (1 - found.explained) * (there**2).sum(axis=1)
     assert np.mean(np.square(rest), axis=0) == pytest.approx(expected, rel=0.09)

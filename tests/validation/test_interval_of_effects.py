@@ -2,14 +2,14 @@
 
 import pytest
 
-from validation.doubt import TABLE, TEMPER
+from validation.doubt import TABLE
 from validation.effects.registry import kinds
 from validation.inference.tables import NORMAL_95, interval
 
 
 def test_what_is_exact_is_as_wide_as_the_refit_says():
     low, high = interval(10.0, 2.0)
-    assert (high - low) / 2.0 == pytest.approx(NORMAL_95 * 2.0 * TEMPER.share**0.5)
+    assert (high - low) / 2.0 == pytest.approx(NORMAL_95 * 2.0)
     assert (low + high) / 2.0 == pytest.approx(10.0)
 
 

@@ -9,7 +9,7 @@ from playground import Truth, wind
 from scipy.integrate import quad
 from scipy.stats import norm
 
-from validation.doubt import PRIOR, TABLE, TEMPER, USUAL, widened
+from validation.doubt import PRIOR, TABLE, TEMPER, USUAL, nats_worth, temper, widened
 from validation.effects import effect
 from validation.inference.decision import SURE, decide
 from validation.inference.detection import smallest
@@ -66,8 +66,19 @@ def test_two_effects_that_share_nothing_are_worth_what_each_is():
 
 def test_probabilities_follow_bayes_with_tempered_evidence():
     """A Bayes factor of 20 to the power of the temper counts as one of 20."""
-    hypotheses = [Hypothesis(log_prior=np.log(0.5)), Hypothesis((0,), "", np.log(0.1), TEMPER.share * np.log(20.0))]
+    first, more = TEMPER["temper"].share, TEMPER["temper per nat"].share
+    nats = nats_worth(np.log(20.0))
+    assert nats / (first + more * nats) == pytest.approx(np.log(20.0))
+    hypotheses = [Hypothesis(log_prior=np.log(0.5)), Hypothesis((0,), "", np.log(0.1), nats)]
     np.testing.assert_allclose(probabilities(hypotheses), [0.5 / 2.5, 2.0 / 2.5])
+
+
+def test_what_an_effect_of_another_shape_leaves_names_no_second_one():
+    """However large an effect is: a rival that catches all that 15 % of its shape leave gains less than e^2.5."""
+    for nats in (1.0, 30.0, 300.0, 1e4):
+        left = 0.15**2 * nats
+        assert left / temper(nats) < 2.5
+    assert temper(-5.0) == temper(0.0) == TEMPER["temper"].share
 
 
 def test_prior_shares_sum_to_their_classes():
@@ -134,7 +145,7 @@ def test_an_effect_of_the_smallest_detectable_size_is_seen_four_times_in_five():
     a, k = smallest(e), 0
     V, sd = e.score.V[k, k], e.parameters[k].prior_sd
     u = a[k] * V + np.sqrt(V) * rng.standard_normal(4000)
-    limit = np.log(PRIOR["nothing"].share / prior_shares(e)[k])
+    limit = nats_worth(np.log(PRIOR["nothing"].share / prior_shares(e)[k]))
     seen = np.mean(one_size(u, np.full(4000, V), np.full(4000, sd), np.ones(4000, int)) > limit)
     assert seen == pytest.approx(0.8, abs=0.03)
 

@@ -69,7 +69,7 @@ def test_how_long_at_half_as_much_again():
 
 def test_derating_over_ambient_and_altitude():
     """Load ~ sqrt(limit - ambient); still air thins as density^0.5, so the load as its root."""
-    found = {(d.of, d.value): d.load / REST for d in deratings(model(), OP, LIMIT)}
+    found = {(d.where.of, d.where.value): d.load / REST for d in deratings(model(), OP, LIMIT)}
     assert_allclose(found["ambient", 60.0], np.sqrt(0.6), rtol=3e-3)
     assert_allclose(found["altitude", 4000.0], density(4000.0) ** 0.25, rtol=3e-3)
     assert_allclose(density(4000.0), 0.669, atol=1e-3)  # international standard atmosphere

@@ -13,6 +13,7 @@ from viz.data import Comparison
 from viz.figures import candidates as scores
 from viz.figures import curves, errors, paper, screening
 from viz.labels import spread_labels
+from viz.live import sensor as live_sensor
 
 EFFECTS = {
     "margin": 1.0, "simultaneous": 1.8,
@@ -133,3 +134,18 @@ def test_what_would_have_to_differ_is_drawn_with_what_cannot(tmp_path):
     assert [t.get_text().strip("\u00a0") for t in ax.texts] == ["-1 K", "x 2.7"]
     colours = [bar.get_facecolor() for bar in ax.patches]
     assert colours[0] != colours[1]
+
+
+def test_the_band_around_readings_is_what_counts_as_within():
+    """As wide as twice the limit of the sensor, on paper and in the browser."""
+    c = comparison()
+    channel = next(ch for ch in c.channels if ch.name == "flange.right")
+    c = replace(c, limits={**c.limits, channel.name: 3.7})
+    figure = curves.measured_and_model(c)
+    ax = next(ax for ax in figure.axes if ax.get_title(loc="left") == "flange.right")
+    around = ax.collections[-1].get_paths()[0].vertices
+    at = around[:, 0] == np.median(around[1:, 0])
+    assert np.ptp(around[at, 1]) == pytest.approx(2 * 3.7)
+    low, high, *_, residual = live_sensor(c, channel.name).data
+    assert np.asarray(high.y) - np.asarray(low.y) == pytest.approx(2 * 3.7)
+    assert np.nanmax(np.abs(residual.y)) == pytest.approx(np.nanmax(np.abs(c.residual(channel)[c.thin])))

@@ -1,6 +1,10 @@
 """The page in the browser: it holds the fields it was made from, and a browser draws it without complaint."""
 
+import json
 import shutil
+import subprocess
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,7 +17,7 @@ from viz.data import Comparison
 from viz.viewer.flux import nodal_flux
 from viz.viewer.low_rank import ERROR_K, low_rank
 from viz.viewer.packing import packed_integers, packed_numbers, unpacked
-from viz.viewer.page import Recorded, document, render, write_viewer
+from viz.viewer.page import Earlier, Recorded, document, render, write_viewer
 
 NODES = split(motor(24))
 TIMES = np.linspace(0.0, 3600.0, 13)
@@ -61,11 +65,10 @@ def test_the_page_holds_the_fields_it_was_made_from(before):
     one = recorded(before)
     held = document("motor", NODES, [one], PLACE)
     mean, shapes = unpacked(held["mean"])[:, 0], unpacked(held["shapes"])
-    for key, fields in (("now", one.fields), ("before", one.before)):
-        if fields is not None:
-            T = mean + np.array(held["tests"][0][key]) @ shapes.T
-            assert np.abs(T - fields).max() < 1.5 * ERROR_K
-    assert (held["tests"][0]["before"] is None) == (not before)
+    states = held["tests"][0]["states"]
+    assert len(states) == 1 + before
+    for state, fields in zip(states, one.states, strict=True):
+        assert np.abs(mean + np.array(state) @ shapes.T - fields).max() < 1.5 * ERROR_K
     assert np.abs(unpacked(held["points"]) - NODES.points).max() < 1e-5
 
 
@@ -140,3 +143,24 @@ def test_the_browser_mixes_the_same_heat_flux(tmp_path):
         assert page.evaluate("viewer.range[1]") >= np.quantile(expected, 0.95)
         browser.close()
     assert np.abs(found - expected).max() < 0.02 * expected.max()
+
+
+@pytest.mark.skipif(shutil.which("node") is None, reason="no node")
+@pytest.mark.parametrize(("left", "right"), [(1, 0), (2, 1), (0, 2)])
+def test_any_two_revisions_stand_left_and_right_of_the_line(tmp_path, left, right):
+    """The page's own script, run by node: what it would draw on each side, and the residuals of the right one."""
+    one = recorded()
+    read = {n: y + 2.0 for n, y in one.comparison.model.items()}
+    one = replace(
+        one, comparison=replace(one.comparison, before=one.comparison.model), earlier=(Earlier(warming(40.0), read),)
+    )
+    page = tmp_path / "page.html"
+    page.write_text(render(document("motor", NODES, [one], PLACE, revisions=["2: a", "1: b", "0: as it was"])))
+    script = Path(__file__).with_name("viewer_in_node.js")
+    done = subprocess.run(["node", script, page, str(left), str(right)], capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
+    drawn = json.loads(done.stdout)
+    values = np.array(drawn["values"]).reshape(-1, 2)
+    for side, state in ((0, right), (1, left)):
+        assert np.abs(values[:, side] - one.states[state][-1]).max() < 2 * ERROR_K
+    assert drawn["residuals"] == pytest.approx([3.0 if right == 2 else 5.0] * len(PLACE), abs=0.02)

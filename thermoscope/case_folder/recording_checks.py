@@ -18,7 +18,7 @@ KELVIN, OFF_K = 273.15, 15.0  # how near a start has to be to that of the others
 APART_K = 12.0  # how far it has to be as it stands
 SPIKE_K, SPIKE_TIMES = 8.0, 20.0  # a reading that leaps and comes back, in K and in usual steps of its column
 UNEVEN = 0.5  # of a long step of a clock, between nine in ten and one in ten of all
-WARM_K = 3.0
+WARM_K = 3.0  # a test in which nothing warms by more shows nothing
 LEAST_READINGS = 3  # of a sensor in a test, as of rows
 
 
@@ -144,9 +144,10 @@ def _twins(p: Patient) -> Iterator[Finding]:
 
 
 def _noted(p: Patient) -> Iterator[Finding]:
-    """Doubts of the reader that are no gaps."""
+    """Doubts of the reader that are no gaps, nor of what stands still throughout."""
+    still = [f"column '{f.where}': stands at" for f in _frozen(p)]
     for note in p.samples.notes:
-        if "no rows from" not in note:
+        if "no rows from" not in note and not any(words in note for words in still):
             yield p.found("", note, "look at it; use = false leaves a column out")
 
 

@@ -172,12 +172,14 @@ def _padded(text: str, width: int, right: bool) -> str:
 
 
 def cell(value: Any) -> str:
-    """A value as a table shows it: numbers to three digits."""
+    """A value as a table shows it: numbers to three digits, and no exponent below a million."""
     if value is None or (isinstance(value, float) and not math.isfinite(value)):
         return "-"
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, float):
+        if 1000 <= abs(value) < 1e6:
+            return f"{value:.0f}"
         return f"{value:.2f}" if 0.1 <= abs(value) < 1000 else f"{value:.3g}"
     if isinstance(value, list | tuple):
         return ", ".join(cell(v) for v in value)

@@ -39,6 +39,7 @@ class ObserverModel:
     """model : the network with the missing heat of every body as an input;  given : the inputs that a user sets
 
     table_sd (m,) W that the table of doubt allows;  rise_K : usual rise of the tests
+    bias (s,) K that the sensors read too much
     """
 
     model: Model
@@ -48,6 +49,7 @@ class ObserverModel:
     rise_K: float
     sensors: tuple[Channel, ...]
     heats: tuple[str, ...]
+    bias: Array
 
     @property
     def given(self) -> tuple[str, ...]:
@@ -64,12 +66,13 @@ class ObserverModel:
 
 def observer_model(
     process: Process, noise: ProcessNoise, table_sd: Array, rise_K: float, sensors: Sequence[Channel],
-    tests: Sequence[Test], looks: Sequence[Output],
+    tests: Sequence[Test], looks: Sequence[Output], bias: Array | None = None,
 ) -> ObserverModel:  # fmt: skip
     """Raises InputError where it would not fit on a controller."""
     network, names = with_missing_heat(process.network, process.bodies)
     model = packed(network, process.values, tests, looks)
-    made = ObserverModel(model, process, noise, table_sd, rise_K, tuple(sensors), names)
+    off = np.zeros(len(sensors)) if bias is None else bias
+    made = ObserverModel(model, process, noise, table_sd, rise_K, tuple(sensors), names, off)
     if made.bytes > MOST_BYTES:
         what = (
             f"an observer of {process.size} temperatures and heats with {len(sensors)} sensors takes {made.bytes} bytes"
@@ -113,16 +116,16 @@ def _data(of: ObserverModel) -> str:
     sigma = np.array([c.sigma_K for c in of.sensors])
     names = tuple(c.name for c in of.sensors)
     odds = hypotheses(names, sigma, np.hypot(sigma, USUAL["gain"] * of.rise_K), of.process.bodies, of.table_sd)
-    places = [network.places[c.place].part if c.place in network.places else c.place for c in of.sensors]
     numbers: Mapping[str, float] = {
         "NOISE_S": of.noise.time_s, "LONGEST_S": LONGEST_S, "HELD_FOR_S": HELD_S, "START_K": USUAL["start"],
         "COLDEST_C": COLDEST, "HOTTEST_C": HOTTEST, "OUTLIER_SD": faults.OUTLIER, "LOST_AFTER_S": faults.LOST_S,
         "BACK_AFTER_S": faults.BACK_S, "FROZEN_AFTER_S": faults.FROZEN_S, "LONGER_RUN": faults.LONGER,
         "MOVED_SD": faults.MOVED, "FORGETS_AFTER_S": tests_of.FORGETS_S, "SURE_FROM": tests_of.SURE,
-        "DOUBT_SD": tests_of.ALLOWED, "TEMPER_BY": TEMPER.share,
+        "DOUBT_SD": tests_of.ALLOWED, "TEMPER_BY": TEMPER["temper"].share,
+        "TEMPER_PER_NAT": TEMPER["temper per nat"].share,
     }  # fmt: skip
     m = len(of.process.bodies)
-    root = "},\n{".join(", ".join(f"{v:.9g}" for v in row) for row in of.noise.root)
+    root = "},\n{".join(", ".join(f"{v:.17g}" for v in row) for row in of.noise.root)
     return "\n".join([
         "/* The numbers of the observer; see thermal_observer_sizes.h. */",
         *(f"#define {name} {value:.17g}" for name, value in numbers.items()),
@@ -132,7 +135,8 @@ def _data(of: ObserverModel) -> str:
         f"static const double NOISE_ROOT[][{max(m, 1)}] = {{{{{root or '0'}}}}};",
         ints("SENSOR_START", np.concatenate([[0], np.cumsum([r.index.size for r in rows])])),
         ints("SENSOR_AT", joined(r.index for r in rows)), reals("SENSOR_WEIGHT", joined(r.weights for r in rows)),
-        ints("SENSOR_STATE", [network.column(p) for p in places]), reals("SENSOR_SD", sigma),
+        ints("SENSOR_STATE", [of.process.state(c) for c in of.sensors]), reals("SENSOR_SD", sigma),
+        reals("SENSOR_BIAS", of.bias),
         reals("LAG_S", [c.lag_s for c in of.sensors]), reals("TABLE_SD", of.table_sd),
         reals("ALLOWED_SD", odds.allowed), reals("SPREAD_SD", odds.spread), reals("LOG_PRIOR", odds.prior), "",
     ])  # fmt: skip

@@ -16,6 +16,7 @@ from thermoscope.importing.source import Source
 Array = NDArray[np.float64]
 EARLY, LATER = 0.05, 0.10  # of a column's range; the line through both crossings tells where the change began
 NOISE_TIMES = 6.0  # in standard deviations of the noise: a change, not a wobble
+WHOLE_S = 10.0  # from where on a test is cut at whole seconds
 STILL = 5  # readings that say where a column starts
 
 
@@ -51,6 +52,26 @@ def shift(first: Recording, other: Recording) -> tuple[float, str]:
     moved = a - b
     _overlapping(first, other, moved)
     return moved, f"onset of '{by}' and '{of}', +- {first.step_s + other.step_s:.2g} s"
+
+
+def common(
+    records: Sequence[Recording], window_s: tuple[float, float | None]
+) -> tuple[tuple[float, float | None], tuple[str, ...]]:
+    """From and to (s from the first row) where all recorders ran, within the window; a note if that is less of it."""
+    first, start, end = records[0], *window_s
+    last = float(first.clock.seconds[-1])
+    ends = [float(r.clock.seconds[-1]) + r.shift_s for r in records[1:]]
+    begins = max([start, *(float(r.clock.seconds[0]) + r.shift_s for r in records[1:])])
+    stops = min([last if end is None else min(end, last), *ends])
+    if begins >= stops:
+        raise InputError("the recorders never all run in the part asked for", ", ".join(r.name for r in records),
+                         "--from and --to within all of them")  # fmt: skip
+    cut = begins > start or stops < (last if end is None else min(end, last))
+    if not cut:
+        return window_s, ()
+    if stops - begins > WHOLE_S:
+        begins, stops = float(np.ceil(begins)), float(np.floor(stops))
+    return (begins, stops), (f"the test is where all recorders ran: {begins:.6g} to {stops:.6g} s of {first.name}",)
 
 
 def _overlapping(first: Recording, other: Recording, moved: float) -> None:

@@ -3,9 +3,17 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from datetime import date, datetime, time
 
 NUMBER = re.compile(r"[-+]?(\d+([.,]\d*)?|[.,]\d+)([eE][-+]?\d+)?")
+# Digits in threes: with a decimal part, in several groups, or with a sign between them that is no decimal sign.
+GROUPED = re.compile(
+    r"[-+]?[1-9]\d{0,2}(?:(?:\.\d{3})+,\d+|(?:,\d{3})+\.\d+|(?:\.\d{3}){2,}|(?:,\d{3}){2,}"
+    r"|(?:['\u2019 \u00a0\u202f]\d{3})+(?:[.,]\d+)?)"
+)
+ONE_GROUP = re.compile(r"[-+]?[1-9]\d{0,2}([.,])\d{3}")
+DECIMAL = re.compile(r"^[-+]?\d*([.,])\d+(?:[eE][-+]?\d+)?$")
 CLOCK = re.compile(r"\d{1,3}:\d{2}(:\d{2})?([.,]\d+)?(\s?[AaPp][Mm])?")
 DATE = re.compile(r"(\d{4}[-/.]\d{1,2}[-/.]\d{1,2}|\d{1,2}[-/.]\d{1,2}[-/.]\d{2,4})([T ].*)?")
 EMPTY = frozenset({"", "nan", "-", "--", "---", "n/a", "na", "null", "none", "#n/a", "inf", "-inf", "overload"})
@@ -38,13 +46,45 @@ OTHER = frozenset({
 
 
 def number(cell: object) -> float:
-    """The number in a cell, nan where there is none; a decimal comma is a point."""
+    """The number in a cell, nan where there is none; a decimal comma is a point, digits may stand in threes."""
     if isinstance(cell, bool):
         return float(cell)
     if isinstance(cell, int | float):
         return float(cell)
     text = str(cell).strip()
-    return float(text.replace(",", ".")) if NUMBER.fullmatch(text) else float("nan")
+    if NUMBER.fullmatch(text):
+        return float(text.replace(",", "."))
+    return float(_ungrouped(text)) if GROUPED.fullmatch(text) else float("nan")
+
+
+def _ungrouped(text: str) -> str:
+    """1.234,5 and 1 234,5 and 1,234.5 -> 1234.5"""
+    found = re.search(r"[.,](\d+)$", text)
+    last = "" if found is None or text.count(found[0][0]) > 1 else found[0]
+    return re.sub(r"[^\d+-]", "", text.removesuffix(last)) + last.replace(",", ".")
+
+
+def in_thousands(columns: Sequence[Sequence[object]]) -> dict[int, list[object]]:
+    """Columns whose points, or commas, stand between thousands, without them: where all others have decimal commas,
+    1.500 is 1500.  columns : cells of a text file; a file with both decimal signs says nothing"""
+    text = {j: [c for c in cells if isinstance(c, str)] for j, cells in enumerate(columns)}
+    marked = {j: found for j, cells in text.items() if (found := [c for c in cells if "," in c or "." in c])}
+    groups = {j: sign for j, cells in marked.items() if (sign := _grouping(cells))}
+    decimals = {m[1] for j, cells in marked.items() if j not in groups for c in cells if (m := DECIMAL.search(c))}
+    if len(decimals) != 1:
+        return {}
+    return {
+        j: [c.replace(sign, "") if isinstance(c, str) else c for c in columns[j]]
+        for j, sign in groups.items() if sign not in decimals
+    }  # fmt: skip
+
+
+def _grouping(cells: Sequence[str]) -> str:
+    """The sign that stands before three digits in every cell that has one, "" if a cell says otherwise."""
+    if not ONE_GROUP.fullmatch(cells[0].strip()):
+        return ""  # most columns
+    signs = {match[1] if (match := ONE_GROUP.fullmatch(c.strip())) else "" for c in cells}
+    return signs.pop() if len(signs) == 1 else ""
 
 
 def is_clock(cell: object) -> bool:
@@ -62,7 +102,9 @@ def is_reading(cell: object) -> bool:
     if isinstance(cell, int | float | datetime | date | time):
         return True
     text = str(cell).strip()
-    return bool(NUMBER.fullmatch(text)) or text.lower() in EMPTY | SWITCH.keys() or is_clock(text) or is_date(text)
+    if NUMBER.fullmatch(text) or GROUPED.fullmatch(text):
+        return True
+    return text.lower() in EMPTY | SWITCH.keys() or is_clock(text) or is_date(text)
 
 
 def unit_of(text: str) -> str:

@@ -16,7 +16,7 @@ from thermoscope.importing.words import tokens
 INSTANTS = 2000  # of a test on the analysis grid; more cost time and tell little
 NICE = (1, 2, 5)
 AXES = ({"id", "iq"}, {"ialpha", "ibeta"})  # components whose squares add up to the current's
-STILL = 5
+STILL = 5  # readings whose median a column starts from
 
 
 @dataclass(frozen=True)

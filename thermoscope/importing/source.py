@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
-from thermoscope.importing.cells import EMPTY, SWITCH, number, split_unit
+from thermoscope.importing.cells import EMPTY, SWITCH, in_thousands, number, split_unit
 from thermoscope.importing.rows import layout
 from thermoscope.importing.text import text_rows
 from thermoscope.recordings.formats import READERS, TIME, opened, read_frame
@@ -111,11 +111,14 @@ def _of_rows(file: Path, rows: list[Any]) -> Source:
     plan = layout(rows, str(file))
     body = [row for row in rows[plan.first :] if any(c is not None and str(c).strip() for c in row)]
     columns = [[row[j] if j < len(row) else None for row in body] for j in range(plan.width)]
+    whole = in_thousands(columns)
+    columns = [whole.get(j, cells) for j, cells in enumerate(columns)]
     names = plan.names if all(plan.names) else tuple(name or f"column {j + 1}" for j, name in enumerate(plan.names))
     unnamed = not any(plan.names)
     notes = [f"{file.name}: no header; columns are called after their number"] if unnamed else []
     if plan.preamble:
         notes.append(f"{file.name}: {plan.preamble} lines before the header are left out")
+    notes += [f"{file.name}: the sign in the numbers of '{_once(names)[j]}' stands between thousands" for j in whole]
     found = _source(file, _once(names), columns, dict(zip(_once(names), plan.units, strict=True)), notes)
     return replace(found, unnamed=unnamed)
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import itertools
 import json
+import re
 from collections.abc import Sequence
 
 import numpy as np
@@ -22,6 +23,7 @@ ASSUMED_W = 100.0  # heat of a machine of which nobody recorded any
 SETTLES = 0.3  # of the record: most tests last three time constants
 POWERS = {"power": 1.0, "current": 2.0, "share": 1.0}  # of a loss that follows it
 HEATS = tuple(POWERS)  # in the order in which a record tells the heat
+PLATINUM = re.compile(r"(?i)pt[ -]?10{2,3}(?!\d)")  # the number is part of the sensor's name
 SPREAD = 1.0  # prior of everything here, in powers of e
 
 
@@ -51,9 +53,9 @@ def place_of(g: Guess, label: str) -> str:
     """A node called after the column, or the boundary that its name means; "" for what is no temperature."""
     if g.quantity != "temperature" or WANTED & set(tokens(label)):
         return ""
-    words = [w for w in tokens(label) if w not in QUANTITY["temperature"]]
+    words = [w for w in tokens(PLATINUM.sub(" ", label)) if w not in QUANTITY["temperature"]]
     role = next(iter(roles_of(label)), None)
-    named = "-".join(words) if any(not w.isdigit() for w in words) else f"part-{'-'.join(words) or '1'}"
+    named = "-".join(words) if any(not w.isdigit() for w in words) else "-".join(["part", *words])
     return BOUNDARIES.get(role, named) if role is not None else named
 
 

@@ -11,7 +11,7 @@ from thermoscope.importing.words import INLET, roles_of, tokens
 from thermoscope.recordings.units import QUANTITIES
 
 WORD, ROLE, DIGIT, EXTRA = 2.0, 1.5, 1.0, 0.1  # worth of a shared word, of a role, of a number; of a word too many
-LEAST = 0.8
+LEAST = 0.8  # likeness of two names below which none is guessed; chosen
 FLUID = frozenset({"air", "gap", "stream"})
 UNITS = {q.feeds.rpartition("_")[2]: name for name, q in QUANTITIES.items() if q.feeds}  # A -> current
 SIDES = (
@@ -26,14 +26,20 @@ SIDES = (
 
 @dataclass(frozen=True)
 class Target:
-    """places : where a sensor may sit -> what it is;  boundaries, inputs alike (inputs -> what they measure)"""
+    """places : where a sensor may sit -> what it is;  boundaries, inputs alike (inputs -> what they measure)
+
+    known : header without its unit -> its place, of a network that was made from the headers
+    """
 
     places: Mapping[str, Role | None] = field(default_factory=dict)
     boundaries: Mapping[str, Role | None] = field(default_factory=dict)
     inputs: Mapping[str, str] = field(default_factory=dict)
+    known: Mapping[str, str] = field(default_factory=dict)
 
     def place_of(self, label: str) -> tuple[str, str]:
         """The place or boundary a name means and what it could be as well, "" where nothing fits."""
+        if label in self.known:
+            return self.known[label], ""
         return _best({n: _likeness(label, n, role) for n, role in {**self.places, **self.boundaries}.items()})
 
     def input_of(self, label: str, quantity: str) -> str:

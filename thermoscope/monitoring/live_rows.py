@@ -116,7 +116,7 @@ class LiveTable:
     def _values(self, c: Column, lines: Sequence[Sequence[str]], first: int) -> Array:
         at = self.header.index(c.header)
         raw = np.array([self._number(line, at, c.header, first + i) for i, line in enumerate(lines)])
-        read = converted(raw, c.quantity, c.unit)
+        read = c.in_memory(raw)
         return np.asarray(read if c.electrical is None else c.electrical.temperature(read), float)
 
     def _number(self, line: Sequence[str], at: int, name: str, number: int) -> float:

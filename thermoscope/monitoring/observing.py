@@ -1,11 +1,10 @@
-"""The observer of a case. Its process noise is calibrated once for the sensors at hand, and kept."""
+"""The observer of a case. What the calibration tests teach it is learned once, and kept."""
 
 from __future__ import annotations
 
 import hashlib
 import io
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -16,67 +15,55 @@ from geom.errors import InputError
 from lumped.integration.record import Record
 from lumped.schemas.reader import known
 from lumped.transfer.laws import CLOCK
-from thermoscope.bands import case_key, posterior_of
+from thermoscope.bands import case_key
 from thermoscope.caches import cache_folder
 from thermoscope.case_folder.files import write_whole
 from thermoscope.case_folder.folder import Folder, Progress
 from thermoscope.monitoring.live_rows import Rows
 from thermoscope.verification.error_budget import model_of
 from validation.case import RUNNING, Channel
-from validation.observer import Observer, ProcessNoise, observer
-from validation.observer.learning import calibrated_noise, usual_rise
-from validation.observer.process import Process, bodies_of
+from validation.observer import Observer
+from validation.observer.learning import Design, Lesson, design_of, narrowed, taught, unsettled
+from validation.observer.process import bodies_of
 from validation.observer.process_noise import most_doubtful, of_doubt
 from validation.threads import one_blas_thread
 
 Array = NDArray[np.float64]
-LAYOUT = 1  # of a kept file: a change here makes old ones be left alone
-
-
-@dataclass(frozen=True)
-class ObserverDesign:
-    """Everything an observer is made of but its first readings.  table_sd (m,) W;  rise_K : usual rise of the tests"""
-
-    process: Process
-    noise: ProcessNoise
-    table_sd: Array
-    rise_K: float
-
-    def started(self, sensors: Sequence[Channel], first: Rows) -> Observer:
-        readings = np.array([first.readings[c.name][0] for c in sensors])
-        around = {n: float(u[0]) for n, u in first.boundaries.items()}
-        return observer(self.process, self.noise, self.table_sd, sensors, readings, around, self.rise_K)
+LAYOUT = 2  # of a kept file: a change here makes old ones be left alone
 
 
 @one_blas_thread
-def designed(folder: Folder, at_hand: Sequence[str], progress: Progress) -> ObserverDesign:
-    """For some sensors; from the cache where this very case was looked at before."""
+def designed(folder: Folder, progress: Progress) -> Design:
+    """What the calibration tests taught; from the cache where this very case was looked at before."""
     network, values = model_of(folder)
+    network = narrowed(network, values, folder.case)
     tests = [t for t in folder.case.tests if t.role == "calibrate"]
-    file = cache_folder() / f"noise-{_key(folder, at_hand)}.npz"
-    held = recalled(file, _kept)
-    if held is None:
-        posterior = posterior_of(folder, progress)
-        progress("missing heat that the table of doubt allows")
-        bodies, table = most_doubtful(bodies_of(network), of_doubt(posterior, tests, bodies_of(network)))
-        process = Process(network, values, bodies)
-        noise = calibrated_noise(process, tests, table, at_hand, progress)
-        held = bodies, noise, np.sqrt(np.diag(table))
-        out = io.BytesIO()
-        np.savez_compressed(out, bodies=np.array(bodies), covariance=noise.covariance, time_s=noise.time_s, sd=held[2])
-        write_whole(file, out.getvalue())
-    bodies, noise, sd = held
-    return ObserverDesign(Process(network, values, bodies), noise, sd, usual_rise(tests))
+    file = cache_folder() / f"observer-{_key(folder)}.npz"
+    held = recalled(file, _from_cache)
+    if held is not None:
+        return design_of(network, values, held, tests, folder.case.doubt)
+    progress("missing heat that the table of doubt allows")
+    bodies, table = most_doubtful(bodies_of(network), of_doubt(unsettled(folder.case), tests, bodies_of(network)))
+    lesson = taught(network, values, bodies, table, tests, folder.case.doubt, progress)
+    out = io.BytesIO()
+    np.savez_compressed(out, bodies=np.array(bodies), table=table, constants=lesson.constants)
+    write_whole(file, out.getvalue())
+    return design_of(network, values, lesson, tests, folder.case.doubt)
 
 
-def _kept(file: Path) -> tuple[tuple[str, ...], ProcessNoise, Array]:
+def _from_cache(file: Path) -> Lesson:
     with np.load(file) as held:
-        noise = ProcessNoise(held["covariance"], float(held["time_s"]))
-        return tuple(str(b) for b in held["bodies"]), noise, held["sd"]
+        return Lesson(tuple(str(b) for b in held["bodies"]), held["table"], held["constants"])
 
 
-def _key(folder: Folder, at_hand: Sequence[str]) -> str:
-    return hashlib.sha256(repr((LAYOUT, case_key(folder), sorted(at_hand))).encode()).hexdigest()[:20]
+def _key(folder: Folder) -> str:
+    return hashlib.sha256(repr((LAYOUT, case_key(folder))).encode()).hexdigest()[:20]
+
+
+def started(design: Design, sensors: Sequence[Channel], first: Rows) -> Observer:
+    """An observer at its first rows."""
+    readings = np.array([first.readings[c.name][0] for c in sensors])
+    return design.started(sensors, readings, {n: float(u[0]) for n, u in first.boundaries.items()})
 
 
 def chosen(here: Sequence[Channel], given: Sequence[str], where: str) -> list[Channel]:

@@ -32,7 +32,7 @@ from validation.procedure.measuring.switch_off import Cooling, Extrapolated, exp
 
 Array = NDArray[np.float64]
 QUANTITIES = ("resistance", "back_emf")
-LEAST_K = 0.1
+LEAST_K = 0.1  # no meter makes a channel surer than that
 METHODS: Mapping[str, Callable[[Cooling, float], Extrapolated]] = {
     "exponentials": lambda cooling, rated: exponentials(cooling),
     "150 %": lambda cooling, rated: rule_150(cooling),

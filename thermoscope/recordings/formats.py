@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from geom.errors import InputError, MissingDependency
 from geom.plugins import plugins
 from lumped.schemas.reader import known
-from thermoscope.recordings.csv_file import read_csv
+from thermoscope.recordings.csv_file import NumberTable, read_csv
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -206,11 +206,20 @@ def merged(
     return out
 
 
-def numbers(table: pd.DataFrame, name: str, file: Path) -> Array:
+def numbers(table: pd.DataFrame | NumberTable, name: str, file: Path) -> Array:
     """A column as numbers, NaN where nothing was read; InputError with the line of what is no finite number."""
+    column = table[name]
+    found = column if isinstance(column, np.ndarray) else _numbers(column, name, file)
+    endless = np.flatnonzero(np.isinf(found))
+    if endless.size:
+        raise InputError("the value is infinite", cell(file, name, int(endless[0])), "a finite number")
+    return found
+
+
+def _numbers(column: pd.Series[Any], name: str, file: Path) -> Array:
+    """Of a column of any type."""
     import pandas as pd
 
-    column = table[name]
     if column.dtype.kind in "mM":
         raise InputError("holds instants, no numbers", f"{file} column '{name}'", "numbers, or another column")
     found = np.array(pd.to_numeric(column, errors="coerce"), float)
@@ -218,9 +227,6 @@ def numbers(table: pd.DataFrame, name: str, file: Path) -> Array:
     if bad.size:
         raise InputError(f"'{column.iloc[bad[0]]}' is no number", cell(file, name, int(bad[0])),
                          "a number with a decimal point, or nothing where nothing was read")  # fmt: skip
-    endless = np.flatnonzero(np.isinf(found))
-    if endless.size:
-        raise InputError("the value is infinite", cell(file, name, int(endless[0])), "a finite number")
     return found
 
 

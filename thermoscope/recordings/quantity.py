@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,10 +16,12 @@ class Quantity:
     """units : unit -> (factor, offset) into the unit of memory;  feeds : the network input it drives by default
 
     degC : of a sensor that does not read degC by itself, what its readings in the unit of memory say (degC)
-    sigma_K : usual standard deviation of such a sensor, where a sheet gives none
+    sigma : usual standard deviation of such a sensor in the unit of memory, where a sheet gives none
+    settings : what else degC needs to know, key of a sheet -> usual value: an emissivity, a cold resistance
     """
 
     units: dict[str, tuple[float, float]]
     feeds: str = ""
-    degC: Callable[[Array], Array] | None = None
-    sigma_K: float = 0.5
+    degC: Callable[..., Array] | None = None
+    sigma: float = 0.0
+    settings: Mapping[str, float] = field(default_factory=dict)

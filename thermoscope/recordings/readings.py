@@ -61,11 +61,11 @@ def read_test(
 
 @dataclass(frozen=True)
 class Sensor:
-    """A channel without its readings, and the columns whose mean it shows.  carried : up to the last instant"""
+    """A channel without its readings, and the columns whose mean it shows.  at_switch_off : it ends there"""
 
     channel: Channel
     columns: tuple[str, ...]
-    carried: bool = False
+    at_switch_off: bool = False
 
 
 def _recorded(sheet: Sheet, samples: Samples) -> dict[str, Array]:
@@ -192,7 +192,7 @@ def _means(sheet: Sheet, network: Network) -> list[Sensor]:
 def _seen(sensor: Sensor, samples: Samples, grid: Array) -> Array:
     """Readings on the grid; a value carried back to the instant of switching off stands at its end."""
     y = np.mean([read(samples.time, samples.values[name], grid) for name in sensor.columns], axis=0)
-    if sensor.carried:
+    if sensor.at_switch_off:
         y[-1] = samples.values[sensor.columns[0]][-1]
     return np.asarray(y)
 

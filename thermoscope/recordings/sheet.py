@@ -8,17 +8,23 @@ from math import inf
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from geom.description.toml_file import read_toml
 from geom.errors import InputError
+from lumped.schemas.bounds import TINY
 from lumped.schemas.reader import Table
 from thermoscope.recordings.duplicates import declared_once
 from thermoscope.recordings.electrical import QUANTITIES as ELECTRICAL
 from thermoscope.recordings.electrical import Electrical, read_electrical
 from thermoscope.recordings.events import Events, read_events
-from thermoscope.recordings.units import QUANTITIES, checked_input, checked_unit, held_as
+from thermoscope.recordings.units import QUANTITIES, checked_input, checked_unit, converted, held_as, usual_sigma
+
+Array = NDArray[np.float64]
 
 FIRST = "first-readings"
-MAX_GAP_S = 120.0
+MAX_GAP_S = 120.0  # over which an input is drawn straight; machines move little in two minutes
 SENSORS = {"thermocouple": 0.5, "pt100": 0.3, "ntc": 0.5, "resistance": 2.0, "infrared": 2.0}  # usual 1-sigma, K
 
 
@@ -28,6 +34,7 @@ class Column:
 
     sigma_K, lag_s : of the sensor;  position_mm : (x, y, z) on the machine where known;  where : its table in the file
     written : its name in the recording;  electrical : how a resistance or a voltage becomes a temperature
+    sigma : standard deviation in `unit`, of a sensor that does not read degC;  settings : what the sheet says of that
     """
 
     name: str
@@ -41,6 +48,17 @@ class Column:
     where: str
     written: str = ""
     electrical: Electrical | None = None
+    sigma: float = 0.0
+    settings: Mapping[str, float] = field(default_factory=dict)
+
+    def in_memory(self, read: Array) -> Array:
+        """Readings (in `unit`) in the unit of memory, of a sensor degC."""
+        return converted(read, self.quantity, self.unit, self.settings)
+
+    def deviation_K(self, read: Array) -> float:
+        """What `sigma` is in kelvin: by the slope of the sensor's curve at its readings, rms."""
+        above, below = self.in_memory(read + self.sigma), self.in_memory(read - self.sigma)
+        return float(np.sqrt(np.nanmean(np.square(0.5 * (above - below)))))
 
     @property
     def is_temperature(self) -> bool:
@@ -176,14 +194,28 @@ def _column(name: str, table: Table, filtered: float, folder: Path) -> Column | 
     kind = table.kind("sensor", "resistance" if electrical else "thermocouple", SENSORS)
     place, feeds = table.word("place", None if hot else ""), "" if hot else table.word("input", QUANTITIES[of].feeds)
     of = of if hot else held_as(of, checked_input(of, feeds, table.where))
-    usual = 0.0 if electrical else QUANTITIES[of].sigma_K if QUANTITIES[of].degC else SENSORS[kind]
-    sigma = table.number("sigma_K") if "sigma_K" in table else usual
+    sigma, settings = _of_its_own(of, unit, table)
+    usual = 0.0 if electrical or sigma else SENSORS[kind]
+    sigma_K = table.number("sigma_K") if "sigma_K" in table else usual
     lag, written = table.number("lag_s", 0.0) + filtered, table.word("column", name)
     position = table.numbers("position_mm", [])
     if len(position) not in (0, 3):
         raise table.error(f"position_mm has {len(position)} numbers", "position_mm = [x, y, z]")
     table.close()
-    return Column(name, of, unit, place, feeds, sigma, lag, position, table.where, written, electrical)
+    return Column(
+        name, of, unit, place, feeds, sigma_K, lag, position, table.where, written, electrical, sigma, settings
+    )
+
+
+def _of_its_own(of: str, unit: str, table: Table) -> tuple[float, dict[str, float]]:
+    """Standard deviation in the unit of the column, 0 where it is said in kelvin, and settings; of a sensor's kind."""
+    quantity = QUANTITIES[of]
+    settings = {name: table.number(name, usual) for name, usual in quantity.settings.items()}
+    if quantity.degC is None or ("sigma_K" in table and "sigma" not in table):
+        return 0.0, settings
+    if "sigma_K" in table:
+        raise table.error("sigma and sigma_K are both given", f"sigma ({unit}), or sigma_K of the temperature")
+    return table.number("sigma", usual_sigma(of, unit), low=TINY), settings
 
 
 def _recorder(table: Table, folder: Path) -> Recorder:

@@ -14,6 +14,7 @@ from geom.errors import InputError
 from lumped.schemas.bounds import COLDEST, HOTTEST
 from lumped.schemas.reader import known
 from thermoscope.recordings.alignment import clock_shift
+from thermoscope.recordings.csv_file import NumberTable, read_numbers
 from thermoscope.recordings.formats import HEADER, cell, merged, numbers, read_frame, recording
 from thermoscope.recordings.invalid_readings import code_note, coded
 from thermoscope.recordings.sheet import Column, Recorder, Sheet
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 GAP = 3.5  # times the usual step
-FROZEN_SHARE, FROZEN_MOVE_K = 0.2, 2.0
+FROZEN_SHARE, FROZEN_MOVE_K = 0.2, 2.0  # of the test without a change, while the others move by more
 SWITCHED = ("share", "fraction")  # what true and false can be
 LEAST = 3  # rows of a test
 LARGEST = 1e9  # of anything that is no temperature, in the unit of memory
@@ -71,25 +72,29 @@ def load_table(path: Path, sheet: Sheet) -> Samples:
         if table[column.header].dtype.kind == "b" and column.quantity not in SWITCHED:
             raise InputError(f"holds true and false, no {column.quantity}", f"{file} column '{column.header}'",
                              "numbers, or another column")  # fmt: skip
-        values[column.name], own = _in_memory(column, converted(raw, column.quantity, column.unit), file)
+        values[column.name], own = _in_memory(column, raw, file)
         if own is not None:
             sigma[column.name] = own
         notes += _look(column, values[column.name], file, rows.start)
     return Samples(file, time, values, gaps, (*notes, *_frozen(sheet.columns, time, values, file)), sigma, start)
 
 
-def _in_memory(column: Column, read: Array, file: Path) -> tuple[Array, float | None]:
-    """Values as memory holds them, and the 1-sigma that follows from electrical readings where the sheet gives none."""
+def _in_memory(column: Column, raw: Array, file: Path) -> tuple[Array, float | None]:
+    """Values as memory holds them, and the 1-sigma (K) that follows from the readings where the sheet gives none."""
+    read = column.in_memory(raw)
     if column.electrical is None:
-        return read, None
+        return read, column.deviation_K(raw) if column.sigma else None
     try:
         return column.electrical.temperature(read), None if column.sigma_K else column.electrical.sigma(read)
     except InputError as fault:
         raise InputError(fault.what, f"{file} column '{column.header}'", fault.right) from None
 
 
-def _frame(file: Path, sheet: Sheet) -> pd.DataFrame:
+def _frame(file: Path, sheet: Sheet) -> pd.DataFrame | NumberTable:
     """The recording, and those of other recorders moved to its clock."""
+    plain = file.suffix == ".csv" and not (sheet.recorders or sheet.worksheet)
+    if plain and (table := read_numbers(file)) is not None and len(table) >= LEAST:
+        return table
     main = read_frame(file, sheet.worksheet)
     if not sheet.recorders:
         return main
@@ -120,7 +125,7 @@ def _has(table: pd.DataFrame, names: Sequence[str], where: str) -> None:
             raise InputError(f"column '{name}' is not in the file", where, right)
 
 
-def _times(table: pd.DataFrame, sheet: Sheet, file: Path) -> Array:
+def _times(table: pd.DataFrame | NumberTable, sheet: Sheet, file: Path) -> Array:
     if not sheet.time:
         return np.asarray(np.arange(len(table)) * sheet.period_s, float)
     t = _seconds(table, sheet, file)
@@ -129,18 +134,19 @@ def _times(table: pd.DataFrame, sheet: Sheet, file: Path) -> Array:
         raise InputError("a time is missing", cell(file, sheet.time, int(missing[0])), "a time in every row")
     wrong = np.flatnonzero(np.diff(t) <= 0)
     if wrong.size:
-        row, written = int(wrong[0]) + 1, table[sheet.time]
-        what = "is given twice" if t[row] == t[row - 1] else f"comes after {written.iloc[row - 1]}"
+        row = int(wrong[0]) + 1
+        written = [f"{w:.15g}" if isinstance(w, float) else w for w in table[sheet.time]]
+        what = "is given twice" if t[row] == t[row - 1] else f"comes after {written[row - 1]}"
         count = f" ({wrong.size} such rows)" if wrong.size > 1 else ""
-        raise InputError(f"time {written.iloc[row]} {what}{count}", cell(file, sheet.time, row),
+        raise InputError(f"time {written[row]} {what}{count}", cell(file, sheet.time, row),
                          "times that rise from row to row: sort the file by time and delete repeated rows")  # fmt: skip
     return np.asarray(t - t[0], float)
 
 
-def _seconds(table: pd.DataFrame, sheet: Sheet, file: Path) -> Array:
+def _seconds(table: pd.DataFrame | NumberTable, sheet: Sheet, file: Path) -> Array:
     """Of the column of times: numbers in its unit, or instants where the format has such."""
     column = table[sheet.time]
-    if column.dtype.kind in "mM":
+    if not isinstance(column, np.ndarray) and column.dtype.kind in "mM":
         since = column - column.min() if column.dtype.kind != "m" else column
         return np.asarray(since.dt.total_seconds(), float)
     try:

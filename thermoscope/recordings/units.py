@@ -6,7 +6,7 @@ Units in the table are known by heart; any other goes to pint, which refuses one
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from functools import cache
 from math import isfinite, pi
 from typing import Any
@@ -94,11 +94,21 @@ def held_as(of: str, name: str) -> str:
     return "fraction" if of == "share" and not name.endswith("_percent") else of
 
 
-def converted(values: Array, of: str, unit: str) -> Array:
-    """Values in the unit of memory; of a sensor of another quantity degC."""
-    factor, offset = QUANTITIES[of].units.get(unit) or _by_pint(of, unit) or (1.0, 0.0)
+def converted(values: Array, of: str, unit: str, settings: Mapping[str, float] | None = None) -> Array:
+    """Values in the unit of memory; of a sensor of another quantity degC, with what its column says of the sensor."""
+    factor, offset = _scale(of, unit)
     held, degC = values * factor + offset, QUANTITIES[of].degC
-    return held if degC is None else np.asarray(degC(held), float)
+    return held if degC is None else np.asarray(degC(held, **(settings or QUANTITIES[of].settings)), float)
+
+
+def usual_sigma(of: str, unit: str) -> float:
+    """Standard deviation of such a sensor in the unit of its column."""
+    return QUANTITIES[of].sigma / abs(_scale(of, unit)[0])
+
+
+def _scale(of: str, unit: str) -> tuple[float, float]:
+    """Factor and offset into the unit of memory."""
+    return QUANTITIES[of].units.get(unit) or _by_pint(of, unit) or (1.0, 0.0)
 
 
 @cache

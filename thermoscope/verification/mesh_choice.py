@@ -59,11 +59,11 @@ def chosen_mesh(machine: Machine, accuracy: float, first: Meshing, progress: Pro
     It is kept by content. Where the mesh would exceed MOST_POINTS, the finest below it is taken and `met` is False.
     """
     file = cache_folder() / f"mesh-choice-{_key(machine, accuracy, first)}.json"
-    kept = recalled(file, lambda path: _read(path.read_text(encoding="utf-8")))
-    if kept is None:
-        kept = _looked_for(machine, SHARE * accuracy, first, progress)
-        write_whole(file, json.dumps(asdict(kept)))
-    return kept
+    cached = recalled(file, lambda path: _read(path.read_text(encoding="utf-8")))
+    if cached is None:
+        cached = _looked_for(machine, SHARE * accuracy, first, progress)
+        write_whole(file, json.dumps(asdict(cached)))
+    return cached
 
 
 def _key(machine: Machine, accuracy: float, first: Meshing) -> str:

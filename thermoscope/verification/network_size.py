@@ -17,7 +17,7 @@ from thermoscope.verification.load_cases import load_cases
 from thermoscope.verification.mesh_choice import MeshChoice, chosen_mesh
 
 FINE = Recipe(tolerance=0.01, random_points=8, local_points=12, local_states=16)
-ROUNDS = 3
+ROUNDS = 3  # of learning: each solves the field at new points
 LOOKS = 3  # random points, and extreme ones, at which every size is checked
 JOINTS = (0.2, 5.0)  # times all contacts, as well
 SEGMENTS = 48  # chords per turn
@@ -33,20 +33,20 @@ class SizedNetwork:
 
     built: Built
     reduction: Reduction
-    wish: Accuracy
+    allowed: Accuracy
     sizes: tuple[Size, ...]
-    adapted: Enrichment | None
+    enrichment: Enrichment | None
     mesh: MeshChoice | None = None
 
     @property
     def met(self) -> bool:
-        return (self.adapted is None or self.adapted.met) and (self.mesh is None or self.mesh.met)
+        return (self.enrichment is None or self.enrichment.met) and (self.mesh is None or self.mesh.met)
 
     def document(self) -> dict[str, Any]:
         """Errors in percent of a part's own rise, at nominal coefficients and at random ones."""
-        rounds = () if self.adapted is None else self.adapted.rounds
+        rounds = () if self.enrichment is None else self.enrichment.rounds
         return {
-            "wish_percent": {"mean": self.wish.mean, "hot": self.wish.hot, "point": self.wish.point},
+            "wish_percent": {"mean": self.allowed.mean, "hot": self.allowed.hot, "point": self.allowed.point},
             "met": self.met,
             "states": len(self.built.network.states),
             "sizes": [size.document() for size in self.sizes],
@@ -81,18 +81,18 @@ def smallest_network(
     ready = prepared(machine, size_m, segments, progress, axial_m, across)
     progress("what the parts can look like")
     reduction = reduced(ready, recipe, motor_zones(machine))
-    cases, wish = load_cases(machine, reduction), accuracy_of(accuracy)
+    cases, allowed = load_cases(machine, reduction), accuracy_of(accuracy)
     progress("error against number of states")
     guides = [reduction.random_point(k) for k in range(LOOKS)]
     points = [reduction.nominal_point(), *(reduction.extreme_point(k) for k in range(LOOKS))]
     points += [reduction.joined_point(factor) for factor in JOINTS]
-    table = tuple(Size.of(reduction, asked, [*points, *guides], cases, wish) for asked in SIZES)
+    table = tuple(Size.of(reduction, asked, [*points, *guides], cases, allowed) for asked in SIZES)
     good = [size for size in table if size.met]
-    found = None if good else enrich(reduction, cases, wish, rounds, points, guides, tell=progress)
+    found = None if good else enrich(reduction, cases, allowed, rounds, points, guides, tell=progress)
     condensed = good[0].network if good else found.network  # type: ignore[union-attr]
-    kept = reduction if found is None else found.reduction
+    last = reduction if found is None else found.reduction
     built = Built(machine, ready.mesh, ready.field, motor_network(machine, condensed), ready.meshing)
-    return SizedNetwork(built, kept, wish, table, found)
+    return SizedNetwork(built, last, allowed, table, found)
 
 
 SIZES = (0, 50, 100, 200, 400)  # 0: the means only

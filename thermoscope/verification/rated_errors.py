@@ -52,9 +52,9 @@ def _at_node(shape: PartShape, node: int) -> Row:
 def cached_errors(built: Built, looks: MonitoredPlaces) -> Rated:
     """From the cache, where this network was looked at before in the same places."""
     file = cache_folder() / f"budget-{_key(built, looks)}.json"
-    kept = recalled(file, lambda path: Rated(**json.loads(path.read_text(encoding="utf-8"))))
-    if kept is not None:
-        return kept
+    cached = recalled(file, lambda path: Rated(**json.loads(path.read_text(encoding="utf-8"))))
+    if cached is not None:
+        return cached
     found = at_rated_point(built, looks)
     write_whole(file, json.dumps(vars(found)))
     return found

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from viz.data import Comparison
     from viz.rendering.cut import Surface
 
-FRAMES = 25
+FRAMES = 25  # of a test that the slider stops at
 Frames = tuple[NDArray[np.float64], NDArray[np.float32]]
 
 

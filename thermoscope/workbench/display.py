@@ -19,8 +19,8 @@ from viz.figures.candidates import matrix
 from viz.live.candidates import confusion
 from viz.live.curves import sensor as sensor_figure
 
-CONFUSED = 8
-MOMENT_S = 0.02
+CONFUSED = 8  # names that a row holds
+MOMENT_S = 0.02  # several changes of one click are drawn once
 NOTHING: dict[str, Any] = {"data": [], "layout": {}}
 START: dict[str, Any] = {
     "busy": False, "job": {"title": "", "message": "", "percent": None}, "error": "", "outcome": None, "report": "",

@@ -279,7 +279,7 @@ def _targets() -> None:
 def _candidates(session: Session) -> None:
     with html.Div(classes="scroll"), html.Table():
         with html.Thead(), html.Tr():
-            for name in ("effect", "", "probability", "error without → with"):
+            for name in ("effect", "", "probability", "refitted without → with"):
                 html.Th(name)
         with html.Tbody(), html.Tr(v_for="c in candidates", key="c.effect", classes=("c.decision",)):
             with html.Td(title=("c.title + '. ' + c.test",)):

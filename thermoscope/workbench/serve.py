@@ -18,8 +18,8 @@ from thermoscope.workbench.application import bench
 from thermoscope.workbench.jobs import prepare
 from thermoscope.workbench.tabs import Tabs
 
-SWEEP_S = 30.0
-SHORTEST = 16
+SWEEP_S = 30.0  # between looks for idle tabs
+SHORTEST = 16  # characters: 64 bits where they are hexadecimal
 
 
 def token_for(given: str | None) -> str:

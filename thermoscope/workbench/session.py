@@ -21,7 +21,7 @@ from thermoscope.workbench.display import Display
 from thermoscope.workbench.dropped import Dropped
 from thermoscope.workbench.jobs import FailedError, Job, StoppedError
 
-REMEMBERED = 8
+REMEMBERED = 8  # revisions whose comparison is at hand
 TITLES = {"add": "Adding", "remove": "Taking out", "calibrate": "Calibrating"}
 
 

@@ -13,7 +13,7 @@ from viz.pages.next_tests import deciding
 from viz.pages.words import verdict
 
 Row = dict[str, Any]
-SHOWN = 12
+SHOWN = 12  # candidates of a tab
 
 
 def tests(look: Appearance, scale: float, before: Mapping[str, float]) -> list[Row]:
@@ -88,9 +88,9 @@ def conclusion(diagnosis: Mapping[str, Any]) -> Row:
     """The verdict in a sentence, and what the tests cannot see."""
     tone, sentence = verdict(diagnosis, None)
     hidden = [h["effect"] for h in diagnosis["cannot_see"]]
-    ahead = [f"{o.kind} {o.what}: separates {', '.join(o.separates)}" for o in deciding(diagnosis)[:3]]
+    further_tests = [f"{o.kind} {o.what}: separates {', '.join(o.separates)}" for o in deciding(diagnosis)[:3]]
     unseen = f"{len(hidden)} effects could be there unseen, e.g. {', '.join(hidden[:4])}." if hidden else ""
-    return {"tone": tone, "sentence": sentence, "words": diagnosis["words"], "unseen": unseen, "ahead": ahead}
+    return {"tone": tone, "sentence": sentence, "words": diagnosis["words"], "unseen": unseen, "ahead": further_tests}
 
 
 def percent(value: float, whole: float) -> float:

@@ -20,8 +20,8 @@ from thermoscope.workbench.dropped import stored
 from thermoscope.workbench.policy import policy, report_policy, viewer_policy
 from thermoscope.workbench.session import Session
 
-MOST = 8
-IDLE_S = 900.0
+MOST = 8  # tabs, each with a server of its own
+IDLE_S = 900.0  # a tab that is left alone so long is closed
 
 
 class Tab:

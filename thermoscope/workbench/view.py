@@ -20,7 +20,7 @@ from viz.rendering.visibility import covered, obstacle
 if TYPE_CHECKING:
     import pyvista
 
-SIZE = (860, 560)
+SIZE = (860, 560)  # pixels, until the page says its own
 NEAR = 22.0  # pixels from a sensor within which a click means it
 STILL = 5.0  # pixels the mouse may move in a click
 
@@ -67,9 +67,9 @@ class Stage:
         eye = np.array(self.plotter.camera.position)
         for name, group, size, order in self._groups():
             hidden = covered(self._obstacle, np.array([s.xyz for s in group]).reshape(-1, 3), eye)
-            behind = [s for s, h in zip(group, hidden, strict=True) if h]
-            white = np.full((len(behind), 3), 255, np.uint8)
-            self._dots(f"{name} core", behind, white, HOLLOW * size, order + 2)
+            concealed = [s for s, h in zip(group, hidden, strict=True) if h]
+            white = np.full((len(concealed), 3), 255, np.uint8)
+            self._dots(f"{name} core", concealed, white, HOLLOW * size, order + 2)
 
     def _dots(self, name: str, sensors: Sequence[Sensor], rgb: NDArray[np.uint8], width: float, order: int) -> None:
         """One cloud of dots: few actors draw fast."""

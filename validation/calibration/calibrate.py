@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import cho_factor, cho_solve
 
 from geom.errors import NoSolution
 from lumped.model.network import Network
@@ -312,6 +311,8 @@ class InnerProduct:
 
     def doubted(self, error: ModelError) -> tuple[list[Array], Any]:
         """Whitened D, and 1 + D'D factored: once for all fits under one noise."""
+        from scipy.linalg import cho_factor
+
         own = [(s.test, s.channel, s.time.size) for s in self.parts]
         for noise, known, of, D, factor in tuple(_WHITENED):
             if noise is self.noise and known is error and of == own:
@@ -320,6 +321,11 @@ class InnerProduct:
         factor = cho_factor(np.eye(error.size) + sum(d.T @ d for d in D))
         _WHITENED.append((self.noise, error, own, D, factor))
         return D, factor
+
+    def _solved(self, Y: Array) -> Array:
+        from scipy.linalg import cho_solve
+
+        return np.asarray(cho_solve(self.factor, Y))
 
     def white(self, columns: Sequence[Array]) -> list[Array]:
         """Columns (n, k) of each segment under its noise alone."""
@@ -330,7 +336,7 @@ class InnerProduct:
         plain = np.asarray(sum(x.T @ y for x, y in zip(X, Y, strict=True)))
         if self.factor is None:
             return plain
-        return plain - self.along(X).T @ cho_solve(self.factor, self.along(Y))
+        return plain - self.along(X).T @ self._solved(self.along(Y))
 
     def along(self, X: Sequence[Array]) -> Array:
         """D' X of whitened columns."""
@@ -352,7 +358,7 @@ class InnerProduct:
         """(d,) deviations of the doubts that explain residuals best."""
         if self.factor is None:
             return np.zeros(0)
-        return np.asarray(cho_solve(self.factor, self.along(self.white([s.r[:, None] for s in parts])))[:, 0])
+        return self._solved(self.along(self.white([s.r[:, None] for s in parts])))[:, 0]
 
 
 def residual_noise(fit: Fit) -> Noise:

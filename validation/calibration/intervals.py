@@ -14,8 +14,8 @@ from validation.calibration.unknowns import to_value
 from validation.measurement.operators import of_measurement
 
 Array = NDArray[np.float64]
-UNSEEN = 0.9
-TRADES = 0.7
+UNSEEN = 0.9  # of its prior sd: a parameter that data narrow by less than a tenth was not seen
+TRADES = 0.7  # correlation: half of the one's variance is the other's
 NORMAL_95 = 1.96
 
 

@@ -21,8 +21,8 @@ from validation.doubt import USUAL, Doubt
 from validation.effects.build import copy_link, copy_source
 
 Array = NDArray[np.float64]
-SETTLE_K = 40.0
-SETTLE_C = 40.0
+SETTLE_K = 40.0  # a usual rise: there an exponent moves no coefficient
+SETTLE_C = 40.0  # a usual temperature of a bearing
 KNOTS = (0.0, 1.0, 2.0, 5.0, 10.0, 20.0, 40.0, 80.0, 160.0, 320.0)
 FARTHEST = np.log(10.0)
 KNOWN = ("copper", "measured")  # losses whose law is not in doubt

@@ -17,10 +17,10 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Interpolated:
-    """mean : (n,) K;  told : (n,) share of the variance there that the readings explain, 0 (a guess) to 1"""
+    """mean : (n,) K;  explained : (n,) share of the variance there that the readings explain, 0 (a guess) to 1"""
 
     mean: Array
-    told: Array
+    explained: Array
 
 
 def interpolated(there: Array, here: Array, residual_K: Array, sigma_K: Array) -> Interpolated:
@@ -33,5 +33,5 @@ def interpolated(there: Array, here: Array, residual_K: Array, sigma_K: Array) -
     across = there @ here.T
     gain = np.linalg.solve(covariance, across.T).T
     prior = (there**2).sum(axis=1)
-    told = (gain * across).sum(axis=1) / np.maximum(prior, 1e-12)
-    return Interpolated(gain @ residual_K, np.clip(told, 0.0, 1.0))
+    explained = (gain * across).sum(axis=1) / np.maximum(prior, 1e-12)
+    return Interpolated(gain @ residual_K, np.clip(explained, 0.0, 1.0))

@@ -18,7 +18,7 @@ from validation.comparison.linearisation import Segment
 from validation.measurement.blocks import groups
 
 Array = NDArray[np.float64]
-LAGS = 20
+LAGS = 20  # usual for the test of Ljung and Box; more lose power
 NORMAL_95 = 1.96
 
 

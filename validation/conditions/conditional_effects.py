@@ -18,7 +18,7 @@ from validation.calibration.unknowns import scene_of
 from validation.case import Case
 from validation.conditions.candidate_conditions import single_test_effects, temporary_effects
 from validation.conditions.hat_functions import Interval, hat_scores
-from validation.conditions.refine import columns, refined, repeats
+from validation.conditions.refine import TimedEvent, columns, refined, repeats
 from validation.conditions.windows import ALIKE, distinct, stretches, worth
 from validation.diagnosis.missing_heat import MissingHeat, Scan
 from validation.doubt import PRIOR, USUAL
@@ -32,6 +32,7 @@ from validation.inference.score import apart, score, total
 
 Array = NDArray[np.float64]
 TESTS, EVENTS, EACH = 16, 4, 6  # conditions of whole tests, events, and explanations of each that join the others
+TIMED = 3  # of these have ends of their own: a film that changes bends a record later than heat does
 HOPELESS = 5.0  # nats below nothing, prior included: what has less cannot carry weight
 
 
@@ -46,13 +47,13 @@ class Condition:
 def conditions(
     evidence: Evidence, case: Case, looked: Scan, heat: Sequence[MissingHeat], only: Sequence[str] | None = None,
     progress: Callable[[str], None] = no_progress,
-) -> tuple[list[During], tuple[Event, ...]]:  # fmt: skip
-    """The conditions that could carry weight, and the events they hold in.  only : kinds, None for all"""
+) -> list[During]:  # fmt: skip
+    """The conditions that could carry weight, most probable first.  only : kinds, None for all"""
     known = {**case.model.values, **evidence.fit.values}
     scene = replace(scene_of(case), network=evidence.fit.network)
     bases = [e for e in temporary_effects(scene) if only is None or e.kind in only]
     if not bases:
-        return [], ()
+        return []
     progress("looking for what held in one test or for a while")
     whole = [e for e in single_test_effects(scene) if only is None or e.kind in only]
     chosen, events = best(single_test_conditions(evidence, whole, known), TESTS), []
@@ -63,7 +64,9 @@ def conditions(
     for gate, share in declared_conditions(case, evidence, events):
         effects = [During.of(base, gate, share / len(bases)) for base in bases]
         chosen += best(scored_in(evidence, effects, known, odds_against_nothing(share / len(bases))), EACH)
-    return [c.effect for c in chosen], tuple(events)
+    ordered = sorted(chosen, key=lambda c: -c.worth)
+    once = {c.effect.name: c.effect for c in reversed(ordered)}  # two stretches may come to the same ends
+    return list(reversed(once.values()))
 
 
 def declared_conditions(case: Case, evidence: Evidence, events: Sequence[Event]) -> list[tuple[str, float]]:
@@ -121,13 +124,30 @@ def likely_intervals(
 def explained(
     evidence: Evidence, bases: Sequence[Effect], s: Interval, looked: Scan, known: Mapping[str, float]
 ) -> tuple[Event, list[Condition]]:
-    """An event with its ends at the samples, and all that it may have been, exactly run."""
-    reach = {t: 1.5 * float(looked.knots[t][1] - looked.knots[t][0]) for t in s.event.spans}
+    """An event with its ends at the samples, and all that it may have been, exactly run; the most probable ones with
+    ends of their own."""
+    far = reach(looked)
+    price = 0.5 / (len(bases) * len(evidence.tests))
     like = likeness(evidence, bases, s, known)
-    timed = refined(evidence, like, repeats(evidence, like, s.event, known), reach, known)
-    share = 0.5 / (len(bases) * len(evidence.tests)) * float(np.exp(max(timed.log_share, -600.0)))
+    timed = refined(evidence, like, repeats(evidence, like, s.event, known), far, known)
+    every = best(timed_by(evidence, bases, timed, price, known), EACH)
+    own = [refined(evidence, c.effect.base, timed.event, far, known) for c in every[:TIMED]]
+    again = [timed_by(evidence, [c.effect.base], t, price, known) for c, t in zip(every, own)]
+    return timed.event, [max([c, *new], key=lambda x: x.worth) for c, new in zip(every, [*again, *[[]] * EACH])]
+
+
+def reach(looked: Scan) -> dict[str, float]:
+    """Test -> how far (s) an end may lie from where knots of heat put it."""
+    return {t: 1.5 * float(knots[1] - knots[0]) for t, knots in looked.knots.items()}
+
+
+def timed_by(
+    evidence: Evidence, bases: Sequence[Effect], timed: TimedEvent, price: float, known: Mapping[str, float]
+) -> list[Condition]:
+    """All that an event may have been.  price : share of what and in which test"""
+    share = price * float(np.exp(max(timed.log_share, -600.0)))
     effects = [During.of(base, timed.event.name, share) for base in bases]
-    return timed.event, scored_in(evidence, effects, known, odds_against_nothing(share))
+    return scored_in(evidence, effects, known, odds_against_nothing(share))
 
 
 def likeness(evidence: Evidence, bases: Sequence[Effect], s: Interval, known: Mapping[str, float]) -> Effect:

@@ -4,33 +4,40 @@ from __future__ import annotations
 
 import numpy as np
 
+from validation.conditions.windows import ALIKE
 from validation.diagnosis.result import PossibleEvent
 from validation.effects.during import During
+from validation.effects.time_window import Event
 from validation.inference.posterior import Posterior, probabilities
 
 
 def possible_events(posterior: Posterior) -> tuple[PossibleEvent, ...]:
-    """Every stretch that was tried, most probable first; it is probable as far as any explanation of it is."""
-    rows = [row for found in posterior.events if (row := _row(posterior, found.name)) is not None]
+    """Every stretch that was tried, most probable first; it is probable as far as any explanation of it is.
+
+    A film and a heat input explain one stretch with ends of their own: what overlaps by half is one event.
+    """
+    effects, P = posterior.evidence.effects, probabilities(posterior.hypotheses)
+    share = np.zeros(len(effects))
+    for h, p in zip(posterior.hypotheses, P, strict=True):
+        share[list(h.members)] += p
+    nats = {k: h.log_bayes for k, h in posterior.single.items()}
+    timed = {k: x.event for k, x in enumerate(effects) if isinstance(x, During) and x.event}
+    groups: list[list[int]] = []
+    for k in sorted(timed, key=lambda k: (-share[k], -nats[k])):
+        group = next((g for g in groups if timed[g[0]].overlap(timed[k]) >= ALIKE), None)
+        if group is None:
+            groups.append([k])
+        else:
+            group.append(k)
+    held = [sum(float(p) for h, p in zip(posterior.hypotheses, P) if set(g) & set(h.members)) for g in groups]
+    rows = [_row(posterior, g[0], timed[g[0]], p) for g, p in zip(groups, held, strict=True)]
     return tuple(sorted(rows, key=lambda r: -r.probability))
 
 
-def _row(posterior: Posterior, name: str) -> PossibleEvent | None:
-    e, single = posterior.evidence, posterior.single
-    own = [k for k, x in enumerate(e.effects) if isinstance(x, During) and x.gate == name]
-    if not own:
-        return None
-    P = probabilities(posterior.hypotheses)
-    share = np.zeros(len(e.effects))
-    held = 0.0
-    for h, p in zip(posterior.hypotheses, P, strict=True):
-        share[list(h.members)] += p
-        held += float(p) if set(own) & set(h.members) else 0.0
-    k = max(own, key=lambda i: (share[i], single[i].log_bayes))
-    effect, fit = e.effects[k], single[k].fit
-    assert isinstance(effect, During)
-    assert effect.event is not None
+def _row(posterior: Posterior, k: int, event: Event, probability: float) -> PossibleEvent:
+    """An event by its most probable explanation."""
+    e, fit = posterior.evidence, posterior.single[k].fit
     value = float(e.score.amplitude[k] if fit is None else fit.theta[e.p])
-    document = effect.event.document()
-    return PossibleEvent(name, document["words"], tuple(document["spans"]), held, effect.name, effect.title, value,
-                     e.parameters[k].unit)  # fmt: skip
+    document = event.document()
+    return PossibleEvent(event.name, document["words"], tuple(document["spans"]), probability, e.names[k],
+                         e.effects[k].title, value, e.parameters[k].unit)  # fmt: skip

@@ -11,6 +11,7 @@ from scipy.special import logsumexp
 
 from validation.case import Test
 from validation.comparison.linearisation import Segment, segments
+from validation.conditions.windows import ways
 from validation.doubt import SIZES, USUAL
 from validation.effects import Effect, extended
 from validation.effects.during import During
@@ -42,11 +43,12 @@ def refined(evidence: Evidence, base: Effect, event: Event, reach_s: Mapping[str
     """Ends of every span in turn, the others where they are.  reach_s : test -> how far an end may move"""
     spans, log_share = {t: list(own) for t, own in event.spans.items()}, 0.0
     ends: list[tuple[Span, Span]] = []
+    usual = float(np.mean([b - a for a, b in event.every]))
     tests = {t.name: t for t in evidence.tests}
     for test, own in event.spans.items():
         for i in range(len(own)):
             others = {t: [s for k, s in enumerate(all_) if (t, k) != (test, i)] for t, all_ in spans.items()}
-            one = moved(evidence, base, tests[test], own[i], others, reach_s[test], known)
+            one = moved(evidence, base, tests[test], own[i], others, reach_s[test], known, usual if ends else None)
             spans[test][i] = one.event.spans[test][0]
             log_share += one.log_share
             ends += one.ends
@@ -54,9 +56,13 @@ def refined(evidence: Evidence, base: Effect, event: Event, reach_s: Mapping[str
 
 
 def moved(
-    evidence: Evidence, base: Effect, test: Test, span: Span, others: Spans, reach_s: float, known: Known
-) -> TimedEvent:
-    """Begin and end of one span: every two instants around them, each pair a difference of two steps."""
+    evidence: Evidence, base: Effect, test: Test, span: Span, others: Spans, reach_s: float, known: Known,
+    usual_s: float | None = None,
+) -> TimedEvent:  # fmt: skip
+    """Begin and end of one span: every two instants around them, each pair a difference of two steps.
+
+    usual_s : how long its repeats last, None for the first of them
+    """
     begins, ends = around(test, span[0], reach_s), around(test, span[1], reach_s)
     at = np.concatenate([begins, ends])
     u, V = steps(evidence, base, test, at, others, known)
@@ -64,7 +70,8 @@ def moved(
     a, b = a[at[a] < at[b]], b[at[a] < at[b]]
     bayes = log_bayes(*pulse(u, V, a, b), evidence, base)
     best, weight = int(np.argmax(bayes)), np.exp(bayes - logsumexp(bayes))
-    count = 0.5 * test.time.size * (test.time.size + 1)
+    step = float(np.median(np.diff(test.time)))
+    count = ways(test.time.size, None if usual_s is None else usual_s / step)
     event = Event.of({test.name: [(at[a[best]], at[b[best]])]})
     return TimedEvent(event, float(logsumexp(bayes - bayes[best]) - np.log(count)),
                  ((between(at[a], weight), between(at[b], weight)),))  # fmt: skip
@@ -101,7 +108,10 @@ def repeats(evidence: Evidence, base: Effect, event: Event, known: Known) -> Eve
 def gained(found: Score, i: int, every: Sequence[int]) -> float:
     """Log likelihood that a repeat gains at the amplitude of the others."""
     others = [j for j in every if j != i]
-    a = float(np.sum(found.u[others]) / np.sum(found.V[np.ix_(others, others)]))
+    felt = float(np.sum(found.V[np.ix_(others, others)]))
+    if felt <= 0.0:  # the others move no reading: they predict nothing
+        return 0.0
+    a = float(np.sum(found.u[others])) / felt
     return a * (float(found.u[i]) - a * float(np.sum(found.V[i, others]))) - 0.5 * a**2 * float(found.V[i, i])
 
 

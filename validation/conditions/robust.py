@@ -1,29 +1,41 @@
-"""The noise of the tests that agree: one that contradicts them must not make everything look uncertain."""
+"""Under the noise of a good model: what held in one test or for a while must not pass for noise of them all."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
+from lumped.model.multipliers import values_of
+from validation.calibration.calibrate import Fit, KnownSegments, minimise
+from validation.case import Test
+from validation.doubt import USUAL
+from validation.inference.evidence import ENOUGH, Evidence, under
+from validation.measurement.noise import START, Level, Noise
 
-from validation.inference.evidence import Evidence, extended_prior, under
-from validation.inference.score import total
-from validation.measurement.noise import Noise, fit_noise
-
-FEWEST = 3  # tests: of two that contradict each other either may be the odd one
-
-
-def without(evidence: Evidence, test: str) -> Evidence:
-    """The evidence under the noise that the others leave when they are calibrated by themselves."""
-    return under(evidence, noise_of_others(evidence, test)) if test and len(evidence.tests) >= FEWEST else evidence
+STEPS = 6  # of a calibration that goes on under a smaller noise
 
 
-def noise_of_others(evidence: Evidence, test: str) -> Noise:
-    """By tangents: parameters and model error fitted to all tests but one."""
-    e, p = evidence, evidence.p
-    G, (theta, sd) = total({name: g for name, g in e.grams.items() if name != test}), extended_prior(e.fit)
-    x = np.linalg.solve(G.JJ + np.diag(sd**-2.0), G.Jr - sd**-2.0 * theta)
-    error, left = e.fit.error, []
-    for s in [s for s in e.parts if s.test != test]:
-        left.append(replace(s, r=s.r - s.J[:, :p] @ x[:p] - (error.of(s) @ x[p:] if error else 0.0)))
-    return fit_noise(left)
+def quiet_fit(fit: Fit, tests: Sequence[Test]) -> Fit:
+    """A calibration under a noise no larger than is usual; the same where it is no larger."""
+    noise = usual_noise(fit.noise)
+    if noise == fit.noise:
+        return fit
+    return minimise(fit.network, tests, fit.unknowns, fit.theta, noise, values_of(fit.network, fit.values), STEPS,
+                    KnownSegments(fit.parts, nearby=True), worth=ENOUGH, error=fit.error)  # fmt: skip
+
+
+def quiet(evidence: Evidence) -> Evidence:
+    """The evidence under a noise no larger than is usual, calibrated under it; the same where it is no larger."""
+    noise = usual_noise(evidence.fit.noise)
+    return evidence if noise == evidence.fit.noise else under(evidence, noise)
+
+
+def usual_noise(noise: Noise) -> Noise:
+    """Every part of a noise no larger than a good model leaves."""
+    return replace(noise, levels={name: at_most(level) for name, level in noise.levels.items()})
+
+
+def at_most(level: Level) -> Level:
+    """Levels are in units of the error that is usual for their record."""
+    return replace(level, white=min(level.white, START.white), fast=min(level.fast, USUAL["fast"]),
+                   slow=min(level.slow, START.slow))  # fmt: skip

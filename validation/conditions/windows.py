@@ -22,6 +22,7 @@ PENALTY = 3.0  # times log(n) for a change point: BIC counts its time and its le
 CLEAR = 2.0  # standard deviations from which a level is a pulse
 WHOLE = 0.9  # of a test: what lasts longer is a condition of that test, and no event
 REPEATS = 20  # of one event
+LENGTHS = 0.5  # of its length, within which repeats of one event differ: a lid is opened for the same work
 ALIKE = 0.5  # of the time in either of two events is in both: such are one
 
 
@@ -125,10 +126,20 @@ def throughout(found: HatScores, event: Event) -> bool:
 
 def worth(found: HatScores, s: Interval) -> float:
     """Evidence less the price of when: the log of how many stretches there are among the knots."""
-    size = {t: k.size for t, k in found.knots.items()}
-    return s.log_bayes - sum(
-        len(own) * float(np.log(0.5 * size[t] * (size[t] + 1))) for t, own in s.event.spans.items()
-    )
+    first, price = True, 0.0
+    usual = float(np.mean([b - a for a, b in s.event.every]))
+    for test, own in s.event.spans.items():
+        knots = found.knots[test]
+        for _ in own:
+            price += float(np.log(ways(knots.size, None if first else usual / float(knots[1] - knots[0]))))
+            first = False
+    return s.log_bayes - price
+
+
+def ways(n: int, usual: float | None) -> float:
+    """How many stretches there are among n instants; repeats of one that is as long as `usual` (in instants) last about
+    as long, and begin anywhere."""
+    return 0.5 * n * (n + 1) if usual is None else n * max(1.0, LENGTHS * usual)
 
 
 def distinct(ordered: Sequence[Interval], most: int) -> list[Interval]:

@@ -12,6 +12,7 @@ from validation.comparison.compare import physical
 from validation.comparison.linearisation import segments
 from validation.comparison.residuals import Pattern, patterns
 from validation.conditions.contradiction import Contradiction, contradiction
+from validation.conditions.robust import quiet_fit
 from validation.conditions.windows import pulses
 from validation.diagnosis.missing_heat import MissingHeat, missing_heat
 from validation.inference.evidence import calibrated_case, diagnosing
@@ -43,9 +44,9 @@ def discrepancies(case: Case, progress: Callable[[str], None] = no_progress) -> 
     network, _ = working(case)
     now = physical(case)
     left = patterns(segments(network, case.tests, now), case.tests)
-    fit = calibrated_case(case, progress)
-    progress("looking for where heat is missing")
     tests = diagnosing(case)
+    fit = quiet_fit(calibrated_case(case, progress), tests)
+    progress("looking for where heat is missing")
     return Discrepancy(tuple(left), tuple(missing_heat(fit, tests)), contradiction(fit, tests))
 
 

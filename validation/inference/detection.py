@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from validation.doubt import PRIOR
+from validation.doubt import PRIOR, nats_worth
 from validation.inference.evidence import Evidence
 from validation.inference.posterior import one_size, prior_shares
 
@@ -16,8 +16,8 @@ FARTHEST = 1e4  # prior deviations: beyond them an effect is never seen
 
 
 def thresholds(evidence: Evidence) -> Array:
-    """(K,) log Bayes factor from which each effect is more probable than nothing."""
-    return np.asarray(np.log(PRIOR["nothing"].share / prior_shares(evidence)))
+    """(K,) log Bayes factor from which each effect is more probable than nothing, temper in account."""
+    return np.array([nats_worth(x) for x in np.log(PRIOR["nothing"].share / prior_shares(evidence))])
 
 
 def smallest(evidence: Evidence) -> Array:

@@ -8,14 +8,15 @@ from types import MappingProxyType
 
 import numpy as np
 
-from validation.calibration.calibrate import no_progress
+from validation.calibration.calibrate import Fit, no_progress
 from validation.case import Case
-from validation.conditions.conditional_effects import conditions, joined
+from validation.conditions.conditional_effects import conditions, joined, reach
 from validation.conditions.contradiction import contradiction
 from validation.conditions.laws import laws
 from validation.conditions.question import answered
-from validation.conditions.robust import without as without_test
-from validation.diagnosis.missing_heat import scan
+from validation.conditions.retime import retimed
+from validation.conditions.robust import quiet
+from validation.diagnosis.missing_heat import MissingHeat, Scan, scan
 from validation.diagnosis.numerical_error import signal_to_error
 from validation.diagnosis.result import Diagnosis
 from validation.effects.above import KIND
@@ -38,8 +39,9 @@ from validation.inference.posterior import (
     pairs,
     singles,
     unknown_heat,
+    weights,
 )
-from validation.inference.refits import refitted
+from validation.inference.refits import NOWHERE, Begun, noise_of_refits, refitted
 from validation.inference.several import further
 from validation.inference.tables import tabulate
 from validation.measurement.faults import PlainFaults, broken_channels, without
@@ -104,40 +106,66 @@ def infer(case: Case, kinds: Sequence[str] | None = None, progress: Progress = n
     fit = calibrated_case(case, progress)
     progress("scoring the catalogue")
     evidence = sharpened(scored(case, candidates(case, kinds), fit))
-    against = contradiction(evidence.fit, evidence.tests)
+    calm = quiet(evidence)
+    against = contradiction(calm.fit, evidence.tests)
     progress("looking for where heat is missing")
     looked = scan(evidence.fit, evidence.tests)
     heat = looked.read(evidence.fit.parts, evidence.fit.noise, evidence.fit.theta, evidence.fit.error)
-    chosen, events = conditions(without_test(evidence, against.test), case, looked, heat, kinds, progress)
+    chosen = conditions(calm, case, looked, heat, kinds, progress)
     known = {**case.model.values, **evidence.fit.values}
     bent = laws(evidence, known) if kinds is None or KIND in kinds else []
-    evidence = sharpened(joined(evidence, [*chosen, *bent], known))
+    first = len(evidence.effects)
+    evidence = sharpened(joined(evidence, [*chosen, *bent], known), range(first, first + len(chosen)))
+    found, heat = weighed(case, evidence, looked, fit.noise, progress)
+    timed, noise = retimed(evidence, found, reach(looked)), noise_of_refits(found)
+    if noise is not None or timed is not evidence:
+        begun = ended(found, evidence, timed)
+        evidence = under(timed, noise or timed.fit.noise)
+        found, heat = weighed(case, evidence, looked, fit.noise, progress, begun)
+    every = further(case, evidence, found, progress)
+    return Posterior(evidence, tuple(against_nothing(every)), tuple(heat), against)
+
+
+def ended(hypotheses: Sequence[Hypothesis], before: Evidence, now: Evidence) -> dict[tuple[int, ...], Fit]:
+    """Members -> their refit; without its tangents where one of them is another effect now."""
+    fits = {h.members: h.fit for h in hypotheses if h.fit and h.members}
+    other = {k for k, e in enumerate(before.effects) if e.name != now.effects[k].name}
+    return {m: replace(fit, parts=()) if other & set(m) else fit for m, fit in fits.items()}
+
+
+def weighed(
+    case: Case, evidence: Evidence, looked: Scan, loudest: Noise, progress: Progress, begun: Begun = NOWHERE
+) -> tuple[list[Hypothesis], list[MissingHeat]]:
+    """All hypotheses, those that carry weight refitted, and where heat is missing.
+
+    loudest : the noise that nothing asks for;  begun : members -> where a refit of theirs may go on
+    """
     heat = looked.read(evidence.fit.parts, evidence.fit.noise, evidence.fit.theta, evidence.fit.error)
-    loud = under(evidence, fit.noise)
-    ones = singles(evidence)
-    weighed = [*ones, *pairs(evidence, ones), *unknown_heat({w.place: w.log_bayes for w in heat})]
-    weighed = averaged(weighed, loud, log_evidence(loud) - log_evidence(evidence))
-    heard = answered(evidence, weighed, case.answers)
-    every = further(case, evidence, refitted(evidence, heard, progress), progress)
-    return Posterior(evidence, tuple(against_nothing(every)), tuple(heat), events, against)
+    loud, ones = under(evidence, loudest), singles(evidence)
+    every = [*ones, *pairs(evidence, ones), *unknown_heat({w.place: w.log_bayes for w in heat})]
+    every = averaged(every, loud, log_evidence(loud) - log_evidence(evidence))
+    return refitted(evidence, answered(evidence, every, case.answers), progress, begun), heat
 
 
-def sharpened(evidence: Evidence, rounds: int = 2) -> Evidence:
-    """The evidence under the noise that is left beside the leading effect: what is missing is no noise."""
+def sharpened(evidence: Evidence, also: Sequence[int] = (), rounds: int = 2) -> Evidence:
+    """The evidence under the noise that is left beside the leading effect: what is missing is no noise.
+
+    also : effects that may lead, most probable first, although they seem small beside the noise of nothing
+    """
     for _ in range(rounds):
-        noise = noise_of_leader(evidence)
+        noise = noise_of_leader(evidence, also)
         if noise is None:
             break
         evidence = under(evidence, noise)
     return evidence
 
 
-def noise_of_leader(evidence: Evidence) -> Noise | None:
+def noise_of_leader(evidence: Evidence, also: Sequence[int] = ()) -> Noise | None:
     """The noise left beside the effect that, with its own noise, has most evidence; None where nothing has more."""
-    e = evidence
-    ordered = sorted(singles(e)[1:], key=lambda h: -h.weight)
-    few = [h for h in ordered if not e.effects[h.members[0]].whole][:CONTENDERS]
-    best, worth = None, log_evidence(e) + singles(e)[0].log_prior
+    e, ones = evidence, singles(evidence)
+    leading = [k for i in np.argsort(-weights(ones), kind="stable") for k in ones[i].members if not e.effects[k].whole]
+    few = [ones[1 + k] for k in dict.fromkeys([*leading[:CONTENDERS], *also[:CONTENDERS]])]
+    best, worth = None, log_evidence(e) + ones[0].log_prior
     for h in few:
         noise = noise_beside(e, h.members)
         found = with_noise(e, h.members, noise) + h.log_prior

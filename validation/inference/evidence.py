@@ -172,6 +172,19 @@ def weighed(
     return Evidence(tests, fit, network, effects, parameters, parts, grams, found, jumps, large, whole)
 
 
+def replaced(evidence: Evidence, by_last: Sequence[int]) -> Evidence:
+    """The evidence whose last effects take the places of some others."""
+    e, p, n = evidence, evidence.p, len(evidence.effects) - len(by_last)
+    order = list(range(n))
+    for last, k in enumerate(by_last):
+        order[k] = n + last
+    parts = tuple(replace(s, J=s.J[:, [*range(p), *(p + k for k in order)]]) for s in e.parts)
+    keep = {k: e.jumps[k] for k in e.jumps if k not in by_last}
+    large = {k: e.large[k] for k in e.large if k not in by_last}
+    return weighed(e.tests, e.fit, e.network, tuple(e.effects[k] for k in order),
+                   tuple(e.parameters[k] for k in order), parts, keep, large)  # fmt: skip
+
+
 def projected(fit: Fit, parts: Sequence[Segment]) -> dict[str, Gram]:
     """Gram matrices whose nuisances are the calibrated parameters and the model error."""
     p, error = len(fit.unknowns.parameters), fit.error
@@ -248,6 +261,12 @@ def without_effects(fit: Fit, parts: Sequence[Segment], G: Gram) -> float:
     left = G.rr + theta @ (weight * theta) - g @ np.linalg.solve(H, g)
     wide = np.linalg.slogdet(H)[1] + 2.0 * np.sum(np.log(sd)) + sum(fit.noise.logdet(s) for s in parts)
     return float(-0.5 * (left + wide) + fit.noise.log_prior(parts))
+
+
+def evidence_of(fit: Fit, noise: Noise) -> float:
+    """Log evidence (nats) of a fit under a noise, all that was fitted integrated out where it stands."""
+    other = replace(fit, noise=noise)
+    return without_effects(other, fit.parts, total(projected(other, fit.parts)))
 
 
 def with_noise(evidence: Evidence, members: Sequence[int], noise: Noise) -> float:

@@ -21,11 +21,10 @@ from scipy.special import log_ndtr, logsumexp
 
 from validation.calibration.calibrate import Fit
 from validation.diagnosis.missing_heat import MissingHeat
-from validation.doubt import PRIOR, RARE, SIZES, TEMPER
+from validation.doubt import PRIOR, RARE, SIZES, temper
 from validation.effects import Effect
 from validation.effects.above import Above
 from validation.effects.during import During
-from validation.effects.time_window import Event
 from validation.inference.evidence import Evidence
 from validation.inference.score import Score
 
@@ -58,20 +57,27 @@ class Hypothesis:
         """Log evidence, but for a constant, averaged over what the noise may be."""
         return float(np.logaddexp(self.log_bayes, self.loud))
 
-    @property
-    def weight(self) -> float:
-        """Log posterior probability, but for a constant."""
-        return self.log_prior + self.nats / TEMPER.share
-
     def name(self, evidence: Evidence) -> str:
         if self.heat:
             return f"heat@{self.heat}"
         return " + ".join(evidence.names[k] for k in self.members) or NOTHING
 
 
+def tempered_by(hypotheses: Sequence[Hypothesis]) -> float:
+    """What divides the log evidence of all: larger where the best has much."""
+    none = next((h.nats for h in hypotheses if not h.members and not h.heat), 0.0)
+    return temper(max(h.nats for h in hypotheses) - none)
+
+
+def weights(hypotheses: Sequence[Hypothesis]) -> Array:
+    """(n,) log posterior probabilities, but for a constant."""
+    share = tempered_by(hypotheses)
+    return np.array([h.log_prior + h.nats / share for h in hypotheses])
+
+
 def probabilities(hypotheses: Sequence[Hypothesis]) -> Array:
     """(n,) that sum to one."""
-    x = np.array([h.weight for h in hypotheses])
+    x = weights(hypotheses)
     return np.asarray(np.exp(x - logsumexp(x)))
 
 
@@ -208,14 +214,13 @@ def inclusion(hypotheses: Sequence[Hypothesis], count: int) -> Array:
 class Posterior:
     """What follows from the readings.
 
-    heat : of unknown cause at each place, most evident first;  events : when something may have been different
+    heat : of unknown cause at each place, most evident first
     against : what would have to differ between the tests
     """
 
     evidence: Evidence
     hypotheses: tuple[Hypothesis, ...]
     heat: tuple[MissingHeat, ...]
-    events: tuple[Event, ...] = ()
     against: Contradiction | None = None
 
     @property

@@ -3,61 +3,73 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import replace
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import logsumexp
 
 from geom.errors import NoSolution
-from validation.calibration.calibrate import Fit, no_progress
+from validation.calibration.calibrate import Fit, KnownSegments, no_progress, residual_noise
 from validation.doubt import SIZES
 from validation.inference.evidence import (
     Beginning,
     Evidence,
     beginning,
+    evidence_of,
     free_of,
     mended_by_exchange,
     refit,
     refit_beside,
     starts,
 )
-from validation.inference.posterior import Hypothesis, probabilities, told
+from validation.inference.posterior import Hypothesis, probabilities, told, weights
+from validation.measurement.noise import Noise
 
 Array = NDArray[np.float64]
+Begun = Mapping[tuple[int, ...], Fit]
+NOWHERE: Begun = MappingProxyType({})
 WEIGHT = 0.01  # posterior probability from which a hypothesis is refitted
 ROUNDS, MOST = 4, 8  # what a refit promotes is refitted too; so many at once
 GREAT, NEAR = 10.0, 0.5  # nats beyond which tangents mislead, and the share of the best from which a rival is refitted
 IMPOSSIBLE = -1e3  # nats: as good as excluded, and a number that a document can hold
+GAINED = 3.0  # nats of log evidence from which another noise is worth weighing all anew
 NEARLY, TRIED = 0.4, 3  # linear amplitude, and how many, of effects that happen whole or not at all
 
 
 def refitted(
-    evidence: Evidence, hypotheses: Sequence[Hypothesis], progress: Callable[[str], None] = no_progress
-) -> list[Hypothesis]:
-    """The hypotheses with those that carry weight refitted, until none does that is not."""
+    evidence: Evidence, hypotheses: Sequence[Hypothesis], progress: Callable[[str], None] = no_progress,
+    begun: Begun = NOWHERE,
+) -> list[Hypothesis]:  # fmt: skip
+    """The hypotheses with those that carry weight refitted, until none does that is not.
+
+    begun : members -> where a refit of theirs under another noise ended
+    """
     out = list(hypotheses)
-    together(evidence, out, [*exchanged(evidence, out), *rivals(out)], progress)
+    together(evidence, out, [*exchanged(evidence, out), *rivals(out)], progress, begun)
     for _ in range(ROUNDS):
         P = shares(promised(hypotheses, out))
         due = [i for i in np.argsort(-P) if P[i] > WEIGHT and out[i].members and out[i].fit is None][:MOST]
         if not due:
             break
         for size in (1, 2):  # two begin where one of them was fitted alone
-            together(evidence, out, [i for i in due if len(out[i].members) == size], progress)
+            together(evidence, out, [i for i in due if len(out[i].members) == size], progress, begun)
     return out
 
 
-def together(evidence: Evidence, out: list[Hypothesis], due: Sequence[int], progress: Callable[[str], None]) -> None:
+def together(
+    evidence: Evidence, out: list[Hypothesis], due: Sequence[int], progress: Callable[[str], None], begun: Begun
+) -> None:
     """Refit some hypotheses side by side (the kernel frees the GIL); none depends on another of them."""
     for i in due:
         progress(f"refitting {out[i].name(evidence)}")
-    near = beginnings(evidence, out, due)
+    near = beginnings(evidence, out, [i for i in due if out[i].members not in begun])
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        found = list(pool.map(lambda i, alone: laplace(evidence, out[i], alone), due, near))
+        found = list(pool.map(lambda i: laplace(evidence, out[i], near.get(i), begun), due))
     for i, h in zip(due, found, strict=True):
         out[i] = h
 
@@ -76,15 +88,14 @@ def shares(hypotheses: Sequence[Hypothesis]) -> Array:
     return np.where(named, P / max(float(P[named].sum()), 1e-300), P)
 
 
-def beginnings(evidence: Evidence, out: Sequence[Hypothesis], due: Sequence[int]) -> list[Beginning | None]:
-    """Where each of them may begin if one of its two effects was fitted alone; those that share that share the run."""
-    alone = [fitted_alone(out, out[i].members) for i in due]
-    others: dict[int, list[int]] = {}
-    for i, found in zip(due, alone, strict=True):
-        if found:
-            others.setdefault(found[0], []).extend(k for k in out[i].members if k != found[0])
-    made = {one: beginning(evidence, one, fit, list(dict.fromkeys(others[one]))) for one, fit in filter(None, alone)}
-    return [made[found[0]] if found else None for found in alone]
+def beginnings(evidence: Evidence, out: Sequence[Hypothesis], due: Sequence[int]) -> dict[int, Beginning]:
+    """Where each of them begins if one of its two effects was fitted alone; those that share that share the run."""
+    alone = {i: found for i in due if (found := fitted_alone(out, out[i].members))}
+    others: dict[int, dict[int, None]] = {}
+    for i, (one, _) in alone.items():
+        others.setdefault(one, {}).update(dict.fromkeys(k for k in out[i].members if k != one))
+    made = {one: beginning(evidence, one, fit, list(others[one])) for one, fit in dict(alone.values()).items()}
+    return {i: made[one] for i, (one, _) in alone.items()}
 
 
 def fitted_alone(hypotheses: Sequence[Hypothesis], members: Sequence[int]) -> tuple[int, Fit] | None:
@@ -116,20 +127,39 @@ def exchanged(evidence: Evidence, hypotheses: Sequence[Hypothesis]) -> list[int]
     return [i for i, _ in dict.fromkeys([*near, *before])]
 
 
-def laplace(evidence: Evidence, h: Hypothesis, near: Beginning | None = None) -> Hypothesis:
+def laplace(evidence: Evidence, h: Hypothesis, near: Beginning | None = None, begun: Begun = NOWHERE) -> Hypothesis:
     """The hypothesis with the best of its refits and the evidence that follows.
 
-    near : where one of two effects was fitted without the other
+    near : where one of two effects was fitted without the other;  begun : members -> where a refit may go on
     """
-    points, fits = starts(evidence, h.members), []
+    before = begun.get(h.members)
+    points, fits = starts(evidence, h.members) if before is None else [before.theta], []
+    known = KnownSegments(before.parts, nearby=False, stale=True) if before and before.parts else None
     for i, theta in enumerate(points):
         with suppress(NoSolution):  # a machine that would run away there begins elsewhere
-            first = near if i == 0 else None
-            fits.append(refit_beside(evidence, h.members, first) if first else refit(evidence, h.members, theta))
+            first = near if i == 0 and before is None else None
+            fits.append(refit_beside(evidence, h.members, first) if first else refit(evidence, h.members, theta, known))
     if not fits:
         return replace(h, log_bayes=IMPOSSIBLE, loud=IMPOSSIBLE)
     best = min(fits, key=lambda fit: fit.objective)
     return replace(h, fit=best, log_bayes=log_bayes(evidence, best, h.members))
+
+
+def noise_of_refits(hypotheses: Sequence[Hypothesis]) -> Noise | None:
+    """The noise that the most probable refits leave, of the one that has most evidence under its own; None where it
+    gains little.
+
+    Tangents of a large effect leave more than the effect does, and noise as large as that cannot tell it from others.
+    """
+    order = [i for i in np.argsort(-weights(hypotheses), kind="stable") if hypotheses[i].fit and hypotheses[i].members]
+    best, most, gained = None, -np.inf, 0.0
+    for h in (hypotheses[i] for i in order[:TRIED]):
+        assert h.fit is not None
+        noise = residual_noise(h.fit)
+        more = evidence_of(h.fit, noise) - evidence_of(h.fit, h.fit.noise)
+        if h.log_prior + h.log_bayes + more > most:
+            best, most, gained = noise, h.log_prior + h.log_bayes + more, more
+    return best if gained > GAINED else None
 
 
 def log_bayes(evidence: Evidence, fit: Fit, members: Sequence[int]) -> float:

@@ -15,13 +15,13 @@ from validation.comparison.linearisation import Segment, rmse, segments
 from validation.conditions.events import possible_events
 from validation.conditions.question import best_question
 from validation.diagnosis.result import Candidate, Decided, DetectionLimit, Diagnosis, Odds, Verdict
-from validation.doubt import TEMPER, USUAL
+from validation.doubt import USUAL
 from validation.effects.above import Above
 from validation.effects.during import During
 from validation.inference.decision import Decision
 from validation.inference.detection import smallest, thresholds
 from validation.inference.evidence import Evidence, deviance
-from validation.inference.posterior import Hypothesis, Posterior, inclusion, probabilities
+from validation.inference.posterior import Hypothesis, Posterior, inclusion, probabilities, tempered_by
 from validation.inference.refits import laplace
 from validation.inference.remainder import remainder
 from validation.measurement.faults import PlainFaults
@@ -136,7 +136,7 @@ def candidates(
     order = [*chosen, *(int(k) for k in np.argsort(-share, kind="stable") if k not in chosen)]
     size, limit = smallest(e), thresholds(e)
     lead = single[chosen[0]].fit if chosen else e.fit
-    beside = Beside.of(case, e, lead)
+    beside = Beside.of(case, posterior, lead)
     few = order[:ROWS]
     rows = [_row(e, single[k], float(share[k]), float(limit[k]), float(size[k]), beside, k in chosen[:1]) for k in few]
     return tuple(replace(r, decision=_decided(r, k, choice, verdict), confused_with=_others(e, k, choice))
@@ -163,23 +163,25 @@ def _others(e: Evidence, k: int, choice: Decision) -> tuple[str, ...]:
 @dataclass(frozen=True)
 class Beside:
     """What every refit is set beside.  lead : deviance of each record with the leading effect, empty without one
-    tests, held : the held-out tests and what the model without it leaves there"""
+    temper : what divides log evidence;  tests, held : the held-out tests and what the model without it leaves there"""
 
     lead: Mapping[tuple[str, str], float]
+    temper: float
     tests: tuple[Test, ...]
     held: tuple[Segment, ...]
 
     @classmethod
-    def of(cls, case: Case, e: Evidence, lead: Fit | None) -> Beside:
+    def of(cls, case: Case, posterior: Posterior, lead: Fit | None) -> Beside:
         tests = tuple(t for t in case.tests if t.role == "hold-out")
-        return cls(deviance(e, lead) if lead else {}, tests, left_on(tests, e.fit))
+        e, share = posterior.evidence, tempered_by(posterior.hypotheses)
+        return cls(deviance(e, lead) if lead else {}, share, tests, left_on(tests, e.fit))
 
 
 def _row(e: Evidence, h: Hypothesis, share: float, limit: float, size: float, beside: Beside, leads: bool) -> Candidate:
     k, s = h.members[0], e.score
-    a = float(s.amplitude[k])
+    a, wide = float(s.amplitude[k]), float(np.sqrt(beside.temper))
     row = Candidate(
-        e.names[k], h.nats, limit, a, e.parameters[k].unit, interval(a, float(s.sd[k]), scatter(e, k)), "no",
+        e.names[k], h.nats, limit, a, e.parameters[k].unit, interval(a, wide * float(s.sd[k]), scatter(e, k)), "no",
         absorbed=float(s.absorbed[k]), smallest_detectable=size, twin=e.twins[k], title=e.effects[k].title,
         isolating_test=e.effects[k].isolating_test, probability=share,
     )  # fmt: skip
@@ -190,7 +192,7 @@ def _row(e: Evidence, h: Hypothesis, share: float, limit: float, size: float, be
         row = replace(row, value=1.0, ci95=(1.0, 1.0))
     else:
         a = float(h.fit.theta[p])
-        row = replace(row, value=a, ci95=interval(a, float(h.fit.sd[p]), scatter(e, k)))
+        row = replace(row, value=a, ci95=interval(a, wide * float(h.fit.sd[p]), scatter(e, k)))
     new = left_on(beside.tests, h.fit)
     held = (rmse(beside.held), rmse(new)) if beside.tests else None
     tests = (*by_test(e.fit.parts, h.fit.parts, False), *by_test(beside.held, new, True))
@@ -201,11 +203,11 @@ def _row(e: Evidence, h: Hypothesis, share: float, limit: float, size: float, be
 
 
 def interval(a: float, sd: float, scatter: float = 0.0) -> tuple[float, float]:
-    """Central 95 % of an amplitude; the temper that divides log evidence widens it as well.
+    """Central 95 % of an amplitude.  sd : of the refit, widened by the root of the temper that divides log evidence
 
     scatter : share of itself (one sigma) by which its law is wrong: no single amplitude fits a film of another exponent
     """
-    half = NORMAL_95 * float(np.hypot(np.sqrt(TEMPER.share) * sd, scatter * a))
+    half = NORMAL_95 * float(np.hypot(sd, scatter * a))
     return a - half, a + half
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-INSTANTS = 180
+INSTANTS = 180  # a fit looks at: matrices of a test stay below a megabyte
 
 
 def groups(nt: int, instants: int = INSTANTS) -> NDArray[np.int64]:

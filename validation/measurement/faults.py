@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from validation.case import Channel, Test
 
-FROZEN_SHARE = 0.25
-MOVING_K = 3.0
+FROZEN_SHARE = 0.25  # of a record without a change; chosen
+MOVING_K = 3.0  # of the others: several times a sensor's noise
 FEW = 8  # readings below which nothing is said of a channel
 
 

@@ -22,7 +22,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg.lapack import dtrtri
 
 from validation.comparison.linearisation import Segment
 from validation.doubt import USUAL
@@ -118,6 +117,8 @@ def _bases(time: bytes) -> Bases:
 
 def _inverse(L: NDArray[np.floating]) -> Array:
     """Of a lower triangle."""
+    from scipy.linalg.lapack import dtrtri
+
     return np.asarray(dtrtri(L, lower=1)[0], float)
 
 

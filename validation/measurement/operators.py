@@ -23,7 +23,7 @@ from validation.measurement.spline import through
 Array = NDArray[np.float64]
 OPERATORS = ("bias", "gain", "lag", "stem", "drift", "delay", "swap")
 SHIFTS = ("boundary", "initial")
-GAIN_ZERO = 20.0
+GAIN_ZERO = 20.0  # degC, at which sensors are compared
 STEP = {"lag": 0.05, "delay": 0.05}
 Memory = dict[str, Array]
 

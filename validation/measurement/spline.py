@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from lumped.numerics.jit import entry
 
 Array = NDArray[np.float64]
-FEWEST = 4
+FEWEST = 4  # instants that a cubic needs
 
 
 def through(time: Array, y: Array, at: Array) -> Array:

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from validation.doubt import PRIOR, TEMPER, USUAL
+from validation.doubt import PRIOR, USUAL, temper
 
 Array = NDArray[np.float64]
 FORGETS_S = 1800.0  # half an hour: a motor's own time constant
@@ -64,7 +64,7 @@ class Hypotheses:
     def probability(self) -> Array:
         """(h,) of each against nothing and the others."""
         gain = self._evidence(self.spread**2 + self.allowed**2) - self._evidence(self.allowed**2)
-        log = np.concatenate([[0.0], self.prior + gain / TEMPER.share])
+        log = np.concatenate([[0.0], self.prior + gain / temper(float(gain.max(initial=0.0)))])
         weight = np.exp(log - log.max())
         return np.asarray(weight[1:] / weight.sum())
 

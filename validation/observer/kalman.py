@@ -7,7 +7,7 @@ Sources: Kaminski, Bryson and Schmidt 1971; Bierman 1977, chapters II and V; Sim
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +24,6 @@ class Filter:
 
     error (N, h) : how far each of some hypotheses, were it true, would have led the estimate astray, per unit of it
     heats (m, h) : the constant heat that a unit of each brings;  along (n, n_slow) : fast states that follow slow ones
-    transition (N, N) : of the last time update, made where a smoother asks for it (`smooths`)
     """
 
     process: Process
@@ -35,26 +34,22 @@ class Filter:
     error: Array
     heats: Array
     along: Array
-    smooths: bool = False
-    transition: Array = field(default_factory=lambda: np.empty((0, 0)))
 
     def predict(self, by: Driven, k: int) -> None:
         """To sample k of the record from the one before."""
         self.x, path = self.process.steps(by, k, self.x, self.q)
         n, root = self.process.slow.size, self.noise.root
-        wide, kinds = len(self.S), self.error.shape[1]
-        unit = np.eye(wide)[:, : wide if self.smooths else 0]
+        wide = len(self.S)
         for step in path:
             keeps = float(np.exp(-step.h / self.noise.time_s))
-            both = np.hstack([self.S, self.error, unit])
-            pushed = np.hstack([self.S[n:], self.error[n:] + self.heats, unit[n:]])
+            both = np.hstack([self.S, self.error])
+            pushed = np.hstack([self.S[n:], self.error[n:] + self.heats])
             both[:n] = self.process.propagated(by.core, step, both[:n], pushed)
             both[n:] *= keeps
-            self.error, unit = both[:, wide : wide + kinds], both[:, wide + kinds :]
+            self.error = both[:, wide:]
             new = np.vstack([np.zeros((n, wide - n)), np.sqrt(1.0 - keeps**2) * root])
             self.S = np.asarray(np.linalg.qr(np.hstack([both[:, :wide], new]).T, mode="r")).T
             self.q = keeps * self.q
-        self.transition = unit
         if path and self.process.fast.size:
             self.along = self.process.balance(path[-1].G)
 
@@ -77,11 +72,6 @@ class Filter:
         n = self.process.slow.size
         self.q, self.S, self.error = np.zeros(self.q.size), np.zeros_like(self.S), np.zeros_like(self.error)
         self.S[:n, :n], self.S[n:, n:] = sd * np.eye(n), self.noise.root
-
-    @property
-    def mean(self) -> Array:
-        """(N,) slow states and heats."""
-        return np.concatenate([self.x[self.process.slow], self.q])
 
 
 def begun(

@@ -44,8 +44,7 @@ class Event:
 class Sample:
     """time_s;  x (n,) degC all states;  u (nb,) boundaries;  heat, heat_sd (m,) W
 
-    mean (N,), S (N, N) : of slow states and heats, S S' their covariance;  predicted : both before the readings
-    transition (N, N) : from the sample before, where a smoother asks for it
+    S (N, N) : S S' is the covariance of slow states and heats
     """
 
     time_s: float
@@ -55,9 +54,6 @@ class Sample:
     heat_sd: Array
     S: Array
     along: Array
-    mean: Array
-    predicted: tuple[Array, Array]
-    transition: Array
 
     def at(self, row: Row) -> tuple[float, float]:
         """Temperature (degC) and its deviation (K) at a row over z = [x; u]."""
@@ -72,12 +68,14 @@ class Observer:
     """What it is made of and how it stands; `follow` takes it over a record.
 
     table_sd (m,) W that the table of doubt allows the bodies;  sensors : channels, whose readings do not matter
-    lagged (s,) degC that each sensor would show by its own inertia;  open : hypothesis -> what was said of it
+    bias (s,) K that each sensor reads too much;  lagged (s,) degC that it would show by its own inertia
+    open : hypothesis -> what was said of it
     """
 
     filter: Filter
     table_sd: Array
     sensors: tuple[Channel, ...]
+    bias: Array
     states: list[SensorState]
     tests: Hypotheses
     lagged: Array
@@ -91,15 +89,14 @@ class Observer:
 
         readings (nt, s) degC, NaN where nothing was read
         """
-        by, out = self.filter.process.driven(record), []
+        by, out, readings = self.filter.process.driven(record), [], readings - self.bias
         for k in range(1 if self.started else 0, by.time.size):
             seconds = float(by.time[k] - by.time[k - 1]) if k else 0.0
             if k:
                 self.filter.predict(by, k)
                 self.tests.forget(seconds)
-            predicted = self.filter.mean, self.filter.S
             self._update(by, k, readings[k], seconds)
-            out.append(self._sample(by, k, predicted))
+            out.append(self._sample(by, k))
             self.started = True
         return out
 
@@ -188,29 +185,31 @@ class Observer:
         self._say(j, Event("drifting", self.sensors[j].name, time, None, chance, size, "K"))
         self.tests.clear()
 
-    def _sample(self, by: Driven, k: int, predicted: tuple[Array, Array]) -> Sample:
+    def _sample(self, by: Driven, k: int) -> Sample:
         f = self.filter
         sd = np.linalg.norm(f.S[f.process.slow.size :], axis=1)
-        return Sample(float(by.time[k]), f.x.copy(), by.u[k], f.q.copy(), sd, f.S, f.along, f.mean, predicted,
-                      f.transition)  # fmt: skip
+        return Sample(float(by.time[k]), f.x.copy(), by.u[k], f.q.copy(), sd, f.S, f.along)
 
 
 def observer(
     process: Process, noise: ProcessNoise, table_sd: Array, sensors: Sequence[Channel], readings: Array,
-    boundaries: Mapping[str, float], rise_K: float,
+    boundaries: Mapping[str, float], rise_K: float, bias: Array | None = None,
 ) -> Observer:  # fmt: skip
     """At its start, from the first readings (s,): places without a sensor begin at the mean of the others.
 
     table_sd (m,) W that the table of doubt allows;  rise_K : usual rise, of which a sensor may miss a share
+    bias (s,) K that the sensors read too much, none by default
     """
-    known = {c.place: float(y) for c, y in zip(sensors, readings, strict=True) if np.isfinite(y)}
+    off = np.zeros(len(sensors)) if bias is None else bias
+    known = {c.place: float(y) for c, y in zip(sensors, readings - off, strict=True) if np.isfinite(y)}
     x = initial_state(process.network, known or float(np.mean([*boundaries.values()])))
     around = np.array([*known.values(), *boundaries.values()])
-    sd = {int(i): USUAL["start"] for c in sensors if c.place in known for i in c.row.index}
+    sd = {process.state(c): USUAL["start"] for c in sensors if c.place in known}
     count, m = len(sensors), len(process.bodies)
     heats = np.hstack([np.zeros((m, count)), np.eye(m)])
     kept = begun(process, noise, x, sd, float(np.hypot(USUAL["start"], np.std(around))), heats)
     sigma = np.array([c.sigma_K for c in sensors])
     allowed = np.hypot(sigma, USUAL["gain"] * rise_K)
     tests = hypotheses(tuple(c.name for c in sensors), sigma, allowed, process.bodies, table_sd)
-    return Observer(kept, table_sd, tuple(sensors), [SensorState() for _ in sensors], tests, np.zeros(count))
+    states = [SensorState() for _ in sensors]
+    return Observer(kept, table_sd, tuple(sensors), off, states, tests, np.zeros(count))

@@ -10,9 +10,9 @@ heat capacity, shapes and nodes without any at their balance.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from math import ceil, sqrt
 
 import numpy as np
@@ -24,6 +24,7 @@ from lumped.integration.compiled import Compiled, compiled
 from lumped.integration.record import Record
 from lumped.model.network import Network, Row
 from lumped.numerics.instant import instant
+from validation.case import Channel
 
 Array = NDArray[np.float64]
 GAMMA = 1.0 - sqrt(0.5)  # L-stable
@@ -86,6 +87,11 @@ class Process:
         """Of the reduced model with its heats."""
         return self.slow.size + len(self.bodies)
 
+    def state(self, c: Channel) -> int:
+        """Of the place where a sensor sits."""
+        places = self.network.places
+        return self.network.column(places[c.place].part if c.place in places else c.place)
+
     def driven(self, record: Record) -> Driven:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", RangeWarning)  # a comparison says so once; here it would be every row
@@ -95,22 +101,29 @@ class Process:
 
     def steps(self, by: Driven, k: int, x: Array, q: Array) -> tuple[Array, list[Linear]]:
         """States at sample k from those at the sample before it; the linearisations of the steps on the way."""
-        seconds = float(by.time[k] - by.time[k - 1])
-        count = max(ceil(seconds / LONGEST_S - 1e-9), 1)
         path = []
-        for i in range(count if seconds > 0.0 else 0):
-            share = (i + 0.5) / count
+        for share, h in self.inner(float(by.time[k] - by.time[k - 1])):
             f = by.factor[k - 1] + share * (by.factor[k] - by.factor[k - 1])
             u = by.u[k - 1] + share * (by.u[k] - by.u[k - 1])
-            x, G = self._step(by.core, x, q, u, f, seconds / count)
-            path.append(Linear(G, seconds / count))
+            x, G = self.stepped(partial(self._at, by.core, u=u, f=f), by.core.C, x, q, h)
+            path.append(Linear(G, h))
         return x, path
 
-    def _step(self, core: Compiled, x: Array, q: Array, u: Array, f: Array, h: float) -> tuple[Array, Array]:
-        F, G = self._at(core, x, u, f)
-        heat, lu = self.E @ q, _Factored(np.diag(core.C) + GAMMA * h * G)
-        first = lu.solve(F + heat)
-        second = lu.solve(self._at(core, x + h * first, u, f)[0] + heat - 2.0 * core.C * first)
+    @staticmethod
+    def inner(seconds: float) -> Iterator[tuple[float, float]]:
+        """The steps of a sample: how far (share of it) the middle of each lies, and how long (s) it is."""
+        count = max(ceil(seconds / LONGEST_S - 1e-9), 1)
+        for i in range(count if seconds > 0.0 else 0):
+            yield (i + 0.5) / count, seconds / count
+
+    def stepped(
+        self, heat: Callable[[Array], tuple[Array, Array]], C: Array, x: Array, q: Array, h: float
+    ) -> tuple[Array, Array]:
+        """States after a step, and G at its start.  heat : x -> F (n,) and G;  C (n,) J/K"""
+        F, G = heat(x)
+        missing, lu = self.E @ q, _Factored(np.diag(C) + GAMMA * h * G)
+        first = lu.solve(F + missing)
+        second = lu.solve(heat(x + h * first)[0] + missing - 2.0 * C * first)
         return x + h * (1.5 * first + 0.5 * second), G
 
     def _at(self, core: Compiled, x: Array, u: Array, f: Array) -> tuple[Array, Array]:

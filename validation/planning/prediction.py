@@ -59,16 +59,16 @@ def refitted_gains(evidence: Evidence, found: CompetingModels, promised: Iterabl
     the largest share that any of those kept.
     """
     plans = sorted(promised, key=lambda p: -p.worth)
-    kept: list[Gaps] = [
+    separations: list[Gaps] = [
         {pair: predicted_deviance(evidence, found, p.tests, pair) for pair in closest_pair(p.gaps)}
         for p in plans[:CHECKED]
     ]
-    kept += [{}] * (len(plans) - len(kept))
-    shares = [g / p.gaps[pair] for own, p in zip(kept, plans, strict=True) for pair, g in own.items()]
+    separations += [{}] * (len(plans) - len(separations))
+    shares = [g / p.gaps[pair] for own, p in zip(separations, plans, strict=True) for pair, g in own.items()]
     share = float(np.clip(max(shares, default=1.0), 0.0, 1.0))
     left = [
         replace(p, gaps={pair: max(min(gap, own.get(pair, share * gap)), 0.0) for pair, gap in p.gaps.items()})
-        for own, p in zip(kept, plans, strict=True)
+        for own, p in zip(separations, plans, strict=True)
     ]
     return sorted(left, key=lambda p: -p.worth)
 
@@ -85,10 +85,10 @@ def predicted_deviance(evidence: Evidence, found: CompetingModels, new: Sequence
     bend: its own refit, with start and clock of a new test or bias and lag of a new sensor, meets noiseless readings of
     the right one.
     """
-    return min(_behind(evidence, found, new, right, wrong) for right, wrong in (pair, pair[::-1]))
+    return min(_difference(evidence, found, new, right, wrong) for right, wrong in (pair, pair[::-1]))
 
 
-def _behind(evidence: Evidence, found: CompetingModels, new: Sequence[Test], right: int, wrong: int) -> float:
+def _difference(evidence: Evidence, found: CompetingModels, new: Sequence[Test], right: int, wrong: int) -> float:
     read, rival = [predicted_readings(found.fit(right), t) for t in new], found.fit(wrong)
     network, unknowns, held = with_members(evidence, [wrong])
     known = {p.name for p in network.parameters}

@@ -21,7 +21,7 @@ from validation.planning.prediction import Plan, refitted_gains, widened_error
 from validation.planning.separability import separable_pairs, separation
 
 Array = NDArray[np.float64]
-SIGMA_K = 0.5
+SIGMA_K = 0.5  # of a further thermocouple, as a sheet's usual
 PREFIX = "planned: "
 HOURS = {"outside": 0.5, "inside": 4.0, "air": 2.0, "turning": 16.0}  # to mount one, from the bench's own practice
 WHY = {

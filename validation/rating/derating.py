@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from geom.errors import InputError
 from lumped.model.network import Network
-from validation.rating.envelope import rated
+from validation.rating.envelope import Rating, rated
 from validation.rating.operation import Operation, air_boundaries, at_altitude, coolant_boundaries, flows
 from validation.rating.points import Model
 
@@ -18,39 +18,56 @@ FLOWS = (0.5, 0.75, 1.0, 1.25)  # of the reference flow
 
 
 @dataclass(frozen=True)
-class Derated:
-    """of : "ambient", "altitude", "coolant" or an input;  value : its degC, m or own unit;  load : of the reference
+class Surroundings:
+    """One thing about a machine's place that is not as at the reference.
 
-    load : 0 where the limit is exceeded without any
+    of : "ambient", "altitude", "coolant" or an input;  value : its degC, m or own unit;  op : the operating point there
     """
 
     of: str
     value: float
     unit: str
-    load: float
+    op: Operation
+
+    def network(self, network: Network) -> Network:
+        """A network that is there."""
+        return at_altitude(network, self.value) if self.of == "altitude" else network
+
+
+@dataclass(frozen=True)
+class Derated:
+    """rating : the continuous one; None where the limit is exceeded without any load"""
+
+    where: Surroundings
+    rating: Rating | None
+
+    @property
+    def load(self) -> float:
+        return 0.0 if self.rating is None else self.rating.load
 
 
 def deratings(model: Model, op: Operation, limits: Mapping[str, float]) -> list[Derated]:
     """The continuous rating over each of them, the others at the reference."""
-    return [Derated(of, v, unit, _load(m, o, limits)) for of, v, unit, m, o in _surroundings(model, op)]
+    return [Derated(s, _rated(model, s, limits)) for s in surroundings(model.network, op)]
 
 
-def _load(model: Model, op: Operation, limits: Mapping[str, float]) -> float:
+def _rated(model: Model, s: Surroundings, limits: Mapping[str, float]) -> Rating | None:
     try:
-        return rated(model, op, limits, "S1", None).load
+        return rated(replace(model, network=s.network(model.network)), s.op, limits, "S1", None)
     except InputError:
-        return 0.0
+        return None
 
 
-def _surroundings(model: Model, op: Operation) -> Iterator[tuple[str, float, str, Model, Operation]]:
-    network: Network = model.network
+def surroundings(network: Network, op: Operation) -> Iterator[Surroundings]:
+    """All that a network of this kind feels: air, thin air, coolant, flows."""
     air, coolant = air_boundaries(network), coolant_boundaries(network)
     for T in AMBIENTS if air else ():
-        yield "ambient", T, "degC", model, op.moved(boundaries=dict.fromkeys(air, T))
+        yield Surroundings("ambient", T, "degC", op.moved(boundaries=dict.fromkeys(air, T)))
     for height in ALTITUDES if air else ():
-        yield "altitude", height, "m", replace(model, network=at_altitude(network, height)), op
+        yield Surroundings("altitude", height, "m", op)
     for T in COOLANTS if coolant else ():
-        yield "coolant", T, "degC", model, op.moved(boundaries=dict.fromkeys(coolant, T))
+        yield Surroundings("coolant", T, "degC", op.moved(boundaries=dict.fromkeys(coolant, T)))
     for name in flows(network, op.inputs):
         for share in FLOWS:
-            yield name, share * op.inputs[name], "as recorded", model, op.moved({name: share * op.inputs[name]})
+            flow = share * op.inputs[name]
+            yield Surroundings(name, flow, "as recorded", op.moved({name: flow}))

@@ -126,11 +126,8 @@ def with_losses(network: Network, grid: LossGrid, where: str) -> Network:
         for name in [n for n in (s.name, _bare(s), s.kind) if n in grid.watts][:1]:
             alike = [x for x in network.sources if name in (x.name, _bare(x), x.kind)]
             sources.append(replace(s, law=_law(grid, grid.watts[name] / len(alike), s)))
-    kept = {s.name for s in sources}
-    parameters = tuple(
-        replace(p, targets=tuple(t for t in p.targets if t[0] in kept or t[0] not in {s.name for s in network.sources}))
-        for p in network.parameters
-    )
+    gone = {s.name for s in network.sources} - {s.name for s in sources}
+    parameters = tuple(replace(p, targets=tuple(t for t in p.targets if t[0] not in gone)) for p in network.parameters)
     return replace(network, sources=tuple(sources), parameters=parameters)
 
 

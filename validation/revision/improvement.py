@@ -15,7 +15,7 @@ from validation.inference.diagnose import diagnose
 from validation.revision.revise import Revision, add, calibrate
 
 Progress = Callable[[str], None]
-MOST = 6
+MOST = 6  # effects at a time: more are a reason to look at the model
 
 
 @dataclass(frozen=True)
@@ -103,7 +103,7 @@ def improve(
     stairs = [Step(errors(case), {})]
     if not case.model.values:
         progress("calibrating")
-        case = _kept(case, calibrate(case, progress=progress), guide, {}, stairs)
+        case = _with_step(case, calibrate(case, progress=progress), guide, {}, stairs)
     while True:
         found = diagnose(case, kinds=kinds, progress=progress)
         progress(f"{found.verdict}: {found.words}")
@@ -112,7 +112,7 @@ def improve(
         step, said, why = _added(case, guide, found, progress)
         if step is None:
             return Improvement(case, tuple(stairs), found, why)
-        case = _kept(case, step, guide, said, stairs)
+        case = _with_step(case, step, guide, said, stairs)
 
 
 def _added(
@@ -135,7 +135,7 @@ def _added(
     return None, {}, "; ".join(why) or found.words
 
 
-def _kept(
+def _with_step(
     case: Case, step: Revision, guide: Supervisor, evidence: Mapping[str, float | str], stairs: list[Step]
 ) -> Case:  # fmt: skip
     guide.keep(step, evidence)

@@ -208,8 +208,11 @@ def judge(action: str, changes: Sequence[Change], fits: Sequence[Fit], made: Seq
     converged = all(fit.converged for fit in fits)
     foretells = any(c.check == "left out" and c.value > c.limit for c in made)
     fell = now <= (GETS_WORSE * was if action == "calibrate" or foretells else was)
-    told = [failures(made), "" if converged else "not converged", f"error {was:.3g} -> {now:.3g} K", *unseen(changes)]
-    return bool(fell and converged and not failures(made)), "; ".join(filter(None, told))
+    reasons = [
+        failures(made), "" if converged else "not converged", f"rms over the tests used {fall(was, now)}",
+        *unseen(changes),
+    ]  # fmt: skip
+    return bool(fell and converged and not failures(made)), "; ".join(filter(None, reasons))
 
 
 def unseen(changes: Sequence[Change]) -> list[str]:
@@ -218,9 +221,16 @@ def unseen(changes: Sequence[Change]) -> list[str]:
     if not own:
         return ["no held-out test"]
     was, now = mean_square(own, "before"), mean_square(own, "after")
-    told = f"held-out tests {was:.3g} -> {now:.3g} K"
+    change = f"held-out tests {fall(was, now)}"
     worst = max(own, key=lambda c: c.after - c.before)
-    return [f"{told}: {worst.name} got worse, the fit follows what only the fitted tests show" if now > was else told]
+    return [
+        f"{change}: {worst.name} got worse, the fit follows what only the fitted tests show" if now > was else change
+    ]
+
+
+def fall(before: float, after: float) -> str:
+    """Two errors (K) in words, with the digits that tables have."""
+    return " -> ".join(f"{x:.2f}" if x >= 0.1 else f"{x:.3g}" for x in (before, after)) + " K"
 
 
 def mean_square(changes: Sequence[Change], side: str) -> float:

@@ -12,7 +12,7 @@ from viz.appearance.making import ball, bolt, box, extruded, revolved, rod, roun
 from viz.appearance.outlines import Outlines
 from viz.appearance.shape import Shape, joined
 
-RIBS, BOLTS, COVER_BOLTS = 8, 8, 4
+RIBS, BOLTS, COVER_BOLTS = 8, 8, 4  # for the eye only
 EXTENSION = 1.6  # diameters of a shaft that drives something, as in IEC 60072-1
 STUB = 0.75  # diameters of overhang from which a shaft counts as extended already
 

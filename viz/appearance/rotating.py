@@ -49,11 +49,11 @@ def cowl(o: Outlines, part: Part) -> list[Body]:
     side = o.side(part)
     return [
         Body(part.name, Finish.PAINT, joined(own)),
-        Body(part.name, Finish.STEEL, _guard(r0, z1 if side > 0 else z0), added=True),
+        Body(part.name, Finish.STEEL, _cover(r0, z1 if side > 0 else z0), added=True),
     ]
 
 
-def _guard(radius: float, z: float) -> Shape:
+def _cover(radius: float, z: float) -> Shape:
     """Wires in rings, and four spokes."""
     wire = max(0.009 * radius, 0.0008)
     rings = [revolved(shapely.Point(r, z).buffer(wire, quad_segs=2), 90) for r in np.linspace(0.2, 0.98, 9) * radius]
@@ -78,7 +78,7 @@ def shaft_fan(o: Outlines) -> list[Body]:
     fan = _radial_fan(radius, 0.74 * reach, back + 0.2 * deep, face - 0.18 * deep)
     return [
         Body(body.name, Finish.PAINT, revolved(shell), added=True),
-        Body(body.name, Finish.STEEL, _guard(0.71 * reach, back), added=True),
+        Body(body.name, Finish.STEEL, _cover(0.71 * reach, back), added=True),
         Body(shield.name, Finish.RUBBER, fan, added=True),
         *(Body(p.name, Finish.STEEL, rod(radius, 0.85 * deep).flipped().moved((0, 0, face)), added=True)
           for p in o.parts(Role.SHAFT)[:1]),

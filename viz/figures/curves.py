@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 @paper.styled
 def measured_and_model(comparison: Comparison, *, columns: int = 3, png: str | Path | None = None) -> Figure:
-    """One small panel per sensor: readings with their 2-sigma band, the model, and the earlier model if given."""
+    """A panel per sensor: readings with the band that counts as within, the model, and the earlier model if given."""
     channels = _read(comparison)
     columns = min(columns, len(channels))
     rows = -(-len(channels) // columns)
@@ -47,8 +47,6 @@ def residuals(comparison: Comparison, *, png: str | Path | None = None) -> Figur
     figure, (ax,) = paper.subplots(8.4, 3.8)
     (t, unit), thin = comparison.clock, comparison.thin
     channels = _read(comparison)
-    band = 2 * max(c.sigma_K for c in channels)
-    ax.axhspan(-band, band, color=LIGHT.faint, alpha=0.25, lw=0)
     shade(ax, comparison)
     colours = []
     for channel in channels:
@@ -76,14 +74,15 @@ def _panel(ax: Axes, comparison: Comparison, channel: Channel) -> None:
     thin = comparison.thin
     t, y = comparison.clock[0][thin], np.asarray(channel.y, float)[thin]
     shade(ax, comparison)
-    ax.fill_between(t, y - 2 * channel.sigma_K, y + 2 * channel.sigma_K, color=LIGHT.faint, alpha=0.45, lw=0)
+    limit = comparison.limit_K(channel)
+    ax.fill_between(t, y - limit, y + limit, color=LIGHT.faint, alpha=0.45, lw=0)
     ax.plot(t, y, color=LIGHT.ink, lw=1.0)
     if comparison.before is not None:
         ax.plot(t, comparison.before[channel.name][thin], color=ORANGE, lw=1.4, ls=(0, (4, 2)))
     ax.plot(t, comparison.model[channel.name][thin], color=BLUE)
     ax.set_title(short(channel.name))
     ax.margins(x=0)
-    over = comparison.rmse(channel) > comparison.limit_K(channel)
+    over = comparison.rmse(channel) > limit
     colour = VERMILION if over else LIGHT.ink
     ax.set_title(
         f"rms {comparison.rmse(channel):.1f} K", loc="right", color=colour, fontweight="bold" if over else "normal"
@@ -92,7 +91,7 @@ def _panel(ax: Axes, comparison: Comparison, channel: Channel) -> None:
 
 def _name_lines(ax: Axes, comparison: Comparison) -> None:
     """Names written once, top left of the first panel, in the colour of their lines."""
-    lines = [("measured ± 2σ", LIGHT.ink), ("model", BLUE)] + [("earlier model", ORANGE)] * (
+    lines = [("measured ± limit", LIGHT.ink), ("model", BLUE)] + [("earlier model", ORANGE)] * (
         comparison.before is not None
     )
     for i, (text, colour) in enumerate(lines):

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from validation.planning.predicted_curves import PredictedCurves
 
 COLOURS = (BLUE, VERMILION, GREEN, PURPLE, ORANGE)
-SENSORS = 4
+SENSORS = 4  # panels that a page holds side by side
 
 
 @paper.styled

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Row = Mapping[str, Any]
-TOP = 8
+TOP = 8  # bars that can be read
 LENTH = (("margin", "Lenth, each", "--"), ("simultaneous", "Lenth, all at once", ":"))
 
 

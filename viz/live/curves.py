@@ -28,17 +28,17 @@ def channel_of(comparison: Comparison, name: str) -> Channel:
 
 
 def sensor(comparison: Comparison, channel: str, *, theme: Theme = LIGHT) -> go.Figure:
-    """Readings with their 2-sigma band, the model, the earlier model; below them measured - modelled (K)."""
+    """Readings with the band that counts as within, the model, the earlier one; below them measured - modelled (K)."""
     c = channel_of(comparison, channel)
     (t, unit), thin = comparison.clock, comparison.thin
-    x, y, band = plain(t[thin]), np.asarray(c.y, float)[thin], 2 * c.sigma_K
+    x, y, band = plain(t[thin]), np.asarray(c.y, float)[thin], comparison.limit_K(c)
     out = figure(
         theme, (0.66, 0.34), title={"text": f"{short(c.name)} ({c.place})", "x": 0.02, "y": 0.98, "font": {"size": 14}}
     )
     shade = {"fill": "tonexty", "fillcolor": faded(theme.faint, 0.4), "line": {"width": 0}, "hoverinfo": "skip"}
     for values, filled in ((y - band, {"line": {"width": 0}, "hoverinfo": "skip"}), (y + band, shade)):
         out.add_scatter(x=x, y=plain(values), mode="lines", showlegend=False, row=1, col=1, **filled)
-    _line(out, x, y, "measured ± 2σ", theme.ink, 1)
+    _line(out, x, y, "measured ± limit", theme.ink, 1)
     if comparison.before is not None:
         _line(out, x, comparison.before[c.name][thin], "earlier model", ORANGE, 1, "dash")
     _line(out, x, comparison.model[c.name][thin], "model", BLUE, 1)

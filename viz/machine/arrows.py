@@ -95,10 +95,10 @@ def _arrows(p: pyvista.Plotter, at: Array, flux: Array, length: float, theme: Th
     import pyvista
 
     size = np.linalg.norm(flux, axis=1)
-    kept = size > SHORTEST * size.max(initial=0.0)
-    cloud = pyvista.PolyData(at[kept])
-    cloud["flux"] = flux[kept] / size[kept][:, None]
-    cloud["length"] = np.sqrt(size[kept] / size.max(initial=1.0))
+    long = size > SHORTEST * size.max(initial=0.0)
+    cloud = pyvista.PolyData(at[long])
+    cloud["flux"] = flux[long] / size[long][:, None]
+    cloud["length"] = np.sqrt(size[long] / size.max(initial=1.0))
     arrow = pyvista.Arrow(shaft_radius=0.06, tip_radius=0.16, tip_length=0.35)
     shapes = cloud.glyph(orient="flux", scale="length", factor=LONGEST * length, geom=arrow)
     on_top(p.add_mesh(shapes, color=theme.ink, lighting=False, show_scalar_bar=False), 1)

@@ -31,7 +31,7 @@ SAID = "hatched: the sensors tell less than half of the model's own uncertainty 
 def misses(
     nodes: SplitMesh,
     error: Array,
-    told: Array,
+    explained: Array,
     *,
     sensors: Sequence[Sensor] = (),
     title: str = "",
@@ -42,7 +42,7 @@ def misses(
 ) -> pyvista.Plotter:
     """Measured minus model (K): vermilion where the machine is hotter than the model, blue where it is colder.
 
-    error : (n_nodes,) K;  told : (n_nodes,) share of the variance that readings explain, see
+    error : (n_nodes,) K;  explained : (n_nodes,) share of the variance that readings explain, see
         validation.comparison.interpolation;  sensors : where it was measured
     """
     p, view, surface = scene.plotter(theme), view or View(), cut_away(nodes, wedge)
@@ -52,7 +52,7 @@ def misses(
     seen = marked(surface, sensors, LABELS, np.array(p.camera.position))
     paint(p, seen.cut.solid, K, (-most, most), theme, colours=missing(), outlined=surface)
     scene.colour_bar(p, "K", theme)
-    guess: NDArray[np.bool_] = np.asarray(seen.cut.solid.values(on_nodes(nodes, told)) < GUESS)
+    guess: NDArray[np.bool_] = np.asarray(seen.cut.solid.values(on_nodes(nodes, explained)) < GUESS)
     _hatch(p, seen.cut.solid, guess, theme)
     renderer: Any = p.renderer
     renderer.ResetCameraClippingRange()

@@ -22,7 +22,7 @@ from viz.rendering.visibility import anchors
 if TYPE_CHECKING:
     import pyvista
 
-BEHIND = 10.0  # nats behind the likeliest place from which a place stays grey
+UNLIKELY = 10.0  # nats behind the likeliest place from which a place stays grey
 SMALL = 13  # size of the labels
 FAINT = 0.02  # of the largest heat: less is not labelled
 
@@ -33,7 +33,7 @@ def mean_heat(where: Sequence[Mapping[str, Any]], test: str) -> dict[str, float]
         right = f"known: {', '.join(where[0]['heat'])}" if where else "a diagnosis made with `plan`"
         raise InputError(f"no missing heat for test '{test}'", "diagnosis", right)
     best = max(w["evidence_nats"] for w in where)
-    near = [w for w in where if w["evidence_nats"] > best - BEHIND]
+    near = [w for w in where if w["evidence_nats"] > best - UNLIKELY]
     return {w["place"]: float(np.mean(w["heat"][test]["heat_W"])) for w in near}
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "microsoft-edge")
-LONGEST_S = 180
+LONGEST_S = 180  # a browser that needs more hangs
 
 
 def write_pdf(page: Path) -> Path | None:

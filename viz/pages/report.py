@@ -118,7 +118,9 @@ def _curves(r: Report) -> str:
         name = f"{c.test.name} ({c.test.role})"
         both = html.plot(curves.residuals(c), f"residual{i}", f"{name}: measured − model per sensor.")
         both += html.plot(
-            curves.measured_and_model(c), f"curves{i}", f"{name}: readings, their 2σ band, and the model."
+            curves.measured_and_model(c),
+            f"curves{i}",
+            f"{name}: readings, what counts as within, and the model.",
         )
         parts.append(html.more(name, both, opened=i == 0))
     return html.section("Measured and modelled", *parts)
@@ -176,7 +178,7 @@ def _contradiction(diagnosis: Document) -> str:
     return f"{head}{drawn}{html.more('In numbers', table)}"
 
 
-_HEADERS = ["effect", "decision", "score", "threshold", "size", "95 % interval", "error (K)", "held-out (K)"]
+_HEADERS = ["effect", "decision", "score", "threshold", "size", "95 % interval", "refitted, error (K)", "held-out (K)"]
 
 
 def _row(c: Document) -> list[html.Cell]:
@@ -195,11 +197,11 @@ def _hidden(r: Report) -> str:
     return html.section(
         "What these tests cannot see, and what would help",
         seen and html.more("Effects that could be there unseen", seen),
-        _ahead(r.diagnosis),
+        _next_tests(r.diagnosis),
     )
 
 
-def _ahead(diagnosis: Document) -> str:
+def _next_tests(diagnosis: Document) -> str:
     """Tests and sensors that would tell a group apart, or that no test would."""
     rows = [(o.kind, o.what, ", ".join(o.separates), _number(o.gain), _number(o.hours), o.why)
             for o in deciding(diagnosis)]  # fmt: skip

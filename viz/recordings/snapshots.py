@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 COMMAND = "apt-get install -y libvulkan1 mesa-vulkan-drivers"
 TRIES = 4  # the viewer gives up on a picture after 15 s, which a busy computer may need to draw it
-START_S = 60.0
+START_S = 60.0  # a viewer that needs more does not start
 DRAWN, SETTLED_S = 3, 1.0  # a plot finds its scale, and its lines, only after it was drawn once; the last picture stays
 
 

@@ -79,16 +79,16 @@ class Surface:
         count = above.sum(axis=1)
         one, two = count == 1, count == 2
         apex_one, apex_two = _turned(self.triangles[one], above[one]), _turned(self.triangles[two], ~above[two])
-        mixes = _Mixes(d, len(d))
+        combined = _Combinations(d, len(d))
         a, b, c = apex_one.T
-        single = np.stack([a, mixes.edge(a, b), mixes.edge(a, c)], axis=1)
+        single = np.stack([a, combined.edge(a, b), combined.edge(a, c)], axis=1)
         a, b, c = apex_two.T
-        ab, ac = mixes.edge(a, b), mixes.edge(a, c)
+        ab, ac = combined.edge(a, b), combined.edge(a, c)
         triangles = np.concatenate(
             [self.triangles[count == 3], single, np.stack([ab, b, c], axis=1), np.stack([ab, c, ac], axis=1)]
         )
         part = np.concatenate([self.part[count == 3], self.part[one], self.part[two], self.part[two]])
-        weights = vstack([self.weights, mixes.matrix() @ self.weights], format="csr")
+        weights = vstack([self.weights, combined.matrix() @ self.weights], format="csr")
         return Surface(self.nodes, weights, triangles, part).compact()
 
     def compact(self) -> Surface:
@@ -118,18 +118,18 @@ def section(nodes: SplitMesh, normal: Array, offset: float = 0.0) -> Surface:
     d = _snapped(nodes.points @ normal - offset)
     above = (d >= 0)[nodes.tets]
     count = above.sum(axis=1)
-    mixes = _Mixes(d, 0)
+    combined = _Combinations(d, 0)
     triangles, part = [], []
     for sign, chosen in ((above, count == 1), (~above, count == 3)):
         a, b, c, e = _first(nodes.tets[chosen], sign[chosen], 1).T
-        triangles.append(np.stack([mixes.edge(a, b), mixes.edge(a, c), mixes.edge(a, e)], axis=1))
+        triangles.append(np.stack([combined.edge(a, b), combined.edge(a, c), combined.edge(a, e)], axis=1))
         part.append(nodes.region[chosen])
     two = count == 2
     a, b, c, e = _first(nodes.tets[two], above[two], 2).T
-    ac, ae, be, bc = mixes.edge(a, c), mixes.edge(a, e), mixes.edge(b, e), mixes.edge(b, c)
+    ac, ae, be, bc = combined.edge(a, c), combined.edge(a, e), combined.edge(b, e), combined.edge(b, c)
     triangles += [np.stack([ac, ae, be], axis=1), np.stack([ac, be, bc], axis=1)]
     part += [nodes.region[two]] * 2
-    flat = Surface(nodes, mixes.matrix(), np.concatenate(triangles), np.concatenate(part)).compact()
+    flat = Surface(nodes, combined.matrix(), np.concatenate(triangles), np.concatenate(part)).compact()
     return _facing(flat, normal)
 
 
@@ -158,7 +158,7 @@ def _snapped(distance: Array) -> Array:
     return np.where(np.abs(distance) < 1e-9, 0.0, distance)
 
 
-class _Mixes:
+class _Combinations:
     """Collects the points at which edges cross the plane; numbers start at `offset`."""
 
     def __init__(self, distance: Array, offset: int) -> None:

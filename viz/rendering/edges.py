@@ -22,8 +22,8 @@ def feature_edges(surface: Surface, angle: float = 35.0) -> Index:
     first = np.flatnonzero(np.concatenate([[True], (edges[1:] != edges[:-1]).any(axis=1)]))
     count = np.diff(np.append(first, len(edges)))
     two = first[count == 2]
-    bent = (normal[face[two]] * normal[face[two + 1]]).sum(axis=1) < np.cos(np.deg2rad(angle))
-    return edges[np.sort(np.concatenate([first[count == 1], two[bent]]))]
+    sharp = (normal[face[two]] * normal[face[two + 1]]).sum(axis=1) < np.cos(np.deg2rad(angle))
+    return edges[np.sort(np.concatenate([first[count == 1], two[sharp]]))]
 
 
 def outline_strips(surface: Surface, angle: float = 35.0) -> NDArray[np.float64]:

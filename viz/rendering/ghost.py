@@ -92,8 +92,8 @@ def ghosted(surface: Surface, places: Array, chosen: NDArray[np.bool_], eye: Arr
 
 def _free(places: Array, i: int, eye: Array) -> float:
     """Half the distance from a place to the nearest other line of sight (m)."""
-    sight = (places - eye) / np.linalg.norm(places - eye, axis=1, keepdims=True)
-    apart = np.linalg.norm(np.cross(np.delete(sight, i, axis=0), places[i] - eye), axis=1)
+    rays = (places - eye) / np.linalg.norm(places - eye, axis=1, keepdims=True)
+    apart = np.linalg.norm(np.cross(np.delete(rays, i, axis=0), places[i] - eye), axis=1)
     return float(apart.min(initial=np.inf)) / 2
 
 

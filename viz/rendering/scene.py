@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     import pyvista
 
 Array = NDArray[np.float64]
-SIZE = (1280, 800)
+SIZE = (1280, 800)  # pixels
 FEATURE_ANGLE = 35.0  # degrees between facets from which an edge is drawn
 
 

@@ -13,7 +13,7 @@ from viz.rendering.cut import Surface
 from viz.rendering.scene import Room, View
 
 Array = NDArray[np.float64]
-SIZE = (640, 400)
+SIZE = (640, 400)  # pixels, a quarter of those of a picture
 SLACK = 0.006  # m: a thermocouple this deep still counts as lying on the surface
 SMALLEST = 1.5  # pixels from the middle of a patch to its border below which a part counts as hidden
 

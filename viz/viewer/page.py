@@ -27,16 +27,32 @@ STEP_K = 0.02  # of the shapes: small ones then take few bits
 
 
 @dataclass(frozen=True)
+class Earlier:
+    """A test with an earlier revision.  fields : (n, n_nodes) degC;  readings : sensor -> (n_time,) degC"""
+
+    fields: Array
+    readings: Mapping[str, Array]
+
+
+@dataclass(frozen=True)
 class Recorded:
     """A test as the page plays it.
 
     times : (n,) s;  fields : (n, n_nodes) degC;  before : the same of the model before its last step, if there is one
+    earlier : other revisions, as many for every test, named in the same order by `document`
     """
 
     comparison: Comparison
     times: Array
     fields: Array
     before: Array | None = None
+    earlier: tuple[Earlier, ...] = ()
+
+    @property
+    def states(self) -> list[Array]:
+        """Fields of the model as it is, before its last step, and of the earlier revisions."""
+        first = [self.fields] if self.before is None else [self.fields, self.before]
+        return [*first, *(e.fields for e in self.earlier)]
 
 
 def write_viewer(
@@ -51,21 +67,24 @@ def write_viewer(
 
 def document(
     title: str, nodes: SplitMesh, tests: Sequence[Recorded], positions: Mapping[str, Sequence[float]],
-    conductivity: Mapping[str, tuple[float, float]] | None = None,
+    conductivity: Mapping[str, tuple[float, float]] | None = None, revisions: Sequence[str] = ("now", "before"),
 ) -> dict[str, Any]:  # fmt: skip
-    """All the page draws. conductivity : part -> across and along the axis (W/m/K), for heat flux"""
-    found = low_rank(np.concatenate([part for t in tests for part in (t.fields, t.before) if part is not None]))
+    """All the page draws.
+
+    conductivity : part -> across and along the axis (W/m/K), for heat flux;  revisions : names of a test's states
+    """
+    every = [part for t in tests for part in t.states]
+    found = low_rank(np.concatenate(every))
     triangles, part = nodes.boundary()
     order = np.argsort(part, kind="stable")
     colours = part_colours(nodes.parts, nodes.identities)
-    every = [part for t in tests for part in (t.fields, t.before) if part is not None]
     low, high = rounded(min(float(f.min()) for f in every), max(float(f.max()) for f in every))
     return {
         "title": title, "points": packed_numbers(nodes.points), "tets": packed_integers(_by_part(nodes)),
         "triangles": packed_integers(triangles[order]), "owner": packed_integers(nodes.owner[:, None]),
         "parts": [{"name": name, "colour": colours[name]} for name in nodes.parts],
         "mean": packed_numbers(found.mean[:, None]), "shapes": packed_numbers(found.shapes.T, found.steps(STEP_K)),
-        "tests": _tests(tests, found, positions), "marks": marks(low, high),
+        "revisions": list(revisions), "tests": _tests(tests, found, positions), "marks": marks(low, high),
         "change_marks": _change(tests), "heat": _palette(heat()), "missing": _palette(missing()),
         "k": conductivity and [conductivity[name] for name in nodes.parts], "power": _palette(power()),
         "flux_marks": conductivity and _flux(nodes, tests, conductivity),
@@ -88,8 +107,8 @@ def script() -> str:
 
 
 def _change(tests: Sequence[Recorded]) -> list[float]:
-    """Round marks for now minus before (K), as far below zero as above."""
-    changes = [float(np.abs(t.fields - t.before).max()) for t in tests if t.before is not None]
+    """Round marks for the difference of any two states (K), as far below zero as above."""
+    changes = [float(np.ptp(np.stack(t.states), axis=0).max()) for t in tests if len(t.states) > 1]
     return marks(*rounded(-max(changes, default=1.0), max(changes, default=1.0)))
 
 
@@ -107,15 +126,12 @@ def _tests(tests: Sequence[Recorded], found: LowRank, positions: Mapping[str, Se
     """Amplitudes in the order in which the fields were given."""
     out, first = [], 0
     for test in tests:
-        n = len(test.times)
-        now, first = found.amplitudes[first : first + n], first + n
-        before = None
-        if test.before is not None:
-            before, first = found.amplitudes[first : first + n], first + n
+        n, count = len(test.times), len(test.states)
+        states = [_digits(found.amplitudes[first + i * n : first + (i + 1) * n], 4) for i in range(count)]
+        first += n * count
         name = f"{test.comparison.test.name} ({test.comparison.test.role})"
         out.append({
-            "name": name, "times": test.times.tolist(), "now": _digits(now, 4),
-            "before": None if before is None else _digits(before, 4), "sensors": _sensors(test, positions),
+            "name": name, "times": test.times.tolist(), "states": states, "sensors": _sensors(test, positions),
         })  # fmt: skip
     return out
 
@@ -124,12 +140,13 @@ def _sensors(test: Recorded, positions: Mapping[str, Sequence[float]]) -> list[d
     """Readings at the page's instants; null where nothing was read."""
     shown, clock = test.comparison, np.asarray(test.comparison.test.time, float)
     at = np.clip(np.searchsorted(clock, test.times), 0, len(clock) - 1)
+    last = [] if test.before is None or shown.before is None else [shown.before]
+    models = [shown.model, *last, *(e.readings for e in test.earlier)]
     return [
         {
             "name": short(c.name), "xyz": [float(x) for x in positions[c.name]], "limit": shown.limit_K(c),
             "measured": _digits(np.asarray(c.y, float)[at], 2),
-            "model": _digits(np.asarray(shown.model[c.name])[at], 2),
-            "before": None if shown.before is None else _digits(np.asarray(shown.before[c.name])[at], 2),
+            "models": [_digits(np.asarray(of[c.name])[at], 2) for of in models],
         }
         for c in shown.channels if c.name in positions
     ]  # fmt: skip

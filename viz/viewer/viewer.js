@@ -63,7 +63,7 @@ class Viewer {
     this.gl = $("gl").getContext("webgl2", { antialias: true, preserveDrawingBuffer: true });
     if (!this.gl) throw new Error("this browser has no WebGL 2, which this page draws with");
     this.parts = data.parts.map((p) => ({ ...p, shown: 1 }));
-    this.time = 1; this.playing = false; this.frames = 0; this.dirty = true; this.pointers = new Map();
+    this.right = 0; this.left = 1; this.time = 1; this.playing = false; this.frames = 0; this.dirty = true; this.pointers = new Map();
     this.bounds();
     this.first();
     this.programs();
@@ -159,10 +159,10 @@ class Viewer {
   }
   choose(k) {
     this.test = data.tests[k];
-    const options = $("layer").options;
-    options[1].disabled = !this.test.before; options[2].disabled = !data.k;
+    const options = $("layer").options, several = this.test.states.length > 1;
+    options[1].disabled = !several; options[2].disabled = !data.k;
     if (options[$("layer").selectedIndex].disabled) $("layer").value = "0";
-    $("wiping").hidden = !this.test.before;
+    $("wiping").hidden = !several;
     this.recolour();
     this.move(this.time);
   }
@@ -193,7 +193,7 @@ class Viewer {
     let i = 0;
     while (i < times.length - 2 && times[i + 1] <= s) i++;
     this.place = i + (s - times[i]) / (times[i + 1] - times[i]);
-    const now = this.between(this.test.now), before = this.test.before ? this.between(this.test.before) : now;
+    const now = this.between(this.test.states[this.right]), before = this.between(this.test.states[this.left] ?? this.test.states[0]);
     const r = now.length, n = this.owner.length, v = this.values;
     for (let node = 0; node < n; node++) {
       let a = this.mean[node], b = a;
@@ -242,7 +242,7 @@ class Viewer {
   readings() {
     const k = Math.round(this.place);
     this.sensors = this.test.sensors.map((s) => {
-      const y = s.measured[k], residual = y === null || s.model[k] === null ? null : y - s.model[k];
+      const y = s.measured[k], model = (s.models[this.right] ?? s.models[0])[k], residual = y === null || model === null ? null : y - model;
       const verdict = residual === null ? 3 : Math.abs(residual) <= s.limit ? 0 : residual > 0 ? 1 : 2;
       return { ...s, y, residual, verdict, weight: residual === null ? -1 : Math.abs(residual) / s.limit };
     });
@@ -305,7 +305,7 @@ class Viewer {
     gl.uniform4fv(s.plane, this.cutting); gl.uniform3fv(s.eye, this.eye); gl.uniform2fv(s.range, this.range);
     gl.uniform1i(s.layer, $("layer").value === "1" ? 1 : 0); gl.uniform1i(s.mode, mode); gl.uniform1i(s.wide, this.wide);
     gl.uniform1i(s.field, 0); gl.uniform1i(s.palette, 1);
-    gl.uniform1f(s.wipe, this.test.before ? $("wipe").value / 1000 * $("gl").width : 0);
+    gl.uniform1f(s.wipe, this.test.states.length > 1 ? $("wipe").value / 1000 * $("gl").width : 0);
     for (const shown of mode ? [1] : [1, 0.5]) {
       if (shown < 1) { gl.enable(gl.BLEND); gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA); gl.depthMask(false); }
       gl.uniform1f(s.alpha, shown < 1 ? 0.16 : 1);
@@ -428,6 +428,12 @@ function wired(v) {
   $("test").onchange = (e) => v.choose(+e.target.value);
   $("layer").onchange = () => { v.recolour(); v.move(v.time); };
   $("wipe").oninput = again;
+  for (const side of ["left", "right"]) {
+    const states = data.tests[0].states.length;
+    $(side).replaceChildren(...data.revisions.slice(0, states).map((name, k) => new Option(name, k)));
+    $(side).value = v[side];
+    $(side).onchange = (e) => { v[side] = +e.target.value; v.move(v.time); };
+  }
   $("axis").onchange = $("cut").oninput = () => { v.slice(); again(); };
   $("time").oninput = (e) => { v.play(false); v.move(e.target.value / 1000); };
   $("play").onclick = () => v.play(!v.playing);

@@ -59,6 +59,7 @@ class Archetype:
     foreign, faults, absorbed : (label, change from a seed) of the other classes;  tense : priors that can be wrong
     parts : the user's nodes and the bodies they stand for;  called : internal name of a place or input -> the user's
     words : a hidden name of ours -> the names in the catalogue that are right
+    spans : the user's nodes that stand for a piece of their body, and from where to where (0 to 1) it reaches
     """
 
     name: str
@@ -76,6 +77,7 @@ class Archetype:
     logger: Logger = field(default_factory=Logger)
     called: Mapping[str, str] = field(default_factory=dict)
     words: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    spans: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -110,9 +112,14 @@ class Heated:
         """Temperature (degC) at a spot at the logging times."""
         return np.interp(self.at, self.fine, self.T[:, self.machine.skeleton.cell(spot.body, spot.position)])
 
-    def mean(self, body: str) -> Array:
-        """Mean temperature (degC) of a body at the logging times; its cells are equal."""
-        return np.interp(self.at, self.fine, self.T[:, self.machine.skeleton.cells(body)].mean(axis=1))
+    def mean(self, body: str, span: tuple[float, float] = (0.0, 1.0)) -> Array:
+        """Mean temperature (degC) of a body, or of a piece of it, at the logging times; its cells are equal."""
+        cells = self.machine.skeleton.cells(body)
+        low, high = (end * cells.size for end in span)
+        share = np.clip(
+            np.minimum(np.arange(cells.size) + 1.0, high) - np.maximum(np.arange(cells.size), low), 0.0, 1.0
+        )
+        return np.interp(self.at, self.fine, self.T[:, cells] @ (share / share.sum()))
 
 
 def measured(kind: Archetype, seed: int, change: Change, plans: tuple[Plan, ...] | None = None) -> tuple[Record, ...]:

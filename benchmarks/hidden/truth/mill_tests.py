@@ -114,4 +114,5 @@ MILL = Archetype(
     {"bench": Spot("slab", 0.1)}, MISSING, FAULTS, FOREIGN, ABSORBED,
     {"press": 0.25, "wall": 0.2, "fan": 0.12, "iron": 0.15, "cage": 0.15, "legs": 0.25, "seat-de": 0.25, "still": 0.15},
     {**NODES, "n7": "shaft"}, PASSING, Logger(30.0, 10.0, 0.1, (10.0, 40.0), 0.1), CALLED, WORDS,
+    {"n7": (0.0, 0.5), "n13": (0.0, 0.5)},
 )  # fmt: skip

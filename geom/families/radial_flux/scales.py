@@ -8,70 +8,41 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from geom.description.parameters import Scale
+from geom.description.parameters import scale
 from geom.families.radial_flux.magnets import widest
 
-
-def outer(low: float, high: float) -> Scale:
-    return Scale("the laminations' outer diameter", low, high, lambda g: g.stator.outer_diameter)
-
-
-def bore(low: float, high: float) -> Scale:
-    return Scale("the bore", low, high, lambda g: g.stator.bore_diameter)
-
-
-def shaft(low: float, high: float) -> Scale:
-    return Scale("the shaft's diameter", low, high, lambda g: g.shaft.diameter)
-
-
-def stack(low: float, high: float) -> Scale:
-    return Scale("the stack's length", low, high, lambda g: g.stator.stack_length)
-
-
-def build(low: float, high: float) -> Scale:
-    return Scale("bore to outside of the laminations", low, high,
-                 lambda g: (g.stator.outer_diameter - g.stator.bore_diameter) / 2)  # fmt: skip
-
-
-def depth(low: float, high: float) -> Scale:
-    return Scale("the slot's depth", low, high, lambda g: g.stator.slot_depth)
+outer = scale("the laminations' outer diameter", lambda g: g.stator.outer_diameter)
+bore = scale("the bore", lambda g: g.stator.bore_diameter)
+shaft = scale("the shaft's diameter", lambda g: g.shaft.diameter)
+stack = scale("the stack's length", lambda g: g.stator.stack_length)
+build = scale("bore to outside of the laminations", lambda g: (g.stator.outer_diameter - g.stator.bore_diameter) / 2)
+depth = scale("the slot's depth", lambda g: g.stator.slot_depth)
 
 
 def _pitch(g: Any) -> float:
     return g.stator.bore_diameter * math.sin(math.pi / g.stator.slots)
 
 
-def pitch(low: float, high: float) -> Scale:
-    return Scale("the slot pitch at the bore", low, high, _pitch)
-
-
-def lining(low: float, high: float) -> Scale:
-    return Scale("slot pitch or depth, the smaller", low, high, lambda g: min(_pitch(g), g.stator.slot_depth))
+pitch = scale("the slot pitch at the bore", _pitch)
+lining = scale("slot pitch or depth, the smaller", lambda g: min(_pitch(g), g.stator.slot_depth))
 
 
 def _mouth(g: Any) -> float:
     return g.stator.slot_width if g.stator.slot_shape == "parallel" else _pitch(g) - g.stator.tooth
 
 
-def mouth(low: float, high: float) -> Scale:
-    return Scale("the slot's width at the bore", low, high, _mouth)
-
-
-def tip(low: float, high: float) -> Scale:
-    return Scale("the tooth tip", low, high, lambda g: g.stator.tip)
+mouth = scale("the slot's width at the bore", _mouth)
+tip = scale("the tooth tip", lambda g: g.stator.tip)
 
 
 def _content(g: Any) -> float:
     return g.stator.stack_length + 2 * (g.winding.straight + g.winding.end + g.frame.cap)
 
 
-def content(low: float, high: float) -> Scale:
-    return Scale("stack, end windings and end-caps together", low, high, _content)
-
-
-def yoke(low: float, high: float) -> Scale:
-    return Scale("the yoke behind the slots", low, high,
-                 lambda g: (g.stator.outer_diameter - g.stator.bore_diameter) / 2 - g.stator.slot_depth)  # fmt: skip
+content = scale("stack, end windings and end-caps together", _content)
+yoke = scale(
+    "the yoke behind the slots", lambda g: (g.stator.outer_diameter - g.stator.bore_diameter) / 2 - g.stator.slot_depth
+)
 
 
 def _even_pitch(g: Any) -> float:
@@ -81,21 +52,18 @@ def _even_pitch(g: Any) -> float:
     return 2 * math.pi * (g.stator.outer_diameter / 2 + g.housing.thickness) / g.housing.fins
 
 
-def even_pitch(low: float, high: float) -> Scale:
-    return Scale("the pitch of fins spread evenly", low, high, _even_pitch)
-
-
-def fin_pitch(low: float, high: float) -> Scale:
-    return Scale("the fins' pitch, or 0.3 of the laminations where it is less", low, high,
-                 lambda g: min(g.housing.fin_spacing or _even_pitch(g), 0.3 * g.stator.outer_diameter))  # fmt: skip
+even_pitch = scale("the pitch of fins spread evenly", _even_pitch)
+fin_pitch = scale(
+    "the fins' pitch, or 0.3 of the laminations where it is less",
+    lambda g: min(g.housing.fin_spacing or _even_pitch(g), 0.3 * g.stator.outer_diameter),
+)
 
 
 def _turn(g: Any) -> float:
     return g.stator.stack_length / (g.housing.turns + 1)
 
 
-def turn(low: float, high: float) -> Scale:
-    return Scale("the stack's length over turns + 1", low, high, _turn)
+turn = scale("the stack's length over turns + 1", _turn)
 
 
 def _channel(g: Any) -> float:
@@ -104,13 +72,8 @@ def _channel(g: Any) -> float:
     return min(wide if g.housing.turns > 1 else 0.6 * wide, g.stator.outer_diameter / 6)
 
 
-def channel(low: float, high: float) -> Scale:
-    return Scale("the channel's width (0.6 of it with one turn), or a sixth of the laminations, the smaller",
-                 low, high, _channel)  # fmt: skip
-
-
-def length(low: float, high: float) -> Scale:
-    return Scale("the length over the end-caps", low, high, lambda g: g.frame.length)
+channel = scale("the channel's width (0.6 of it with one turn), or a sixth of the laminations, the smaller", _channel)
+length = scale("the length over the end-caps", lambda g: g.frame.length)
 
 
 def _pole(g: Any) -> float:
@@ -119,27 +82,16 @@ def _pole(g: Any) -> float:
     return min(2 * radius * math.sin(math.pi / g.rotor.poles), radius - g.shaft.diameter / 2)
 
 
-def pole(low: float, high: float) -> Scale:
-    return Scale("pole pitch or rotor iron, the smaller", low, high, _pole)
-
-
-def magnet(low: float, high: float) -> Scale:
-    return Scale("the widest magnet that fits", low, high, widest)
+pole = scale("pole pitch or rotor iron, the smaller", _pole)
+magnet = scale("the widest magnet that fits", widest)
 
 
 def _rotor(g: Any) -> float:
     return g.stator.bore_diameter / 2 - g.stator.air_gap
 
 
-def iron(low: float, high: float) -> Scale:
-    return Scale("rotor surface to shaft", low, high, lambda g: _rotor(g) - 0.55 * g.shaft.diameter)
-
-
-def bar_pitch(low: float, high: float) -> Scale:
-    return Scale("the bars' pitch at their bottom", low, high,
-                 lambda g: 2 * math.pi * (_rotor(g) - g.rotor.bar_depth) / g.rotor.bars)  # fmt: skip
-
-
-def end_space(low: float, high: float) -> Scale:
-    return Scale("stack to end-cap", low, high,
-                 lambda g: (g.frame.length - g.stator.stack_length) / 2 - g.frame.cap)  # fmt: skip
+iron = scale("rotor surface to shaft", lambda g: _rotor(g) - 0.55 * g.shaft.diameter)
+bar_pitch = scale(
+    "the bars' pitch at their bottom", lambda g: 2 * math.pi * (_rotor(g) - g.rotor.bar_depth) / g.rotor.bars
+)
+end_space = scale("stack to end-cap", lambda g: (g.frame.length - g.stator.stack_length) / 2 - g.frame.cap)

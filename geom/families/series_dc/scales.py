@@ -8,46 +8,26 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from geom.description.parameters import Scale
+from geom.description.parameters import scale
 from geom.families.series_dc.layout import Radii
 
 STEEPEST = math.pi / 4  # of the line between two poles, where there are fewer than four
 
 
-def rotor(low: float, high: float) -> Scale:
-    return Scale("the rotor's diameter", low, high, lambda g: g.rotor.outer_diameter)
-
-
-def stack(low: float, high: float) -> Scale:
-    return Scale("the stack's length", low, high, lambda g: g.rotor.stack_length)
-
-
-def core(low: float, high: float) -> Scale:
-    return Scale("the shaft in the core", low, high, lambda g: g.shaft.core_diameter)
-
-
-def seat(low: float, high: float) -> Scale:
-    return Scale("the shaft in the bearings", low, high, lambda g: g.shaft.bearing_diameter)
-
-
-def iron(low: float, high: float) -> Scale:
-    return Scale("rotor surface to shaft", low, high, lambda g: (g.rotor.outer_diameter - g.shaft.core_diameter) / 2)
+rotor = scale("the rotor's diameter", lambda g: g.rotor.outer_diameter)
+stack = scale("the stack's length", lambda g: g.rotor.stack_length)
+core = scale("the shaft in the core", lambda g: g.shaft.core_diameter)
+seat = scale("the shaft in the bearings", lambda g: g.shaft.bearing_diameter)
+iron = scale("rotor surface to shaft", lambda g: (g.rotor.outer_diameter - g.shaft.core_diameter) / 2)
 
 
 def _bottom(g: Any) -> float:
     return g.rotor.outer_diameter / 2 - g.rotor.slot_depth
 
 
-def slot_pitch(low: float, high: float) -> Scale:
-    return Scale("the slot pitch at the slot bottom", low, high, lambda g: 2 * math.pi * _bottom(g) / g.rotor.slots)
-
-
-def slot(low: float, high: float) -> Scale:
-    return Scale("slot width or depth, the smaller", low, high, lambda g: min(g.rotor.slot_width, g.rotor.slot_depth))
-
-
-def depth(low: float, high: float) -> Scale:
-    return Scale("the slot's depth", low, high, lambda g: g.rotor.slot_depth)
+slot_pitch = scale("the slot pitch at the slot bottom", lambda g: 2 * math.pi * _bottom(g) / g.rotor.slots)
+slot = scale("slot width or depth, the smaller", lambda g: min(g.rotor.slot_width, g.rotor.slot_depth))
+depth = scale("the slot's depth", lambda g: g.rotor.slot_depth)
 
 
 def _duct(g: Any) -> float:
@@ -55,20 +35,17 @@ def _duct(g: Any) -> float:
     return min(room, 2 * middle * math.sin(math.pi / g.rotor.ducts)) if g.rotor.ducts > 1 else room
 
 
-def duct(low: float, high: float) -> Scale:
-    return Scale("shaft to slots or duct to duct, the smaller", low, high, _duct)
-
-
-def hub(low: float, high: float) -> Scale:
-    return Scale("the way from the shaft in the core to the winding's diameter", low, high,
-                 lambda g: 2 * (_bottom(g) + g.rotor.liner) - g.shaft.core_diameter,
-                 lambda g: g.shaft.core_diameter)  # fmt: skip
-
-
-def brushes(low: float, high: float) -> Scale:
-    return Scale("the way from the hub's diameter to the winding's", low, high,
-                 lambda g: g.rotor.outer_diameter - 2 * g.rotor.wedge - g.shaft.hub_diameter,
-                 lambda g: g.shaft.hub_diameter)  # fmt: skip
+duct = scale("shaft to slots or duct to duct, the smaller", _duct)
+hub = scale(
+    "the way from the shaft in the core to the winding's diameter",
+    lambda g: 2 * (_bottom(g) + g.rotor.liner) - g.shaft.core_diameter,
+    lambda g: g.shaft.core_diameter,
+)
+brushes = scale(
+    "the way from the hub's diameter to the winding's",
+    lambda g: g.rotor.outer_diameter - 2 * g.rotor.wedge - g.shaft.hub_diameter,
+    lambda g: g.shaft.hub_diameter,
+)
 
 
 def _bar(g: Any) -> float:
@@ -76,12 +53,8 @@ def _bar(g: Any) -> float:
     return min(around, (g.commutator.diameter - g.shaft.hub_diameter) / 2)
 
 
-def bar(low: float, high: float) -> Scale:
-    return Scale("a bar's pitch or height, the smaller", low, high, _bar)
-
-
-def shoe(low: float, high: float) -> Scale:
-    return Scale("the shoe in the middle", low, high, lambda g: g.stator.shoe)
+bar = scale("a bar's pitch or height, the smaller", _bar)
+shoe = scale("the shoe in the middle", lambda g: g.stator.shoe)
 
 
 def _shoe_width(g: Any) -> float:
@@ -89,8 +62,7 @@ def _shoe_width(g: Any) -> float:
     return 2 * radius * math.sin(math.pi / g.stator.poles * g.stator.pole_arc)
 
 
-def shoe_width(low: float, high: float) -> Scale:
-    return Scale("the shoe's width", low, high, _shoe_width)
+shoe_width = scale("the shoe's width", _shoe_width)
 
 
 def _between(g: Any) -> float:
@@ -99,8 +71,7 @@ def _between(g: Any) -> float:
     return inner * math.tan(min(math.pi / g.stator.poles, STEEPEST)) - g.stator.body_width / 2
 
 
-def between(low: float, high: float) -> Scale:
-    return Scale("pole body to the middle between two poles", low, high, _between)
+between = scale("pole body to the middle between two poles", _between)
 
 
 def _corner(g: Any) -> float:
@@ -108,20 +79,15 @@ def _corner(g: Any) -> float:
     return 2 * math.hypot(top, g.stator.body_width / 2 + g.field.insulation + g.field.coil_width)
 
 
-def corner(low: float, high: float) -> Scale:
-    return Scale("the circle around the field coils", low, high, _corner)
-
-
-def yoke(low: float, high: float) -> Scale:
-    return Scale("the yoke's bore", low, high, lambda g: g.stator.yoke_inner_diameter)
+corner = scale("the circle around the field coils", _corner)
+yoke = scale("the yoke's bore", lambda g: g.stator.yoke_inner_diameter)
 
 
 def _overhang(g: Any) -> float:
     return max(g.rotor.straight + g.rotor.end_winding, g.field.insulation + g.field.coil_width, g.stator.yoke_overhang)
 
 
-def overhang(low: float, high: float) -> Scale:
-    return Scale("end winding, field coil or yoke beyond the core, the longest", low, high, _overhang)
+overhang = scale("end winding, field coil or yoke beyond the core, the longest", _overhang)
 
 
 def _content(g: Any) -> float:
@@ -132,29 +98,25 @@ def _content(g: Any) -> float:
     return ends + g.flange.rotor_offset + g.rotor.stack_length + after
 
 
-def content(low: float, high: float) -> Scale:
-    return Scale("all that the shaft carries", low, high, _content)
+content = scale("all that the shaft carries", _content)
 
 
 def _shell(g: Any) -> float:
     return g.stator.yoke_inner_diameter / 2 + g.stator.yoke_thickness + g.housing.thickness
 
 
-def shell(low: float, high: float) -> Scale:
-    return Scale("the housing's radius", low, high, _shell)
+shell = scale("the housing's radius", _shell)
 
 
 def _even_pitch(g: Any) -> float:
     return 2 * math.pi * _shell(g) / max(g.housing.fins, 1)
 
 
-def even_pitch(low: float, high: float) -> Scale:
-    return Scale("the pitch of fins spread evenly", low, high, _even_pitch)
-
-
-def fin_pitch(low: float, high: float) -> Scale:
-    return Scale("the fins' pitch, or 0.6 of the housing's radius where it is less", low, high,
-                 lambda g: min(g.housing.fin_spacing or _even_pitch(g), 0.6 * _shell(g)))  # fmt: skip
+even_pitch = scale("the pitch of fins spread evenly", _even_pitch)
+fin_pitch = scale(
+    "the fins' pitch, or 0.6 of the housing's radius where it is less",
+    lambda g: min(g.housing.fin_spacing or _even_pitch(g), 0.6 * _shell(g)),
+)
 
 
 def _inside(g: Any) -> float:
@@ -162,8 +124,7 @@ def _inside(g: Any) -> float:
     return g.shaft.length - 2 * (g.flange.shaft_end + g.flange.thickness) - g.fan.depth
 
 
-def inside(low: float, high: float) -> Scale:
-    return Scale("flange to flange", low, high, _inside)
+inside = scale("flange to flange", _inside)
 
 
 def _jacket_length(g: Any) -> float:
@@ -180,8 +141,7 @@ def _rib(g: Any) -> float:
     return min(room, length / 2.5)
 
 
-def rib(low: float, high: float) -> Scale:
-    return Scale("a channel with its rib, or 0.4 of the jacket's length, the smaller", low, high, _rib)
+rib = scale("a channel with its rib, or 0.4 of the jacket's length, the smaller", _rib)
 
 
 def _port(g: Any) -> float:
@@ -194,21 +154,22 @@ def _port(g: Any) -> float:
     return min(wide, 3 * g.jacket.rib, _shell(g) / 4)
 
 
-def port(low: float, high: float) -> Scale:
-    return Scale("the channel's width (0.6 of it with one turn), three ribs or a quarter of the housing's radius, the "
-                 "smallest", low, high, _port)  # fmt: skip
+port = scale(
+    "the channel's width (0.6 of it with one turn), three ribs or a quarter of the housing's radius, the smallest",
+    _port,
+)
 
 
-def fan(low: float, high: float) -> Scale:
-    return Scale("the way from the bearing's diameter to the housing's", low, high,
-                 lambda g: 2 * (_shell(g) - g.fan.cowl) - 1.02 * g.bearing.outer_diameter,
-                 lambda g: 1.02 * g.bearing.outer_diameter)  # fmt: skip
-
-
-def fan_hub(low: float, high: float) -> Scale:
-    return Scale("the way from the shaft's diameter to 0.9 of the cowl's", low, high,
-                 lambda g: 0.9 * g.fan.diameter - 1.05 * g.shaft.bearing_diameter,
-                 lambda g: 1.05 * g.shaft.bearing_diameter)  # fmt: skip
+fan = scale(
+    "the way from the bearing's diameter to the housing's",
+    lambda g: 2 * (_shell(g) - g.fan.cowl) - 1.02 * g.bearing.outer_diameter,
+    lambda g: 1.02 * g.bearing.outer_diameter,
+)
+fan_hub = scale(
+    "the way from the shaft's diameter to 0.9 of the cowl's",
+    lambda g: 0.9 * g.fan.diameter - 1.05 * g.shaft.bearing_diameter,
+    lambda g: 1.05 * g.shaft.bearing_diameter,
+)
 
 
 def _outermost(g: Any) -> float:
@@ -216,18 +177,7 @@ def _outermost(g: Any) -> float:
     return max(r.fins, r.jacket) if g.jacket.sides else r.fins
 
 
-def outermost(low: float, high: float) -> Scale:
-    return Scale("the radius over fins or jacket", low, high, _outermost)
-
-
-def beside(low: float, high: float) -> Scale:
-    return Scale("the inner side of a foot to the edge of the housing", low, high,
-                 lambda g: 0.95 * _shell(g) - g.feet.inner)  # fmt: skip
-
-
-def stance(low: float, high: float) -> Scale:
-    return Scale("the width over the feet", low, high, lambda g: 2 * (g.feet.inner + g.feet.width))
-
-
-def footing(low: float, high: float) -> Scale:
-    return Scale("the length over the feet", low, high, lambda g: _inside(g) - 2 * g.feet.inset)
+outermost = scale("the radius over fins or jacket", _outermost)
+beside = scale("the inner side of a foot to the edge of the housing", lambda g: 0.95 * _shell(g) - g.feet.inner)
+stance = scale("the width over the feet", lambda g: 2 * (g.feet.inner + g.feet.width))
+footing = scale("the length over the feet", lambda g: _inside(g) - 2 * g.feet.inset)

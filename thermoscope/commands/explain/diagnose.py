@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from thermoscope.case_folder.folder import Folder
     from validation.diagnosis.result import Diagnosis
 
+RIVALS = 3  # named in a sentence
 ODDS, ROWS = 5, 10  # shown of hypotheses and of candidates
 SHOWN = 0.005  # probabilities below half a per cent are in --json
 
@@ -60,10 +61,10 @@ def answer(document: Mapping[str, Any], called: str) -> Answer:
     unseen = f"{len(hidden)} effects could be there unseen: {', '.join(hidden[:2])}, ..." if hidden else ""
     remaining = " ".join(row["words"] for row in document.get("remainder", []))
     found = document["candidates"]
-    parts = [_odds(document), _candidates(found), *_leader(found), remaining, *events(document),
-             *contradiction(document.get("contradiction")), next_tests(document), *_lost(found, named),
+    parts = [_odds(document), _candidates(found), *_leader(found), *_lost(found, named), remaining, *events(document),
+             *contradiction(document.get("contradiction")), next_tests(document),
              in_short(document.get("error_budget", {}), steps), unseen, question(document, case)]  # fmt: skip
-    rest = [*budget(document.get("error_budget", {}), steps), *hidden]
+    rest = [*events(document, likely=False), *budget(document.get("error_budget", {}), steps), *hidden]
     return Answer(sentence, parts, f"{step}; --json FILE; thermoscope show report {case}", rest)
 
 
@@ -83,8 +84,8 @@ def _odds(document: Mapping[str, Any]) -> Grid:
 
 def _candidates(found: Sequence[Mapping[str, Any]]) -> Grid:
     """Size with interval and detection limit, and what it buys."""
-    headers = ["effect", "%", "size (95 %)", "detectable", "unit", "error (K)", "held out (K)", "decision"]
-    keep = ["size (95 %)", "%", "detectable", "unit", "error (K)"]
+    headers = ["effect", "%", "size (95 %)", "detectable", "unit", "refitted (K)", "held out (K)", "decision"]
+    keep = ["size (95 %)", "%", "detectable", "unit", "refitted (K)"]
     rows = [_row(c) for c in found if c["probability"] > SHOWN or c["decision"] != "no"] or [_row(c) for c in found[:1]]
     return Grid("Candidates", headers, rows[:ROWS], ["named", "group"], keep)
 
@@ -103,9 +104,15 @@ def _leader(found: Sequence[Mapping[str, Any]]) -> list[str]:
 
 
 def _lost(found: Sequence[Mapping[str, Any]], named: Sequence[str]) -> list[str]:
-    """Why the rivals lost."""
-    return [f"Against {c['effect']}: it {c['note']} than {found[0]['effect']}." for c in found[1:ROWS]
-            if c["note"] and c["probability"] > SHOWN and c["effect"] not in named]  # fmt: skip
+    """Why the rivals lost: where a refit is worse, or how little evidence there is for the next ones alone."""
+    if not named:
+        return []
+    refitted = [f"Against {c['effect']}: it {c['note']} than {found[0]['effect']}." for c in found[1:ROWS]
+                if c["note"] and c["probability"] > SHOWN and c["effect"] not in named]  # fmt: skip
+    rivals = sorted((c for c in found if c["effect"] not in named and not c["note"]), key=lambda c: -c["score"])
+    each = ", ".join(f"{c['effect']} {c['score']:.1f}" for c in rivals[:RIVALS])
+    lead = next(c["score"] for c in found if c["effect"] == named[0])
+    return [*refitted, f"Rivals alone have less evidence: {each}; {named[0]} {lead:.1f} nats."] if each else refitted
 
 
 def limit(candidate: Mapping[str, Any]) -> str:
@@ -115,21 +122,23 @@ def limit(candidate: Mapping[str, Any]) -> str:
 
 
 def bought(candidate: Mapping[str, Any]) -> str:
-    """The error (K) in each test without and with the effect."""
+    """The error (K) in each test without and with the effect, all else fitted anew both times."""
     tests = candidate["tests"]
     each = [f"{t['test']}{'*' if t['held_out'] else ''} {t['before']:.2f} -> {t['after']:.2f}" for t in tests]
     star = " (* never used)" if any(t["held_out"] for t in tests) else ""
-    return f"Error (K) with {candidate['effect']}: {', '.join(each)}{star}."
+    return f"Refitted without -> with {candidate['effect']}, error (K): {', '.join(each)}{star}."
 
 
-def events(document: Mapping[str, Any]) -> list[Grid]:
-    """When something may have been different, every stretch that was tried."""
+def events(document: Mapping[str, Any], likely: bool = True) -> list[Grid]:
+    """When something may have been different, or the improbable stretches that were tried as well."""
     rows = [
         [f"event@{i}", e["words"], f"{100 * e['probability']:.1f}", e["effect"].split(" in ")[0], e["value"],
          "" if e["unit"] == "1" else e["unit"]] for i, e in enumerate(document.get("events", []), 1)
+        if likely == (e["probability"] > SHOWN)
     ]  # fmt: skip
     headers = ["to add", "when", "%", "most likely", "size", "unit"]
-    return [Grid("What may have differed for a while", headers, rows)] if rows else []
+    title = "What may have differed for a while" if likely else "Stretches in which hardly anything differed"
+    return [Grid(title, headers, rows)] if rows else []
 
 
 def _row(c: Mapping[str, Any]) -> list[Any]:

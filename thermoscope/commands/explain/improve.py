@@ -68,7 +68,7 @@ def asked(found: Diagnosis, choice: Sequence[Candidate]) -> str | None:
 def offer(c: Candidate) -> str:
     """A candidate as the question shows it."""
     size = f"{sized(c.value, *c.ci95)} {c.unit}".removesuffix(" 1")
-    fell = f", error {c.rmse_K[0]:.2f} -> {c.rmse_K[1]:.2f} K" if c.rmse_K else ""
+    fell = f", refitted {c.rmse_K[0]:.2f} -> {c.rmse_K[1]:.2f} K" if c.rmse_K else ""
     return f"{c.effect}: {c.title}, {size}, probability {100 * c.probability:.0f} %{fell}"
 
 
@@ -87,7 +87,7 @@ def answer(document: Mapping[str, Any], folder: Folder, called: str) -> Answer:
     ]
     errors = Grid("Error, step by step (rms)", headers, rows, keep=["all (K)", "probability"])
     written = f"{document['written']} revisions written to {folder.settings.model_file}"
-    kept = written if document["written"] else "nothing written"
+    stored = written if document["written"] else "nothing written"
     further = "" if document["adequate"] else next_tests(document["diagnosis"])
     more = f"thermoscope model undo {quote(called)} takes a step back; thermoscope show report {quote(called)}"
-    return Answer(f"{document['verdict']}: {document['why']}; {kept}.", [errors, further], more)
+    return Answer(f"{document['verdict']}: {document['why']}; {stored}.", [errors, further], more)

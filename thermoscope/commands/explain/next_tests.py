@@ -8,7 +8,7 @@ from typing import Any
 from thermoscope.console.answer import Grid
 from viz.pages.next_tests import deciding, undecided
 
-MOST = 3
+MOST = 3  # tests and as many sensors fit the screen
 
 
 def next_tests(document: Mapping[str, Any]) -> Grid | str:

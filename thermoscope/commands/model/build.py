@@ -136,12 +136,12 @@ def _row(part: Mapping[str, Any]) -> list[Any]:
 
 def _sizes(sizes: Mapping[str, Any]) -> list[Grid | str]:
     """Error against number of states, and what the guard saw at points nothing was fitted to."""
-    wish = sizes["wish_percent"]
+    asked = sizes["wish_percent"]
     rows = [["means only" if not s["asked"] else f"up to {s['asked']}", *_errors(s)] for s in sizes["sizes"]]
     rows += [
         ["learned", g["states"], "-", "-", "-", *(g["random"][k] for k in ERRORS), _word(g)] for g in sizes["guard"]
     ]
-    title = f"Error in % of a part's rise (asked: means {wish['mean']:g}, hot spots and points {wish['hot']:g})"
+    title = f"Error in % of a part's rise (asked: means {asked['mean']:g}, hot spots and points {asked['hot']:g})"
     headers = ["network", "states", "mean", "hot spot", "point", "mean, random", "hot, random", "point, random", "met"]
     notes: list[Grid | str] = []
     if mesh := sizes["mesh"]:

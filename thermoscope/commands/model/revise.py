@@ -137,14 +137,14 @@ def answer(document: Mapping[str, Any], folder: Folder, called: str) -> Answer:
     name = f"{document['action']} {document['effect'] or ''}".strip()
     verdict = "accepted" if document["accepted"] else "not accepted"
     where = f"written to {folder.settings.model_file} as revision {document['revision']}"
-    kept = where if document["written"] else "nothing written (--anyway writes it)"
+    stored = where if document["written"] else "nothing written (--anyway writes it)"
     rows = [[t["name"], t["role"], t["rmse_K"]["before"], t["rmse_K"]["after"]] for t in document["tests"]]
     errors = Grid("", ["test", "role", "error before (K)", "after (K)"], rows, ["hold-out"])
     checks = [f"{'passed' if c['passed'] else 'FAILED'}  {c['check']}: {c['words']}" for c in document["checks"]]
     step = "explain diagnose" if document["action"] == "calibrate" else "test compare"
     parts: list[Grid | str] = [errors, *checks, _fixed(document["parameters"]), _blind(document["parameters"])]
     return Answer(
-        f"{name}: {verdict}; {document['why']}; {kept}.",
+        f"{name}: {verdict}; {document['why']}; {stored}.",
         parts,
         f"Next: thermoscope {step} {quote(called)}; --json FILE",
     )

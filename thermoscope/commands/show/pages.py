@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from viz.data import Comparison
     from viz.rendering.nodes import SplitMesh
 
-FRAMES = 61
+FRAMES = 61  # instants of a test that a page can step through
 LIKELY = 0.5  # probability from which an event is drawn
 
 
@@ -112,9 +112,9 @@ def rendered(folder: Folder, into: Path, tell: Progress) -> list[Path]:
 
 def _diagnosis(folder: Folder) -> tuple[Mapping[str, Any] | None, bool]:
     """What the page shows, and whether it is of the model before its last step."""
-    kept = saved_diagnosis(folder)
-    if kept is not None:
-        return kept, False
+    saved = saved_diagnosis(folder)
+    if saved is not None:
+        return saved, False
     last = last_diagnosis(folder)
     return last, last is not None
 

@@ -133,7 +133,7 @@ def _misses(s: Subject, png: Path) -> None:
     found = error_field(s.folder, s.test, s.nodes)
     seen = sensors(held(s.folder, s.test), s.folder.positions)
     title = f"{s.test.name}, its last fifth: measured minus model"
-    misses(s.nodes, found.mean, found.told, sensors=seen, title=title, png=png).close()
+    misses(s.nodes, found.mean, found.explained, sensors=seen, title=title, png=png).close()
 
 
 def _exploded(s: Subject, png: Path) -> None:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from geom.disk_cache import atomic_write
 from geom.errors import InputError
 from thermoscope.case_folder.folder import Folder
-from thermoscope.case_folder.runs import before_last, by_interest, fields, held
+from thermoscope.case_folder.history import Revision
+from thermoscope.case_folder.runs import at_revision, before_last, by_interest, fields, held, readings
 from thermoscope.commands.open_case import open_case
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import Progress, give, progress
@@ -18,6 +20,7 @@ if TYPE_CHECKING:
     from viz.rendering.nodes import SplitMesh
     from viz.viewer.page import Recorded
 
+MOST = 5  # revisions in a page: each adds its amplitudes, and its fields while the page is made
 FRAMES = 61  # instants of a test: between them the page draws straight lines
 
 
@@ -51,16 +54,25 @@ def viewer_page(folder: Folder, tell: Progress) -> str:
         right = f"a case with a machine; or: thermoscope show picture {folder.settings.path} curves"
         raise InputError("has a network declared by hand, and so no geometry", folder.case.name, right)
     nodes, earlier, tests = split(folder.built.mesh), before_last(folder), []
+    others = revisions(folder)[2:]
     for test in by_interest(folder):
         tell(f"running {test.name}")
-        tests.append(_recorded(folder, test, nodes, earlier))
+        tests.append(_recorded(folder, test, nodes, earlier, [at_revision(folder, r) for r in others]))
     conductivity = {part.name: folder.built.machine.conductivity(part.name) for part in folder.built.machine.parts}
-    return render(document(folder.case.name, nodes, tests, folder.positions, conductivity))
+    names = [f"{r.number}: {r.effect or (r.action if r.number else 'as it was')}" for r in revisions(folder)]
+    return render(document(folder.case.name, nodes, tests, folder.positions, conductivity, names or ["now"]))
 
 
-def _recorded(folder: Folder, test: Test, nodes: SplitMesh, earlier: Case | None) -> Recorded:
-    from viz.viewer.page import Recorded
+def revisions(folder: Folder) -> list[Revision]:
+    """The last one first, then the one before it, the start, and the others with the newest first, MOST in all."""
+    known = [Revision(0, "calibrate"), *folder.history.revisions][::-1]
+    return [*known[:2], *known[2:][-1:], *known[2:-1]][:MOST] if len(known) > 1 else []
+
+
+def _recorded(folder: Folder, test: Test, nodes: SplitMesh, earlier: Case | None, others: Sequence[Case]) -> Recorded:
+    from viz.viewer.page import Earlier, Recorded
 
     times, now = fields(folder.case, test, nodes, FRAMES)
     before = None if earlier is None else fields(earlier, test, nodes, FRAMES)[1]
-    return Recorded(held(folder, test), times, now, before)
+    rest = tuple(Earlier(fields(case, test, nodes, FRAMES)[1], readings(case, test)) for case in others)
+    return Recorded(held(folder, test), times, now, before, rest)

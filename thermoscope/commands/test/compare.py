@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from validation.comparison.compare import Comparison
 
 EVIDENT = 10.0  # nats
-WHITE = 0.01
+WHITE = 0.01  # probability below which a residual is no noise
 DIFFERENCES = 12  # shown
 TURNS = {True: "yes", False: "no", None: ""}
 
@@ -36,17 +36,22 @@ def compared(
     """An open case's model against its tests, and the document of it."""
     from thermoscope.bands import of_tests, wanted
     from thermoscope.verification.error_budget import documents
-    from validation.diagnosis.discrepancy import discrepancies
 
     tell(f"estimating the error of {'mesh and condensation' if folder.built else 'the time steps'}")
     budgets = folder.budgets
     tell("running the model")
     result = folder.compared
-    more = {**uncertainty(result), **discrepancies(folder.case, tell).document()} if why else {}
+    more = {**uncertainty(result), **_discrepancies(folder, tell)} if why else {}
     bands = {"bands": of_tests(folder, tell)} if wanted(folder.case.model.network, sure) else {}
     return result, {
         **result.document(), **more, "error_budget": documents(budgets), **sampling(folder), **bands,
     }  # fmt: skip
+
+
+def _discrepancies(folder: Folder, tell: Progress) -> dict[str, Any]:
+    from validation.diagnosis.discrepancy import discrepancies
+
+    return discrepancies(folder.case, tell).document()
 
 
 def uncertainty(result: Comparison) -> dict[str, Any]:
@@ -156,10 +161,10 @@ def contradiction(found: Mapping[str, Any] | None) -> list[Grid | str]:
 def _pulses(h: Mapping[str, Any]) -> str:
     """Every pulse of a missing-heat curve; of one without any its largest value."""
     if h["pulses"]:
-        told = [
+        pulses = [
             f"{p['heat_W']:+.3g} W from {p['begin_s']:.0f} to {p['end_s']:.0f} s of {p['test']}" for p in h["pulses"]
         ]
-        return ", ".join(told)
+        return ", ".join(pulses)
     name, series = max(h["heat"].items(), key=lambda kv: max(map(abs, kv[1]["heat_W"])))
     k = max(range(len(series["heat_W"])), key=lambda i: abs(series["heat_W"][i]))
     return f"{series['heat_W'][k]:+.3g} W after {series['time_s'][k]:.0f} s of {name}"

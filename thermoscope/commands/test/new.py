@@ -17,14 +17,14 @@ from thermoscope.case_folder.files import write_whole
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import Progress, give, notes, progress
 from thermoscope.extras import message as missing_extra
-from thermoscope.importing.aligned import Recording, grouped, shift
+from thermoscope.importing.aligned import Recording, common, grouped, shift
 from thermoscope.importing.cells import number
 from thermoscope.importing.clock import Clock, clock_of
 from thermoscope.importing.dialogue import Dialogue
 from thermoscope.importing.draft import Draft, test_name
 from thermoscope.importing.guess import Guess, guesses
 from thermoscope.importing.source import Source, read_source, signature
-from thermoscope.importing.starter import starter
+from thermoscope.importing.starter import place_of, starter
 from thermoscope.importing.target import Target, target_of
 from thermoscope.importing.written import folder_whole, quoted, write_case
 from thermoscope.recordings.grid import LONGEST_S
@@ -167,7 +167,8 @@ def _started(read: Sequence[tuple[Source, Clock]]) -> Model:
         write_whole(folder / "network.toml", text)
         return 'network = "network.toml"'
 
-    return Model(network, target_of(network), put, True)
+    places = {s.labels[g.column]: place for s, g in columns if (place := place_of(g, s.labels[g.column]))}
+    return Model(network, replace(target_of(network), known=places), put, True)
 
 
 def _drafts(read: Sequence[tuple[Source, Clock]], model: Model, wishes: Wishes) -> list[Draft]:
@@ -187,7 +188,9 @@ def drafts_of(
     out: list[Draft] = []
     for first, *others in grouped(list(records), [signature(r.source) for r in records]):
         moved = [replace(r, shift_s=s, how=how) for r in others for s, how in [shift(first, r)]]
-        draft = Draft(test_name(first.source.file, [d.name for d in out]), (first, *moved), window_s=window_s)
+        part, note = common((first, *moved), window_s)
+        name = test_name(first.source.file, [d.name for d in out])
+        draft = Draft(name, (first, *moved), window_s=part, notes=note)
         out.append(dialogue.completed(draft))
     return out
 
@@ -302,7 +305,9 @@ def _said(document: Mapping[str, Any]) -> list[str]:
         said.append("no machine and no network was given: network.toml is made from the columns, its numbers are "
                     "orders of magnitude")  # fmt: skip
     if document["findings"]:
-        said.append(f"{len(document['findings'])} things look wrong: thermoscope test doctor {document['folder']}")
+        count = len(document["findings"])
+        things = "thing looks" if count == 1 else "things look"
+        said.append(f"{count} {things} wrong: thermoscope test doctor {document['folder']}")
     alike: dict[str, list[str]] = {}
     for note in dict.fromkeys(said):
         alike.setdefault(note.partition(":")[0], []).append(note)

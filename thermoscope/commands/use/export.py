@@ -17,7 +17,7 @@ from thermoscope.console.terminal import Progress, give, plain, progress
 
 WORKBOOKS = ("xlsx", "csv")
 MODELS = ("c", "fmu", "json", "matlab", "observer")
-VERSIONS = (2, 3)
+VERSIONS = (2, 3)  # of FMI
 
 
 def export(
@@ -92,6 +92,8 @@ def _observer(
     case: str, out: Path | None, limits: Mapping[str, float], given: Sequence[str], target: str | None
 ) -> int:
     """The observer of a case in C99."""
+    import numpy as np
+
     from thermoscope.export.model import outputs
     from thermoscope.export.observer_code import observer_files, observer_model
     from thermoscope.monitoring.observing import chosen, designed
@@ -101,11 +103,12 @@ def _observer(
         folder = open_case(case, tell)
         channels = {c.name: c for t in folder.case.tests for c in t.channels}
         sensors = chosen([*channels.values()], given, str(folder.settings.path))
-        design = designed(folder, [c.name for c in sensors], tell)
+        design = designed(folder, tell)
         tell("writing the observer")
         looks = outputs(model_of(folder)[0], folder, limits)
-        of = observer_model(design.process, design.noise, design.table_sd, design.rise_K, sensors,
-                            folder.case.tests, looks)  # fmt: skip
+        own = [design.as_learned(c) for c in sensors]
+        of = observer_model(design.process, design.noise, design.noise.sd, design.rise_K, [s.channel for s in own],
+                            folder.case.tests, looks, np.array([s.bias_K for s in own]))  # fmt: skip
     where = out or folder.settings.out / "observer"
     written = [write_whole(where / name, text) for name, text in observer_files(of).items()]
     document = {

@@ -15,21 +15,16 @@ import numpy as np
 
 from geom.errors import InputError
 from lumped.correlations import RangeWarning
-from lumped.integration.simulate import Record
-from thermoscope.bands import along, posterior_of, wanted
+from thermoscope.bands import posterior_of, wanted
 from thermoscope.case_folder.folder import Folder
-from thermoscope.case_folder.runs import before_last, named_rows
+from thermoscope.case_folder.runs import before_last
 from thermoscope.commands.open_case import open_case
 from thermoscope.commands.use.export import read_limits
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import Progress, give, notes, progress
 from thermoscope.rating import Asked, Rated, rated_model
-from validation.bands import ParameterPosterior
-from validation.bands.at_rest import AtRest
-from validation.bands.band import NORMAL_95
-from validation.comparison.predict import thermal
-from validation.rating.derating import deratings
-from validation.rating.envelope import FORMS, TIMES, Rating, rated, until
+from thermoscope.rating_rows import derated, load_of, point, row
+from validation.rating.envelope import FORMS, rated, until
 from validation.rating.holding_map import holding_times
 from validation.rating.operation import Operation
 from validation.rating.repeated_cycle import Lap, share_for_ever, time_to_limit
@@ -38,7 +33,6 @@ POINTS = 6  # speeds of the envelope
 LOADS = 8  # loads of the map
 ENVELOPES = ("S1", "S2 60 s", "S2 10 s")
 WARM = 0.75  # load at rest from which an overload begins warm
-SETTLED = 20.0  # time constants
 
 
 def rate(
@@ -111,8 +105,8 @@ def document_of(folder: Folder, asked: Asked, sure: bool | None, tell: Progress)
     tell("ratings")
     here = {form: rated(model, op, limits, form, None) for form in FORMS}
     old = _before(folder, asked, tell)
-    before = {} if old is None else {form: _loaded(old, form, None) for form in FORMS}
-    belief = posterior_of(folder, tell) if asked.losses is None and wanted(model.network, sure) else None
+    before = {} if old is None else {form: load_of(old, form, None) for form in FORMS}
+    posterior = posterior_of(folder, tell) if asked.losses is None and wanted(model.network, sure) else None
     tell("envelope over the speed")
     speeds = _speeds(folder, op, asked)
     envelope = [rated(model, op, limits, form, n) for form in ENVELOPES for n in speeds]
@@ -121,10 +115,9 @@ def document_of(folder: Folder, asked: Asked, sure: bool | None, tell: Progress)
     return {
         "limits": [{"place": p, "degC": T} for p, T in limits.items()],
         "reference": {"input": op.main, "value": main, "inputs": dict(op.inputs), "boundaries": dict(op.boundaries)},
-        "ratings": [_row(folder, op, r, before.get(f), belief) for f, r in here.items()],
-        "envelope": [_point(folder, op, r, old, belief) for r in envelope],
-        "derating": [{"of": d.of, "value": d.value, "unit": d.unit, "share": d.load / load}
-                     for d in deratings(model, op, limits)],
+        "ratings": [row(folder, op, r, before.get(f), posterior) for f, r in here.items()],
+        "envelope": [point(folder, op, r, old, posterior) for r in envelope],
+        "derating": derated(folder, it, old, load, posterior),
         "overload": _overload(it, asked, load),
         "cycle": _cycle(folder, it, asked, tell),
         "map": _map(it, (load, here["S2 10 s"].load), speeds, tell) if asked.mapped else {},
@@ -138,19 +131,6 @@ def _before(folder: Folder, asked: Asked, tell: Progress) -> Rated | None:
         return None
     tell("ratings of the model before its last step")
     return rated_model(replace(folder, case=earlier), asked)
-
-
-def _loaded(old: Rated, form: str, speed: float | None) -> float:
-    """What an earlier model says of a form (load)."""
-    return rated(old.model, old.op, old.limits, form, speed).load
-
-
-def _point(
-    folder: Folder, op: Operation, r: Rating, old: Rated | None, of: ParameterPosterior | None
-) -> dict[str, Any]:  # fmt: skip
-    """A point of the envelope as a rating has it."""
-    row = _row(folder, op, r, None if old is None else _loaded(old, r.form, r.speed), of)
-    return {"form": r.form, "speed_rpm": r.speed, **{k: v for k, v in row.items() if k != "form"}}
 
 
 def _map(it: Rated, ends: tuple[float, float], speeds: Sequence[float], tell: Progress) -> dict[str, Any]:
@@ -195,38 +175,6 @@ def _speeds(folder: Folder, op: Operation, asked: Asked) -> list[float]:
     return [float(n) for n in np.linspace(0.0, top, POINTS)] if top > 0.0 else []
 
 
-def _row(
-    folder: Folder, op: Operation, r: Rating, before: float | None, of: ParameterPosterior | None
-) -> dict[str, Any]:
-    main = op.inputs[op.main]
-    half = _half95(folder, op, r, of) if of is not None and np.isfinite(r.load) and r.slope > 0.0 else None
-    ci95 = None if half is None else [(r.load - half) * main, (r.load + half) * main]
-    change = None if not before or not np.isfinite(before) else 100.0 * (r.load / before - 1.0)
-    return {
-        "form": r.form, "value": r.load * main, "ci95": ci95, "at": r.at,
-        "before": None if before is None else before * main, "change_percent": change,
-    }  # fmt: skip
-
-
-def _half95(folder: Folder, op: Operation, r: Rating, of: ParameterPosterior) -> float:
-    """Half the 95 % band of a load. Duties take that of rest: their mean heat is what counts."""
-    network = of.network
-    row = named_rows(network, folder)[r.at]
-    if r.form == "S1":
-        bare = thermal(network)
-        values = {p.name: of.values.get(p.name, p.value) for p in bare.parameters}
-        at = {n: float(u) for n, u in op.at(r.load, r.speed).items()}
-        return NORMAL_95 * AtRest(of, bare).sd(values, at, op.boundaries, row) / r.slope
-    span = TIMES.get(r.form, SETTLED * network.settles_s)
-    time = np.concatenate([[0.0], span * np.geomspace(1e-3, 1.0, 40)])
-    load = r.load if r.form == "S1" or r.form in TIMES else r.load * 0.4**0.5
-    inputs = {n: np.full(time.size, u) for n, u in op.at(load, r.speed).items()}
-    air = {b: np.full(time.size, T) for b, T in op.boundaries.items()}
-    found = along(of, "rating", Record(time, inputs, air, float(np.mean(list(op.boundaries.values())))),
-                  {r.at: row})  # fmt: skip
-    return float(found.half95[-1, 0] / r.slope)
-
-
 def _overload(it: Rated, asked: Asked, load: float) -> dict[str, Any]:
     """How long at a multiple of the continuous rating, from cold and from rest at three quarters of it."""
     if not np.isfinite(load):
@@ -256,13 +204,19 @@ def answer(document: Mapping[str, Any]) -> Answer:
     if cycle := document["cycle"]:
         parts.append(_of_cycle(cycle))
     parts += [_of_map(document["map"], main)] if document["map"] else []
-    derated = [[d["of"], d["value"], d["unit"], 100.0 * d["share"]] for d in document["derating"]]
-    parts.append(Grid("Continuous rating elsewhere", ["over", "value", "unit", "% of it"], derated))
+    shares = [[d["of"], d["value"], d["unit"], *_percent([d["share"], *(d["share_ci95"] or (None, None)),
+               d["share_before"]])] for d in document["derating"]]  # fmt: skip
+    elsewhere = ["over", "value", "unit", "% of it", "95 % from", "to", "before (%)"]
+    parts.append(Grid("Continuous rating elsewhere", elsewhere, shares, keep=["value", "% of it", "95 % from", "to"]))
     envelope = [[e["form"], e["speed_rpm"], e["value"], *(e["ci95"] or (None, None)), e["at"], e["before"]]
                 for e in document["envelope"]]  # fmt: skip
     over_speed = ["form", "speed (1/min)", main, "95 % from", "to", "limited by", "before"]
     parts.append(Grid("Over the speed", over_speed, envelope, keep=["speed (1/min)", main]))
     return Answer(sentence, parts, "--json FILE; --limit, --at, --losses, --cycle, --map")
+
+
+def _percent(shares: Sequence[float | None]) -> list[float | None]:
+    return [None if s is None else 100.0 * s for s in shares]
 
 
 def _of_cycle(cycle: Mapping[str, Any]) -> str:

@@ -20,11 +20,14 @@ from thermoscope.commands.open_case import PACKAGE, open_case
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import STDOUT, give, progress, say
 from thermoscope.monitoring.live_rows import PIPE, TOGETHER, Rows, opened, table_of, together
-from thermoscope.monitoring.observing import ObserverDesign, chosen, designed, joined, record_of
+from thermoscope.monitoring.observing import chosen, designed, joined, record_of, started
 from thermoscope.recordings.formats import stem_of
 from thermoscope.recordings.sheet import load_sheet
+from thermoscope.verification.error_budget import model_of
 from validation.case import Channel
 from validation.observer import Observer, Sample
+from validation.observer.learning import Design
+from validation.observer.process import Process
 
 Array = NDArray[np.float64]
 MINUTE = 60.0
@@ -41,7 +44,7 @@ def watch(case: str, follow: str, given: Sequence[str], like: str | None, out: P
             channels = {c.name: c for t in folder.case.tests if t.name == name for c in t.channels}
             here = [c for n, c in channels.items() if n in table.sensors()]
             sensors = chosen(here, given, follow)
-            design = designed(folder, [c.name for c in sensors], tell)
+            design = designed(folder, tell)
         session = Session(folder, design, sensors, [c for c in here if c not in sensors], target != STDOUT)
         with suppress(KeyboardInterrupt):
             for part in together(lines, 1 if follow == PIPE else TOGETHER):
@@ -66,7 +69,7 @@ class Session:
     """An observer as it goes on.  withheld : sensors that are only compared with;  loud : a line a minute on stdout"""
 
     folder: Folder
-    design: ObserverDesign
+    design: Design
     sensors: list[Channel]
     withheld: list[Channel]
     loud: bool
@@ -82,13 +85,14 @@ class Session:
 
     def __post_init__(self) -> None:
         self.rows = mean_rows(self.design.process.network)
+        self.plain = Process(*model_of(self.folder), self.design.process.bodies)
 
     def take(self, rows: Rows) -> None:
         if self.one is None:
-            self.one, self.begun_s = self.design.started(self.sensors, rows), float(rows.time[0])
+            self.one, self.begun_s = started(self.design, self.sensors, rows), float(rows.time[0])
             first = {c.place: float(rows.readings[c.name][0]) for c in (*self.sensors, *self.withheld)}
             known_first = {place: y for place, y in first.items() if np.isfinite(y)}
-            self.free = initial_state(self.design.process.network, known_first or self.one.filter.x.mean())
+            self.free = initial_state(self.plain.network, known_first or self.one.filter.x.mean())
         whole = joined(self.before, rows)
         record = record_of(whole, self.folder)
         y = np.column_stack([whole.readings[c.name] for c in self.sensors])
@@ -99,10 +103,10 @@ class Session:
             self._note(sample)
 
     def _open_loop(self, record: Any, count: int) -> list[Array]:
-        """States (n,) without any reading, from the very first ones, the withheld sensors' too."""
+        """States (n,) of the model as it stands, without any reading but the very first, the withheld sensors' too."""
         if not self.withheld or self.free is None:
             return []
-        process = self.design.process
+        process = self.plain
         by, still, out = process.driven(record), np.zeros(len(process.bodies)), []
         for k in range(by.time.size - count, by.time.size):
             if k > 0:
@@ -116,10 +120,10 @@ class Session:
             own = np.array([s.at(c.row)[0] for s in samples])
             without = np.array([c.row.weights @ z[c.row.index] for z in free])
             both = np.column_stack([y - own, y - without])
-            kept = self.errors.setdefault(c.name, [np.zeros(2), np.zeros(2)])
+            sums = self.errors.setdefault(c.name, [np.zeros(2), np.zeros(2)])
             good = np.isfinite(y)
-            kept[0] += np.sum(both[good] ** 2, axis=0)
-            kept[1] += float(good.sum())
+            sums[0] += np.sum(both[good] ** 2, axis=0)
+            sums[1] += float(good.sum())
 
     def _note(self, sample: Sample) -> None:
         seen = {n: sample.at(row) for n, row in self.rows.items()}
@@ -164,7 +168,7 @@ class Session:
                         "max_C": self.hottest[n][0], "max_at_s": self.hottest[n][1]} for n, (T, sd) in seen.items()],
             "missing_heat": [
                 {"place": b, "end_W": last.heat[i], "end_ci95": _interval(last.heat[i], last.heat_sd[i]),
-                 "allowed_sd_W": self.design.table_sd[i], "noise_sd_W": noise.sd[i]}
+                 "allowed_sd_W": noise.sd[i]}
                 for i, b in enumerate(self.design.process.bodies)],
             "events": [vars(e) for e in self.one.events],
             "withheld": [{"sensor": c.name, "n": int(n[0]), "rmse_K": float(np.sqrt(s[0] / n[0])),

@@ -1,5 +1,5 @@
-/* See thermal_observer.h. The mean goes with the network's own steps, its linearisation by implicit Euler on the slow
-   states; time update by Householder reflections, measurement update by Potter's method, one reading at a time. */
+/* See thermal_observer.h. The mean goes by a Rosenbrock method of order two, L-stable (Hairer and Wanner 1996, IV.7), its
+   linearisation by implicit Euler on the slow states; time update by Householder reflections, measurement update by Potter's method, one reading at a time. */
 #include "thermal_network.c"
 #include "thermal_observer.h"
 #include "thermal_observer_data.h"
@@ -61,7 +61,7 @@ static void triangular(thermal_observer *o, thermal_observer_work *w) {
         w->A[k][k] = norm;
         for (int i = k + 1; i < rows; i++) w->A[i][k] = 0;
     }
-    for (int i = 0; i < NR; i++) for (int j = 0; j < NR; j++) o->S[i][j] = (float)(j <= i ? w->A[j][i] : 0);
+    for (int i = 0; i < NR; i++) for (int j = 0; j < NR; j++) o->S[i][j] = (thermal_covariance)(j <= i ? w->A[j][i] : 0);
 }
 
 /* Covariance and hypotheses over h seconds; w->network.G is -dF/dx at its start. */
@@ -82,31 +82,42 @@ static int covariance(thermal_observer *o, thermal_observer_work *w, double h) {
         for (int j = 0; j < NS; j++) column[j] = o->error[j][k];
         for (int i = 0; i < NQ; i++) heat[i] = o->error[NS + i][k] + (k == NY + i);
         propagated(w, h, column, heat);
-        for (int j = 0; j < NS; j++) o->error[j][k] = (float)w->right[j];
-        for (int i = 0; i < NQ; i++) o->error[NS + i][k] *= (float)keeps;
+        for (int j = 0; j < NS; j++) o->error[j][k] = (thermal_covariance)w->right[j];
+        for (int i = 0; i < NQ; i++) o->error[NS + i][k] *= (thermal_covariance)keeps;
     }
     for (int k = 0; k < NQ; k++) {
         for (int j = 0; j < NR; j++) w->A[NR + k][j] = 0;
         for (int i = 0; i < NQ; i++) w->A[NR + k][NS + i] = sqrt(1 - keeps * keeps) * NOISE_ROOT[i][k];
     }
     triangular(o, w);
-    for (int i = 0; i < NQ; i++) o->q[i] *= (float)keeps;
+    for (int i = 0; i < NQ; i++) o->q[i] *= (thermal_covariance)keeps;
     return 1;
 }
 
-/* Over h seconds, at most LONGEST_S; all: signals at the end. */
-static int predict(thermal_observer *o, thermal_observer_work *w, thermal_real h, thermal_real *all) {
+/* Step i of count, h seconds each, between the signals `begin` and `all`, whose factors are in the work arrays. */
+static int predict(
+    thermal_observer *o, thermal_observer_work *w, real h, int i, int count, const real *begin, real *all) {
+    const real gamma = (real)(1.0 - sqrt(0.5)), share = ((real)i + (real)0.5) / (real)count;
     thermal_work *v = &w->network;
-    int status;
-    for (int i = 0; i < NQ; i++) o->s.u[HEAT_SIGNAL[i]] = all[HEAT_SIGNAL[i]] = o->q[i];
-    between(o->s.u, all, (real)0.5, v->um);
-    state_of(o->s.x, v->um, v->z0);
-    factors(v->um, v->f0);
+    real *x = o->s.x;
+    between(begin, all, share, v->um);
+    for (int e = 0; e < NE; e++) v->f0[e] = w->begin[e] + share * (w->end[e] - w->begin[e]);
+    state_of(x, v->um, v->z0);
     flow(v->z0, v->f0, v->tau0, v->v0, v->F0);
     jacobian(v->f0, v->tau0, v->v0, 0, v->G);
     memcpy(w->G, v->G, sizeof w->G);
-    status = thermal_step(&o->s, v, h, all);
-    if (status) return status;
+    shifted(gamma * h, v);
+    if (!lu(v->W, v->pivot)) return THERMAL_NO_STEP;
+    memcpy(w->first, v->F0, sizeof w->first);
+    solve(v->W, v->pivot, w->first);
+    for (int k = 0; k < N; k++) v->z0[k] = x[k] + h * w->first[k];
+    flow(v->z0, v->f0, v->tau0, v->v0, v->F0);
+    for (int k = 0; k < N; k++) v->w0[k] = v->F0[k] - 2 * C[k] * w->first[k];
+    solve(v->W, v->pivot, v->w0);
+    for (int k = 0; k < N; k++) {
+        x[k] += h * ((real)1.5 * w->first[k] + (real)0.5 * v->w0[k]);
+        if (!(size_of(x[k]) < (real)1e30)) return THERMAL_NO_STEP;
+    }
     memcpy(v->G, w->G, sizeof w->G);
     return covariance(o, w, h) ? THERMAL_OK : THERMAL_NO_STEP;
 }
@@ -115,15 +126,15 @@ static int predict(thermal_observer *o, thermal_observer_work *w, thermal_real h
 static int taken(thermal_observer *o, int j, double reading, double expected, double sd, double seconds) {
     thermal_sensor *t = &o->sensors[j];
     int good = reading >= COLDEST_C && reading <= HOTTEST_C && fabs(reading - expected) <= OUTLIER_SD * sd, moved = 0;
-    t->missing = good ? 0 : t->missing + (float)seconds;
-    t->good = good ? t->good + (float)seconds : 0;
-    if ((float)reading == t->last) {
-        t->same += (float)seconds;
+    t->missing = good ? 0 : t->missing + (thermal_covariance)seconds;
+    t->good = good ? t->good + (thermal_covariance)seconds : 0;
+    if ((thermal_covariance)reading == t->last) {
+        t->same += (thermal_covariance)seconds;
     } else {
-        t->longest = (float)largest(t->longest, t->same);
+        t->longest = (thermal_covariance)largest(t->longest, t->same);
         t->same = 0;
-        t->last = (float)reading;
-        for (int i = 0; i < NY; i++) t->then[i] = (float)o->lagged[i];
+        t->last = (thermal_covariance)reading;
+        for (int i = 0; i < NY; i++) t->then[i] = (thermal_covariance)o->lagged[i];
     }
     for (int i = 0; i < NY; i++) moved |= fabs(o->lagged[i] - t->then[i]) > MOVED_SD * SENSOR_SD[i];
     if (t->dropped) {
@@ -157,15 +168,15 @@ static void update(thermal_observer *o, thermal_observer_work *w, int j, double 
     for (int i = 0; i < NR; i++) {
         through = 0;
         for (int k = 0; k < NR; k++) through += o->S[i][k] * w->phi[k];
-        for (int k = 0; k < NR; k++) o->S[i][k] -= (float)(through * w->phi[k] / (total + sqrt(r * total)));
+        for (int k = 0; k < NR; k++) o->S[i][k] -= (thermal_covariance)(through * w->phi[k] / (total + sqrt(r * total)));
         w->gain[i] = through / total;
     }
     for (int k = 0; k < NK; k++) {
         double sees = k == j;
         for (int i = 0; i < NS; i++) sees += w->h[i] * o->error[i][k];
-        o->score[k] += (float)(sees * (reading - expected) / total);
-        o->information[k] += (float)(sees * sees / total);
-        for (int i = 0; i < NR; i++) o->error[i][k] -= (float)(w->gain[i] * sees);
+        o->score[k] += (thermal_covariance)(sees * (reading - expected) / total);
+        o->information[k] += (thermal_covariance)(sees * sees / total);
+        for (int i = 0; i < NR; i++) o->error[i][k] -= (thermal_covariance)(w->gain[i] * sees);
     }
     for (int i = 0; i < NR; i++) w->change[i] += w->gain[i] * (reading - expected);
 }
@@ -177,11 +188,15 @@ static double evidence(const thermal_observer *o, int k, double variance) {
 
 /* Drop a sensor that drifts, and begin anew without it. */
 static void judge(thermal_observer *o, thermal_observer_work *w) {
-    double top = 0, sum, best = 0;
+    double top = 0, most = 0, sum, best = 0;
     int worst = -1;
     for (int k = 0; k < NK; k++) {
         double own = ALLOWED_SD[k] * ALLOWED_SD[k], wide = SPREAD_SD[k] * SPREAD_SD[k] + own;
-        w->chance[k] = LOG_PRIOR[k] + (evidence(o, k, wide) - evidence(o, k, own)) / TEMPER_BY;
+        w->chance[k] = evidence(o, k, wide) - evidence(o, k, own);
+        most = largest(most, w->chance[k]);
+    }
+    for (int k = 0; k < NK; k++) {
+        w->chance[k] = LOG_PRIOR[k] + w->chance[k] / (TEMPER_BY + TEMPER_PER_NAT * most);
         top = largest(top, w->chance[k]);
     }
     sum = exp(-top);
@@ -189,16 +204,16 @@ static void judge(thermal_observer *o, thermal_observer_work *w) {
     for (int k = 0; k < NY; k++) if (w->chance[k] / sum > best) best = w->chance[worst = k] / sum;
     if (worst < 0 || best <= SURE_FROM) return;
     double own = ALLOWED_SD[worst] * ALLOWED_SD[worst], wide = SPREAD_SD[worst] * SPREAD_SD[worst] + own;
-    o->drift[worst] = (float)(o->score[worst] / (o->information[worst] + 1 / wide));
+    o->drift[worst] = (thermal_covariance)(o->score[worst] / (o->information[worst] + 1 / wide));
     o->sensors[worst].dropped = THERMAL_DRIFTING;
     memset(o->S, 0, sizeof o->S);
     memset(o->error, 0, sizeof o->error);
     memset(o->score, 0, sizeof o->score);
     memset(o->information, 0, sizeof o->information);
-    for (int i = 0; i < NS; i++) o->S[i][i] = (float)fabs(o->drift[worst]);
+    for (int i = 0; i < NS; i++) o->S[i][i] = (thermal_covariance)fabs(o->drift[worst]);
     for (int i = 0; i < NQ; i++) {
         o->q[i] = 0;
-        for (int k = 0; k < NQ; k++) o->S[NS + i][NS + k] = (float)NOISE_ROOT[i][k];
+        for (int k = 0; k < NQ; k++) o->S[NS + i][NS + k] = (thermal_covariance)NOISE_ROOT[i][k];
     }
 }
 
@@ -210,9 +225,9 @@ static void readings(thermal_observer *o, thermal_observer_work *w, const therma
         o->lagged[j] = (thermal_real)(first ? shows : shows + keeps * (o->lagged[j] - shows));
     }
     for (int i = 0; i < NR; i++) w->change[i] = 0;
-    for (int j = 0; j < NY; j++) update(o, w, j, y[j], seconds);
+    for (int j = 0; j < NY; j++) update(o, w, j, y[j] - SENSOR_BIAS[j], seconds);
     for (int i = 0; i < N; i++) for (int k = 0; k < NS; k++) o->s.x[i] += (thermal_real)(w->along[i][k] * w->change[k]);
-    for (int i = 0; i < NQ; i++) o->q[i] += (float)w->change[NS + i];
+    for (int i = 0; i < NQ; i++) o->q[i] += (thermal_covariance)w->change[NS + i];
     for (int j = 0; j < NY; j++) {
         seen(w, j, w->h);
         for (int k = 0; k < NS; k++) o->lagged[j] += (thermal_real)(w->h[k] * w->change[k]);
@@ -220,8 +235,8 @@ static void readings(thermal_observer *o, thermal_observer_work *w, const therma
     for (int i = 0; i < NQ; i++) {
         double square = 0;
         for (int k = 0; k < NR; k++) square += (double)o->S[NS + i][k] * o->S[NS + i][k];
-        o->q_sd[i] = (float)sqrt(square);
-        o->fails[i] = (float)(0.5 * erfc(-(fabs(o->q[i]) - DOUBT_SD * TABLE_SD[i]) / largest(o->q_sd[i], 1e-9) / sqrt(2.0)));
+        o->q_sd[i] = (thermal_covariance)sqrt(square);
+        o->fails[i] = (thermal_covariance)(0.5 * erfc(-(fabs(o->q[i]) - DOUBT_SD * TABLE_SD[i]) / largest(o->q_sd[i], 1e-9) / sqrt(2.0)));
     }
     judge(o, w);
 }
@@ -235,9 +250,10 @@ int thermal_observer_begin(thermal_observer *o, thermal_observer_work *w, const 
         int used = y[j] == y[j];
         for (int i = j + 1; i < NY; i++) if (SENSOR_STATE[i] == SENSOR_STATE[j] && y[i] == y[i]) used = 0;
         if (!used) continue;
-        mean += y[j];
-        sum += y[j];
-        square += (double)y[j] * y[j];
+        double first = y[j] - SENSOR_BIAS[j];
+        mean += first;
+        sum += first;
+        square += first * first;
         known++;
     }
     for (int b = 0; b < NB; b++) {
@@ -249,15 +265,14 @@ int thermal_observer_begin(thermal_observer *o, thermal_observer_work *w, const 
     if (known) mean /= known;
     square = largest(square / (known + NB) - sum / (known + NB) * sum / (known + NB), 0);
     thermal_begin(&o->s, &w->network, (thermal_real)mean, all);
-    for (int i = 0; i < NS; i++) o->S[i][i] = (float)sqrt(START_K * START_K + square);
+    for (int i = 0; i < NS; i++) o->S[i][i] = (thermal_covariance)sqrt(START_K * START_K + square);
     for (int j = 0; j < NY; j++) {
-        o->sensors[j].last = (float)NAN;
+        o->sensors[j].last = (thermal_covariance)NAN;
         if (y[j] != y[j]) continue;
-        o->s.x[SENSOR_STATE[j]] = y[j];
-        for (int i = 0; i < NS; i++)
-            for (int e = SENSOR_START[j]; e < SENSOR_START[j + 1]; e++) if (SENSOR_AT[e] == SLOW[i]) o->S[i][i] = START_K;
+        o->s.x[SENSOR_STATE[j]] = y[j] - (real)SENSOR_BIAS[j];
+        for (int i = 0; i < NS; i++) if (SENSOR_STATE[j] == SLOW[i]) o->S[i][i] = START_K;
     }
-    for (int i = 0; i < NQ; i++) for (int k = 0; k < NQ; k++) o->S[NS + i][NS + k] = (float)NOISE_ROOT[i][k];
+    for (int i = 0; i < NQ; i++) for (int k = 0; k < NQ; k++) o->S[NS + i][NS + k] = (thermal_covariance)NOISE_ROOT[i][k];
     for (int i = 0; i < N; i++) for (int k = 0; k < NS; k++) w->along[i][k] = i == SLOW[k];
     int status = thermal_rest(&o->s, &w->network);
     readings(o, w, y, 1, 1);
@@ -266,20 +281,23 @@ int thermal_observer_begin(thermal_observer *o, thermal_observer_work *w, const 
 
 int thermal_observer_step(
     thermal_observer *o, thermal_observer_work *w, thermal_real seconds, const thermal_real *u, const thermal_real *y) {
-    thermal_real all[THERMAL_SIGNALS + 1], begin[THERMAL_SIGNALS + 1], now[THERMAL_SIGNALS + 1];
+    thermal_real all[THERMAL_SIGNALS + 1], begin[THERMAL_SIGNALS + 1];
     int count = (int)ceil((double)seconds / LONGEST_S - 1e-9);
     if (count < 1) count = 1;
     all_signals(o, u, all);
     memcpy(begin, o->s.u, sizeof o->s.u);
+    for (int i = 0; i < NQ; i++) begin[HEAT_SIGNAL[i]] = all[HEAT_SIGNAL[i]];
+    factors(begin, w->begin);
+    factors(all, w->end);
     for (int k = 0; k < count; k++) {
-        between(begin, all, (real)(k + 1) / count, now);
-        int status = predict(o, w, seconds / count, now);
+        int status = predict(o, w, seconds / count, k, count, begin, all);
         if (status) return status;
     }
+    memcpy(o->s.u, all, sizeof o->s.u);
     if (!balance(w)) return THERMAL_NO_STEP;
     for (int k = 0; k < NK; k++) {
-        o->score[k] *= (float)exp(-seconds / FORGETS_AFTER_S);
-        o->information[k] *= (float)exp(-seconds / FORGETS_AFTER_S);
+        o->score[k] *= (thermal_covariance)exp(-seconds / FORGETS_AFTER_S);
+        o->information[k] *= (thermal_covariance)exp(-seconds / FORGETS_AFTER_S);
     }
     readings(o, w, y, seconds, 0);
     return THERMAL_OK;

@@ -12,6 +12,12 @@
 #include "thermal_network.h"
 #include "thermal_observer_sizes.h"
 
+/* Of the covariance and what else lives from call to call, but for temperatures. */
+#ifndef THERMAL_COVARIANCE
+#define THERMAL_COVARIANCE float
+#endif
+typedef THERMAL_COVARIANCE thermal_covariance;
+
 #define THERMAL_REDUCED (THERMAL_SLOW + THERMAL_BODIES)
 #define THERMAL_KINDS (THERMAL_SENSORS + THERMAL_BODIES)
 
@@ -19,7 +25,7 @@ enum { THERMAL_USED, THERMAL_LOST, THERMAL_FROZEN, THERMAL_DRIFTING };
 
 /* A reading's history: how long none came, only good ones came, the last has stood, and any has stood before. */
 typedef struct {
-    float missing, good, same, longest, last, then[THERMAL_SENSORS + 1];
+    thermal_covariance missing, good, same, longest, last, then[THERMAL_SENSORS + 1];
     int dropped;
 } thermal_sensor;
 
@@ -28,15 +34,16 @@ typedef struct {
 typedef struct {
     thermal_state s;
     thermal_real lagged[THERMAL_SENSORS + 1];
-    float q[THERMAL_BODIES + 1], q_sd[THERMAL_BODIES + 1], fails[THERMAL_BODIES + 1], drift[THERMAL_SENSORS + 1];
-    float S[THERMAL_REDUCED][THERMAL_REDUCED], error[THERMAL_REDUCED][THERMAL_KINDS];
-    float score[THERMAL_KINDS], information[THERMAL_KINDS];
+    thermal_covariance q[THERMAL_BODIES + 1], q_sd[THERMAL_BODIES + 1], fails[THERMAL_BODIES + 1], drift[THERMAL_SENSORS + 1];
+    thermal_covariance S[THERMAL_REDUCED][THERMAL_REDUCED], error[THERMAL_REDUCED][THERMAL_KINDS];
+    thermal_covariance score[THERMAL_KINDS], information[THERMAL_KINDS];
     thermal_sensor sensors[THERMAL_SENSORS + 1];
 } thermal_observer;
 
 typedef struct {
     thermal_work network;
-    thermal_real G[THERMAL_STATES][THERMAL_STATES];
+    thermal_real G[THERMAL_STATES][THERMAL_STATES], first[THERMAL_STATES], begin[THERMAL_TERMS + 1];
+    thermal_real end[THERMAL_TERMS + 1];
     double along[THERMAL_STATES][THERMAL_SLOW + 1], A[THERMAL_REDUCED + THERMAL_BODIES][THERMAL_REDUCED];
     double change[THERMAL_REDUCED], h[THERMAL_REDUCED], phi[THERMAL_REDUCED], gain[THERMAL_REDUCED];
     double right[THERMAL_STATES], signature[THERMAL_KINDS], chance[THERMAL_KINDS];

@@ -4,14 +4,14 @@ from dataclasses import dataclass
 
 from lumped.model.network import Network
 from lumped.model.quantities import AIR
-from lumped.transfer.laws import InputPower
-from validation.effects.base import Effect, Scene, with_parameter
-from validation.effects.build import film_unit, to_fluid
-from validation.effects.sites import AXLE, ambient, outside, role, turns
+from lumped.transfer.laws import InputPower, Law
+from validation.effects.base import Scene
+from validation.effects.films.ambient_film import AmbientFilm
+from validation.effects.sites import AXLE, outside, role, turns
 
 
 @dataclass(frozen=True)
-class FanConvection(Effect):
+class FanConvection(AmbientFilm):
     """Air of a shaft fan over a standing face, parallel to what cools it already: h = a (n / 1000 rpm)^0.8.
 
     a the coefficient at 1000 rpm (W/m2/K; W/K at a bare node); the fan's flow goes with its speed (affinity).
@@ -21,7 +21,6 @@ class FanConvection(Effect):
     empirical = True
     title = "air of a fan on the shaft over a standing face"
     sits = "a standing outer part off the axle, with no air flow recorded"
-    unit = "W/m2/K"
     at = "1000 rpm"
     source = "fin channels and end shields of TEFC machines, h ~ v^0.8 (Staton and Cavagnino 2008), v ~ n"
     isolating_test = "cool down without current, once turning and once at rest; take the fan off"
@@ -38,10 +37,5 @@ class FanConvection(Effect):
             return []
         return [p for p in outside(network) if not turns(network, p) and role(network, p) not in AXLE]
 
-    def extend(self, network: Network) -> Network:
-        air = str(ambient(network))
-        unit, scale = film_unit(network, self.place, air)
-        law = InputPower(1.0, ((network.signal("speed"), 1000.0, 0.8),))
-        links = to_fluid(network, self.name, self.place, air, law)
-        parameter = self.parameter(*(link.name for link in links), scale=scale, unit=unit)
-        return with_parameter(network.extended(links=links), parameter)
+    def law(self, network: Network) -> Law:
+        return InputPower(1.0, ((network.signal("speed"), 1000.0, 0.8),))

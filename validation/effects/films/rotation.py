@@ -3,21 +3,20 @@
 from dataclasses import dataclass
 
 from lumped.model.network import Network
-from lumped.transfer.laws import InputPower
-from validation.effects.base import Effect, Scene, with_parameter
-from validation.effects.build import film_unit, to_fluid
+from lumped.transfer.laws import InputPower, Law
+from validation.effects.base import Scene
+from validation.effects.films.ambient_film import AmbientFilm
 from validation.effects.sites import ambient, turning
 
 
 @dataclass(frozen=True)
-class RotationConvection(Effect):
+class RotationConvection(AmbientFilm):
     """Cooling of a turning part to ambient: h = a (n / 1000 rpm)^0.7 (W/m2/K; W/K at a bare node)."""
 
     kind = "convection.rotation"
     empirical = True
     title = "cooling of a turning part to ambient"
     sits = "a turning part, with an ambient"
-    unit = "W/m2/K"
     at = "1000 rpm"
     source = "rotating cylinder in still air, Nu = 0.133 Re^(2/3) Pr^(1/3) (Kays and Bjorklund 1958)"
     isolating_test = "cool down at several speeds without current"
@@ -31,11 +30,5 @@ class RotationConvection(Effect):
     def where(cls, scene: Scene) -> list[str]:
         return turning(scene.network) if ambient(scene.network) else []
 
-    def extend(self, network: Network) -> Network:
-        air = str(ambient(network))
-        unit, scale = film_unit(network, self.place, air)
-        links = to_fluid(
-            network, self.name, self.place, air, InputPower(1.0, ((network.signal("speed"), 1000.0, 0.7),))
-        )
-        parameter = self.parameter(*(link.name for link in links), scale=scale, unit=unit)
-        return with_parameter(network.extended(links=links), parameter)
+    def law(self, network: Network) -> Law:
+        return InputPower(1.0, ((network.signal("speed"), 1000.0, 0.7),))

@@ -5,9 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from lumped.model.network import Network
-from lumped.transfer.laws import Fixed, Inputs
-from validation.effects.base import Effect, Scene, with_parameter
-from validation.effects.build import Shaped, heat, power_scale
+from lumped.transfer.laws import Fixed, Inputs, Law
+from validation.effects.base import Scene
+from validation.effects.build import Shaped
+from validation.effects.losses.added_loss import AddedLoss
 from validation.effects.sites import cores, heated
 
 SLOWEST_HZ = 500.0  # no inverter switches more slowly; on its way from 0 a recorded frequency passes below
@@ -25,32 +26,27 @@ class Ripple:
 
 
 @dataclass(frozen=True)
-class PwmIronLoss(Effect):
+class PwmIronLoss(AddedLoss):
     """P = a (f / 8 kHz)^-0.5 while the inverter switches (f > 0), a the loss (W) at 8 kHz.
 
     The ripple of the flux falls as 1/f and eddy currents grow as f^2; skin effect in the sheets leaves about f^-0.5.
     """
 
     kind = "iron.pwm"
-    empirical = True
     title = "iron loss of the inverter's ripple"
     sits = "a part with role iron or rotor, or one with iron loss"
-    unit = "W"
     at = "8 kHz"
     source = "Boglietti et al. 1996, iron loss under PWM: falls with the switching frequency, hardly follows the load"
     isolating_test = "no load at two switching frequencies"
     typical = (5.0, 200.0)
-    prior_sd = 0.5
-    high = 20.0
     confused_with = ("iron", "loss.constant")
     needs = ("frequency",)
+    heats = "iron"
 
     @classmethod
     def where(cls, scene: Scene) -> list[str]:
         return heated(scene.network, "iron", cores(scene.network))
 
-    def extend(self, network: Network) -> Network:
+    def law(self, network: Network) -> Law:
         switching = network.signal("frequency")
-        law = Shaped(Fixed(1.0), Ripple(switching), also_reads=(switching,))
-        network = network.extended(sources=[heat(network, self.name, "iron", self.place, law)])
-        return with_parameter(network, self.parameter(self.name, scale=power_scale(network)))
+        return Shaped(Fixed(1.0), Ripple(switching), also_reads=(switching,))

@@ -2,12 +2,12 @@
 
 from dataclasses import dataclass
 
-from lumped.model.network import Network
-from validation.effects.base import Effect, Scene, with_parameter
+from validation.effects.base import Scene
+from validation.effects.sensors.reading_fault import ReadingFault
 
 
 @dataclass(frozen=True)
-class SensorDelay(Effect):
+class SensorDelay(ReadingFault):
     """All readings of one test come a seconds late."""
 
     kind = "time.offset"
@@ -17,13 +17,12 @@ class SensorDelay(Effect):
     source = "definition"
     isolating_test = "a loss step that both loggers see"
     typical = (-60.0, 60.0)
-    sign = 0
     prior_sd = 30.0
     low = -3600.0
     high = 3600.0
     mapping = "offset"
     confused_with = ("sensor.lag",)
-    fault = True
+    changes = "delay"
 
     @property
     def large(self) -> tuple[float, ...]:
@@ -33,6 +32,3 @@ class SensorDelay(Effect):
     @classmethod
     def where(cls, scene: Scene) -> tuple[str, ...]:
         return scene.tests
-
-    def extend(self, network: Network) -> Network:
-        return with_parameter(network, self.parameter(f"delay:{self.place}"))

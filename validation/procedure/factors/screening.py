@@ -17,7 +17,7 @@ from validation.procedure.factors.sensitivity import Response, Varied
 from validation.procedure.reduction.pm_network import PmSettings, Rows, pm_network, table_of
 
 Array = NDArray[np.float64]
-AMBIENT = 20.0
+AMBIENT = 20.0  # degC
 TABLE_I = (
     Factor("A", "convection", 5.0, 10.0),
     Factor("B", "emissivity", 0.2, 0.8),

@@ -13,7 +13,7 @@ from validation.case import Test
 from validation.procedure.measuring.warming import equilibrium
 
 Array = NDArray[np.float64]
-CLOSE, ALLOWED, NEVER = 3.0, 4.0, 7.0
+CLOSE, ALLOWED, NEVER = 3.0, 4.0, 7.0  # percent of the temperature, as published
 Verdict = Literal["calibrated", "allowed", "correct the model", "beyond 7 %"]
 
 

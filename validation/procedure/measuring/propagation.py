@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-DRAWS = 20_000
+DRAWS = 20_000  # hold a 95 % interval within 1 % (GUM supplement 1 asks for more where tails matter)
 CORNERS = 12  # inputs up to which all corners are visited
 COVERAGE = 1.96
 

@@ -21,9 +21,9 @@ from validation.procedure.measuring.warming import equilibrium
 State = Literal["done", "to do", "refused", "doubtful"]
 ROOM_K = 1.0  # the machine counts as cold within this of the room
 WAIT_H = 12.0  # usual time after a run until it is
-SPEED_SHARE = 0.005
+SPEED_SHARE = 0.005  # of the speed; as much of a back-EMF is 5 K of a NdFeB magnet (-0.1 %/K)
 DRIFT_K_H = 2.0  # IEC 60034-1: less than 1 K per half hour
-APART_S, SPAN_S = 20.0, 300.0
+APART_S, SPAN_S = 20.0, 300.0  # s; every 15 s for 5 min is asked for
 
 
 @dataclass(frozen=True)

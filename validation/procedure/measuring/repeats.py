@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from geom.errors import InputError
 
 Array = NDArray[np.float64]
-LEVEL = 0.05
+LEVEL = 0.05  # significance: how often equal runs are said to differ
 
 
 @dataclass(frozen=True)

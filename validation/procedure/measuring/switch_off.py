@@ -160,8 +160,8 @@ def _fit(cooling: Cooling, terms: int) -> _Fitted | None:
 
     def slopes(at: Array) -> Array:
         """Derivatives by coefficients and time constants' logarithms."""
-        bent = [c * np.exp(-at / s) * at / s for c, s in zip(coefficients[1:], tau, strict=True)]
-        return np.column_stack([basis(tau, at), *bent])
+        decays = [c * np.exp(-at / s) * at / s for c, s in zip(coefficients[1:], tau, strict=True)]
+        return np.column_stack([basis(tau, at), *decays])
 
     covariance = scale * np.linalg.pinv(slopes(t).T @ slopes(t))
 

@@ -20,13 +20,13 @@ from lumped.model.network import Network
 
 Rows = Mapping[str, PartRow]
 K_AIR = 0.028  # W/m/K, air near 50 degC
-AIR_K = 0.026
+AIR_K = 0.026  # W/m/K
 K1, K2, K3 = 15.0, 0.4, 0.9  # Schubert's end space
 WALL = 0.3  # share of the rotor's tip speed that passes a wall at rest
 COPPER_SHARE = {"winding": 0.45, "winding.left": 0.35, "winding.right": 0.35}
 JOINTS = {"base": 500.0, "foot": 1000.0, "endcap": 1000.0, "shaft": 4000.0, "bearing": 150.0, "seat": 1500.0,
           "magnets": 520.0, "gap": 5000.0, "wire": 1000.0}  # fmt: skip
-BANDS = 5
+BANDS = 5  # of a base plate, from foot to rim; chosen
 
 
 @dataclass(frozen=True)

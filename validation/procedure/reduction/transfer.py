@@ -12,7 +12,7 @@ from validation.case import Case
 from validation.comparison.compare import physical
 from validation.comparison.predict import predict
 
-COVERAGE = 2.0
+COVERAGE = 2.0  # standard uncertainties: 95 %
 LIMITS = np.sqrt(6.0)  # of a sum of two even errors of one size, both at their limit, over its standard deviation
 LATE = 0.25  # share of a test at its end that is compared: where it has settled
 

@@ -1,5 +1,6 @@
 """A small case on disk: a hand-declared network of three nodes and simulated tests with convection it lacks."""
 
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -94,6 +95,11 @@ def measured(seed: int, wind: bool, strength: float, step: float = 10.0) -> np.n
 
     strength : W/K at 10 m/s, the convection at the flange that the network lacks
     """
+    return _integrated(seed, wind, strength, step).copy()
+
+
+@cache
+def _integrated(seed: int, wind: bool, strength: float, step: float) -> np.ndarray:
     rng = np.random.default_rng(seed)
     t = np.arange(0.0, 3000.0, step)
     current = 100.0 * rng.uniform(0.5, 1.2, 11)[(t / 300).astype(int)]

@@ -1,0 +1,31 @@
+// The viewer's script without a browser: a page that draws nothing. Usage: node viewer_in_node.js PAGE LEFT RIGHT
+// Prints the values (right, left) of every node at the end of the first test.
+const page = require("fs").readFileSync(process.argv[2], "utf-8");
+const between = (a, b) => page.split(a)[1].split(b)[0];
+const nothing = () => new Proxy(() => {}, { get: (o, k) => k === Symbol.toPrimitive ? () => 1 : nothing(), apply: () => nothing() });
+const flat = { createImageData: () => ({ data: new Uint8ClampedArray(1024) }) };
+const context = (kind) => kind === "2d"
+  ? new Proxy(flat, { get: (o, k) => o[k] ?? (() => {}) })
+  : new Proxy({}, { get: (o, k) => k === k.toUpperCase() ? 1 : () => ({}) });
+const element = () => ({
+  value: "0", style: {}, options: [{}, {}, {}], selectedIndex: 0, width: 100, height: 100, clientWidth: 100, clientHeight: 100,
+  getContext: context, replaceChildren() {}, append() {}, prepend() {}, remove() {}, firstChild: { prepend() {} }, lastChild: {},
+});
+const known = { data: { ...element(), textContent: between('id="data">', "</script>") } };
+globalThis.document = { getElementById: (id) => known[id] ??= element(), createElement: element, documentElement: element() };
+globalThis.Option = class {};
+globalThis.window = globalThis;
+globalThis.matchMedia = () => ({});
+globalThis.getComputedStyle = () => ({ getPropertyValue: () => "#000" });
+globalThis.devicePixelRatio = 1; globalThis.onkeydown = globalThis.onresize = null;
+let ready;
+globalThis.requestAnimationFrame = () => ready();
+new Promise((done) => { ready = done; }).then(() => {
+  known.left.onchange({ target: { value: process.argv[3] } });
+  known.right.onchange({ target: { value: process.argv[4] } });
+  const { values, owner, sensors } = globalThis.viewer;
+  const drawn = { values: [...values.slice(0, 2 * owner.length)], residuals: sensors.map((s) => s.residual) };
+  process.stdout.write(JSON.stringify(drawn), () => process.exit(0));
+});
+setTimeout(() => { console.error(known.fault && known.fault.textContent); process.exit(1); }, 20000);
+(0, eval)(page.split("<script>").at(-1).split("</script>")[0]);

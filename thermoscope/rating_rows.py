@@ -1,0 +1,96 @@
+"""Rows of a rating's document: each load with its 95 % band, beside that of the model before its last step."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from lumped.integration.simulate import Record
+from thermoscope.bands import along
+from thermoscope.case_folder.folder import Folder
+from thermoscope.case_folder.runs import named_rows
+from thermoscope.rating import Rated
+from validation.bands import ParameterPosterior
+from validation.bands.at_rest import AtRest
+from validation.bands.band import NORMAL_95
+from validation.comparison.predict import thermal
+from validation.rating.derating import deratings
+from validation.rating.envelope import TIMES, Rating, rated
+from validation.rating.operation import Operation
+
+SETTLED = 20.0  # time constants
+
+
+def load_of(old: Rated, form: str, speed: float | None) -> float:
+    """What an earlier model says of a form (load)."""
+    return rated(old.model, old.op, old.limits, form, speed).load
+
+
+def point(
+    folder: Folder, op: Operation, r: Rating, old: Rated | None, of: ParameterPosterior | None
+) -> dict[str, Any]:  # fmt: skip
+    """A point of the envelope as a rating has it."""
+    found = row(folder, op, r, None if old is None else load_of(old, r.form, r.speed), of)
+    return {"form": r.form, "speed_rpm": r.speed, **{k: v for k, v in found.items() if k != "form"}}
+
+
+def derated(
+    folder: Folder, it: Rated, old: Rated | None, load: float, of: ParameterPosterior | None
+) -> list[dict[str, Any]]:
+    """Shares of the continuous rating `load` in other surroundings; before: of the same, by the earlier model."""
+    earlier = {} if old is None else {
+        (d.where.of, d.where.value): d.load * old.op.inputs[old.op.main]
+        for d in deratings(old.model, old.op, old.limits)
+    }  # fmt: skip
+    whole, out = load * it.op.inputs[it.op.main], []
+    for d in deratings(it.model, it.op, it.limits):
+        there = None if of is None else replace(of, network=d.where.network(of.network))
+        half = None if d.rating is None else _half_band(folder, d.where.op, d.rating, there)
+        before = earlier.get((d.where.of, d.where.value))
+        out.append({
+            "of": d.where.of, "value": d.where.value, "unit": d.where.unit, "share": d.load / load,
+            "share_ci95": None if half is None else [max(d.load - half, 0.0) / load, (d.load + half) / load],
+            "share_before": None if before is None else before / whole,
+        })  # fmt: skip
+    return out
+
+
+def row(
+    folder: Folder, op: Operation, r: Rating, before: float | None, of: ParameterPosterior | None
+) -> dict[str, Any]:
+    """One rating."""
+    main = op.inputs[op.main]
+    half = _half_band(folder, op, r, of)
+    ci95 = None if half is None else [(r.load - half) * main, (r.load + half) * main]
+    change = None if not before or not np.isfinite(before) else 100.0 * (r.load / before - 1.0)
+    return {
+        "form": r.form, "value": r.load * main, "ci95": ci95, "at": r.at,
+        "before": None if before is None else before * main, "change_percent": change,
+    }  # fmt: skip
+
+
+def _half_band(folder: Folder, op: Operation, r: Rating, of: ParameterPosterior | None) -> float | None:
+    """Half the 95 % band of a load; none where bands are not wanted or no load reaches a limit."""
+    known = of is not None and np.isfinite(r.load) and r.slope > 0.0
+    return _half95(folder, op, r, of) if of is not None and known else None
+
+
+def _half95(folder: Folder, op: Operation, r: Rating, of: ParameterPosterior) -> float:
+    """Half the 95 % band of a load. Duties take that of rest: their mean heat is what counts."""
+    network = of.network
+    seen = named_rows(network, folder)[r.at]
+    if r.form == "S1":
+        bare = thermal(network)
+        values = {p.name: of.values.get(p.name, p.value) for p in bare.parameters}
+        at = {n: float(u) for n, u in op.at(r.load, r.speed).items()}
+        return NORMAL_95 * AtRest(of, bare).sd(values, at, op.boundaries, seen) / r.slope
+    span = TIMES.get(r.form, SETTLED * network.settles_s)
+    time = np.concatenate([[0.0], span * np.geomspace(1e-3, 1.0, 40)])
+    load = r.load if r.form == "S1" or r.form in TIMES else r.load * 0.4**0.5
+    inputs = {n: np.full(time.size, u) for n, u in op.at(load, r.speed).items()}
+    air = {b: np.full(time.size, T) for b, T in op.boundaries.items()}
+    found = along(of, "rating", Record(time, inputs, air, float(np.mean(list(op.boundaries.values())))),
+                  {r.at: seen})  # fmt: skip
+    return float(found.half95[-1, 0] / r.slope)

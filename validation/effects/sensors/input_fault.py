@@ -1,0 +1,83 @@
+"""An error of a recorded input: everything that follows it is off with it."""
+
+import warnings
+from abc import abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from lumped.correlations import RangeWarning
+from lumped.model.network import Link, Network, Source
+from lumped.transfer.laws import Array, Inputs, Law, TemperatureLaw
+from validation.effects.base import Effect, Scene, with_parameter
+from validation.effects.build import copy_link, copy_source
+
+COUNTED = ("speed", "frequency")  # by encoder or clock: a wrong number of pulses is a factor, and seen at once
+
+
+@dataclass(frozen=True)
+class Chord(Law):
+    """How a law changes with an error of one input, per unit of the error: over a chord, for laws that bend."""
+
+    base: Law
+    input: str
+    reads: tuple[str, ...] = field(init=False, default=())
+    temperature: TemperatureLaw = field(init=False, default=TemperatureLaw())
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "reads", self.base.reads)
+        object.__setattr__(self, "temperature", self.base.temperature)
+
+    @abstractmethod
+    def chord(self, u: Array) -> tuple[float, Array, Array]:
+        """The error on both sides that the chord spans, the input with it added and taken away."""
+
+    def factor(self, inputs: Inputs) -> Array | float:
+        known: Mapping[str, Array] = {name: inputs[name] for name in self.reads}
+        error, above, below = self.chord(np.asarray(inputs[self.input], float))
+        with warnings.catch_warnings():  # the chord may leave a table that the input itself stays in
+            warnings.simplefilter("ignore", RangeWarning)
+            more, less = (np.asarray(self.base.factor({**known, self.input: u})) for u in (above, below))
+        return np.asarray((more - less) / (2.0 * error))
+
+
+@dataclass(frozen=True)
+class InputFault(Effect):
+    """A copy of every link and loss that reads the input, with the chord of its law."""
+
+    sits = "an input that a law of the network reads, but none that is counted (speed, frequency)"
+    unit = "1"
+    source = "definition; the laws that read it follow it"
+    sign = 0
+    fault = True
+
+    @classmethod
+    def where(cls, scene: Scene) -> list[str]:
+        """Inputs that an instrument measured; what is counted, such as a speed, is not a few per cent off."""
+        names = dict.fromkeys(name for name, _ in read(scene.network))
+        return [n for n in names if n in scene.inputs and scene.network.measures(n) not in COUNTED]
+
+    @abstractmethod
+    def chord_of(self, law: Law) -> Law:
+        """The chord of a law along this error."""
+
+    def unit_of(self, network: Network) -> str:
+        """Of its parameter."""
+        return self.unit
+
+    def extend(self, network: Network) -> Network:
+        names, unit = [], self.unit_of(network)
+        for x in [x for name, x in read(network) if name == self.place]:
+            names.append(f"{self.name}:{x.name}")
+            if isinstance(x, Link):
+                network = copy_link(network, x, names[-1], self.chord_of(x.law))
+            else:
+                network = copy_source(network, x, names[-1], self.chord_of(x.law))
+        return with_parameter(network, self.parameter(*names, unit=unit))
+
+
+def read(network: Network) -> list[tuple[str, Link | Source]]:
+    """Inputs, and the links and losses of the network's own that follow them by themselves at every instant."""
+    items: list[Link | Source] = [*network.links, *network.sources]
+    return [(name, x) for x in items if not x.origin and not x.law.looks_at_all for name in x.law.reads]
