@@ -8,7 +8,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from validation.calibration.calibrate import Fit, no_progress
+from validation.calibration.calibrate import no_progress
 from validation.case import Case
 from validation.conditions.conditional_effects import conditions, joined, reach
 from validation.conditions.contradiction import contradiction
@@ -119,18 +119,11 @@ def infer(case: Case, kinds: Sequence[str] | None = None, progress: Progress = n
     found, heat = weighed(case, evidence, looked, fit.noise, progress)
     timed, noise = retimed(evidence, found, reach(looked)), noise_of_refits(found)
     if noise is not None or timed is not evidence:
-        begun = ended(found, evidence, timed)
         evidence = under(timed, noise or timed.fit.noise)
+        begun = {h.members: h.fit.theta for h in found if h.fit and h.members}
         found, heat = weighed(case, evidence, looked, fit.noise, progress, begun)
     every = further(case, evidence, found, progress)
     return Posterior(evidence, tuple(against_nothing(every)), tuple(heat), against)
-
-
-def ended(hypotheses: Sequence[Hypothesis], before: Evidence, now: Evidence) -> dict[tuple[int, ...], Fit]:
-    """Members -> their refit; without its tangents where one of them is another effect now."""
-    fits = {h.members: h.fit for h in hypotheses if h.fit and h.members}
-    other = {k for k, e in enumerate(before.effects) if e.name != now.effects[k].name}
-    return {m: replace(fit, parts=()) if other & set(m) else fit for m, fit in fits.items()}
 
 
 def weighed(

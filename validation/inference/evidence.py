@@ -310,52 +310,32 @@ def noise_beside(evidence: Evidence, members: Sequence[int]) -> Noise:
     return fit_noise(left)
 
 
-def refit(evidence: Evidence, members: Sequence[int], theta: Array, known: KnownSegments | None = None) -> Fit:
+def refit(evidence: Evidence, members: Sequence[int], theta: Array, tangents: Sequence[Segment] = ()) -> Fit:
     """All free parameters and the amplitudes of some candidates, fitted anew; those that are whole are held at one.
 
-    known : tangents of all these where the fit begins, by default those without the candidates
+    tangents : of all these where the fit begins, by default those without the candidates
     """
     network, unknowns, held = with_members(evidence, members)
-    known = known or KnownSegments(evidence.parts_of(free_of(evidence, members)))
-    fit, tests = evidence.fit, evidence.tests
-    rough = minimise(network, tests, unknowns, theta, fit.noise, held, 8, known, draft=True, worth=ENOUGH,
-                     error=fit.error)  # fmt: skip
+    free, fit = free_of(evidence, members), evidence.fit
+    rough = minimise(network, evidence.tests, unknowns, theta, fit.noise, held, 8,
+                     KnownSegments(tangents or evidence.parts_of(free)), worth=ENOUGH, error=fit.error)  # fmt: skip
     far = any(evidence.effects[k].whole for k in members)  # exchanged plugs begin where the calibration is wrong
     if rough.foretold > STRAIGHT or (rough.objective > fit.objective + HOPELESS and not far):
         return rough
-    return minimise(network, tests, unknowns, rough.theta, fit.noise, held, SECOND, draft=True, worth=ENOUGH,
+    return minimise(network, evidence.tests, unknowns, rough.theta, fit.noise, held, SECOND, draft=True, worth=ENOUGH,
                     error=fit.error)  # fmt: skip
 
 
-@dataclass(frozen=True)
-class Beginning:
-    """Where one candidate was fitted alone, and how the readings answer there to others beside it.
-
-    parts : of the calibrated parameters, the amplitude of `one`, then those of `others`
-    """
-
-    one: int
-    others: tuple[int, ...]
-    fit: Fit
-    parts: tuple[Segment, ...]
-
-
-def beginning(evidence: Evidence, one: int, alone: Fit, others: Sequence[int]) -> Beginning:
-    """One run for all pairs that begin where one of the two was fitted alone."""
-    network, unknowns, held = with_members(evidence, [one, *others])
-    theta = np.concatenate([alone.theta, np.zeros(len(others))])
-    parts = segments(network, evidence.tests, {**held, **unknowns.values(theta)}, unknowns.parameters)
-    return Beginning(one, tuple(others), alone, tuple(parts))
-
-
-def refit_beside(evidence: Evidence, members: Sequence[int], begin: Beginning) -> Fit:
-    """Two candidates fitted from where one of them was fitted alone."""
-    p = evidence.p
-    column = {begin.one: p, **{k: p + 1 + i for i, k in enumerate(begin.others)}}
-    chosen = [*range(p), *(column[k] for k in members)]
-    theta = np.concatenate([begin.fit.theta[:p], [begin.fit.theta[p] if k == begin.one else 0.0 for k in members]])
-    known = KnownSegments([replace(s, J=s.J[:, chosen]) for s in begin.parts], nearby=False)
-    return refit(evidence, members, theta, known)
+def refit_beside(evidence: Evidence, members: Sequence[int], one: int, alone: Fit) -> Fit:
+    """Two candidates fitted from where one of them was fitted alone, with its tangents and those of the other."""
+    free, p = free_of(evidence, members), evidence.p
+    own = {k: evidence.parts_of([k]) for k in free if k != one}
+    theta = np.concatenate([alone.theta[:p], [alone.theta[p] if k == one else 0.0 for k in free]])
+    tangents = [
+        replace(s, J=np.column_stack([s.J[:, :p], *(s.J[:, p] if k == one else own[k][i].J[:, p] for k in free)]))
+        for i, s in enumerate(alone.parts)
+    ]
+    return refit(evidence, members, theta, tangents)
 
 
 def free_of(evidence: Evidence, members: Sequence[int]) -> list[int]:

@@ -14,12 +14,10 @@ from numpy.typing import NDArray
 from scipy.special import logsumexp
 
 from geom.errors import NoSolution
-from validation.calibration.calibrate import Fit, KnownSegments, no_progress, residual_noise
+from validation.calibration.calibrate import Fit, no_progress, residual_noise
 from validation.doubt import SIZES
 from validation.inference.evidence import (
-    Beginning,
     Evidence,
-    beginning,
     evidence_of,
     free_of,
     mended_by_exchange,
@@ -31,7 +29,7 @@ from validation.inference.posterior import Hypothesis, probabilities, told, weig
 from validation.measurement.noise import Noise
 
 Array = NDArray[np.float64]
-Begun = Mapping[tuple[int, ...], Fit]
+Begun = Mapping[tuple[int, ...], Array]
 NOWHERE: Begun = MappingProxyType({})
 WEIGHT = 0.01  # posterior probability from which a hypothesis is refitted
 ROUNDS, MOST = 4, 8  # what a refit promotes is refitted too; so many at once
@@ -67,9 +65,9 @@ def together(
     """Refit some hypotheses side by side (the kernel frees the GIL); none depends on another of them."""
     for i in due:
         progress(f"refitting {out[i].name(evidence)}")
-    near = beginnings(evidence, out, [i for i in due if out[i].members not in begun])
+    near = [fitted_alone(out, out[i].members) for i in due]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        found = list(pool.map(lambda i: laplace(evidence, out[i], near.get(i), begun), due))
+        found = list(pool.map(lambda i, alone: laplace(evidence, out[i], alone, begun), due, near))
     for i, h in zip(due, found, strict=True):
         out[i] = h
 
@@ -86,16 +84,6 @@ def shares(hypotheses: Sequence[Hypothesis]) -> Array:
     """Probabilities; of what has a name those without heat of unknown cause, which is not refitted and may hide it."""
     P, named = probabilities(hypotheses), np.array([not h.heat for h in hypotheses])
     return np.where(named, P / max(float(P[named].sum()), 1e-300), P)
-
-
-def beginnings(evidence: Evidence, out: Sequence[Hypothesis], due: Sequence[int]) -> dict[int, Beginning]:
-    """Where each of them begins if one of its two effects was fitted alone; those that share that share the run."""
-    alone = {i: found for i in due if (found := fitted_alone(out, out[i].members))}
-    others: dict[int, dict[int, None]] = {}
-    for i, (one, _) in alone.items():
-        others.setdefault(one, {}).update(dict.fromkeys(k for k in out[i].members if k != one))
-    made = {one: beginning(evidence, one, fit, list(others[one])) for one, fit in dict(alone.values()).items()}
-    return {i: made[one] for i, (one, _) in alone.items()}
 
 
 def fitted_alone(hypotheses: Sequence[Hypothesis], members: Sequence[int]) -> tuple[int, Fit] | None:
@@ -127,18 +115,19 @@ def exchanged(evidence: Evidence, hypotheses: Sequence[Hypothesis]) -> list[int]
     return [i for i, _ in dict.fromkeys([*near, *before])]
 
 
-def laplace(evidence: Evidence, h: Hypothesis, near: Beginning | None = None, begun: Begun = NOWHERE) -> Hypothesis:
+def laplace(
+    evidence: Evidence, h: Hypothesis, near: tuple[int, Fit] | None = None, begun: Begun = NOWHERE
+) -> Hypothesis:
     """The hypothesis with the best of its refits and the evidence that follows.
 
-    near : where one of two effects was fitted without the other;  begun : members -> where a refit may go on
+    near : one of two effects and its fit without the other;  begun : members -> where a refit may go on
     """
     before = begun.get(h.members)
-    points, fits = starts(evidence, h.members) if before is None else [before.theta], []
-    known = KnownSegments(before.parts, nearby=False, stale=True) if before and before.parts else None
+    points, fits = starts(evidence, h.members) if before is None else [before], []
     for i, theta in enumerate(points):
         with suppress(NoSolution):  # a machine that would run away there begins elsewhere
             first = near if i == 0 and before is None else None
-            fits.append(refit_beside(evidence, h.members, first) if first else refit(evidence, h.members, theta, known))
+            fits.append(refit_beside(evidence, h.members, *first) if first else refit(evidence, h.members, theta))
     if not fits:
         return replace(h, log_bayes=IMPOSSIBLE, loud=IMPOSSIBLE)
     best = min(fits, key=lambda fit: fit.objective)
