@@ -3,6 +3,7 @@
 import csv
 import json
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from small_case import small_case
@@ -14,7 +15,9 @@ from geom.errors import InputError
 from geom.families import families
 from thermoscope.cli import app
 from thermoscope.commands.use.optimise import read_bounds
+from thermoscope.design.condensations import Condensations
 from thermoscope.design.machine_keys import MachineFile, written
+from validation.optimisation.space import Space
 
 EFFORT = ("--population", "12", "--generations", "4")
 
@@ -104,6 +107,21 @@ def test_machines_offer_what_they_have(name, keys):
     assert all(v.conducts == n.startswith("geometry.") for n, v in usual.items())
     jacket = {"geometry.jacket.channels", "geometry.jacket.turns"} & set(usual)
     assert len(jacket) == (1 if "series-dc-100kw-jacket" in name else 0)
+
+
+@pytest.mark.parametrize("name", ["series-dc-100kw-air", "series-dc-100kw-jacket-one", "series-dc-100kw-jacket-two"])
+def test_what_is_condensed_anew_can_be_built(name):
+    """The rib of the two-way jacket leaves no room for its ports at the bound: the geometry lies nearer then."""
+    file = MachineFile.read(Path(name))
+    space = Space(tuple(file.usual()))
+    of = Condensations(SimpleNamespace(space=space, machine_at=file.at), print)
+    points = {v: of._far(v) for v in space.variables if v.conducts}
+    assert points
+    for v, point in points.items():
+        assert point is not None
+        assert point[v.name] != v.usual
+        assert {n: u for n, u in point.items() if n != v.name} == {w.name: w.usual for w in space.variables if w != v}
+        assert file.at(point).parts
 
 
 def test_bounds_are_read():

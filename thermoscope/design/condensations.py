@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from geom.errors import InputError
 from lumped.condensation.reduction import Recipe
 from lumped.model.network import Network
 from thermoscope.design.machine_keys import short_key
@@ -19,8 +20,10 @@ from validation.optimisation.corrections import Corrections, errors, learned
 from validation.optimisation.hot_spots import hot_spots
 from validation.optimisation.problem import COPPER, SETTLING, Problem
 from validation.optimisation.scaling import Scaling, design_parameters
+from validation.optimisation.space import Variable
 
 Progress = Callable[[str], None]
+HALVINGS = 6  # of the way to a bound; nearer, a variable says nothing
 SIZE_M, ACROSS = 0.12, 0.5  # elements twice as large as those of a case; temperatures differ by 2 % of the rise
 COARSE = Recipe(tolerance=0.03, max_states=110, shifts=(1 / 20, 1 / 700), random_points=1)
 
@@ -80,12 +83,28 @@ class Condensations:
         return [(v.name, named[v.name]) for v in self.problem.space.variables if v.conducts]
 
     def learn(self) -> Corrections:
-        """One geometry per variable that changes conduction, at its bound that is further away."""
-        points = []
-        for v in (v for v in self.problem.space.variables if v.conducts):
-            far = v.high if v.high - v.usual > v.usual - v.low else v.low
-            points.append({**self.usual, v.name: float(round(far)) if v.whole else far})
+        """One geometry per variable that changes conduction, at its bound that is further away.
+
+        Where no machine can be built there, half as far, and so on.
+        """
+        points = [p for v in self.problem.space.variables if v.conducts and (p := self._far(v)) is not None]
         return learned([self.problem.space.share(p) for p in points], [self.ratios(p) for p in points])
+
+    def _far(self, v: Variable) -> dict[str, float] | None:
+        """A geometry with one variable far from the reference; None where none but the reference can be built."""
+        assert self.problem.machine_at is not None
+        far = v.high if v.high - v.usual > v.usual - v.low else v.low
+        for halving in range(HALVINGS):
+            value = v.usual + (far - v.usual) * 0.5**halving
+            point = {**self.usual, v.name: float(round(value)) if v.whole else value}
+            if point[v.name] == v.usual:
+                break
+            try:
+                self.problem.machine_at(point)
+            except InputError:
+                continue
+            return point
+        return None
 
     def verified(self, designs: Sequence[Mapping[str, float]]) -> dict[str, float]:
         """Quantity -> the largest relative error of the interpolation at designs that it was not learned from."""

@@ -9,6 +9,7 @@ and no further. From test to test only w and its covariance are carried. Source:
 from __future__ import annotations
 
 import warnings
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -33,6 +34,7 @@ from validation.observer.process_noise import ProcessNoise, thinned
 
 Array = NDArray[np.float64]
 LASTS_S = 600.0  # an error of a whole recording is that of a place or of its rig: it lasts as long as the heat does
+CLOSE = 1e-3  # deviations of a constant that change no heat worth the work
 STEP_K = 0.01  # of the difference that says how a law turns with temperature
 
 
@@ -48,7 +50,7 @@ class JointFilter:
 
     def __post_init__(self) -> None:
         self.w, self.P = np.zeros(self.constants.sd.size), np.diag(self.constants.sd**2)
-        self.terms = _Terms(self.constants)
+        self.terms = _Terms(self.constants, CLOSE)
         self.process = _Varying(self.constants.network, {}, self.bodies, self.terms)
 
     def over(self, test: Test) -> None:
@@ -115,7 +117,7 @@ class _Run:
         self.terms.at(self.w, f)
         B = self.terms.by_constants(np.concatenate([self.x, u, [1.0]]), self.w.size)
         B = np.column_stack([self.process.E, B])
-        self.x, G = self.process.predicted(self.x, self.q, u, h)
+        self.x, G = self.process.step(self.x, self.q, u, h)
         into = np.zeros((self.x.size, s + m + self.w.size))
         C = self.terms.C
         into[self.process.slow, np.arange(s)] = C[self.process.slow]
@@ -156,9 +158,9 @@ class _Run:
 
 
 class _Terms:
-    """Every term of a network at one instant, at constants that move."""
+    """Every term of a network at one instant, at constants that move: by less than `close` deviations, by nothing."""
 
-    def __init__(self, constants: Constants) -> None:
+    def __init__(self, constants: Constants, close: float = 0.0) -> None:
         network = self.network = constants.network
         self.constants, self.every, self.n = constants, assembly(network), len(network.states)
         patterns = self.every.patterns
@@ -167,7 +169,7 @@ class _Terms:
         self._val = np.concatenate([p.vals for p in patterns])
         self._flat = owner * self.n + np.concatenate([p.row[p.to] for p in patterns]).astype(int)
         self._bent = [(e, p.law.temperature, p.hot, p.cold) for e, p in enumerate(patterns) if p.bends]
-        self._known: Array | None = None
+        self._known, self._close = np.full(constants.sd.size, np.inf), close * constants.sd
 
     def factors(self, given: Record) -> Array:
         """(nt, ne) of a record."""
@@ -180,14 +182,25 @@ class _Terms:
 
     def at(self, w: Array, f: Array) -> None:
         """At constants w and input factors f."""
-        if self._known is None or not np.array_equal(w, self._known):
+        if np.any(np.abs(w - self._known) > self._close):
             values = self.constants.values(w)
             acting = multipliers(self.network, values)
             self.m = np.array([acting.get(name, 1.0) for name in self.every.names])
             self.C = self.network.C * capacity_multipliers(self.network, acting)
-            self.moves = slopes(self.network, values, self.constants.parameters)
+            self._turn(slopes(self.network, values, self.constants.parameters))
             self._known = w.copy()
         self.f = f
+
+    def _turn(self, moves: Sequence[Mapping[str, float]]) -> None:
+        """by (ne, p), C_by (n, p) : slopes of the coefficients, and of the logarithm of the capacities."""
+        at = {name: e for e, name in enumerate(self.every.names)}
+        self.by = np.zeros((len(at), len(moves)))
+        for j, slope in enumerate(moves):
+            for target, value in slope.items():
+                if target in at:
+                    self.by[at[target], j] += value
+        own = [capacity_slopes(self.network, slope) for slope in moves]
+        self.C_by = np.reshape(own, (-1, self.n)).T * (self.network.C / np.maximum(self.C, 1e-30))[:, None]
 
     def _unit(self, z: Array) -> Array:
         """(ne, n) heat into every state by a coefficient of one."""
@@ -217,14 +230,8 @@ class _Terms:
     def by_constants(self, z: Array, count: int) -> Array:
         """(n, count) how the heat into the states changes with each constant; those of sensors change none."""
         per = (self.f * self._laws(z))[:, None] * self._unit(z)
-        at = {name: e for e, name in enumerate(self.every.names)}
-        total, out = self.m @ per, np.zeros((self.n, count))
-        for j, moves in enumerate(self.moves):
-            for target, slope in moves.items():
-                if target in at:
-                    out[:, j] += slope * per[at[target]]
-            out[:, j] -= capacity_slopes(self.network, moves) * self.network.C / np.maximum(self.C, 1e-30) * total
-        return out
+        own = per.T @ self.by - self.C_by * (self.m @ per)[:, None]
+        return np.pad(own, ((0, 0), (0, count - own.shape[1])))
 
 
 @dataclass(frozen=True)
@@ -233,7 +240,7 @@ class _Varying(Process):
 
     terms: _Terms
 
-    def predicted(self, x: Array, q: Array, u: Array, h: float) -> tuple[Array, Array]:
+    def step(self, x: Array, q: Array, u: Array, h: float) -> tuple[Array, Array]:
         return self.stepped(lambda x: self.terms.heat(np.concatenate([x, u, [1.0]])), self.terms.C, x, q, h)
 
 
