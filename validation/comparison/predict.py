@@ -30,7 +30,7 @@ from validation.measurement.operators import (
 
 Array = NDArray[np.float64]
 MOVING = tuple(f"{kind}:" for kind in SHIFTS)
-KEPT_NUMBERS = 100_000  # of the last runs whose readings are kept: a clock or a sensor that differs needs no new one
+CACHED_NUMBERS = 100_000  # of a run whose readings are cached: a clock or a sensor that differs needs no new one
 MARGIN = 40  # samples on either side of a stretch after which a spline no longer feels where it was cut
 
 
@@ -106,7 +106,7 @@ class Course:
 
     def _run(self, some: slice) -> Run:
         whole = some == slice(0, len(self.test.time)) and self.end is None
-        if not whole or self.tangents or self.shifts or self.test.time.size * len(self.test.channels) > KEPT_NUMBERS:
+        if not whole or self.tangents or self.shifts or self.test.time.size * len(self.test.channels) > CACHED_NUMBERS:
             return self._simulated(some)
         key = (*self.heat.items(), *((k, v) for k, v in self.shift.items() if k.startswith(MOVING)))
         for network, test, at, run in tuple(_LAST):
