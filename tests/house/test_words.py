@@ -59,6 +59,16 @@ def test_no_private_words_in_parameters_and_variables(root):
     assert {word: n for word, n in found.items() if n > REMAINING_LOCALLY.get(word, 0)} == {}
 
 
+def test_no_private_words_on_pages(root):
+    """What is left are words that everybody uses in their everyday sense."""
+    pages = [root / "README.md", *root.glob("docs/**/*.md"), *root.glob("cases/*/README.md")]
+    private = own_words(root) - {"behind", "failing", "kept", "mixes", "told", "tuned", "wish"}
+    for page in pages:
+        text = page.read_text(encoding="utf-8").partition("## Names in the code")[0]
+        plain = re.sub(r"```.*?```|`[^`]*`", "", text, flags=re.DOTALL).lower()
+        assert private & {*re.findall(r"[a-z]+", plain)} == set(), page
+
+
 @pytest.mark.parametrize("name", ["Shelf", "foretold", "latent_heat", "HandShelf", "is_kept"])
 def test_the_check_sees_what_it_is_for(root, name):
     assert counted([name], own_words(root))
