@@ -14,6 +14,7 @@ from lumped.integration.record import Record
 from lumped.integration.signals import Signals
 from lumped.model.multipliers import multipliers, slopes
 from lumped.model.network import Network, Parameter, Row
+from lumped.model.once import once
 from lumped.numerics.kernel import Control, Rows
 from lumped.numerics.tangents import Tangents
 from lumped.numerics.terms import BENDS, DYNAMIC, STIFF, Forcing, Terms
@@ -73,6 +74,7 @@ def _pack_tangents(
     )  # fmt: skip
 
 
+@once
 def hidden_states(network: Network) -> Mask:
     """(n,) which states are amplitudes of shapes, which have no mean."""
     return np.array(["#" in s for s in network.states], bool)
@@ -128,10 +130,10 @@ def compiled(
 def control(network: Network, every: Assembly, m: Array, factors: Sequence[Array]) -> Control:
     """What a step has to pass. The maximum principle holds where every acting link has positive coefficients alone."""
     hidden = hidden_states(network)
-    acts = [(p, x, f) for p, x, f in zip(every.patterns, m, factors, strict=True) if x != 0.0 and not p.heats]
+    acts = [(p, x, f) for p, x, f in zip(every.patterns, m.tolist(), factors, strict=True) if x != 0.0 and not p.heats]
     holds = not hidden.any() and all(p.monotone and x * _extreme(f, x > 0.0) >= 0.0 for p, x, f in acts)
     return Control(
-        state_units(network, hidden), (~hidden).astype(np.int64), np.array([ERROR_K, ERROR_SHARE]),
+        state_units(network), (~hidden).astype(np.int64), np.array([ERROR_K, ERROR_SHARE]),
         np.array([holds], np.int64), np.array([HOTTEST]), np.zeros(1, np.int64),
     )  # fmt: skip
 
@@ -141,8 +143,10 @@ def _extreme(f: Array, least: bool) -> float:
     return float(f) if f.ndim == 0 else float(f.min() if least else f.max())
 
 
-def state_units(network: Network, hidden: Mask) -> Array:
+@once
+def state_units(network: Network) -> Array:
     """(n,) K that a unit of every state makes: for a shape the largest mean square over the faces it touches."""
+    hidden = hidden_states(network)
     out = np.where(hidden, 0.0, 1.0)
     for place in network.places.values() if hidden.any() else ():
         inside = place.states < hidden.size

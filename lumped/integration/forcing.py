@@ -66,7 +66,7 @@ def forcing(
     ends = [straight(x) for x in u.T]
     kept = np.arange(t.size)
     if not every_sample:
-        kept = _needed(t, [c for c, acts in zip(curves, acting, strict=True) if acts], ends, list(given.values()))
+        kept = _needed(t, curves, ends, list(given.values()))
     (factor, bulge), (u, arch) = _between(t, kept, curves), _between(t, kept, ends)
     knots = t[kept]
     renew = np.full(kept.size, 2) if bends else _renewals(knots, factor[:, stiff], bulge[:, stiff])
@@ -76,7 +76,8 @@ def forcing(
 def _needed(time: Array, heats: Sequence[Curve], ends: Sequence[Curve], inputs: Sequence[Array]) -> Ints:
     """Which knots a run needs: between them whatever drives it is a parabola, and so are all inputs of the record.
 
-    These too, because a tangent may be asked of a term that does not act: its steps are the same.
+    heats : of all terms, those that do not act among them: a tangent by a film that opens for a while turns where it
+    opens, whatever its size
     """
     curves = [*((c, PARABOLA, 0.0) for c in heats), *((c, 0.0, PARABOLA_K) for c in ends),
               *((straight(x), PARABOLA, 0.0) for x in inputs)]  # fmt: skip
