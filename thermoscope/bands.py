@@ -30,7 +30,7 @@ from validation.case import RUNNING, Recorded, Test
 Array = NDArray[np.float64]
 SMALL = 40  # states up to which bands cost less than a run's other work
 JUMP_S = 1e-6  # far below any step, far above the rounding of a day in seconds
-LAYOUT = 1  # of a kept file: a change here makes old ones be left alone
+LAYOUT = 2  # of a kept file: a change here makes old ones be left alone
 
 
 def wanted(network: Network, asked: bool | None) -> bool:
@@ -47,7 +47,9 @@ def posterior_of(folder: Folder, progress: Progress) -> ParameterPosterior:
     found = parameter_posterior(folder.case, progress)
     if found.fitted:
         out = io.BytesIO()
-        np.savez_compressed(out, covariance=found.covariance, said=json.dumps([found.names, found.fitted]))
+        np.savez_compressed(
+            out, covariance=found.covariance, offset=found.offset, said=json.dumps([found.names, found.fitted])
+        )
         write_whole(file, out.getvalue())
     return found
 
@@ -56,10 +58,15 @@ def _from_cache(folder: Folder, file: Path) -> ParameterPosterior:
     with np.load(file) as held:
         names, fitted = json.loads(str(held["said"]))
         bare = replace(folder.case, model=replace(folder.case.model, revision=0))
-        covariance = held["covariance"]
+        covariance, offset = held["covariance"], held["offset"]
     read = rows_read([t for t in folder.case.tests if t.name in fitted])
     return replace(
-        parameter_posterior(bare), names=tuple(names), covariance=covariance, fitted=tuple(fitted), read=read
+        parameter_posterior(bare),
+        names=tuple(names),
+        covariance=covariance,
+        fitted=tuple(fitted),
+        read=read,
+        offset=offset,
     )
 
 

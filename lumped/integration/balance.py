@@ -96,11 +96,11 @@ class Walk:
 def walk(network: Network, record: Record, core: Compiled, run: Run) -> Walk:
     """The run once more, in three steps for every one that it took."""
     forcing = core.forcing
-    finer, weight = _nodes(run.steps, forcing.time)
+    samples = np.repeat(np.arange(forcing.time.size), np.diff(forcing.first)) - 1.0 + forcing.share
+    finer, weight, at = _nodes(run.steps, forcing.time, samples)
     x = march(network, record, core, steps=finer, keep_path=True).path
     assert x is not None
-    samples = np.flatnonzero(forcing.sample >= 0)
-    row = np.searchsorted(samples, finer.knot)
+    row = np.searchsorted(samples, at)
     before = forcing.time[finer.knot - 1]
     time = before + finer.share * (forcing.time[finer.knot] - before)
     left, right = run.time[row - 1], run.time[row]
@@ -116,15 +116,24 @@ def _counted(core: Compiled, way: Walk, through: Array, nt: int) -> Array:
     return np.cumsum(out, axis=1)
 
 
-def _nodes(steps: Steps, time: Array) -> tuple[Steps, Array]:
-    """Every step in three that end at the nodes of Radau's quadrature, and their weights (s)."""
-    same = np.append(False, steps.knot[1:] == steps.knot[:-1])
-    start = np.where(same, np.append(0.0, steps.share[:-1]), 0.0)
-    width = (steps.share - start)[:, None]
-    share = start[:, None] + width * NODES
-    share[:, -1] = steps.share
-    weight = width * (time[steps.knot] - time[steps.knot - 1])[:, None] * WEIGHTS
-    return Steps(np.repeat(steps.knot, 3), share.ravel(), np.repeat(steps.kind, 3)), weight.ravel()
+def _nodes(steps: Steps, time: Array, samples: Array) -> tuple[Steps, Array, Array]:
+    """Every step, cut at the samples inside it, in three that end at the nodes of Radau's quadrature; weights (s).
+
+    samples (nt,) : the knot before each plus its share of the next interval;  last : where the pieces end, likewise
+    """
+    ends = steps.knot - 1.0 + steps.share
+    inner = samples[(samples > 0.0) & (samples != np.floor(samples))]
+    to = np.union1d(ends, inner)
+    which = np.searchsorted(ends, to)
+    knot, share = steps.knot[which], to - (steps.knot[which] - 1.0)
+    share[np.isin(to, ends)] = steps.share
+    same = np.append(False, knot[1:] == knot[:-1])
+    start = np.where(same, np.append(0.0, share[:-1]), 0.0)
+    width = (share - start)[:, None]
+    nodes = start[:, None] + width * NODES
+    nodes[:, -1] = share
+    weight = width * (time[knot] - time[knot - 1])[:, None] * WEIGHTS
+    return Steps(np.repeat(knot, 3), nodes.ravel(), np.repeat(steps.kind[which], 3)), weight.ravel(), np.repeat(to, 3)
 
 
 def _through(network: Network, core: Compiled, mean: Array) -> Array:

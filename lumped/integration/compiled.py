@@ -14,6 +14,7 @@ from lumped.integration.record import Record
 from lumped.integration.signals import Signals
 from lumped.model.multipliers import multipliers, slopes
 from lumped.model.network import Network, Parameter, Row
+from lumped.model.once import once
 from lumped.numerics.kernel import Control, Rows
 from lumped.numerics.tangents import Tangents
 from lumped.numerics.terms import BENDS, DYNAMIC, STIFF, Forcing, Terms
@@ -73,6 +74,7 @@ def _pack_tangents(
     )  # fmt: skip
 
 
+@once
 def hidden_states(network: Network) -> Mask:
     """(n,) which states are amplitudes of shapes, which have no mean."""
     return np.array(["#" in s for s in network.states], bool)
@@ -90,9 +92,13 @@ def compiled(
     rows: Sequence[Row] = (),
     tangents: Sequence[Parameter] = (),
     all_terms: bool = False,
+    every_sample: bool = False,
     shifts: Sequence[str | None] = (),
 ) -> Compiled:
-    """The kernel's view. Terms that are steady and that no tangent moves exist in the constant matrix only."""
+    """The kernel's view. Terms that are steady and that no tangent moves exist in the constant matrix only.
+
+    every_sample : drive it from sample to sample, whether the inputs ask for that or not
+    """
     time = checked_time(record.time)
     inputs, u = record.inputs, boundary_table(network, record.boundaries, time.size)
     every, signals = assembly(network), inputs if isinstance(inputs, Signals) else Signals(inputs, time.size)
@@ -108,7 +114,7 @@ def compiled(
     terms = every.packed(live, steady)._replace(m=m[live])
     moving = (m[live] != 0.0) & ~steady[live]
     stiff = moving & (terms.kind[:, STIFF] == 1)
-    driven = forcing(time, u, signals, patterns, moving, stiff, bool(np.any(terms.kind[stiff, BENDS])))
+    driven = forcing(time, u, signals, patterns, moving, stiff, bool(np.any(terms.kind[stiff, BENDS])), every_sample)
     return Compiled(
         network.C * capacity_multipliers(network, acting),
         every.matrix(m * constant),
@@ -124,16 +130,23 @@ def compiled(
 def control(network: Network, every: Assembly, m: Array, factors: Sequence[Array]) -> Control:
     """What a step has to pass. The maximum principle holds where every acting link has positive coefficients alone."""
     hidden = hidden_states(network)
-    acts = [(p, x, f) for p, x, f in zip(every.patterns, m, factors, strict=True) if x != 0.0 and not p.heats]
-    holds = not hidden.any() and all(p.monotone and np.min(x * f) >= 0.0 for p, x, f in acts)
+    acts = [(p, x, f) for p, x, f in zip(every.patterns, m.tolist(), factors, strict=True) if x != 0.0 and not p.heats]
+    holds = not hidden.any() and all(p.monotone and x * _extreme(f, x > 0.0) >= 0.0 for p, x, f in acts)
     return Control(
-        state_units(network, hidden), (~hidden).astype(np.int64), np.array([ERROR_K, ERROR_SHARE]),
+        state_units(network), (~hidden).astype(np.int64), np.array([ERROR_K, ERROR_SHARE]),
         np.array([holds], np.int64), np.array([HOTTEST]), np.zeros(1, np.int64),
     )  # fmt: skip
 
 
-def state_units(network: Network, hidden: Mask) -> Array:
+def _extreme(f: Array, least: bool) -> float:
+    """The least or the largest of a factor; a number needs no search."""
+    return float(f) if f.ndim == 0 else float(f.min() if least else f.max())
+
+
+@once
+def state_units(network: Network) -> Array:
     """(n,) K that a unit of every state makes: for a shape the largest mean square over the faces it touches."""
+    hidden = hidden_states(network)
     out = np.where(hidden, 0.0, 1.0)
     for place in network.places.values() if hidden.any() else ():
         inside = place.states < hidden.size

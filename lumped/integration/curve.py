@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -13,6 +13,7 @@ Array = NDArray[np.float64]
 CURVED = 1e-3  # of the largest factor of an interval: what a parabola may miss, times its share of the interval
 MISSED = 0.01  # and however short that is: a cell of 0.1 J/K follows at once (to |x|^0.8 from 0 on it misses 0.024)
 SMALL = 1e-2  # of the largest factor of a record: less than that counts as that
+FLAT, FAR = 1e-4, 0.02  # a factor that bends less, over inputs that move less, is a parabola without another look
 FINEST = 1e-3  # of an interval
 QUARTERS = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
 
@@ -28,7 +29,7 @@ class Curve(NamedTuple):
     inserted: Array
 
 
-NONE = np.empty(0)
+NONE, LEVEL = np.empty(0), np.zeros(())
 
 
 def between(x: Array, at: Array) -> Array:
@@ -36,6 +37,29 @@ def between(x: Array, at: Array) -> Array:
     k = np.minimum(at.astype(np.int64), max(x.size - 2, 0))
     share, end = at - k, np.minimum(k + 1, x.size - 1)
     return np.where(share == 0.0, x[k], (1.0 - share) * x[k] + share * x[end])
+
+
+class Moves(NamedTuple):
+    """at_all, far (nt - 1,) : whether an input moves between two samples, and whether by more than FAR of its largest
+
+    extremes : the samples at which an input is least or largest
+    """
+
+    at_all: NDArray[np.bool_]
+    far: NDArray[np.bool_]
+    extremes: Array
+
+
+def moving(inputs: Iterable[Array], nt: int) -> Moves:
+    """From inputs (nt,) that are straight lines between the samples."""
+    inputs = list(inputs)
+    ends = [float(at(x)) for x in inputs for at in (np.argmin, np.argmax)]
+    out = Moves(np.zeros(nt - 1, bool), np.zeros(nt - 1, bool), np.unique(ends))
+    for x in inputs:
+        step = np.abs(np.diff(x))
+        np.logical_or(out.at_all, step > 0.0, out=out.at_all)
+        np.logical_or(out.far, step > FAR * np.abs(x).max(), out=out.far)
+    return out
 
 
 class Between(Mapping[str, Array]):
@@ -63,37 +87,45 @@ def parabolas(c: Curve, knots: Array, at: Array) -> Array:
 
 def straight(value: Array) -> Curve:
     """A factor that is linear between the samples."""
-    return Curve(value, np.zeros(()), NONE)
+    return Curve(value, LEVEL, NONE)
 
 
 def curve(
-    factor: Callable[[Array], Array], nt: int, turns: Array = NONE, skip: NDArray[np.bool_] | None = None
+    factor: Callable[[Array], Array], nt: int, moves: Moves, turns: Array = NONE, skip: NDArray[np.bool_] | None = None
 ) -> Curve:
     """From a factor at any positions; () where it never changes.  turns : positions at which it may have a corner
 
-    skip (nt,) : the intervals that end there are not to be cut
+    moves : where its inputs move between samples;  skip (nt,) : the intervals that end there are not to be cut
     """
-    samples, steps = np.arange(nt, dtype=float), np.arange(nt - 1, dtype=float)
-    every = factor(np.concatenate([samples, *(steps + q for q in QUARTERS[1:-1])]))
+    samples, left = np.arange(nt, dtype=float), np.flatnonzero(moves.at_all)
+    every = factor(np.concatenate([samples, left + 0.5]))
     if every.ndim == 0 or np.all(every == every[0]):
         return straight(every if every.ndim == 0 else every[0])
-    value, (q1, middle, q3) = every[:nt], every[nt:].reshape(3, nt - 1)
-    five, scale = np.stack([value[:-1], q1, middle, q3, value[1:]], axis=1), float(np.abs(every).max())
+    value, scale = every[:nt], float(np.abs(every).max())
     bulge = np.zeros(nt)
-    bulge[1:] = middle - 0.5 * (value[:-1] + value[1:])
+    bulge[1 + left] = every[nt:] - 0.5 * (value[left] + value[left + 1])
     bulge[np.abs(bulge) <= 1e-12 * scale] = 0.0  # rounding
-    wrong = _too_curved(five, 1.0, SMALL * scale)
-    if skip is not None:
-        wrong &= ~skip[1:]
 
     def again(at: Array) -> Array:
-        """Beside the samples, for laws that look for the largest of what they are given."""
-        return factor(np.concatenate([samples, at]))[nt:]
+        """Beside the extremes, for laws that look for the largest of what they are given."""
+        return factor(np.concatenate([moves.extremes, at]))[moves.extremes.size :]
 
+    looked = moves.far | (np.abs(bulge[1:]) > FLAT * np.maximum(np.abs(value[1:]), SMALL * scale))
+    if skip is not None:
+        looked &= ~skip[1:]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # what is out of range was said of the samples
-        inserted = _inserted(again, steps[wrong], turns, SMALL * scale) if np.any(wrong) else NONE
+        inserted = _cut(again, np.flatnonzero(looked).astype(float), turns, SMALL * scale)
     return Curve(value, bulge, inserted)
+
+
+def _cut(factor: Callable[[Array], Array], left: Array, turns: Array, small: float) -> Array:
+    """Positions that cut those of some intervals in which a parabola misses too much."""
+    if left.size == 0:
+        return NONE
+    five = factor((left[:, None] + QUARTERS).ravel()).reshape(-1, QUARTERS.size)
+    wrong = left[_too_curved(five, 1.0, small)]
+    return _inserted(factor, wrong, turns, small) if wrong.size else NONE
 
 
 def _too_curved(five: Array, width: Array | float, small: float) -> NDArray[np.bool_]:

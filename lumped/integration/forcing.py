@@ -9,13 +9,17 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError
 from lumped.integration.assembly import Pattern
-from lumped.integration.curve import Curve, between
+from lumped.integration.curve import SMALL, Curve, between, straight
 from lumped.integration.signals import Signals
 from lumped.model.network import Network
+from lumped.numerics.knots import needed
 from lumped.numerics.terms import Forcing
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
+Ints = NDArray[np.int64]
+PARABOLA, PARABOLA_K = 2e-4, 1e-3  # of the largest of an interval, K: a few hundredths of what a step may be wrong by
+ROUNDING = 1e-12
 
 
 def checked_time(time: Array) -> Array:
@@ -44,23 +48,91 @@ def boundary_table(network: Network, boundaries: Mapping[str, Array | float], nt
 
 
 def forcing(
-    time: Array, u: Array, signals: Signals, patterns: Sequence[Pattern], acting: Mask, stiff: Mask, bends: bool
-) -> Forcing:
+    time: Array, u: Array, signals: Signals, patterns: Sequence[Pattern], acting: Mask, stiff: Mask, bends: bool,
+    every_sample: bool = False,
+) -> Forcing:  # fmt: skip
     """u (nt, nb) boundaries;  patterns : the live terms, of which those `acting` set the knots
 
     stiff : which acting terms touch the matrix;  bends : whether one of these follows temperature
+    every_sample : to have a knot at every sample, whether a run needs it or not
     """
     curves = [signals.curve(p.name, p.law) for p in patterns]
     at, sample = _knots(time, [c for c, acts in zip(curves, acting, strict=True) if acts])
+    t, given = time, signals
     if at.size > time.size:
-        finer = signals.finer(at)
-        curves = [finer.curve(p.name, p.law) for p in patterns]
-        time, u = between(time, at), np.stack([between(x, at) for x in u.T], axis=1).reshape(at.size, -1)
-    factor, bulge = np.empty((time.size, len(curves))), np.zeros((time.size, len(curves)))
+        given = signals.finer(at)
+        curves = [given.curve(p.name, p.law) for p in patterns]
+        t, u = between(time, at), np.stack([between(x, at) for x in u.T], axis=1).reshape(at.size, -1)
+    ends = [straight(x) for x in u.T]
+    kept = np.arange(t.size)
+    if not every_sample:
+        kept = _needed(t, [c for c, acts in zip(curves, acting, strict=True) if acts], ends, list(given.values()))
+    (factor, bulge), (u, arch) = _between(t, kept, curves), _between(t, kept, ends)
+    knots = t[kept]
+    renew = np.full(kept.size, 2) if bends else _renewals(knots, factor[:, stiff], bulge[:, stiff])
+    return Forcing(knots, u, factor, bulge, arch, renew, *_samples(time, knots, kept, np.flatnonzero(sample >= 0)))
+
+
+def _needed(time: Array, heats: Sequence[Curve], ends: Sequence[Curve], inputs: Sequence[Array]) -> Ints:
+    """Which knots a run needs: between them whatever drives it is a parabola, and so are all inputs of the record.
+
+    These too, because a tangent may be asked of a term that does not act: its steps are the same.
+    """
+    curves = [*((c, PARABOLA, 0.0) for c in heats), *((c, 0.0, PARABOLA_K) for c in ends),
+              *((straight(x), PARABOLA, 0.0) for x in inputs)]  # fmt: skip
+    curves = [x for x in curves if _varies(x[0])]
+    value, middle, whole = np.zeros((3, len(curves), time.size))
+    allowed = np.empty((len(curves), 2))
+    for k, (c, share, most) in enumerate(curves):
+        value[k], middle[k, 1:], whole[k] = c.value, _middle(c), integral(c, time)
+        allowed[k] = max(most, share * SMALL * float(np.abs(c.value).max())), share
+    out = np.empty(time.size, np.int64)
+    return out[: needed(time, value, middle, whole, allowed, out)]
+
+
+def _varies(c: Curve) -> bool:
+    return c.value.ndim > 0 and (bool(np.any(c.value != c.value[0])) or bool(np.any(c.bulge)))
+
+
+def _middle(c: Curve) -> Array:
+    line = 0.5 * (c.value[1:] + c.value[:-1])
+    return line + c.bulge[1:] if c.bulge.ndim else line
+
+
+def integral(c: Curve, time: Array) -> Array:
+    """(nk,) from the first knot."""
+    mean = 0.5 * (c.value[1:] + c.value[:-1])
+    if c.bulge.ndim:
+        mean += c.bulge[1:] / 1.5
+    return np.concatenate([[0.0], np.cumsum(np.diff(time) * mean)])
+
+
+def _between(time: Array, kept: Ints, curves: Sequence[Curve]) -> tuple[Array, Array]:
+    """(nk, n) values at some of the knots, and how far between them parabolas bulge that keep every integral."""
+    value, bulge = np.zeros((2, kept.size, len(curves)))
+    apart = 1 + np.flatnonzero(np.diff(kept) > 1)
+    left, right = kept[apart - 1], kept[apart]
     for e, c in enumerate(curves):
-        factor[:, e], bulge[:, e] = c.value, c.bulge
-    renew = np.full(time.size, 2) if bends else _renewals(time, factor[:, stiff], bulge[:, stiff])
-    return Forcing(time, np.ascontiguousarray(u), factor, bulge, renew, sample)
+        value[:, e] = c.value if c.value.ndim == 0 else c.value[kept]
+        if c.value.ndim == 0 or not _varies(c):
+            continue
+        bulge[:, e] = c.bulge if c.bulge.ndim == 0 else c.bulge[kept]
+        if apart.size:
+            whole = integral(c, time)
+            mean = (whole[right] - whole[left]) / (time[right] - time[left])
+            off = 1.5 * (mean - 0.5 * (c.value[left] + c.value[right]))
+            off[np.abs(off) <= ROUNDING * np.abs(c.value).max()] = 0.0
+            bulge[apart, e] = off
+    return value, bulge
+
+
+def _samples(time: Array, knot_time: Array, kept: Ints, at: Ints) -> tuple[Ints, Array]:
+    """first (nk + 1,) and share (nt,) of Forcing.  at (nt,) : which of all knots each sample is"""
+    j = np.searchsorted(kept, at)
+    before, share = np.maximum(j - 1, 0), np.ones(time.size)
+    inner = kept[j] != at
+    share[inner] = ((time - knot_time[before]) / np.where(inner, knot_time[j] - knot_time[before], 1.0))[inner]
+    return np.append(0, np.searchsorted(at, kept, "right")), share
 
 
 def _knots(time: Array, curves: Sequence[Curve]) -> tuple[Array, NDArray[np.int64]]:

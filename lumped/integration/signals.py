@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
+from math import isfinite
 from typing import Any, NamedTuple
 from weakref import ref
 
@@ -10,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
-from lumped.integration.curve import NONE, Between, Curve, between, curve, parabolas, straight
+from lumped.integration.curve import NONE, Between, Curve, Moves, between, curve, moving, parabolas, straight
 from lumped.integration.projection import crowded, projected
-from lumped.transfer.laws import Law
+from lumped.transfer.laws import Fixed, Law
 
 Array = NDArray[np.float64]
 LONG = 200_000  # samples: factors of longer records are not kept, whose runs take far longer than their factors
@@ -50,6 +51,7 @@ class Signals(dict[str, Array]):
         self.nt = nt
         self._around: tuple[Signals, Array] | None = None
         self.source: Source | None = None
+        self._are_cut = False  # what lies between two of them need not be cut again
         self._known: dict[int, tuple[ref[Law], Curve]] = {}
         self._finer: dict[bytes, Signals] = {}
 
@@ -80,7 +82,7 @@ class Signals(dict[str, Array]):
     def _at(self, at: Array) -> Signals:
         source = self.source
         out = Signals(dict(source.between(at) if source else Between(self, at)), at.size)
-        out._around, out.source = (self, at), source and source._replace(at=between(source.at, at))
+        out._are_cut, out._around, out.source = True, (self, at), source and source._replace(at=between(source.at, at))
         return out
 
     def __reduce__(self) -> Any:
@@ -94,6 +96,8 @@ class Signals(dict[str, Array]):
 
     def curve(self, name: str, law: Law) -> Curve:
         """The same, and how it runs between the samples."""
+        if type(law) is Fixed and isfinite(law.value):
+            return straight(np.asarray(law.value))
         found = self._known.get(id(law))
         if found is not None and found[0]() is law:
             return found[1]
@@ -122,8 +126,9 @@ class Signals(dict[str, Array]):
             )
         source = self.source
         if not law.looks_at_all:
-            full = crowded(source.at, source.time) if source else None
-            near = curve(lambda at: self._factor(name, law, at), self.nt, self._turns(law.reads), full)
+            full = np.ones(self.nt, bool) if self._are_cut else crowded(source.at, source.time) if source else None
+            moves = self._moves(law)
+            near = curve(lambda at: self._factor(name, law, at), self.nt, moves, self._turns(law.reads), full)
             return projected(near, source.at, source.signals.curve(name, law), source.time) if source else near
         if self._around:
             whole, at = self._around
@@ -135,6 +140,12 @@ class Signals(dict[str, Array]):
         value = self._factor(name, law, None)
         constant = value.ndim == 1 and bool(np.all(value == value[0]))
         return straight(np.asarray(value[0]) if constant else value)
+
+    def _moves(self, law: Law) -> Moves:
+        if self.source:
+            every = np.ones(self.nt - 1, bool)
+            return Moves(every, every, np.arange(self.nt, dtype=float))
+        return moving([self[name] for name in law.reads], self.nt)
 
     def _turns(self, names: Iterable[str]) -> Array:
         """Positions at which one of the inputs passes through zero between two samples."""

@@ -17,7 +17,7 @@ from lumped.integration.compiled import Compiled, compiled, hidden_states
 from lumped.integration.failure import failure
 from lumped.integration.record import Record
 from lumped.model.network import Network, Parameter, Row
-from lumped.numerics.kernel import DONE, FACTORED, FULL, KNOT, LOW, NEXT, STATUS, Control, Position, Trace, integrate
+from lumped.numerics.kernel import DONE, FACTORED, FULL, LOW, NEXT, SAMPLE, STATUS, Control, Position, Trace, integrate
 from lumped.numerics.stages import EULER, GAMMA, Steps, stages, work
 from lumped.numerics.steady_start import settle
 from lumped.numerics.tangents import differentiate
@@ -94,6 +94,7 @@ def simulate(
     keep_states: bool = False,
     begin: Stand | None = None,
     steps: Steps | None = None,
+    every_sample: bool = False,
     shifts: Sequence[str | None] = (),
 ) -> Run:
     """Integrate the network over the record.
@@ -105,10 +106,12 @@ def simulate(
     shifts : further tangents, by an offset (K) of these boundaries, or of the start (None)
     begin : where another run of the same network, values and tangents ended, at this record's first time
     steps : those of another run over the same record, to be taken here too whatever their errors are
+    every_sample : end a step at every sample, whether the inputs ask for that or not: for runs in turn, whose inputs
+        change a little from one to the next
 
     Raises ThermoscopeError where a node runs away or no step keeps what physics allows.
     """
-    core = compiled(network, record, values, rows, tangents, shifts=shifts)
+    core = compiled(network, record, values, rows, tangents, shifts=shifts, every_sample=every_sample)
     return march(network, record, core, keep_states, begin, steps)
 
 
@@ -141,7 +144,7 @@ class _Course:
         self.both, self.scratch = stages(x0, u0, core.terms), work(n, nb, core.terms, 0)
         self.moved = (stages(x0, u0, core.terms), work(n, nb, core.terms, p)) if p else (self.both, self.scratch)
         self.trace = _trace(min(core.forcing.time.size * 2 if steps is None else steps.knot.size, PORTION), n, nb)
-        self.position = Position(np.zeros(5, np.int64), np.array([0.0, -1.0, 1e300, 1e300]))
+        self.position = Position(np.zeros(6, np.int64), np.array([0.0, -1.0, 1e300, 1e300]))
         self.position.clock[LOW] = np.append(x0[core.control.node == 1], u0).min()
         self.steps: list[Steps] = []
         self.path: list[Array] | None = None
@@ -153,8 +156,12 @@ class _Course:
     def over(self, part: slice, rests: bool) -> None:
         """The knots of a part of the record, from a balance of the states without capacity if so asked."""
         Q = self.core.forcing
-        forcing = Forcing(Q.time[part], Q.u[part], Q.factor[part], Q.bulge[part], Q.renew[part], Q.sample[part])
+        first = Q.first[part.start : part.stop + 1]
+        forcing = Forcing(
+            Q.time[part], Q.u[part], Q.factor[part], Q.bulge[part], Q.arch[part], Q.renew[part], first, Q.share
+        )
         self.position.at[:] = 0
+        self.position.at[SAMPLE] = forcing.first[0]
         self.both.z[0, self.core.C.size : -1] = forcing.u[0]
         self.position.clock[FACTORED] = -1.0
         if rests and np.any(self.core.C == 0.0):
@@ -170,7 +177,7 @@ class _Course:
 
     def _portion(self, forcing: Forcing, first: int) -> bool:
         """As many steps as the trace holds; whether there are more."""
-        core, at, knot = self.core, self.position.at, int(self.position.at[KNOT])
+        core, at, sample = self.core, self.position.at, int(self.position.at[SAMPLE])
         control = core.control if self.given is None else self._follow(first)
         shared = (core.rows, control, self.trace, self.position, self.both, self.scratch)
         integrate(forcing, core.C, core.K0, core.terms, *shared, self.z, self.y, self.late)
@@ -182,7 +189,7 @@ class _Course:
         if self.path is not None:
             self.path.append(ends(X, done))
         if self.dy.shape[2]:
-            given = (core.rows, core.curved, X, done, knot, int(at[KNOT]), *self.moved, self.dy)
+            given = (core.rows, core.curved, X, done, sample, int(at[SAMPLE]), *self.moved, self.dy)
             differentiate(forcing, core.C, core.K0, core.terms, core.tangents, *given)
         return bool(at[STATUS] == FULL)
 

@@ -7,6 +7,7 @@ from math import prod
 
 from geom.errors import InputError
 from lumped.model.network import Network, Parameter
+from lumped.model.once import once
 
 CHANNEL_OPERATORS = ("bias:", "gain:", "lag:")
 
@@ -46,21 +47,25 @@ def _targets(network: Network, parameter: Parameter, known: set[str]) -> list[tu
     return thermal
 
 
-def _acting(network: Network, now: Mapping[str, float]) -> dict[str, list[tuple[str, float, float]]]:
-    """Target -> what acts on it: (parameter, its factor, exponent)."""
+@once
+def _acting(network: Network) -> dict[str, list[tuple[str, float]]]:
+    """Target -> what acts on it: (parameter, exponent)."""
     known = _known_targets(network)
-    out: dict[str, list[tuple[str, float, float]]] = {}
+    out: dict[str, list[tuple[str, float]]] = {}
     for p in network.parameters:
-        f = factor(p, now[p.name])[0]
         for target, exponent in _targets(network, p, known):
-            out.setdefault(target, []).append((p.name, f, exponent))
+            out.setdefault(target, []).append((p.name, exponent))
     return out
+
+
+def _factors(network: Network, now: Mapping[str, float]) -> dict[str, float]:
+    return {p.name: factor(p, now[p.name])[0] for p in network.parameters}
 
 
 def multipliers(network: Network, values: Mapping[str, float] | None = None) -> dict[str, float]:
     """Target name -> multiplier, for every target that some parameter acts on."""
-    acting = _acting(network, values_of(network, values))
-    return {target: prod(f**exponent for _, f, exponent in on) for target, on in acting.items()}
+    f = _factors(network, values_of(network, values))
+    return {target: prod(f[name] ** exponent for name, exponent in on) for target, on in _acting(network).items()}
 
 
 def slopes(
@@ -70,20 +75,20 @@ def slopes(
     if not parameters:
         return []
     now = values_of(network, values)
-    acting, declared = _acting(network, now), {p.name: p for p in network.parameters}
+    acting, f, declared = _acting(network), _factors(network, now), {p.name: p for p in network.parameters}
     out = []
     for parameter in parameters:
         if parameter.name not in declared:
             where = network.title
             raise InputError(f"unknown parameter '{parameter.name}'", where, "tangents are of its own parameters")
         own = declared[parameter.name]
-        f, df = factor(own, now[own.name])
+        df = factor(own, now[own.name])[1]
         moved = dict.fromkeys(target for target, _ in own.targets if target in acting)
-        out.append({target: _slope(acting[target], own.name, f) * df for target in moved})
+        out.append({target: _slope(acting[target], f, own.name) * df for target in moved})
     return out
 
 
-def _slope(acting: Sequence[tuple[str, float, float]], own: str, f: float) -> float:
+def _slope(acting: Sequence[tuple[str, float]], f: Mapping[str, float], own: str) -> float:
     """Derivative of a product of powers by one of its factors."""
-    exponent = sum(e for name, _, e in acting if name == own)
-    return prod(g**e for name, g, e in acting if name != own) * exponent * f ** (exponent - 1.0)
+    exponent = sum(e for name, e in acting if name == own)
+    return prod(f[name] ** e for name, e in acting if name != own) * exponent * f[own] ** (exponent - 1.0)

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 from numba import types
+from numpy.typing import NDArray
 
 from lumped.numerics.jit import inner, inner_reordered
 
@@ -20,18 +21,32 @@ GAP = 8  # columns: a loop over as many zeros costs less than to begin another
 FACTORS = np.array([0.0, 1.0])  # of what a product is put on: it replaces that, or is added
 
 
+REACHED, FIRST, BEGIN, FROM, TO = range(5)
+
+
+def entries(n: int) -> NDArray[np.int64]:
+    """Where an LU has entries.
+
+    REACHED : scratch;  FIRST : of every row of L;  BEGIN : of every row of U its stretches, columns FROM and up to TO
+    """
+    return np.zeros((5, n * (n // (GAP + 1) + 1) + 1), np.int64)
+
+
 @inner
 def lu(A, pivot, spans):
     """LU in place, rows swapped only where the diagonal is below a tenth of its column; False if singular.
 
-    spans (3, n) : scratch for the rows that a pivot reaches and for the columns, first and last, that its row spans
+    spans : of `entries`, filled here
     """
     n = len(A)
+    for i in range(n):
+        spans[FIRST, i] = i
+    spans[BEGIN, 0] = 0
     for k in range(n):
         best, reached = k, 0
         for i in range(k + 1, n):
             if A[i, k] != 0.0:
-                spans[0, reached] = i
+                spans[REACHED, reached] = i
                 reached += 1
                 if abs(A[i, k]) > abs(A[best, k]):
                     best = i
@@ -42,30 +57,33 @@ def lu(A, pivot, spans):
         if best != k:
             for j in range(n):
                 A[k, j], A[best, j] = A[best, j], A[k, j]
-        found = _spanned(A[k], k + 1, spans)
+            first = spans[FIRST, best]
+            spans[FIRST, k], spans[FIRST, best] = min(first, k), min(spans[FIRST, k], k)
+        _spanned(A[k], k, spans)
         inverse = 1.0 / A[k, k]
         for r in range(reached):
-            i = spans[0, r]
+            i = spans[REACHED, r]
             factor = A[i, k] * inverse
             A[i, k] = factor
-            for s in range(found):
-                for j in range(spans[1, s], spans[2, s]):
+            spans[FIRST, i] = min(spans[FIRST, i], k)
+            for s in range(spans[BEGIN, k], spans[BEGIN, k + 1]):
+                for j in range(spans[FROM, s], spans[TO, s]):
                     A[i, j] -= factor * A[k, j]
     return True
 
 
 @inner
-def _spanned(a, first, spans):
-    """How many stretches of a row, from a column on, hold its entries; zeros between two are taken along up to GAP."""
-    found, last = 0, -GAP
-    for j in range(first, a.size):
+def _spanned(a, k, spans):
+    """The stretches behind the diagonal that hold the entries of row k; zeros between two are taken along up to GAP."""
+    found, last = spans[BEGIN, k], -GAP
+    for j in range(k + 1, a.size):
         if a[j] != 0.0:
-            if j - last > GAP or found == 0:
+            if j - last > GAP or found == spans[BEGIN, k]:
+                spans[FROM, found] = j
                 found += 1
-                spans[1, found - 1] = j
             last = j
-            spans[2, found - 1] = j + 1
-    return found
+            spans[TO, found - 1] = j + 1
+    spans[BEGIN, k + 1] = found
 
 
 @inner
@@ -79,20 +97,21 @@ def shifted(A, c, d, out):
 
 
 @inner_reordered
-def solve(A, pivot, b):
+def solve(A, pivot, spans, b):
     """One right-hand side, in place."""
     n = len(A)
     for i in range(n):
         b[i], b[pivot[i]] = b[pivot[i]], b[i]
     for i in range(1, n):
         acc = 0.0
-        for j in range(i):
+        for j in range(spans[FIRST, i], i):
             acc += A[i, j] * b[j]
         b[i] -= acc
     for i in range(n - 1, -1, -1):
         acc = 0.0
-        for j in range(i + 1, n):
-            acc += A[i, j] * b[j]
+        for s in range(spans[BEGIN, i], spans[BEGIN, i + 1]):
+            for j in range(spans[FROM, s], spans[TO, s]):
+                acc += A[i, j] * b[j]
         b[i] = (b[i] - acc) / A[i, i]
 
 
@@ -137,7 +156,7 @@ def _fours(a, first, last, X, c, out):
 
 
 @inner
-def solve_many(A, pivot, B):
+def solve_many(A, pivot, spans, B):
     """Right-hand sides in the columns of B (n, p), in place."""
     n, p = len(B), B[0].size
     for i in range(n):
@@ -145,22 +164,23 @@ def solve_many(A, pivot, B):
             for j in range(p):
                 B[i, j], B[pivot[i], j] = B[pivot[i], j], B[i, j]
     for i in range(1, n):
-        _fours(A[i], 0, i, B, 1.0, B[i])
+        _fours(A[i], spans[FIRST, i], i, B, 1.0, B[i])
     for i in range(n - 1, -1, -1):
-        _fours(A[i], i + 1, n, B, 1.0, B[i])
+        for s in range(spans[BEGIN, i], spans[BEGIN, i + 1]):
+            _fours(A[i], spans[FROM, s], spans[TO, s], B, 1.0, B[i])
         inverse = 1.0 / A[i, i]
         for j in range(p):
             B[i, j] *= inverse
 
 
 @inner
-def inverse(A, pivot, out):
+def inverse(A, pivot, spans, out):
     """out = A^-1 from its LU."""
     n = len(A)
     for i in range(n):
         for j in range(n):
             out[i, j] = 1.0 if i == j else 0.0
-    solve_many(A, pivot, out)
+    solve_many(A, pivot, spans, out)
 
 
 @inner

@@ -1,7 +1,8 @@
 """The compiled kernel: adaptive steps of one scheme (stages.py) for any network, and what a step has to pass.
 
-Within every interval of the record it takes the steps that its error estimate asks for. The estimate is what the end of
-the step, put into the equations, leaves over (Hairer and Wanner 1996, sec. IV.8, filtered by the step's own matrix):
+Within every interval between two knots it takes the steps that its error estimate asks for; samples inside a step are
+read from the parabola that its stages give every state. The estimate is what the end of the step, put into the
+equations, leaves over (Hairer and Wanner 1996, sec. IV.8, filtered by the step's own matrix):
 
     error = W^-1 gamma h (F(t1, x1) - C x'(t1)),   x'(t1) from the stages
 
@@ -28,8 +29,10 @@ from lumped.numerics.stages import (
     GAMMA,
     ROSENBROCK,
     SLOPE2,
+    boundary,
     finite,
     forced,
+    inside,
 )  # fmt: skip
 from lumped.numerics.terms import (
     DYNAMIC,
@@ -44,7 +47,7 @@ from lumped.numerics.terms import (
     patterns,
 )
 
-KNOT, DONE, STATUS, NODE, FRESH = range(5)
+KNOT, DONE, STATUS, NODE, FRESH, SAMPLE = range(6)
 SHARE, FACTORED, NEXT, LOW = range(4)
 FULL, SINGULAR, OUTSIDE, HOT = range(1, 5)
 MOST_TRIES = 12  # from 0.9 of an interval to a millionth of it, and less where the estimate asks for it
@@ -89,8 +92,9 @@ class Trace(NamedTuple):
 
 
 class Position(NamedTuple):
-    """Where a run is.  at (5,) : the next knot, steps in the trace, status, node it names, whether F is known
+    """Where a run is.
 
+    at (6,) : the next knot, steps in the trace, status, node it names, whether F is known, the next sample
     clock (4,) : share of the interval that is done, length of the factored step and of the next (s), coldest (degC)
     """
 
@@ -125,22 +129,22 @@ def _rosenbrock(T, K0, C, h, a, q):
     _along_time(T, K0, a, q, Ft)
     for i in range(n):
         w0[i] = gh * (q.F[0, i] + gh * Ft[i])
-    solve(q.W, q.pivot, w0[:n])
+    solve(q.W, q.pivot, q.spans, w0[:n])
     for i in range(n):
         a.z[1, i] = a.z[0, i] + w0[i] / GAMMA
     flow(T, K0, a.z[1], q.f[1], a.tau[1], a.v[1], q.F[1])
     for i in range(n):
         w1[i] = gh * (q.F[1, i] + SLOPE2 * h * Ft[i]) + GAMMA * C21 * C[i] * w0[i]
-    solve(q.W, q.pivot, w1[:n])
+    solve(q.W, q.pivot, q.spans, w1[:n])
     for i in range(n):
         w2[i] = gh * q.F[1, i] + GAMMA * C[i] * (C31 * w0[i] + C32 * w1[i])
-    solve(q.W, q.pivot, w2[:n])
+    solve(q.W, q.pivot, q.spans, w2[:n])
     for i in range(n):
         a.z[2, i] = a.z[1, i] + w2[i]
     flow(T, K0, a.z[2], q.f[1], a.tau[2], a.v[2], q.F[2])
     for i in range(n):
         q.error[0, i] = gh * q.F[2, i] - GAMMA * C[i] * (END1 * w0[i] + END2 * w1[i] + END3 * w2[i])
-    solve(q.W, q.pivot, q.error[0])
+    solve(q.W, q.pivot, q.spans, q.error[0])
 
 
 @inner
@@ -156,7 +160,7 @@ def _euler(T, K0, C, h, a, q):
         return False
     for i in range(n):
         a.w[0, i], a.w[1, i], a.w[2, i] = h * q.F[1, i], 0.0, 0.0
-    solve(q.W, q.pivot, a.w[0][:n])
+    solve(q.W, q.pivot, q.spans, a.w[0][:n])
     for i in range(n):
         a.z[2, i] = a.z[0, i] + a.w[0, i]
         q.error[0, i] = 0.5 * a.w[0, i]
@@ -203,8 +207,9 @@ def _outside(T, K0, C, h, P, a, q):
     for i in range(z0.size - 1):
         top = max(top, z0[i])
         if i >= n:
-            top = max(top, z1[i])
-            P.clock[LOW] = min(P.clock[LOW], z1[i])
+            arch = 0.25 * abs(z0[i] + h * q.du[i - n] - z1[i])
+            top = max(top, max(z0[i], z1[i]) + arch)
+            P.clock[LOW] = min(P.clock[LOW], min(z0[i], z1[i]) - arch)
     for i in range(n):
         if q.heat[0, i] < 0.0:
             P.clock[LOW] = -1e300
@@ -264,7 +269,7 @@ def _kept(X, k, P, L, kind, h, s1, a, q, C):
     for i in range(n):
         q.error[1, i] = C[i] * (q.error[1, i] - q.error[0, i])
     if kind == ROSENBROCK:
-        solve(q.W, q.pivot, q.error[1])
+        solve(q.W, q.pivot, q.spans, q.error[1])
     for i in range(n):
         q.error[1, i] += q.error[0, i]
         if L.node[i] and not abs(a.z[2, i]) < L.hottest[0]:
@@ -317,6 +322,7 @@ def _step(Q, C, K0, T, L, X, k, P, a, q):
 
 @pasted
 def _outputs(R, z, y, error, n, late):
+    """The outputs at z, and the largest error of each so far."""
     for r in range(y.size):
         acc, off = 0.0, 0.0
         for i in range(R.start[r], R.start[r + 1]):
@@ -325,6 +331,31 @@ def _outputs(R, z, y, error, n, late):
                 off += R.weight[i] * error[R.at[i]]
         y[r] = acc
         late[r] = max(late[r], SAFETY * abs(off))
+
+
+@inner
+def _within(Q, R, X, k, P, a, q, z, y, late):
+    """The samples inside a step that is written down, by its own parabola of every state."""
+    n, j, t, s0, s1, U = q.F[0].size, X.knot[k], P.at[SAMPLE], X.start[k], X.share[k], X.U[k]
+    while t < Q.first[j + 1] and Q.share[t] < 1.0 and Q.share[t] <= s1:
+        s = (Q.share[t] - s0) / (s1 - s0)
+        c0, c1, c2 = inside(X.kind[k], s, 0), inside(X.kind[k], s, 1), inside(X.kind[k], s, 2)
+        for i in range(n):
+            a.z[1, i] = a.z[0, i] + c0 * U[0, i] + c1 * U[1, i] + c2 * U[2, i]
+        for b in range(q.du.size):
+            a.z[1, n + b] = boundary(Q, j, Q.share[t], b)
+        _sampled(R, t, a.z[1], q.error, z, y, late)
+        t += 1
+    P.at[SAMPLE] = t
+
+
+@inner
+def _sampled(R, t, now, error, z, y, late):
+    if len(z) > 0:
+        for i in range(z[t].size):
+            z[t, i] = now[i]
+    if y[t].size > 0:
+        _outputs(R, now, y[t], error[1], error[1].size, late)
 
 
 @entry
@@ -346,6 +377,8 @@ def integrate(Q, C, K0, T, R, L, X, P, a, q, z, y, late):
             if not _step(Q, C, K0, T, L, X, P.at[DONE], P, a, q):
                 return
             P.at[DONE] += 1
+            if P.at[SAMPLE] < Q.first[j + 1]:
+                _within(Q, R, X, P.at[DONE] - 1, P, a, q, z, y, late)
             if P.clock[SHARE] < 1.0:
                 continue
         else:
@@ -355,9 +388,6 @@ def integrate(Q, C, K0, T, R, L, X, P, a, q, z, y, late):
             P.clock[LOW] = min(P.clock[LOW], Q.u[j, b])
         P.clock[SHARE] = 0.0
         P.at[KNOT] += 1
-        t = Q.sample[j]
-        if t >= 0:
-            if len(z) > 0:
-                for i in range(n + nb):
-                    z[t, i] = a.z[0, i]
-            _outputs(R, a.z[0], y[t], q.error[1], n, late)
+        while P.at[SAMPLE] < Q.first[j + 1]:
+            _sampled(R, P.at[SAMPLE], a.z[0], q.error, z, y, late)
+            P.at[SAMPLE] += 1

@@ -18,14 +18,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lumped.numerics.dense import FACTORS
+from lumped.numerics.dense import FACTORS, entries
 from lumped.numerics.jit import inner, pasted
 from lumped.numerics.terms import Floats, Ints, Terms, directional, flow, patterns
 
 GAMMA = 0.43586652150845899941601945119356
 _B2 = 1.0 / 3.0 - GAMMA
 _BETA2 = (0.5 - 2.0 * GAMMA + GAMMA**2) / _B2
-_INVERSE = np.linalg.inv([[GAMMA, 0.0, 0.0], [_BETA2 - 1.0, GAMMA, 0.0], [-1.0 / 3.0, _B2, GAMMA]])
+_WEIGHTS = np.array([[GAMMA, 0.0, 0.0], [_BETA2 - 1.0, GAMMA, 0.0], [-1.0 / 3.0, _B2, GAMMA]])
+_INVERSE = np.linalg.inv(_WEIGHTS)
 C21, C31, C32 = (float(x) for x in (-_INVERSE[1, 0], -_INVERSE[2, 0], -_INVERSE[2, 1]))
 SLOPE2 = GAMMA + _BETA2 - 1.0  # gamma_i: GAMMA, SLOPE2, 0
 # x'(t1) h from the rates of the stages: second order, and nothing of a component that is at rest at the end
@@ -33,6 +34,10 @@ _BETA = np.array([[GAMMA, 0.0, 0.0], [_BETA2, GAMMA, 0.0], [2.0 / 3.0, _B2, GAMM
 _CONDITIONS = np.stack([np.ones(3), _BETA.sum(axis=1), np.linalg.solve(_BETA, np.ones(3))])
 _RATES = np.linalg.solve(_CONDITIONS, np.array([1.0, 1.0, 0.0])) @ _INVERSE
 END1, END2, END3 = (float(x) for x in _RATES)
+# at a share s of a step: x0 + sum_i (INSIDE[i, 0] s + INSIDE[i, 1] s^2) U_i, of second order; a state that follows at
+# once is on the parabola of its balance (U_2 + U_3 is what that bends over the step)
+_THROUGH = np.linalg.inv(np.stack([_WEIGHTS @ np.ones(3), _WEIGHTS @ _BETA.sum(axis=1), [0.0, 1.0, 1.0]]))
+INSIDE = np.stack([_THROUGH[:, 0], 0.5 * _THROUGH[:, 1] + _THROUGH[:, 2]], axis=1)
 ROSENBROCK, EULER = 0, 1
 
 
@@ -101,9 +106,9 @@ def work(n: int, nb: int, T: Terms, p: int) -> Work:
     """Scratch for n states, nb boundaries, some terms and p tangents."""
     ne = T.m.size
     (W, X), (G, H, M) = np.zeros((2, n, n)), np.zeros((3, n, n + nb))
-    ints, twice = np.zeros((4, n), np.int64), np.zeros((2, 2, n))
-    return Work(np.zeros((2, ne)), np.zeros(ne), np.zeros(nb), np.zeros((3, n)), W, G, H, ints[0], ints[1:],
-                twice[0], twice[1], np.zeros((n + nb, p)), np.zeros((4, n, p)), X, M, FACTORS,
+    twice = np.zeros((2, 2, n))
+    return Work(np.zeros((2, ne)), np.zeros(ne), np.zeros(nb), np.zeros((3, n)), W, G, H, np.zeros(n, np.int64),
+                entries(n), twice[0], twice[1], np.zeros((n + nb, p)), np.zeros((4, n, p)), X, M, FACTORS,
                 np.zeros((T.row.size + 2 * ne, p)))  # fmt: skip
 
 
@@ -111,6 +116,22 @@ def work(n: int, nb: int, T: Terms, p: int) -> Work:
 def _parabola(f0, f1, bulge, s):
     f = f0 + s * (f1 - f0) + 4.0 * s * (1.0 - s) * bulge
     return max(f, 0.0) if f0 >= 0.0 and f1 >= 0.0 else f
+
+
+@inner
+def boundary(P, j, s, b):
+    """A boundary (degC) at a share of the interval before knot j."""
+    if s == 1.0:
+        return P.u[j, b]
+    return P.u[j - 1, b] + s * (P.u[j, b] - P.u[j - 1, b]) + 4.0 * s * (1.0 - s) * P.arch[j, b]
+
+
+@inner
+def inside(kind, s, stage):
+    """What of a stage's increment a step has made at its share s, less what it makes in all."""
+    if kind == EULER:
+        return s - 1.0 if stage == 0 else 0.0
+    return (s - 1.0) * (INSIDE[stage, 0] + (s + 1.0) * INSIDE[stage, 1])
 
 
 @inner
@@ -123,9 +144,8 @@ def forced(P, j, s0, s1, a, q):
         q.f[0, e], q.f[1, e] = _parabola(f0, f1, bulge, s0), _parabola(f0, f1, bulge, s1)
         q.df[e] = (f1 - f0 + 4.0 * (1.0 - 2.0 * s0) * bulge) / span
     for b in range(q.du.size):
-        q.du[b] = (P.u[j, b] - P.u[j - 1, b]) / span
-        a.z[1, n + b] = P.u[j, b] if s1 == 1.0 else P.u[j - 1, b] + s1 * (P.u[j, b] - P.u[j - 1, b])
-        a.z[2, n + b] = a.z[1, n + b]
+        q.du[b] = (P.u[j, b] - P.u[j - 1, b] + 4.0 * (1.0 - 2.0 * s0) * P.arch[j, b]) / span
+        a.z[1, n + b] = a.z[2, n + b] = boundary(P, j, s1, b)
 
 
 @pasted

@@ -28,7 +28,7 @@ def _newton(T, K0, C, f, a, q):
                 q.W[i, i] = 1.0
         if not lu(q.W, q.pivot, q.spans):
             return False
-        solve(q.W, q.pivot, q.F[0])
+        solve(q.W, q.pivot, q.spans, q.F[0])
         largest = 0.0
         for i in range(n):
             a.z[0, i] += q.F[0, i]
@@ -58,7 +58,7 @@ def _tangents(T, S, C, f, a, q):
     for i in range(C.size):
         if C[i] > 0.0:
             copy(q.D[i], q.R[0, i])
-    solve_many(q.W, q.pivot, q.R[0])
+    solve_many(q.W, q.pivot, q.spans, q.R[0])
     for i in range(C.size):
         copy(q.R[0, i], q.D[i])
 

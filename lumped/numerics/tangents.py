@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from lumped.numerics.dense import axpy, copy, inverse, lu, product, shifted, solve_many
 from lumped.numerics.jit import entry, inner, pasted
-from lumped.numerics.stages import C21, C31, C32, EULER, GAMMA, forced, restored, slope_of, taken
+from lumped.numerics.stages import C21, C31, C32, EULER, GAMMA, forced, inside, restored, slope_of, taken
 from lumped.numerics.steady_start import outside
 from lumped.numerics.terms import (
     BENDS,
@@ -75,7 +75,7 @@ def _heavier(S, c, U, out):
 def _solved(q, out):
     """out = W^-1 out."""
     if 3 * out[0].size < len(out):  # an inverse would cost more than it saves
-        solve_many(q.W, q.pivot, out)
+        solve_many(q.W, q.pivot, q.spans, out)
         return
     product(q.X, out, q.factors, 0, q.R[3])
     for i in range(len(out)):
@@ -119,7 +119,8 @@ def _rosenbrock(T, S, C, h, curved, a, q):
     _earlier(C, S, GAMMA * C32, a.w[1], q.R[1], q.R[2])
     _solved(q, q.R[2])
     for i in range(n):
-        copy(q.R[2, i], q.D[i])
+        axpy(-1.0, q.D[i], q.R[2, i])
+        axpy(1.0, q.R[2, i], q.D[i])
 
 
 @inner
@@ -151,7 +152,7 @@ def _euler(T, S, K0, C, h, x0, U, a, q):
         for s in range(T.start[e, ROWS], T.start[e + 1, ROWS]):
             q.R[0, T.row[s], j] -= c * (a.v[1, s] + a.vw[0, s])
     _heavier(S, -1.0, a.w[0], q.R[0])
-    solve_many(q.W, q.pivot, q.R[0])
+    solve_many(q.W, q.pivot, q.spans, q.R[0])
     for i in range(n):
         axpy(1.0, q.R[0, i], q.D[i])
 
@@ -166,18 +167,33 @@ def _outputs(R, D, dy):
 
 
 @inner
-def _printed(Q, R, knot, until, D, dy):
-    """The tangents of the outputs at knots up to, not including, `until`; that knot."""
-    while knot < until:
-        if Q.sample[knot] >= 0:
-            _outputs(R, D, dy[Q.sample[knot]])
-        knot += 1
-    return knot
+def _printed(R, t, until, D, dy):
+    """The tangents of the outputs at samples up to, not including, `until`; that sample."""
+    while t < until:
+        _outputs(R, D, dy[t])
+        t += 1
+    return t
+
+
+@inner
+def _within(Q, R, X, k, t, q, dy):
+    """The tangents of the outputs at samples inside a step, whose end is q.D and whose stages are q.R; the next."""
+    n, j, s0, s1 = len(q.W), X.knot[k], X.start[k], X.share[k]
+    while t < Q.first[j + 1] and Q.share[t] < 1.0 and Q.share[t] <= s1:
+        _outputs(R, q.D, dy[t])
+        for stage in range(3):
+            c = inside(X.kind[k], (Q.share[t] - s0) / (s1 - s0), stage)
+            for r in range(len(dy[t])):
+                for i in range(R.start[r], R.start[r + 1]):
+                    if R.at[i] < n:
+                        axpy(c * R.weight[i], q.R[stage, R.at[i]], dy[t, r])
+        t += 1
+    return t
 
 
 @entry
-def differentiate(Q, C, K0, T, S, R, curved, X, steps, knot, until, a, q, dy):
-    """dy (nt, nr, p): how the outputs of a run answer to what S moves; filled here from `knot` to before `until`.
+def differentiate(Q, C, K0, T, S, R, curved, X, steps, t, until, a, q, dy):
+    """dy (nt, nr, p): how the outputs of a run answer to what S moves; filled here from sample t to before `until`.
 
     curved : whether any dynamic term touches the matrix
     X, steps : the trace of the run and how many steps it holds;  all else as for the kernel
@@ -186,7 +202,7 @@ def differentiate(Q, C, K0, T, S, R, curved, X, steps, knot, until, a, q, dy):
     last = -1.0
     for k in range(steps):
         j, h = X.knot[k], X.h[k]
-        knot = _printed(Q, R, knot, j, q.D, dy)
+        t = _printed(R, t, Q.first[j], q.D, dy)
         for i in range(a.z[0].size - 1):
             a.z[0, i] = X.x[k, i]
         forced(Q, j, X.start[k], X.share[k], a, q)
@@ -200,9 +216,10 @@ def differentiate(Q, C, K0, T, S, R, curved, X, steps, knot, until, a, q, dy):
                 shifted(q.G, GAMMA * h, C, q.W)
                 lu(q.W, q.pivot, q.spans)
                 if 3 * q.D[0].size >= C.size:
-                    inverse(q.W, q.pivot, q.X)
+                    inverse(q.W, q.pivot, q.spans, q.X)
             last = h
             _rosenbrock(T, S, C, h, curved, a, q)
+        t = _within(Q, R, X, k, t, q, dy)
         if X.share[k] == 1.0:
-            knot = _printed(Q, R, knot, j + 1, q.D, dy)
-    _printed(Q, R, knot, until, q.D, dy)
+            t = _printed(R, t, Q.first[j + 1], q.D, dy)
+    _printed(R, t, until, q.D, dy)

@@ -50,20 +50,24 @@ class Terms(NamedTuple):
 
 
 class Forcing(NamedTuple):
-    """What drives a network from knot to knot: between two of them input factors are parabolas, boundaries are linear.
+    """What drives a network from knot to knot: between two of them input factors and boundaries are parabolas.
 
     time (nk,) s; u (nk, nb) boundaries; factor (nk, ne) without multipliers
-    bulge (nk, ne) : how far the factor is above the mean of both ends in the middle of the interval that ends there
+    bulge (nk, ne), arch (nk, nb) : how far the factor, the boundary is above the mean of both ends in the middle of the
+        interval that ends there
     renew (nk,) : the matrix over that interval is as before (0), other than before (1), varies within it (2)
-    sample (nk,) : which time of the record it is, -1 for none
+    first (nk + 1,) : samples first[j] to first[j + 1] lie after knot j - 1 and up to knot j
+    share (nt,) : at which share of that interval, 1 at the knot
     """
 
     time: Floats
     u: Floats
     factor: Floats
     bulge: Floats
+    arch: Floats
     renew: Ints
-    sample: Ints
+    first: Ints
+    share: Floats
 
 
 @pasted

@@ -26,6 +26,7 @@ from thermoscope.verification.error_budget import model_of
 from validation.comparison.predict import record
 from validation.observer.process import Process
 
+HOUR = 3600.0
 INSTANTS = 5  # of a record, at which a JSON model is looked at
 CASES = Path(__file__).parents[2] / "cases"
 SHIPPED = sorted(str(p.parent.relative_to(CASES)) for p in CASES.rglob("case.toml"))
@@ -90,7 +91,7 @@ def test_shipped_cases_agree(name):
 
 
 def heat_apart(said, model, network, given, values):
-    """By how much (K) the heat flows of a JSON model would shift a rest, largest over some instants of a run."""
+    """By how much (K) the heat flows of a JSON model shift a state in an hour, largest over some instants of a run."""
     found = importlib.util.spec_from_file_location("reference_solver", RUNTIME / "reference_solver.py")
     solver = importlib.util.module_from_spec(found)
     found.loader.exec_module(solver)
@@ -101,7 +102,7 @@ def heat_apart(said, model, network, given, values):
         x, names = z[k, : len(network.states)], [s.name for s in model.signals]
         F, G = process._at(by.core, x, by.u[k], by.factor[k])
         off = solver.flow(said, x, dict(zip(names, u[k], strict=True))) - F
-        out = max(out, float(np.abs(np.linalg.solve(G, off)).max()))
+        out = max(out, float(np.abs(np.linalg.solve(np.diag(by.core.C) / HOUR + G, off)).max()))
     return out
 
 

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from random_networks import admissible, built, machine, reference
-from small_networks import two_masses
+from scipy.linalg import expm
+from small_networks import C1, C2, G2A, G12, two_masses
 
 from geom.errors import ThermoscopeError
 from lumped.declarations.network import read_network
@@ -110,14 +111,39 @@ def test_the_tangents_of_a_random_network_are_its_finite_differences(seed):
 
 
 def test_the_estimate_of_the_error_follows_the_error():
-    """Within a factor of ten of it, from above, on coarse samples of two masses."""
+    """Within a factor of ten of it, from above, on two masses, whose exact course is an exponential of their matrix."""
     time = np.arange(0.0, 3601.0, 600.0)
     network = two_masses()
-    rows = [network.place("winding").mean]
-    coarse = simulate(network, Record(time, {}, {"ambient": 20.0}), rows=rows)
-    exact = simulate(network, finer(Record(time, {}, {"ambient": 20.0}), 200), rows=rows).y[::200]
-    error = np.abs(coarse.y - exact).max()
-    assert error < coarse.time_error_K[0] < 10.0 * error
+    rows = [network.place("winding").mean, network.place("core").mean]
+    run = simulate(network, Record(time, {}, {"ambient": 20.0}), rows=rows)
+    A = np.array([[-G12, G12], [G12, -G12 - G2A]]) / np.array([[C1], [C2]])
+    rest = np.array([20.0 + 100.0 / G12 + 100.0 / G2A, 20.0 + 100.0 / G2A])
+    exact = np.array([rest + expm(t * A) @ (20.0 - rest) for t in time])
+    error = np.abs(run.y - exact).max(axis=0)
+    assert np.all(error < run.time_error_K)
+    assert np.all(run.time_error_K < 10.0 * error)
+
+
+def test_samples_do_not_set_the_steps_where_inputs_are_smooth():
+    """A record of every second against one of every tenth: as many steps, the same at the samples they share."""
+    network = two_masses(InputPower(100.0, (("current_A", 10.0, 2.0),)))
+
+    def run(every):
+        time = np.arange(0.0, 3601.0, every)
+        current = {"current_A": 10.0 + 4.0 * np.sin(time / 300.0)}
+        return simulate(network, Record(time, current, {"ambient": 20.0 + time / 3600.0}), keep_states=True)
+
+    fine, coarse = run(1.0), run(10.0)
+    assert fine.steps.knot.size < 120
+    assert fine.steps.knot.size < 1.5 * coarse.steps.knot.size
+    assert_allclose(fine.z[::10], coarse.z, atol=0.01)
+
+
+def test_inputs_that_move_at_every_sample_keep_every_sample():
+    time = np.arange(0.0, 301.0)
+    current = {"current_A": 10.0 + np.random.default_rng(0).standard_normal(time.size)}
+    network = two_masses(InputPower(100.0, (("current_A", 10.0, 2.0),)))
+    assert simulate(network, Record(time, current, {"ambient": 20.0})).steps.knot.size >= 300
 
 
 def test_a_run_goes_on_where_another_ended():

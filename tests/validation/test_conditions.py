@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from everything import machine
 from one_body import C, G, P, measured, one_node
 from two_bodies import LID, OPEN, bench, two_bodies
 
@@ -16,7 +17,8 @@ from validation.conditions.hat_functions import Path, hat_scores
 from validation.conditions.refine import repeats
 from validation.conditions.windows import best_stretch, joined, pulses
 from validation.diagnosis.missing_heat import scan
-from validation.effects import Scene, effect
+from validation.effects import Scene, effect, extended, kinds
+from validation.effects.during import During
 from validation.effects.time_window import Event, checked, event, holds, share
 from validation.inference.evidence import calibrated_case, candidates, scored
 
@@ -236,3 +238,13 @@ def test_a_declared_loss_too_high_above_a_load_is_said_in_words():
     assert found.odds[0].effects[0].startswith("law@loss:heat|load>0.")
     assert "the declared loss:heat is" in found.words
     assert "% too high where load is above" in found.words
+
+
+def test_every_stretch_of_a_flow_copies_its_films_and_streams_once():
+    """Not the copies of the others as well: with a dozen of them there would be four thousand."""
+    net = machine()
+    base = effect(f"flow@{kinds()['flow'].places(Scene(net))[0]}")
+    events = [Event.of({"day": [(60.0 * k, 60.0 * k + 30.0)]}) for k in range(12)]
+    sizes = [len(extended(net, [During.of(base, e.name) for e in events[:n]]).links) for n in (0, 1, 12)]
+    assert sizes[1] > sizes[0]
+    assert sizes[2] - sizes[0] == 12 * (sizes[1] - sizes[0])

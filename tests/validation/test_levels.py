@@ -67,3 +67,10 @@ def test_an_input_offset_is_what_the_input_itself_does():
     assert told == pytest.approx(
         predict(net, more, {}).y, abs=0.05 * float(np.ptp(told - predict(net, test, {}).y)) + 1e-6
     )
+
+
+def test_an_effect_that_finds_nothing_left_to_act_on_is_left_alone():
+    """Such as conduction to a bench beside the same for a while: every bed has its link."""
+    net = machine()
+    bare = replace(net, parameters=(*net.parameters, Parameter("extra", (), unit="W/K", prior_sd=1.0)))
+    assert at_level(bare, {"extra"}, [warm_test(net)]) == bare

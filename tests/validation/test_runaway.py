@@ -11,7 +11,7 @@ from validation.calibration import calibrate
 from validation.calibration.calibrate import calibrated
 from validation.calibration.unknowns import working
 from validation.inference import refits
-from validation.inference.posterior import Hypothesis
+from validation.inference.posterior import Hypothesis, weights
 
 
 @pytest.fixture
@@ -46,4 +46,4 @@ def test_a_hypothesis_that_runs_away_everywhere_is_as_good_as_excluded(monkeypat
     monkeypatch.setattr(refits, "starts", lambda *_: [np.zeros(1)])
     h = refits.laplace(None, Hypothesis((0,), "", -1.0, 5.0))
     assert h.fit is None
-    assert replace(h, log_prior=0.0).weight < -100.0
+    assert weights([Hypothesis(), replace(h, log_prior=0.0)])[1] < -100.0

@@ -109,7 +109,7 @@ def packed(network: Network, values: Mapping[str, float], tests: Sequence[Test],
         tuple(_factors(every, live, acting, _reaches(tests, names))),
         tuple(Signal(n, unit_of(network, n), *_range(tests, n)) for n in names),
         tuple(Signal(b, "degC", *_range(tests, b)) for b in network.boundaries),
-        tuple(looks), state_units(network, hidden), (~hidden).astype(np.int64), initial_degC=_initial(tests),
+        tuple(looks), state_units(network), (~hidden).astype(np.int64), initial_degC=_initial(tests),
     )  # fmt: skip
 
 

@@ -41,7 +41,8 @@ class AtRest:
         sd = np.array([p.prior_sd for p in free]) / size
         Sigma = self.of.of(list(columns), np.concatenate([sd, np.ones(len(columns) - len(free))]))
         J, rise = np.array(list(columns.values())), float(at.y[0] - np.mean(list(boundaries.values())))
-        return float(np.sqrt(max(J @ Sigma @ J, 0.0) + (self.of.slow(row) * rise) ** 2))
+        offset = float(J @ self.of.offsets(list(columns)))
+        return float(np.sqrt(max(J @ Sigma @ J, 0.0) + offset**2 + (self.of.slow(row) * rise) ** 2))
 
     @cached_property
     def _thermal(self) -> set[str]:

@@ -59,9 +59,10 @@ def bands(of: ParameterPosterior, test: Test, places: Sequence[Place]) -> Bands:
         if name not in known:
             moved[name] = predict(network, other, now).y - plain
     sd = np.array([p.prior_sd for p in free]) / size
-    Sigma = of.of([*(p.name for p in free), *moved], np.concatenate([sd, np.ones(len(moved))]))
+    names = [*(p.name for p in free), *moved]
+    Sigma, offset = of.of(names, np.concatenate([sd, np.ones(len(moved))])), of.offsets(names)
     beside = np.stack([*moved.values()], axis=2) if moved else np.zeros((*plain.shape, 0))
-    variance = _variance(Watch(network, asked, now, free), size, beside, _root(Sigma))
+    variance = _variance(Watch(network, asked, now, free), size, beside, np.column_stack([_root(Sigma), offset]))
     slow = np.array([of.slow(p.row) for p in places]) * np.abs(plain - plain[0])
     return Bands(test.time, tuple(p.name for p in places), plain, np.sqrt(variance + slow**2))
 
@@ -73,7 +74,7 @@ def _root(Sigma: Array) -> Array:
 
 
 def _variance(watch: Watch, size: Array, beside: Array, root: Array) -> Array:
-    """K2, stretch by stretch: tangents are never in memory as a whole."""
+    """K2, stretch by stretch: tangents are never in memory as a whole.  root : a column more counts like a deviation"""
     n, channels, k = beside.shape
     length, out = stretch(channels, size.size + k), []
     for first in range(0, n, length):

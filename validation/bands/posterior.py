@@ -4,14 +4,19 @@
 
 J: tangents of the calibrated readings to the parameters, D: to one deviation of every doubt (model_error.py), S: the
 noise that the residual shows. A doubt that the readings have settled counts no more, one that no sensor sees keeps its
-whole size, and what trades with a parameter stays tied to it. Source: Laplace's approximation; Kennedy and O'Hagan
+whole size, and what trades with a parameter stays tied to it.
+
+    offset = covariance ([J D]' S^-1 r - theta / prior^2)
+
+A fit follows the readings as if the model had no error of its own. Knowing of that, it would stand elsewhere: by the
+offset, which no reading shows where there is no sensor. Source: Laplace's approximation; Kennedy and O'Hagan
 2001.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,6 +43,7 @@ class ParameterPosterior:
     names (p,) : of the covariance (p, p): parameters in fitting coordinates, doubts and inputs in deviations
     doubts : of the network;  fitted : tests that it was calibrated on;  doubt : the table of doubt
     read : what sensors read in these tests, as rows over z
+    offset (p,) : from where the model stands to the mean of the distribution; empty before a calibration
     """
 
     network: Network
@@ -48,6 +54,12 @@ class ParameterPosterior:
     fitted: tuple[str, ...]
     doubt: Doubt
     read: tuple[Row, ...] = ()
+    offset: Array = field(default_factory=lambda: np.empty(0))
+
+    def offsets(self, names: Sequence[str]) -> Array:
+        """(k,) of some names; those that it does not know have none."""
+        known = dict(zip(self.names, self.offset)) if self.offset.size else {}
+        return np.array([known.get(name, 0.0) for name in names])
 
     def slow(self, row: Row) -> float:
         """Share of its rise by which a temperature is off for reasons that no parameter has.
@@ -92,8 +104,9 @@ def parameter_posterior(case: Case, progress: Progress = silent) -> ParameterPos
     fit = with_model_error(plain, tests, values, case.doubt)
     inputs = input_columns(network, tests, values, case.doubt, parts)
     names = (*unknowns.names, *uncertain_names(grown, doubts, tests[0], values, fit, case.doubt), *inputs)
+    covariance, offset = joint(fit, inputs)
     return ParameterPosterior(
-        grown, values, names, joint(fit, inputs), of_network, tuple(t.name for t in tests), case.doubt, rows_read(tests)
+        grown, values, names, covariance, of_network, tuple(t.name for t in tests), case.doubt, rows_read(tests), offset
     )
 
 
@@ -132,15 +145,19 @@ def uncertain_names(
     return [*first, *(f"placement {i}" for i in range(rest - 2)), "flow of air", "flow of liquid"]
 
 
-def joint(fit: Fit, inputs: Mapping[str, Sequence[Array]]) -> Array:
-    """Covariance of parameters, doubts and inputs."""
+def joint(fit: Fit, inputs: Mapping[str, Sequence[Array]]) -> tuple[Array, Array]:
+    """Covariance (p, p) of parameters, doubts and inputs, and how far (p,) from the fit their mean is."""
     error = fit.error
     assert error is not None
     H = np.diag(np.concatenate([fit.unknowns.sd**-2.0, np.ones(error.size + len(inputs))]))
+    pull = np.zeros(len(H))
+    pull[: fit.theta.size] = -fit.theta / fit.unknowns.sd**2
     for i, s in enumerate(fit.parts):
-        X = fit.noise.whiten(s, np.column_stack([s.J, error.of(s), *(columns[i] for columns in inputs.values())]))
-        H += X.T @ X
-    return np.asarray(np.linalg.inv(H), float)
+        beside = (columns[i] for columns in inputs.values())
+        X = fit.noise.whiten(s, np.column_stack([s.J, error.of(s), *beside, s.r]))
+        H, pull = H + X[:, :-1].T @ X[:, :-1], pull + X[:, :-1].T @ X[:, -1]
+    covariance = np.asarray(np.linalg.inv(H), float)
+    return covariance, covariance @ pull
 
 
 def acting(of: ParameterPosterior, test: Test) -> tuple[Network, tuple[Parameter, ...], Array]:

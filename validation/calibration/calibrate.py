@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -294,6 +296,9 @@ class Iterate:
         )  # fmt: skip
 
 
+_WHITENED: deque[tuple[Noise, ModelError, list[tuple[str, str, int]], list[Array], Any]] = deque(maxlen=8)
+
+
 class InnerProduct:
     """x' S^-1 y over the instants of some segments, S = noise + model error.
 
@@ -302,13 +307,20 @@ class InnerProduct:
 
     def __init__(self, parts: Sequence[Segment], noise: Noise, error: ModelError | None) -> None:
         self.parts, self.noise = list(parts), noise
-        self.D = self.white([error.of(s) for s in parts]) if error else []
-        self.factor = self._factor(error.size) if error else None
+        self.D, self.factor = self.doubted(error) if error else ([], None)
 
-    def _factor(self, size: int) -> tuple[Array, bool]:
+    def doubted(self, error: ModelError) -> tuple[list[Array], Any]:
+        """Whitened D, and 1 + D'D factored: once for all fits under one noise."""
         from scipy.linalg import cho_factor
 
-        return cho_factor(np.eye(size) + sum(d.T @ d for d in self.D))
+        own = [(s.test, s.channel, s.time.size) for s in self.parts]
+        for noise, known, of, D, factor in tuple(_WHITENED):
+            if noise is self.noise and known is error and of == own:
+                return D, factor
+        D = self.white([error.of(s) for s in self.parts])
+        factor = cho_factor(np.eye(error.size) + sum(d.T @ d for d in D))
+        _WHITENED.append((self.noise, error, own, D, factor))
+        return D, factor
 
     def _solved(self, Y: Array) -> Array:
         from scipy.linalg import cho_solve

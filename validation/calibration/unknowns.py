@@ -130,7 +130,7 @@ def _offsets_at_level(network: Network, names: Collection[str], tests: Sequence[
     level = levels(tests)
 
     def scaled(p: Parameter) -> Parameter:
-        law = laws.get(p.targets[0][0]) if p.name in names else None
+        law = laws.get(p.targets[0][0]) if p.name in names and p.targets else None
         f = level.get(law.input, 1.0) if isinstance(law, Shift) else 1.0
         return p if f == 1.0 else replace(p, prior_sd=f * p.prior_sd, low=f * p.low, high=f * p.high)
 

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.model.network import Network, Parameter
+from lumped.model.once import once
 from validation.case import Channel, Test
 from validation.comparison.predict import Watch
 from validation.doubt import USUAL
@@ -83,6 +84,7 @@ def stretch(channels: int, tangents: int) -> int:
     return int(max(NUMBERS // (max(channels, 1) * (tangents + 1)), SHORTEST))
 
 
+@once
 def allowed(c: Channel) -> float:
     """Slow misfit (K) that a model of this kind may have at a channel: what the sensor wanders, or what the case says,
     and a share of the rise."""

@@ -5,6 +5,7 @@ Long tests are looked at in stretches, so that their tangents are never in memor
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 
 from lumped.integration.simulate import Record, Run, Stand, simulate
 from lumped.model.network import Network, Parameter
+from lumped.model.once import once
 from validation.case import Test
 from validation.measurement.operators import (
     OPERATORS,
@@ -27,6 +29,8 @@ from validation.measurement.operators import (
 )
 
 Array = NDArray[np.float64]
+MOVING = tuple(f"{kind}:" for kind in SHIFTS)
+CACHED_NUMBERS = 100_000  # of a run whose readings are cached: a clock or a sensor that differs needs no new one
 MARGIN = 40  # samples on either side of a stretch after which a spline no longer feels where it was cut
 
 
@@ -38,6 +42,7 @@ class Prediction:
     J: Array
 
 
+@once
 def thermal(network: Network) -> Network:
     """The network with only the parameters that act on heat."""
     return replace(network, parameters=tuple(p for p in network.parameters if head(p) == "thermal"))
@@ -69,6 +74,9 @@ def here(test: Test, boundary: str) -> str:
     return f"boundary:{boundary} in {test.name}"
 
 
+_LAST: deque[tuple[Network, Test, tuple[tuple[str, float], ...], Run]] = deque(maxlen=64)
+
+
 class Course:
     """A run of the network over a test, as far as it was asked for."""
 
@@ -97,6 +105,18 @@ class Course:
         return T, dT
 
     def _run(self, some: slice) -> Run:
+        whole = some == slice(0, len(self.test.time)) and self.end is None
+        if not whole or self.tangents or self.shifts or self.test.time.size * len(self.test.channels) > CACHED_NUMBERS:
+            return self._simulated(some)
+        key = (*self.heat.items(), *((k, v) for k, v in self.shift.items() if k.startswith(MOVING)))
+        for network, test, at, run in tuple(_LAST):
+            if network is self.network and test is self.test and at == key:
+                return run
+        run = self._simulated(some)
+        _LAST.append((self.network, self.test, key, run))
+        return run
+
+    def _simulated(self, some: slice) -> Run:
         part, rows = stretch_of_record(self.test, self.shift, some), [c.row for c in self.test.channels]
         return simulate(self.network, part, self.heat, rows, self.tangents, begin=self.end, shifts=self.shifts)
 

@@ -33,6 +33,7 @@ from validation.inference.score import apart, score, total
 Array = NDArray[np.float64]
 TESTS, EVENTS, EACH = 16, 4, 6  # conditions of whole tests, events, and explanations of each that join the others
 TIMED = 3  # of these have ends of their own: a film that changes bends a record later than heat does
+SPANS = 4  # of an event, beyond which its explanations share their ends: each span costs thirty runs
 HOPELESS = 5.0  # nats below nothing, prior included: what has less cannot carry weight
 
 
@@ -131,7 +132,8 @@ def explained(
     like = likeness(evidence, bases, s, known)
     timed = refined(evidence, like, repeats(evidence, like, s.event, known), far, known)
     every = best(timed_by(evidence, bases, timed, price, known), EACH)
-    own = [refined(evidence, c.effect.base, timed.event, far, known) for c in every[:TIMED]]
+    few = TIMED if len(timed.event.every) <= SPANS else 0
+    own = [refined(evidence, c.effect.base, timed.event, far, known) for c in every[:few]]
     again = [timed_by(evidence, [c.effect.base], t, price, known) for c, t in zip(every, own)]
     return timed.event, [max([c, *new], key=lambda x: x.worth) for c, new in zip(every, [*again, *[[]] * EACH])]
 

@@ -11,7 +11,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import logsumexp
 
 from validation.case import Test
 from validation.diagnosis.missing_heat import Scan
@@ -137,4 +136,4 @@ def log_bayes(u: Array, V: Array, usual: float) -> Array:
     """Log Bayes factors of amplitudes of either sign, averaged over the usual sizes."""
     sd, either = np.full(u.shape, usual), np.zeros(u.shape, int)
     sizes = [one_size(u, np.maximum(V, 0.0), f * sd, either) for f in SIZES]
-    return np.asarray(logsumexp(sizes, axis=0) - np.log(len(SIZES)))
+    return np.asarray(np.logaddexp.reduce(sizes, axis=0) - np.log(len(SIZES)))

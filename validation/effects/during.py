@@ -91,12 +91,18 @@ class During(Effect):
         )  # fmt: skip
 
     def _copied(self, network: Network, own: Parameter) -> Network:
-        """A share of what is there, more or less while the gate is open."""
+        """A share of what is there, more or less while the gate is open.
+
+        Copies that others of its kind have brought in are not copied again: with n of them there would be 2^n, for the
+        product of two changes of one flow in one test.
+        """
         links, sources = {x.name: x for x in network.links}, {x.name: x for x in network.sources}
         names = []
         for target, exponent in own.targets:
             if target not in links and target not in sources:
                 raise InputError(f"'{self.base.name}' cannot hold for a while", self.name, "a film, a flow or a loss")
+            if gated((links if target in links else sources)[target].law):
+                continue
             names.append(f"{self.name}:{target}")
             if target in links:
                 network = copy_link(network, links[target], names[-1], self._law(links[target].law, exponent))
@@ -104,3 +110,8 @@ class During(Effect):
                 network = copy_source(network, sources[target], names[-1], self._law(sources[target].law, exponent))
         amplitude = replace(own, name=self.name, targets=tuple((n, 1.0) for n in names), mapping="amplitude")
         return with_parameter(network, replace(amplitude, value=0.0, neutral=0.0))
+
+
+def gated(law: Law) -> bool:
+    """Does a law hold for a while only?"""
+    return isinstance(law, Shaped) and isinstance(law.shape, TimeWindow)

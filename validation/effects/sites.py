@@ -7,6 +7,7 @@ from collections.abc import Collection, Iterable, Iterator
 from geom.description.identity import Identity
 from geom.description.roles import Role
 from lumped.model.network import Link, Network, Place
+from lumped.model.once import once
 
 AXLE = frozenset({Role.BEARING, Role.SHAFT})
 FIELD = frozenset({Role.IRON, Role.WINDING, Role.MAGNET, Role.ROTOR, Role.CAGE, Role.INSULATION, Role.COMMUTATOR})
@@ -37,6 +38,7 @@ def boundaries(network: Network, *roles: Role) -> list[str]:
     return [b for b in network.boundaries if role(network, b) in roles]
 
 
+@once
 def ambient(network: Network) -> str | None:
     """The boundary that stands for the surroundings; of several the one that washes most."""
     air = boundaries(network, Role.AMBIENT)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,7 +30,12 @@ Memory = dict[str, Array]
 
 def head(parameter: Parameter) -> str:
     """What a parameter acts on: 'bias', 'boundary', ... or 'thermal'."""
-    first = parameter.targets[0][0].split(":", 1)[0] if parameter.targets else "thermal"
+    return _kind(parameter.targets[0][0]) if parameter.targets else "thermal"
+
+
+@lru_cache(maxsize=4096)
+def _kind(target: str) -> str:
+    first = target.split(":", 1)[0]
     return first if first in OPERATORS + SHIFTS else "thermal"
 
 

@@ -117,7 +117,7 @@ class _Run:
         self.terms.at(self.w, f)
         B = self.terms.by_constants(np.concatenate([self.x, u, [1.0]]), self.w.size)
         B = np.column_stack([self.process.E, B])
-        self.x, G = self.process.step(self.x, self.q, u, h)
+        self.x, G = self.process.predicted(self.x, self.q, u, h)
         into = np.zeros((self.x.size, s + m + self.w.size))
         C = self.terms.C
         into[self.process.slow, np.arange(s)] = C[self.process.slow]
@@ -240,7 +240,7 @@ class _Varying(Process):
 
     terms: _Terms
 
-    def step(self, x: Array, q: Array, u: Array, h: float) -> tuple[Array, Array]:
+    def predicted(self, x: Array, q: Array, u: Array, h: float) -> tuple[Array, Array]:
         return self.stepped(lambda x: self.terms.heat(np.concatenate([x, u, [1.0]])), self.terms.C, x, q, h)
 
 

@@ -95,8 +95,8 @@ class Process:
     def driven(self, record: Record) -> Driven:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", RangeWarning)  # a comparison says so once; here it would be every row
-            core = compiled(self.network, record, self.values)
-        at = core.forcing.sample >= 0
+            core = compiled(self.network, record, self.values, every_sample=True)
+        at = core.forcing.first[1:] > core.forcing.first[:-1]
         return Driven(core, np.asarray(record.time, float), core.forcing.factor[at], core.forcing.u[at])
 
     def steps(self, by: Driven, k: int, x: Array, q: Array) -> tuple[Array, list[Linear]]:

@@ -48,7 +48,8 @@ class Model:
     def at(self, op: Operation, x: Array) -> Stand:
         """A stand at a state x (n_states,)."""
         named = x[["#" not in s for s in self.network.states]]
-        return Stand(x, np.zeros((x.size, 0)), np.zeros(x.size), 1.0, float(min(named.min(), *op.boundaries.values())))
+        none = np.zeros((x.size + len(self.network.boundaries), 0))  # no tangents
+        return Stand(x, none, np.zeros(x.size), 1.0, float(min(named.min(), *op.boundaries.values())))
 
     def course(
         self, op: Operation, load: float, speed: float | None, begin: Stand, seconds: float

@@ -1,0 +1,30 @@
+"""What follows from an object alone is worked out once, as long as the object lives."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import wraps
+from typing import TypeVar
+from weakref import ref
+
+T = TypeVar("T")
+R = TypeVar("R")
+
+
+def once(work: Callable[[T], R]) -> Callable[[T], R]:
+    """`work` of one argument that is never changed, such as a network: the same object is looked at once.
+
+    By identity, since a comparison would cost more than the work. Results must not hold their argument.
+    """
+    known: dict[int, tuple[ref[T], R]] = {}
+
+    @wraps(work)
+    def remembered(of: T) -> R:
+        found = known.get(id(of))
+        if found is not None and found[0]() is of:
+            return found[1]
+        made, key = work(of), id(of)
+        known[key] = ref(of, lambda _: known.pop(key, None)), made
+        return made
+
+    return remembered
