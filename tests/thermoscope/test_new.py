@@ -1,5 +1,6 @@
 """Other people's recordings into a case: every format, clock and delimiter, and what is refused."""
 
+import json
 import re
 import sys
 import time
@@ -377,3 +378,37 @@ def test_a_sensors_type_is_no_part_of_its_place_and_a_letter_is_a_place(tmp_path
     assert {c.name: c.place for c in case.tests[0].channels} == {
         "T": "part", "PT100 housing [degC]": "housing", "T 2": "part-2",
     }  # fmt: skip
+
+
+def record(rows, header="time_s,T_winding [degC],I [A]", form="{0},{1:.2f},{2}"):
+    return "\n".join([header, *(form.format(i, 20 + i / 10, 10) for i in range(rows))]) + "\n"
+
+
+def test_words_after_the_last_row_and_rows_without_a_time_end_no_clock(tmp_path, capsys):
+    case = made(tmp_path, text(tmp_path, record(100) + "End of data\nOperator: somebody\n"))
+    assert case.tests[0].time[-1] == pytest.approx(99.0, abs=1.0)
+    assert np.isfinite(compare(case).rmse_K)
+
+
+@pytest.mark.parametrize(("header", "unit_s"), [("Minutes", 60.0), ("Stunden", 3600.0), ("ms", 1e-3), ("s", 1.0)])
+def test_a_header_that_is_a_unit_of_time_is_the_clock(tmp_path, header, unit_s):
+    found = clock_of(read_source(text(tmp_path, record(100, f"{header},T_winding,I [A]"))))
+    assert found.columns == (header,)
+    assert found.seconds[1] == pytest.approx(unit_s)
+
+
+def test_what_may_be_a_clock_and_units_that_are_none_are_said(tmp_path, capsys):
+    """Without a time column rows are a second apart: a counter that rises must not go unsaid."""
+    made(tmp_path, text(tmp_path, record(100, "Takt,T_winding,speed [krpm],current_A", "{0},{1:.2f},{2},5")))
+    (test,) = json.loads((tmp_path / "new.json").read_text())["tests"]
+    doubts = {c["column"]: c["doubt"] for c in test["columns"]}
+    assert doubts["Takt"] == "a clock? say so: time [s]"
+    assert doubts["speed [krpm]"] == "unit 'krpm' unknown: rpm assumed"
+
+
+@pytest.mark.parametrize("word", ["OVLD", "Err", "over range", "N/A"])
+def test_a_sensor_that_reads_a_word_for_most_of_the_test_is_still_one(tmp_path, word):
+    rows = record(30) + "".join(f"{i},{word},10\n" for i in range(30, 100))
+    source = read_source(text(tmp_path, rows))
+    assert source.is_numeric("T_winding [degC]")
+    assert np.isfinite(source.numbers("T_winding [degC]")).sum() == 30

@@ -39,7 +39,7 @@ class Recording:
 
     @property
     def step_s(self) -> float:
-        return float(np.median(np.diff(self.clock.seconds)))
+        return float(np.nanmedian(np.diff(self.clock.seconds)))
 
 
 def shift(first: Recording, other: Recording) -> tuple[float, str]:
@@ -59,8 +59,8 @@ def common(
 ) -> tuple[tuple[float, float | None], tuple[str, ...]]:
     """From and to (s from the first row) where all recorders ran, within the window; a note if that is less of it."""
     first, start, end = records[0], *window_s
-    last = float(first.clock.seconds[-1])
-    ends = [float(r.clock.seconds[-1]) + r.shift_s for r in records[1:]]
+    last = first.clock.end_s
+    ends = [r.clock.end_s + r.shift_s for r in records[1:]]
     begins = max([start, *(float(r.clock.seconds[0]) + r.shift_s for r in records[1:])])
     stops = min([last if end is None else min(end, last), *ends])
     if begins >= stops:
@@ -75,7 +75,7 @@ def common(
 
 
 def _overlapping(first: Recording, other: Recording, moved: float) -> None:
-    end, theirs = float(first.clock.seconds[-1]), float(other.clock.seconds[-1])
+    end, theirs = first.clock.end_s, other.clock.end_s
     if moved > end or moved + theirs < 0.0:
         late = "after the end" if moved > 0 else "before the start"
         raise InputError(f"its clock never overlaps with that of {first.name}: it runs {abs(moved):.6g} s {late} of it",

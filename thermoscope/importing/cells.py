@@ -16,7 +16,43 @@ ONE_GROUP = re.compile(r"[-+]?[1-9]\d{0,2}([.,])\d{3}")
 DECIMAL = re.compile(r"^[-+]?\d*([.,])\d+(?:[eE][-+]?\d+)?$")
 CLOCK = re.compile(r"\d{1,3}:\d{2}(:\d{2})?([.,]\d+)?(\s?[AaPp][Mm])?")
 DATE = re.compile(r"(\d{4}[-/.]\d{1,2}[-/.]\d{1,2}|\d{1,2}[-/.]\d{1,2}[-/.]\d{2,4})([T ].*)?")
-EMPTY = frozenset({"", "nan", "-", "--", "---", "n/a", "na", "null", "none", "#n/a", "inf", "-inf", "overload"})
+EMPTY = frozenset(
+    {
+        "",
+        "nan",
+        "-",
+        "--",
+        "---",
+        "n/a",
+        "na",
+        "null",
+        "none",
+        "#n/a",
+        "inf",
+        "-inf",
+        "overload",
+        "ovld",
+        "ovl",
+        "ovf",
+        "ol",
+        "over",
+        "overrange",
+        "over range",
+        "open",
+        "error",
+        "err",
+        "bad",
+        "invalid",
+        "n.a.",
+        "no data",
+        "nodata",
+        "bad input",
+        "????",
+        "***",
+        "****",
+        "*****",
+    }
+)
 SWITCH = {"on": 1.0, "off": 0.0, "true": 1.0, "false": 0.0, "ein": 1.0, "aus": 0.0, "yes": 1.0, "no": 0.0,
           "an": 1.0, "running": 1.0, "stopped": 0.0}  # fmt: skip
 
@@ -37,6 +73,7 @@ SPELLED = {
     "m³/s": "m3/s", "l/s": "l/s", "%": "%", "percent": "%", "pct": "%", "1": "1", "-": "1", "ohm": "ohm", "ω": "ohm",
     "Ω".lower(): "ohm", "mohm": "mohm", "mω": "mohm", "kohm": "kohm",
     "s": "s", "sec": "s", "secs": "s", "seconds": "s", "second": "s", "sek": "s", "ms": "ms", "min": "min",
+    "sekunden": "s", "minuten": "min", "stunden": "h", "msec": "ms",
     "minutes": "min", "h": "h", "hours": "h", "hour": "h", "std": "h",
 }  # fmt: skip
 OTHER = frozenset({

@@ -39,6 +39,11 @@ class Clock:
     words: str
     sure: bool = True
 
+    @property
+    def end_s(self) -> float:
+        """The last instant; rows after it may have no time of their own."""
+        return float(np.nanmax(self.seconds))
+
 
 def clock_of(source: Source, period_s: float | None = None) -> Clock:
     """period_s : time between rows, where the file has no clock. InputError for times that run back."""
@@ -162,14 +167,14 @@ def _numeric(source: Source) -> Clock | None:
     """Numbers under a name for time, or that never fall and have a unit of time; of a file without names the first."""
     numeric = [c for c in source.cells if source.is_numeric(c)]
     named = [c for c in numeric if is_time(source.labels[c])]
-    timed = [c for c in numeric if unit_of(source.units[c]) in QUANTITIES["time"].units and _rises(source, c)]
+    timed = [c for c in numeric if _unit_of_time(source, c) and rises(source, c)]
     own = [c for c in (*named, *timed) if c != TIME]
     counted = source.file.suffix.lower() == ".tdms" and TIME in named and _counts(source.numbers(TIME))
     if TIME in named and source.file.suffix.lower() in BINARY and not (own and counted):
         return Clock(source.numbers(TIME), source.start, (TIME,), "the format's own time")
     if own or TIME in named:
         return _scaled(source, own[0] if own else TIME)
-    return _scaled(source, numeric[0]) if source.unnamed and _rises(source, numeric[0]) else None
+    return _scaled(source, numeric[0]) if source.unnamed and rises(source, numeric[0]) else None
 
 
 def is_time(label: str) -> bool:
@@ -178,12 +183,21 @@ def is_time(label: str) -> bool:
     return label == "t" or bool(WORDS & set(words[:2]))
 
 
-def _rises(source: Source, column: str) -> bool:
+def rises(source: Source, column: str) -> bool:
+    """Numbers that never fall."""
     if not source.is_numeric(column):
         return False
     values = source.numbers(column)
     known = values[np.isfinite(values)]
     return known.size > 2 and bool((np.diff(known) >= 0).all()) and bool(known[-1] > known[0])
+
+
+def _unit_of_time(source: Source, column: str) -> str:
+    """Of the header's unit, or of a header that is nothing else: "Minutes"; "" where it is none."""
+    for text in (source.units[column], source.labels[column]):
+        if (unit := unit_of(text)) in QUANTITIES["time"].units:
+            return unit
+    return ""
 
 
 def _counts(values: Array) -> bool:
@@ -192,8 +206,8 @@ def _counts(values: Array) -> bool:
 
 def _scaled(source: Source, column: str) -> Clock:
     """Seconds by the unit of the file; without one by size: seconds since 1970, days of a spreadsheet, else seconds."""
-    values, unit = source.numbers(column), unit_of(source.units[column])
-    if unit in QUANTITIES["time"].units:
+    values, unit = source.numbers(column), _unit_of_time(source, column)
+    if unit:
         return Clock(values * QUANTITIES["time"].units[unit][0], None, (column,), f"numbers in {unit}")
     first = float(values[np.isfinite(values)][0])
     for size, factor in UNIX.items():

@@ -42,7 +42,7 @@ class Draft:
     @property
     def span_s(self) -> float:
         start, end = self.window_s
-        last = float(self.records[0].clock.seconds[-1])
+        last = self.records[0].clock.end_s
         return (last if end is None else min(end, last)) - start
 
     @property

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -16,6 +17,8 @@ from thermoscope.recordings.units import QUANTITIES, converted
 KELVIN = (200.0, 500.0)  # medians of temperatures in K of a machine; in degC a machine of 200 is past its insulation
 FIRST = ("temperature", "current", "speed", "torque", "power", "vehicle_speed", "voltage", "share", "water_flow",
          "air_flow", "frequency")  # fmt: skip
+UNTOLD = "neither name nor unit tells what it is"
+FOREIGN = re.compile(r"\[([^\]]*[A-Za-z°µ%][^\]]*)\]\s*$")  # what stands in brackets as units do
 ELSEWHERE = frozenset({"resistance", "back_emf", "time", "fraction"})  # units that no plain column is guessed from
 
 
@@ -61,10 +64,18 @@ def guess(source: Source, column: str, target: Target) -> Guess:
     if not quantity:
         quantity, why = _by_values(source, column)
     if not quantity:
-        return Guess(column, "", doubt="neither name nor unit tells what it is")
+        return Guess(column, "", doubt="a clock? say so: time [s]" if _counts_on(source, column) else UNTOLD)
     unit, doubt = _unit(source, column, quantity, unit)
+    if not written and (found := FOREIGN.search(label)):
+        doubt = f"unit '{found[1]}' unknown: {unit} assumed"
     base = Guess(column, quantity, unit, why=why, doubt=doubt)
     return _placed(base, label, target) if quantity == "temperature" else _fed(base, label, target)
+
+
+def _counts_on(source: Source, column: str) -> bool:
+    """Does it rise in every row?"""
+    values = source.numbers(column)
+    return bool((np.diff(values[np.isfinite(values)]) > 0).all())
 
 
 def _quantity(label: str, unit: str, target: Target) -> tuple[str, str]:

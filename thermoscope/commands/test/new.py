@@ -160,7 +160,7 @@ def _started(read: Sequence[tuple[Source, Clock]]) -> Model:
     from lumped.declarations.network import read_network
 
     columns = [(source, g) for source, clock in read for g in guesses(source, clock.columns, Target())]
-    text = starter(columns, test_name(read[0][0].file, []), float(read[0][1].seconds[-1]))
+    text = starter(columns, test_name(read[0][0].file, []), read[0][1].end_s)
     network = read_network(tomllib.loads(text), "network.toml")
 
     def put(folder: Path) -> str:
@@ -287,9 +287,16 @@ def _goes(column: Mapping[str, Any]) -> str:
 
 def _files(tests: Sequence[Mapping[str, Any]]) -> Grid:
     rows = [
-        [Path(f["file"]).name, t["role"], t["duration_s"], f["rows"], f["clock"]] for t in tests for f in t["files"]
+        [Path(f["file"]).name, t["role"], _seconds(t["duration_s"]), f["rows"], f["clock"]]
+        for t in tests
+        for f in t["files"]
     ]
     return Grid("Files", ["file", "role", "seconds", "rows", "clock"], rows)
+
+
+def _seconds(duration: float) -> float | int:
+    """Whole seconds from a hundred on."""
+    return round(duration) if duration >= 100 else duration
 
 
 def _moved(tests: Sequence[Mapping[str, Any]]) -> list[str]:
