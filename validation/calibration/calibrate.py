@@ -307,7 +307,8 @@ class InnerProduct:
 
     def __init__(self, parts: Sequence[Segment], noise: Noise, error: ModelError | None) -> None:
         self.parts, self.noise = list(parts), noise
-        self.D, self.factor = self.doubted(error) if error else ([], None)
+        nothing: tuple[list[Array], Any] = ([], None)
+        self.D, self.factor = self.doubted(error) if error else nothing
 
     def doubted(self, error: ModelError) -> tuple[list[Array], Any]:
         """Whitened D, and 1 + D'D factored: once for all fits under one noise."""
