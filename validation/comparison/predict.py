@@ -118,7 +118,10 @@ class Course:
 
     def _simulated(self, some: slice) -> Run:
         part, rows = stretch_of_record(self.test, self.shift, some), [c.row for c in self.test.channels]
-        return simulate(self.network, part, self.heat, rows, self.tangents, begin=self.end, shifts=self.shifts)
+        # a step at every sample: then a test cut in two, or looked at in stretches, is the same to the bit
+        return simulate(
+            self.network, part, self.heat, rows, self.tangents, begin=self.end, shifts=self.shifts, every_sample=True
+        )
 
 
 class Watch:
