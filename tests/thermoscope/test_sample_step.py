@@ -38,11 +38,16 @@ def test_the_same_errors_at_all_steps(switched):
 
 
 def test_the_same_diagnosis_at_all_steps(switched):
-    """Same verdict, odds within 0.03, sizes within 3 % and within 5 % of the truth (6 W/K)."""
+    """Same verdict, the effect as probable within 0.01, sizes within 3 % and within 5 % of the truth (6 W/K).
+
+    Whether it is alone may differ by 0.05: six times the instants are more evidence, by which the temper grows.
+    """
     found = [diagnose(folder.case).document() for folder in switched.values()]
     leading = [d["odds"][0] for d in found]
     assert {(d["verdict"], d["candidates"][0]["effect"]) for d in found} == {("named", "convection@flange")}
-    assert [o["probability"] for o in leading] == pytest.approx([leading[0]["probability"]] * 3, abs=0.03)
+    sure = [d["candidates"][0]["probability"] for d in found]
+    assert sure == pytest.approx([sure[0]] * 3, abs=0.01)
+    assert [o["probability"] for o in leading] == pytest.approx([leading[0]["probability"]] * 3, abs=0.05)
     sizes = [d["candidates"][0]["amplitude"]["value"] for d in found]
     assert sizes == pytest.approx([sizes[0]] * 3, rel=0.03)
     assert sizes == pytest.approx([6.0] * 3, rel=0.05)
