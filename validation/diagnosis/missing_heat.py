@@ -31,7 +31,6 @@ from validation.measurement.noise import Noise
 
 Array = NDArray[np.float64]
 KNOT_S = 180.0  # between knots of a heat; chosen: shorter ones cost time, and masses smooth what they would show
-SHORT, APART = 20, 3  # stretches that a test has at least, and samples between two knots: a small body is fast
 MEMORY_S = (60.0, 1200.0)
 REACH = 1.0  # of an input's range: heat over an input is a gentle curve, as the laws of losses and films are
 JITTER = 1e-6  # of the variance, so that equal knots have a factor
@@ -157,15 +156,13 @@ def missing_heat(fit: Fit, tests: Sequence[Test], knot_s: float = KNOT_S) -> lis
 
 
 def scan(fit: Fit, tests: Sequence[Test], knot_s: float = KNOT_S) -> Scan:
-    """Hats every `knot_s`, more often in a short test, or as many in a long one as its residual has instants to tell
-    apart."""
+    """Hats every `knot_s`, or as many in a long test as its residual has instants to tell apart."""
     own, knots = solids(fit.network), {}
     places = tuple(p.name for p in own)
     parts: list[Segment] = []
     for test in tests:
         span = test.time[-1] - test.time[0]
-        apart = min(knot_s, max(span / SHORT, APART * float(np.median(np.diff(test.time)))))
-        count = int(np.clip(round(span / apart) + 1, 2, INSTANTS // 2))
+        count = int(np.clip(round(span / knot_s) + 1, 2, INSTANTS // 2))
         knots[test.name] = test.time[0] + np.linspace(0.0, span, count)
         network, hats = with_heat_inputs(fit.network, places, knots[test.name])
         parts += segments(network, [test], fit.values, (*fit.unknowns.parameters, *hats))
