@@ -64,13 +64,13 @@ def forcing(
         curves = [given.curve(p.name, p.law) for p in patterns]
         t, u = between(time, at), np.stack([between(x, at) for x in u.T], axis=1).reshape(at.size, -1)
     ends = [straight(x) for x in u.T]
-    kept = np.arange(t.size)
+    chosen = np.arange(t.size)
     if not every_sample:
-        kept = _needed(t, curves, ends, list(given.values()))
-    (factor, bulge), (u, arch) = _between(t, kept, curves), _between(t, kept, ends)
-    knots = t[kept]
-    renew = np.full(kept.size, 2) if bends else _renewals(knots, factor[:, stiff], bulge[:, stiff])
-    return Forcing(knots, u, factor, bulge, arch, renew, *_samples(time, knots, kept, np.flatnonzero(sample >= 0)))
+        chosen = _needed(t, curves, ends, list(given.values()))
+    (factor, bulge), (u, arch) = _between(t, chosen, curves), _between(t, chosen, ends)
+    knots = t[chosen]
+    renew = np.full(chosen.size, 2) if bends else _renewals(knots, factor[:, stiff], bulge[:, stiff])
+    return Forcing(knots, u, factor, bulge, arch, renew, *_samples(time, knots, chosen, np.flatnonzero(sample >= 0)))
 
 
 def _needed(time: Array, heats: Sequence[Curve], ends: Sequence[Curve], inputs: Sequence[Array]) -> Ints:
@@ -108,16 +108,16 @@ def integral(c: Curve, time: Array) -> Array:
     return np.concatenate([[0.0], np.cumsum(np.diff(time) * mean)])
 
 
-def _between(time: Array, kept: Ints, curves: Sequence[Curve]) -> tuple[Array, Array]:
+def _between(time: Array, chosen: Ints, curves: Sequence[Curve]) -> tuple[Array, Array]:
     """(nk, n) values at some of the knots, and how far between them parabolas bulge that keep every integral."""
-    value, bulge = np.zeros((2, kept.size, len(curves)))
-    apart = 1 + np.flatnonzero(np.diff(kept) > 1)
-    left, right = kept[apart - 1], kept[apart]
+    value, bulge = np.zeros((2, chosen.size, len(curves)))
+    apart = 1 + np.flatnonzero(np.diff(chosen) > 1)
+    left, right = chosen[apart - 1], chosen[apart]
     for e, c in enumerate(curves):
-        value[:, e] = c.value if c.value.ndim == 0 else c.value[kept]
+        value[:, e] = c.value if c.value.ndim == 0 else c.value[chosen]
         if c.value.ndim == 0 or not _varies(c):
             continue
-        bulge[:, e] = c.bulge if c.bulge.ndim == 0 else c.bulge[kept]
+        bulge[:, e] = c.bulge if c.bulge.ndim == 0 else c.bulge[chosen]
         if apart.size:
             whole = integral(c, time)
             mean = (whole[right] - whole[left]) / (time[right] - time[left])
@@ -127,13 +127,13 @@ def _between(time: Array, kept: Ints, curves: Sequence[Curve]) -> tuple[Array, A
     return value, bulge
 
 
-def _samples(time: Array, knot_time: Array, kept: Ints, at: Ints) -> tuple[Ints, Array]:
+def _samples(time: Array, knot_time: Array, chosen: Ints, at: Ints) -> tuple[Ints, Array]:
     """first (nk + 1,) and share (nt,) of Forcing.  at (nt,) : which of all knots each sample is"""
-    j = np.searchsorted(kept, at)
+    j = np.searchsorted(chosen, at)
     before, share = np.maximum(j - 1, 0), np.ones(time.size)
-    inner = kept[j] != at
+    inner = chosen[j] != at
     share[inner] = ((time - knot_time[before]) / np.where(inner, knot_time[j] - knot_time[before], 1.0))[inner]
-    return np.append(0, np.searchsorted(at, kept, "right")), share
+    return np.append(0, np.searchsorted(at, chosen, "right")), share
 
 
 def _knots(time: Array, curves: Sequence[Curve]) -> tuple[Array, NDArray[np.int64]]:

@@ -7,7 +7,7 @@ from validation.effects.sites import ambient
 
 EVERYWHERE = ("loss.constant", "convection.constant")  # at every node: a lid that is open cools what it never washed
 AS_DECLARED = ("conduction.bench", "flow", "blockage", "input.factor")  # where the catalogue has them
-IN_WHOLE_TESTS = ("ambient.offset",)
+IN_WHOLE_TESTS = ("ambient.offset", "input.offset")
 
 
 def temporary_effects(scene: Scene) -> tuple[Effect, ...]:

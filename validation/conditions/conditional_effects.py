@@ -9,13 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
 
 from validation.calibration.calibrate import no_progress
 from validation.calibration.unknowns import scene_of
-from validation.case import Case
+from validation.case import Case, Test
 from validation.conditions.candidate_conditions import single_test_effects, temporary_effects
 from validation.conditions.hat_functions import Interval, hat_scores
 from validation.conditions.refine import TimedEvent, columns, refined, repeats
@@ -28,12 +29,14 @@ from validation.effects.sites import neighbours
 from validation.effects.time_window import Event, event
 from validation.inference.evidence import Evidence, extended_prior, projected, weighed
 from validation.inference.posterior import log_bayes_of
-from validation.inference.score import apart, score, total
+from validation.inference.score import Score, apart, score, total
 
 Array = NDArray[np.float64]
 TESTS, EVENTS, EACH = 16, 4, 6  # conditions of whole tests, events, and explanations of each that join the others
 TIMED = 3  # of these have ends of their own: a film that changes bends a record later than heat does
 SPANS = 4  # of an event, beyond which its explanations share their ends: each span costs thirty runs
+ALONE, SOME = 0.4, 0.1  # shares of what held in one whole test, and in several: the other half is for stretches
+FEW_TESTS = 6  # whose sets are all tried: of more each must stand for itself
 HOPELESS = 5.0  # nats below nothing, prior included: what has less cannot carry weight
 
 
@@ -94,7 +97,7 @@ def odds_against_nothing(share: float) -> float:
 
 
 def single_test_conditions(evidence: Evidence, bases: Sequence[Effect], known: Mapping[str, float]) -> list[Condition]:
-    """Everything that may have held in one test alone; none where there is only one test."""
+    """Everything that may have held in one test alone, or in some of them; none where there is only one test."""
     names = [t.name for t in evidence.tests]
     if len(names) < 2 or not bases:
         return []
@@ -103,13 +106,45 @@ def single_test_conditions(evidence: Evidence, bases: Sequence[Effect], known: M
     theta, sd = extended_prior(evidence.fit)
     sign = np.tile([q.sign for q in parameters], len(names)).astype(int)
     found = score(apart(projected(evidence.fit, parts)), theta, sd, sign)
-    bayes = log_bayes_of(found, np.tile([q.prior_sd for q in parameters], len(names)))
-    share = 0.5 / (len(bases) * len(names))
-    each = [(base, test) for test in names for base in bases]
-    return [
-        Condition(During.of(base, test, share), float(b) + odds_against_nothing(share))
-        for (base, test), b, seen in zip(each, bayes, found.visible, strict=True) if seen
-    ]  # fmt: skip
+    usual = np.array([q.prior_sd for q in parameters])
+    out = []
+    for chosen in sets_of(len(names)):
+        own, seen = together(found, len(bases), chosen)
+        share = (ALONE if len(chosen) == 1 else SOME) / (
+            len(bases) * len([c for c in sets_of(len(names)) if (len(c) == 1) == (len(chosen) == 1)])
+        )
+        gate = gate_of([evidence.tests[t] for t in chosen])
+        out += [
+            Condition(During.of(base, gate, share), float(b) + odds_against_nothing(share))
+            for base, b, visible in zip(bases, log_bayes_of(own, usual), seen, strict=True) if visible
+        ]  # fmt: skip
+    return out
+
+
+def sets_of(tests: int) -> list[tuple[int, ...]]:
+    """Each test alone, and where there are not too many every set of some but not all of them."""
+    most = tests - 1 if tests <= FEW_TESTS else 1
+    return [c for n in range(1, most + 1) for c in combinations(range(tests), n)]
+
+
+def together(found: Score, bases: int, chosen: Sequence[int]) -> tuple[Score, NDArray[np.bool_]]:
+    """The score of every effect with one amplitude in some tests, and whether it is felt in each of them.
+
+    found : of every effect in every test, test by test
+    """
+    rows = np.array([[t * bases + k for t in chosen] for k in range(bases)])
+    u = found.u[rows].sum(axis=1)
+    V = found.V[rows[:, :, None], rows[:, None, :]].sum(axis=(1, 2))
+    raw = found.raw[rows].sum(axis=1)
+    own = Score(u, np.diag(np.maximum(V, 0.0)), raw, found.sign[:bases], np.zeros(bases, int))
+    return own, found.visible[rows].all(axis=1)
+
+
+def gate_of(tests: Sequence[Test]) -> str:
+    """A test by its name, several as an event that lasts all of each."""
+    if len(tests) == 1:
+        return tests[0].name
+    return Event.of({t.name: [(float(t.time[0]), float(t.time[-1]))] for t in tests}).name
 
 
 def likely_intervals(

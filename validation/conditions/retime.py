@@ -36,12 +36,20 @@ def retimed(evidence: Evidence, hypotheses: Sequence[Hypothesis], reach_s: Mappi
     for h in order[:FITTED]:
         for k in h.members:
             effect = evidence.effects[k]
-            if k not in moved and isinstance(effect, During) and effect.event and h.fit is not None:
+            if k in moved or not isinstance(effect, During) or not effect.event or throughout(evidence, effect.event):
+                continue
+            if h.fit is not None:
                 moved[k] = with_ends(effect, ends_of(evidence, h.fit, effect, effect.event, reach_s))
     names = {e.name for i, e in enumerate(evidence.effects) if i not in moved}
     new = {k: e for k, e in moved.items() if e.name != evidence.names[k] and e.name not in names}
     new = {k: e for k, e in new.items() if [x.name for x in new.values()].count(e.name) == 1}
     return replaced(joined(evidence, list(new.values()), evidence.fit.values), list(new)) if new else evidence
+
+
+def throughout(evidence: Evidence, event: Event) -> bool:
+    """Does it last all of its tests?  Then it has no ends."""
+    tests = {t.name: (float(t.time[0]), float(t.time[-1])) for t in evidence.tests}
+    return all(own == (tests[t],) for t, own in event.spans.items())
 
 
 def with_ends(effect: During, event: Event) -> During:
