@@ -234,7 +234,8 @@ def test_a_record_that_is_none_is_refused(tmp_path, text, words):
 
 NEW = {
     "--set ambient=nan": "is no NAME=VALUE", "--set ambient": "is no NAME=VALUE", "--set mars=3": "the model reads no",
-    "--set ambient=1e9": "ambient = 1000000000", "--from 5000": "0 rows", "--from 100 --to 50": "100 is not before 50",
+    "--set ambient=1e9": "ambient = 1000000000", "--from 5000": "never all run in the part asked for",
+    "--from 100 --to 50": "100 is not before 50",
     "--from inf": "--from", "--to inf": "--to", "--period inf": "--period", "--period 0": "--period",
     "--machine pmsm-m1": "one of the two", "--json {case}/case.toml": "it stays",
 }  # fmt: skip

@@ -7,6 +7,7 @@ import pytest
 from thermoscope.commands.explain.effects import effects, quantities
 from thermoscope.quantities_page import PAGE, page
 from thermoscope.recordings.units import HELD, QUANTITIES, converted
+from validation.effects.base import Effect
 from validation.effects.registry import kinds
 
 
@@ -34,7 +35,8 @@ def test_a_recorded_speed_is_no_longer_missing(case, tmp_path, capsys):
 
 @pytest.mark.parametrize("kind", [k for k in kinds().values() if k.__module__.startswith("validation.")])
 def test_every_effect_of_ours_says_where_it_may_sit(kind):
-    assert "sits" in vars(kind)
+    assert kind.sits
+    assert kind.sits != Effect.sits
 
 
 def test_the_catalogue_without_a_case(tmp_path, capsys):
