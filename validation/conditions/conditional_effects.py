@@ -107,12 +107,11 @@ def single_test_conditions(evidence: Evidence, bases: Sequence[Effect], known: M
     sign = np.tile([q.sign for q in parameters], len(names)).astype(int)
     found = score(apart(projected(evidence.fit, parts)), theta, sd, sign)
     usual = np.array([q.prior_sd for q in parameters])
-    out = []
-    for chosen in sets_of(len(names)):
+    every, out = sets_of(len(names)), []
+    for chosen in every:
         own, seen = together(found, len(bases), chosen)
-        share = (ALONE if len(chosen) == 1 else SOME) / (
-            len(bases) * len([c for c in sets_of(len(names)) if (len(c) == 1) == (len(chosen) == 1)])
-        )
+        held, count = (ALONE, len(names)) if len(chosen) == 1 else (SOME, len(every) - len(names))
+        share = held / (len(bases) * count)
         gate = gate_of([evidence.tests[t] for t in chosen])
         out += [
             Condition(During.of(base, gate, share), float(b) + odds_against_nothing(share))
@@ -170,7 +169,8 @@ def explained(
     few = TIMED if len(timed.event.every) <= SPANS else 0
     own = [refined(evidence, c.effect.base, timed.event, far, known) for c in every[:few]]
     again = [timed_by(evidence, [c.effect.base], t, price, known) for c, t in zip(every, own)]
-    return timed.event, [max([c, *new], key=lambda x: x.worth) for c, new in zip(every, [*again, *[[]] * EACH])]
+    again += [[]] * (len(every) - len(again))
+    return timed.event, [max([c, *new], key=lambda x: x.worth) for c, new in zip(every, again, strict=True)]
 
 
 def reach(looked: Scan) -> dict[str, float]:

@@ -5,23 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from lumped.model.multipliers import values_of
-from validation.calibration.calibrate import Fit, KnownSegments, minimise
+from validation.calibration.calibrate import Fit
 from validation.case import Test
 from validation.doubt import USUAL
-from validation.inference.evidence import ENOUGH, Evidence, under
+from validation.inference.evidence import Evidence, gone_on, under
 from validation.measurement.noise import START, Level, Noise
-
-STEPS = 6  # of a calibration that goes on under a smaller noise
 
 
 def quiet_fit(fit: Fit, tests: Sequence[Test]) -> Fit:
     """A calibration under a noise no larger than is usual; the same where it is no larger."""
     noise = usual_noise(fit.noise)
-    if noise == fit.noise:
-        return fit
-    return minimise(fit.network, tests, fit.unknowns, fit.theta, noise, values_of(fit.network, fit.values), STEPS,
-                    KnownSegments(fit.parts, nearby=True), worth=ENOUGH, error=fit.error)  # fmt: skip
+    return fit if noise == fit.noise else gone_on(fit, tests, noise, fit.parts)
 
 
 def quiet(evidence: Evidence) -> Evidence:

@@ -39,6 +39,7 @@ HOPELESS = 20.0  # nats worse than nothing after a first refit: no second one ma
 LEAN = 0.5  # nats that a tangent gains at a large amplitude before it pays for its own size
 SECOND = 6  # steps of a refit under tangents of its own: with three, some stopped tens of nats short
 ROUNDS = 4  # steps of a calibration that goes on under the model error
+FURTHER = 6  # of one that goes on under another noise
 
 
 @dataclass(frozen=True)
@@ -284,13 +285,17 @@ def with_noise(evidence: Evidence, members: Sequence[int], noise: Noise) -> floa
 
 def under(evidence: Evidence, noise: Noise) -> Evidence:
     """The evidence under another noise, the calibration gone on under it."""
-    e, fit = evidence, evidence.fit
-    held = values_of(fit.network, fit.values)
-    new = minimise(fit.network, e.tests, fit.unknowns, fit.theta, noise, held, 6,
-                   KnownSegments(e.parts_of([]), nearby=True), worth=ENOUGH, error=fit.error)  # fmt: skip
+    e = evidence
+    new = gone_on(e.fit, e.tests, noise, e.parts_of([]))
     left = {(s.test, s.channel): s.r for s in new.parts}
     parts = tuple(replace(s, r=left[s.test, s.channel]) for s in e.parts)
     return weighed(e.tests, new, e.network, e.effects, e.parameters, parts, e.jumps, e.large)
+
+
+def gone_on(fit: Fit, tests: Sequence[Test], noise: Noise, parts: Sequence[Segment]) -> Fit:
+    """A calibration that goes on under another noise, with the tangents of where it stands."""
+    return minimise(fit.network, tests, fit.unknowns, fit.theta, noise, values_of(fit.network, fit.values), FURTHER,
+                    KnownSegments(parts, nearby=True), worth=ENOUGH, error=fit.error)  # fmt: skip
 
 
 def noise_beside(evidence: Evidence, members: Sequence[int]) -> Noise:
