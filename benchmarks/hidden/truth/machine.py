@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -37,14 +36,10 @@ class Film:
     area: Array
     h: Callable[[Array, Array, Inputs], Array | float]
 
-    @cached_property
-    def cover(self) -> str:
-        return f"cover.{self.name}"
-
     def into(self, q: Array, T: Array, u: Inputs) -> None:
         hot = T[self.cells]
         cold = u[self.fluid] if isinstance(self.fluid, str) else T[self.fluid]
-        flow = (1.0 - u.get(self.cover, 0.0)) * self.h(hot, cold, u) * self.area * (hot - cold)
+        flow = (1.0 - u.get(f"cover.{self.name}", 0.0)) * self.h(hot, cold, u) * self.area * (hot - cold)
         q[self.cells] -= flow
         if not isinstance(self.fluid, str):
             np.add.at(q, self.fluid, flow if self.fluid.size > 1 else flow.sum())
