@@ -331,16 +331,37 @@ def refit(evidence: Evidence, members: Sequence[int], theta: Array, tangents: Se
                     error=fit.error)  # fmt: skip
 
 
-def refit_beside(evidence: Evidence, members: Sequence[int], one: int, alone: Fit) -> Fit:
-    """Two candidates fitted from where one of them was fitted alone, with its tangents and those of the other."""
+def tangents_beside(evidence: Evidence, one: int, alone: Fit, others: Sequence[int]) -> dict[int, list[Array]]:
+    """What each of some further effects does to every segment (K per unit) where one effect was fitted alone."""
+    e, free = evidence, [k for k in others if not evidence.effects[k].whole]
+    whole = [one, *free]
+    network = extended(e.fit.network, [e.effects[k] for k in whole])
+    values = values_of(network, {**e.fit.values, **alone.unknowns.values(alone.theta), **held_at_one(e, [one])})
+    parts = segments(network, e.tests, values, [e.parameters[k] for k in free])
+    return {k: [s.J[:, i] for s in parts] for i, k in enumerate(free)}
+
+
+def refit_beside(
+    evidence: Evidence, members: Sequence[int], one: int, alone: Fit, columns: Mapping[int, Sequence[Array]]
+) -> Fit:
+    """Two candidates fitted from where one of them was fitted alone, with its tangents and those of the other there."""
     free, p = free_of(evidence, members), evidence.p
-    own = {k: evidence.parts_of([k]) for k in free if k != one}
     theta = np.concatenate([alone.theta[:p], [alone.theta[p] if k == one else 0.0 for k in free]])
     tangents = [
-        replace(s, J=np.column_stack([s.J[:, :p], *(s.J[:, p] if k == one else own[k][i].J[:, p] for k in free)]))
+        replace(s, J=np.column_stack([s.J[:, :p], *(s.J[:, p] if k == one else columns[k][i] for k in free)]))
         for i, s in enumerate(alone.parts)
     ]
     return refit(evidence, members, theta, tangents)
+
+
+def refit_onwards(evidence: Evidence, members: Sequence[int], before: Fit) -> Fit:
+    """A refit that goes on under another noise, with what it ran last; where its effects have new ends, nearby."""
+    network, unknowns, held = with_members(evidence, members)
+    moved = before.unknowns.names != unknowns.names
+    known = KnownSegments(before.parts, nearby=moved, renewed=True, stale=True)
+    fit = evidence.fit
+    return minimise(network, evidence.tests, unknowns, before.theta, fit.noise, held, SECOND, known, draft=True,
+                    worth=ENOUGH, error=fit.error)  # fmt: skip
 
 
 def free_of(evidence: Evidence, members: Sequence[int]) -> list[int]:
@@ -353,8 +374,12 @@ def with_members(evidence: Evidence, members: Sequence[int]) -> tuple[Network, U
     network = extended(fit.network, [evidence.effects[k] for k in members])
     free = [evidence.parameters[k] for k in free_of(evidence, members)]
     unknowns = Unknowns((*fit.unknowns.parameters, *(widened(p) for p in free)))
-    whole = {evidence.names[k]: 1.0 for k in members if evidence.effects[k].whole}
-    return network, unknowns, values_of(network, {**fit.values, **whole})
+    return network, unknowns, values_of(network, {**fit.values, **held_at_one(evidence, members)})
+
+
+def held_at_one(evidence: Evidence, members: Sequence[int]) -> dict[str, float]:
+    """Those that happen whole or not at all."""
+    return {evidence.names[k]: 1.0 for k in members if evidence.effects[k].whole}
 
 
 def starts(evidence: Evidence, members: Sequence[int]) -> list[Array]:
