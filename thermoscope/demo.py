@@ -74,10 +74,27 @@ def demo(out: Path, target: str | None) -> int:
         folder = opened(case)
         stages.append(Stage(f"with {named[0]}", folder.compared.document()))
     headline("7  What is left, and where to look")
+    say(left_over(found, stages[-1].errors))
     pages(folder, case, out)
     picture(out / "error.png", "the error, step by step")
     picture(out / "field-before-after.png", "the field before and after")
     return closing(stages, done, out, target, time.monotonic() - begun)
+
+
+def left_over(found: Mapping[str, Any], errors: Mapping[str, Any]) -> str:
+    """What the worst sensor still misses, and what that is: as the diagnosis says it, or that it cannot be told."""
+    rows = [(c, t["name"]) for t in errors["tests"] for c in t["channels"] if c["verdict"] == "over"]
+    if not rows:
+        return "Every sensor is within its limit in every test."
+    worst, test = max(rows, key=lambda row: row[0]["rmse_K"] / row[0]["limit_K"])
+    said = [r["words"] for r in found.get("remainder", []) if r["channel"] == worst["channel"]]
+    if said:
+        return str(said[0])
+    test_asked = f"; {found['next_tests'][0]['test']} could" if found.get("next_tests") else ""
+    return (
+        f"{worst['channel']} is still {worst['rmse_K']:.1f} K off in {test} (limit {worst['limit_K']:.1f} K): within "
+        f"the doubts of the model, these data cannot tell why{test_asked}."
+    )
 
 
 def opened(case: Path) -> Folder:

@@ -6,9 +6,21 @@ from playground import Truth, wind
 from scipy.linalg import block_diag
 from scipy.stats import multivariate_normal
 
-from validation.effects import effect
+from lumped.model.multipliers import values_of
+from validation.calibration.calibrate import minimise
+from validation.comparison.linearisation import segments
+from validation.effects import effect, extended
 from validation.inference.diagnose import sharpened
-from validation.inference.evidence import calibrated_case, projected, scored, without_effects
+from validation.inference.evidence import (
+    calibrated_case,
+    projected,
+    refit,
+    refit_onwards,
+    scored,
+    starts,
+    tangents_beside,
+    without_effects,
+)
 from validation.inference.posterior import Hypothesis, averaged, pairs, probabilities, singles
 from validation.inference.refits import refitted
 from validation.inference.score import total
@@ -87,3 +99,35 @@ def test_three_effects_are_found_one_beside_the_other(evidence):
     found = every[int(np.argmax(probabilities(every)))]
     assert isinstance(found, Hypothesis)
     assert {sharp.names[k] for k in found.members} == set(NAMES[:3])
+
+
+def test_a_refit_that_goes_on_under_another_noise_ends_no_worse_than_one_from_the_start(evidence):
+    (k,) = [evidence.names.index(NAMES[0])]
+    before = refit(evidence, [k], starts(evidence, [k])[0])
+    sharp = sharpened(evidence)
+    onwards, anew = refit_onwards(sharp, [k], before), refit(sharp, [k], starts(sharp, [k])[0])
+    assert onwards.objective < anew.objective + 0.5  # half a nat: fits stop at a tenth or so
+    assert onwards.theta[-1] == pytest.approx(anew.theta[-1], rel=0.05)
+
+
+def test_tangents_beside_a_refit_are_differences_there(evidence):
+    """Of the second of two effects, where the first was fitted alone."""
+    one, other = (evidence.names.index(n) for n in NAMES[:2])
+    alone = refit(evidence, [one], starts(evidence, [one])[0])
+    (columns,) = tangents_beside(evidence, one, alone, [other]).values()
+    step = 1.0
+    values = {**evidence.fit.values, **alone.unknowns.values(alone.theta)}
+    network = extended(evidence.fit.network, [evidence.effects[k] for k in (one, other)])
+    low, high = (segments(network, evidence.tests, {**values, NAMES[1]: a}) for a in (0.0, step))
+    for column, a, b in zip(columns, low, high, strict=True):
+        np.testing.assert_allclose((a.r - b.r) / step, column, atol=1e-3 + 0.01 * np.abs(column).max())
+
+
+def test_nothing_is_fitted_as_well_as_what_it_is_held_against(evidence):
+    """A bearing's friction stands in for heat at nine deviations of its prior: far from where a fit begins."""
+    fit = evidence.fit
+    held = values_of(fit.network, fit.values)
+    further_on = minimise(
+        fit.network, evidence.tests, fit.unknowns, fit.theta, fit.noise, held, 40, worth=1e-3, error=fit.error
+    )
+    assert fit.objective - further_on.objective < 2.0

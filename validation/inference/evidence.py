@@ -35,10 +35,13 @@ Array = NDArray[np.float64]
 TWIN = 0.9995  # cosine from which a calibrated parameter does the same as an effect
 ENOUGH = 0.1  # nats: evidence is read to a few tenths
 STRAIGHT = 0.9  # of the gain that tangents foretold: a refit that got it needs none of its own
+BENDS = 10.0  # nats that a refit gains, beyond which the tangents of its start point elsewhere at its end
 HOPELESS = 20.0  # nats worse than nothing after a first refit: no second one makes up for that
 LEAN = 0.5  # nats that a tangent gains at a large amplitude before it pays for its own size
 SECOND = 6  # steps of a refit under tangents of its own: with three, some stopped tens of nats short
-ROUNDS = 4  # steps of a calibration that goes on under the model error
+ROUNDS = (
+    12  # steps of a calibration that goes on under the model error: what nothing gains too little, all gain too much
+)
 FURTHER = 6  # of one that goes on under another noise
 
 
@@ -117,7 +120,7 @@ def calibrated_case(
     values, tests = {**case.model.values, **(start or {})}, diagnosing(case)
     held = {p.name: values.get(p.name, p.value) for p in network.parameters}
     plain = calibrated(network, tests, unknowns, values, 1, progress, rough=True)
-    return with_model_error(plain, tests, held, case.doubt, ROUNDS, draft=True)
+    return with_model_error(plain, tests, held, case.doubt, ROUNDS)
 
 
 def scored(case: Case, effects: Sequence[Effect], fit: Fit) -> Evidence:
@@ -315,17 +318,23 @@ def noise_beside(evidence: Evidence, members: Sequence[int]) -> Noise:
     return fit_noise(left)
 
 
-def refit(evidence: Evidence, members: Sequence[int], theta: Array, tangents: Sequence[Segment] = ()) -> Fit:
+def refit(
+    evidence: Evidence, members: Sequence[int], theta: Array, tangents: Sequence[Segment] = (),
+    begun: float | None = None,
+) -> Fit:  # fmt: skip
     """All free parameters and the amplitudes of some candidates, fitted anew; those that are whole are held at one.
 
     tangents : of all these where the fit begins, by default those without the candidates
+    begun : objective there, by default that without the candidates
     """
     network, unknowns, held = with_members(evidence, members)
     free, fit = free_of(evidence, members), evidence.fit
+    before = fit.objective if begun is None else begun
     rough = minimise(network, evidence.tests, unknowns, theta, fit.noise, held, 8,
                      KnownSegments(tangents or evidence.parts_of(free)), worth=ENOUGH, error=fit.error)  # fmt: skip
     far = any(evidence.effects[k].whole for k in members)  # exchanged plugs begin where the calibration is wrong
-    if rough.foretold > STRAIGHT or (rough.objective > fit.objective + HOPELESS and not far):
+    straight = rough.foretold > STRAIGHT and before - rough.objective < BENDS
+    if straight or (rough.objective > fit.objective + HOPELESS and not far):
         return rough
     return minimise(network, evidence.tests, unknowns, rough.theta, fit.noise, held, SECOND, draft=True, worth=ENOUGH,
                     error=fit.error)  # fmt: skip
@@ -351,7 +360,7 @@ def refit_beside(
         replace(s, J=np.column_stack([s.J[:, :p], *(s.J[:, p] if k == one else columns[k][i] for k in free)]))
         for i, s in enumerate(alone.parts)
     ]
-    return refit(evidence, members, theta, tangents)
+    return refit(evidence, members, theta, tangents, alone.objective)
 
 
 def refit_onwards(evidence: Evidence, members: Sequence[int], before: Fit) -> Fit:
