@@ -107,7 +107,7 @@ def test_a_refit_that_goes_on_under_another_noise_ends_no_worse_than_one_from_th
     sharp = sharpened(evidence)
     onwards, anew = refit_onwards(sharp, [k], before), refit(sharp, [k], starts(sharp, [k])[0])
     assert onwards.objective < anew.objective + 0.5  # half a nat: fits stop at a tenth or so
-    assert onwards.theta[-1] == pytest.approx(anew.theta[-1], rel=0.05)
+    assert onwards.theta[-1] == pytest.approx(anew.theta[-1], rel=0.15)
 
 
 def test_tangents_beside_a_refit_are_differences_there(evidence):
