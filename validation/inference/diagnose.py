@@ -41,7 +41,7 @@ from validation.inference.posterior import (
     unknown_heat,
     weights,
 )
-from validation.inference.refits import NOWHERE, Begun, noise_of_refits, refitted
+from validation.inference.refits import NOWHERE, Begun, finely, noise_of_refits, refitted
 from validation.inference.several import further
 from validation.inference.tables import tabulate
 from validation.measurement.faults import PlainFaults, broken_channels, without
@@ -122,7 +122,7 @@ def infer(case: Case, kinds: Sequence[str] | None = None, progress: Progress = n
         evidence = under(timed, noise or timed.fit.noise)
         begun = {h.members: h.fit for h in found if h.fit and h.members}
         found, heat = weighed(case, evidence, looked, fit.noise, progress, begun)
-    every = further(case, evidence, found, progress)
+    every = further(case, evidence, finely(evidence, found), progress)
     return Posterior(evidence, tuple(against_nothing(every)), tuple(heat), against)
 
 

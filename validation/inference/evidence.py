@@ -34,6 +34,7 @@ from validation.measurement.noise import Noise, fit_noise
 Array = NDArray[np.float64]
 TWIN = 0.9995  # cosine from which a calibrated parameter does the same as an effect
 ENOUGH = 0.1  # nats: evidence is read to a few tenths
+FINE = 0.02  # nats at which what is told stands: a size is then within a quarter of its deviation of its optimum
 STRAIGHT = 0.9  # of the gain that tangents foretold: a refit that got it needs none of its own
 BENDS = 10.0  # nats that a refit gains, beyond which the tangents of its start point elsewhere at its end
 HOPELESS = 20.0  # nats worse than nothing after a first refit: no second one makes up for that
@@ -363,14 +364,17 @@ def refit_beside(
     return refit(evidence, members, theta, tangents, alone.objective)
 
 
-def refit_onwards(evidence: Evidence, members: Sequence[int], before: Fit) -> Fit:
-    """A refit that goes on under another noise, with what it ran last; where its effects have new ends, nearby."""
+def refit_onwards(evidence: Evidence, members: Sequence[int], before: Fit, finely: bool = False) -> Fit:
+    """A refit that goes on with what it ran last, under another noise; where its effects have new ends, nearby.
+
+    finely : to its end, with tangents of its own there
+    """
     network, unknowns, held = with_members(evidence, members)
-    moved = before.unknowns.names != unknowns.names
+    moved, fit = before.unknowns.names != unknowns.names, evidence.fit
     known = KnownSegments(before.parts, nearby=moved, renewed=True, stale=True)
-    fit = evidence.fit
-    return minimise(network, evidence.tests, unknowns, before.theta, fit.noise, held, SECOND, known, draft=True,
-                    worth=ENOUGH, error=fit.error)  # fmt: skip
+    steps, worth = (ROUNDS, FINE) if finely else (SECOND, ENOUGH)
+    return minimise(network, evidence.tests, unknowns, before.theta, fit.noise, held, steps, known, draft=not finely,
+                    worth=worth, error=fit.error)  # fmt: skip
 
 
 def free_of(evidence: Evidence, members: Sequence[int]) -> list[int]:

@@ -35,6 +35,7 @@ Begun = Mapping[tuple[int, ...], Fit]
 Beside = tuple[int, Fit, Mapping[int, Sequence[Array]]]
 NOWHERE: Begun = MappingProxyType({})
 WEIGHT = 0.01  # posterior probability from which a hypothesis is refitted
+TOLD = 0.05  # posterior probability from which a hypothesis is told in the first place
 ROUNDS, MOST = 4, 8  # what a refit promotes is refitted too; so many at once
 GREAT, NEAR = 10.0, 0.5  # nats beyond which tangents mislead, and the share of the best from which a rival is refitted
 IMPOSSIBLE = -1e3  # nats: as good as excluded, and a number that a document can hold
@@ -148,6 +149,23 @@ def laplace(evidence: Evidence, h: Hypothesis, near: Beside | None = None, begun
         return replace(h, log_bayes=IMPOSSIBLE, loud=IMPOSSIBLE)
     best = min(fits, key=lambda fit: fit.objective)
     return replace(h, fit=best, log_bayes=log_bayes(evidence, best, h.members))
+
+
+def finely(evidence: Evidence, hypotheses: Sequence[Hypothesis]) -> list[Hypothesis]:
+    """The hypotheses, those that will be told refitted to their end: sizes are read off them."""
+    out, P = list(hypotheses), probabilities(hypotheses)
+    due = [i for i in np.argsort(-P) if P[i] > TOLD and out[i].fit and free_of(evidence, out[i].members)]
+
+    def again(i: int) -> Hypothesis:
+        h = out[i]
+        assert h.fit is not None
+        fit = refit_onwards(evidence, h.members, h.fit, finely=True)
+        return replace(h, fit=fit, log_bayes=log_bayes(evidence, fit, h.members))
+
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        for i, h in zip(due, pool.map(again, due), strict=True):
+            out[i] = h
+    return out
 
 
 def noise_of_refits(hypotheses: Sequence[Hypothesis]) -> Noise | None:
