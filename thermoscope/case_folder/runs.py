@@ -54,6 +54,15 @@ def readings(case: Case, test: Test) -> dict[str, Array]:
     return {channel.name: y[:, j] for j, channel in enumerate(test.channels)}
 
 
+def ends(case: Case, test: Test, names: Sequence[str]) -> list[float]:
+    """Mean temperatures (degC) of places at the end of a test, by the model of a case."""
+    network = thermal(working(case)[0])
+    known = {p.name for p in network.parameters}
+    values = {k: v for k, v in case.model.values.items() if k in known}
+    rows = mean_rows(network)
+    return simulate(network, record(test, {}), values, [rows[n] for n in names]).y[-1].tolist()
+
+
 def held(folder: Folder, test: Test) -> Comparison:
     """A test against the model, and against the model before its last step."""
     from viz.data import Comparison
