@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lumped.condensation.recovery import Shapes
 from lumped.integration.simulate import simulate
 from lumped.model.network import Network, Parameter, Row
 from thermoscope.case_folder.folder import Folder
@@ -165,6 +166,20 @@ def sensors(folder: Folder) -> dict[str, Channel]:
 def mean_rows(network: Network) -> dict[str, Row]:
     """The means of parts, nodes and fluids."""
     return {n: p.mean for n, p in network.places.items() if p.kind != "surface" and "#" not in n}
+
+
+def hot_spots(network: Network, z: Array) -> dict[str, Row]:
+    """The hottest point of every part that losses heat, at the instant when it is hottest; none without a recovery.
+
+    z : (n_time, n_states + n_boundaries) degC of a run
+    """
+    parts = network.recovery.parts if isinstance(network.recovery, Shapes) else {}
+    out = {}
+    for name in dict.fromkeys(s.place for s in network.sources if s.place in parts):
+        shape = parts[name]
+        x = z[int(np.argmax(z[:, shape.states] @ (shape.weights @ shape.V))), shape.states]
+        out[f"hottest point of {name}"] = Row(shape.states, shape.V[int(np.argmax(shape.V @ x))])
+    return out
 
 
 def named_rows(network: Network, folder: Folder) -> dict[str, Row]:
