@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import io
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -22,7 +22,7 @@ from thermoscope.caches import cache_folder
 from thermoscope.case_folder.files import write_whole
 from thermoscope.case_folder.folder import Folder, Progress
 from thermoscope.case_folder.runs import named_rows
-from validation.bands import Bands, ParameterPosterior, Place, bands, parameter_posterior
+from validation.bands import Bands, ParameterPosterior, Place, at_end, bands, parameter_posterior
 from validation.bands.band import NORMAL_95
 from validation.bands.posterior import rows_read
 from validation.case import RUNNING, Recorded, Test
@@ -96,6 +96,19 @@ def along(of: ParameterPosterior, name: str, record: Record, rows: Mapping[str, 
     fine = Recorded(source.time, {n: source.signals[n] for n in inputs}, time, inputs) if source else None
     test = Test(name, "hold-out", time, inputs, air, (), record.initial, recorded=fine)
     return bands(of, test, [Place(n, row) for n, row in rows.items()])
+
+
+def field_half95(folder: Folder, test: Test, parts: Sequence[str], progress: Progress) -> Array:
+    """(n_nodes,) half the width of the 95 % band (K) on the parts' own nodes at the end of a test.
+
+    The network needs a recovery. What a good model is off by counts with the rise since the start.
+    """
+    of = posterior_of(folder, progress)
+    progress(f"uncertainty at the end of {test.name}")
+    first, last, R = at_end(of, test)
+    recovery: Any = of.network.recovery
+    there, rise = (np.concatenate([recovery.of_part(p, x) for p in parts]) for x in (R, last - first))
+    return NORMAL_95 * np.sqrt(np.sum(there**2, axis=1) + (of.doubt["slow"] * rise) ** 2)
 
 
 def apart(time: Array) -> Array:

@@ -237,8 +237,8 @@ def picture(
         str,
         typer.Argument(
             metavar="WHAT",
-            help="machine, temperature, field, difference, misses, exploded, parts, mesh, flux, network, losses, "
-            "curves, residuals or errors.",
+            help="machine, temperature, field, difference, misses, uncertainty, exploded, parts, mesh, flux, network, "
+            "losses, curves, bands, residuals or errors.",
         ),
     ],
     out: Annotated[Path | None, typer.Option("--out", metavar="FILE", help="A PNG file.")] = None,

@@ -18,6 +18,7 @@ _HOME = {
     "write_recording": "recordings.recording", "verify": "recordings.recording", "Report": "pages.report",
     "write_report": "pages.report", "write_pdf": "pages.pdf", "screened": "figures.screening",
     "ranking": "figures.screening", "portrait": "appearance.portrait", "misses": "machine.misses",
+    "uncertainty": "machine.uncertainty", "predicted": "figures.bands", "Predicted": "figures.bands",
 }  # fmt: skip
 __all__ = sorted(_HOME)
 

@@ -9,7 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.io import loadmat
 from small_case import small_case
-from test_export_code import curved, states
+from test_export_code import CASES, SHIPPED, curved, states
 
 from lumped.integration.simulate import initial_state, simulate
 from thermoscope.case_folder.folder import load_case
@@ -66,22 +66,62 @@ def test_fmpy_checks_and_runs_it(three, version, tmp_path):
     assert np.abs(own - y).max() < AGREES_K
 
 
-def test_fmi_2_with_slopes_of_inputs_takes_whole_samples(three, tmp_path):
-    from fmpy.fmi2 import FMU2Slave
+class Slave:
+    """An FMI 2.0 unit in FMPy, from its start on.  x0 (n_states,) degC, of which nodes are set;  u (n_signal,)"""
 
+    def __init__(self, model, folder, x0, u):
+        from fmpy.fmi2 import FMU2Slave
+
+        file = unpacked(model, 2, folder)
+        said = fmpy.read_model_description(file)
+        at = {v.name: v.valueReference for v in said.modelVariables}
+        self.unit = FMU2Slave(guid=said.guid, unzipDirectory=fmpy.extract(file, folder / "x"), instanceName="one",
+                              modelIdentifier=said.coSimulation.modelIdentifier)  # fmt: skip
+        self.ins, self.outs = [at[s.name] for s in model.signals], [at[o.name] for o in model.outputs]
+        self.unit.instantiate()
+        self.unit.setupExperiment()
+        self.unit.enterInitializationMode()
+        starts = {f"start of {n}": x for n, x in zip(model.states, x0, strict=True)}
+        self.unit.setReal([at[n] for n in starts if n in at], [x for n, x in starts.items() if n in at])
+        self.unit.setReal(self.ins, u)
+        self.unit.exitInitializationMode()
+
+    def over(self, time, u):
+        """(n_time, n_output) degC, sample by sample; a jump is a step of no length."""
+        y = [self.unit.getReal(self.outs)]
+        for k, h in enumerate(np.diff(time)):
+            y.append(stepped(self.unit, self.ins, self.outs, u, time, k) if h > 0.0 else y[-1])
+        self.unit.terminate()
+        self.unit.freeInstance()
+        return np.array(y)
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_every_shipped_case_runs_in_fmpy(name, tmp_path):
+    """Its shortest test, sample by sample: what `simulate` says, within 0.05 K."""
+    folder = load_case(CASES / name)
+    network, values = model_of(folder)
+    model = exported(folder, {})
+    given = sampled(record(min(folder.case.tests, key=lambda t: t.time.size), {}))
+    run, u = simulate(network, given, values, [o.row for o in model.outputs]), signals_of(model, given)
+    own = Slave(model, tmp_path, initial_state(network, given.initial), u[0]).over(given.time, u)
+    assert np.abs(own - run.y).max() < AGREES_K
+
+
+def test_stiff_steps_run_in_fmpy(tmp_path):
+    """A node of a millionth of the other's capacity under 40 W, every temperature law, air that jumps by 15 K."""
+    network, given = curved()
+    model = packed(network, {}, [], states(network))
+    run, u = simulate(network, given, {}, [o.row for o in model.outputs]), signals_of(model, given)
+    own = Slave(model, tmp_path, initial_state(network, given.initial), u[0]).over(given.time, u)
+    assert np.abs(own - run.y).max() < AGREES_K
+
+
+def test_fmi_2_with_slopes_of_inputs_takes_whole_samples(three, tmp_path):
     model, given, y, x0 = three
-    file, u = unpacked(model, 2, tmp_path), signals_of(model, given)
-    said = fmpy.read_model_description(file)
-    at = {v.name: v.valueReference for v in said.modelVariables}
-    unit = FMU2Slave(guid=said.guid, unzipDirectory=fmpy.extract(file, tmp_path / "x"), instanceName="one",
-                     modelIdentifier=said.coSimulation.modelIdentifier)  # fmt: skip
-    ins, outs = [at[s.name] for s in model.signals], [at[o.name] for o in model.outputs]
-    unit.instantiate()
-    unit.setupExperiment()
-    unit.enterInitializationMode()
-    unit.setReal([at[f"start of {n}"] for n in model.states], x0)
-    unit.setReal(ins, u[0])
-    unit.exitInitializationMode()
+    u = signals_of(model, given)
+    slave = Slave(model, tmp_path, x0, u[0])
+    unit, ins, outs = slave.unit, slave.ins, slave.outs
     own = [unit.getReal(outs)]
     for k, h in enumerate(np.diff(given.time)):
         if k == 20:

@@ -3,10 +3,15 @@
 import json
 import subprocess
 import sys
+from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 from command_line import RUN
 from small_case import small_case
+
+from thermoscope.case_folder.folder import load_case
+from thermoscope.commands.model.revise import MOVED_K, _unseen, unmeasured
 
 STRENGTH = 6.0  # W/K at 10 m/s: the convection hidden in the data
 
@@ -47,7 +52,7 @@ def test_exit_codes(story, step, code):
 FIELDS = {
     "wrong": {"case", "model", "tests", "rmse_K", "floor_K", "roles"},
     "diagnose": {"verdict", "candidates", "cannot_see", "where", "next_tests"},
-    "add": {"effect", "revision", "accepted", "why", "tests", "parameters"},
+    "add": {"effect", "revision", "accepted", "why", "tests", "parameters", "unmeasured"},
     "calibrate": {"effect", "revision", "accepted", "why", "tests", "parameters"},
 }
 ROWS = {
@@ -76,6 +81,23 @@ def test_rows_have_the_contract_s_fields(story, step, field):
 
 def test_channels_have_the_contract_s_fields(story):
     assert set(story[1]["wrong"].document["tests"][0]["channels"][0]) >= CHANNEL
+
+
+def test_places_without_a_sensor_that_a_step_moved_are_told(story):
+    """The winding's thermometer is taken away; a copper loss of 1.5 instead of 1 warms it most."""
+    folder = load_case(story[0])
+    tests = [replace(t, channels=tuple(c for c in t.channels if c.place != "winding")) for t in folder.case.tests]
+    folder = replace(folder, case=replace(folder.case, tests=tuple(tests)))
+    model = folder.case.model
+    copper = next(p.name for p in model.network.parameters if "copper" in p.name)
+    after = replace(model, values={**model.values, copper: 1.5 * model.values[copper]})
+    found = unmeasured(folder, SimpleNamespace(model=after))
+    assert [(p["place"], p["test"]) for p in found] == [("winding", "town")]
+    assert found[0]["after_C"] > found[0]["before_C"] + MOVED_K
+    said = _unseen(found)
+    assert said.startswith("No sensor checks: winding ")
+    assert "at the end of town" in said
+    assert _unseen([{**found[0], "after_C": found[0]["before_C"]}]) == ""
 
 
 def test_progress_goes_to_stderr(story):

@@ -14,6 +14,7 @@ from geom.errors import InputError
 from lumped.model.build import bare_network
 from lumped.model.network import Row
 from thermoscope.case_folder.folder import load_machine_file
+from thermoscope.commands.use.rate import answer
 from thermoscope.rating import places, rated_point
 
 CYCLE = """
@@ -66,6 +67,9 @@ def test_ratings_stand_beside_those_of_the_model_before(thermoscope, tmp_path):
     said = thermoscope("use", "rate", case, *asked, "--json", "-")
     assert said.code == 0, said.err
     first = said.document["ratings"][0]
+    more = 100.0 * (first["value"] / first["before"] - 1.0)
+    assert more > 1.0
+    assert f"{more:.3g} % more than the model before its last step said." in answer(said.document).sentence
     derated = {(d["of"], d["value"]): d for d in said.document["derating"]}
     assert derated["ambient", 20.0]["share_before"] == pytest.approx(first["before"] / first["value"], rel=5e-3)
     warm = derated["ambient", 60.0]

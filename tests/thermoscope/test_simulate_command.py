@@ -1,14 +1,19 @@
 """thermoscope use simulate: tests, duties and drives in, temperatures out."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from geom.errors import InputError
+from lumped.condensation.recovery import PartShape, Shapes
 from lumped.drives.drive import Vehicle
+from lumped.model.build import bare_network, node_source
+from lumped.transfer.laws import Fixed
 from thermoscope.case_folder.cycle import load_cycle
 from thermoscope.case_folder.folder import load_case
+from thermoscope.case_folder.runs import hot_spots
 from thermoscope.commands.use.simulate import simulate
 
 DUTY = """
@@ -204,3 +209,18 @@ def test_the_shipped_duty_runs(root, name, tmp_path):
 
 def test_the_command_is_there(thermoscope):
     assert "--cycle" in thermoscope("simulate", "--help").out
+
+
+def test_the_hottest_point_is_that_of_the_hottest_instant():
+    """A coil of three points whose one shape turns round: its third point is hottest when its mean is largest."""
+    net = bare_network("coil", {"coil": 100.0, "coil#1": 1.0, "yoke": 50.0}, ("air",))
+    net = net.extended(sources=[node_source(net, "heat", "copper", {"coil": 1.0}, Fixed(1.0))])
+    V = np.column_stack([np.ones(3), [-1.0, 0.0, 1.0]])
+    shape = PartShape(np.arange(3), None, V, np.array([0.25, 0.5, 0.25]), np.array([0, 1]))
+    yoke = PartShape(np.arange(1), None, np.ones((1, 1)), np.ones(1), np.array([2]))
+    z = np.array([[20.0, 0.0, 20.0, 20.0], [60.0, -9.0, 30.0, 20.0], [80.0, 5.0, 40.0, 20.0]])
+    found = hot_spots(replace(net, recovery=Shapes({"coil": shape, "yoke": yoke})), z)
+    assert list(found) == ["hottest point of coil"]
+    row = found["hottest point of coil"]
+    assert (z[:, row.index] @ row.weights).tolist() == [20.0, 51.0, 85.0]
+    assert hot_spots(net, z) == {}

@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 from lumped.model.build import bare_network, node_link, node_source
 from lumped.model.network import Parameter, Row
 from lumped.transfer.laws import Fixed
-from validation.bands import Place, bands, parameter_posterior
+from validation.bands import Place, at_end, bands, parameter_posterior
 from validation.bands.at_rest import AtRest
 from validation.case import Case, Channel, Model, Test
 from validation.comparison.predict import thermal
@@ -110,3 +110,16 @@ def test_the_start_is_as_sure_as_its_doubt(calibrated):
     case, _ = calibrated
     found = bands(parameter_posterior(case), case.tests[0], places(case.model.network))
     assert np.all(found.sd[0] <= USUAL["start"] + 0.01)
+
+
+def test_all_states_at_the_end_are_those_of_the_band(calibrated):
+    """A field is a sum over states: its band needs their covariance, the slow share comes on top."""
+    case, _ = calibrated
+    known, test = parameter_posterior(case), case.tests[0]
+    first, last, R = at_end(known, test)
+    found = bands(known, test, places(case.model.network))
+    assert_allclose(first, found.y[0], rtol=1e-12)
+    assert_allclose(last, found.y[-1], rtol=1e-12)
+    slow = np.array([known.slow(p.row) for p in places(case.model.network)]) * (last - first)
+    assert_allclose(np.sqrt(np.sum(R**2, axis=1) + slow**2), found.sd[-1], rtol=1e-9)
+    assert (R[0] @ R[1]) ** 2 < 0.99 * (R[0] @ R[0]) * (R[1] @ R[1])  # core and shell are not unsure alike

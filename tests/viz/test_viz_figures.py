@@ -10,6 +10,7 @@ from PIL import Image
 
 from geom.errors import InputError
 from viz.data import Comparison
+from viz.figures import bands as uncertain
 from viz.figures import candidates as scores
 from viz.figures import curves, errors, paper, screening
 from viz.labels import spread_labels
@@ -28,7 +29,12 @@ ODDS = [
     {"hypothesis": "heat@yoke", "effects": [], "probability": 0.015},
     {"hypothesis": "others", "effects": [], "probability": 0.004},
 ]
+HOUR = np.linspace(0.0, 3600.0, 61)
+WARM = 20.0 + 60.0 * (1.0 - np.exp(-HOUR / 1200.0))
+PLACES = [uncertain.Predicted("sensor T_yoke_degC", WARM, 0.03 * (WARM - 20.0), WARM + 1.0),
+          uncertain.Predicted("armature", WARM + 20.0, 0.2 * (WARM - 20.0))]  # fmt: skip
 DRAW = {
+    "predicted": lambda png: uncertain.predicted(HOUR, PLACES, title="road-1", png=png),
     "curves": lambda png: curves.measured_and_model(comparison(before=True), png=png),
     "residuals": lambda png: curves.residuals(comparison(), png=png),
     "before_after": lambda png: errors.before_after(HISTORY[-1]["tests"], floor_K=0.6, png=png),
@@ -40,6 +46,7 @@ DRAW = {
     "confusion": lambda png: scores.confusion(["a@x", "b@y"], np.array([[1.0, 0.83], [0.83, 1.0]]), png=png),
 }
 SHOWS = {
+    "predicted": ["yoke", "± 1.7 K", "armature", "no sensor, ± 11.4 K", "road-1", "95 % band (°C)"],
     "curves": ["flange.right", "earlier model", "temperature (°C)"],
     "residuals": ["flange.right", "measured − model (K)", "time (min)"],
     "before_after": ["4.85 K", "0.93 K", "road-2", "rms error (K)"],

@@ -78,7 +78,7 @@ def test_designs_are_lines_and_points():
     lines, points = data(DRAW["parallel_coordinates"]())[0], data(DRAW["objective_space"]())[0]
     assert [axis["label"] for axis in lines["dimensions"]][-2:] == ["pump and fan (W)", "flow (l/min)"]
     assert lines["dimensions"][-1]["values"] == [4.0, 5.0, 6.0]
-    assert [points[a] for a in "xyz"] == [[130.0, 129.0, 128.0], [900.0] * 3, [0.0, 1.0, 8.0]]
+    assert [points[a] for a in "xyz"] == [[130.0, 129.0, 128.0], [15.0] * 3, [0.0, 1.0, 8.0]]
     assert points["marker"]["color"] == [80.0, 79.0, 78.0]  # the objective that no axis shows
 
 

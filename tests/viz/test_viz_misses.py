@@ -5,7 +5,7 @@ import pytest
 from PIL import Image
 from small_motor import motor
 
-from viz import Sensor, misses, split
+from viz import Sensor, misses, split, uncertainty
 from viz.machine.misses import GUESS, SAID
 from viz.machine.pulses import Pulses
 from viz.rendering import scene
@@ -35,6 +35,20 @@ def test_stripes_stand_where_it_is_a_guess_and_only_there(tmp_path):
     columns = np.flatnonzero(changed)
     assert len(columns) > 100
     assert columns.min() > 0.4 * plain.shape[1]  # z runs to the right
+
+
+def test_a_band_begins_at_zero_and_is_darker_where_less_is_known(tmp_path):
+    """z runs to the right, and the band with it; paper is white."""
+    half95 = 1.0 + 9.0 * NODES.points[:, 2] / NODES.points[:, 2].max()
+    p = uncertainty(NODES, half95, title="hour", png=tmp_path / "u.png")
+    assert p.scalar_bars["± K"].lookup_table.scalar_range == (0.0, 10.0)
+    p.close()
+    grey = np.asarray(Image.open(tmp_path / "u.png").convert("L")).astype(float)[:, :1100]
+    machine = np.where(grey < 235.0, grey, np.nan)
+    columns = np.flatnonzero(np.isfinite(machine).sum(axis=0) > 100)
+    some = len(columns) // 4
+    left, right = (np.nanmedian(machine[:, c]) for c in (columns[:some], columns[-some:]))
+    assert right < left - 20.0
 
 
 @pytest.mark.parametrize(("residual_K", "pulses"), [(5.0, True), (-5.0, True), (0.2, False)])

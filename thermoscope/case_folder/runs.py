@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lumped.condensation.recovery import Shapes
 from lumped.integration.simulate import simulate
 from lumped.model.network import Network, Parameter, Row
 from thermoscope.case_folder.folder import Folder
@@ -52,6 +53,15 @@ def readings(case: Case, test: Test) -> dict[str, Array]:
     """Channel -> (n_time,) degC, what its sensor would read; sensors' fitted biases are left out."""
     y = predict(working(case)[0], test, physical(case)).y
     return {channel.name: y[:, j] for j, channel in enumerate(test.channels)}
+
+
+def ends(case: Case, test: Test, names: Sequence[str]) -> list[float]:
+    """Mean temperatures (degC) of places at the end of a test, by the model of a case."""
+    network = thermal(working(case)[0])
+    known = {p.name for p in network.parameters}
+    values = {k: v for k, v in case.model.values.items() if k in known}
+    rows = mean_rows(network)
+    return simulate(network, record(test, {}), values, [rows[n] for n in names]).y[-1].tolist()
 
 
 def held(folder: Folder, test: Test) -> Comparison:
@@ -156,6 +166,20 @@ def sensors(folder: Folder) -> dict[str, Channel]:
 def mean_rows(network: Network) -> dict[str, Row]:
     """The means of parts, nodes and fluids."""
     return {n: p.mean for n, p in network.places.items() if p.kind != "surface" and "#" not in n}
+
+
+def hot_spots(network: Network, z: Array) -> dict[str, Row]:
+    """The hottest point of every part that losses heat, at the instant when it is hottest; none without a recovery.
+
+    z : (n_time, n_states + n_boundaries) degC of a run
+    """
+    parts = network.recovery.parts if isinstance(network.recovery, Shapes) else {}
+    out = {}
+    for name in dict.fromkeys(s.place for s in network.sources if s.place in parts):
+        shape = parts[name]
+        x = z[int(np.argmax(z[:, shape.states] @ (shape.weights @ shape.V))), shape.states]
+        out[f"hottest point of {name}"] = Row(shape.states, shape.V[int(np.argmax(shape.V @ x))])
+    return out
 
 
 def named_rows(network: Network, folder: Folder) -> dict[str, Row]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -49,7 +50,7 @@ class MachineFile:
         sections = read_toml(path, "a machine file with [machine] and [geometry]")
         return cls(sections, path.name, machine_from(sections, path.name))
 
-    @property
+    @cached_property
     def parameters(self) -> dict[str, Parameter]:
         """Key -> geometric parameter of the family."""
         return {f"{GEOMETRY}.{p.key}": p for p in families()[self.machine.family].parameters if not p.choices}

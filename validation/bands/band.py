@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -44,11 +44,23 @@ class Bands:
         return NORMAL_95 * self.sd
 
 
-def bands(of: ParameterPosterior, test: Test, places: Sequence[Place]) -> Bands:
-    """Temperatures of places along a record, and how sure they are.
+@dataclass(frozen=True)
+class Deviations:
+    """What moves predicted temperatures, by one deviation each.
 
-    test : the record: time, inputs, boundaries, start; its channels do not matter
+    plain (nt, n) : as the model stands;  watch : tangents of what is uncertain, times `size`;  beside (nt, n, k) : of
+    inputs;  root : R, so that columns @ R are independent, the offset of the fit among them
     """
+
+    plain: Array
+    watch: Watch
+    size: Array
+    beside: Array
+    root: Array
+
+
+def deviations(of: ParameterPosterior, test: Test, places: Sequence[Place]) -> Deviations:
+    """test : the record: time, inputs, boundaries, start; its channels do not matter"""
     asked = replace(test, channels=tuple(_asked(p, test) for p in places))
     network, free, size = acting(of, asked)
     now = {**values_of(network, None), **of.values}
@@ -62,9 +74,26 @@ def bands(of: ParameterPosterior, test: Test, places: Sequence[Place]) -> Bands:
     names = [*(p.name for p in free), *moved]
     Sigma, offset = of.of(names, np.concatenate([sd, np.ones(len(moved))])), of.offsets(names)
     beside = np.stack([*moved.values()], axis=2) if moved else np.zeros((*plain.shape, 0))
-    variance = _variance(Watch(network, asked, now, free), size, beside, np.column_stack([_root(Sigma), offset]))
-    slow = np.array([of.slow(p.row) for p in places]) * np.abs(plain - plain[0])
-    return Bands(test.time, tuple(p.name for p in places), plain, np.sqrt(variance + slow**2))
+    return Deviations(plain, Watch(network, asked, now, free), size, beside, np.column_stack([_root(Sigma), offset]))
+
+
+def bands(of: ParameterPosterior, test: Test, places: Sequence[Place]) -> Bands:
+    """Temperatures of places along a record, and how sure they are."""
+    by = deviations(of, test, places)
+    slow = np.array([of.slow(p.row) for p in places]) * np.abs(by.plain - by.plain[0])
+    return Bands(test.time, tuple(p.name for p in places), by.plain, np.sqrt(_variance(by) + slow**2))
+
+
+def at_end(of: ParameterPosterior, test: Test) -> tuple[Array, Array, Array]:
+    """All states of the network at the first and the last instant, x0 and x (n,) degC, and R (n, k) K at the last.
+
+    R R' is the covariance of the states, so that of a field over them is V R R' V'; what a good model is off by
+    (ParameterPosterior.slow) is not in it.
+    """
+    names = of.network.states
+    by = deviations(of, test, [Place(n, Row(np.array([i]), np.ones(1))) for i, n in enumerate(names)])
+    last = [columns[-1] for columns in _columns(by)][-1]
+    return by.plain[0], by.plain[-1], last @ by.root
 
 
 def _root(Sigma: Array) -> Array:
@@ -73,15 +102,18 @@ def _root(Sigma: Array) -> Array:
     return np.asarray(vectors * np.sqrt(np.maximum(values, 0.0)))
 
 
-def _variance(watch: Watch, size: Array, beside: Array, root: Array) -> Array:
-    """K2, stretch by stretch: tangents are never in memory as a whole.  root : a column more counts like a deviation"""
-    n, channels, k = beside.shape
-    length, out = stretch(channels, size.size + k), []
-    for first in range(0, n, length):
-        some = slice(first, min(first + length, n))
-        columns = np.concatenate([watch.until(some.stop).J * size, beside[some]], axis=2)
-        out.append(np.sum((columns @ root) ** 2, axis=2))
-    return np.concatenate(out)
+def _columns(by: Deviations) -> Iterator[Array]:
+    """(nt, n, k) stretch by stretch: tangents are never in memory as a whole."""
+    nt, n, k = by.beside.shape
+    length = stretch(n, by.size.size + k)
+    for first in range(0, nt, length):
+        some = slice(first, min(first + length, nt))
+        yield np.concatenate([by.watch.until(some.stop).J * by.size, by.beside[some]], axis=2)
+
+
+def _variance(by: Deviations) -> Array:
+    """(nt, n) K2."""
+    return np.concatenate([np.sum((columns @ by.root) ** 2, axis=2) for columns in _columns(by)])
 
 
 def _asked(place: Place, test: Test) -> Channel:

@@ -34,9 +34,8 @@ class Scaling:
     def __init__(self, network: Network, machine: Any) -> None:
         self.machine, self.places = machine, [p for p in network.places.values() if p.kind == "surface" and p.fluid]
         self.volumes = {p.name: p.volume for p in machine.parts}
-        self.walls = {p.name: _walls(p) for p in (*machine.parts, *machine.fluids)}
         self.liquids = {p.name for p in machine.fluids if p.material != "air"}
-        self.around = surroundings(machine, ())
+        self.here = Films(surroundings(machine, ()))
         self.known = {f"design {link.name}" for link in network.links}
 
     def of(self, machine: Any, inputs: Mapping[str, float]) -> dict[str, float]:
@@ -47,28 +46,51 @@ class Scaling:
         moved = changed(self.machine, machine)
         if not moved:
             return {}
-        around = surroundings(machine, ())
+        there = Films(surroundings(machine, ()))
         out = {f"design capacity:{p.name}": p.volume / self.volumes[p.name] for p in machine.parts if p.name in moved}
         for face in self.places:
             if face.part in moved or stem(str(face.fluid)) in moved:
-                out |= self._face(face, around, inputs)
+                out |= self._face(face, there, inputs)
         return out
 
-    def _face(self, face: Place, around: Surroundings, inputs: Mapping[str, float]) -> dict[str, float]:
-        fluid, areas = stem(str(face.fluid)), self.area_ratio(around.machine, face.part, stem(str(face.fluid)))
+    def _face(self, face: Place, there: Films, inputs: Mapping[str, float]) -> dict[str, float]:
+        fluid = stem(str(face.fluid))
+        areas = self.area_ratio(there, face.part, fluid)
         if fluid in self.liquids:
             cell = sum(p.area or 0.0 for p in self.places if p.fluid == face.fluid)
-            a, b = (_conductance(w, fluid, cell * s, inputs) for w, s in ((self.around, 1.0), (around, areas)))
+            each = ((self.here, 1.0), (there, areas))
+            a, b = (_conductance(w.around, fluid, cell * s, inputs) for w, s in each)
             return {f"design film:{face.name}": b / a if a > 0.0 else areas}
-        old, new = (face_films(face.part, fluid, w) for w in (self.around, around))
+        old, new = (w.laws(face.part, fluid) for w in (self.here, there))
         names = {m: f"design film:{face.name}" + (f":{m}" if m else "") for m in old}
         ratio = {m: _value(new[m], inputs) / max(_value(old[m], inputs), 1e-12) for m in old if m in new}
         return {names[m]: areas * r for m, r in ratio.items() if names[m] in self.known}
 
-    def area_ratio(self, machine: Any, part: str, fluid: str) -> float:
+    def area_ratio(self, there: Films, part: str, fluid: str) -> float:
         """Of the faces between a part and a fluid: a jacket's by its own walls, the rest by those of the part."""
         name = fluid if fluid in self.liquids else part
-        return _walls(machine.part(name)) / self.walls[name]
+        return there.walls(name) / self.here.walls(name)
+
+
+class Films:
+    """Films and walls of a machine's parts, worked out once each: many faces of a part are alike."""
+
+    def __init__(self, around: Surroundings) -> None:
+        self.around = around
+        self._laws: dict[tuple[str, str], Mapping[str, Law]] = {}
+        self._walls: dict[str, float] = {}
+
+    def laws(self, part: str, fluid: str) -> Mapping[str, Law]:
+        """Mechanism -> law of its faces to a fluid."""
+        if (part, fluid) not in self._laws:
+            self._laws[part, fluid] = face_films(part, fluid, self.around)
+        return self._laws[part, fluid]
+
+    def walls(self, part: str) -> float:
+        """Area (m2) of a part's walls."""
+        if part not in self._walls:
+            self._walls[part] = _walls(self.around.machine.part(part))
+        return self._walls[part]
 
 
 def changed(old: Any, new: Any) -> set[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from shlex import quote
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +11,7 @@ from geom.errors import InputError
 from thermoscope.case_folder.columns import checked_columns, write_columns
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import Revision, save_history
-from thermoscope.case_folder.runs import at_revision
+from thermoscope.case_folder.runs import at_revision, by_interest, ends, mean_rows
 from thermoscope.commands.open_case import open_case_for_writing
 from thermoscope.commands.stored_diagnosis import saved_diagnosis
 from thermoscope.console.answer import Answer, Grid, cell
@@ -22,7 +23,8 @@ if TYPE_CHECKING:
     from validation.revision import revise
 
 NO_EVENT = "thermoscope explain diagnose first: it found no event in these"
-FEW = 4  # parameters named in a sentence
+FEW = 4  # parameters or places named in a sentence
+MOVED_K = 1.0  # what a step has to move where no sensor is, to be told
 
 
 def add(case: str, effect: str, anyway: bool, target: str | None) -> int:
@@ -88,9 +90,21 @@ def revised(case: str, step: Callable[..., revise.Revision], anyway: bool, targe
         longer = folder.history.and_then(recorded(result, evidence(folder, result)))
         save_history(folder.settings.model_file, longer, folder.history)
         write_columns(folder, longer.last.effects)
-    document = {**result.document(), "case": folder.case.name, "written": keep}
+    unseen = unmeasured(folder, result)
+    document = {**result.document(), "case": folder.case.name, "written": keep, "unmeasured": unseen}
     give(document, target, lambda: answer(document, folder, case))
     return 0 if keep else 1
+
+
+def unmeasured(folder: Folder, result: revise.Revision) -> list[dict[str, Any]]:
+    """Places without a sensor, the one that the step moved most first: at the end of the most telling test."""
+    test, network = by_interest(folder)[0], folder.case.model.network
+    read = {c.place for t in folder.case.tests for c in t.channels}
+    names = [n for n in mean_rows(network) if network.places[n].kind in ("part", "node") and n not in read]
+    before, after = (ends(case, test, names) for case in (folder.case, replace(folder.case, model=result.model)))
+    out = [{"place": n, "test": test.name, "before_C": a, "after_C": b}
+           for n, a, b in zip(names, before, after, strict=True)]  # fmt: skip
+    return sorted(out, key=lambda p: -abs(p["after_C"] - p["before_C"]))
 
 
 def recorded(result: revise.Revision, evidence: Mapping[str, float | str]) -> Revision:
@@ -142,7 +156,10 @@ def answer(document: Mapping[str, Any], folder: Folder, called: str) -> Answer:
     errors = Grid("", ["test", "role", "error before (K)", "after (K)"], rows, ["hold-out"])
     checks = [f"{'passed' if c['passed'] else 'FAILED'}  {c['check']}: {c['words']}" for c in document["checks"]]
     step = "explain diagnose" if document["action"] == "calibrate" else "test compare"
-    parts: list[Grid | str] = [errors, *checks, _fixed(document["parameters"]), _blind(document["parameters"])]
+    parts: list[Grid | str] = [
+        errors, *checks, _unseen(document["unmeasured"]), _fixed(document["parameters"]),
+        _blind(document["parameters"]),
+    ]  # fmt: skip
     return Answer(
         f"{name}: {verdict}; {document['why']}; {stored}.",
         parts,
@@ -155,6 +172,15 @@ def _fixed(parameters: Sequence[Mapping[str, Any]]) -> Grid:
     rows = [[p["name"], p["value"], p["unit"], *p["ci95"], profiled(p), *p["prior"][1:], note(p)] for p in seen]
     headers = ["parameter", "value", "unit", "from", "to", "by profile", "prior from", "prior to", "note"]
     return Grid("What the data fixed (95 %)", headers, rows, keep=["value", "unit", "from", "to"])
+
+
+def _unseen(places: Sequence[Mapping[str, Any]]) -> str:
+    """Where no reading says whether the step is right."""
+    moved = [p for p in places if abs(p["after_C"] - p["before_C"]) >= MOVED_K][:FEW]
+    each = [f"{p['place']} {p['before_C']:.1f} -> {p['after_C']:.1f} degC" for p in moved]
+    return (
+        f"No sensor checks: {', '.join(each)} at the end of {moved[0]['test']} (bands: use simulate)" if moved else ""
+    )
 
 
 def _blind(parameters: Sequence[Mapping[str, Any]]) -> str:

@@ -16,8 +16,8 @@ from geom.plugins import plugins
 from lumped.integration.balance import balance
 from lumped.integration.simulate import simulate
 from lumped.schemas.reader import known
-from thermoscope.case_folder.folder import Folder
-from thermoscope.case_folder.runs import before_last, by_interest, error_field, fields, held, steps
+from thermoscope.case_folder.folder import Folder, Progress
+from thermoscope.case_folder.runs import before_last, by_interest, error_field, fields, held, named_rows, steps
 from thermoscope.commands.open_case import open_case
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import give, progress
@@ -41,7 +41,7 @@ def picture(case: str, what: str, out: Path | None, target: str | None) -> int:
     if out is not None and (out.suffix != ".png" or out.is_dir()):
         raise InputError("is no name of a picture", f"--out {out}", "a file NAME.png")
     with progress() as tell:
-        subject = Subject(open_case(case, tell))
+        subject = Subject(open_case(case, tell), tell)
         file = out or Path("out") / f"{subject.folder.case.name}-{what}.png"
         tell(f"drawing {file}")
         pictures[what](subject, file)
@@ -54,6 +54,7 @@ class Subject:
     """What pictures are drawn of: a case, and the test that tells most, a never-used one if there is one."""
 
     folder: Folder
+    tell: Progress
 
     @cached_property
     def test(self) -> Test:
@@ -136,6 +137,32 @@ def _misses(s: Subject, png: Path) -> None:
     misses(s.nodes, found.mean, found.explained, sensors=seen, title=title, png=png).close()
 
 
+def _uncertainty(s: Subject, png: Path) -> None:
+    from thermoscope.bands import field_half95
+    from viz import sensors, uncertainty
+
+    half95 = field_half95(s.folder, s.test, s.nodes.parts, s.tell)
+    seen = sensors(held(s.folder, s.test), s.folder.positions)
+    title = f"{s.when}: 95 % band of the model; dots: sensors, measured minus model"
+    uncertainty(s.nodes, half95, sensors=seen, title=title, png=png).close()
+
+
+def _bands(s: Subject, png: Path) -> None:
+    from thermoscope.bands import along, posterior_of
+    from viz import Predicted, predicted
+
+    network, test = working(s.folder.case)[0], s.test
+    found = along(posterior_of(s.folder, s.tell), test.name, record(test, {}), named_rows(network, s.folder))
+    read = {f"sensor {c.name}": c.y for c in test.channels}
+    measured = {c.place for c in test.channels}
+    places = [
+        Predicted(n, found.y[:, k], found.half95[:, k], read.get(n))
+        for k, n in enumerate(found.names)
+        if n not in measured
+    ]
+    predicted(found.time, places, title=test.name, png=png)
+
+
 def _exploded(s: Subject, png: Path) -> None:
     from viz import exploded
 
@@ -197,9 +224,10 @@ def _errors(s: Subject, png: Path) -> None:
 
 
 FLAT: dict[str, Callable[[Subject, Path], None]] = {
-    "curves": _curves, "residuals": _residuals, "errors": _errors, "losses": _losses,
+    "curves": _curves, "bands": _bands, "residuals": _residuals, "errors": _errors, "losses": _losses,
 }  # fmt: skip
 PICTURES: dict[str, Callable[[Subject, Path], None]] = {
-    "field": _field, "difference": _difference, "misses": _misses, "exploded": _exploded, "parts": _parts,
-    "mesh": _mesh, "flux": _flux, "network": _network, "machine": _machine, "temperature": _temperature, **FLAT,
+    "field": _field, "difference": _difference, "misses": _misses, "uncertainty": _uncertainty,
+    "exploded": _exploded, "parts": _parts, "mesh": _mesh, "flux": _flux, "network": _network, "machine": _machine,
+    "temperature": _temperature, **FLAT,
 }  # fmt: skip

@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from concurrent.futures import Executor
 
 WORDS = {PEAK: "peak (degC)", SETTLING: "settling (min)", COPPER: "copper (W)", AUXILIARY: "pump and fan (W)"}
-MOST = 24  # designs that are written as machine files: evenly over the Pareto set
 
 
 def optimise(
@@ -115,7 +114,7 @@ def _spread(designs: Sequence[Design], count: int) -> list[int]:
 def _write(
     folder: Path, problem: Problem, designs: Sequence[Design], document: Mapping[str, Any], file: MachineFile | None
 ) -> list[str]:
-    """pareto.csv, pareto.html, and a machine file per design of the chosen ones."""
+    """pareto.csv, pareto.html, and a machine file per design."""
     from viz.live.designs import page
 
     rows = [{"design": d["design"], **{o: d[o] for o in problem.aimed}, **d["values"]} for d in document["designs"]]
@@ -126,11 +125,11 @@ def _write(
     out = [write_whole(folder / "pareto.csv", text.getvalue())]
     html = page(rows, problem.aimed, {v.name: short_key(v.name) for v in problem.space.variables}, folder.name)
     out.append(write_whole(folder / "pareto.html", html))
-    for k in _spread(designs, MOST) if file is not None else ():
+    for row, design in zip(rows, designs, strict=True) if file is not None else ():
         assert file is not None
-        name, does = rows[k]["design"], designs[k].performance.objectives
+        name, does = row["design"], design.performance.objectives
         said = [f"A design of {file.where}: " + ", ".join(f"{o} {does[o]:.4g}" for o in problem.aimed)]
-        values = problem.space.named(designs[k].x)
+        values = problem.space.named(design.x)
         out.append(write_whole(folder / f"{name}.toml", written(file, values, f"{file.machine.name}-{name}", said)))
     return [str(path) for path in out]
 

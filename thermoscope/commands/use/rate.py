@@ -31,7 +31,7 @@ from validation.rating.repeated_cycle import Lap, share_for_ever, time_to_limit
 
 POINTS = 6  # speeds of the envelope
 LOADS = 8  # loads of the map
-ENVELOPES = ("S1", "S2 60 s", "S2 10 s")
+QUICK = ("S1", "S2 60 min", "S2 60 s", "S2 10 s")  # forms over the speed where a repeated duty takes ten seconds each
 WARM = 0.75  # load at rest from which an overload begins warm
 
 
@@ -109,7 +109,8 @@ def document_of(folder: Folder, asked: Asked, sure: bool | None, tell: Progress)
     posterior = posterior_of(folder, tell) if asked.losses is None and wanted(model.network, sure) else None
     tell("envelope over the speed")
     speeds = _speeds(folder, op, asked)
-    envelope = [rated(model, op, limits, form, n) for form in ENVELOPES for n in speeds]
+    forms = FORMS if wanted(model.network, None) else QUICK
+    envelope = [rated(model, op, limits, form, n) for form in forms for n in speeds]
     tell("derating")
     load, main = here["S1"].load, op.inputs[op.main]
     return {
@@ -189,7 +190,7 @@ def answer(document: Mapping[str, Any]) -> Answer:
     first, reference = document["ratings"][0], document["reference"]
     main = reference["input"]
     band = "" if first["ci95"] is None else f" ({first['ci95'][0]:.4g} to {first['ci95'][1]:.4g})"
-    sentence = f"Continuous: {main} = {first['value']:.4g}{band}, limited by {first['at']}."
+    sentence = f"Continuous: {main} = {first['value']:.4g}{band}, limited by {first['at']}{_change(first)}."
     if not np.isfinite(first["value"]):
         sentence = f"Continuous: no {main} that this model knows reaches a limit."
     rows = [[r["form"], r["value"], *(r["ci95"] or (None, None)), r["at"], r["before"], r["change_percent"]]
@@ -213,6 +214,14 @@ def answer(document: Mapping[str, Any]) -> Answer:
     over_speed = ["form", "speed (1/min)", main, "95 % from", "to", "limited by", "before"]
     parts.append(Grid("Over the speed", over_speed, envelope, keep=["speed (1/min)", main]))
     return Answer(sentence, parts, "--json FILE; --limit, --at, --losses, --cycle, --map")
+
+
+def _change(first: Mapping[str, Any]) -> str:
+    """How much more or less than the model before its last step said."""
+    change = first["change_percent"]
+    if change is None:
+        return ""
+    return f"; {abs(change):.3g} % {'more' if change > 0.0 else 'less'} than the model before its last step said"
 
 
 def _percent(shares: Sequence[float | None]) -> list[float | None]:

@@ -21,7 +21,7 @@ from thermoscope.bands import along, documents, posterior_of, wanted
 from thermoscope.case_folder.cycle import Cycle, find_cycle, load_cycle
 from thermoscope.case_folder.files import write_whole
 from thermoscope.case_folder.folder import Folder
-from thermoscope.case_folder.runs import named_rows, sensors
+from thermoscope.case_folder.runs import hot_spots, named_rows, sensors
 from thermoscope.commands.model.error_budget import budget, in_short
 from thermoscope.commands.open_case import PACKAGE, open_case
 from thermoscope.commands.use.simulate_readings import readings, short_of
@@ -89,12 +89,15 @@ def _ran(
     network = thermal(network)
     residuals: tuple[float, ...] = ()
     if cycle.drive is None:
-        run = integrated(network, record, values, list(rows.values()))
+        run = integrated(network, record, values, list(rows.values()), keep_states=True)
     else:
         found = coupled(network, record, cycle.drive, cycle.watched, values, list(rows.values()))
         run, record, residuals = found.run, replace(record, inputs=found.inputs), found.residuals
-    inside = len(rows) - len(sensors(folder))
-    y = np.column_stack([run.y[:, :inside], readings(whole, folder, cycle.name, record, run.y[:, inside:])])
+    inside, hot = len(rows) - len(sensors(folder)), hot_spots(network, run.z)
+    hottest = [run.z[:, r.index] @ r.weights for r in hot.values()]
+    read = readings(whole, folder, cycle.name, record, run.y[:, inside:])
+    y, named = np.column_stack([run.y[:, :inside], *hottest, read]), list(rows.items())
+    rows = dict([*named[:inside], *hot.items(), *named[inside:]])
     checked_run(y, record.time, tuple(rows), network)
     heat = audit(network, record, values)
     if heat.mismatch > MISMATCH:

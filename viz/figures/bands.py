@@ -1,0 +1,65 @@
+"""Predicted temperatures over time with their 95 % bands, at sensors and at places without one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from viz.colours import BLUE, LIGHT, ORANGE
+from viz.data import short
+from viz.figures import paper
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+Array = NDArray[np.float64]
+COLUMNS, MOST = 3, 12  # panels: more are not read
+
+
+@dataclass(frozen=True)
+class Predicted:
+    """One place.  y, half95 (nt,) degC and K;  read (nt,) degC of a sensor there, None where there is none"""
+
+    name: str
+    y: Array
+    half95: Array
+    read: Array | None = None
+
+
+@paper.styled
+def predicted(time: Array, places: Sequence[Predicted], *, title: str = "", png: str | Path | None = None) -> Figure:
+    """A panel per place, the least sure first: the model with its band, and what a sensor read.  time (nt,) s
+
+    Where no sensor reads, model and band are orange.
+    """
+    shown = sorted(places, key=lambda p: -float(p.half95.max()))[:MOST]
+    columns = min(COLUMNS, len(shown))
+    rows = -(-len(shown) // columns)
+    figure, axes = paper.subplots(3.4 * columns, 2.1 * rows + 0.5, rows, columns)
+    for ax, place in zip(axes, shown, strict=False):
+        _panel(ax, np.asarray(time, float) / 60.0, place)
+    for ax in axes[len(shown) :]:
+        ax.set_visible(False)
+    left = f"; {len(shown)} of {len(places)} places, the least sure" if len(shown) < len(places) else ""
+    figure.suptitle(f"{title}{left}", fontsize=10, color=LIGHT.ink)
+    figure.supxlabel("time (min)", fontsize=9.5, color=LIGHT.ink)
+    figure.supylabel("temperature, 95 % band (°C)", fontsize=9.5, color=LIGHT.ink)
+    return paper.saved(figure, png)
+
+
+def _panel(ax: Axes, minutes: Array, place: Predicted) -> None:
+    colour = BLUE if place.read is not None else ORANGE
+    ax.fill_between(minutes, place.y - place.half95, place.y + place.half95, color=colour, alpha=0.25, lw=0)
+    if place.read is not None:
+        ax.plot(minutes, place.read, color=LIGHT.ink, lw=1.0)
+    ax.plot(minutes, place.y, color=colour)
+    ax.margins(x=0)
+    ax.set_title(short(place.name.removeprefix("sensor ")))
+    word = "" if place.read is not None else "no sensor, "
+    ax.set_title(f"{word}± {float(place.half95.max()):.1f} K", loc="right", fontweight="normal", fontsize=8.5)

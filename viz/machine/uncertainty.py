@@ -1,0 +1,51 @@
+"""How sure the model is, painted on the machine: the half width of its 95 % band."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from viz.colours import LIGHT, Theme, power
+from viz.data import Sensor
+from viz.machine.field import paint
+from viz.machine.thermocouples import LABELS, marked
+from viz.rendering import scene
+from viz.rendering.cut import QUARTER, Wedge, cut_away
+from viz.rendering.nodes import SplitMesh, on_nodes
+from viz.rendering.scene import TITLE, Room, View
+
+if TYPE_CHECKING:
+    import pyvista
+
+Array = NDArray[np.float64]
+
+
+def uncertainty(
+    nodes: SplitMesh,
+    half95: Array,
+    *,
+    sensors: Sequence[Sensor] = (),
+    title: str = "",
+    wedge: Wedge | None = QUARTER,
+    view: View | None = None,
+    theme: Theme = LIGHT,
+    png: str | Path | None = None,
+) -> pyvista.Plotter:
+    """Half the width of the 95 % band (K), the darker the less sure; the scale begins at zero.
+
+    half95 : (n_nodes,) K;  sensors : where it was measured
+    """
+    p, view, surface = scene.plotter(theme), view or View(), cut_away(nodes, wedge)
+    K = on_nodes(nodes, half95)
+    scene.look(p, surface.points, view, Room(0.16, 0.24, TITLE) if sensors else Room(0.0, 0.1, TITLE))
+    seen = marked(surface, sensors, LABELS, np.array(p.camera.position))
+    paint(p, seen.cut.solid, K, (0.0, float(K.max())), theme, colours=power(), outlined=surface)
+    scene.colour_bar(p, "± K", theme)
+    scene.headline(p, title, theme)
+    seen.draw(p, surface, view, theme)
+    scene.save(p, png)
+    return p
