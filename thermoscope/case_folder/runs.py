@@ -70,9 +70,7 @@ def held(folder: Folder, test: Test) -> Comparison:
 
     earlier = before_last(folder)
     before = None if earlier is None else readings(earlier, test)
-    return Comparison(
-        test, readings(folder.case, test), folder.compared.limits[test.name], before, accepted(folder.case, test)
-    )
+    return Comparison(test, readings(folder.case, test), folder.limits(test), before, accepted(folder.case, test))
 
 
 def accepted(case: Case, test: Test) -> tuple[tuple[float, float], ...]:

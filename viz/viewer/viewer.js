@@ -206,8 +206,14 @@ class Viewer {
     gl.texImage2D(gl.TEXTURE_2D, 0, gl.RG32F, this.wide, this.high_, 0, gl.RG, gl.FLOAT, v);
     $("title").textContent = `${data.title}: ${this.test.name} at ${(s / 60).toFixed(0)} min`;
     $("time").value = 1000 * time;
+    this.described();
     this.readings();
     this.dirty = true;
+  }
+  described() {  // alternative texts
+    const colour = $("layer").selectedOptions[0].textContent, unit = $("unit").textContent;
+    $("gl").ariaLabel = `${$("title").textContent}, coloured by ${colour}. Arrow keys turn it, plus and minus zoom, space plays.`;
+    $("bar").ariaLabel = `colours from ${this.range[0]} to ${this.range[1]} ${unit}`;
   }
   slopes() {  // of every tetrahedron a, b, c, d: grad T = (T_b - T_a) u + (T_c - T_a) v + (T_d - T_a) w; u, v, w, volume
     const t = this.tets, p = this.points, out = new Float32Array(10 * t.length / 4);
