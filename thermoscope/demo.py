@@ -90,11 +90,22 @@ def left_over(found: Mapping[str, Any], errors: Mapping[str, Any]) -> str:
     said = [r["words"] for r in found.get("remainder", []) if r["channel"] == worst["channel"]]
     if said:
         return str(said[0])
-    test_asked = f"; {found['next_tests'][0]['test']} could" if found.get("next_tests") else ""
     return (
         f"{worst['channel']} is still {worst['rmse_K']:.1f} K off in {test} (limit {worst['limit_K']:.1f} K): within "
-        f"the doubts of the model, these data cannot tell why{test_asked}."
+        f"the doubts of the model, these data cannot tell why{next_likely(found)}."
     )
+
+
+def next_likely(found: Mapping[str, Any]) -> str:
+    """The most probable second effect and the test that would tell."""
+    known = {c["effect"]: c for c in found["candidates"] if c["isolating_test"]}
+    for row in found["odds"]:
+        more = [e for e in row["effects"] if e not in found["named"]]
+        if len(row["effects"]) == len(found["named"]) + 1 and len(more) == 1 and more[0] in known:
+            (name,), one = more, known[more[0]]
+            where = name.partition("@")[2].partition(" in ")[0]
+            return f"; likeliest {one['title']} at {where} ({100 * row['probability']:.0f} %): {one['isolating_test']}"
+    return ""
 
 
 def opened(case: Path) -> Folder:
