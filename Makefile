@@ -24,7 +24,7 @@ benchmark: setup  ## every benchmark at a small size, results in out/benchmarks;
 	@echo "== hidden_effects"; $(BIN)/python benchmarks/hidden_effects.py --seeds dev --count 2 --classes nothing one --json out/benchmarks/hidden_effects.json
 
 designs: setup  ## Pareto sets of the three cooling layouts of the first paper, in out/designs
-	@$(MAKE) -j2 designs-air designs-jacket-one designs-jacket-two
+	@$(MAKE) -j3 designs-air designs-jacket-one designs-jacket-two  # at once: no core waits for the last
 
 designs-%:
 	@$(BIN)/thermoscope use optimise series-dc-100kw-$* --limit winding=155 --torque 50 --out out/designs/$*

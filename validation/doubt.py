@@ -39,6 +39,8 @@ TABLE: Mapping[str, Line] = MappingProxyType({
     "warming": Line(0.01, "1/K", "grease thins by about a per cent and kelvin"),
     # what no parameter of a fit stands for: the covariance of the model error
     "group": Line(0.1, "1", "links that share a parameter differ by what drawings and tolerances say"),
+    "joint": Line(0.25, "1", "gaps of one kind of contact scatter by a factor of two: bearings 0.2 to 0.4 mm"),
+    "bearing": Line(0.25, "1", "friction of two bearings of a kind differs with load, grease and seals"),
     "split": Line(0.1, "1", "how one loss divides over the nodes that carry it"),
     "conductivity": Line(0.15, "1", "catalogue values of laminated and wound parts"),
     "capacity": Line(0.05, "1", "masses by drawing, heat capacities by catalogue"),

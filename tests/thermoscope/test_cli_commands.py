@@ -95,8 +95,9 @@ def test_places_without_a_sensor_that_a_step_moved_are_told(story):
     assert [(p["place"], p["test"]) for p in found] == [("winding", "town")]
     assert found[0]["after_C"] > found[0]["before_C"] + MOVED_K
     said = _unseen(found)
-    assert said.startswith("No sensor checks: winding ")
-    assert "at the end of town" in said
+    assert said.startswith("No sensor sees: winding ")
+    assert len(said) <= 80
+    assert len(_unseen([*found, {**found[0], "place": 60 * "x"}])) == len(said)
     assert _unseen([{**found[0], "after_C": found[0]["before_C"]}]) == ""
 
 

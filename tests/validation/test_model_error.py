@@ -6,11 +6,14 @@ import numpy as np
 import pytest
 from playground import Truth, network
 
+from lumped.model.build import bare_network, node_link, node_source
+from lumped.model.network import Parameter
+from lumped.transfer.laws import Fixed, InputPower
 from validation.calibration.calibrate import InnerProduct, minimise
 from validation.calibration.unknowns import working
 from validation.comparison.linearisation import segments
 from validation.doubt import USUAL
-from validation.inference.model_error import alone, bridges, model_error, with_doubts
+from validation.inference.model_error import alone, bridges, joints, model_error, with_doubts
 from validation.measurement.noise import first_noise
 from validation.measurement.operators import behind
 
@@ -46,6 +49,26 @@ def test_what_a_parameter_moves_is_doubted_once_also_where_its_exponents_are_fre
     net, _ = working(case)
     assert [x for x in (*net.links, *net.sources) if x.origin]
     assert alone(net) >= alone(network())
+
+
+def test_contacts_and_bearings_of_one_parameter_differ_more_than_films_of_one():
+    """Two seats share a parameter; a gap shares one with what speed adds to it, and films to air share one."""
+    net = bare_network("ends", dict.fromkeys(("rotor", "left", "right", "shell"), 100.0), ("air",))
+    links = [node_link(net, n, "link", *n.split("-"), Fixed(2.0)) for n in ("left-shell", "right-shell", "rotor-shell")]
+    links += [node_link(net, "blown", "link", "rotor", "shell", InputPower(1.0, (("speed", 1.0, 0.8),)))]
+    links += [node_link(net, f"film {n}", "film", n, "air", Fixed(1.0)) for n in ("left", "right")]
+    heat = [node_source(net, f"friction {n}", "friction", {n: 1.0}, Fixed(5.0)) for n in ("left", "right")]
+    heat += [node_source(net, f"iron {n}", "iron", {n: 1.0}, Fixed(5.0)) for n in ("rotor", "shell")]
+    shared = {"seats": ("left-shell", "right-shell"), "gap": ("rotor-shell", "blown"),
+              "films": ("film left", "film right"), "friction": ("friction left", "friction right"),
+              "iron": ("iron rotor", "iron shell")}  # fmt: skip
+    parameters = tuple(Parameter(n, tuple((t, 1.0) for t in of)) for n, of in shared.items())
+    net = net.extended(links, heat, parameters)
+    assert joints(net) == {"left-shell", "right-shell"}
+    size = {p.name.removeprefix("doubt:"): p.prior_sd for p in with_doubts(net, USUAL)[1]}
+    lines = {"seats": "joint", "gap": "group", "films": "group", "friction": "bearing", "iron": "split"}
+    for group, line in lines.items():
+        assert {size[t] for t in shared[group]} == {USUAL[line]}
 
 
 def test_a_core_follows_its_node():

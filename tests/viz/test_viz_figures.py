@@ -46,7 +46,7 @@ DRAW = {
     "confusion": lambda png: scores.confusion(["a@x", "b@y"], np.array([[1.0, 0.83], [0.83, 1.0]]), png=png),
 }
 SHOWS = {
-    "predicted": ["yoke", "± 1.7 K", "armature", "no sensor, ± 11.4 K", "road-1", "95 % band (°C)"],
+    "predicted": ["yoke", "± 1.7 K", "armature", "no sensor", "± 11.4 K", "road-1", "95 % band (°C)"],
     "curves": ["flange.right", "earlier model", "temperature (°C)"],
     "residuals": ["flange.right", "measured − model (K)", "time (min)"],
     "before_after": ["4.85 K", "0.93 K", "road-2", "rms error (K)"],

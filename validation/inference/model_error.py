@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from lumped.integration.simulate import simulate
 from lumped.model.network import Link, Network, Parameter, Place, Row
 from lumped.model.quantities import AIR, LIQUID
+from lumped.model.topology import FRICTION
 from lumped.transfer.laws import CONSTANT, Constant, Fixed, Inputs, Law, TemperatureLaw
 from validation.calibration.model_form import KNOTS, SETTLE_K, Table, is_film
 from validation.case import Channel, Test
@@ -85,17 +86,41 @@ def alone(network: Network) -> set[str]:
 
 def _each_link(network: Network, doubt: Doubt) -> Iterator[Parameter]:
     """A link that shares its parameter with others, or has none, may differ from them."""
-    single, shared = alone(network), {t for p in network.parameters for t, _ in p.targets}
+    single, own = alone(network), _shared(network)
+    pairs = joints(network)
     for x in network.links:
         if x.name not in single and x.kind != "stream" and not x.origin:
-            yield _log(x.name, doubt["group"] if x.name in shared or is_film(network, x) else doubt["conductivity"])
+            alike = "joint" if x.name in pairs else "group"
+            yield _log(x.name, doubt[alike if x.name in own or is_film(network, x) else "conductivity"])
 
 
 def _each_loss(network: Network, doubt: Doubt) -> Iterator[Parameter]:
-    single = alone(network)
+    """Bearings of one parameter differ more than the parts of one loss."""
+    single, own = alone(network), _shared(network)
     for s in network.sources:
         if s.name not in single and not s.origin:
-            yield _log(s.name, doubt["split"])
+            yield _log(s.name, doubt["bearing" if s.kind in FRICTION and s.name in own else "split"])
+
+
+def _shared(network: Network) -> set[str]:
+    """What some parameter moves."""
+    return {t for p in network.parameters for t, _ in p.targets}
+
+
+def joints(network: Network) -> set[str]:
+    """Constant links between bodies that share a parameter with one between two others: contacts of one drawing."""
+    bodies = {p.name for p in solid(network)}
+    own = {x.name: frozenset(x.places) for x in network.links if _is_constant(x) and bodies >= set(x.places)}
+    out: set[str] = set()
+    for p in network.parameters:
+        mine = {t: own[t] for t, _ in p.targets if t in own}
+        if len(set(mine.values())) > 1:
+            out |= set(mine)
+    return out
+
+
+def _is_constant(link: Link) -> bool:
+    return isinstance(link.law, Fixed) and link.law.temperature == CONSTANT and link.kind not in ("stream", "film")
 
 
 def _each_capacity(network: Network, doubt: Doubt) -> Iterator[Parameter]:

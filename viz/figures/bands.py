@@ -61,5 +61,6 @@ def _panel(ax: Axes, minutes: Array, place: Predicted) -> None:
     ax.plot(minutes, place.y, color=colour)
     ax.margins(x=0)
     ax.set_title(short(place.name.removeprefix("sensor ")))
-    word = "" if place.read is not None else "no sensor, "
-    ax.set_title(f"{word}± {float(place.half95.max()):.1f} K", loc="right", fontweight="normal", fontsize=8.5)
+    ax.set_title(f"± {float(place.half95.max()):.1f} K", loc="right", fontweight="normal", fontsize=8.5)
+    if place.read is None:
+        ax.text(0.03, 0.95, "no sensor", transform=ax.transAxes, va="top", color=LIGHT.ink, fontsize=8.5)

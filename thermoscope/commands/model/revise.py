@@ -23,8 +23,9 @@ if TYPE_CHECKING:
     from validation.revision import revise
 
 NO_EVENT = "thermoscope explain diagnose first: it found no event in these"
-FEW = 4  # parameters or places named in a sentence
+FEW = 4  # parameters named in a sentence
 MOVED_K = 1.0  # what a step has to move where no sensor is, to be told
+LINE = 75  # letters, so that its unit still fits into 80
 
 
 def add(case: str, effect: str, anyway: bool, target: str | None) -> int:
@@ -97,10 +98,14 @@ def revised(case: str, step: Callable[..., revise.Revision], anyway: bool, targe
 
 
 def unmeasured(folder: Folder, result: revise.Revision) -> list[dict[str, Any]]:
-    """Places without a sensor, the one that the step moved most first: at the end of the most telling test."""
+    """Bodies without a sensor, the one that the step moved most first: at the end of the most telling test.
+
+    Only those that losses heat; nobody limits the others.
+    """
     test, network = by_interest(folder)[0], folder.case.model.network
     read = {c.place for t in folder.case.tests for c in t.channels}
-    names = [n for n in mean_rows(network) if network.places[n].kind in ("part", "node") and n not in read]
+    heated = {s.place for s in network.sources}
+    names = [n for n in mean_rows(network) if n in heated - read and network.places[n].kind in ("part", "node")]
     before, after = (ends(case, test, names) for case in (folder.case, replace(folder.case, model=result.model)))
     out = [{"place": n, "test": test.name, "before_C": a, "after_C": b}
            for n, a, b in zip(names, before, after, strict=True)]  # fmt: skip
@@ -154,10 +159,11 @@ def answer(document: Mapping[str, Any], folder: Folder, called: str) -> Answer:
     stored = where if document["written"] else "nothing written (--anyway writes it)"
     rows = [[t["name"], t["role"], t["rmse_K"]["before"], t["rmse_K"]["after"]] for t in document["tests"]]
     errors = Grid("", ["test", "role", "error before (K)", "after (K)"], rows, ["hold-out"])
-    checks = [f"{'passed' if c['passed'] else 'FAILED'}  {c['check']}: {c['words']}" for c in document["checks"]]
+    failed = [f"FAILED  {c['check']}: {c['words']}" for c in document["checks"] if not c["passed"]]
+    passed = [f"passed  {c['check']}: {c['words']}" for c in document["checks"] if c["passed"]]
     step = "explain diagnose" if document["action"] == "calibrate" else "test compare"
     parts: list[Grid | str] = [
-        errors, *checks, _unseen(document["unmeasured"]), _fixed(document["parameters"]),
+        errors, *failed, _unseen(document["unmeasured"]), *passed, _fixed(document["parameters"]),
         _blind(document["parameters"]),
     ]  # fmt: skip
     return Answer(
@@ -175,12 +181,15 @@ def _fixed(parameters: Sequence[Mapping[str, Any]]) -> Grid:
 
 
 def _unseen(places: Sequence[Mapping[str, Any]]) -> str:
-    """Where no reading says whether the step is right."""
-    moved = [p for p in places if abs(p["after_C"] - p["before_C"]) >= MOVED_K][:FEW]
-    each = [f"{p['place']} {p['before_C']:.1f} -> {p['after_C']:.1f} degC" for p in moved]
-    return (
-        f"No sensor checks: {', '.join(each)} at the end of {moved[0]['test']} (bands: use simulate)" if moved else ""
-    )
+    """Where no reading says whether the step is right: as many places as a line holds."""
+    moved = [p for p in places if abs(p["after_C"] - p["before_C"]) >= MOVED_K]
+    said = ""
+    for each in (f"{p['place']} {p['before_C']:.1f} -> {p['after_C']:.1f}" for p in moved):
+        longer = f"{said}, {each}" if said else f"No sensor sees: {each}"
+        if said and len(longer) > LINE:
+            break
+        said = longer
+    return f"{said} degC" if said else ""
 
 
 def _blind(parameters: Sequence[Mapping[str, Any]]) -> str:

@@ -93,9 +93,9 @@ def _ran(
     else:
         found = coupled(network, record, cycle.drive, cycle.watched, values, list(rows.values()))
         run, record, residuals = found.run, replace(record, inputs=found.inputs), found.residuals
-    assert run.z is not None, "states are kept"
-    inside, hot = len(rows) - len(sensors(folder)), hot_spots(network, run.z)
-    hottest = [run.z[:, r.index] @ r.weights for r in hot.values()]
+    z = np.asarray(run.z)
+    inside, hot = len(rows) - len(sensors(folder)), hot_spots(network, z)
+    hottest = [z[:, r.index] @ r.weights for r in hot.values()]
     read = readings(whole, folder, cycle.name, record, run.y[:, inside:])
     y, named = np.column_stack([run.y[:, :inside], *hottest, read]), list(rows.items())
     rows = dict([*named[:inside], *hot.items(), *named[inside:]])
