@@ -101,7 +101,8 @@ def _bar(session: Session) -> None:
 
 
 def _button(text: str, name: str, icon: str, act: Any, disabled: str) -> None:
-    v3.VBtn(text, id=name, prepend_icon=icon, click=act, disabled=(disabled,), variant="text")
+    said = told("aria-label", text)  # narrow pages show the icon alone
+    v3.VBtn(text, id=name, prepend_icon=icon, click=act, disabled=(disabled,), variant="text", **said)
 
 
 def _machine(session: Session) -> None:
