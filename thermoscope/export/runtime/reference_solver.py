@@ -30,7 +30,7 @@ def law(g, hot, cold):
         "power": lambda: (d * d + 1e-4) ** (g["a"] / 2),
         "linear": lambda: 1 + g["a"] * (hot - g["b"]),
         "radiation": lambda: 5.670374419e-8 * (h * h + c * c) * (h + c),
-        "table": lambda: np.interp(d, g["x"], g["y"]),
+        "table": lambda: np.interp(hot - cold if g["x"][0] < 0 else d, g["x"], g["y"]),
     }[g["kind"]]()
 
 
