@@ -33,9 +33,11 @@ def tempered(answer: Mapping[str, Any], temper: Temper, asked: Temper = USED) ->
     known = [o["log_evidence"] for o in answer["odds"] if o.get("log_evidence") is not None]
     middle, most = (float(np.median(known)), max(known)) if known else (0.0, 0.0)
     turn = 1.0 / divisor(temper, most) - 1.0 / divisor(asked, most)
+    evidence = [middle if (b := o.get("log_evidence")) is None else b for o in answer["odds"]]
+    top = max(turn * x for x in evidence) if evidence else 0.0
     rows = [
-        {**o, "probability": o["probability"] * exp(turn * (middle if (b := o.get("log_evidence")) is None else b))}
-        for o in answer["odds"]
+        {**o, "probability": o["probability"] * exp(turn * x - top)}
+        for o, x in zip(answer["odds"], evidence, strict=True)
     ]
     whole = sum(o["probability"] for o in rows)
     rows = [{**o, "probability": o["probability"] / whole} for o in rows]

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError
 from lumped.correlations import Info, RangeWarning
+from lumped.transfer.circuit import WARMTH
 from lumped.transfer.laws import CONSTANT, FILMS, FIRST_C, STEP_K, Array, FilmTable, Inputs, Law, TemperatureLaw
 from lumped.transfer.laws import Table as TableLaw
 from lumped.transfer.properties import Fluid
@@ -24,7 +25,6 @@ POINTS = 97  # of a table, closer near rest, where a film changes most
 TOLERANCE, SMALL = 3e-3, 1.0  # relative, of a film of at least SMALL (W/m2/K)
 MOST = 6  # products: where regimes change the speed of that turns with temperature, and no few products follow
 USUAL, BEYOND = (0.0, 120.0), 0.25  # degC, film temperatures of machines; weight of errors beyond
-WARMTH = tuple(float(T) for T in range(0, 161, 5))  # degC, at which films of liquids are tabulated
 Film = Callable[[float], tuple[float, Info]]
 Indices = NDArray[np.int64]
 

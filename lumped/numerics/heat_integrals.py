@@ -1,4 +1,4 @@
-"""Heat through the terms at given states, weighted and summed. Compiled on its own."""
+"""Heat through the terms at given states, weighted and summed. It is compiled on its own."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One instant of a network: heat into every state and how it turns with temperature. Compiled on its own."""
+"""One instant of a network: heat into every state and how it turns with temperature. It is compiled on its own."""
 
 from __future__ import annotations
 

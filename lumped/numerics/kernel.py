@@ -9,7 +9,7 @@ equations, leaves over (Hairer and Wanner 1996, sec. IV.8, filtered by the step'
 F(t1, x1) serves the next step. The error is of second order. What the step adds to the error of the run is that times
 W^-1 gamma h G, of third order; what was there decays by W^-1 C.
 Where all coefficients are positive a step must also keep the maximum principle: no node colder than all that came
-before, none warmer without a source that heats it. What only some runs need is compiled when it is first asked for.
+before, none warmer without a source that heats it. What only some runs need is compiled when first asked for.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Rest: the states without heat capacity at their balance, the others as they are. Compiled on its own."""
+"""Rest: the states without heat capacity at their balance, the others as they are. It is compiled on its own."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How the readings of a run answer to its multipliers: exact tangents of the scheme. Compiled on its own.
+"""How the readings of a run answer to its multipliers: exact tangents of the scheme. It is compiled on its own.
 
 They differentiate exactly the equations of stages.py, second derivatives of the temperature laws included, along the
 steps that the kernel took: those are the same, whatever the multipliers.

@@ -84,8 +84,9 @@ def _segment(points, start, end, at):
 
 @pasted
 def _tabulated(points, first, last, d, out):
-    """Piecewise linear in |d| between two indices, flat outside."""
-    at = abs(d)
+    """Piecewise linear in |d| between two indices, flat outside; in d itself where the table begins below 0."""
+    signed = points[first, 0] < 0.0
+    at = d if signed else abs(d)
     out[1] = 0.0
     if at >= points[last, 0]:
         out[0] = points[last, 1]
@@ -95,7 +96,7 @@ def _tabulated(points, first, last, d, out):
         k = _segment(points, first, last, at)
         slope = (points[k + 1, 1] - points[k, 1]) / (points[k + 1, 0] - points[k, 0])
         out[0] = points[k, 1] + slope * (at - points[k, 0])
-        out[1] = slope if d >= 0.0 else -slope
+        out[1] = slope if signed or d >= 0.0 else -slope
     out[2] = -out[1]
 
 

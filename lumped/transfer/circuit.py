@@ -26,7 +26,7 @@ from lumped.transfer.reversal import Direction, OneWay
 
 RANGE = (0.0, *(2.0**k for k in np.arange(-5, 2.01, 0.125)))  # films are tabulated at these times the declared flow
 PER_M3S = {"l_min": 1 / 60000.0, "m3_h": 1 / 3600.0}
-WARMTH = tuple(float(T) for T in range(0, 161, 5))  # degC, at which films are tabulated where they follow
+WARMTH = tuple(float(T) for T in range(-40, 161, 5))  # degC, at which films are tabulated where they follow
 TANK_M3 = 5e-5  # of the pipe in which branches meet
 
 Edge = tuple[str, str, float]  # from, to, share of the flow

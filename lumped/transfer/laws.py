@@ -50,7 +50,10 @@ class Linear(TemperatureLaw):
 
 @dataclass(frozen=True)
 class Table(TemperatureLaw):
-    """Piecewise linear in |hot - cold|: `value` at `difference` (K, increasing from 0), held flat outside."""
+    """Piecewise linear in |hot - cold|: `value` at `difference` (K, increasing from 0), held flat outside.
+
+    A table that begins below 0 is one of hot - cold with its sign: with no cold side, of a temperature (degC).
+    """
 
     difference: tuple[float, ...]
     value: tuple[float, ...]

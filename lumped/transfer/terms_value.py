@@ -19,7 +19,8 @@ def temperature_value(law: TemperatureLaw, hot: float, cold: float) -> float:
     if isinstance(law, Linear):
         return 1.0 + law.alpha * (hot - law.reference)
     if isinstance(law, Table):
-        return float(np.interp(abs(hot - cold), law.difference, law.value))
+        d = hot - cold if law.difference[0] < 0.0 else abs(hot - cold)
+        return float(np.interp(d, law.difference, law.value))
     if isinstance(law, FilmTable):
         films = np.reshape(law.value, (FILMS, -1))
         along = [np.interp(abs(hot - cold), law.difference, row) for row in films]

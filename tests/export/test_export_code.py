@@ -70,6 +70,15 @@ def curved():
     return net.extended(links, heat), Record(time, {}, {"air": np.array([20.0, 20.0, 5.0, 5.0, 45.0])}, 20.0)
 
 
+def test_a_table_that_begins_below_zero_minds_the_sign():
+    """A node colder than the air, then warmer."""
+    net, given = curved()
+    signed = Fixed(0.4, Table((-40.0, -10.0, 0.0, 40.0), (5.0, 3.0, 1.0, 0.2)))
+    network = net.extended([node_link(net, "s", "film", "body", "air", signed)], [])
+    given = Record(given.time, {}, {"air": np.array([60.0, 60.0, 5.0, 5.0, 25.0])}, 20.0)
+    assert difference(Compiled(packed(network, {}, [], states(network))), network, given, {}) < 0.02
+
+
 @pytest.mark.parametrize(("flags", "within"), [((), 0.02), (("-DTHERMAL_REAL=float",), 0.05)], ids=["double", "float"])
 def test_temperature_laws_jumps_and_single_precision(flags, within):
     network, given = curved()

@@ -120,7 +120,7 @@ def test_cells_along_an_even_wall_are_the_exact_exponential():
             assert share == pytest.approx(-np.expm1(-N), rel=1e-9)
 
 
-@pytest.mark.parametrize("inlet", [5.0, 20.0, 60.0])
+@pytest.mark.parametrize("inlet", [-15.0, 5.0, 20.0, 60.0])
 def test_films_follow_the_coolant_s_temperature(inlet):
     """What holds at rest with films fixed at the mean temperature of the coolant holds with films that follow it.
 

@@ -20,30 +20,49 @@ from validation.conditions.refine import TRIED, around
 from validation.effects import Effect, extended
 from validation.effects.during import During
 from validation.effects.time_window import Event, Span
-from validation.inference.evidence import Evidence, extended_prior, projected, replaced
-from validation.inference.posterior import Hypothesis, weights
+from validation.inference.evidence import Evidence, extended_prior, projected, refit_onwards, replaced
+from validation.inference.posterior import Hypothesis, probabilities
+from validation.inference.refits import TOLD
 from validation.inference.score import score, total
 
 Array = NDArray[np.float64]
-FITTED = 4  # of the most probable refits: an event in any of them gets its ends anew
+ROUNDS = 3  # of moving the ends and refitting with them: by then they stand within a sample
+FITTED = 4  # of the most probable refits: an event in any of them that will be told gets its ends anew
 
 
 def retimed(evidence: Evidence, hypotheses: Sequence[Hypothesis], reach_s: Mapping[str, float]) -> Evidence:
-    """The evidence with the ends of its most probable events moved to where their refits want them; itself where none
-    moves.  reach_s : test -> how far an end may move"""
-    moved: dict[int, During] = {}
-    order = [h for i in np.argsort(-weights(hypotheses), kind="stable") if (h := hypotheses[i]).fit and h.members]
-    for h in order[:FITTED]:
+    """The evidence with the ends of its most probable events moved to where their refits want them, again and again
+    until none moves; itself where none does.  reach_s : test -> how far an end may move at once"""
+    P = probabilities(hypotheses)
+    few = [hypotheses[i] for i in np.argsort(-P, kind="stable") if P[i] > TOLD and hypotheses[i].members][:FITTED]
+    for _ in range(ROUNDS):
+        new = moved(evidence, few, reach_s)
+        if not new:
+            break
+        evidence = replaced(joined(evidence, list(new.values()), evidence.fit.values), list(new))
+        few = [refitted_there(evidence, h) if set(h.members) & set(new) else h for h in few]
+    return evidence
+
+
+def refitted_there(evidence: Evidence, h: Hypothesis) -> Hypothesis:
+    """A hypothesis whose event has new ends."""
+    assert h.fit is not None
+    return replace(h, fit=refit_onwards(evidence, h.members, h.fit, finely=True))
+
+
+def moved(evidence: Evidence, hypotheses: Sequence[Hypothesis], reach_s: Mapping[str, float]) -> dict[int, During]:
+    """Events whose refits want other ends, with these."""
+    found: dict[int, During] = {}
+    for h in hypotheses:
         for k in h.members:
             effect = evidence.effects[k]
-            if k in moved or not isinstance(effect, During) or not effect.event or throughout(evidence, effect.event):
+            if k in found or not isinstance(effect, During) or not effect.event or throughout(evidence, effect.event):
                 continue
             if h.fit is not None:
-                moved[k] = with_ends(effect, ends_of(evidence, h.fit, effect, effect.event, reach_s))
-    names = {e.name for i, e in enumerate(evidence.effects) if i not in moved}
-    new = {k: e for k, e in moved.items() if e.name != evidence.names[k] and e.name not in names}
-    new = {k: e for k, e in new.items() if [x.name for x in new.values()].count(e.name) == 1}
-    return replaced(joined(evidence, list(new.values()), evidence.fit.values), list(new)) if new else evidence
+                found[k] = with_ends(effect, ends_of(evidence, h.fit, effect, effect.event, reach_s))
+    names = {e.name for i, e in enumerate(evidence.effects) if i not in found}
+    new = {k: e for k, e in found.items() if e.name != evidence.names[k] and e.name not in names}
+    return {k: e for k, e in new.items() if [x.name for x in new.values()].count(e.name) == 1}
 
 
 def throughout(evidence: Evidence, event: Event) -> bool:

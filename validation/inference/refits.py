@@ -35,6 +35,7 @@ Begun = Mapping[tuple[int, ...], Fit]
 Beside = tuple[int, Fit, Mapping[int, Sequence[Array]]]
 NOWHERE: Begun = MappingProxyType({})
 WEIGHT = 0.01  # posterior probability from which a hypothesis is refitted
+ABSENT = 0.02  # of its usual size: an effect this small is not there
 TOLD = 0.05  # posterior probability from which a hypothesis is told in the first place
 ROUNDS, MOST = 4, 8  # what a refit promotes is refitted too; so many at once
 GREAT, NEAR = 10.0, 0.5  # nats beyond which tangents mislead, and the share of the best from which a rival is refitted
@@ -200,6 +201,8 @@ def log_bayes(evidence: Evidence, fit: Fit, members: Sequence[int]) -> float:
     v = spread(fit, p, wide)
     sd = np.array([evidence.parameters[k].prior_sd for k in free])
     sign = np.array([evidence.parameters[k].sign for k in free], int)
+    if np.all(np.abs(a) < ABSENT * sd):  # what moved is the calibration, which may go on without them as well
+        gain = min(gain, 0.0)
     return gain + float(logsumexp([_seen(a, v, f * sd, sign) for f in SIZES]) - np.log(len(SIZES)))
 
 

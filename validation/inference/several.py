@@ -76,5 +76,5 @@ def with_one_more(
 
 def most_probable(hypotheses: Sequence[Hypothesis]) -> list[Hypothesis]:
     """The single effect with most weight, and those that come near it: tangents do not tell them apart."""
-    ones = [hypotheses[i] for i in np.argsort(-weights(hypotheses)) if hypotheses[i].members]
-    return [h for h in ones if h.log_bayes > NEAR * ones[0].log_bayes][:RIVALS]
+    first, *others = [hypotheses[i] for i in np.argsort(-weights(hypotheses)) if hypotheses[i].members]
+    return [first, *(h for h in others if h.log_bayes > NEAR * first.log_bayes > 0.0)][:RIVALS]

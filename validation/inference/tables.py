@@ -138,7 +138,11 @@ def candidates(
     lead = single[chosen[0]].fit if chosen else e.fit
     beside = Beside.of(case, posterior, lead)
     few = order[:ROWS]
-    rows = [_row(e, single[k], float(share[k]), float(limit[k]), float(size[k]), beside, k in chosen[:1]) for k in few]
+    P = probabilities(posterior.hypotheses)
+    fitted = [h for i in np.argsort(-P, kind="stable") if (h := posterior.hypotheses[i]).fit]
+    within = {k: next((h.fit for h in fitted if k in h.members), single[k].fit) for k in few}
+    rows = [_row(e, single[k], within[k], float(share[k]), float(limit[k]), float(size[k]), beside, k in chosen[:1])
+            for k in few]  # fmt: skip
     return tuple(replace(r, decision=_decided(r, k, choice, verdict), confused_with=_others(e, k, choice))
                  for r, k in zip(rows, few, strict=True))  # fmt: skip
 
@@ -177,7 +181,10 @@ class Beside:
         return cls(deviance(e, lead) if lead else {}, share, tests, left_on(tests, e.fit))
 
 
-def _row(e: Evidence, h: Hypothesis, share: float, limit: float, size: float, beside: Beside, leads: bool) -> Candidate:
+def _row(
+    e: Evidence, h: Hypothesis, within: Fit | None, share: float, limit: float, size: float, beside: Beside, leads: bool
+) -> Candidate:
+    """A candidate by itself; its size is that in the most probable hypothesis it is in (`within`)."""
     k, s = h.members[0], e.score
     a, wide = float(s.amplitude[k]), float(np.sqrt(beside.temper))
     row = Candidate(
@@ -187,12 +194,13 @@ def _row(e: Evidence, h: Hypothesis, share: float, limit: float, size: float, be
     )  # fmt: skip
     if h.fit is None:
         return row
-    before, after, p = rmse(e.fit.parts), rmse(h.fit.parts), e.p
+    before, after = rmse(e.fit.parts), rmse(h.fit.parts)
     if e.effects[k].whole:
         row = replace(row, value=1.0, ci95=(1.0, 1.0))
-    else:
-        a = float(h.fit.theta[p])
-        row = replace(row, value=a, ci95=interval(a, wide * float(h.fit.sd[p]), scatter(e, k)))
+    elif within is not None:
+        j = within.unknowns.names.index(e.names[k])
+        a = float(within.theta[j])
+        row = replace(row, value=a, ci95=interval(a, wide * float(within.sd[j]), scatter(e, k)))
     new = left_on(beside.tests, h.fit)
     held = (rmse(beside.held), rmse(new)) if beside.tests else None
     tests = (*by_test(e.fit.parts, h.fit.parts, False), *by_test(beside.held, new, True))

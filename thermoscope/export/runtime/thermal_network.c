@@ -109,9 +109,11 @@ static void law(int e, real hot, real cold, real *out) {
         out[0] = 1 + a * (hot - b);
         out[1] = a;
     } else if (LAW[e] == TABLE) {
-        int k = segment(x, n, size_of(d));
-        out[0] = tabulated(x, y, n, size_of(d));
-        if (size_of(d) > x[0] && size_of(d) < x[n - 1]) out[1] = (y[k + 1] - y[k]) / (x[k + 1] - x[k]) * (d < 0 ? -1 : 1);
+        int with_sign = x[0] < 0;
+        real at = with_sign ? d : size_of(d);
+        int k = segment(x, n, at);
+        out[0] = tabulated(x, y, n, at);
+        if (at > x[0] && at < x[n - 1]) out[1] = (y[k + 1] - y[k]) / (x[k + 1] - x[k]) * (d < 0 && !with_sign ? -1 : 1);
         out[2] = -out[1];
     } else if (LAW[e] == FILM) {
         film(x, y, (int)a, hot, cold, out);
