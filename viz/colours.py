@@ -95,7 +95,7 @@ _OF_ROLE = {
     Role.WINDING: "#C77B4A", Role.INSULATION: "#E3C565", Role.COMMUTATOR: "#B08D57", Role.ROTOR: "#7C8FA6",
     Role.CAGE: "#7C8FA6", Role.MAGNET: "#7C8FA6", Role.FAN: "#7C8FA6", Role.IRON: "#98A7B8", Role.SHAFT: "#5B6B7B",
     Role.BEARING: "#5B6B7B", Role.HOUSING: "#B9C6C9", Role.END_SHIELD: "#A7B9AE", Role.FOOT: "#8B8F94",
-    Role.BASE: "#8B8F94",
+    Role.BASE: "#8B8F94", Role.BRUSH: "#4A4F55",
 }  # fmt: skip
 
 

@@ -6,7 +6,6 @@ The rooms below know nothing of HTML, so their classes get their `_repr_html_` h
 from __future__ import annotations
 
 from html import escape
-from typing import Any
 
 from geom.description.machine import Machine
 from lumped.model.network import Network
@@ -14,7 +13,7 @@ from validation.comparison.compare import Comparison as Compared
 from validation.diagnosis.result import Diagnosis
 from validation.revision.revise import Revision
 from viz.data import Comparison
-from viz.figures import candidates, curves, paper
+from viz.figures import candidates, curves
 from viz.pages import html, words
 from viz.pages.report import Report, render
 
@@ -65,12 +64,8 @@ def network(n: Network) -> str:
 
 def report(r: Report) -> str:
     """The whole page, in a frame of its own so that its style stays there."""
-    return f'<iframe srcdoc="{escape(render(r), quote=True)}" style="width: 100%; height: 40em; border: 0"></iframe>'
-
-
-def figure(drawn: Any) -> str:
-    """A drawing on paper as SVG."""
-    return paper.svg(drawn, "figure")
+    style = "width: 100%; height: 40em; border: 0"
+    return f'<iframe title="report" srcdoc="{escape(render(r), quote=True)}" style="{style}"></iframe>'
 
 
 def titled(text: str) -> str:

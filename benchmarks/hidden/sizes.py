@@ -49,7 +49,8 @@ def measure(kind: Archetype) -> dict[str, dict]:
     changes = {(f"true {h.name}",): h.make(1.0) for h in (*kind.missing, *kind.passing)}
     changes |= hypotheses(kind) | bridges(kind) | inside
     found = [_table(kind, seen(kind, seed, changes, ROLES), tests) for seed in SEEDS]
-    return {name: _median([f[name] for f in found]) for name in found[0]}
+    medians = {name: _median([f[name] for f in found]) for name in found[0]}
+    return {name: row for name, row in medians.items() if np.isfinite(row["size"])}
 
 
 def _table(kind: Archetype, answers: Seen, tests: Sequence[str]) -> dict[str, dict]:
@@ -58,7 +59,7 @@ def _table(kind: Archetype, answers: Seen, tests: Sequence[str]) -> dict[str, di
     for test in tests:
         own = answers.left(test)
         out |= {f"{h.name} in {test}": _row(kind, answers, own, h, index) for h in kind.passing}
-        out |= {name: {"size": _unit(V, index[name]), "shown": 1.0, "unlike": {}}
+        out |= {name: {"size": max(_unit(V, index[name]), h.least), "shown": 1.0, "unlike": {}}
                 for h in kind.passing if (name := f"{h.name} in part of {test}") in index}  # fmt: skip
     return out
 
@@ -76,7 +77,8 @@ def _row(kind: Archetype, answers: Seen, V: Array, hidden: Hidden, index: dict[s
     others = {
         n: unlike(V, i, j) for n, j in index.items() if n not in names and not n.startswith("true ") and " in " not in n
     }
-    return {"size": shown * _unit(V, i), "shown": shown, "unlike": {n: u for n, u in others.items() if u < NEAR}}
+    size = max(shown * _unit(V, i), hidden.least)
+    return {"size": size, "shown": shown, "unlike": {n: u for n, u in others.items() if u < NEAR}}
 
 
 def _median(rows: Sequence[dict]) -> dict:

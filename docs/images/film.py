@@ -24,10 +24,11 @@ def draw(case: Path, gif: Path) -> None:
     assert folder.built is not None
     test, earlier = by_interest(folder)[0], before_last(folder)
     assert earlier is not None, "a case whose model has had a step"
+    limit_K = folder.limits(test)
     nodes, T, titles, seen = split(folder.built.mesh), [], [], []
     for words, model in ((before(folder), earlier), (now(folder), folder.case)):
         times, values = fields(model, test, nodes, FRAMES)
-        rows = misses(folder, model, test, times)
+        rows = misses(folder, model, test, times, limit_K)
         T.append(values)
         seen += rows
         titles += [f"{t / 60:.0f} min, {words}{largest(row)}" for t, row in zip(times, rows, strict=True)]

@@ -65,7 +65,8 @@ def section(path: Path) -> str:
     code = path.read_text(encoding="utf-8")
     said = ast.get_docstring(ast.parse(code)) or path.stem
     title, _, rest = said.partition("\n")
-    pictures = [f"![{path.stem}](images/gallery/{p.name})" for p in sorted(PICTURES.glob(f"{path.stem}*"))]
+    drawn = sorted(PICTURES.glob(f"{path.stem}*"))
+    pictures = [f"![Picture {i} of: {title}](images/gallery/{p.name})" for i, p in enumerate(drawn, 1)]
     hidden = "\n".join(f"    {line}" for line in f"```python\n{code}```".splitlines())
     return "\n\n".join(
         [f"## {title.rstrip('.')}", rest.strip("\n"), *pictures, f'??? example "{path.name}"\n\n{hidden}']

@@ -20,6 +20,7 @@ class Role(StrEnum):
     SHAFT = "shaft"
     BEARING = "bearing"
     COMMUTATOR = "commutator"
+    BRUSH = "brush gear"
     INSULATION = "insulation"
     HOUSING = "housing"
     END_SHIELD = "end shield"

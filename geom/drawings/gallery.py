@@ -83,5 +83,5 @@ def _row(entry: Entry) -> str:
     size = " x ".join(f"{1e3 * length:.0f}" for length in entry.envelope)
     numbers = f"{entry.source}; assumed: {entry.assumed}"
     name = f"`{entry.name}` ([{entry.family}]({entry.family}.md)): {entry.description}"
-    picture = f"![{entry.name}](thumbnails/{entry.name}.svg)"
+    picture = f"![Sections across and along the axis of {entry.name}](thumbnails/{entry.name}.svg)"
     return f"| {picture} | {name} | {entry.parts} | {entry.mass:.1f} | {size} | {entry.cooling} | {numbers} |"

@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
 from lumped.correlations.info import Info, checked
 from lumped.transfer.properties import Fluid, air
 
+Number = TypeVar("Number", float, NDArray[np.float64])
 CRITICAL_RE = 5e5  # of a smooth plate in quiet air (Incropera); a rough one turns turbulent earlier
 
 
@@ -39,7 +45,7 @@ def churchill_bernstein(speed: float, diameter: float, fluid: Fluid | None = Non
     return Nu * fluid.k / diameter, checked("churchill_bernstein", "Churchill & Bernstein 1977", numbers, limits)
 
 
-def churchill_mixed(forced: float, natural: float, assisting: bool = True, exponent: float = 3.0) -> float:
+def churchill_mixed(forced: Number, natural: Number, assisting: bool = True, exponent: float = 3.0) -> Number:
     """(h_f^n + h_n^n)^(1/n), minus when they oppose (W/m2/K); n = 4 for a cylinder across the flow.
 
     Source: Churchill 1977, AIChE J. 23, 10. Range: 0.1 < Gr/Re^2 < 10; outside, the larger one rules by itself.

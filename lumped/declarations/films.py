@@ -2,52 +2,19 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import partial
 
-import numpy as np
-
 from geom.plugins import plugins
-from lumped.correlations import Info, RangeWarning, film_tabulated, tabulated
+from lumped.correlations import Info, film_tabulated, tabulated
+from lumped.declarations.separated import Film, FilmOver, following
 from lumped.schemas.reader import Table
-from lumped.transfer.laws import Array, FilmTable, Fixed, Inputs, Law
+from lumped.transfer.laws import FilmTable, Fixed, Law
 from lumped.transfer.laws import Table as TableLaw
 from lumped.transfer.properties import Fluid, air
 
-POINTS = 97  # of a table, closer near rest, where a film changes most
-Film = Callable[[float], tuple[float, Info]]
 Still = Callable[[float, float], tuple[float, Info]]
 Of = Callable[[float], Fluid]
-
-
-@dataclass(frozen=True)
-class FilmOver(Law):
-    """A film (W/m2/K) over |input|, tabulated from `film` up to `top`; warns where the correlation itself would.
-
-    The grid is denser towards 0, where films start as roots; above `top` the film is held and the warning says so.
-    """
-
-    of: str
-    film: Film
-    top: float
-
-    @property
-    def reads(self) -> tuple[str, ...]:  # type: ignore[override]
-        return (self.of,)
-
-    def factor(self, inputs: Inputs) -> Array:
-        x = np.abs(np.asarray(inputs[self.of], float))
-        largest = float(x.max(initial=0.0))
-        self.film(min(largest, self.top))
-        if largest > self.top:
-            said = f"film over {self.of}: {self.of} = {largest:.4g} outside 0 to {self.top:g}"
-            warnings.warn(said, RangeWarning, stacklevel=2)
-        at = self.top * np.linspace(0.0, 1.0, POINTS) ** 2
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", RangeWarning)
-            return np.interp(x, at, [self.film(v)[0] for v in at])
 
 
 def natural(table: Table) -> Law:
@@ -60,19 +27,14 @@ def natural_film(table: Table) -> tuple[FilmTable | TableLaw, float]:
     """The film of still air, and the factor on it. The air's properties follow its film temperature, or, where the
     table says `fluid_degC`, are those of surfaces in air of that temperature."""
     known = {**NATURAL, **plugins("still_air")}
-    film, factor = known[table.word("surface", None, known)](table, _air(table)), table.number("factor", 1.0)
+    film, factor = known[table.word("surface", None, known)](table, film_air(table)), table.number("factor", 1.0)
     if "fluid_degC" not in table:
         return film_tabulated(film), factor
     return tabulated(film, fluid_temperature=table.number("fluid_degC")), factor
 
 
-def _air(table: Table) -> Callable[[float], Fluid]:
+def film_air(table: Table) -> Callable[[float], Fluid]:
     return partial(air, altitude_m=table.number("altitude_m", 0.0))
-
-
-def film_air(table: Table, usual_degC: float) -> Fluid:
-    """The air at `fluid_degC` and `altitude_m`."""
-    return _air(table)(table.number("fluid_degC", usual_degC))
 
 
 def _size(table: Table) -> float:
@@ -184,19 +146,28 @@ FORCED: dict[str, Callable[[Table, Fluid], Film]] = {
 }  # fmt: skip
 
 
-def over(table: Table) -> FilmOver:
+def over(table: Table) -> list[Law]:
     """Air, or a coolant, moving over a known surface; its speed is `m_s_per_unit` times an input."""
-    fluid = _coolant(table) if "coolant" in table else film_air(table, 30.0)
+    liquid = "coolant" in table and table.raw("coolant") != "air"
     known = {**FORCED, **plugins("moving_air")}
-    film = known[table.word("surface", None, known)](table, fluid)
-    scale = table.number("m_s_per_unit", 1.0)
-    return FilmOver(table.word("speed"), partial(_scaled, film, scale), table.number("up_to_m_s", 50.0) / scale)
+    film, scale = known[table.word("surface", None, known)], table.number("m_s_per_unit", 1.0)
+    fluid, usual = (_coolant(table), 40.0) if "coolant" in table else (film_air(table), 30.0)
+    of, top = table.word("speed"), table.number("up_to_m_s", 50.0) / scale
+    return film_laws(table, of, lambda x: partial(_scaled, film(table, x), scale), fluid, usual, top, liquid)
 
 
-def _coolant(table: Table) -> Fluid:
+def film_laws(table: Table, of: str, film: Callable[[Fluid], Film], fluid: Of, usual_degC: float, top: float,
+              liquid: bool = False) -> list[Law]:  # fmt: skip
+    """A film over |input|: its properties hold at `fluid_degC` where the table says so, else they follow."""
+    if "fluid_degC" in table:
+        return [FilmOver(of, film(fluid(table.number("fluid_degC"))), top)]
+    return following(of, film, fluid, usual_degC, top, liquid)
+
+
+def _coolant(table: Table) -> Of:
     from lumped.declarations.coolant import read_coolant
 
-    return read_coolant(table)(table.number("fluid_degC", 40.0))
+    return read_coolant(table)
 
 
 def _scaled(film: Film, scale: float, x: float) -> tuple[float, Info]:

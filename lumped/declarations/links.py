@@ -15,6 +15,7 @@ from lumped.transfer.laws import Table as TableLaw
 from lumped.transfer.shaft_fan import shaft_fan
 
 Mechanism = tuple[str, Law, bool]
+Read = tuple[Law | list[Law], bool]
 
 
 def _coefficient(table: Table, has_area: bool, needed: bool = True) -> tuple[float, bool] | None:
@@ -54,12 +55,12 @@ def _natural(table: Table, has_area: bool) -> tuple[Law, bool]:
     return natural(table), True
 
 
-def _gap(table: Table, has_area: bool) -> tuple[Law, bool]:
+def _gap(table: Table, has_area: bool) -> Read:
     _needs_area(table, has_area)
     return gap(table), True
 
 
-def _rotating(table: Table, has_area: bool) -> tuple[Law, bool]:
+def _rotating(table: Table, has_area: bool) -> Read:
     _needs_area(table, has_area)
     return rotating(table), True
 
@@ -69,7 +70,7 @@ def _contact(table: Table, has_area: bool) -> tuple[Law, bool]:
     return contact(table), True
 
 
-def _forced(table: Table, has_area: bool) -> tuple[Law, bool]:
+def _forced(table: Table, has_area: bool) -> Read:
     if "surface" in table:
         _needs_area(table, has_area)
         return over(table), True
@@ -103,9 +104,14 @@ def _tabled(table: Table, has_area: bool) -> tuple[Law, bool]:
     return InputPower(1.0, powers(table), TableLaw(difference, value)), per_area
 
 
-MECHANISMS = {
+def _mixed(table: Table, has_area: bool) -> Read:
+    _needs_area(table, has_area)
+    return mixed(table), True
+
+
+MECHANISMS: dict[str, Callable[[Table, bool], Read]] = {
     "natural": _natural, "radiation": _radiation, "forced": _forced, "gap": _gap, "rotating": _rotating,
-    "contact": _contact, "fan": _fan, "power": _power, "table": _tabled,
+    "contact": _contact, "fan": _fan, "power": _power, "table": _tabled, "mixed": _mixed,
 }  # fmt: skip
 
 
@@ -116,23 +122,19 @@ def mechanisms(table: Table, has_area: bool) -> list[Mechanism]:
     for word, read in MECHANISMS.items():
         if word in table:
             inner = Table(table.raw(word), f"{table.where} {word}")
-            out.append((f":{word}", *read(inner, has_area)))
+            out += _named(f":{word}", *read(inner, has_area))
             inner.close()
-    if "mixed" in table:
-        out += _mixed(table, has_area)
     if not out:
         table.raw("prior_sd")
         table.close()
-        raise table.error("a link without a mechanism", f"G_W_K, R_K_W, h_W_m2K, {', '.join(MECHANISMS)}, mixed")
+        raise table.error("a link without a mechanism", f"G_W_K, R_K_W, h_W_m2K, {', '.join(MECHANISMS)}")
     return out
 
 
-def _mixed(table: Table, has_area: bool) -> list[Mechanism]:
-    inner = Table(table.raw("mixed"), f"{table.where} mixed")
-    _needs_area(inner, has_area)
-    laws = mixed(inner)
-    inner.close()
-    return [(f":mixed:{k + 1}", law, True) for k, law in enumerate(laws)]
+def _named(suffix: str, laws: Law | list[Law], per_area: bool) -> list[Mechanism]:
+    """A film that is a sum of laws has their numbers in the names, but for the first, which has the film's own."""
+    several = laws if isinstance(laws, list) else [laws]
+    return [(f"{suffix}:{k + 1}" if k else suffix, law, per_area) for k, law in enumerate(several)]
 
 
 FLOW_INPUTS = {"flow_l_min_input": 1 / 60000.0, "flow_m3_h_input": 1 / 3600.0}

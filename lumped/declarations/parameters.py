@@ -18,7 +18,7 @@ MAPPINGS = {
 
 def read_parameters(network: Network, top: Table, nodes: Mapping[str, Table]) -> tuple[Parameter, ...]:
     """All parameters of a file."""
-    declared = (*_inline(network, top, nodes), *_of_circuits(network, top), *_parameters(top))
+    declared = (*_inline(network, top, nodes), *_of_circuits(network, top), *_parameters(network, top))
     names = [p.name for p in declared]
     for name in (n for n in names if names.count(n) > 1):
         raise top.error(f"two parameters are called '{name}': prior_sd in a table makes one of that name",
@@ -69,8 +69,18 @@ def _of_circuits(network: Network, top: Table) -> list[Parameter]:
     return out
 
 
-def _parameters(top: Table) -> list[Parameter]:
-    return [_parameter(name, table) for name, table in top.tables("parameters").items()]
+def _parameters(network: Network, top: Table) -> list[Parameter]:
+    return [_whole(_parameter(name, table), network) for name, table in top.tables("parameters").items()]
+
+
+def _whole(p: Parameter, network: Network) -> Parameter:
+    """A film that is a sum of laws, "NAME" and "NAME:2" and so on, is moved as one."""
+    more = [(x.name, w) for name, w in p.targets for x in network.links if _numbered(x.name, name)]
+    return replace(p, targets=(*p.targets, *(pair for pair in more if pair not in p.targets)))
+
+
+def _numbered(name: str, film: str) -> bool:
+    return name.startswith(f"{film}:") and name.removeprefix(f"{film}:").isdigit()
 
 
 def _parameter(name: str, table: Table) -> Parameter:

@@ -7,7 +7,8 @@ from collections.abc import Callable
 from functools import partial
 
 from lumped.correlations import Info
-from lumped.declarations.films import Film, FilmOver, film_air, millimetres
+from lumped.declarations.films import film_air, film_laws, millimetres
+from lumped.declarations.separated import Film
 from lumped.schemas.reader import Table
 from lumped.transfer.laws import Law
 from lumped.transfer.properties import Fluid
@@ -15,21 +16,22 @@ from lumped.transfer.properties import Fluid
 RPM = math.pi / 30.0
 
 
-def gap(table: Table) -> Law:
+def gap(table: Table) -> list[Law]:
     """From rotor to stator through the air between them, over the rotor's surface."""
     radius, width = millimetres(table, "rotor_radius_mm"), millimetres(table, "gap_mm")
     law = table.word("law", "taylor", ("taylor", "becker-kaye"))
-    return _over_speed(table, partial(_gap_film, law, radius, width, film_air(table, 80.0)))
+    return _over_speed(table, partial(partial, _gap_film, law, radius, width), 80.0)
 
 
-def rotating(table: Table) -> Law:
+def rotating(table: Table) -> list[Law]:
     """A disc or a shaft that turns in open air."""
     film = ROTATING[table.word("surface", None, ROTATING)]
-    return _over_speed(table, film(millimetres(table, "diameter_mm"), film_air(table, 50.0)))
+    return _over_speed(table, partial(film, millimetres(table, "diameter_mm")), 50.0)
 
 
-def _over_speed(table: Table, film: Film) -> Law:
-    return FilmOver(table.word("speed", "speed_rpm"), film, table.number("up_to_rpm", 20000.0))
+def _over_speed(table: Table, film: Callable[[Fluid], Film], usual_degC: float) -> list[Law]:
+    of, top = table.word("speed", "speed_rpm"), table.number("up_to_rpm", 20000.0)
+    return film_laws(table, of, film, film_air(table), usual_degC, top)
 
 
 def _gap_film(law: str, radius: float, width: float, fluid: Fluid, rpm: float) -> tuple[float, Info]:

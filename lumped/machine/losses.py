@@ -67,7 +67,8 @@ def _declared(machine: Any) -> list[Declared]:
     if plain and machine.family == "series-dc":
         losses = read(Losses, section, f"{machine.name} [losses]")
         rated = Table(machine.sections.get("ratings", {}), f"{machine.name} [ratings]")
-        return _series(losses, {key: rated.number(key) for key in ("current_A", "speed_rpm")})
+        meshed = any(part.name == "brushes" for part in machine.parts)
+        return _series(losses, {key: rated.number(key) for key in ("current_A", "speed_rpm")}, meshed)
     if not section:
         return [(ASSUMED.partition(":")[2], "constant", _everywhere(machine), PowerLoss(((ASSUMED_W, ()),)), "")]
     where = f"{machine.name} [losses"
@@ -126,8 +127,8 @@ def place_of(network: Network, name: str) -> Place:
     return network.places[stem]
 
 
-def _series(losses: Losses, rated: Mapping[str, float]) -> list[Declared]:
-    """The plain numbers of a series-wound machine. rated : "current_A", "speed_rpm"."""
+def _series(losses: Losses, rated: Mapping[str, float], brushes: bool) -> list[Declared]:
+    """The plain numbers of a series-wound machine. rated : "current_A", "speed_rpm";  brushes : are they meshed?"""
     copper = Linear(losses.temperature_coefficient_per_K, losses.reference_C)
     current = ("current_A", 1.0, 2.0)
     amps, turns = rated["current_A"], rated["speed_rpm"]
@@ -140,12 +141,13 @@ def _series(losses: Losses, rated: Mapping[str, float]) -> list[Declared]:
     conductors = dict(zip(ARMATURE, (1 - ends, ends / 2, ends / 2), strict=True))
     air = {"airgap": gap, "air.left": (1 - gap) / 2, "air.right": (1 - gap) / 2}
     drop, friction = InputPower(losses.brush_drop_V, (("current_A", 1.0, 1.0),)), losses.brush_friction_W
+    sliding = {"commutator": 0.5, "brushes": 0.5} if brushes else {"commutator": 1.0}  # half to each side: assumed
     return [
         ("copper.armature", "copper", conductors, armature, ""),
         ("copper.field", "copper", {"winding.field": 1.0}, winding, ""),
         ("iron", "iron", {"rotor.core": 1 - share, "poles": share}, InputPower(losses.iron_W, iron_terms), ""),
-        ("brush.drop", "brush", {"commutator": 1.0}, drop, ""),
-        ("brush.friction", "friction", {"commutator": 1.0}, InputPower(friction, (spin,)), ""),
+        ("brush.drop", "brush", sliding, drop, ""),
+        ("brush.friction", "friction", sliding, InputPower(friction, (spin,)), ""),
         ("bearing.left", "friction", {"bearing.left": 1.0}, bearing, ""),
         ("bearing.right", "friction", {"bearing.right": 1.0}, bearing, ""),
         ("windage", "windage", air, InputPower(losses.windage_W, (("speed_rpm", turns, 3.0),)), ""),

@@ -163,12 +163,14 @@ def still_air(outer: Outer) -> FilmTable:
 
 
 def _blown(machine: Any, part: str, cowl: Cowl) -> Law | None:
-    """Films of the fan's air: fin channels by Heiles, end shields as flat plates."""
+    """Films of the fan's air: fin channels by Heiles, end shields and a meshed fan's blades as flat plates."""
     e, fins = extent(machine.part(part)), fins_of(machine)
     if part == "housing" and fins is not None:
         share, diameter = mean_of_decay(cowl.end_share), fins.hydraulic_diameter
         length = fins.length if fins.axial else np.pi * (fins.root + fins.height)
         return _of_speed(cowl, share, lambda v, T: heiles(v, diameter, length, cowl.turbulence, air(T))[0])
+    if machine.part(part).role is Role.FAN:
+        return _of_speed(cowl, 1.0, lambda v, T: flat_plate(v, 0.5 * e.size[1], air(T))[0])
     if e.turned and e.size[2] < END_SHIELD * e.size[1]:
         share = cowl.rear_share if _on_left(machine, e) is (cowl.rear == "left") else cowl.front_share
         return _of_speed(cowl, share, lambda v, T: flat_plate(v, e.size[1], air(T))[0])

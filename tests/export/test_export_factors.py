@@ -9,8 +9,7 @@ from numpy.testing import assert_allclose
 
 import lumped
 from geom.errors import InputError
-from lumped.declarations.films import FilmOver
-from lumped.declarations.mixed import Share
+from lumped.declarations.separated import FilmOver, Share
 from lumped.machine.bases import Switched
 from lumped.machine.laws import Interpolated
 from lumped.sources.loss_map import MapLoss

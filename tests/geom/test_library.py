@@ -155,6 +155,31 @@ def test_forced_air_has_fan_ducts_and_fins():
     assert faces["rotor.core"]["rotor.core.air.ducts"] == pytest.approx(12 * math.pi * 0.02 * 0.188, rel=0.01)
 
 
+def test_cowl_and_fan_may_be_meshed_on_a_machine_with_a_round_rotor():
+    """Off, nothing changes; on, the cowl stands on the end-cap and the wheel on the shaft, which reaches out to it."""
+    tefc = {"machine": {"family": "tefc"}}
+    plain, blown = machine_from(tefc), machine_from({**tefc, "geometry": {"fan": {"depth_mm": 60.0}}})
+    assert [p.name for p in blown.parts] == [*(p.name for p in plain.parts), "fan.cowl", "fan.wheel"]
+    mesh = build_mesh(blown, 0.1, 24)
+    assert {"endcap.left|fan.cowl", "fan.wheel|shaft"} <= set(mesh.contacts)
+    assert {"fan.cowl.outer", "fan.wheel.outer"} <= set(mesh.patches)
+    assert blown.part("shaft").span[0] == pytest.approx(-0.8 * 0.060)
+    assert blown.part("fan.cowl").volume == pytest.approx(math.pi * (0.1015**2 - 0.1**2) * 0.060)
+
+
+def test_brush_gear_may_be_meshed_on_a_commutator_machine():
+    """Carbons on the commutator, arms to the flange; half of the brushes' loss is then theirs."""
+    series = {"machine": {"family": "series-dc"}}
+    geared = machine_from({**series, "geometry": {"brushes": {"arms": 4}}})
+    assert not {"brushes", "brush.arms"} & {p.name for p in machine_from(series).parts}
+    mesh = build_mesh(geared, 0.1, 24)
+    assert {"brushes|commutator", "brush.arms|brushes", "brush.arms|flange.right"} <= set(mesh.contacts)
+    carbon = geared.part("brushes").volume * geared.material_of("brushes").rho
+    assert 0.1 < carbon < 5.0  # kg: four rows of a machine of 100 kW
+    with pytest.raises(InputError, match="armature's radius"):
+        machine_from({**series, "geometry": {"brushes": {"arms": 4, "height_mm": 60.0}}})
+
+
 def pmsm(**geometry):
     return machine_from({"machine": {"family": "pmsm"}, "geometry": geometry})
 

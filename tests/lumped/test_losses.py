@@ -9,9 +9,11 @@ from geom.errors import InputError
 from lumped.correlations import RangeWarning
 from lumped.declarations.network import read_network
 from lumped.integration.audit import audit
+from lumped.integration.signals import Signals
 from lumped.integration.simulate import Record, simulate
 from lumped.sources.loss_map import MapLoss
 from lumped.sources.losses import BrushLoss, CopperLoss, IronLoss, PowerLoss, RippleLoss
+from lumped.transfer.laws import Law
 
 AT = {"speed_rpm": np.array([0.0, 1000.0, 2000.0]), "current_A": np.array([0.0, 100.0, 200.0])}
 
@@ -63,8 +65,40 @@ def test_a_map_gives_its_points_and_is_bilinear_between():
 
 
 def test_a_map_left_behind_warns_with_value_and_range():
-    with pytest.warns(RangeWarning, match=r"speed_rpm = 4000 to 4000 outside 0 to 3000"):
+    with pytest.warns(RangeWarning, match=r"speed_rpm = 4000 outside 0 to 3000"):
         assert GRID.factor({"speed_rpm": 4000.0, "torque_Nm": 0.0}) == pytest.approx(60.0)
+
+
+class Seen(Law):
+    """A bent factor that keeps what it was asked at."""
+
+    reads = ("current_A",)
+
+    def __init__(self):
+        self.low, self.high = np.inf, -np.inf
+
+    def factor(self, inputs):
+        x = inputs["current_A"]
+        self.low, self.high = min(self.low, x.min()), max(self.high, x.max())
+        return np.abs(x) ** 1.7
+
+
+@pytest.mark.parametrize("apart", [1, 7])
+def test_between_samples_a_law_sees_nothing_beyond_the_record(apart):
+    """Inputs are straight lines, whether a run looks at every sample or at one in seven: parabolas are factors only."""
+    time = np.arange(0.0, 841.0)
+    current = 200.0 + 200.0 * np.sign(np.sin(time / 37.0)) * np.abs(np.cos(time / 5.0))
+    law, inputs = Seen(), {"current_A": current}
+    signals = Signals(inputs, time.size) if apart == 1 else Signals.recorded(inputs, time, time[::apart])
+    bent = signals.curve("loss", law)
+    assert (law.low, law.high) == (current.min(), current.max())
+    assert np.abs(bent.bulge).max() > 0.0
+
+
+def test_a_map_left_at_one_end_names_that_end():
+    law = MapLoss((0.0, 1000.0), (0.0, 400.0), ((0.0, 1.0), (2.0, 3.0)), torque="current_A")
+    with pytest.warns(RangeWarning, match=r"current_A = 400\.3 outside 0 to 400$"):
+        law.factor({"speed_rpm": np.array([0.0, 500.0]), "current_A": np.array([0.35, 400.3])})
 
 
 @pytest.mark.parametrize("step", [4.0, 30.0])

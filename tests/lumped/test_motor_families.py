@@ -1,5 +1,6 @@
 """Networks of every family: streams, fans, losses and sensors as their machine files declare them."""
 
+import tomllib
 from dataclasses import replace
 
 import numpy as np
@@ -8,6 +9,7 @@ from bare_networks import means_only
 
 from geom import library, load_machine
 from geom.errors import InputError
+from geom.machine_file import machine_from
 from lumped.integration.steady import steady
 from lumped.machine.coolant import channel_of, cooling_of, jacket_film
 from lumped.machine.films import surroundings
@@ -64,6 +66,27 @@ def test_parameters_act_on_what_is_there(networks, name):
 def test_losses_of_every_machine_are_all_placed(name):
     for loss, _, shares, _, _ in _declared(load_machine(name)):
         assert sum(shares.values()) == pytest.approx(1.0), loss
+
+
+def test_meshed_brushes_take_half_of_what_slides_on_the_commutator():
+    plain = load_machine("series-dc-100kw")
+    geared = replace(plain, parts=(*plain.parts, replace(plain.part("shaft"), name="brushes")))
+    for machine, expected in ((plain, {"commutator": 1.0}), (geared, {"commutator": 0.5, "brushes": 0.5})):
+        shares = {name: at for name, _, at, _, _ in _declared(machine)}
+        assert shares["brush.drop"] == shares["brush.friction"] == expected
+
+
+def test_a_meshed_fan_is_cooled_by_its_own_air():
+    """Its blades feel the cowl's air, the cowl what passes an end shield; neither is there without."""
+    table = tomllib.loads((library()["tefc-industrial"]).read_text())
+    machine = machine_from({**table, "geometry": {**table["geometry"], "fan": {"depth_mm": 60.0}}})
+    films, still = read_films(machine), {"speed_rpm": np.zeros(1)}
+    for part in ("fan.wheel", "fan.cowl"):
+        laws = outer_films(machine, part, films)
+        assert set(laws) == {"natural", "radiation", "blown"}
+        blown = [float(laws["blown"].factor({"speed_rpm": np.array([n])})[0]) for n in (0.0, 1460.0)]
+        assert blown[0] < 0.05 * blown[1]
+        assert float(laws["blown"].factor(still)[0]) == pytest.approx(blown[0])
 
 
 def test_direct_current_heating_at_standstill(networks, ready):

@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 
 HERE = Path(__file__).resolve().parent
-sys.path += [str(HERE), str(HERE.parent / "viz")]
+sys.path += [str(HERE), str(HERE.parent), str(HERE.parent / "viz")]
 
 from small_case import small_case  # noqa: E402
 from small_motor import motor  # noqa: E402
@@ -29,7 +29,7 @@ class Uniform:
 
     def of_part(self, part: str, x: np.ndarray) -> np.ndarray:
         node = HOME.get(part.split(".")[0], "yoke")
-        return np.full(self.count[part], x[self.states.index(node)])
+        return np.repeat(x[None, self.states.index(node)], self.count[part], axis=0)
 
 
 def with_motor(path: Path) -> Folder:

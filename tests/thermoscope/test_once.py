@@ -67,6 +67,15 @@ def test_one_comparison_serves_tables_and_pictures(case, monkeypatch):
     assert sorted(calls) == ["road", "stand", "town"]
 
 
+def test_a_picture_of_one_test_judges_that_test_alone(case):
+    """Its limits are those of the whole comparison, to rounding."""
+    folder = load_case(case)
+    chosen = folder.case.tests[-1]
+    alone = folder.limits(chosen)
+    assert "compared" not in vars(folder)
+    assert alone == pytest.approx(folder.compared.limits[chosen.name], rel=1e-12)
+
+
 def test_a_machine_is_meshed_and_reduced_once(monkeypatch):
     made = []
     monkeypatch.setattr(pipeline, "_built", {})

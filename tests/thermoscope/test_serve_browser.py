@@ -180,6 +180,28 @@ def test_tabs_do_not_disturb_each_other(browser, served, page):
     assert faults == []
 
 
+SILENT = """() => [...document.querySelectorAll("img, canvas, svg")].filter((e) =>
+  e.getClientRects().length && !e.alt && !e.ariaLabel
+  && !e.closest("[role=img][aria-label], [aria-hidden=true]")).length"""
+REACHED = """() => [...document.querySelectorAll("button, input, select, a")].filter((e) => {
+  const box = e.getBoundingClientRect();
+  return box.width && (box.left < -1 || box.right > innerWidth + 1) && !e.closest(".scroll");
+}).map((e) => e.id || e.className)"""
+
+
+@pytest.mark.parametrize("width", [800, 400])
+def test_narrow_pages_lose_no_control(root, page, width):
+    """Nothing reaches beyond the right edge, and every picture that is drawn says what it shows."""
+    page.set_viewport_size({"width": width, "height": 800})
+    page.wait_for_timeout(800)
+    kept(root, page, f"7-{width}")
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    assert page.evaluate(REACHED) == []
+    assert page.evaluate(SILENT) == 0
+    assert "coloured by temperature" in page.get_attribute("#machine", "aria-label")
+    assert "T_flange" in page.get_attribute("#curve", "aria-label")
+
+
 DROP = """(text) => {
   const files = new DataTransfer();
   files.items.add(new File([text], "own.csv", { type: "text/csv" }));
@@ -207,19 +229,19 @@ def test_dropped_files_become_a_case(page, served):
     assert page.inner_text("h1") == "own"
 
 
-def test_the_machine_plays_in_the_browsers_own_gl(root, served):
+def test_the_machine_plays_in_the_browsers_own_gl(root, served, browser):
     """In the page, under its policy; the frame has nothing of the page around it, and goes when it is not wanted."""
-    said = []
-    with playwright.sync_playwright() as engine:
-        arguments = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
-        tab, faults = opened(engine.chromium.launch(executable_path=BROWSER, args=arguments), served[0])
-        tab.on("console", lambda message: message.type == "error" and said.append(message.text))
-        tab.click("#view")
-        tab.frame_locator("#viewer").locator("#title:has-text(' min')").wait_for()
-        assert tab.frame_locator("#viewer").locator("#fault").is_hidden()
-        assert not tab.is_visible("#machine")
-        kept(root, tab, "6-played")
-        tab.click("#view")
-        tab.wait_for_selector("#viewer", state="detached", timeout=60_000)
-        assert tab.is_visible("#machine")
+    said, arguments = [], ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+    drawing = browser.browser_type.launch(executable_path=BROWSER, args=arguments)
+    tab, faults = opened(drawing, served[0])
+    tab.on("console", lambda message: message.type == "error" and said.append(message.text))
+    tab.click("#view")
+    tab.frame_locator("#viewer").locator("#title:has-text(' min')").wait_for()
+    assert tab.frame_locator("#viewer").locator("#fault").is_hidden()
+    assert not tab.is_visible("#machine")
+    kept(root, tab, "6-played")
+    tab.click("#view")
+    tab.wait_for_selector("#viewer", state="detached", timeout=60_000)
+    assert tab.is_visible("#machine")
+    drawing.close()
     assert faults == said == []

@@ -6,9 +6,22 @@ from playground import Truth, wind
 from scipy.linalg import block_diag
 from scipy.stats import multivariate_normal
 
-from validation.effects import effect
+from lumped.model.multipliers import values_of
+from validation.calibration.calibrate import minimise
+from validation.comparison.linearisation import segments
+from validation.effects import effect, extended
 from validation.inference.diagnose import sharpened
-from validation.inference.evidence import calibrated_case, projected, scored, without_effects
+from validation.inference.evidence import (
+    calibrated_case,
+    projected,
+    refit,
+    refit_onwards,
+    scored,
+    starts,
+    tangents_beside,
+    with_members,
+    without_effects,
+)
 from validation.inference.posterior import Hypothesis, averaged, pairs, probabilities, singles
 from validation.inference.refits import refitted
 from validation.inference.score import total
@@ -87,3 +100,39 @@ def test_three_effects_are_found_one_beside_the_other(evidence):
     found = every[int(np.argmax(probabilities(every)))]
     assert isinstance(found, Hypothesis)
     assert {sharp.names[k] for k in found.members} == set(NAMES[:3])
+
+
+def to_the_end(evidence, network, unknowns, theta, held):
+    noise, error = evidence.fit.noise, evidence.fit.error
+    return minimise(network, evidence.tests, unknowns, theta, noise, held, 40, worth=1e-3, error=error)
+
+
+def test_a_refit_that_goes_on_ends_no_worse_than_one_from_the_start_and_finely_at_its_optimum(evidence):
+    (k,) = [evidence.names.index(NAMES[0])]
+    before = refit(evidence, [k], starts(evidence, [k])[0])
+    sharp = sharpened(evidence)
+    onwards, anew = refit_onwards(sharp, [k], before), refit(sharp, [k], starts(sharp, [k])[0])
+    assert onwards.objective < anew.objective + 0.5  # half a nat: fits stop at a tenth or so
+    fine = refit_onwards(sharp, [k], onwards, finely=True)
+    end = to_the_end(sharp, *with_members(sharp, [k])[:2], fine.theta, with_members(sharp, [k])[2])
+    assert abs(fine.theta[-1] - end.theta[-1]) < 0.3 * end.sd[-1]
+
+
+def test_tangents_beside_a_refit_are_differences_there(evidence):
+    """Of the second of two effects, where the first was fitted alone."""
+    one, other = (evidence.names.index(n) for n in NAMES[:2])
+    alone = refit(evidence, [one], starts(evidence, [one])[0])
+    (columns,) = tangents_beside(evidence, one, alone, [other]).values()
+    step = 1.0
+    values = {**evidence.fit.values, **alone.unknowns.values(alone.theta)}
+    network = extended(evidence.fit.network, [evidence.effects[k] for k in (one, other)])
+    low, high = (segments(network, evidence.tests, {**values, NAMES[1]: a}) for a in (0.0, step))
+    for column, a, b in zip(columns, low, high, strict=True):
+        np.testing.assert_allclose((a.r - b.r) / step, column, atol=1e-3 + 0.01 * np.abs(column).max())
+
+
+def test_nothing_is_fitted_as_well_as_what_it_is_held_against(evidence):
+    """A bearing's friction stands in for heat at nine deviations of its prior: far from where a fit begins."""
+    fit = evidence.fit
+    end = to_the_end(evidence, fit.network, fit.unknowns, fit.theta, values_of(fit.network, fit.values))
+    assert fit.objective - end.objective < 2.0

@@ -13,7 +13,7 @@ from validation.calibration.calibrate import InnerProduct, minimise
 from validation.calibration.unknowns import working
 from validation.comparison.linearisation import segments
 from validation.doubt import USUAL
-from validation.inference.model_error import bridges, joints, model_error, with_doubts
+from validation.inference.model_error import alone, bridges, joints, model_error, with_doubts
 from validation.measurement.noise import first_noise
 from validation.measurement.operators import behind
 
@@ -42,6 +42,13 @@ def test_a_column_is_what_the_doubt_does(case):
     with_it = segments(grown, case.tests, {doubts[k].name: 0.1 * G})
     for s, t in zip(segments(plain, case.tests, {}), with_it, strict=True):
         np.testing.assert_allclose(s.r - t.r, 0.1 * error.of(s)[:, k], atol=0.01 + 0.03 * np.abs(s.r - t.r).max())
+
+
+def test_what_a_parameter_moves_is_doubted_once_also_where_its_exponents_are_free(case):
+    """The exponents that a fit may bend come as copies that the same parameter moves."""
+    net, _ = working(case)
+    assert [x for x in (*net.links, *net.sources) if x.origin]
+    assert alone(net) >= alone(network())
 
 
 def test_contacts_and_bearings_of_one_parameter_differ_more_than_films_of_one():

@@ -40,7 +40,7 @@ def test_curves_network_and_report_show_themselves():
     assert "1 states" in bare_network("one", {"a": 5.0}, ("ambient",))._repr_html_()
     compare, diagnose = documents()
     framed = Report("road-test", comparison=compare, diagnosis=diagnose)._repr_html_()
-    assert framed.startswith("<iframe srcdoc=")
+    assert framed.startswith('<iframe title="report" srcdoc=')
     assert "<script" not in framed
 
 

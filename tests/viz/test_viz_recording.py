@@ -12,8 +12,11 @@ from fictional import HISTORY, PLACES, POSITIONS, TIME, comparison
 from small_motor import motor
 
 from geom.errors import InputError
+from viz.recordings.arrangement import apart, blueprint
+from viz.recordings.recording import TIME as TIME_LINE
 from viz.recordings.recording import verify, write_recording
 from viz.rendering.nodes import split
+from viz.rendering.scene import View
 
 NODES = split(motor(12))
 FRAMES = 7
@@ -66,6 +69,29 @@ def test_colours_and_events_are_explained(recording):
     entities = {entity for _, entity, _ in chunks(recording)}
     assert {"/scale/bar", "/scale/marks", "/legend", "/machine/names"} <= entities
     assert sum(n for n, entity, column in chunks(recording) if entity == "/events" and column == "text") == 2
+
+
+def views(part):
+    """Every view inside a part of a blueprint."""
+    inside = getattr(part, "contents", None)
+    return [v for one in inside for v in views(one)] if isinstance(inside, list | tuple) and inside else [part]
+
+
+def test_it_opens_playing_with_all_that_explains_it_in_sight():
+    """From the start of the test, again and again; machine, colour bar, residuals, inputs, events and revisions."""
+    shown = blueprint(replace(comparison(), events=((600.0, 1200.0),)), PLACES[0], NODES.points, True)
+    panel = shown.time_panel
+    assert (panel.timeline, panel.play_state, panel.loop_mode) == (TIME_LINE, "playing", "all")
+    origins = {view.origin for view in views(shown.root_container)}
+    assert {"machine", "scale", "legend", "residual", "inputs", "events", "error", "step"} <= origins
+
+
+def test_names_of_sensors_cover_none_before_them():
+    """Two at one place, a third an eighth of the diagonal above, a fourth farther along than a name is wide."""
+    diagonal = np.linalg.norm(np.ptp(NODES.points, axis=0))
+    _, right, up = View().axes()
+    places = np.array([[0.0, 0.0, 0.0], 0.01 * diagonal * right, 0.125 * diagonal * up, 0.2 * diagonal * right])
+    assert apart(places, NODES.points) == [True, False, True, True]
 
 
 def test_a_broken_file_is_not_valid(recording, tmp_path):

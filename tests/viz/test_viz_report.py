@@ -49,6 +49,34 @@ class Loads(HTMLParser):
         assert tag not in ("script", "link", "iframe", "object", "embed")
 
 
+class Silent(HTMLParser):
+    """Counts pictures, and collects those without an alternative text of their own or of the figure they are in."""
+
+    def __init__(self):
+        super().__init__()
+        self.inside, self.pictures, self.silent = [], 0, []
+
+    def handle_starttag(self, tag, attributes):
+        a = dict(attributes)
+        if tag == "figure":
+            self.inside.append(a.get("aria-label", "") if a.get("role") == "img" else "")
+        if tag in ("img", "svg", "canvas"):
+            said = a.get("alt") or next(filter(None, self.inside), "")
+            self.pictures += 1
+            self.silent += [] if len(said.split()) > 2 else [f"{tag} {said}"]
+
+    def handle_endtag(self, tag):
+        if tag == "figure":
+            self.inside.pop()
+
+
+def test_every_picture_has_an_alternative_text(page):
+    read = Silent()
+    read.feed(page)
+    assert read.pictures > 4
+    assert read.silent == []
+
+
 def test_nothing_is_loaded_from_elsewhere(page):
     loads = Loads()
     loads.feed(page)

@@ -14,8 +14,10 @@ from lumped.model.network import Row
 from validation.case import Channel, Test
 from viz import split
 from viz.data import Comparison
+from viz.viewer.error_map import ERROR, ErrorMap, packed_maps
 from viz.viewer.flux import nodal_flux
 from viz.viewer.low_rank import ERROR_K, low_rank
+from viz.viewer.network import NetworkRun
 from viz.viewer.packing import packed_integers, packed_numbers, unpacked
 from viz.viewer.page import Earlier, Recorded, document, render, write_viewer
 
@@ -143,6 +145,87 @@ def test_the_browser_mixes_the_same_heat_flux(tmp_path):
         assert page.evaluate("viewer.range[1]") >= np.quantile(expected, 0.95)
         browser.close()
     assert np.abs(found - expected).max() < 0.02 * expected.max()
+
+
+def mapped() -> Recorded:
+    """One residual tells more along the axis, the other less; the left half is known, the right a guess."""
+    share = (NODES.points[:, 2] - NODES.points[:, 2].min()) / np.ptp(NODES.points[:, 2])
+    between = ErrorMap(tuple(PLACE), np.stack([share, 0.3 * (1.0 - share)], axis=1), 1.0 - share)
+    part = NODES.parts[:2]
+    T = {name: np.linspace(20.0, 60.0 + i, TIMES.size) for i, name in enumerate(part)}
+    run = NetworkRun(T, {part: np.linspace(0.0, -120.0, TIMES.size)}, {part: 3.0})
+    return replace(recorded(), error_map=between, network=run)
+
+
+def test_errors_between_sensors_are_told_by_residuals():
+    """The packed map is the map within two hundredths of a residual; silent sensors tell nothing."""
+    one = mapped()
+    packed = packed_maps([one.error_map])
+    gains = unpacked(packed["gains"]) @ np.array(list(packed["amplitudes"][0].values())).T
+    assert np.abs(gains - one.error_map.gain).max() < 1.5 * ERROR
+    silent = one.error_map.at({name: np.array([np.nan]) for name in PLACE})
+    assert (silent == 0.0).all()
+
+
+INSIDE = """() => [...document.querySelectorAll("button, input, select")].filter((e) => {
+  const box = e.getBoundingClientRect();
+  return box.width && (box.left < 0 || box.right > innerWidth);
+}).map((e) => e.id)"""
+OVERLAPS = """() => {
+  const boxes = [...document.querySelectorAll("#network text, #network circle")]
+    .filter((e) => e.getAttribute("visibility") !== "hidden").map((e) => e.getBoundingClientRect());
+  return boxes.filter((a, i) => boxes.some((b, j) => i < j && a.left < b.right && b.left < a.right && a.top < b.bottom
+    && b.top < a.bottom)).length;
+}"""
+
+
+@pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
+def test_errors_and_network_stand_in_the_page_at_every_width(tmp_path):
+    """Painted and hatched as the map says, the network beside or below, no control out of sight, a silent console."""
+    playwright = pytest.importorskip("playwright.sync_api")
+    one, said = mapped(), []
+    page_text = render(document("motor", NODES, [one], PLACE, mesh=motor(24)))
+    (tmp_path / "v.html").write_text(page_text, encoding="utf-8")
+    residual = {c.name: one.comparison.residual(c) for c in one.comparison.channels}
+    expected = one.error_map.at(residual)[:, -1]
+    with playwright.sync_playwright() as engine:
+        arguments = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+        browser = engine.chromium.launch(executable_path=BROWSER, args=arguments)
+        page = browser.new_page(viewport={"width": 1280, "height": 700})
+        page.on("console", lambda message: said.append(message.text))
+        page.on("pageerror", lambda fault: said.append(str(fault)))
+        page.goto((tmp_path / "v.html").as_uri())
+        page.wait_for_function("window.viewer && viewer.frames > 0")
+        assert page.is_visible("#network")
+        page.select_option("#layer", "3")
+        page.wait_for_function("!viewer.dirty")
+        assert said == []
+        found = np.array(page.evaluate("Array.from(viewer.values)"))[: 2 * NODES.size : 2]
+        assert np.abs(found - expected).max() < 2 * ERROR * max(abs(r[-1]) for r in residual.values())
+        assert "measured − model" in page.get_attribute("#gl", "aria-label")
+        assert page.is_visible("#guess")
+        guessed = {share: page.evaluate(GUESS, share) for share in (0.05, 0.95)}
+        assert guessed == {0.05: False, 0.95: True}
+        assert "120 W" in page.evaluate("document.querySelector('#network line title').textContent")
+        for width in (1280, 800, 400):
+            page.set_viewport_size({"width": width, "height": 700})
+            page.set_checked("#networked", True)
+            page.wait_for_function("!viewer.dirty")
+            assert page.evaluate("document.documentElement.scrollWidth") <= width
+            assert page.evaluate(INSIDE) == []
+            assert page.evaluate(OVERLAPS) == 0
+        browser.close()
+    assert said == []
+
+
+GUESS = """(share) => {  // the pointer on the section, that share of the machine's length along its axis
+  const v = viewer, z = v.low[2] + share * (v.high[2] - v.low[2]);
+  for (let y = 0.95; y > 0; y -= 0.01) {
+    const p = v.pixel({ xyz: [v.middle[0], y * v.high[1], z] }), scale = $("gl").width / $("gl").clientWidth;
+    const hit = v.pick(p[0] / scale, p[1] / scale);
+    if (hit) return hit.guess;
+  }
+}"""
 
 
 @pytest.mark.skipif(shutil.which("node") is None, reason="no node")

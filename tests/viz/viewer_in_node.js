@@ -8,7 +8,7 @@ const context = (kind) => kind === "2d"
   ? new Proxy(flat, { get: (o, k) => o[k] ?? (() => {}) })
   : new Proxy({}, { get: (o, k) => k === k.toUpperCase() ? 1 : () => ({}) });
 const element = () => ({
-  value: "0", style: {}, options: [{}, {}, {}], selectedIndex: 0, width: 100, height: 100, clientWidth: 100, clientHeight: 100,
+  value: "0", style: {}, options: [{}, {}, {}, {}], selectedIndex: 0, selectedOptions: [{}], parentNode: {}, width: 100, height: 100, clientWidth: 100, clientHeight: 100,
   getContext: context, replaceChildren() {}, append() {}, prepend() {}, remove() {}, firstChild: { prepend() {} }, lastChild: {},
 });
 const known = { data: { ...element(), textContent: between('id="data">', "</script>") } };

@@ -22,7 +22,7 @@ from thermoscope.recordings.quantities import with_quantities
 from thermoscope.recordings.readings import read_test
 from thermoscope.recordings.sheet import Sheet, load_sheet
 from thermoscope.recordings.tables import Samples, load_table
-from validation.calibration.unknowns import matching
+from validation.calibration.unknowns import matching, working
 from validation.case import AddedEffect, Case, Model, Test
 from validation.measurement.sampling import SampleStep
 
@@ -69,6 +69,17 @@ class Folder:
         from validation.comparison.compare import compare
 
         return compare(self.case, budgets=self.numeric_K)
+
+    def limits(self, test: Test) -> dict[str, float]:
+        """Channel -> the largest error that counts as agreement (K); of this test alone unless all are compared."""
+        if "compared" in vars(self):
+            return self.compared.limits[test.name]
+        from validation.comparison.compare import judged_error, physical
+
+        case = self.case
+        budget = self.numeric_K[test.name]
+        found = judged_error(working(case)[0], test, physical(case), case.doubt, budget)
+        return {c.channel: c.limit_K for c in found.channels if c.limit_K is not None}
 
 
 def _once(settings: Settings, files: Mapping[str, Path]) -> None:

@@ -11,16 +11,14 @@ from numpy.typing import NDArray
 
 from lumped.condensation.recovery import Shapes
 from lumped.integration.simulate import simulate
-from lumped.model.network import Network, Parameter, Row
+from lumped.model.network import Network, Row
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import Revision
 from validation.calibration.unknowns import effects_of, to_value, working
 from validation.case import AddedEffect, Case, Channel, Test
 from validation.comparison.compare import physical
-from validation.comparison.interpolation import Interpolated, interpolated
 from validation.comparison.predict import predict, record, thermal
 from validation.effects.during import During
-from validation.inference.model_error import with_doubts
 
 if TYPE_CHECKING:
     from viz.data import Comparison
@@ -71,9 +69,7 @@ def held(folder: Folder, test: Test) -> Comparison:
 
     earlier = before_last(folder)
     before = None if earlier is None else readings(earlier, test)
-    return Comparison(
-        test, readings(folder.case, test), folder.compared.limits[test.name], before, accepted(folder.case, test)
-    )
+    return Comparison(test, readings(folder.case, test), folder.limits(test), before, accepted(folder.case, test))
 
 
 def accepted(case: Case, test: Test) -> tuple[tuple[float, float], ...]:
@@ -93,39 +89,6 @@ def fields(case: Case, test: Test, nodes: SplitMesh, frames: int) -> tuple[Array
     states = np.asarray(run.z)[chosen, : len(network.states)]
     T = [np.concatenate([recovery.of_part(part, x) for part in nodes.parts]) for x in states]
     return run.time[chosen], np.array(T)
-
-
-def error_field(folder: Folder, test: Test, nodes: SplitMesh) -> Interpolated:
-    """Measured minus modelled on the parts' own nodes at the end of a test (K), told by the sensors there.
-
-    Doubts: every parameter within its interval, where it has one, else its prior, as if apart from the others; and the
-    model error of validation.inference.model_error.
-    """
-    case, intervals = folder.case, folder.history.last.intervals if folder.history.revisions else {}
-    grown = with_doubts(thermal(working(case)[0]), case.doubt)[0]
-    known = {p.name for p in grown.parameters}
-    values = {k: v for k, v in case.model.values.items() if k in known}
-    doubted = [p for p in grown.parameters if p.prior_sd > 0]
-    end = simulate(grown, record(test, {}), values, tangents=doubted).end
-    D = end.D[: len(grown.states)] * np.array([deviation(p, intervals.get(p.name)) for p in doubted])
-    recovery: Any = grown.recovery
-    there = np.concatenate([recovery.of_part(part, D) for part in nodes.parts])
-    model, late, seen = readings(case, test), slice(int(0.8 * len(test.time)), None), []
-    for c in test.channels:
-        residual = (np.asarray(c.y, float) - model[c.name])[late]
-        if np.isfinite(residual).any():
-            row = c.row.dense(len(grown.states) + len(grown.boundaries))[: len(grown.states)]
-            seen.append((row @ D, float(np.nanmean(residual)), float(np.hypot(c.sigma_K, c.model_K))))
-    here, residual_K, sigma_K = (np.array(column) for column in zip(*seen, strict=True))
-    return interpolated(there, here, residual_K, sigma_K)
-
-
-def deviation(parameter: Parameter, interval: Sequence[float] | None) -> float:
-    """One standard deviation of a parameter in its own coordinate: of its 95 % interval, else of its prior."""
-    if interval is None:
-        return parameter.prior_sd
-    low, high = np.log(interval) if parameter.mapping == "log" else interval
-    return min(float(high - low) / (2 * 1.96), parameter.prior_sd)
 
 
 def steps(folder: Folder) -> list[dict[str, Any]]:

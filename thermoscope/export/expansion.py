@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import singledispatch
@@ -10,8 +9,7 @@ from itertools import product as pairs
 
 import numpy as np
 
-from lumped.declarations.films import POINTS, FilmOver
-from lumped.declarations.mixed import Share
+from lumped.declarations.separated import FilmOver, Share, over_grid
 from lumped.machine.bases import Switched
 from lumped.machine.laws import Interpolated
 from lumped.sources.loss_map import MapLoss
@@ -95,13 +93,8 @@ def _(law: Share) -> Sum | Unknown:
 
 @expanded.register
 def _(law: FilmOver) -> Sum | Unknown:
-    from lumped.correlations import RangeWarning
-
-    at = law.top * np.linspace(0.0, 1.0, POINTS) ** 2
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RangeWarning)
-        h = tuple(float(law.film(v)[0]) for v in at)
-    return (Product(1.0, (Tabulated(law.of, tuple(at.tolist()), h, True),)),)
+    at, h = law.at, over_grid(law.film, law.at)
+    return (Product(1.0, (Tabulated(law.of, tuple(at.tolist()), tuple(h.tolist()), True),)),)
 
 
 def _each(base: Law, change: Callable[[Product], Product]) -> Sum | Unknown:

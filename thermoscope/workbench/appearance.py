@@ -44,10 +44,11 @@ class Appearance:
 
 def appearance_of(folder: Folder, surface: Surface | None) -> Appearance:
     """Run the model on every test."""
+    errors = folder.compared.document()  # first: what it finds serves the curves
     curves = {test.name: held(folder, test) for test in folder.case.tests}
     frames: dict[str, Frames] = {}
     if surface is not None:
         for test in folder.case.tests:
             times, T = fields(folder.case, test, surface.nodes, FRAMES)
             frames[test.name] = times, surface.values(T.T).T.astype(np.float32)
-    return Appearance(folder.compared.document(), curves, frames)
+    return Appearance(errors, curves, frames)

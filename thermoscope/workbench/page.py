@@ -60,6 +60,11 @@ def told(attribute: str, value: str) -> dict[str, list[str]]:
     return {"raw_attrs": [f'{attribute}="{value}"']}
 
 
+def pictured(words: str) -> dict[str, list[str]]:
+    """An alternative text for what is drawn inside; `words` is an expression of the page's state."""
+    return {"raw_attrs": ['role="img"', f':aria-label="{words}"']}
+
+
 def _keys(session: Session) -> None:
     """Shortcuts; plain Tab and Enter work without them."""
     turns = {name: (lambda by=by: session.shown.turn(*by)) for name, by in TURNS.items()}
@@ -96,7 +101,8 @@ def _bar(session: Session) -> None:
 
 
 def _button(text: str, name: str, icon: str, act: Any, disabled: str) -> None:
-    v3.VBtn(text, id=name, prepend_icon=icon, click=act, disabled=(disabled,), variant="text")
+    said = told("aria-label", text)  # narrow pages show the icon alone
+    v3.VBtn(text, id=name, prepend_icon=icon, click=act, disabled=(disabled,), variant="text", **said)
 
 
 def _machine(session: Session) -> None:
@@ -124,7 +130,8 @@ def _machine(session: Session) -> None:
         if session.shown.stage is None:
             html.P("{{ why_flat }}", classes="flat")
             return
-        with html.Div(v_show=("!viewer",), classes="view", id="machine"):
+        said = "'the machine cut open, coloured by temperature: ' + test + ' at ' + minute"
+        with html.Div(v_show=("!viewer",), classes="view", id="machine", **pictured(said)):
             view = vtk_widgets.VtkRemoteView(
                 session.shown.stage.window, ref="machine", interactive_ratio=0.6, interactive_quality=60,
                 still_quality=92,
@@ -147,7 +154,8 @@ def _turning(session: Session, name: str) -> Any:
 
 
 def _curve() -> None:
-    with html.Div(classes="card curve", id="curve"):
+    said = "'readings and model of ' + sensor + ' in ' + test + ', and their difference'"
+    with html.Div(classes="card curve", id="curve", **pictured(said)):
         plotly.Figure(
             state_variable_name="curve", display_mode_bar=("false",), responsive=("true",), display_logo=("false",),
             style="width: 100%; height: 100%",
@@ -214,7 +222,8 @@ def _missing(session: Session) -> None:
             html.P("{{ verdict.sentence }}", classes=("'verdict ' + verdict.tone",), id="verdict")
             html.P("{{ verdict.words }}", classes="faint")
             _candidates(session)
-            with html.Div(v_if=("has_confusion",), classes="confusion", id="confusion"):
+            said = "'which of the candidates look alike: a matrix of their likeness'"
+            with html.Div(v_if=("has_confusion",), classes="confusion", id="confusion", **pictured(said)):
                 plotly.Figure(
                     state_variable_name="confusion", display_mode_bar=("false",), responsive=("true",),
                     style="width: 100%; height: 100%",

@@ -41,7 +41,7 @@ from validation.inference.posterior import (
     unknown_heat,
     weights,
 )
-from validation.inference.refits import NOWHERE, Begun, noise_of_refits, refitted
+from validation.inference.refits import NOWHERE, Begun, finely, noise_of_refits, refitted
 from validation.inference.several import further
 from validation.inference.tables import tabulate
 from validation.measurement.faults import PlainFaults, broken_channels, without
@@ -120,9 +120,9 @@ def infer(case: Case, kinds: Sequence[str] | None = None, progress: Progress = n
     timed, noise = retimed(evidence, found, reach(looked)), noise_of_refits(found)
     if noise is not None or timed is not evidence:
         evidence = under(timed, noise or timed.fit.noise)
-        begun = {h.members: h.fit.theta for h in found if h.fit and h.members}
+        begun = {h.members: h.fit for h in found if h.fit and h.members}
         found, heat = weighed(case, evidence, looked, fit.noise, progress, begun)
-    every = further(case, evidence, found, progress)
+    every = further(case, evidence, finely(evidence, found), progress)
     return Posterior(evidence, tuple(against_nothing(every)), tuple(heat), against)
 
 
@@ -131,7 +131,7 @@ def weighed(
 ) -> tuple[list[Hypothesis], list[MissingHeat]]:
     """All hypotheses, those that carry weight refitted, and where heat is missing.
 
-    loudest : the noise that nothing asks for;  begun : members -> where a refit of theirs may go on
+    loudest : the noise that nothing asks for;  begun : members -> a refit of theirs that may go on
     """
     heat = looked.read(evidence.fit.parts, evidence.fit.noise, evidence.fit.theta, evidence.fit.error)
     loud, ones = under(evidence, loudest), singles(evidence)

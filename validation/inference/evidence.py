@@ -34,11 +34,15 @@ from validation.measurement.noise import Noise, fit_noise
 Array = NDArray[np.float64]
 TWIN = 0.9995  # cosine from which a calibrated parameter does the same as an effect
 ENOUGH = 0.1  # nats: evidence is read to a few tenths
+FINE = 0.02  # nats at which what is told stands: a size is then within a quarter of its deviation of its optimum
 STRAIGHT = 0.9  # of the gain that tangents foretold: a refit that got it needs none of its own
+BENDS = 10.0  # nats that a refit gains, beyond which the tangents of its start point elsewhere at its end
 HOPELESS = 20.0  # nats worse than nothing after a first refit: no second one makes up for that
 LEAN = 0.5  # nats that a tangent gains at a large amplitude before it pays for its own size
 SECOND = 6  # steps of a refit under tangents of its own: with three, some stopped tens of nats short
-ROUNDS = 4  # steps of a calibration that goes on under the model error
+ROUNDS = (
+    12  # steps of a calibration that goes on under the model error: what nothing gains too little, all gain too much
+)
 FURTHER = 6  # of one that goes on under another noise
 
 
@@ -117,7 +121,7 @@ def calibrated_case(
     values, tests = {**case.model.values, **(start or {})}, diagnosing(case)
     held = {p.name: values.get(p.name, p.value) for p in network.parameters}
     plain = calibrated(network, tests, unknowns, values, 1, progress, rough=True)
-    return with_model_error(plain, tests, held, case.doubt, ROUNDS, draft=True)
+    return with_model_error(plain, tests, held, case.doubt, ROUNDS)
 
 
 def scored(case: Case, effects: Sequence[Effect], fit: Fit) -> Evidence:
@@ -315,32 +319,62 @@ def noise_beside(evidence: Evidence, members: Sequence[int]) -> Noise:
     return fit_noise(left)
 
 
-def refit(evidence: Evidence, members: Sequence[int], theta: Array, tangents: Sequence[Segment] = ()) -> Fit:
+def refit(
+    evidence: Evidence, members: Sequence[int], theta: Array, tangents: Sequence[Segment] = (),
+    begun: float | None = None,
+) -> Fit:  # fmt: skip
     """All free parameters and the amplitudes of some candidates, fitted anew; those that are whole are held at one.
 
     tangents : of all these where the fit begins, by default those without the candidates
+    begun : objective there, by default that without the candidates
     """
     network, unknowns, held = with_members(evidence, members)
     free, fit = free_of(evidence, members), evidence.fit
+    before = fit.objective if begun is None else begun
     rough = minimise(network, evidence.tests, unknowns, theta, fit.noise, held, 8,
                      KnownSegments(tangents or evidence.parts_of(free)), worth=ENOUGH, error=fit.error)  # fmt: skip
     far = any(evidence.effects[k].whole for k in members)  # exchanged plugs begin where the calibration is wrong
-    if rough.foretold > STRAIGHT or (rough.objective > fit.objective + HOPELESS and not far):
+    straight = rough.foretold > STRAIGHT and before - rough.objective < BENDS
+    if straight or (rough.objective > fit.objective + HOPELESS and not far):
         return rough
     return minimise(network, evidence.tests, unknowns, rough.theta, fit.noise, held, SECOND, draft=True, worth=ENOUGH,
                     error=fit.error)  # fmt: skip
 
 
-def refit_beside(evidence: Evidence, members: Sequence[int], one: int, alone: Fit) -> Fit:
-    """Two candidates fitted from where one of them was fitted alone, with its tangents and those of the other."""
+def tangents_beside(evidence: Evidence, one: int, alone: Fit, others: Sequence[int]) -> dict[int, list[Array]]:
+    """What each of some further effects does to every segment (K per unit) where one effect was fitted alone."""
+    e, free = evidence, [k for k in others if not evidence.effects[k].whole]
+    whole = [one, *free]
+    network = extended(e.fit.network, [e.effects[k] for k in whole])
+    values = values_of(network, {**e.fit.values, **alone.unknowns.values(alone.theta), **held_at_one(e, [one])})
+    parts = segments(network, e.tests, values, [e.parameters[k] for k in free])
+    return {k: [s.J[:, i] for s in parts] for i, k in enumerate(free)}
+
+
+def refit_beside(
+    evidence: Evidence, members: Sequence[int], one: int, alone: Fit, columns: Mapping[int, Sequence[Array]]
+) -> Fit:
+    """Two candidates fitted from where one of them was fitted alone, with its tangents and those of the other there."""
     free, p = free_of(evidence, members), evidence.p
-    own = {k: evidence.parts_of([k]) for k in free if k != one}
     theta = np.concatenate([alone.theta[:p], [alone.theta[p] if k == one else 0.0 for k in free]])
     tangents = [
-        replace(s, J=np.column_stack([s.J[:, :p], *(s.J[:, p] if k == one else own[k][i].J[:, p] for k in free)]))
+        replace(s, J=np.column_stack([s.J[:, :p], *(s.J[:, p] if k == one else columns[k][i] for k in free)]))
         for i, s in enumerate(alone.parts)
     ]
-    return refit(evidence, members, theta, tangents)
+    return refit(evidence, members, theta, tangents, alone.objective)
+
+
+def refit_onwards(evidence: Evidence, members: Sequence[int], before: Fit, finely: bool = False) -> Fit:
+    """A refit that goes on with what it ran last, under another noise; where its effects have new ends, nearby.
+
+    finely : to its end, with tangents of its own there
+    """
+    network, unknowns, held = with_members(evidence, members)
+    moved, fit = before.unknowns.names != unknowns.names, evidence.fit
+    known = KnownSegments(before.parts, nearby=moved, renewed=True, stale=True)
+    steps, worth = (ROUNDS, FINE) if finely else (SECOND, ENOUGH)
+    return minimise(network, evidence.tests, unknowns, before.theta, fit.noise, held, steps, known, draft=not finely,
+                    worth=worth, error=fit.error)  # fmt: skip
 
 
 def free_of(evidence: Evidence, members: Sequence[int]) -> list[int]:
@@ -353,8 +387,12 @@ def with_members(evidence: Evidence, members: Sequence[int]) -> tuple[Network, U
     network = extended(fit.network, [evidence.effects[k] for k in members])
     free = [evidence.parameters[k] for k in free_of(evidence, members)]
     unknowns = Unknowns((*fit.unknowns.parameters, *(widened(p) for p in free)))
-    whole = {evidence.names[k]: 1.0 for k in members if evidence.effects[k].whole}
-    return network, unknowns, values_of(network, {**fit.values, **whole})
+    return network, unknowns, values_of(network, {**fit.values, **held_at_one(evidence, members)})
+
+
+def held_at_one(evidence: Evidence, members: Sequence[int]) -> dict[str, float]:
+    """Those that happen whole or not at all."""
+    return {evidence.names[k]: 1.0 for k in members if evidence.effects[k].whole}
 
 
 def starts(evidence: Evidence, members: Sequence[int]) -> list[Array]:

@@ -78,8 +78,10 @@ def _log(target: str, sd: float) -> Parameter:
 
 
 def alone(network: Network) -> set[str]:
-    """Links, losses and capacities that a parameter moves by themselves."""
-    return {p.targets[0][0] for p in network.parameters if len(p.targets) == 1 and p.mapping == "log"}
+    """Links, losses and capacities that a parameter moves by themselves, or with what an exponent adds to them."""
+    added = {x.name for x in network.links if x.origin} | {x.name for x in network.sources if x.origin}
+    own = [[t for t, _ in p.targets if t not in added] for p in network.parameters if p.mapping == "log"]
+    return {targets[0] for targets in own if len(targets) == 1}
 
 
 def _each_link(network: Network, doubt: Doubt) -> Iterator[Parameter]:

@@ -23,15 +23,19 @@ from validation.inference.evidence import (
     mended_by_exchange,
     refit,
     refit_beside,
+    refit_onwards,
     starts,
+    tangents_beside,
 )
 from validation.inference.posterior import Hypothesis, probabilities, told, weights
 from validation.measurement.noise import Noise
 
 Array = NDArray[np.float64]
-Begun = Mapping[tuple[int, ...], Array]
+Begun = Mapping[tuple[int, ...], Fit]
+Beside = tuple[int, Fit, Mapping[int, Sequence[Array]]]
 NOWHERE: Begun = MappingProxyType({})
 WEIGHT = 0.01  # posterior probability from which a hypothesis is refitted
+TOLD = 0.05  # posterior probability from which a hypothesis is told in the first place
 ROUNDS, MOST = 4, 8  # what a refit promotes is refitted too; so many at once
 GREAT, NEAR = 10.0, 0.5  # nats beyond which tangents mislead, and the share of the best from which a rival is refitted
 IMPOSSIBLE = -1e3  # nats: as good as excluded, and a number that a document can hold
@@ -45,7 +49,7 @@ def refitted(
 ) -> list[Hypothesis]:  # fmt: skip
     """The hypotheses with those that carry weight refitted, until none does that is not.
 
-    begun : members -> where a refit of theirs under another noise ended
+    begun : members -> a refit of theirs under another noise
     """
     out = list(hypotheses)
     together(evidence, out, [*exchanged(evidence, out), *rivals(out)], progress, begun)
@@ -65,11 +69,23 @@ def together(
     """Refit some hypotheses side by side (the kernel frees the GIL); none depends on another of them."""
     for i in due:
         progress(f"refitting {out[i].name(evidence)}")
-    near = [fitted_alone(out, out[i].members) for i in due]
+    near = all_beside(evidence, out, due)
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        found = list(pool.map(lambda i, alone: laplace(evidence, out[i], alone, begun), due, near))
+        found = list(pool.map(lambda i: laplace(evidence, out[i], near.get(i), begun), due))
     for i, h in zip(due, found, strict=True):
         out[i] = h
+
+
+def all_beside(evidence: Evidence, hypotheses: Sequence[Hypothesis], due: Sequence[int]) -> dict[int, Beside]:
+    """For pairs of which one effect was fitted by itself: that fit, and the tangents of all the other effects there,
+    in one run."""
+    found = {i: a for i in due if (a := fitted_alone(hypotheses, hypotheses[i].members))}
+    fits = {one: fit for one, fit in found.values()}
+    others: dict[int, list[int]] = {one: [] for one in fits}
+    for i, (one, _) in found.items():
+        others[one] += [k for k in hypotheses[i].members if k != one]
+    columns = {one: tangents_beside(evidence, one, fit, others[one]) for one, fit in fits.items()}
+    return {i: (one, fit, columns[one]) for i, (one, fit) in found.items()}
 
 
 def promised(before: Sequence[Hypothesis], after: Sequence[Hypothesis]) -> list[Hypothesis]:
@@ -115,23 +131,41 @@ def exchanged(evidence: Evidence, hypotheses: Sequence[Hypothesis]) -> list[int]
     return [i for i, _ in dict.fromkeys([*near, *before])]
 
 
-def laplace(
-    evidence: Evidence, h: Hypothesis, near: tuple[int, Fit] | None = None, begun: Begun = NOWHERE
-) -> Hypothesis:
+def laplace(evidence: Evidence, h: Hypothesis, near: Beside | None = None, begun: Begun = NOWHERE) -> Hypothesis:
     """The hypothesis with the best of its refits and the evidence that follows.
 
-    near : one of two effects and its fit without the other;  begun : members -> where a refit may go on
+    near : one of two effects, its fit without the other, and tangents there;  begun : members -> a refit that may go on
     """
-    before = begun.get(h.members)
-    points, fits = starts(evidence, h.members) if before is None else [before], []
-    for i, theta in enumerate(points):
-        with suppress(NoSolution):  # a machine that would run away there begins elsewhere
-            first = near if i == 0 and before is None else None
-            fits.append(refit_beside(evidence, h.members, *first) if first else refit(evidence, h.members, theta))
+    before, fits = begun.get(h.members), []
+    if before is not None:
+        with suppress(NoSolution):
+            fits.append(refit_onwards(evidence, h.members, before))
+    else:
+        for i, theta in enumerate(starts(evidence, h.members)):
+            with suppress(NoSolution):  # a machine that would run away there begins elsewhere
+                first = near if i == 0 else None
+                fits.append(refit_beside(evidence, h.members, *first) if first else refit(evidence, h.members, theta))
     if not fits:
         return replace(h, log_bayes=IMPOSSIBLE, loud=IMPOSSIBLE)
     best = min(fits, key=lambda fit: fit.objective)
     return replace(h, fit=best, log_bayes=log_bayes(evidence, best, h.members))
+
+
+def finely(evidence: Evidence, hypotheses: Sequence[Hypothesis]) -> list[Hypothesis]:
+    """The hypotheses, those that will be told refitted to their end: sizes are read off them."""
+    out, P = list(hypotheses), probabilities(hypotheses)
+    due = [i for i in np.argsort(-P) if P[i] > TOLD and out[i].fit and free_of(evidence, out[i].members)]
+
+    def again(i: int) -> Hypothesis:
+        h = out[i]
+        assert h.fit is not None
+        fit = refit_onwards(evidence, h.members, h.fit, finely=True)
+        return replace(h, fit=fit, log_bayes=log_bayes(evidence, fit, h.members))
+
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        for i, h in zip(due, pool.map(again, due), strict=True):
+            out[i] = h
+    return out
 
 
 def noise_of_refits(hypotheses: Sequence[Hypothesis]) -> Noise | None:

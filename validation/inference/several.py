@@ -16,9 +16,11 @@ from validation.doubt import PRIOR
 from validation.effects.during import During
 from validation.inference.evidence import Evidence, scored
 from validation.inference.posterior import Hypothesis, prior_shares, singles, weights
-from validation.inference.refits import laplace
+from validation.inference.refits import NEAR, laplace
 
 MOST = 3  # effects at once: who forgot more begins with another model
+RIVALS = 4  # effects that are tried beside the same others
+AGAIN = float(np.log(PRIOR["two"].share / (PRIOR["effect"].share + PRIOR["fault"].share)))  # as a second beside a first
 
 
 def further(
@@ -34,10 +36,10 @@ def further(
     goes_on = len(best.members) > 1 or weight[first] < max((w for w, h in zip(weight, out) if h.heat), default=-np.inf)
     while goes_on and len(best.members) < MOST:
         new = with_one_more(case, evidence, best, progress)
-        goes_on = new is not None and pays(out, best, new)
-        if new is not None and goes_on:
-            best = new
-            out.append(new)
+        goes_on = bool(new) and pays(out, best, new[0])
+        if goes_on:
+            best = new[0]
+            out += new
     return out
 
 
@@ -54,18 +56,25 @@ def pays(hypotheses: Sequence[Hypothesis], before: Hypothesis, new: Hypothesis) 
 
 def with_one_more(
     case: Case, evidence: Evidence, best: Hypothesis, progress: Callable[[str], None]
-) -> Hypothesis | None:
-    """The best explanation that adds one lasting effect; None if there is none to add."""
+) -> list[Hypothesis]:
+    """The best explanation that adds one lasting effect, the most probable first, then those that add a rival of it;
+    none if there is nothing to add."""
     assert best.fit is not None
     others = [k for k, e in enumerate(evidence.effects) if k not in best.members and not isinstance(e, During)]
     others = [k for k in others if not evidence.effects[k].whole]
     if not others:
-        return None
+        return []
     now = scored(case, [evidence.effects[k] for k in others], best.fit)
-    ones = singles(now)
-    lead = ones[1 + int(np.argmax(weights(ones)[1:]))]
-    progress(f"refitting {best.name(evidence)} + {lead.name(now)}")
-    found, k = laplace(now, lead), others[lead.members[0]]
-    again = PRIOR["two"].share / (PRIOR["effect"].share + PRIOR["fault"].share)  # as rare as a second beside a first
-    prior = best.log_prior + float(np.log(again * prior_shares(evidence)[k]))
-    return Hypothesis((*best.members, k), "", prior, best.log_bayes + found.log_bayes, best.loud, found.fit)
+    out = []
+    for one in most_probable(singles(now)):
+        progress(f"refitting {best.name(evidence)} + {one.name(now)}")
+        found, k = laplace(now, one), others[one.members[0]]
+        prior = best.log_prior + AGAIN + float(np.log(prior_shares(evidence)[k]))
+        out.append(Hypothesis((*best.members, k), "", prior, best.log_bayes + found.log_bayes, best.loud, found.fit))
+    return [out[i] for i in np.argsort(-weights(out))]
+
+
+def most_probable(hypotheses: Sequence[Hypothesis]) -> list[Hypothesis]:
+    """The single effect with most weight, and those that come near it: tangents do not tell them apart."""
+    ones = [hypotheses[i] for i in np.argsort(-weights(hypotheses)) if hypotheses[i].members]
+    return [h for h in ones if h.log_bayes > NEAR * ones[0].log_bayes][:RIVALS]

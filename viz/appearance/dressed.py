@@ -22,6 +22,7 @@ FINISH = {
     Role.IRON: Finish.LAMINATIONS, Role.ROTOR: Finish.ROTOR, Role.CAGE: Finish.CAST, Role.MAGNET: Finish.MAGNET,
     Role.INSULATION: Finish.INSULATION, Role.WINDING: Finish.COPPER, Role.COMMUTATOR: Finish.BRASS,
     Role.FAN: Finish.RUBBER, Role.BEARING: Finish.STEEL, Role.SHAFT: Finish.STEEL, Role.BASE: Finish.PLATE,
+    Role.BRUSH: Finish.CARBON,
 }  # fmt: skip
 EDGE = 0.0006  # m; edges of plain parts are rounded by this
 

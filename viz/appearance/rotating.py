@@ -99,14 +99,15 @@ def _radial_fan(radius: float, tip: float, z0: float, z1: float) -> Shape:
 
 
 def commutator(o: Outlines, part: Part) -> list[Body]:
-    """Its bars, and brushes in their holders on them, one row for every main pole."""
+    """Its bars, and brushes in their holders on them, one row for every main pole, where the mesh has none."""
     outlines = [(o.of(p), *p[1:]) for p in part.prisms]
     low = min(radii_of(q)[1] for q, _, _ in outlines)
     z0 = min(z for q, z, _ in outlines if radii_of(q)[1] < low + 1e-6)
     z1 = max(z for q, _, z in outlines if radii_of(q)[1] < low + 1e-6)
     pieces = [extruded(q, a, b, 0.0004) for q, a, b in (outlines if len(outlines) > 4 else _bars(o, outlines))]
     poles = [angle_of(o.of(q)) for p in o.parts(Role.IRON) if len(p.prisms) > 1 for q in p.prisms]
-    brushes = [b for angle in poles for b in _brush(part, low, (z0, z1), angle)]
+    rows = [] if o.parts(Role.BRUSH) else poles  # meshed ones are drawn as they are
+    brushes = [b for angle in rows for b in _brush(part, low, (z0, z1), angle)]
     return [Body(part.name, Finish.BRASS, joined(pieces).turned(TURN)), *brushes]
 
 

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     import rerun.blueprint as rrb
 
 SPEED = 360.0  # times as fast as the test: an hour in ten seconds
+NAME = 0.16, 0.04  # width and height of a sensor's name, share of the machine's diagonal in the first view
 DISTANCE = 1.02  # of the machine's diagonal: fills the view at rerun's own angle of view
 
 
@@ -39,6 +40,18 @@ def blueprint(comparison: Comparison, first: str, points: NDArray[np.float64], w
         timeline="test_time", state="collapsed", play_state="playing", loop_mode="all", playback_speed=SPEED
     )
     return rrb.Blueprint(layout, plays, collapse_panels=True)
+
+
+def apart(places: NDArray[np.float64], points: NDArray[np.float64]) -> list[bool]:
+    """Which names, at places (n, 3) m in order of weight, cover none before them when the machine is first seen."""
+    _, right, up = View().axes()
+    size = np.linalg.norm(np.ptp(points, axis=0)) * np.array(NAME)
+    taken: list[NDArray[np.float64]] = []
+    out = []
+    for at in np.stack([places @ right, places @ up], axis=1):
+        out.append(not any((np.abs(at - other) < size).all() for other in taken))
+        taken += [at] if out[-1] else []
+    return out
 
 
 def _bar() -> rrb.Spatial2DView:

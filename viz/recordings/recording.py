@@ -25,7 +25,7 @@ from viz.figures.curves import wrongness
 from viz.figures.errors import PALE, error_paths
 from viz.machine.thermocouples import LABELS
 from viz.recordings import scale
-from viz.recordings.arrangement import blueprint
+from viz.recordings.arrangement import apart, blueprint
 from viz.rendering.cut import QUARTER, Surface, Wedge, cut_away
 from viz.rendering.edges import outline_strips
 from viz.rendering.nodes import SplitMesh, on_nodes
@@ -75,7 +75,7 @@ def write_recording(
     scale.colour_bar(stream, *rounded(float(fields.min()), float(fields.max())))
     scale.inputs(stream, comparison, TIME)
     scale.events(stream, comparison, TIME)
-    _sensors(stream, comparison, times, positions, revision_residuals)
+    _sensors(stream, comparison, times, positions, revision_residuals, surface.points)
     _curves(stream, comparison)
     _revisions(stream, history)
     stream.flush()
@@ -130,19 +130,21 @@ def _colours(
 
 def _sensors(
     stream: rr.RecordingStream, c: Comparison, times: Array, positions: Mapping[str, Sequence[float]],
-    revisions: Sequence[Mapping[str, float]],
+    revisions: Sequence[Mapping[str, float]], points: Array,
 ) -> None:  # fmt: skip
     import rerun as rr
 
     placed = [channel for channel in c.channels if channel.name in positions]
     if not placed:
         return
-    points = rr.Points3D(
+    dots = rr.Points3D(
         [positions[channel.name] for channel in placed], labels=[short(channel.name) for channel in placed],
         radii=rr.Radius.ui_points(5.0), show_labels=False,
     )  # fmt: skip
-    stream.log("machine/sensors", points, static=True)
-    named = sorted(placed, key=lambda channel: -c.rmse(channel) / c.limit_K(channel))[:LABELS]
+    stream.log("machine/sensors", dots, static=True)
+    ranked = sorted(placed, key=lambda channel: -c.rmse(channel) / c.limit_K(channel))
+    free = apart(np.array([positions[channel.name] for channel in ranked]), points)
+    named = [channel for channel, clear in zip(ranked, free, strict=True) if clear][:LABELS]
     labels = rr.Points3D(
         [positions[channel.name] for channel in named], labels=[short(channel.name) for channel in named],
         radii=rr.Radius.ui_points(0.0), show_labels=True, colors=[255, 255, 255],

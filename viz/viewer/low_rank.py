@@ -40,11 +40,12 @@ def low_rank(fields: Array, error_K: float = ERROR_K) -> LowRank:
     rest = fields - mean
     values, vectors = np.linalg.eigh(rest @ rest.T)
     order = np.argsort(values)[::-1]
-    rank = 0
-    shapes, amplitudes = np.zeros((0, fields.shape[1])), np.zeros((len(fields), 0))
-    while float(np.abs(rest - amplitudes @ shapes).max(initial=0.0)) > error_K and rank < len(order):
+    rank, left = 0, rest.copy()
+    while rank < len(order) and float(np.abs(left).max(initial=0.0)) > error_K:
+        vector = vectors[:, order[rank]]
+        left -= np.outer(vector, vector @ rest)
         rank += 1
-        amplitudes = vectors[:, order[:rank]]
-        shapes = amplitudes.T @ rest
+    amplitudes = vectors[:, order[:rank]]
+    shapes = amplitudes.T @ rest
     largest = np.abs(shapes).max(axis=1, initial=1e-12)
     return LowRank(mean, shapes / largest[:, None], amplitudes * largest)

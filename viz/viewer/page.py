@@ -14,15 +14,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.disk_cache import atomic_write
+from geom.meshing.mesh import NamedMesh
 from viz.colours import VERDICT, heat, missing, part_colours, power
 from viz.data import Comparison, short
 from viz.rendering.nodes import SplitMesh
 from viz.rendering.scale import marks, rounded
+from viz.viewer.error_map import ErrorMap, error_marks, packed_maps
 from viz.viewer.flux import nodal_flux
 from viz.viewer.low_rank import LowRank, low_rank
+from viz.viewer.network import NetworkRun, network_document
 from viz.viewer.packing import packed_integers, packed_numbers
 
 Array = NDArray[np.float64]
+FRAMES = 21  # instants of a test that the range of its errors is looked up at
 STEP_K = 0.02  # of the shapes: small ones then take few bits
 
 
@@ -40,6 +44,7 @@ class Recorded:
 
     times : (n,) s;  fields : (n, n_nodes) degC;  before : the same of the model before its last step, if there is one
     earlier : other revisions, as many for every test, named in the same order by `document`
+    error_map : what its residuals tell between the sensors;  network : its heat flows at the same times
     """
 
     comparison: Comparison
@@ -47,6 +52,8 @@ class Recorded:
     fields: Array
     before: Array | None = None
     earlier: tuple[Earlier, ...] = ()
+    error_map: ErrorMap | None = None
+    network: NetworkRun | None = None
 
     @property
     def states(self) -> list[Array]:
@@ -68,12 +75,14 @@ def write_viewer(
 def document(
     title: str, nodes: SplitMesh, tests: Sequence[Recorded], positions: Mapping[str, Sequence[float]],
     conductivity: Mapping[str, tuple[float, float]] | None = None, revisions: Sequence[str] = ("now", "before"),
+    mesh: NamedMesh | None = None,
 ) -> dict[str, Any]:  # fmt: skip
     """All the page draws.
 
     conductivity : part -> across and along the axis (W/m/K), for heat flux;  revisions : names of a test's states
+    mesh : where the nodes of the tests' networks are
     """
-    every = [part for t in tests for part in t.states]
+    every, runs = [part for t in tests for part in t.states], [t.network for t in tests if t.network is not None]
     found = low_rank(np.concatenate(every))
     triangles, part = nodes.boundary()
     order = np.argsort(part, kind="stable")
@@ -87,7 +96,8 @@ def document(
         "revisions": list(revisions), "tests": _tests(tests, found, positions), "marks": marks(low, high),
         "change_marks": _change(tests), "heat": _palette(heat()), "missing": _palette(missing()),
         "k": conductivity and [conductivity[name] for name in nodes.parts], "power": _palette(power()),
-        "flux_marks": conductivity and _flux(nodes, tests, conductivity),
+        "flux_marks": conductivity and _flux(nodes, tests, conductivity), "errors": _errors(tests),
+        "network": _network(mesh, nodes, runs) if len(runs) == len(tests) else None,
         "tints": [[int(c[i : i + 2], 16) / 255 for i in (1, 3, 5)] for c in VERDICT.values()],
     }  # fmt: skip
 
@@ -103,13 +113,26 @@ def render(shown: Mapping[str, Any]) -> str:
 
 def script() -> str:
     """All that the page runs."""
-    return files("viz.viewer").joinpath("viewer.js").read_text(encoding="utf-8")
+    return "\n".join(files("viz.viewer").joinpath(f"{n}.js").read_text(encoding="utf-8") for n in ("network", "viewer"))
 
 
 def _change(tests: Sequence[Recorded]) -> list[float]:
     """Round marks for the difference of any two states (K), as far below zero as above."""
     changes = [float(np.ptp(np.stack(t.states), axis=0).max()) for t in tests if len(t.states) > 1]
     return marks(*rounded(-max(changes, default=1.0), max(changes, default=1.0)))
+
+
+def _errors(tests: Sequence[Recorded]) -> dict[str, Any] | None:
+    """What residuals tell between the sensors, if it is known for every test."""
+    maps = [t.error_map for t in tests if t.error_map is not None]
+    if len(maps) < len(tests):
+        return None
+    return {**packed_maps(maps), "marks": error_marks(maps, [t.comparison for t in tests], FRAMES)}
+
+
+def _network(mesh: NamedMesh | None, nodes: SplitMesh, runs: Sequence[NetworkRun]) -> dict[str, Any] | None:
+    """The network, if any of its nodes has a place in the mesh."""
+    return (network_document(mesh, nodes, runs) or None) if mesh is not None else None
 
 
 def _flux(nodes: SplitMesh, tests: Sequence[Recorded], conductivity: Mapping[str, tuple[float, float]]) -> list[float]:
@@ -127,7 +150,7 @@ def _tests(tests: Sequence[Recorded], found: LowRank, positions: Mapping[str, Se
     out, first = [], 0
     for test in tests:
         n, count = len(test.times), len(test.states)
-        states = [_digits(found.amplitudes[first + i * n : first + (i + 1) * n], 4) for i in range(count)]
+        states = [_digits(found.amplitudes[first + i * n : first + (i + 1) * n], 3) for i in range(count)]
         first += n * count
         name = f"{test.comparison.test.name} ({test.comparison.test.role})"
         out.append({
@@ -137,18 +160,19 @@ def _tests(tests: Sequence[Recorded], found: LowRank, positions: Mapping[str, Se
 
 
 def _sensors(test: Recorded, positions: Mapping[str, Sequence[float]]) -> list[dict[str, Any]]:
-    """Readings at the page's instants; null where nothing was read."""
+    """Readings at the page's instants; null where nothing was read, and for a place that is not known."""
     shown, clock = test.comparison, np.asarray(test.comparison.test.time, float)
     at = np.clip(np.searchsorted(clock, test.times), 0, len(clock) - 1)
     last = [] if test.before is None or shown.before is None else [shown.before]
     models = [shown.model, *last, *(e.readings for e in test.earlier)]
     return [
         {
-            "name": short(c.name), "xyz": [float(x) for x in positions[c.name]], "limit": shown.limit_K(c),
+            "name": short(c.name), "xyz": [float(x) for x in positions[c.name]] if c.name in positions else None,
+            "limit": shown.limit_K(c),
             "measured": _digits(np.asarray(c.y, float)[at], 2),
             "models": [_digits(np.asarray(of[c.name])[at], 2) for of in models],
         }
-        for c in shown.channels if c.name in positions
+        for c in shown.channels
     ]  # fmt: skip
 
 

@@ -1,4 +1,3 @@
-"use strict";
 const $ = (id) => document.getElementById(id);
 const data = JSON.parse($("data").textContent);
 
@@ -22,26 +21,30 @@ async function unpacked(p) {
 const VERTEX = `#version 300 es
 precision highp float; precision highp int;
 in vec3 place; in vec3 normal; in vec2 ends; in float share;
-uniform mat4 view; uniform sampler2D field; uniform int wide;
-out vec3 at; out vec3 facing; out vec2 T;
-vec2 value(float i) { int k = int(i); return texelFetch(field, ivec2(k % wide, k / wide), 0).rg; }
+uniform mat4 view; uniform sampler2D field, told; uniform int wide;
+out vec3 at; out vec3 facing; out vec2 T; out float sure;
+ivec2 cell(float i) { int k = int(i); return ivec2(k % wide, k / wide); }
+vec2 value(float i) { return texelFetch(field, cell(i), 0).rg; }
 void main() {
   at = place; facing = normal; T = mix(value(ends.x), value(ends.y), share);
+  sure = mix(texelFetch(told, cell(ends.x), 0).r, texelFetch(told, cell(ends.y), 0).r, share);
   gl_Position = view * vec4(place, 1.0);
 }`;
 const FRAGMENT = `#version 300 es
 precision highp float;
-in vec3 at; in vec3 facing; in vec2 T;
+in vec3 at; in vec3 facing; in vec2 T; in float sure;
 uniform vec4 plane; uniform vec3 eye; uniform vec2 range; uniform float wipe, alpha, part, flat_; uniform int layer, mode;
 uniform sampler2D palette; out vec4 colour;
 void main() {
   if (flat_ < 0.5 && dot(at, plane.xyz) > plane.w) discard;
   float value = layer == 1 ? T.x - T.y : (gl_FragCoord.x < wipe ? T.y : T.x);
   float s = (value - range.x) / (range.y - range.x);
-  if (mode == 1) { float q = clamp(s, 0.0, 1.0) * 65535.0; colour = vec4((part + 1.0) / 255.0, floor(q / 256.0) / 255.0, mod(q, 256.0) / 255.0, 1.0); return; }
+  if (mode == 1) { float q = clamp(s, 0.0, 1.0) * 65535.0; colour = vec4((part + 1.0) / 255.0, floor(q / 256.0) / 255.0, mod(q, 256.0) / 255.0, layer == 3 && sure < 0.5 ? 0.0 : 1.0); return; }
   vec3 towards = normalize(eye - at), n = normalize(facing);
   float light = flat_ > 0.5 ? 1.0 : 0.62 + 0.38 * abs(dot(n, towards));
-  colour = vec4(texture(palette, vec2(clamp(s, 0.002, 0.998), 0.5)).rgb * light, alpha);
+  vec3 paint = texture(palette, vec2(clamp(s, 0.002, 0.998), 0.5)).rgb * light;
+  if (layer == 3 && sure < 0.5 && mod(gl_FragCoord.x + gl_FragCoord.y, 14.0) < 4.0) paint = mix(paint, vec3(0.12, 0.16, 0.2), 0.6);
+  colour = vec4(paint, alpha);
 }`;
 const DOTS = `#version 300 es
 precision highp float;
@@ -153,32 +156,50 @@ class Viewer {
       for (const k of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.texParameteri(gl.TEXTURE_2D, k, gl.CLAMP_TO_EDGE);
       return t;
     };
-    made(0); made(1);
+    made(0); made(1); made(2);
     gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
     this.picked = { frame: gl.createFramebuffer(), colour: gl.createRenderbuffer(), depth: gl.createRenderbuffer() };
   }
   choose(k) {
     this.test = data.tests[k];
     const options = $("layer").options, several = this.test.states.length > 1;
-    options[1].disabled = !several; options[2].disabled = !data.k;
+    options[1].disabled = !several; options[2].disabled = !data.k; options[3].disabled = !data.errors;
+    this.number = k;
+    this.sure();
     if (options[$("layer").selectedIndex].disabled) $("layer").value = "0";
     $("wiping").hidden = !several;
     this.recolour();
     this.move(this.time);
   }
+  sure() {  // the share of the variance that the sensors of this test explain, node by node; 1 where nothing is said
+    const gl = this.gl, n = this.owner.length, many = data.tests.length, share = new Float32Array(this.wide * this.high_).fill(1);
+    for (let i = 0; this.told && i < n; i++) share[i] = this.told[many * i + this.number];
+    gl.activeTexture(gl.TEXTURE2);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.R32F, this.wide, this.high_, 0, gl.RED, gl.FLOAT, share);
+  }
+  misses(state) {  // amplitudes of what residuals tell between the sensors; a sensor that is silent keeps its last one
+    const gains = data.errors.amplitudes[this.number], out = Object.values(gains)[0].map(() => 0);
+    for (const s of this.test.sensors) {
+      let k = Math.round(this.place);
+      while (k > 0 && s.measured[k] === null) k--;
+      if (gains[s.name] && s.measured[k] !== null) gains[s.name].forEach((g, i) => { out[i] += g * (s.measured[k] - (s.models[state] ?? s.models[0])[k]); });
+    }
+    return out;
+  }
   recolour() {
-    const gl = this.gl, layer = +$("layer").value, rgb = [data.heat, data.missing, data.power][layer];
+    const gl = this.gl, layer = +$("layer").value, rgb = [data.heat, data.missing, data.power, data.missing][layer];
     gl.activeTexture(gl.TEXTURE1);
     gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGB, 256, 1, 0, gl.RGB, gl.UNSIGNED_BYTE, new Uint8Array(rgb));
     const ramp = $("ramp").getContext("2d"), picture = ramp.createImageData(1, 256);
     for (let i = 0; i < 256; i++) picture.data.set([...rgb.slice(3 * (255 - i), 3 * (255 - i) + 3), 255], 4 * i);
     ramp.putImageData(picture, 0, 0);
-    this.marks = [data.marks, data.change_marks, data.flux_marks][layer];
+    this.marks = [data.marks, data.change_marks, data.flux_marks, data.errors && data.errors.marks][layer];
     this.range = [this.marks[0], this.marks[this.marks.length - 1]];
-    $("unit").textContent = ["°C", "K", "kW/m²"][layer];
+    $("unit").textContent = ["°C", "K", "kW/m²", "K"][layer];
+    $("guess").hidden = layer !== 3;
     $("marks").replaceChildren(...this.marks.map((m) => {
       const s = document.createElement("span");
-      s.textContent = m; s.style.bottom = `${100 * (m - this.range[0]) / (this.range[1] - this.range[0])}%`;
+      s.textContent = String(m).replace("-", "−"); s.style.bottom = `${100 * (m - this.range[0]) / (this.range[1] - this.range[0])}%`;
       return s;
     }));
     this.dirty = true;
@@ -193,11 +214,12 @@ class Viewer {
     let i = 0;
     while (i < times.length - 2 && times[i + 1] <= s) i++;
     this.place = i + (s - times[i]) / (times[i + 1] - times[i]);
-    const now = this.between(this.test.states[this.right]), before = this.between(this.test.states[this.left] ?? this.test.states[0]);
-    const r = now.length, n = this.owner.length, v = this.values;
+    const wrong = $("layer").value === "3", left = this.test.states[this.left] ? this.left : 0;
+    const [now, before] = [this.right, left].map((state) => wrong ? this.misses(state) : this.between(this.test.states[state]));
+    const r = now.length, n = this.owner.length, v = this.values, shapes = wrong ? this.gains : this.shapes;
     for (let node = 0; node < n; node++) {
-      let a = this.mean[node], b = a;
-      for (let k = 0; k < r; k++) { const x = this.shapes[node * r + k]; a += now[k] * x; b += before[k] * x; }
+      let a = wrong ? 0 : this.mean[node], b = a;
+      for (let k = 0; k < r; k++) { const x = shapes[node * r + k]; a += now[k] * x; b += before[k] * x; }
       v[2 * node] = a; v[2 * node + 1] = b;
     }
     if ($("layer").value === "2") this.fluxes(v);
@@ -206,7 +228,24 @@ class Viewer {
     gl.texImage2D(gl.TEXTURE_2D, 0, gl.RG32F, this.wide, this.high_, 0, gl.RG, gl.FLOAT, v);
     $("title").textContent = `${data.title}: ${this.test.name} at ${(s / 60).toFixed(0)} min`;
     $("time").value = 1000 * time;
+    this.described();
+    this.networked();
     this.readings();
+    this.dirty = true;
+  }
+  described() {  // alternative texts
+    const colour = $("layer").selectedOptions[0].textContent, unit = $("unit").textContent;
+    $("gl").ariaLabel = `${$("title").textContent}, coloured by ${colour}. Arrow keys turn it, plus and minus zoom, space plays.`;
+    $("bar").ariaLabel = `colours from ${this.range[0]} to ${this.range[1]} ${unit}`;
+  }
+  networked() {  // the network at the same instant
+    if (!this.network || $("beside").hidden) return;
+    const run = data.network.tests[this.number];
+    this.network.show(this.between(run.T), this.between(run.W), [data.marks[0], data.marks[data.marks.length - 1]]);
+  }
+  beside(on) {  // open or close the network's panel
+    $("beside").hidden = !on;
+    if (on) { this.network.place(); this.networked(); }
     this.dirty = true;
   }
   slopes() {  // of every tetrahedron a, b, c, d: grad T = (T_b - T_a) u + (T_c - T_a) v + (T_d - T_a) w; u, v, w, volume
@@ -241,17 +280,18 @@ class Viewer {
   }
   readings() {
     const k = Math.round(this.place);
-    this.sensors = this.test.sensors.map((s) => {
+    const all = this.test.sensors.map((s) => {
       const y = s.measured[k], model = (s.models[this.right] ?? s.models[0])[k], residual = y === null || model === null ? null : y - model;
       const verdict = residual === null ? 3 : Math.abs(residual) <= s.limit ? 0 : residual > 0 ? 1 : 2;
       return { ...s, y, residual, verdict, weight: residual === null ? -1 : Math.abs(residual) / s.limit };
     });
+    this.sensors = all.filter((s) => s.xyz);
     const beads = new Float32Array(6 * this.sensors.length);
     this.sensors.forEach((s, i) => beads.set([...s.xyz, ...TINTS[s.verdict]], 6 * i));
     this.gl.bindBuffer(this.gl.ARRAY_BUFFER, this.beads.buffer);
     this.gl.bufferData(this.gl.ARRAY_BUFFER, beads, this.gl.DYNAMIC_DRAW);
     this.beads.rows = this.sensors.length;
-    $("sensors").replaceChildren(...this.sensors.map((s) => line(s.name, s.y === null ? "–" : `${s.y.toFixed(1)} °C  ${signed(s.residual)} K`, `rgb(${TINTS[s.verdict].map((c) => 255 * c)})`)));
+    $("sensors").replaceChildren(...all.map((s) => line(s.name, s.y === null ? "–" : `${s.y.toFixed(1)} °C  ${signed(s.residual)} K`, `rgb(${TINTS[s.verdict].map((c) => 255 * c)})`)));
   }
   plane() {
     const axis = +$("axis").value;
@@ -303,8 +343,8 @@ class Viewer {
     gl.useProgram(s.p);
     gl.uniformMatrix4fv(s.view, false, this.matrix());
     gl.uniform4fv(s.plane, this.cutting); gl.uniform3fv(s.eye, this.eye); gl.uniform2fv(s.range, this.range);
-    gl.uniform1i(s.layer, $("layer").value === "1" ? 1 : 0); gl.uniform1i(s.mode, mode); gl.uniform1i(s.wide, this.wide);
-    gl.uniform1i(s.field, 0); gl.uniform1i(s.palette, 1);
+    gl.uniform1i(s.layer, +$("layer").value); gl.uniform1i(s.mode, mode); gl.uniform1i(s.wide, this.wide);
+    gl.uniform1i(s.field, 0); gl.uniform1i(s.palette, 1); gl.uniform1i(s.told, 2);
     gl.uniform1f(s.wipe, this.test.states.length > 1 ? $("wipe").value / 1000 * $("gl").width : 0);
     for (const shown of mode ? [1] : [1, 0.5]) {
       if (shown < 1) { gl.enable(gl.BLEND); gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA); gl.depthMask(false); }
@@ -378,7 +418,7 @@ class Viewer {
     gl.disable(gl.SCISSOR_TEST); gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     if (!out[0]) return null;
     const s = (256 * out[1] + out[2]) / 65535;
-    return { name: this.parts[out[0] - 1].name, value: this.range[0] + s * (this.range[1] - this.range[0]) };
+    return { name: this.parts[out[0] - 1].name, value: this.range[0] + s * (this.range[1] - this.range[0]), guess: !out[3] };
   }
   hover(x, y) {
     const box = $("hover"), scale = $("gl").width / $("gl").clientWidth;
@@ -386,7 +426,7 @@ class Viewer {
     const sensor = this.sensors.find((s) => far(s) < 9), found = sensor || this.pick(x, y);
     box.style.display = found ? "block" : "none";
     if (sensor) box.textContent = `${sensor.name}  ${sensor.y === null ? "–" : sensor.y.toFixed(1)} °C, ${signed(sensor.residual)} K`;
-    else if (found) box.textContent = `${found.name}  ${found.value.toFixed(1)} ${$("unit").textContent}`;
+    else if (found) box.textContent = `${found.name}  ${found.value.toFixed(1)} ${$("unit").textContent}${found.guess ? ", a guess" : ""}`;
     box.style.left = `${Math.min(x + 14, $("gl").clientWidth - 180)}px`; box.style.top = `${y + 14}px`;
   }
   tick(now) {
@@ -406,6 +446,7 @@ class Viewer {
   }
 }
 
+const WIDE = 1100;  // pixels from which machine and network stand side by side
 const TINTS = data.tints;  // within, hot, cold, unknown: red, green, blue from 0 to 1
 const signed = (v) => v === null ? "–" : (v < 0 ? "−" : "+") + Math.abs(v).toFixed(1);
 
@@ -468,14 +509,20 @@ function wired(v) {
     if (["INPUT", "SELECT", "BUTTON"].includes(e.target.tagName) || !keys[e.key]) return;
     e.preventDefault(); keys[e.key](); again();
   };
-  onresize = again;
+  if (data.network) {
+    v.network = new Network($("network"), data.network);
+    $("networked").onchange = (e) => v.beside(e.target.checked);
+    $("networked").checked = innerWidth >= WIDE;
+    v.beside($("networked").checked);
+  } else $("networked").parentNode.hidden = true;
+  onresize = () => { again(); if (v.network && !$("beside").hidden) v.network.place(); };
   matchMedia("(prefers-color-scheme: dark)").onchange = again;
 }
 
 (async () => {
   try {
-    const names = ["points", "tets", "triangles", "owner", "mean", "shapes"];
-    const arrays = await Promise.all(names.map((n) => unpacked(data[n])));
+    const names = ["points", "tets", "triangles", "owner", "mean", "shapes", ...(data.errors ? ["gains", "told"] : [])];
+    const arrays = await Promise.all(names.map((n) => unpacked(data[n] ?? data.errors[n])));
     const v = new Viewer(Object.fromEntries(names.map((n, k) => [n, arrays[k]])));
     v.slice();
     wired(v);

@@ -39,7 +39,7 @@ class Spot:
 @dataclass(frozen=True)
 class Hidden:
     """Something that can be hidden. name : in the generator's words;  make : the machine's change at amplitude a;
-    largest : amplitude that nature allows
+    largest : amplitude that nature allows;  least : what instruments of a bench may be off by without a fault
 
     declared : what the user's network has instead, (keys of the TOML file, value); then the machine is as it was drawn,
     `make` says what the network lacks, and its amplitude is the largest
@@ -49,6 +49,7 @@ class Hidden:
     make: Callable[[float], Change]
     largest: float
     declared: tuple[Edit, ...] = ()
+    least: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -146,6 +147,7 @@ def truly(kind: Archetype, plan: Plan, seed: int, change: Change) -> tuple[Array
     inputs = {**plan.inputs(rng, at), "T_ambient": air(at, rng)}
     fine = fine_times(at, kind.logger.fine)
     driving = {k: between(fine, at, k, v) for k, v in inputs.items()}
+    driving |= {k: true(fine, driving[k]) for k, true in change.driven.items()}
     return at, inputs, {**driving, **{k: signal(fine) for k, signal in change.signals.items()}}
 
 

@@ -9,7 +9,7 @@ from hidden.truth import faults, foreign
 from hidden.truth.archetype import Archetype, Hidden, Plan, Spot
 from hidden.truth.brushed import machine
 from hidden.truth.change import Change
-from hidden.truth.effects import airflow, bridge, draught, fading, heating, stirred_gap
+from hidden.truth.effects import METER, airflow, bridge, covered, draught, fading, heating, less, stirred_gap
 from hidden.truth.profile import levels, steady, until
 
 Array = NDArray[np.float64]
@@ -88,11 +88,18 @@ PASSING = (
     Hidden("convection.constant@yoke", lambda a: draught("yoke", a), 60.0),
     Hidden("convection.constant@flange.nde", lambda a: draught("flange.nde", a), 15.0),
     Hidden("loss.constant@flange.de", lambda a: heating("flange.de", a), 200.0),
+    Hidden("fan slower@air", lambda a: less("fan_flow_m3h", a), 1.5),
+    Hidden("cover@yoke", lambda a: covered(("frame",), a), 0.9),
+    Hidden("meter@current_A", lambda a: less("current_A", a), 0.5, least=METER),
 )
+WORDS = {
+    "fan slower@air": ("flow@stream.fan", "flow@fan.flow", "input.factor@fan_flow_m3h"),
+    "cover@yoke": ("blockage@yoke",), "meter@current_A": ("input.factor@current_A",),
+}  # fmt: skip
 BRUSHED = Archetype(
     "brushed", machine, PLANS,
     {"commutator": Spot("commutator", 0.5), "poles": Spot("poles", 0.5), "winding.field": Spot("field", 0.5),
      "yoke": Spot("yoke", 0.5), "flange.de": Spot("flange.de", 0.5), "flange.nde": Spot("flange.nde", 0.5),
      "air.de": Spot("air", 0.8)},
-    {"bench": Spot("bench", 0.1)}, MISSING, FAULTS, FOREIGN, ABSORBED, TENSE, PARTS, PASSING,
+    {"bench": Spot("bench", 0.1)}, MISSING, FAULTS, FOREIGN, ABSORBED, TENSE, PARTS, PASSING, words=WORDS,
 )  # fmt: skip

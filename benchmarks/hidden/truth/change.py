@@ -28,6 +28,7 @@ class Change:
     readings : sensor -> what happens to its readings (time, T, ambient);  swaps : pairs of exchanged plugs
     shown : sensor -> what the logger makes of the finished readings, noise and steps included
     inputs : input -> what is written down of it (time, true value)
+    driven : input -> what it truly is (time, value of the plan, which is what is written down)
     in_test : what is different in one test alone
     """
 
@@ -39,6 +40,7 @@ class Change:
     readings: Mapping[str, Reading] = field(default_factory=dict)
     swaps: tuple[tuple[str, str], ...] = ()
     inputs: Mapping[str, Recorded] = field(default_factory=dict)
+    driven: Mapping[str, Recorded] = field(default_factory=dict)
     shown: Mapping[str, Callable[[Array], Array]] = field(default_factory=dict)
     in_test: Mapping[str, Change] = field(default_factory=dict)
 
@@ -48,13 +50,13 @@ class Change:
             factors, self.bodies + other.bodies, self.joints + other.joints,
             lambda s: self.terms(s) + other.terms(s), {**self.signals, **other.signals},
             {**self.readings, **other.readings}, self.swaps + other.swaps, {**self.inputs, **other.inputs},
-            {**self.shown, **other.shown}, {**self.in_test, **other.in_test},
+            {**self.driven, **other.driven}, {**self.shown, **other.shown}, {**self.in_test, **other.in_test},
         )  # fmt: skip
 
     @property
     def lasts(self) -> bool:
-        """Can it hold for a while?  Heat and films can, parts and their joints cannot."""
-        return self.terms is not no_terms and not (self.bodies or self.joints or self.factors)
+        """Can it hold for a while?  Heat, films and flows can, parts and their joints cannot."""
+        return not (self.bodies or self.joints or self.factors)
 
     def during(self, test: str) -> Change:
         """What is different while a test runs."""
@@ -83,7 +85,18 @@ def only_in(test: str, change: Change) -> Change:
 
 
 def for_a_while(test: str, change: Change, begin: float, end: float) -> Change:
-    """Terms of a change that act from `begin` to `end` (s) of one test."""
-    terms = lambda s: tuple(Pulsed(term) for term in change.terms(s))  # noqa: E731
-    event = lambda time: ((time >= begin) & (time < end)).astype(float)  # noqa: E731
-    return only_in(test, Change(terms=terms, signals={**change.signals, "event": event}))
+    """Terms, signals and inputs of a change that act from `begin` to `end` (s) of one test."""
+    inside = lambda time: (time >= begin) & (time < end)  # noqa: E731
+    pulsed = lambda s: tuple(Pulsed(term) for term in change.terms(s))  # noqa: E731
+    signals = {name: _within(inside, signal) for name, signal in change.signals.items()}
+    driven = {name: _instead(inside, true) for name, true in change.driven.items()}
+    event = {"event": lambda time: inside(time).astype(float)}
+    return only_in(test, Change(terms=pulsed, signals={**signals, **event}, driven=driven))
+
+
+def _within(inside: Callable[[Array], Array], signal: Callable[[Array], Array]) -> Callable[[Array], Array]:
+    return lambda time: np.where(inside(time), signal(time), 0.0)
+
+
+def _instead(inside: Callable[[Array], Array], true: Recorded) -> Recorded:
+    return lambda time, planned: np.where(inside(time), true(time, planned), planned)

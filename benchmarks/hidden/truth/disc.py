@@ -16,11 +16,14 @@ from hidden.truth.body import Body, Joint, Skeleton, skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import (
+    METER,
     airflow,
     blown,
     bridge,
+    covered,
     draught,
     heating,
+    less,
     spinning,
     warming,  # fmt: skip
 )
@@ -194,6 +197,8 @@ WORDS = {
     "no tempco@coils": ("copper.feedback@joule",),
     "draught@ring": ("convection.constant@stator_ring",), "side blower@cover.right": ("convection.constant@cover_R",),
     "heat@cover.left": ("loss.constant@cover_L",),
+    "blower slower@air": ("input.factor@blower_on",), "cover@ring": ("blockage@stator_ring",),
+    "meter@current_A": ("input.factor@current_A",),
 }  # fmt: skip
 FAULTS = {
     "sensor.gain@coils": lambda seed: faults.gain("coils", -0.08),
@@ -218,6 +223,9 @@ PASSING = (
     Hidden("draught@ring", lambda a: draught("ring", a), 30.0),
     Hidden("side blower@cover.right", lambda a: blown("cover.right", a, "blower_on"), 20.0),
     Hidden("heat@cover.left", lambda a: heating("cover.left", a), 150.0),
+    Hidden("blower slower@air", lambda a: less("blower_on", a), 1.5),
+    Hidden("cover@ring", lambda a: covered(("rim",), a), 0.9),
+    Hidden("meter@current_A", lambda a: less("current_A", a), 0.5, least=METER),
 )
 DISC = Archetype(
     "disc", machine, PLANS,

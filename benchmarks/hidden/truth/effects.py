@@ -3,7 +3,7 @@ from any textbook's: they sit on cells, bend with temperature, and follow other 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,7 @@ from hidden.truth.films import wind
 from hidden.truth.machine import Film, Loss
 
 Array = NDArray[np.float64]
+METER = 0.04  # twice what shunts and meters of a bench may be off by: less is no wrong range
 
 
 def tapered(n: int, slope: float = 0.6) -> Array:
@@ -94,6 +95,16 @@ def stirred_gap(a: float, rotor: str, stator: str) -> Change:
 def fading(films: str, a: float) -> Change:
     """Films of a body lose the share a within an hour, faster at first."""
     return Change(signals={f"fade.{films}": lambda time: np.minimum(a * 1.1 * (time / 3600.0) ** 0.9, 0.95)})
+
+
+def covered(films: Sequence[str], a: float) -> Change:
+    """A cover over some films: the share a of each is lost."""
+    return Change(signals={f"cover.{name}": lambda time: np.full(time.shape, a) for name in films})
+
+
+def less(name: str, a: float) -> Change:
+    """An input is in truth exp(-a) times what is written down: a pump that slips, a meter on the wrong range."""
+    return Change(driven={name: lambda time, planned: np.exp(-a) * planned})
 
 
 def joined(body: str, a: float) -> Change:

@@ -10,7 +10,7 @@ from hidden.truth.archetype import Archetype, Hidden, Plan, Spot
 from hidden.truth.body import Body, Joint, Skeleton, skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
-from hidden.truth.effects import bridge, draught, heating, room_air, switched, to_room
+from hidden.truth.effects import METER, bridge, covered, draught, heating, less, room_air, switched, to_room
 from hidden.truth.films import plate_still, radiation
 from hidden.truth.machine import Film, Loss, Machine
 from hidden.truth.profile import steady
@@ -151,6 +151,9 @@ PASSING = (
     Hidden("draught@outer", lambda a: draught("outer", a), 12.0),
     Hidden("lamp@outer", lambda a: heating("outer", a), 80.0),
     Hidden("second heater@rack", lambda a: switched("rack", a, "heater_on"), 40.0),
+    Hidden("stirrer slower@air", lambda a: less("fan_on", a), 1.5),
+    Hidden("cover@outer", lambda a: covered(("outside",), a), 0.9),
+    Hidden("meter@heater_on", lambda a: less("heater_on", a), 0.7, least=METER),
 )
 WORDS = {
     "draught@outer": ("convection.constant@shell",), "leak@air": ("convection.constant@chamber",
@@ -160,6 +163,8 @@ WORDS = {
     "bridge@plate-outer": ("coupling@plate|shell",), "sleeve@lid": ("convection.buoyant@lid",
     "convection.constant@lid"),
     "bridge@plate-rack": ("coupling@plate|rack",), "second heater@rack": ("loss.constant@rack", "heat@rack"),
+    "stirrer slower@air": ("input.factor@fan_on",), "cover@outer": ("blockage@shell",),
+    "meter@heater_on": ("input.factor@heater_on",),
 }  # fmt: skip
 INCUBATOR = Archetype(
     "incubator", machine, PLANS,

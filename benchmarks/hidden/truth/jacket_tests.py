@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from hidden.truth import faults, foreign
 from hidden.truth.archetype import Archetype, Hidden, Plan, Spot
 from hidden.truth.change import Change
-from hidden.truth.effects import airflow, draught, heating, stirred_gap
+from hidden.truth.effects import METER, airflow, covered, draught, heating, less, stirred_gap
 from hidden.truth.jacket import machine
 from hidden.truth.profile import levels, steady, until
 
@@ -94,11 +94,18 @@ PASSING = (
     Hidden("convection.constant@housing", lambda a: draught("housing", a), 60.0),
     Hidden("convection.constant@shield.nde", lambda a: draught("shield.nde", a), 20.0),
     Hidden("loss.constant@shield.nde", lambda a: heating("shield.nde", a), 200.0),
+    Hidden("pump@coolant", lambda a: less("flow_l_min", a), 1.5),
+    Hidden("cover@housing", lambda a: covered(("drum",), a), 0.9),
+    Hidden("meter@current_A", lambda a: less("current_A", a), 0.5, least=METER),
 )
+WORDS = {
+    "pump@coolant": ("flow@stream.coolant", "input.factor@flow_l_min"), "cover@housing": ("blockage@housing",),
+    "meter@current_A": ("input.factor@current_A",),
+}  # fmt: skip
 JACKET = Archetype(
     "jacket", machine, PLANS,
     {"winding.slot": Spot("slot", 0.5), "winding.de": Spot("winding.de", 0.5), "stator": Spot("yoke", 0.5),
      "magnets": Spot("magnets", 0.5), "housing": Spot("housing", 0.5), "shield.de": Spot("shield.de", 0.5),
      "shield.nde": Spot("shield.nde", 0.5)},
-    {"bench": Spot("bench", 0.1)}, MISSING, FAULTS, FOREIGN, ABSORBED, TENSE, PARTS, PASSING,
+    {"bench": Spot("bench", 0.1)}, MISSING, FAULTS, FOREIGN, ABSORBED, TENSE, PARTS, PASSING, words=WORDS,
 )  # fmt: skip

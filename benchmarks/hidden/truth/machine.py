@@ -27,6 +27,7 @@ class Film:
     """Heat from cells to a fluid: one of the inputs (a temperature), or other cells (one, or one for each).
 
     area : (k,) m2;  h : (T cells, T fluid, inputs) -> W/m2/K, array or number
+    A signal "cover.NAME" takes a share of it away.
     """
 
     name: str
@@ -38,7 +39,7 @@ class Film:
     def into(self, q: Array, T: Array, u: Inputs) -> None:
         hot = T[self.cells]
         cold = u[self.fluid] if isinstance(self.fluid, str) else T[self.fluid]
-        flow = self.h(hot, cold, u) * self.area * (hot - cold)
+        flow = (1.0 - u.get(f"cover.{self.name}", 0.0)) * self.h(hot, cold, u) * self.area * (hot - cold)
         q[self.cells] -= flow
         if not isinstance(self.fluid, str):
             np.add.at(q, self.fluid, flow if self.fluid.size > 1 else flow.sum())

@@ -9,10 +9,13 @@ from hidden.truth import faults, foreign
 from hidden.truth.archetype import Archetype, Hidden, Plan, Spot
 from hidden.truth.change import Change
 from hidden.truth.effects import (
+    METER,
     airflow,
+    covered,
     draught,
     heating,
     joined,
+    less,
     spinning,
     switched,
     warming,  # fmt: skip
@@ -79,6 +82,7 @@ WORDS = {
     "no tempco@n1": ("copper.feedback@copper",),
     "draught@n11": ("convection.constant@n11",),
     "heat@n12": ("loss.constant@n12",),
+    "cover@n12": ("blockage@n12",), "meter@current_A": ("input.factor@current_A",),
 }  # fmt: skip
 ALL = ("slot", "coil.de", "yoke", "frame", "shield.de", "shield.nde", "bearing.de", "feet")
 FAULTS = {
@@ -106,6 +110,8 @@ PASSING = (
     Hidden("draught@n13", lambda a: draught("frame", a), 60.0),
     Hidden("draught@n11", lambda a: draught("shield.de", a), 20.0),
     Hidden("heat@n12", lambda a: heating("shield.nde", a), 400.0),
+    Hidden("cover@n12", lambda a: covered(("hood",), a), 0.9),
+    Hidden("meter@current_A", lambda a: less("current_A", -a), 0.25, least=METER),
 )
 MILL = Archetype(
     "mill", machine, PLANS,

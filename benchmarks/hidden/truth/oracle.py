@@ -50,6 +50,8 @@ class Course:
     def slopes(self, changed: Machine, change: Change, room_K: float = 0.0) -> Array:
         """What a change adds to the slopes (n, cells)."""
         signals = {k: s(self.time) for k, s in change.signals.items()}
+        planned = {k: np.array([u[k] for u in self.inputs]) for k in change.driven}
+        signals |= {k: true(self.time, planned[k]) for k, true in change.driven.items()}
         return np.stack([
             changed.slope(T, {**u, **{k: float(v[i]) for k, v in signals.items()},
             "T_ambient": u["T_ambient"] + room_K})
@@ -162,6 +164,6 @@ def _block(kind: Archetype, seed: int, plan: Plan, changes: Mapping[tuple[str, .
 
 
 def _heating(kind: Archetype, seed: int, one: Course, change: Change) -> Array:
-    if change.factors or change.joints or change.signals:
+    if change.factors or change.joints or change.signals or change.driven:
         return one.slopes(kind.build(Draw(seed, change.factors), change), change)
     return one.added(change)

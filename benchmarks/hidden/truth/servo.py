@@ -10,7 +10,7 @@ from hidden.truth.archetype import Archetype, Hidden, Plan, Spot
 from hidden.truth.body import Body, Joint, Skeleton, skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
-from hidden.truth.effects import draught, heating, joined, spinning, switched, warming
+from hidden.truth.effects import METER, covered, draught, heating, joined, less, spinning, switched, warming
 from hidden.truth.films import cylinder_still, gap, plate_still, radiation
 from hidden.truth.losses import ALPHA
 from hidden.truth.machine import Film, Loss, Machine
@@ -140,6 +140,8 @@ ABSORBED = {"loss.Eisen": lambda seed: Change({"iron": 2.2}), "link.Luftspalt": 
 PASSING = (
     Hidden("draught@case", lambda a: draught("case", a), 1.5),
     Hidden("heat@case", lambda a: heating("case", a), 15.0),
+    Hidden("cover@case", lambda a: covered(("box",), a), 0.9),
+    Hidden("meter@current_A", lambda a: less("current_A", -a), 0.25, least=METER),
 )
 WORDS = {
     "draught@case": ("convection.constant@Gehaeuse",), "shaft fan@case": ("convection.fan@Gehaeuse",
@@ -150,6 +152,7 @@ WORDS = {
     "ac copper@copper": ("copper.ac@Wicklung",),
     "inverter iron@case": ("iron.pwm@Gehaeuse",),
     "no tempco@copper": ("copper.feedback@Kupfer",), "heat@case": ("loss.constant@Gehaeuse",),
+    "cover@case": ("blockage@Gehaeuse",), "meter@current_A": ("input.factor@current_A",),
 }  # fmt: skip
 SERVO = Archetype(
     "servo", machine, PLANS, {"copper": Spot("copper", 0.7), "case": Spot("case", 0.5)}, {}, MISSING, FAULTS, FOREIGN,

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from hidden.truth import faults, foreign
 from hidden.truth.archetype import Archetype, Hidden, Plan, Spot
 from hidden.truth.change import Change
-from hidden.truth.effects import airflow, bridge, draught, fading, heating, spinning, stirred_gap
+from hidden.truth.effects import METER, airflow, bridge, covered, draught, fading, heating, less, spinning, stirred_gap
 from hidden.truth.profile import levels, steady, until
 from hidden.truth.tefc import machine
 
@@ -92,11 +92,14 @@ PASSING = (
     Hidden("convection.constant@housing", lambda a: draught("housing", a), 60.0),
     Hidden("convection.constant@flange.de", lambda a: draught("flange.de", a), 15.0),
     Hidden("loss.constant@flange.nde", lambda a: heating("flange.nde", a), 100.0),
+    Hidden("cover@housing", lambda a: covered(("fins",), a), 0.9),
+    Hidden("meter@current_A", lambda a: less("current_A", a), 0.5, least=METER),
 )
+WORDS = {"cover@housing": ("blockage@housing",), "meter@current_A": ("input.factor@current_A",)}
 TEFC = Archetype(
     "tefc", machine, PLANS,
     {"winding.slot": Spot("slot", 0.5), "winding.de": Spot("winding.de", 0.5), "core": Spot("yoke", 0.5),
      "housing": Spot("housing", 0.5), "flange.de": Spot("flange.de", 0.5), "flange.nde": Spot("flange.nde", 0.5),
      "bearing.de": Spot("bearing.de", 0.3)},
-    {"bench": Spot("bench", 0.1)}, MISSING, FAULTS, FOREIGN, ABSORBED, TENSE, PARTS, PASSING,
+    {"bench": Spot("bench", 0.1)}, MISSING, FAULTS, FOREIGN, ABSORBED, TENSE, PARTS, PASSING, words=WORDS,
 )  # fmt: skip

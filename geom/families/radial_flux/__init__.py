@@ -17,6 +17,7 @@ from geom.families.radial_flux.housing import coolant, enclosure, ports
 from geom.families.radial_flux.layout import Layout
 from geom.families.radial_flux.rotors import cage_rotor, magnet_rotor, shaft
 from geom.families.radial_flux.stator import stator
+from geom.families.shaft_fan import shaft_fan
 
 _FACES = {
     ("housing", "ambient"): "housing.fins",
@@ -30,7 +31,7 @@ def build_pmsm(g: Any) -> tuple[Part, ...]:
     at = Layout(g)
     check(g, at)
     check_magnets(g, at)
-    return (shaft(g, at), *magnet_rotor(g, at), *stator(g, at), *enclosure(g, at), *_fluids(g, at))
+    return (shaft(g, at), *magnet_rotor(g, at), *stator(g, at), *enclosure(g, at), *_fan(g, at), *_fluids(g, at))
 
 
 def build_tefc(g: Any) -> tuple[Part, ...]:
@@ -38,7 +39,11 @@ def build_tefc(g: Any) -> tuple[Part, ...]:
     at = Layout(g)
     check(g, at)
     check_cage(g, at)
-    return (shaft(g, at), *cage_rotor(g, at), *stator(g, at), *enclosure(g, at), *_fluids(g, at))
+    return (shaft(g, at), *cage_rotor(g, at), *stator(g, at), *enclosure(g, at), *_fan(g, at), *_fluids(g, at))
+
+
+def _fan(g: Any, at: Layout) -> tuple[Part, ...]:
+    return shaft_fan(g.fan, g.shaft.diameter / 2, at.cowl0, 0.0)
 
 
 def _fluids(g: Any, at: Layout) -> tuple[Part, ...]:
@@ -54,7 +59,7 @@ def _fluids(g: Any, at: Layout) -> tuple[Part, ...]:
 PMSM = Family(
     "pmsm",
     "Permanent-magnet machine with interior magnets; open laminations, housing or spiral jacket",
-    (*parameters.COMMON, *parameters.MAGNETS),
+    (*parameters.COMMON, *parameters.MAGNETS, *parameters.FAN),
     build_pmsm,
     _FACES,
     ports,

@@ -10,16 +10,18 @@ from geom.families.nozzles import too_near
 from geom.families.radial_flux.housing import nozzles
 from geom.families.radial_flux.layout import Layout
 from geom.families.radial_flux.rotors import shapes_of_magnets
+from geom.families.shaft_fan import Rule, fan_rules
 
-Rule = tuple[bool, str, float, str]  # holds, key, value as in the file, what would be right
 mm = 1e3
 
 
 def check(g: Any, at: Layout) -> None:
     """Raise InputError for the first rule that does not hold."""
-    for holds, key, value, right in (*_stator_rules(g, at), *_frame_rules(g, at), *_housing_rules(g, at)):
-        if not holds:
-            raise impossible(f"{value:.4g} does not fit", key, f"must be {right}")
+    refuse((*_stator_rules(g, at), *_frame_rules(g, at), *_housing_rules(g, at), *_cowl(g, at)))
+
+
+def _cowl(g: Any, at: Layout) -> tuple[Rule, ...]:
+    return fan_rules(g.fan, g.shaft.diameter, g.bearing.outer_diameter, 2 * at.cap_radius)
 
 
 def refuse(rules: tuple[Rule, ...]) -> None:

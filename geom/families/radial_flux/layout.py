@@ -5,12 +5,16 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from geom.families.shaft_fan import WHEEL
+
 
 class Layout:
     """Axial positions z... and radii r... (m)."""
 
     def __init__(self, g: Any) -> None:
         self.length = g.frame.length
+        self.cowl0 = 0.0 - g.fan.depth  # no -0.0
+        self.shaft0 = (1 - WHEEL[0]) * self.cowl0
         self.cap0, self.cap1 = g.frame.cap, g.frame.length - g.frame.cap
         self.core0 = (g.frame.length - g.stator.stack_length) / 2
         self.core1 = self.core0 + g.stator.stack_length

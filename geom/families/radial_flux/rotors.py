@@ -13,9 +13,8 @@ from geom.families.radial_flux.magnets import corners
 
 
 def shaft(g: Any, at: Layout) -> Part:
-    return Part(
-        "shaft", "steel", ((shapes.disc(g.shaft.diameter / 2), 0.0, at.length + g.shaft.extension),), role=Role.SHAFT
-    )
+    round_bar = shapes.disc(g.shaft.diameter / 2)
+    return Part("shaft", "steel", ((round_bar, at.shaft0, at.length + g.shaft.extension),), role=Role.SHAFT)
 
 
 def magnet_rotor(g: Any, at: Layout) -> tuple[Part, ...]:

@@ -9,6 +9,7 @@ import math
 from typing import Any
 
 from geom.description.parameters import scale
+from geom.families.radial_flux.layout import Layout
 from geom.families.radial_flux.magnets import widest
 
 outer = scale("the laminations' outer diameter", lambda g: g.stator.outer_diameter)
@@ -95,3 +96,13 @@ bar_pitch = scale(
     "the bars' pitch at their bottom", lambda g: 2 * math.pi * (_rotor(g) - g.rotor.bar_depth) / g.rotor.bars
 )
 end_space = scale("stack to end-cap", lambda g: (g.frame.length - g.stator.stack_length) / 2 - g.frame.cap)
+fan = scale(
+    "the way from the bearing's diameter to the end-cap's",
+    lambda g: 2 * (Layout(g).cap_radius - g.fan.cowl) - 1.02 * g.bearing.outer_diameter,
+    lambda g: 1.02 * g.bearing.outer_diameter,
+)
+fan_hub = scale(
+    "the way from the shaft's diameter to 0.9 of the cowl's",
+    lambda g: 0.9 * g.fan.diameter - 1.05 * g.shaft.diameter,
+    lambda g: 1.05 * g.shaft.diameter,
+)

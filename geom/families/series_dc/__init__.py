@@ -12,28 +12,32 @@ from geom.description import shapes
 from geom.description.part import Part, fluid
 from geom.description.roles import Role
 from geom.families.family import Family
+from geom.families.series_dc.brushes import brush_gear
 from geom.families.series_dc.checks import check
-from geom.families.series_dc.fan import fan
 from geom.families.series_dc.housing import enclosure
 from geom.families.series_dc.jacket import coolant, ports
 from geom.families.series_dc.layout import Axial, Radii
 from geom.families.series_dc.parameters import PARAMETERS
 from geom.families.series_dc.rotor import rotor
 from geom.families.series_dc.stator import stator
+from geom.families.shaft_fan import shaft_fan
 
 
 def build(g: Any) -> tuple[Part, ...]:
     """Solids and fluids of the machine. Raises InputError for parts that do not fit."""
     z = Axial(g)
     check(g, z)
-    return (*rotor(g, z), *stator(g, z), *enclosure(g, z), *fan(g, z), *_fluids(g, z))
+    fan = shaft_fan(g.fan, g.shaft.bearing_diameter / 2, z.fan0, z.flange0)
+    return (*rotor(g, z), *stator(g, z), *enclosure(g, z), *brush_gear(g, z), *fan, *_fluids(g, z))
 
 
 def _fluids(g: Any, z: Axial) -> tuple[Part, ...]:
     r = Radii(g)
     hollow, core = shapes.disc(r.yoke1), shapes.disc(g.rotor.outer_diameter / 2)
     ducts = (fluid("air.ducts", (core, z.core0, z.core1)),) if g.rotor.ducts else ()
+    cowl = (fluid("air.fan", (shapes.disc(g.fan.diameter / 2), z.fan0, z.flange0)),) if g.fan.depth else ()
     return (
+        *cowl,
         fluid("air.left", (hollow, z.inner0, z.core0)),
         *ducts,
         fluid("airgap", (shapes.ring(r.rotor, r.bore), z.core0, z.core1), role=Role.AIR_GAP),

@@ -11,8 +11,8 @@ from geom.families.nozzles import too_near
 from geom.families.series_dc.jacket import nozzles
 from geom.families.series_dc.layout import Axial, Radii
 from geom.families.series_dc.rotor import duct_circle
+from geom.families.shaft_fan import Rule, fan_rules
 
-Rule = tuple[bool, str, float, str]  # holds, key, value as in the file, what would be right
 mm = 1e3
 
 
@@ -69,7 +69,8 @@ def check(g: Any, z: Axial) -> None:
         (g.housing.fins * g.housing.fin_spacing <= 2 * math.pi * r.shell, "housing.fin_spacing_mm",
          g.housing.fin_spacing * mm, f"at most {2 * math.pi * r.shell / max(g.housing.fins, 1) * mm:.4g} mm"),
         *_commutator_rules(g),
-        *_fan_rules(g, r),
+        *fan_rules(g.fan, g.shaft.bearing_diameter, g.bearing.outer_diameter, 2 * r.shell),
+        *_brush_rules(g, z),
         *_jacket_rules(g, r, z),
         (foot_outer < 0.95 * r.shell, "feet.width_mm", g.feet.width * mm,
          f"less than {(0.95 * r.shell - g.feet.inner) * mm:.4g} mm: the foot must end under the housing"),
@@ -114,18 +115,15 @@ def _commutator_rules(g: Any) -> tuple[Rule, ...]:
              f"less than {limit * mm:.4g} mm, to leave copper"))  # fmt: skip
 
 
-def _fan_rules(g: Any, r: Radii) -> tuple[Rule, ...]:
-    f = g.fan
-    if not f.depth:
+def _brush_rules(g: Any, z: Axial) -> tuple[Rule, ...]:
+    b = g.brushes
+    room = g.rotor.outer_diameter / 2 - g.commutator.diameter / 2
+    if not b.arms:
         return ()
     return (
-        (f.diameter > 1.02 * g.bearing.outer_diameter, "fan.diameter_mm", f.diameter * mm,
-         f"more than {1.02 * g.bearing.outer_diameter * mm:.4g} mm, to stand on the flange"),
-        (f.diameter / 2 + f.cowl < r.shell, "fan.diameter_mm", f.diameter * mm,
-         f"less than {2 * (r.shell - f.cowl) * mm:.4g} mm, the flange"),
-        (1.05 * g.shaft.bearing_diameter < f.hub_diameter < 0.9 * f.diameter, "fan.hub_diameter_mm",
-         f.hub_diameter * mm,
-         f"from {1.05 * g.shaft.bearing_diameter * mm:.4g} to {0.9 * f.diameter * mm:.4g} mm"),
+        (b.height + b.arm < room, "brushes.height_mm", b.height * mm,
+         f"less than {(room - b.arm) * mm:.4g} mm with such an arm, to stay below the armature's radius"),
+        (z.bars1 < z.inner1, "brushes.arms", b.arms, "0, or a commutator that ends before the flange"),
     )  # fmt: skip
 
 

@@ -92,4 +92,8 @@ PARAMETERS = (
     P("base.length_mm", 360.0, 20.0, 5000.0, "base plate, along the axis, centred on the housing",
       of=scales.footing(1.01, 2.0)),
     P("base.thickness_mm", 20.0, 1.0, 300.0, "base plate", of=scales.shell(0.02, 0.2)),
+    P("brushes.arms", 0, 2, 24, "rows of brushes, each on an arm from the right flange; 0 leaves them out", off=True),
+    P("brushes.height_mm", 20.0, 1.0, 200.0, "carbon: commutator to arm", of=scales.above(0.3, 0.6)),
+    P("brushes.arm_mm", 6.0, 0.5, 60.0, "radial thickness of an arm", of=scales.above(0.08, 0.25)),
+    P("brushes.arc", 0.25, 0.05, 0.6, "share of the way from row to row that a carbon covers"),
 )  # fmt: skip

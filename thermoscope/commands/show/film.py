@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -41,7 +41,8 @@ def film(case: str, out: Path | None, target: str | None) -> int:
         tell(f"running {test.name}")
         models = runs | {now(folder): folder.case}
         played = {words: fields(model, test, nodes, FRAMES) for words, model in models.items()}
-        seen = [row for w, model in models.items() for row in misses(folder, model, test, played[w][0])]
+        limit_K = folder.limits(test)
+        seen = [row for w, model in models.items() for row in misses(folder, model, test, played[w][0], limit_K)]
         words = [f"{test.name} at {t / 60:.0f} min, {w}" for w, (times, _) in played.items() for t in times]
         titles = [f"{w}{largest(row)}" for w, row in zip(words, seen, strict=True)]
         T = np.concatenate([values for _, values in played.values()])
@@ -72,11 +73,12 @@ def largest(sensors: Sequence[Sensor]) -> str:
     return "" if worst is None else f": {short(worst.name)} {worst.residual_K:+.1f} K"
 
 
-def misses(folder: Folder, model: Case, test: Test, times: NDArray[np.float64]) -> list[tuple[Sensor, ...]]:
+def misses(
+    folder: Folder, model: Case, test: Test, times: NDArray[np.float64], limit_K: Mapping[str, float]
+) -> list[tuple[Sensor, ...]]:
     """At each of the times (s): the sensors with a place, and what the model misses there."""
     from viz.data import Sensor
 
-    limit_K = folder.compared.limits[test.name]
     read, at = readings(model, test), np.searchsorted(test.time, times).clip(0, len(test.time) - 1)
     out = []
     for i in at:

@@ -16,8 +16,9 @@ from geom.plugins import plugins
 from lumped.integration.balance import balance
 from lumped.integration.simulate import simulate
 from lumped.schemas.reader import known
+from thermoscope.case_folder.error_field import error_field
 from thermoscope.case_folder.folder import Folder, Progress
-from thermoscope.case_folder.runs import before_last, by_interest, error_field, fields, held, named_rows, steps
+from thermoscope.case_folder.runs import before_last, by_interest, fields, held, named_rows, steps
 from thermoscope.commands.open_case import open_case
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import give, progress

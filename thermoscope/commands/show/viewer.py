@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from geom.disk_cache import atomic_write
 from geom.errors import InputError
+from thermoscope.case_folder.error_field import error_gain
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import Revision
+from thermoscope.case_folder.network_run import network_run
 from thermoscope.case_folder.runs import at_revision, before_last, by_interest, fields, held, readings
 from thermoscope.commands.open_case import open_case
 from thermoscope.console.answer import Answer
@@ -48,6 +51,7 @@ def write_case(folder: Folder, file: Path, tell: Progress) -> Path:
 def viewer_page(folder: Folder, tell: Progress) -> str:
     """The page of an open case that has a machine: all its tests."""
     from viz import split
+    from viz.viewer.error_map import ErrorMap
     from viz.viewer.page import document, render
 
     if folder.built is None:
@@ -57,10 +61,14 @@ def viewer_page(folder: Folder, tell: Progress) -> str:
     others = revisions(folder)[2:]
     for test in by_interest(folder):
         tell(f"running {test.name}")
-        tests.append(_recorded(folder, test, nodes, earlier, [at_revision(folder, r) for r in others]))
+        played = _recorded(folder, test, nodes, earlier, [at_revision(folder, r) for r in others])
+        channels, told = error_gain(folder, test, nodes)
+        between = ErrorMap(tuple(c.name for c in channels), told.mean, told.explained)
+        tests.append(replace(played, error_map=between, network=network_run(folder.case, test, played.times)))
     conductivity = {part.name: folder.built.machine.conductivity(part.name) for part in folder.built.machine.parts}
     names = [f"{r.number}: {r.effect or (r.action if r.number else 'as it was')}" for r in revisions(folder)]
-    return render(document(folder.case.name, nodes, tests, folder.positions, conductivity, names or ["now"]))
+    page = document(folder.case.name, nodes, tests, folder.positions, conductivity, names or ["now"], folder.built.mesh)
+    return render(page)
 
 
 def revisions(folder: Folder) -> list[Revision]:

@@ -1,0 +1,96 @@
+"""CAD solids of random machines of every family: watertight, and of the exact volume within 1 %, machine by machine.
+
+    python benchmarks/family_solids.py FILE [--machines 1000] [--family NAME]
+
+The machines are those of families.py. Every solid of every part is built, triangulated (0.2 mm) and compared with the
+part's exact volume. FILE gets a line of JSON per machine and is taken up again where it ends; the counts of all lines
+are printed at the end. The families take turns; machines with helical channels, which cost minutes each, come last.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from families import WITHIN, machine_of
+
+from geom import InputError, check_cad
+from geom.description.machine import Machine
+from geom.description.part import Helix
+from geom.families import families
+from geom.families.family import Family
+
+TOLERANCE_MM = 0.2
+
+
+def helical(machine: Machine) -> bool:
+    """Whether a channel winds round the axis."""
+    return any(isinstance(piece, Helix) for part in machine.parts if part.made for piece in part.made.cuts)
+
+
+def checked(family: Family, seed: int) -> dict[str, Any]:
+    """One machine: solids, whether all are watertight, largest relative error of a part's volume, seconds."""
+    start, line = time.process_time(), {"family": family.name, "seed": seed}
+    try:
+        machine = machine_of(family, seed)
+        checks = check_cad(machine, TOLERANCE_MM)
+    except InputError as refusal:
+        return {**line, "refused": str(refusal)}
+    worst = max(checks, key=lambda c: abs(c.solid_volume / c.volume - 1.0))
+    open_parts = [c.part for c in checks if not c.watertight]
+    return {
+        **line, "prisms": sum(len(part.prisms) for part in machine.parts), "helical": helical(machine),
+        "solids": sum(c.pieces for c in checks), "watertight": not open_parts, "open": open_parts,
+        "error": abs(worst.solid_volume / worst.volume - 1.0), "worst": worst.part,
+        "seconds": round(time.process_time() - start, 1),
+    }  # fmt: skip
+
+
+def order(of: list[Family], machines: int) -> Iterator[tuple[Family, int]]:
+    """Every family's machines, one of each in turn, helical ones last."""
+    late = []
+    for seed in range(machines):
+        for family in of:
+            if helical(machine_of(family, seed)):
+                late.append((family, seed))
+            else:
+                yield family, seed
+    yield from late
+
+
+def counts(lines: list[dict[str, Any]], name: str) -> str:
+    own = [line for line in lines if line["family"] == name]
+    built = [line for line in own if "refused" not in line]
+    right = [line for line in built if line["watertight"] and line["error"] <= WITHIN]
+    return (
+        f"{name:10} built {len(built)} of {len(own)}, helical {sum(x['helical'] for x in built)}, "
+        f"solids {sum(x['solids'] for x in built)}, watertight {sum(x['watertight'] for x in built)}, "
+        f"watertight and within 1 % {len(right)}, largest error {max((x['error'] for x in built), default=0.0):.2g}, "
+        f"CPU s {sum(x['seconds'] for x in built):.0f}"
+    )
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("file", type=Path)
+    parser.add_argument("--machines", type=int, default=1000)
+    parser.add_argument("--family", choices=list(families()))
+    args = parser.parse_args()
+    of = [family for name, family in families().items() if args.family in (None, name)]
+    lines = [json.loads(text) for text in args.file.read_text().splitlines()] if args.file.exists() else []
+    done = {(line["family"], line["seed"]) for line in lines}
+    with args.file.open("a") as out:
+        for family, seed in order(of, args.machines):
+            if (family.name, seed) not in done:
+                lines.append(checked(family, seed))
+                print(json.dumps(lines[-1]), file=out, flush=True)
+    for family in of:
+        print(counts(lines, family.name))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,62 @@
+"""Measured minus modelled between the sensors, by the model's own covariance at the end of a test."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.integration.simulate import simulate
+from lumped.model.network import Parameter
+from thermoscope.case_folder.folder import Folder
+from thermoscope.case_folder.runs import readings
+from validation.calibration.unknowns import working
+from validation.case import Channel, Test
+from validation.comparison.interpolation import Interpolated, interpolated
+from validation.comparison.predict import record, thermal
+from validation.inference.model_error import with_doubts
+
+if TYPE_CHECKING:
+    from viz.rendering.nodes import SplitMesh
+
+Array = NDArray[np.float64]
+
+
+def error_field(folder: Folder, test: Test, nodes: SplitMesh) -> Interpolated:
+    """Measured minus modelled on the parts' own nodes (K), told by the mean residuals of a test's last fifth."""
+    channels, found = error_gain(folder, test, nodes)
+    model, late = readings(folder.case, test), slice(int(0.8 * len(test.time)), None)
+    residual_K = [float(np.nanmean((np.asarray(c.y, float) - model[c.name])[late])) for c in channels]
+    return Interpolated(found.mean @ np.array(residual_K), found.explained)
+
+
+def error_gain(folder: Folder, test: Test, nodes: SplitMesh) -> tuple[tuple[Channel, ...], Interpolated]:
+    """Sensors that read at the end of a test, and what each kelvin that one of them is off by tells elsewhere.
+
+    Its mean is (n_nodes, n_channels) K/K. Doubts: every parameter within its interval, where it has one, else its
+    prior, as if apart from the others; and the model error of validation.inference.model_error.
+    """
+    case, intervals = folder.case, folder.history.last.intervals if folder.history.revisions else {}
+    grown = with_doubts(thermal(working(case)[0]), case.doubt)[0]
+    known = {p.name for p in grown.parameters}
+    values = {k: v for k, v in case.model.values.items() if k in known}
+    doubted = [p for p in grown.parameters if p.prior_sd > 0]
+    end = simulate(grown, record(test, {}), values, tangents=doubted).end
+    D = end.D[: len(grown.states)] * np.array([deviation(p, intervals.get(p.name)) for p in doubted])
+    recovery: Any = grown.recovery
+    there = np.concatenate([recovery.of_part(part, D) for part in nodes.parts])
+    late, width = slice(int(0.8 * len(test.time)), None), len(grown.states) + len(grown.boundaries)
+    seen = tuple(c for c in test.channels if np.isfinite(np.asarray(c.y, float)[late]).any())
+    here = np.array([c.row.dense(width)[: len(grown.states)] @ D for c in seen])
+    noise_K = np.array([np.hypot(c.sigma_K, c.model_K) for c in seen])
+    return seen, interpolated(there, here, np.eye(len(seen)), noise_K)
+
+
+def deviation(parameter: Parameter, interval: Sequence[float] | None) -> float:
+    """One standard deviation of a parameter in its own coordinate: of its 95 % interval, else of its prior."""
+    if interval is None:
+        return parameter.prior_sd
+    low, high = np.log(interval) if parameter.mapping == "log" else interval
+    return min(float(high - low) / (2 * 1.96), parameter.prior_sd)

@@ -1,0 +1,42 @@
+"""Temperatures and heat flows of a network along a test, pair by pair of its nodes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.integration.balance import balance
+from lumped.integration.simulate import simulate
+from validation.calibration.unknowns import working
+from validation.case import Case, Test
+from validation.comparison.predict import record, thermal
+
+if TYPE_CHECKING:
+    from viz.viewer.network import NetworkRun
+
+
+def network_run(case: Case, test: Test, times: NDArray[np.float64]) -> NetworkRun:
+    """At the times (s) of a test: node -> degC; heat between nodes, the mean over the step that ends there."""
+    from viz.figures.flows import heat_flows, last_running_step
+    from viz.viewer.network import NetworkRun
+
+    network, run = thermal(working(case)[0]), record(test, {})
+    names = {p.name for p in network.parameters}
+    values = {k: v for k, v in case.model.values.items() if k in names}
+    heat, done = balance(network, run, values), simulate(network, run, values, keep_states=True)
+    z, nodes = np.asarray(done.z), [*network.states, *network.boundaries]
+    at = np.searchsorted(done.time, times).clip(1, done.time.size - 1)
+    mean = {n: z[at, i] for i, n in enumerate(nodes) if "#" not in n}
+    last = last_running_step(network, heat) % (heat.time.size - 1)
+    flows = heat_flows(network, heat, last, z[last + 1]).flows
+    conductance: dict[tuple[str, str], float] = {}
+    for f in flows:
+        conductance[f.start, f.end] = conductance.get((f.start, f.end), 0.0) + f.conductance
+    watts = {pair: np.zeros(len(at)) for pair in conductance}
+    for link in network.links:
+        start, end = (network.places[p].part if p in network.places else p for p in link.places)
+        if (start, end) in watts and link.kind != "stream":
+            watts[start, end] += heat.power(link.name)[at - 1]
+    return NetworkRun(mean, watts, conductance)

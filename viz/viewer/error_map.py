@@ -1,0 +1,60 @@
+"""Measured minus modelled everywhere, as the page mixes it: what each sensor's residual tells at every node."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from viz.data import Comparison, short
+from viz.rendering.scale import marks, rounded
+from viz.viewer.low_rank import low_rank
+from viz.viewer.packing import packed_numbers
+
+Array = NDArray[np.float64]
+ERROR = 0.02  # of a residual: far below what a sensor can tell
+STEP = 0.008  # of a residual, of the shapes at their largest amplitude
+SHARE = 0.02  # in which steps the explained share is kept
+PEAK = 0.99  # of the instants whose largest error the colours reach: the first seconds of a start are left out
+
+
+@dataclass(frozen=True)
+class ErrorMap:
+    """sensors : names of m channels;  gain : (n_nodes, m) K/K;  explained : (n_nodes,) share of the variance, see
+    validation.comparison.interpolation"""
+
+    sensors: tuple[str, ...]
+    gain: Array
+    explained: Array
+
+    def at(self, residual_K: Mapping[str, Array]) -> Array:
+        """(n_nodes, n) K from residuals (n,) K; what was not read tells nothing."""
+        return np.asarray(self.gain @ np.nan_to_num(np.stack([residual_K[name] for name in self.sensors])))
+
+
+def packed_maps(maps: Sequence[ErrorMap]) -> dict[str, Any]:
+    """Few shapes for the gains of all tests; for each test and sensor its amplitudes; the share that is explained."""
+    gains = np.concatenate([m.gain.T for m in maps])
+    found = low_rank(np.concatenate([gains, -gains]), ERROR)  # both signs: their mean is zero
+    rows, tests = iter(found.amplitudes.round(4).tolist()), []
+    for m in maps:
+        tests.append({short(name): next(rows) for name in m.sensors})
+    told = np.stack([m.explained for m in maps], axis=1)
+    return {
+        "gains": packed_numbers(found.shapes.T, found.steps(STEP)), "amplitudes": tests,
+        "told": packed_numbers(told, np.full(len(maps), SHARE)),
+    }  # fmt: skip
+
+
+def error_marks(maps: Sequence[ErrorMap], compared: Sequence[Comparison], frames: int) -> list[float]:
+    """Round marks for the error (K), as far below zero as above."""
+    most = []
+    for m, c in zip(maps, compared, strict=True):
+        at = np.linspace(0, len(c.test.time) - 1, frames).astype(int)
+        known = {channel.name: channel for channel in c.channels}
+        most.append(np.abs(m.at({name: c.residual(known[name])[at] for name in m.sensors})).max(axis=0))
+    high = max(float(np.quantile(one, PEAK)) for one in most)
+    return marks(*rounded(-high, high))
