@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 ORDER = {"hold-out": 0, "validate": 1, "calibrate": 2}  # of tests by what they tell of a model
+HOT = "hottest point of "
 BLIND = 0.9  # an interval this wide, compared with the one expected before, taught nothing
 
 
@@ -141,7 +142,7 @@ def hot_spots(network: Network, z: Array) -> dict[str, Row]:
     for name in dict.fromkeys(s.place for s in network.sources if s.place in parts):
         shape = parts[name]
         x = z[int(np.argmax(z[:, shape.states] @ (shape.weights @ shape.V))), shape.states]
-        out[f"hottest point of {name}"] = Row(shape.states, shape.V[int(np.argmax(shape.V @ x))])
+        out[f"{HOT}{name}"] = Row(shape.states, shape.V[int(np.argmax(shape.V @ x))])
     return out
 
 

@@ -21,7 +21,7 @@ from thermoscope.bands import along, documents, posterior_of, wanted
 from thermoscope.case_folder.cycle import Cycle, find_cycle, load_cycle
 from thermoscope.case_folder.files import write_whole
 from thermoscope.case_folder.folder import Folder
-from thermoscope.case_folder.runs import hot_spots, named_rows, sensors
+from thermoscope.case_folder.runs import HOT, hot_spots, named_rows, sensors
 from thermoscope.commands.model.error_budget import budget, in_short
 from thermoscope.commands.open_case import PACKAGE, open_case
 from thermoscope.commands.use.simulate_readings import readings, short_of
@@ -163,7 +163,8 @@ def answer(document: Mapping[str, Any]) -> Answer:
     runs = document["runs"]
     hottest = [(p["max_C"], p["place"], r["name"]) for r in runs for p in r["places"]]
     top = max(hottest)
-    sentence = f"Hottest: {top[1]}, {top[0]:.1f} degC in {top[2]}; {len(runs)} {'run' if len(runs) == 1 else 'runs'}."
+    where, many = top[1].removeprefix(HOT), "run" if len(runs) == 1 else "runs"
+    sentence = f"Hottest: {where}, {top[0]:.1f} degC in {top[2]}; {len(runs)} {many}."
     budgets, closing = {run["name"]: run["error_budget"] for run in runs}, [x for run in runs for x in _closing(run)]
     parts: list[Grid | str] = [_places(runs), *closing, in_short(budgets, {}), *map(_circuit, document["circuits"])]
     rest = [*(_losses(run) for run in runs), *budget(budgets, {})]
