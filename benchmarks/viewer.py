@@ -144,9 +144,8 @@ def main() -> None:
         "date": datetime.date.today().isoformat(), "rows": found,
     }  # fmt: skip
     for one in found:
-        print(
-            f"{one['measure']:32} {one['ours']:8.3g} {one['unit']:4} peer {one['peer']:8.3g}  ratio {one['ratio']:.2g}"
-        )
+        beside = f" peer {one['peer']:8.3g}  ratio {one['ratio']:.2g}" if "peer" in one else ""
+        print(f"{one['measure']:32} {one['ours']:8.3g} {one['unit']:4}{beside}")
     if asked.json:
         asked.json.write_text(json.dumps(document, indent=1))
 

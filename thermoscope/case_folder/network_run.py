@@ -28,7 +28,7 @@ def network_run(case: Case, test: Test, times: NDArray[np.float64]) -> NetworkRu
     heat, done = balance(network, run, values), simulate(network, run, values, keep_states=True)
     z, nodes = np.asarray(done.z), [*network.states, *network.boundaries]
     at = np.searchsorted(done.time, times).clip(1, done.time.size - 1)
-    mean = {n: z[at, i] for i, n in enumerate(nodes) if "#" not in n}
+    mean = {n: z[at, i] for i, n in enumerate(nodes)}
     last = last_running_step(network, heat) % (heat.time.size - 1)
     flows = heat_flows(network, heat, last, z[last + 1]).flows
     conductance: dict[tuple[str, str], float] = {}
