@@ -32,6 +32,16 @@ class Uniform:
         return np.repeat(x[None, self.states.index(node)], self.count[part], axis=0)
 
 
+@dataclass(frozen=True)
+class Iron:
+    """A machine of one conductivity (W/m/K)."""
+
+    parts: tuple[SimpleNamespace, ...]
+
+    def conductivity(self, part: str) -> tuple[float, float]:
+        return 40.0, 40.0
+
+
 def with_motor(path: Path) -> Folder:
     """The case of that folder, its three nodes spread over the parts of a small motor."""
     from viz import split
@@ -39,10 +49,13 @@ def with_motor(path: Path) -> Folder:
     folder, mesh = load_case(path), motor(24)
     nodes = split(mesh)
     count = {part: len(nodes.of(part)) for part in nodes.parts}
+    iron = Iron(tuple(SimpleNamespace(name=part) for part in nodes.parts))
     network = folder.case.model.network
     recovered = replace(network, recovery=Uniform(count, network.states))
     case = replace(folder.case, model=replace(folder.case.model, network=recovered))
-    return replace(folder, case=case, built=SimpleNamespace(mesh=mesh, network=recovered), positions=POSITIONS)
+    return replace(
+        folder, case=case, built=SimpleNamespace(mesh=mesh, network=recovered, machine=iron), positions=POSITIONS
+    )
 
 
 def main() -> None:
