@@ -98,13 +98,11 @@ def left_over(found: Mapping[str, Any], errors: Mapping[str, Any]) -> str:
 
 def next_likely(found: Mapping[str, Any]) -> str:
     """The most probable second effect and the test that would tell."""
-    known = {c["effect"]: c for c in found["candidates"] if c["isolating_test"]}
+    tests = {c["effect"]: c["isolating_test"] for c in found["candidates"] if c["isolating_test"]}
     for row in found["odds"]:
         more = [e for e in row["effects"] if e not in found["named"]]
-        if len(row["effects"]) == len(found["named"]) + 1 and len(more) == 1 and more[0] in known:
-            (name,), one = more, known[more[0]]
-            where = name.partition("@")[2].partition(" in ")[0]
-            return f"; likeliest {one['title']} at {where} ({100 * row['probability']:.0f} %): {one['isolating_test']}"
+        if len(row["effects"]) == len(found["named"]) + 1 and more[0] in tests and not row.get("tests"):
+            return f"; likeliest {more[0]} ({100 * row['probability']:.0f} %): {tests[more[0]]}"
     return ""
 
 

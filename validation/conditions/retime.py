@@ -22,7 +22,7 @@ from validation.effects.during import During
 from validation.effects.time_window import Event, Span
 from validation.inference.evidence import Evidence, extended_prior, projected, refit_onwards, replaced
 from validation.inference.posterior import Hypothesis, probabilities
-from validation.inference.refits import TOLD
+from validation.inference.refits import REPORTED
 from validation.inference.score import score, total
 
 Array = NDArray[np.float64]
@@ -34,7 +34,7 @@ def retimed(evidence: Evidence, hypotheses: Sequence[Hypothesis], reach_s: Mappi
     """The evidence with the ends of its most probable events moved to where their refits want them, again and again
     until none moves; itself where none does.  reach_s : test -> how far an end may move at once"""
     P = probabilities(hypotheses)
-    few = [hypotheses[i] for i in np.argsort(-P, kind="stable") if P[i] > TOLD and hypotheses[i].members][:FITTED]
+    few = [hypotheses[i] for i in np.argsort(-P, kind="stable") if P[i] > REPORTED and hypotheses[i].members][:FITTED]
     for _ in range(ROUNDS):
         new = moved(evidence, few, reach_s)
         if not new:

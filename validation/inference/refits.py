@@ -36,10 +36,11 @@ Beside = tuple[int, Fit, Mapping[int, Sequence[Array]]]
 NOWHERE: Begun = MappingProxyType({})
 WEIGHT = 0.01  # posterior probability from which a hypothesis is refitted
 ABSENT = 0.02  # of its usual size: an effect this small is not there
-TOLD = 0.05  # posterior probability from which a hypothesis is told in the first place
+REPORTED = 0.05  # posterior probability from which a hypothesis is told in the first place
 ROUNDS, MOST = 4, 8  # what a refit promotes is refitted too; so many at once
 GREAT, NEAR = 10.0, 0.5  # nats beyond which tangents mislead, and the share of the best from which a rival is refitted
 IMPOSSIBLE = -1e3  # nats: as good as excluded, and a number that a document can hold
+STRAIN = 1.5  # prior deviations of a parameter, from which an effect that does the same is refitted
 GAINED = 3.0  # nats of log evidence from which another noise is worth weighing all anew
 NEARLY, TRIED = 0.4, 3  # linear amplitude, and how many, of effects that happen whole or not at all
 
@@ -53,7 +54,8 @@ def refitted(
     begun : members -> a refit of theirs under another noise
     """
     out = list(hypotheses)
-    together(evidence, out, [*exchanged(evidence, out), *rivals(out)], progress, begun)
+    far = dict.fromkeys([*exchanged(evidence, out), *far_from_prior(evidence, out), *rivals(out)])
+    together(evidence, out, list(far), progress, begun)
     for _ in range(ROUNDS):
         P = shares(promised(hypotheses, out))
         due = [i for i in np.argsort(-P) if P[i] > WEIGHT and out[i].members and out[i].fit is None][:MOST]
@@ -132,6 +134,16 @@ def exchanged(evidence: Evidence, hypotheses: Sequence[Hypothesis]) -> list[int]
     return [i for i, _ in dict.fromkeys([*near, *before])]
 
 
+def far_from_prior(evidence: Evidence, hypotheses: Sequence[Hypothesis]) -> list[int]:
+    """Effects that do what a calibrated parameter does which is far from its prior: the calibration has swallowed what
+    a tangent would show."""
+    fit = evidence.fit
+    pull = dict(zip(fit.unknowns.names, np.abs(fit.theta / fit.unknowns.sd), strict=True))
+    alone = [(i, evidence.twins[h.members[0]]) for i, h in enumerate(hypotheses) if len(h.members) == 1 and not h.fit]
+    found = sorted((-pull[twin], i) for i, twin in alone if twin and pull[twin] > STRAIN)
+    return [i for _, i in found[:TRIED]]
+
+
 def laplace(evidence: Evidence, h: Hypothesis, near: Beside | None = None, begun: Begun = NOWHERE) -> Hypothesis:
     """The hypothesis with the best of its refits and the evidence that follows.
 
@@ -155,7 +167,7 @@ def laplace(evidence: Evidence, h: Hypothesis, near: Beside | None = None, begun
 def finely(evidence: Evidence, hypotheses: Sequence[Hypothesis]) -> list[Hypothesis]:
     """The hypotheses, those that will be told refitted to their end: sizes are read off them."""
     out, P = list(hypotheses), probabilities(hypotheses)
-    due = [i for i in np.argsort(-P) if P[i] > TOLD and out[i].fit and free_of(evidence, out[i].members)]
+    due = [i for i in np.argsort(-P) if P[i] > REPORTED and out[i].fit and free_of(evidence, out[i].members)]
 
     def again(i: int) -> Hypothesis:
         h = out[i]
