@@ -246,7 +246,7 @@ def answer(stages: Sequence[Stage], out: Path, seconds: float) -> Answer:
     sentence = f"{out / 'report.html'} tells it all. {seconds:.0f} s; * was never used."
     return Answer(sentence, [Grid("Error of all sensors, rms (K)", headers, rows, keep=headers),
                              Grid("Error on the right flange alone, rms (K)", headers, flange, keep=headers)],
-                  f"recording {out}/*.rrd; solids {out}/machine; thermoscope show serve {out / CASE}")  # fmt: skip
+                  f"recording {out}/*.rrd; thermoscope show serve {out / CASE}")  # fmt: skip
 
 
 def right_flange(test: Mapping[str, Any]) -> float:

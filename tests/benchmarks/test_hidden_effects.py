@@ -23,6 +23,7 @@ from hidden.user import case_of
 from validation import add, calibrate
 from validation.effects import kinds
 from validation.effects.sites import solids
+from validation.effects.streams.flow import flows
 
 SAID = {"verdict": "adequate", "groups": [], "where": [], "pulls": [], "words": "", "candidates": {}, "lead": ""}
 
@@ -75,7 +76,14 @@ def test_plan_keeps_the_proportions_and_never_shares_seeds():
 def test_hidden_effects_have_a_name_in_the_catalogue_and_a_size(kind):
     known, network = kinds(), case_of("", kind.name, ()).model.network
     named = [i.name for i in (*network.links, *network.sources)]
-    sites = {*network.states, *named, *(name.split(":", 1)[1] for name in named)}
+    inputs = {name for law in (x.law for x in (*network.links, *network.sources)) for name in law.reads}
+    sites = {
+        *network.states,
+        *named,
+        *(name.split(":", 1)[1] for name in named),
+        *inputs,
+        *(p.name for p in flows(network)),
+    }
     for hidden in (*kind.missing, *kind.passing):
         told = [name.split("@") for name in right(kind, hidden.name)]
         assert any(effect in known for effect, _ in told), hidden.name
