@@ -8,6 +8,7 @@ import re
 import shutil
 import subprocess
 import sys
+from contextlib import contextmanager
 from io import BytesIO
 from pathlib import Path
 
@@ -25,10 +26,9 @@ SERVER = Path(__file__).with_name("motor_case.py")
 LONG = 400_000  # ms; a shared computer may be slow
 
 
-@pytest.fixture(scope="module")
-def served(tmp_path_factory):
+@contextmanager
+def workbench(home):
     """(address, case folder) of a running workbench, its machine a stand-in."""
-    home = tmp_path_factory.mktemp("serve")
     environment = {**os.environ, "THERMOSCOPE_CACHE": str(home / "cache")}
     process = subprocess.Popen(
         [sys.executable, str(SERVER), str(home)], stdout=subprocess.PIPE, text=True, env=environment
@@ -36,6 +36,12 @@ def served(tmp_path_factory):
     yield process.stdout.readline().strip(), home / "three"
     process.terminate()
     process.wait(timeout=60)
+
+
+@pytest.fixture(scope="module")
+def served(tmp_path_factory):
+    with workbench(tmp_path_factory.mktemp("serve")) as running:
+        yield running
 
 
 @pytest.fixture(scope="module")
@@ -229,19 +235,20 @@ def test_dropped_files_become_a_case(page, served):
     assert page.inner_text("h1") == "own"
 
 
-def test_the_machine_plays_in_the_browsers_own_gl(root, served, browser):
+def test_the_machine_plays_in_the_browsers_own_gl(root, tmp_path, browser):
     """In the page, under its policy; the frame has nothing of the page around it, and goes when it is not wanted."""
     said, arguments = [], ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
     drawing = browser.browser_type.launch(executable_path=BROWSER, args=arguments)
-    tab, faults = opened(drawing, served[0])
-    tab.on("console", lambda message: message.type == "error" and said.append(message.text))
-    tab.click("#view")
-    tab.frame_locator("#viewer").locator("#title:has-text(' min')").wait_for()
-    assert tab.frame_locator("#viewer").locator("#fault").is_hidden()
-    assert not tab.is_visible("#machine")
-    kept(root, tab, "6-played")
-    tab.click("#view")
-    tab.wait_for_selector("#viewer", state="detached", timeout=60_000)
-    assert tab.is_visible("#machine")
-    drawing.close()
-    assert faults == said == []
+    with workbench(tmp_path) as (address, _):
+        tab, faults = opened(drawing, address)
+        tab.on("console", lambda message: message.type == "error" and said.append(message.text))
+        tab.click("#view")
+        tab.frame_locator("#viewer").locator("#title:has-text(' min')").wait_for()
+        assert tab.frame_locator("#viewer").locator("#fault").is_hidden()
+        assert not tab.is_visible("#machine")
+        kept(root, tab, "6-played")
+        tab.click("#view")
+        tab.wait_for_selector("#viewer", state="detached", timeout=60_000)
+        assert tab.is_visible("#machine")
+        drawing.close()
+        assert faults == said == []
