@@ -20,9 +20,9 @@ from validation.conditions.refine import TRIED, around
 from validation.effects import Effect, extended
 from validation.effects.during import During
 from validation.effects.time_window import Event, Span
-from validation.inference.evidence import Evidence, extended_prior, projected, refit_onwards, replaced
+from validation.inference.evidence import Evidence, extended_prior, projected, replaced
 from validation.inference.posterior import Hypothesis, probabilities
-from validation.inference.refits import REPORTED
+from validation.inference.refits import REPORTED, to_the_end
 from validation.inference.score import score, total
 
 Array = NDArray[np.float64]
@@ -34,20 +34,15 @@ def retimed(evidence: Evidence, hypotheses: Sequence[Hypothesis], reach_s: Mappi
     """The evidence with the ends of its most probable events moved to where their refits want them, again and again
     until none moves; itself where none does.  reach_s : test -> how far an end may move at once"""
     P = probabilities(hypotheses)
-    few = [hypotheses[i] for i in np.argsort(-P, kind="stable") if P[i] > REPORTED and hypotheses[i].members][:FITTED]
+    order = [hypotheses[i] for i in np.argsort(-P, kind="stable") if P[i] > REPORTED]
+    few = [h for h in order if h.fit and h.members][:FITTED]
     for _ in range(ROUNDS):
         new = moved(evidence, few, reach_s)
         if not new:
             break
         evidence = replaced(joined(evidence, list(new.values()), evidence.fit.values), list(new))
-        few = [refitted_there(evidence, h) if set(h.members) & set(new) else h for h in few]
+        few = [to_the_end(evidence, h) if set(h.members) & set(new) else h for h in few]
     return evidence
-
-
-def refitted_there(evidence: Evidence, h: Hypothesis) -> Hypothesis:
-    """A hypothesis whose event has new ends."""
-    assert h.fit is not None
-    return replace(h, fit=refit_onwards(evidence, h.members, h.fit, finely=True))
 
 
 def moved(evidence: Evidence, hypotheses: Sequence[Hypothesis], reach_s: Mapping[str, float]) -> dict[int, During]:
@@ -58,7 +53,7 @@ def moved(evidence: Evidence, hypotheses: Sequence[Hypothesis], reach_s: Mapping
             effect = evidence.effects[k]
             if k in found or not isinstance(effect, During) or not effect.event or throughout(evidence, effect.event):
                 continue
-            if h.fit is not None:
+            if h.fit is not None and effect.name in h.fit.values:  # else the machine ran away with the new ends
                 found[k] = with_ends(effect, ends_of(evidence, h.fit, effect, effect.event, reach_s))
     names = {e.name for i, e in enumerate(evidence.effects) if i not in found}
     new = {k: e for k, e in found.items() if e.name != evidence.names[k] and e.name not in names}

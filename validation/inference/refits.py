@@ -144,15 +144,17 @@ def far_from_prior(evidence: Evidence, hypotheses: Sequence[Hypothesis]) -> list
     return [i for _, i in found[:TRIED]]
 
 
-def laplace(evidence: Evidence, h: Hypothesis, near: Beside | None = None, begun: Begun = NOWHERE) -> Hypothesis:
+def laplace(evidence: Evidence, h: Hypothesis, near: Beside | None = None, begun: Begun = NOWHERE,
+            finely: bool = False) -> Hypothesis:  # fmt: skip
     """The hypothesis with the best of its refits and the evidence that follows.
 
     near : one of two effects, its fit without the other, and tangents there;  begun : members -> a refit that may go on
+    finely : to its end
     """
     before, fits = begun.get(h.members), []
     if before is not None:
         with suppress(NoSolution):
-            fits.append(refit_onwards(evidence, h.members, before))
+            fits.append(refit_onwards(evidence, h.members, before, finely))
     else:
         for i, theta in enumerate(starts(evidence, h.members)):
             with suppress(NoSolution):  # a machine that would run away there begins elsewhere
@@ -164,19 +166,17 @@ def laplace(evidence: Evidence, h: Hypothesis, near: Beside | None = None, begun
     return replace(h, fit=best, log_bayes=log_bayes(evidence, best, h.members))
 
 
+def to_the_end(evidence: Evidence, h: Hypothesis) -> Hypothesis:
+    """A refitted hypothesis, refitted further to its end."""
+    return laplace(evidence, h, begun={h.members: h.fit} if h.fit else NOWHERE, finely=True)
+
+
 def finely(evidence: Evidence, hypotheses: Sequence[Hypothesis]) -> list[Hypothesis]:
     """The hypotheses, those that will be told refitted to their end: sizes are read off them."""
     out, P = list(hypotheses), probabilities(hypotheses)
     due = [i for i in np.argsort(-P) if P[i] > REPORTED and out[i].fit and free_of(evidence, out[i].members)]
-
-    def again(i: int) -> Hypothesis:
-        h = out[i]
-        assert h.fit is not None
-        fit = refit_onwards(evidence, h.members, h.fit, finely=True)
-        return replace(h, fit=fit, log_bayes=log_bayes(evidence, fit, h.members))
-
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        for i, h in zip(due, pool.map(again, due), strict=True):
+        for i, h in zip(due, pool.map(lambda i: to_the_end(evidence, out[i]), due), strict=True):
             out[i] = h
     return out
 

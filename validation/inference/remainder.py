@@ -13,10 +13,10 @@ from validation.comparison.linearisation import Segment
 from validation.diagnosis.result import Remainder
 from validation.inference.decision import Decision
 from validation.inference.posterior import Hypothesis, Posterior, probabilities
+from validation.inference.refits import REPORTED
 
 OFF = 2.0  # deviations of what a sensor and a good model allow, from which a record is called off
 MOST = 3  # are told, worst first
-LIKELY = 0.05  # probability beside the leading ones, below which a second effect explains nothing
 LESS = 0.7  # of its error: what another effect must bring a record to, to be its explanation
 
 
@@ -67,7 +67,7 @@ def second(posterior: Posterior, lead: frozenset[int], s: Segment) -> tuple[int 
     if not better:
         return None, 0.0, 0.0
     p, h, error = max(better, key=lambda x: x[0])
-    if p < LIKELY:
+    if p < REPORTED:
         return None, 0.0, 0.0
     return min(set(h.members) - lead), p, error
 
