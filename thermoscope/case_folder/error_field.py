@@ -15,7 +15,7 @@ from thermoscope.case_folder.runs import readings
 from validation.calibration.unknowns import working
 from validation.case import Channel, Test
 from validation.comparison.interpolation import Interpolated, interpolated
-from validation.comparison.predict import record, thermal
+from validation.comparison.predict import heat_model, record
 from validation.inference.model_error import with_doubts
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ Array = NDArray[np.float64]
 def error_field(folder: Folder, test: Test, nodes: SplitMesh) -> Interpolated:
     """Measured minus modelled on the parts' own nodes (K), told by the mean residuals of a test's last fifth."""
     channels, found = error_gain(folder, test, nodes)
-    model, late = readings(folder.case, test), slice(int(0.8 * len(test.time)), None)
+    model, late = readings(folder.case, test), last_fifth(test)
     residual_K = [float(np.nanmean((np.asarray(c.y, float) - model[c.name])[late])) for c in channels]
     return Interpolated(found.mean @ np.array(residual_K), found.explained)
 
@@ -39,19 +39,23 @@ def error_gain(folder: Folder, test: Test, nodes: SplitMesh) -> tuple[tuple[Chan
     prior, as if apart from the others; and the model error of validation.inference.model_error.
     """
     case, intervals = folder.case, folder.history.last.intervals if folder.history.revisions else {}
-    grown = with_doubts(thermal(working(case)[0]), case.doubt)[0]
-    known = {p.name for p in grown.parameters}
-    values = {k: v for k, v in case.model.values.items() if k in known}
+    network, values = heat_model(working(case)[0], case.model.values)
+    grown = with_doubts(network, case.doubt)[0]
     doubted = [p for p in grown.parameters if p.prior_sd > 0]
     end = simulate(grown, record(test, {}), values, tangents=doubted).end
     D = end.D[: len(grown.states)] * np.array([deviation(p, intervals.get(p.name)) for p in doubted])
     recovery: Any = grown.recovery
     there = np.concatenate([recovery.of_part(part, D) for part in nodes.parts])
-    late, width = slice(int(0.8 * len(test.time)), None), len(grown.states) + len(grown.boundaries)
+    late, width = last_fifth(test), len(grown.states) + len(grown.boundaries)
     seen = tuple(c for c in test.channels if np.isfinite(np.asarray(c.y, float)[late]).any())
     here = np.array([c.row.dense(width)[: len(grown.states)] @ D for c in seen])
     noise_K = np.array([np.hypot(c.sigma_K, c.model_K) for c in seen])
     return seen, interpolated(there, here, np.eye(len(seen)), noise_K)
+
+
+def last_fifth(test: Test) -> slice:
+    """Of its samples."""
+    return slice(int(0.8 * len(test.time)), None)
 
 
 def deviation(parameter: Parameter, interval: Sequence[float] | None) -> float:

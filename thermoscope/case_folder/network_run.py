@@ -11,7 +11,7 @@ from lumped.integration.balance import balance
 from lumped.integration.simulate import simulate
 from validation.calibration.unknowns import working
 from validation.case import Case, Test
-from validation.comparison.predict import record, thermal
+from validation.comparison.predict import heat_model, record
 
 if TYPE_CHECKING:
     from viz.viewer.network import NetworkRun
@@ -22,9 +22,7 @@ def network_run(case: Case, test: Test, times: NDArray[np.float64]) -> NetworkRu
     from viz.figures.flows import heat_flows, last_running_step
     from viz.viewer.network import NetworkRun
 
-    network, run = thermal(working(case)[0]), record(test, {})
-    names = {p.name for p in network.parameters}
-    values = {k: v for k, v in case.model.values.items() if k in names}
+    (network, values), run = heat_model(working(case)[0], case.model.values), record(test, {})
     heat, done = balance(network, run, values), simulate(network, run, values, keep_states=True)
     z, nodes = np.asarray(done.z), [*network.states, *network.boundaries]
     at = np.searchsorted(done.time, times).clip(1, done.time.size - 1)

@@ -17,7 +17,7 @@ from thermoscope.case_folder.history import Revision
 from validation.calibration.unknowns import effects_of, to_value, working
 from validation.case import AddedEffect, Case, Channel, Test
 from validation.comparison.compare import physical
-from validation.comparison.predict import predict, record, thermal
+from validation.comparison.predict import heat_model, predict, record
 from validation.effects.during import During
 
 if TYPE_CHECKING:
@@ -56,9 +56,7 @@ def readings(case: Case, test: Test) -> dict[str, Array]:
 
 def ends(case: Case, test: Test, names: Sequence[str]) -> list[float]:
     """Mean temperatures (degC) of places at the end of a test, by the model of a case."""
-    network = thermal(working(case)[0])
-    known = {p.name for p in network.parameters}
-    values = {k: v for k, v in case.model.values.items() if k in known}
+    network, values = heat_model(working(case)[0], case.model.values)
     rows = mean_rows(network)
     return simulate(network, record(test, {}), values, [rows[n] for n in names]).y[-1].tolist()
 
@@ -80,9 +78,7 @@ def accepted(case: Case, test: Test) -> tuple[tuple[float, float], ...]:
 
 def fields(case: Case, test: Test, nodes: SplitMesh, frames: int) -> tuple[Array, Array]:
     """Times (n,) s and temperatures (n, n_nodes) degC on the parts' own nodes; the network needs a recovery."""
-    network = thermal(working(case)[0])
-    known = {p.name for p in network.parameters}
-    values = {k: v for k, v in case.model.values.items() if k in known}
+    network, values = heat_model(working(case)[0], case.model.values)
     run = simulate(network, record(test, {}), values, keep_states=True)
     recovery: Any = network.recovery
     chosen = np.unique(np.linspace(run.time.size - 1, 0, frames).astype(int))

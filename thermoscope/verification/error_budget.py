@@ -17,7 +17,7 @@ from lumped.integration.simulate import Record, simulate
 from lumped.model.network import Array, Network, Row
 from validation.calibration.unknowns import working
 from validation.case import Channel, Test
-from validation.comparison.predict import record, thermal
+from validation.comparison.predict import heat_model, record
 
 if TYPE_CHECKING:
     from thermoscope.case_folder.folder import Folder, Progress
@@ -64,9 +64,7 @@ def _record(test: Test) -> Record:
 
 def model_of(folder: Folder) -> tuple[Network, dict[str, float]]:
     """The network with the effects added, and the values of the parameters that act on heat."""
-    network = thermal(working(folder.case)[0])
-    mine = {p.name for p in network.parameters}
-    return network, {k: v for k, v in folder.case.model.values.items() if k in mine}
+    return heat_model(working(folder.case)[0], folder.case.model.values)
 
 
 def _of_run(

@@ -48,6 +48,13 @@ def thermal(network: Network) -> Network:
     return replace(network, parameters=tuple(p for p in network.parameters if head(p) == "thermal"))
 
 
+def heat_model(network: Network, values: Mapping[str, float]) -> tuple[Network, dict[str, float]]:
+    """That network, and those of the values that act on it."""
+    bare = thermal(network)
+    known = {p.name for p in bare.parameters}
+    return bare, {k: v for k, v in values.items() if k in known}
+
+
 def predict(
     network: Network, test: Test, values: Mapping[str, float], tangents: Sequence[Parameter] = ()
 ) -> Prediction:
@@ -138,9 +145,7 @@ class Watch:
     ) -> None:
         self.network, self.test, self.tangents = network, test, tangents
         self.now, self.done, self.memory = setting(network.parameters, values), 0, Memory()
-        bare, self.heads = thermal(network), [head(p) for p in tangents]
-        known = {p.name for p in bare.parameters}
-        heat = {k: v for k, v in values.items() if k in known}
+        (bare, heat), self.heads = heat_model(network, values), [head(p) for p in tangents]
         each = list(enumerate(zip(tangents, self.heads, strict=True)))
         hot = [i for i, (_, kind) in each if kind == "thermal"]
         moved_by = {i: _shift(test, p) for i, (p, kind) in each if kind in SHIFTS and _felt(network, test, p)}

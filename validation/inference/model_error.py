@@ -22,7 +22,7 @@ from lumped.transfer.laws import CONSTANT, Constant, Fixed, Inputs, Law, Tempera
 from validation.calibration.model_form import KNOTS, SETTLE_K, Table, is_film
 from validation.case import Channel, Test
 from validation.comparison.linearisation import Segment, segments
-from validation.comparison.predict import record, thermal
+from validation.comparison.predict import heat_model, record
 from validation.doubt import USUAL, Doubt
 from validation.effects.build import Shaped, copy_link, exchange, heat
 from validation.measurement.operators import behind, setting
@@ -198,9 +198,7 @@ def solid(network: Network) -> list[Place]:
 
 def nodes(network: Network, test: Test, values: Mapping[str, float], own: Sequence[Place]) -> Array:
     """Temperatures (n_time, n) of some nodes in a test."""
-    bare = thermal(network)
-    known = {p.name for p in bare.parameters}
-    now = {k: v for k, v in values.items() if k in known}
+    bare, now = heat_model(network, values)
     return simulate(bare, record(test, setting(network.parameters, values)), now, [p.mean for p in own]).y
 
 
@@ -277,9 +275,7 @@ def placements(
     here = {c.name: c for c in test.channels}
     virtual = [_virtual(here[c], network.places[n].mean, f"{i}:{c}") for i, (c, n, _) in enumerate(pairs) if c in here]
     own = [_virtual(c, c.row, c.name) for c in test.channels]
-    plain = replace(network, parameters=thermal(network).parameters)
-    known = {p.name for p in plain.parameters}
-    now = {k: v for k, v in values.items() if k in known}
+    plain, now = heat_model(network, values)
     parts = {s.channel: s for s in segments(plain, [replace(test, channels=(*own, *virtual))], now)}
     return {c.name: _beside(c.name, pairs, parts) for c in test.channels if c.name in parts}
 

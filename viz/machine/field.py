@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from viz.colours import LIGHT, Theme, heat, missing
 from viz.data import Sensor
-from viz.machine.thermocouples import LABELS, marked
+from viz.machine.thermocouples import LABELS, Marked, marked
 from viz.rendering import scene
 from viz.rendering.callouts import on_top
 from viz.rendering.cut import QUARTER, Surface, Wedge, cut_away
@@ -50,16 +50,23 @@ def cutaway(
     labels : of so many sensors, those furthest beyond their uncertainty first; the others are dots
     limits : colour scale (degC), from the field itself if not given; widened to round numbers
     """
-    p, view = scene.plotter(theme), view or View()
-    surface = cut_away(nodes, wedge)
-    scene.look(p, surface.points, view, _room(bool(sensors), title))
-    seen = marked(surface, sensors, labels, np.array(p.camera.position))
+    view = view or View()
+    p, surface, seen = cut_open(nodes, sensors, labels, _room(bool(sensors), title), wedge, view, theme)
     paint_cut(p, surface, seen.cut, on_nodes(nodes, T), limits, theme)
     scene.colour_bar(p, UNIT, theme)
     scene.headline(p, title, theme)
     seen.draw(p, surface, view, theme)
     scene.save(p, png)
     return p
+
+
+def cut_open(
+    nodes: SplitMesh, sensors: Sequence[Sensor], labels: int, room: Room, wedge: Wedge | None, view: View, theme: Theme
+) -> tuple[pyvista.Plotter, Surface, Marked]:
+    """A scene that looks at the machine with a wedge taken out, what is left of it, its sensors as they are seen."""
+    p, surface = scene.plotter(theme), cut_away(nodes, wedge)
+    scene.look(p, surface.points, view, room)
+    return p, surface, marked(surface, sensors, labels, np.array(p.camera.position))
 
 
 def difference(

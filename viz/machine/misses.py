@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from viz.colours import LIGHT, Theme, missing
 from viz.data import Sensor
-from viz.machine.field import paint
-from viz.machine.thermocouples import LABELS, marked
+from viz.machine.field import cut_open, paint
+from viz.machine.thermocouples import LABELS
 from viz.rendering import scene
-from viz.rendering.cut import QUARTER, Surface, Wedge, cut_away
+from viz.rendering.cut import QUARTER, Surface, Wedge
 from viz.rendering.nodes import SplitMesh, on_nodes
 from viz.rendering.scene import TITLE, Room, View
 
@@ -45,11 +45,10 @@ def misses(
     error : (n_nodes,) K;  explained : (n_nodes,) share of the variance that readings explain, see
         validation.comparison.interpolation;  sensors : where it was measured
     """
-    p, view, surface = scene.plotter(theme), view or View(), cut_away(nodes, wedge)
+    view, room = view or View(), Room(0.16, 0.24, TITLE) if sensors else Room(0.0, 0.1, TITLE)
+    p, surface, seen = cut_open(nodes, sensors, LABELS, room, wedge, view, theme)
     K = on_nodes(nodes, error)
     most = float(np.abs(K).max())
-    scene.look(p, surface.points, view, Room(0.16, 0.24, TITLE) if sensors else Room(0.0, 0.1, TITLE))
-    seen = marked(surface, sensors, LABELS, np.array(p.camera.position))
     paint(p, seen.cut.solid, K, (-most, most), theme, colours=missing(), outlined=surface)
     scene.colour_bar(p, "K", theme)
     guess: NDArray[np.bool_] = np.asarray(seen.cut.solid.values(on_nodes(nodes, explained)) < GUESS)

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from viz.colours import LIGHT, Theme, power
 from viz.data import Sensor
-from viz.machine.field import paint
-from viz.machine.thermocouples import LABELS, marked
+from viz.machine.field import cut_open, paint
+from viz.machine.thermocouples import LABELS
 from viz.rendering import scene
-from viz.rendering.cut import QUARTER, Wedge, cut_away
+from viz.rendering.cut import QUARTER, Wedge
 from viz.rendering.nodes import SplitMesh, on_nodes
 from viz.rendering.scene import TITLE, Room, View
 
@@ -39,10 +39,9 @@ def uncertainty(
 
     half95 : (n_nodes,) K;  sensors : where it was measured
     """
-    p, view, surface = scene.plotter(theme), view or View(), cut_away(nodes, wedge)
+    view, room = view or View(), Room(0.16, 0.24, TITLE) if sensors else Room(0.0, 0.1, TITLE)
+    p, surface, seen = cut_open(nodes, sensors, LABELS, room, wedge, view, theme)
     K = on_nodes(nodes, half95)
-    scene.look(p, surface.points, view, Room(0.16, 0.24, TITLE) if sensors else Room(0.0, 0.1, TITLE))
-    seen = marked(surface, sensors, LABELS, np.array(p.camera.position))
     paint(p, seen.cut.solid, K, (0.0, float(K.max())), theme, colours=power(), outlined=surface)
     scene.colour_bar(p, "± K", theme)
     scene.headline(p, title, theme)

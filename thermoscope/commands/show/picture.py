@@ -24,7 +24,7 @@ from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import give, progress
 from validation.calibration.unknowns import working
 from validation.case import Case, Test
-from validation.comparison.predict import record, thermal
+from validation.comparison.predict import heat_model, record
 
 if TYPE_CHECKING:
     from thermoscope.pipeline import Built
@@ -86,9 +86,8 @@ class Subject:
         """Heat flows, and node -> degC, when the machine last runs in the test; and when that is."""
         from viz.figures.flows import heat_flows, last_running_step
 
-        network, test = thermal(working(self.folder.case)[0]), record(self.test, {})
-        names = {p.name for p in network.parameters}
-        values = {k: v for k, v in self.folder.case.model.values.items() if k in names}
+        case, test = self.folder.case, record(self.test, {})
+        network, values = heat_model(working(case)[0], case.model.values)
         heat = balance(network, test, values)
         step = last_running_step(network, heat) % (heat.time.size - 1)
         z = np.asarray(simulate(network, test, values, keep_states=True).z)[step + 1]

@@ -15,7 +15,7 @@ from lumped.machine.bases import Switched
 from lumped.model.network import Link, Network
 from lumped.transfer.laws import Radiation
 from validation.case import Test
-from validation.comparison.predict import record, thermal
+from validation.comparison.predict import heat_model, record
 from validation.effects.sites import ambient, part_of, role
 
 BODY = "stator.core"
@@ -53,9 +53,7 @@ class BaseHeat:
 
 def base_heat(network: Network, test: Test, values: Mapping[str, float]) -> BaseHeat:
     """What the bases of a network carry off at the end of a test."""
-    bare = thermal(network)
-    known = {p.name for p in bare.parameters}
-    heat = {k: v for k, v in values.items() if k in known}
+    bare, heat = heat_model(network, values)
     run = record(test, {})
     flows = balance(bare, run, heat)
     core = simulate(bare, run, heat, [bare.places[BODY].mean]).y[-1, 0]

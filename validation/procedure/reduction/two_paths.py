@@ -20,7 +20,7 @@ from lumped.transfer.laws import Constant, Linear
 from validation.calibration.unknowns import working
 from validation.case import Case, Test
 from validation.comparison.compare import physical
-from validation.comparison.predict import thermal
+from validation.comparison.predict import heat_model
 
 
 @dataclass(frozen=True)
@@ -88,9 +88,7 @@ def two_paths(
 
 def of_test(case: Case, test: Test, winding: str = "winding.copper", machine: str = "magnets") -> TwoPaths:
     """The case's model at the mean load of one of its tests."""
-    network = thermal(working(case)[0])
-    known = {p.name for p in network.parameters}
-    values = {k: v for k, v in physical(case).items() if k in known}
+    network, values = heat_model(working(case)[0], physical(case))
     load = {name: float(np.mean(v)) for name, v in test.inputs.items()}
     air = float(np.mean([np.mean(v) for v in test.boundaries.values()]))
     return two_paths(network, load, air, winding, machine, values=values)
