@@ -20,11 +20,15 @@ SILENT = COSTS["miss"].share / (COSTS["wrong"].share + COSTS["miss"].share)  # P
 
 @dataclass(frozen=True)
 class Decision:
-    """groups : per thing that is missing the effects that may be it, most probable first;  sure : P(something)"""
+    """groups : per thing that is missing the effects that may be it, most probable first;  sure : P(something)
+
+    others : what halves of the instants would decide, where that is something else
+    """
 
     verdict: Verdict
     groups: tuple[tuple[int, ...], ...]
     sure: float
+    others: tuple[Decision, ...] = ()
 
 
 def decide(evidence: Evidence, hypotheses: Sequence[Hypothesis]) -> Decision:

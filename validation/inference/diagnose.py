@@ -43,6 +43,7 @@ from validation.inference.posterior import (
 )
 from validation.inference.refits import NOWHERE, Begun, finely, noise_of_refits, refitted
 from validation.inference.several import further
+from validation.inference.steadiness import steady
 from validation.inference.tables import tabulate
 from validation.measurement.faults import PlainFaults, broken_channels, without
 from validation.measurement.noise import Noise
@@ -75,7 +76,7 @@ def diagnose(
     stood = bases_tried(training, progress)
     posterior = infer(training, kinds, progress)
     wrong = wrong_bases(stood)
-    choice = above(posterior, decide(posterior.evidence, posterior.hypotheses), budget)
+    choice = steady(posterior, lambda p: above(p, decide(p.evidence, p.hypotheses), budget))
     if wrong:  # nothing else is accused of what the base does
         choice = Decision("data", (), choice.sure)
     progress("writing the tables")

@@ -33,6 +33,7 @@ from validation.procedure.reduction.which_base import Hypothesis as Base
 Array = NDArray[np.float64]
 ROWS, SHOWN = 20, 1e-4  # candidates in the table; odds below one in ten thousand are not listed
 NORMAL_95 = 1.96
+SAID = 0.02  # probability below which a member of a group is in the table, and not in the sentence
 RIVALS = 4  # of a group are compared with each other where a plan is wanted
 
 
@@ -52,7 +53,7 @@ def tabulate(
     groups = tuple(tuple(e.names[k] for k in g) for g in choice.groups)
     tests, sensors = (next_tests(e, rivals), next_sensors(e, rivals)) if rivals else ((), ())
     return Diagnosis(
-        verdict=verdict, words=sentence(verdict, posterior, choice, rows, pulls, broken),
+        verdict=verdict, words=sentence(verdict, posterior, choice, rows, pulls, broken) + unsteady(posterior, choice),
         named=tuple(g[0] for g in groups), groups=groups, candidates=rows, cannot_see=unseen(e), where=posterior.heat,
         next_tests=tuple(tests), next_sensors=tuple(sensors), rmse_K=rmse(e.fit.parts), floor_K=floor(e),
         threshold=float(np.min(thresholds(e))), pulls=pulls, cosine=confusion(e, [c.effect for c in rows[:12]]),
@@ -302,9 +303,20 @@ def sentence(
     )
 
 
+def unsteady(posterior: Posterior, choice: Decision) -> str:
+    """What other instants of the same record would have said."""
+    if not choice.others:
+        return ""
+    names, d = posterior.evidence.names, choice.others[0]
+    other = " and ".join(names[g[0]] for g in d.groups) or {"adequate": "nothing missing"}.get(
+        d.verdict, "unknown heat"
+    )
+    claimed = "" if choice.verdict in ("adequate", "outside") else "no single name is given: "
+    return f"; {claimed}every second sample alone leads to {d.verdict} ({other})"
+
+
 def _group(posterior: Posterior, group: tuple[int, ...], rows: Sequence[Candidate]) -> str:
     e, by_name = posterior.evidence, {r.effect: r for r in rows}
-    told = [f"{e.names[k]} {percent(by_name[e.names[k]].probability)}" for k in group if e.names[k] in by_name]
     best = by_name.get(e.names[group[0]])
     if len(group) == 1 and best:
         effect = e.effects[group[0]]
@@ -314,7 +326,10 @@ def _group(posterior: Posterior, group: tuple[int, ...], rows: Sequence[Candidat
         unit = "" if best.unit == "1" else f" {best.unit}"
         size = "" if effect.whole else f", {best.value:.3g}{unit}"
         return f"{'fault' if effect.fault else 'missing'}: {best.title} {place}{size} ({percent(best.probability)})"
-    return "one of " + ", ".join(told) + "; these tests and sensors cannot tell them apart"
+    known = {k: by_name[e.names[k]].probability for k in group if e.names[k] in by_name}
+    likely = [f"{e.names[k]} {percent(p)}" for k, p in known.items() if p >= SAID or k in group[:2]]
+    others = f" or {len(group) - len(likely)} less likely ones" if len(group) > len(likely) else ""
+    return f"one of {', '.join(likely)}{others}; these tests and sensors cannot tell them apart"
 
 
 def percent(p: float) -> str:

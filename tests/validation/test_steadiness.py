@@ -1,0 +1,83 @@
+"""A verdict that hangs on which instants were looked at is withheld, and says so."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from playground import Truth, wind
+
+from validation.effects import effect
+from validation.inference.decision import Decision, decide
+from validation.inference.evidence import calibrated_case, scored
+from validation.inference.posterior import Hypothesis, Posterior, probabilities, singles
+from validation.inference.refits import laplace
+from validation.inference.steadiness import at_every_second, steady
+from validation.inference.tables import unsteady
+
+NAMES = ("convection@flange.right", "brush.drop@commutator", "mass@shaft")
+
+
+@cache
+def posterior():
+    case = Truth(12, wind("flange.right", 12.0)).case()
+    e = scored(case, [effect(n) for n in NAMES], calibrated_case(case))
+    return Posterior(e, tuple(laplace(e, h) if h.members else h for h in singles(e)), ())
+
+
+@pytest.mark.parametrize("first", [0, 1])
+def test_half_of_the_instants_say_the_same(first):
+    """Model error is slow: half of the readings hold nearly all that the whole record does."""
+    all_of_it, half = posterior(), at_every_second(posterior(), first)
+    for s, t in zip(all_of_it.evidence.fit.parts, half.evidence.fit.parts, strict=True):
+        np.testing.assert_array_equal(t.time, s.time[first::2])
+    np.testing.assert_allclose(probabilities(half.hypotheses), probabilities(all_of_it.hypotheses), atol=0.1)
+    assert half.best.members == all_of_it.best.members == (0,)
+    assert half.best.log_bayes == pytest.approx(all_of_it.best.log_bayes, rel=0.25)
+
+
+def test_what_was_too_improbable_to_be_refitted_stays_so():
+    """Exchanged plugs that the readings contradict, beside an effect that gains next to nothing."""
+    p = posterior()
+    small = replace(p.best, log_bayes=0.1)
+    impossible = Hypothesis((1,), "", -3.0, -5000.0)
+    half = at_every_second(replace(p, hypotheses=(p.hypotheses[0], small, impossible)), 0)
+    assert half.hypotheses[-1].log_bayes <= -5000.0
+
+
+def test_what_stands_on_every_second_sample_is_left_as_it_is():
+    def decision(p):
+        return decide(p.evidence, p.hypotheses)
+
+    choice = steady(posterior(), decision)
+    assert choice == decision(posterior())
+    assert unsteady(posterior(), choice) == ""
+
+
+def instants(p):
+    return p.evidence.fit.parts[0].time.size
+
+
+@pytest.mark.parametrize(("on_half", "groups"), [
+    (Decision("adequate", (), 0.4), ((0,),)),
+    (Decision("named", ((1,),), 0.9), ((0, 1),)),
+    (Decision("group", ((0, 2),), 0.9), ((0, 2),)),
+])  # fmt: skip
+def test_a_name_that_half_of_the_instants_do_not_give_is_withheld(on_half, groups):
+    whole = Decision("named", ((0,),), 0.95)
+    choice = steady(posterior(), lambda p: whole if instants(p) == instants(posterior()) else on_half)
+    assert (choice.verdict, choice.groups, choice.sure) == ("group", groups, 0.95)
+    assert "every second sample alone leads to " + on_half.verdict in unsteady(posterior(), choice)
+
+
+def test_the_order_within_a_group_is_no_other_verdict():
+    whole, half = Decision("group", ((0, 1),), 0.9), Decision("group", ((1, 0),), 0.9)
+    choice = steady(posterior(), lambda p: whole if instants(p) == instants(posterior()) else half)
+    assert choice == whole
+
+
+def test_nothing_is_claimed_because_half_of_the_instants_would_claim_it():
+    whole, half = Decision("adequate", (), 0.4), Decision("named", ((0,),), 0.9)
+    choice = steady(posterior(), lambda p: whole if instants(p) == instants(posterior()) else half)
+    assert choice == replace(whole, others=(half, half))
+    assert "convection@flange.right" in unsteady(posterior(), choice)
