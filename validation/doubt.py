@@ -111,6 +111,24 @@ TEMPER: Mapping[str, Odds] = MappingProxyType({
 })  # fmt: skip
 SIZES = (0.3, 1.0, 3.0)  # of an effect's usual size: nobody knows it better than within a decade
 
+# What else can move a verdict, and no case widens: how errors, heat of unknown cause and dead channels look.
+SHAPE: Mapping[str, Line] = MappingProxyType({
+    "fast time": Line(120.0, "s", "of the fast misfit: cores and sensors follow within minutes"),
+    "slow time": Line(1200.0, "s", "of the slow misfit: bodies of a motor follow within tens of minutes"),
+    "times": Line(0.8, "ln", "either time is known within a factor of two"),
+    "resolved": Line(0.03, "K", "a logger of 0.1 K rounds by 0.03 K (1 / sqrt(12)): no residual is surer"),
+    "readings": Line(4.0, "readings", "of `resolved` that the noise of a record is worth before any is seen"),
+    "heat time": Line(1200.0, "s", "heat that follows no input changes as bodies do"),
+    "heat step": Line(60.0, "s", "or as fast as something is switched"),
+    "heat over input": Line(1.0, "of an input's range", "laws of losses and films are gentle curves of their input"),
+    "heat size": Line(0.5, "1", "of the machine's own conductance or power, as an effect of the catalogue has it"),
+    "one whole test": Line(0.4, "1", "a test is set up anew; half of what differs for once is left for stretches"),
+    "several whole tests": Line(0.1, "1", "the same in two or three tests is rarer"),
+    "frozen": Line(0.25, "of a record", "without one change, of a channel that resolves what its neighbours do"),
+    "moving": Line(3.0, "K", "what those must move by: ten steps of a coarse logger"),
+})  # fmt: skip
+FORM: Doubt = {name: line.sd for name, line in SHAPE.items()}
+
 # What a statement costs; a wrong name is one.
 COSTS: Mapping[str, Odds] = MappingProxyType({
     "wrong": Odds(1.0, "the unit: a bench is changed for nothing"),
@@ -136,10 +154,12 @@ def nats_worth(log_odds: float) -> float:
 def markdown() -> str:
     """The table as docs/diagnosis.md shows it."""
     rows = [f"| {name} | {line.sd:g} {line.unit} | {line.reason} |" for name, line in TABLE.items()]
+    shape = [f"| {name} | {line.sd:g} {line.unit} | {line.reason} |" for name, line in SHAPE.items()]
     odds = [f"| {name} | {100.0 * o.share:g} % | {o.reason} |" for name, o in PRIOR.items()]
     tempers = [f"| {name} | {o.share:g} | {o.reason} |" for name, o in TEMPER.items()]
     rare = [f"| {name} | x {o.share:g} | {o.reason} |" for name, o in RARE.items()]
     costs = [f"| {name} | {o.share:g} | {o.reason} |" for name, o in COSTS.items()]
     head = ["| doubt | one sigma | reason |", "|---|---|---|", *rows, ""]
     prior = ["| before the readings | share | reason |", "|---|---|---|", *odds, *rare, *tempers, ""]
-    return "\n".join([*head, *prior, "| statement | cost | reason |", "|---|---|---|", *costs])
+    form = ["| shape | value | reason |", "|---|---|---|", *shape, ""]
+    return "\n".join([*head, *form, *prior, "| statement | cost | reason |", "|---|---|---|", *costs])

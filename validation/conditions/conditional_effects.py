@@ -22,7 +22,7 @@ from validation.conditions.hat_functions import Interval, hat_scores
 from validation.conditions.refine import TimedEvent, columns, refined, repeats
 from validation.conditions.windows import ALIKE, distinct, stretches, worth
 from validation.diagnosis.missing_heat import MissingHeat, Scan
-from validation.doubt import PRIOR, USUAL
+from validation.doubt import FORM, PRIOR, USUAL
 from validation.effects import Effect, extended
 from validation.effects.during import During
 from validation.effects.sites import neighbours
@@ -35,7 +35,6 @@ Array = NDArray[np.float64]
 TESTS, EVENTS, EACH = 16, 4, 6  # conditions of whole tests, events, and explanations of each that join the others
 TIMED = 3  # of these have ends of their own: a film that changes bends a record later than heat does
 SPANS = 4  # of an event, beyond which its explanations share their ends: each span costs thirty runs
-ALONE, SOME = 0.4, 0.1  # shares of what held in one whole test, and in several: the other half is for stretches
 FEW_TESTS = 6  # whose sets are all tried: of more each must stand for itself
 HOPELESS = 5.0  # nats below nothing, prior included: what has less cannot carry weight
 
@@ -110,8 +109,9 @@ def single_test_conditions(evidence: Evidence, bases: Sequence[Effect], known: M
     every, out = sets_of(len(names)), []
     for chosen in every:
         own, seen = together(found, len(bases), chosen)
-        held, count = (ALONE, len(names)) if len(chosen) == 1 else (SOME, len(every) - len(names))
-        share = held / (len(bases) * count)
+        one = len(chosen) == 1
+        held = FORM["one whole test" if one else "several whole tests"]
+        share = held / (len(bases) * (len(names) if one else len(every) - len(names)))
         gate = gate_of([evidence.tests[t] for t in chosen])
         out += [
             Condition(During.of(base, gate, share), float(b) + odds_against_nothing(share))

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from validation.case import Test
 from validation.diagnosis.missing_heat import Scan
-from validation.doubt import SIZES, USUAL
+from validation.doubt import FORM, SIZES, USUAL
 from validation.effects.build import conductance_scale, power_scale
 from validation.effects.time_window import Event, Span
 from validation.inference.evidence import Evidence, extended_prior, projected
@@ -23,7 +23,6 @@ from validation.inference.posterior import one_size
 from validation.inference.score import Score, apart, score
 
 Array = NDArray[np.float64]
-HALF = 0.5  # of the machine's own conductance or power, as effects of the catalogue have it
 
 
 @dataclass(frozen=True)
@@ -61,7 +60,7 @@ class HatScores:
 
     def usual(self, path: Path) -> float:
         """Standard deviation of what a path usually carries, W or W/K."""
-        return HALF * USUAL["switched"] * (self.conductance_W_K if path.other else self.power_W)
+        return FORM["heat size"] * USUAL["switched"] * (self.conductance_W_K if path.other else self.power_W)
 
     def paths(self, near: Mapping[str, set[str]]) -> list[Path]:
         """Heat at every place, and conduction from there to everything near it."""

@@ -22,6 +22,7 @@ from lumped.transfer.laws import Fixed, Inputs
 from validation.calibration.calibrate import Fit
 from validation.case import Test
 from validation.comparison.linearisation import Segment, segments
+from validation.doubt import FORM
 from validation.effects.build import Shaped, heat, power_scale
 from validation.effects.sites import solids
 from validation.inference.model_error import ModelError, nodes
@@ -31,8 +32,7 @@ from validation.measurement.noise import Noise
 
 Array = NDArray[np.float64]
 KNOT_S = 180.0  # between knots of a heat; chosen: shorter ones cost time, and masses smooth what they would show
-MEMORY_S = (60.0, 1200.0)
-REACH = 1.0  # of an input's range: heat over an input is a gentle curve, as the laws of losses and films are
+MEMORY_S = (FORM["heat step"], FORM["heat time"])
 JITTER = 1e-6  # of the variance, so that equal knots have a factor
 LOCATED = 10.0  # nats
 
@@ -115,7 +115,7 @@ class Scan:
     def following(self, i: int) -> Array:
         """The same of heat at a place that is a smooth function of what the machine does and how warm the place is."""
         x = np.column_stack([self.doing, over_range(self.T[:, i : i + 1])])
-        R = np.exp(-0.5 * np.sum((x[:, None, :] - x[None, :, :]) ** 2, axis=2) / REACH**2)
+        R = np.exp(-0.5 * np.sum((x[:, None, :] - x[None, :, :]) ** 2, axis=2) / FORM["heat over input"] ** 2)
         return np.asarray(np.linalg.cholesky(R + JITTER * np.eye(len(x))), float)
 
     def _at(self, i: int, grams: Mapping[str, Gram], cov: Array, Jr: Array) -> MissingHeat:

@@ -9,9 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validation.case import Channel, Test
+from validation.doubt import FORM
 
-FROZEN_SHARE = 0.25  # of a record without a change; chosen
-MOVING_K = 3.0  # of the others: several times a sensor's noise
 FEW = 8  # readings below which nothing is said of a channel
 
 
@@ -73,9 +72,9 @@ def fault(test: Test, channel: Channel) -> Fault | None:
     others = [np.nanmax(c.y) - np.nanmin(c.y) for c in test.channels if c is not channel and np.isfinite(c.y).any()]
     first, last = longest_run(y)
     run = last - first + 1
-    if run <= FROZEN_SHARE * y.size or not others or np.median(others) <= MOVING_K:
+    if run <= FORM["frozen"] * y.size or not others or np.median(others) <= FORM["moving"]:
         return None
-    limit = y[first] == y.max() and np.ptp(y) > MOVING_K
+    limit = y[first] == y.max() and np.ptp(y) > FORM["moving"]
     bad = np.zeros(channel.y.size, bool)
     bad[read[y == y[first]] if limit else read[first : last + 1]] = True
     words = f"{here} is {'at its limit' if limit else 'frozen'} for {100 * run / y.size:.0f} % of the test"

@@ -24,12 +24,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validation.comparison.linearisation import Segment
-from validation.doubt import USUAL
+from validation.doubt import FORM, USUAL
 
 Array = NDArray[np.float64]
-FLOOR_K = 0.03
-PRIOR_COUNT = 4.0
-TAU, ELL = 120.0, 1200.0
+TAU, ELL = FORM["fast time"], FORM["slow time"]
+FLOOR_K = FORM["resolved"]
 
 
 @dataclass(frozen=True)
@@ -42,8 +41,8 @@ class Shape:
     ell: float
 
     def log_prior(self) -> float:
-        fast = np.log(self.tau / TAU) / 0.8 if self.a else 0.0
-        slow = np.log(self.ell / ELL) / 0.8 if self.b else 0.0
+        fast = np.log(self.tau / TAU) / FORM["times"] if self.a else 0.0
+        slow = np.log(self.ell / ELL) / FORM["times"] if self.b else 0.0
         return -0.5 * float(fast**2 + slow**2)
 
     def matrix(self, time: Array) -> Array:
@@ -206,7 +205,7 @@ def fit_noise(parts: Sequence[Segment]) -> Noise:
             logdet[at] += ld
             count[at] += time.size
     floor = np.array([FLOOR_K / max(s.weight for s in parts if s.channel == c) for c in channels])[:, None]
-    variance = (square + PRIOR_COUNT * floor**2) / (count + PRIOR_COUNT)
+    variance = (square + FORM["readings"] * floor**2) / (count + FORM["readings"])
     prior = np.array([g.log_prior() for g in GRID])
     best = np.argmin(count * np.log(variance) + logdet - 2.0 * prior, axis=1)
     return Noise({c: _level(GRID[k], float(variance[i, k])) for i, (c, k) in enumerate(zip(channels, best))})
