@@ -31,7 +31,6 @@ from validation.rating.repeated_cycle import Lap, share_for_ever, time_to_limit
 
 POINTS = 6  # speeds of the envelope
 LOADS = 8  # loads of the map
-QUICK = ("S1", "S2 60 min", "S2 60 s", "S2 10 s")  # forms over the speed where a repeated duty takes ten seconds each
 WARM = 0.75  # load at rest from which an overload begins warm
 
 
@@ -109,8 +108,7 @@ def document_of(folder: Folder, asked: Asked, sure: bool | None, tell: Progress)
     posterior = posterior_of(folder, tell) if asked.losses is None and wanted(model.network, sure) else None
     tell("envelope over the speed")
     speeds = _speeds(folder, op, asked)
-    forms = FORMS if wanted(model.network, None) else QUICK
-    envelope = [rated(model, op, limits, form, n) for form in forms for n in speeds]
+    envelope = [rated(model, op, limits, form, n) for form in FORMS for n in speeds]
     tell("derating")
     load, main = here["S1"].load, op.inputs[op.main]
     return {
