@@ -1,5 +1,7 @@
 """What is known already is not computed again, and comes out the same."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from playground import Truth, wind
@@ -7,7 +9,7 @@ from playground import Truth, wind
 from validation.calibration.calibrate import KnownSegments, calibrated, minimise, residual_noise
 from validation.calibration.unknowns import working
 from validation.effects import effect
-from validation.inference.evidence import calibrated_case, scored
+from validation.inference.evidence import calibrated_case, scored, settled, under
 
 NAMES = ("convection@flange.right", "loss.constant@yoke", "sensor.bias@yoke", "mass@yoke")
 
@@ -36,3 +38,15 @@ def test_calibration_ends_with_the_jacobian_of_where_it_stands(evidence):
     held = {p.name: p.value for p in network.parameters} | fit.values
     fresh = minimise(network, evidence.tests, unknowns, fit.theta, fit.noise, held, 0)
     np.testing.assert_allclose(fit.parts[0].J, fresh.parts[0].J, atol=1e-10)
+
+
+def test_nothing_is_fitted_to_its_end_under_another_noise(evidence):
+    """From wherever a fit stands: ever more steps of ever finer worth gain less than the evidence is read to."""
+    far = replace(evidence.fit, theta=evidence.fit.theta + 0.5 * evidence.fit.unknowns.sd)
+    other = under(replace(evidence, fit=far), residual_noise(evidence.fit))
+    end = settled(other).fit
+    assert end.objective <= other.fit.objective
+    held = {p.name: p.value for p in end.network.parameters} | end.values
+    finer = minimise(end.network, evidence.tests, end.unknowns, end.theta, end.noise, held, 30, worth=0.005,
+                     error=end.error)  # fmt: skip
+    assert finer.objective == pytest.approx(end.objective, abs=0.2)

@@ -28,6 +28,7 @@ from validation.inference.evidence import (
     log_evidence,
     noise_beside,
     scored,
+    settled,
     under,
     with_noise,
 )
@@ -116,11 +117,11 @@ def infer(case: Case, kinds: Sequence[str] | None = None, progress: Progress = n
     known = {**case.model.values, **evidence.fit.values}
     bent = laws(evidence, known) if kinds is None or KIND in kinds else []
     first = len(evidence.effects)
-    evidence = sharpened(joined(evidence, [*chosen, *bent], known), range(first, first + len(chosen)))
+    evidence = settled(sharpened(joined(evidence, [*chosen, *bent], known), range(first, first + len(chosen))))
     found, heat = weighed(case, evidence, looked, fit.noise, progress)
     timed, noise = retimed(evidence, found, reach(looked)), noise_of_refits(found)
     if noise is not None or timed is not evidence:
-        evidence = under(timed, noise or timed.fit.noise)
+        evidence = settled(under(timed, noise or timed.fit.noise))
         begun = {h.members: h.fit for h in found if h.fit and h.members}
         found, heat = weighed(case, evidence, looked, fit.noise, progress, begun)
     every = further(case, evidence, finely(evidence, found), progress)

@@ -296,6 +296,20 @@ def under(evidence: Evidence, noise: Noise) -> Evidence:
     return weighed(e.tests, new, e.network, e.effects, e.parameters, parts, e.jumps, e.large)
 
 
+def settled(evidence: Evidence) -> Evidence:
+    """The evidence with nothing fitted to its end under its noise, by tangents of its own there.
+
+    What nothing falls short of its end, every effect gains.
+    """
+    e, fit = evidence, evidence.fit
+    new = minimise(fit.network, e.tests, fit.unknowns, fit.theta, fit.noise, values_of(fit.network, fit.values), ROUNDS,
+                   KnownSegments(fit.parts, nearby=False, stale=True), worth=ENOUGH, error=fit.error)  # fmt: skip
+    own = {(s.test, s.channel): s for s in new.parts}
+    here = [(s, own[s.test, s.channel]) for s in e.parts]
+    parts = tuple(replace(s, r=n.r, J=np.column_stack([n.J, s.J[:, e.p :]])) for s, n in here)
+    return weighed(e.tests, new, e.network, e.effects, e.parameters, parts, e.jumps, e.large)
+
+
 def gone_on(fit: Fit, tests: Sequence[Test], noise: Noise, parts: Sequence[Segment]) -> Fit:
     """A calibration that goes on under another noise, with the tangents of where it stands."""
     return minimise(fit.network, tests, fit.unknowns, fit.theta, noise, values_of(fit.network, fit.values), FURTHER,
