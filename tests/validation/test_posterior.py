@@ -25,7 +25,7 @@ from validation.inference.posterior import (
     singles,
     two,
 )
-from validation.inference.refits import laplace
+from validation.inference.refits import laplace, lowered, promised
 
 NAMES = ("convection@flange.right", "convection.constant@flange.right", "brush.drop@commutator", "sensor.bias@yoke",
          "mass@shaft")  # fmt: skip
@@ -157,3 +157,16 @@ def test_doubt_can_only_be_widened():
     for lines in ({"bridge": 0.01}, {"phlogiston": 1.0}):
         with pytest.raises(Exception, match=r"bridge|phlogiston"):
             widened(lines)
+
+
+def test_pairs_that_were_not_refitted_know_what_the_refits_of_either_say():
+    """A refit that falls 30 nats short of its tangent takes these from pairs that were never refitted; what one gains
+    says which pairs to refit."""
+    short, more = Hypothesis((0,), log_bayes=70.0), Hypothesis((1,), log_bayes=5.0)
+    pair, other, done = Hypothesis((0, 2), log_bayes=72.0), Hypothesis((1, 2), log_bayes=6.0), Hypothesis((0, 1))
+    fit = evidence().fit
+    before = [short, more, pair, other, done]
+    after = [replace(short, log_bayes=40.0, fit=fit), replace(more, log_bayes=9.0, fit=fit), pair, other,
+             replace(done, log_bayes=41.0, fit=fit)]  # fmt: skip
+    assert [h.log_bayes for h in promised(before, after)] == [40.0, 9.0, 72.0, 10.0, 41.0]
+    assert [h.log_bayes for h in lowered(before, after)] == [40.0, 9.0, 42.0, 6.0, 41.0]

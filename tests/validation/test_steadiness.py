@@ -12,7 +12,7 @@ from validation.inference.decision import Decision, decide
 from validation.inference.evidence import calibrated_case, scored
 from validation.inference.posterior import Hypothesis, Posterior, probabilities, singles
 from validation.inference.refits import laplace
-from validation.inference.steadiness import at_every_second, steady
+from validation.inference.steadiness import at_every_second, steady, united
 from validation.inference.tables import unsteady
 
 NAMES = ("convection@flange.right", "brush.drop@commutator", "mass@shaft")
@@ -74,6 +74,11 @@ def test_the_order_within_a_group_is_no_other_verdict():
     whole, half = Decision("group", ((0, 1),), 0.9), Decision("group", ((1, 0),), 0.9)
     choice = steady(posterior(), lambda p: whole if instants(p) == instants(posterior()) else half)
     assert choice == whole
+
+
+def test_what_one_group_has_joins_no_other():
+    assert united(((0,), (1,)), ((0, 2, 1),)) == ((0, 2), (1,))
+    assert united(((0,), (1,)), ((0,), (2,))) == ((0,), (1, 2))
 
 
 def test_nothing_is_claimed_because_half_of_the_instants_would_claim_it():

@@ -63,7 +63,7 @@ def refitted(
             break
         for size in (1, 2):  # two begin where one of them was fitted alone
             together(evidence, out, [i for i in due if len(out[i].members) == size], progress, begun)
-    return out
+    return lowered(hypotheses, out)
 
 
 def together(
@@ -93,9 +93,22 @@ def all_beside(evidence: Evidence, hypotheses: Sequence[Hypothesis], due: Sequen
 
 def promised(before: Sequence[Hypothesis], after: Sequence[Hypothesis]) -> list[Hypothesis]:
     """Two effects gain by tangents what either of them gains by its refit more than by its tangent."""
+    return _corrected(before, after, lambda each: max(0.0, *each))
+
+
+def lowered(before: Sequence[Hypothesis], after: Sequence[Hypothesis]) -> list[Hypothesis]:
+    """Two effects that were not refitted, for there were too many, lose what the refit of either fell short of its
+    tangent."""
+    return _corrected(before, after, lambda each: min(0.0, *each))
+
+
+def _corrected(
+    before: Sequence[Hypothesis], after: Sequence[Hypothesis], by: Callable[[list[float]], float]
+) -> list[Hypothesis]:
+    """Pairs without a refit, by what those of their members gained more than their tangents."""
     linear = {h.members[0]: h.log_bayes for h in before if len(h.members) == 1}
     more = {h.members[0]: h.log_bayes - linear[h.members[0]] for h in after if h.fit and len(h.members) == 1}
-    gain = [0.0 if h.fit or len(h.members) < 2 else max(0.0, *(more.get(k, 0.0) for k in h.members)) for h in after]
+    gain = [0.0 if h.fit or len(h.members) < 2 else by([more.get(k, 0.0) for k in h.members]) for h in after]
     return [replace(h, log_bayes=h.log_bayes + g) for h, g in zip(after, gain, strict=True)]
 
 

@@ -42,11 +42,13 @@ def differs(choice: Decision, other: Decision) -> bool:
 
 
 def united(groups: tuple[tuple[int, ...], ...], more: tuple[tuple[int, ...], ...]) -> tuple[tuple[int, ...], ...]:
-    """The groups, each with the members of that other one which shares an effect with it or stands in its place."""
-    out = []
+    """The groups, each with the members of that other one which shares an effect with it or stands in its place; what
+    one group has joins no other."""
+    out, own = [], {k for g in groups for k in g}
     for i, g in enumerate(groups):
         alike = [m for m in more if set(m) & set(g)] or list(more[i : i + 1])
-        out.append(tuple(dict.fromkeys([*g, *(k for m in alike for k in m)])))
+        out.append((*g, *dict.fromkeys(k for m in alike for k in m if k not in own)))
+        own |= set(out[-1])
     return tuple(out)
 
 
