@@ -125,6 +125,7 @@ SHAPE: Mapping[str, Line] = MappingProxyType({
     "one whole test": Line(0.4, "1", "a test is set up anew; half of what differs for once is left for stretches"),
     "several whole tests": Line(0.1, "1", "the same in two or three tests is rarer"),
     "frozen": Line(0.25, "of a record", "without one change, of a channel that resolves what its neighbours do"),
+    "jump": Line(2.0, "times any other step", "by which a channel that stuck for less leaves the value it stuck at"),
     "moving": Line(3.0, "K", "what those must move by: ten steps of a coarse logger"),
 })  # fmt: skip
 FORM: Doubt = {name: line.sd for name, line in SHAPE.items()}

@@ -12,6 +12,7 @@ from validation.case import Channel, Test
 from validation.doubt import FORM
 
 FEW = 8  # readings below which nothing is said of a channel
+SAME_K = 1e-9  # K
 
 
 @dataclass(frozen=True)
@@ -54,9 +55,14 @@ class PlainFaults:
 
 def longest_run(y: NDArray[np.float64]) -> tuple[int, int]:
     """First and last index of the longest stretch of equal readings."""
-    edges = np.concatenate([[-1], np.flatnonzero(np.diff(y) != 0.0), [y.size - 1]])
+    edges = np.concatenate([[-1], np.flatnonzero(~equal(np.diff(y))), [y.size - 1]])
     longest = int(np.argmax(np.diff(edges)))
     return int(edges[longest]) + 1, int(edges[longest + 1])
+
+
+def equal(difference: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Readings that differ by no more than averaging equal ones rounds."""
+    return np.abs(difference) < SAME_K
 
 
 def fault(test: Test, channel: Channel) -> Fault | None:
@@ -69,16 +75,32 @@ def fault(test: Test, channel: Channel) -> Fault | None:
     if y.min() < -60.0 or y.max() > 400.0:
         words = f"{here} reads {y.min():.0f} to {y.max():.0f} degC: a wrong unit?"
         return Fault("unit", test.name, channel.name, np.isfinite(channel.y), words)
-    others = [np.nanmax(c.y) - np.nanmin(c.y) for c in test.channels if c is not channel and np.isfinite(c.y).any()]
     first, last = longest_run(y)
     run = last - first + 1
-    if run <= FORM["frozen"] * y.size or not others or np.median(others) <= FORM["moving"]:
+    long = run > FORM["frozen"] * y.size and others_move(test, channel, slice(None))
+    if not long and not (
+        jumps_after(y, first, last) and others_move(test, channel, slice(read[first], read[last] + 1))
+    ):
         return None
-    limit = y[first] == y.max() and np.ptp(y) > FORM["moving"]
+    limit = equal(y[first] - y.max()) and np.ptp(y) > FORM["moving"]
     bad = np.zeros(channel.y.size, bool)
-    bad[read[y == y[first]] if limit else read[first : last + 1]] = True
+    bad[read[equal(y - y[first])] if limit else read[first : last + 2]] = True  # the next reading is half of it
     words = f"{here} is {'at its limit' if limit else 'frozen'} for {100 * run / y.size:.0f} % of the test"
     return Fault("clipped" if limit else "frozen", test.name, channel.name, bad, words)
+
+
+def others_move(test: Test, channel: Channel, when: slice) -> bool:
+    """Does every second of the other channels move by more than noise can?"""
+    own = [c.y[when] for c in test.channels if c is not channel and np.isfinite(c.y[when]).any()]
+    return bool(own) and float(np.median([np.nanmax(y) - np.nanmin(y) for y in own])) > FORM["moving"]
+
+
+def jumps_after(y: NDArray[np.float64], first: int, last: int) -> bool:
+    """Does a stretch of equal readings end with the largest step of the record: to where the channel should be?"""
+    step = np.abs(np.diff(y))
+    if last - first + 1 < FEW or last >= step.size:
+        return False
+    return bool(step[last] >= step.max() and step[last] > FORM["jump"] * np.delete(step, last).max(initial=SAME_K))
 
 
 def broken_channels(tests: Iterable[Test]) -> list[Fault]:
