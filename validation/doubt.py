@@ -42,6 +42,8 @@ TABLE: Mapping[str, Line] = MappingProxyType({
     "joint": Line(0.25, "1", "gaps of one kind of contact scatter by a factor of two: bearings 0.2 to 0.4 mm"),
     "bearing": Line(0.25, "1", "friction of two bearings of a kind differs with load, grease and seals"),
     "split": Line(0.1, "1", "how one loss divides over the nodes that carry it"),
+    "load": Line(0.1, "1", "iron, magnets and bearings lose more under load than at rest: stray load losses"),
+    "skin": Line(0.05, "1", "resistance of a winding grows by some per cent up to its highest frequency"),
     "conductivity": Line(0.15, "1", "catalogue values of laminated and wound parts"),
     "capacity": Line(0.05, "1", "masses by drawing, heat capacities by catalogue"),
     "film exponent": Line(0.08, "1", "a coefficient taken as constant follows the temperature difference a little"),
@@ -55,6 +57,7 @@ TABLE: Mapping[str, Line] = MappingProxyType({
     "wander": Line(0.5, "1", "share of a sensor's accuracy that wanders within a test; the rest is bias and slope"),
     "fast": Line(0.25, "1", "fast misfit as a share of the slow one"),
     "flow": Line(0.03, "1", "flow meters of a bench"),
+    "between samples": Line(1.0, "1", "of the mean square that a current gains if it jumps where it is drawn straight"),
     "input": Line(0.02, "1", "shunts, torque flanges, voltage dividers, where the sheet says nothing"),
     "law": Line(0.15, "1", "a missing film or loss follows its correlation no better than published ones scatter"),
     # what held in one test or for a while

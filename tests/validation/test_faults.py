@@ -37,7 +37,7 @@ def test_nothing_is_wrong_with_a_warm_up(bench):
 
 @pytest.mark.parametrize(("first", "last"), [(20, 50), (30, 69), (60, 140), (120, 199)])
 def test_a_channel_that_stuck_for_a_while_is_told_with_its_readings(bench, first, last):
-    """For a sixth of the test and longer, a neighbour that reads the same with it; short ones are known by the jump that ends them."""
+    """For a sixth of the test and longer; what stuck for less than a quarter is known by the jump that ends it."""
     found = fault(stuck(bench, first, last), stuck(bench, first, last).channels[0])
     assert found is not None
     assert np.flatnonzero(found.bad)[[0, -1]] == pytest.approx([first, min(last + 1, N - 1)], abs=3)

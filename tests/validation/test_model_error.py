@@ -11,9 +11,10 @@ from lumped.model.network import Parameter
 from lumped.transfer.laws import Fixed, InputPower
 from validation.calibration.calibrate import InnerProduct, minimise
 from validation.calibration.unknowns import working
+from validation.case import Test
 from validation.comparison.linearisation import segments
 from validation.doubt import USUAL
-from validation.inference.model_error import alone, bridges, joints, model_error, with_doubts
+from validation.inference.model_error import alone, bridges, joints, jumps, model_error, with_doubts
 from validation.measurement.noise import first_noise
 from validation.measurement.operators import behind
 
@@ -36,7 +37,7 @@ def test_a_column_is_what_the_doubt_does(case):
     """A bridge of one sigma: small against what it spans, so that the machine with it differs by the column."""
     plain = network()
     a, b, G = bridges(plain, USUAL["bridge"])[0]
-    grown, doubts = with_doubts(plain, USUAL)
+    grown, doubts = with_doubts(plain, USUAL, case.tests)
     k = [p.name for p in doubts].index(f"doubt:beside:{a}|{b}")
     error = model_error(plain, case.tests, {}, USUAL)
     with_it = segments(grown, case.tests, {doubts[k].name: 0.1 * G})
@@ -101,3 +102,38 @@ def test_woodbury_is_the_inverse_of_noise_and_model_error(case):
     S[:n, :n], S[n:, n:] = root[0] @ root[0].T, root[1] @ root[1].T
     r = np.concatenate([s.r for s in few])
     assert measure.square(few) == pytest.approx(r @ np.linalg.solve(S + D @ D.T, r), rel=1e-6)
+
+
+def test_losses_that_follow_the_load_or_the_frequency_unsaid_are_doubted():
+    """Iron by a tenth at the largest load of all tests, copper by a twentieth at the highest speed, each with its own
+    law; a loss whose law reads the load already is not."""
+    net = bare_network("two", {"winding": 300.0, "core": 5000.0}, ("ambient",))
+    copper = node_source(net, "copper", "copper", {"winding": 1.0}, InputPower(80.0, (("current_A", 10.0, 2.0),)))
+    iron = node_source(net, "iron", "iron", {"core": 1.0}, InputPower(40.0, (("speed_rpm", 1000.0, 1.5),)))
+    stray = node_source(net, "stray", "iron", {"core": 1.0}, InputPower(5.0, (("current_A", 10.0, 2.0),)))
+    net = net.extended([node_link(net, "film", "film", "core", "ambient", Fixed(2.0))], [copper, iron, stray], ())
+    time = np.arange(0.0, 100.0, 10.0)
+    inputs = {"current_A": np.linspace(0.0, 20.0, time.size), "speed_rpm": np.linspace(3000.0, 0.0, time.size)}
+    test = Test("run", "calibrate", time, inputs, {"ambient": np.full(time.size, 20.0)}, ())
+    grown, doubts = with_doubts(net, USUAL, [test])
+    size = {p.name.removeprefix("doubt:"): p.prior_sd for p in doubts}
+    own = {s.name: s for s in grown.sources}
+    assert size["iron*current_A"] == USUAL["load"]
+    assert size["copper*speed_rpm"] == USUAL["skin"]
+    assert not any(name.startswith("stray*") for name in size)
+    for name, base, share in (("iron*current_A", iron, inputs["current_A"] / 20.0),
+                              ("copper*speed_rpm", copper, inputs["speed_rpm"] / 3000.0)):  # fmt: skip
+        np.testing.assert_allclose(own[name].law.factor(inputs), base.law.factor(inputs) * share**2)
+    assert not any("*" in p.name for p in with_doubts(net, USUAL)[1])  # without tests there is no largest load
+
+
+def test_what_jumps_between_samples_is_doubted_by_what_its_square_would_gain():
+    """A current that is on or off from line to line; one that is straight; a speed, whose square makes no heat."""
+    net, time = network(), np.arange(0.0, 1000.0, 10.0)
+    on = (time // 50 % 2 == 0).astype(float)
+    inputs = {"current_A": 100.0 * on, "speed_rpm": 1000.0 * on}
+    test = Test("run", "calibrate", time, inputs, {"ambient": np.full(time.size, 20.0)}, ())
+    steps, straight = ((on[1:] ** 2 + on[:-1] ** 2) / 2.0).sum(), np.where(np.diff(on), 1.0 / 3.0, on[1:]).sum()
+    assert jumps(net, test, USUAL) == {"current_A": pytest.approx(np.sqrt(steps / straight))}
+    ramp = replace(test, inputs={**inputs, "current_A": np.linspace(0.0, 100.0, time.size)})
+    assert jumps(net, ramp, USUAL) == {}

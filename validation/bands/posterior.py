@@ -89,11 +89,11 @@ def silent(message: str) -> None:
 def parameter_posterior(case: Case, progress: Progress = silent) -> ParameterPosterior:
     """Of the model as it stands: on the tests that it was fitted to; before any calibration the priors alone."""
     network, unknowns = working(case)
-    grown, doubts = with_doubts(network, case.doubt)
     values = {p.name: case.model.values.get(p.name, p.value) for p in network.parameters}
-    of_network = tuple(p.name for p in doubts)
     roles = ("calibrate", "validate") if case.model.effects else ("calibrate",)
     tests = [t for t in case.tests if t.role in roles] if case.model.revision else []
+    grown, doubts = with_doubts(network, case.doubt, tests or case.tests)
+    of_network = tuple(p.name for p in doubts)
     if not tests:
         sd = np.array([p.prior_sd for p in unknowns.parameters])
         return ParameterPosterior(grown, values, unknowns.names, np.diag(sd**2), of_network, (), case.doubt)

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.integration.simulate import simulate
-from lumped.model.network import Link, Network, Parameter, Place, Row
+from lumped.model.network import Link, Network, Parameter, Place, Row, Source
 from lumped.model.quantities import AIR, LIQUID
 from lumped.model.topology import FRICTION
 from lumped.transfer.laws import CONSTANT, Constant, Fixed, Inputs, Law, TemperatureLaw
@@ -24,10 +24,12 @@ from validation.case import Channel, Test
 from validation.comparison.linearisation import Segment, segments
 from validation.comparison.predict import heat_model, record
 from validation.doubt import USUAL, Doubt
-from validation.effects.build import Shaped, copy_link, exchange, heat
+from validation.effects.build import Shaped, copy_link, copy_source, exchange, heat
 from validation.measurement.operators import behind, setting
 
 Array = NDArray[np.float64]
+SQUARED = ("current", "torque")  # quantities whose square makes heat
+SMOOTH = 1e-3  # of its mean square: an input that jumps by less is as good as straight
 
 
 LOGARITHM = Table(KNOTS, tuple(np.log(np.clip(np.array(KNOTS) / SETTLE_K, 0.1, 10.0))))
@@ -48,10 +50,40 @@ class Bent(Law):
         return self.base.factor(inputs)
 
 
-def with_doubts(network: Network, doubt: Doubt) -> tuple[Network, tuple[Parameter, ...]]:
-    """The network with a neutral parameter for each doubt of its links, losses and capacities; prior_sd is its size."""
+@dataclass(frozen=True)
+class SquareOf:
+    """The sum of squares of some inputs, of its largest value."""
+
+    inputs: tuple[str, ...]
+    largest: float
+
+    def __call__(self, inputs: Inputs) -> Array:
+        return np.asarray(sum(np.asarray(inputs[n], float) ** 2 for n in self.inputs)) / self.largest
+
+    @classmethod
+    def of(cls, network: Network, tests: Sequence[Test], quantities: Sequence[str]) -> SquareOf | None:
+        """Of the first of some quantities that all tests have and that is not zero throughout."""
+        every = [n for n in tests[0].inputs if all(n in t.inputs for t in tests)] if tests else []
+        for quantity in quantities:
+            names = tuple(n for n in every if network.measures(n) == quantity)
+            square = [sum(np.asarray(t.inputs[n], float) ** 2 for n in names) for t in tests]
+            largest = max(float(np.max(x)) for x in square) if names else 0.0
+            if largest > 0.0:
+                return cls(names, largest)
+        return None
+
+
+def with_doubts(network: Network, doubt: Doubt, tests: Sequence[Test] = ()) -> tuple[Network, tuple[Parameter, ...]]:
+    """The network with a neutral parameter for each doubt of its links, losses and capacities; prior_sd is its size.
+
+    tests : whose largest load and speed are those that losses are in doubt at; without any they follow their laws
+    """
     before = len(network.parameters)
     new = [*_each_link(network, doubt), *_each_loss(network, doubt), *_each_capacity(network, doubt)]
+    for loss, square, sd in _unsaid(network, tests, doubt):
+        name = f"{loss.name}*{'*'.join(square.inputs)}"
+        network = copy_source(network, loss, name, Shaped(loss.law, square, also_reads=square.inputs))
+        new.append(_amplitude(f"doubt:{name}", name, sd, "1"))
     for link in [x for x in network.links if _constant_film(network, x)]:
         name = f"{link.name}^dT?"
         network = copy_link(network, link, name, Bent(link.law))
@@ -100,6 +132,16 @@ def _each_loss(network: Network, doubt: Doubt) -> Iterator[Parameter]:
     for s in network.sources:
         if s.name not in single and not s.origin:
             yield _log(s.name, doubt["bearing" if s.kind in FRICTION and s.name in own else "split"])
+
+
+def _unsaid(network: Network, tests: Sequence[Test], doubt: Doubt) -> Iterator[tuple[Source, SquareOf, float]]:
+    """Losses that follow the load or the frequency although their laws do not say so, with what they follow."""
+    load, frequency = (SquareOf.of(network, tests, x) for x in (("current", "torque"), ("speed", "frequency")))
+    for s in network.sources:
+        what, sd = (frequency, doubt["skin"]) if s.kind == "copper" else (load, doubt["load"])
+        own = s.origin or s.kind == "measured" or s.law.looks_at_all  # what follows nothing by itself
+        if what is not None and not own and not set(what.inputs) & set(s.law.reads):
+            yield s, what, sd
 
 
 def _shared(network: Network) -> set[str]:
@@ -231,9 +273,9 @@ def model_error(
 ) -> ModelError:  # fmt: skip
     """The model error of a network at some values of its parameters, over the instants of its tests' segments.
 
-    sensed : tests whose sensors' placement is in doubt, by default `tests`
+    sensed : tests whose sensors' placement is in doubt, and whose largest load and speed count; by default `tests`
     """
-    grown, doubts = with_doubts(network, doubt)
+    grown, doubts = with_doubts(network, doubt, sensed or tests)
     out: dict[tuple[str, str], Array] = {}
     for test in tests:
         cored = with_cores(grown, test, values, doubt)
@@ -241,7 +283,7 @@ def model_error(
         parts = segments(cored, [test], values, (*doubts, *cores))
         scale = np.array([p.prior_sd for p in (*doubts, *cores)])
         beside = placements(network, test, values, doubt, sensed or tests)
-        flow = flows(network, test, values, doubt, parts)
+        flow = of_inputs(network, test, values, doubt, parts)
         out |= {(s.test, s.channel): np.column_stack([s.J * scale, beside[s.channel], flow[s.channel]]) for s in parts}
     return ModelError(out, named(network, doubts, cores, doubt, sensed or tests), doubt["law"])
 
@@ -252,19 +294,42 @@ def named(
     """What each column stands for."""
     own = [p.name.removeprefix("doubt:") for p in (*doubts, *cores)]
     beside = [f"{n} in the reading of {c}" for c, n, _ in sensed_beside(network, tests, doubt)]
-    return (*own, *beside, "flow of air", "flow of liquid")
+    return (*own, *beside, "flow of air", "flow of liquid", "jumps between samples")
 
 
-def flows(
+def of_inputs(
     network: Network, test: Test, values: Mapping[str, float], doubt: Doubt, plain: Sequence[Segment]
 ) -> dict[str, Array]:
-    """Channel -> (n, k): each kind of flow, as its meter may be off in all tests.  plain : the test as recorded"""
+    """Channel -> (n, k): each kind of flow, as its meter may be off in all tests; what jumps between samples.
+
+    plain : the test as recorded
+    """
     columns = []
-    for quantity in (AIR, LIQUID):
-        own = {n: 1.0 + doubt["flow"] for n in test.inputs if network.measures(n) == quantity}
+    for own in (*(_flow(network, test, doubt, quantity) for quantity in (AIR, LIQUID)), jumps(network, test, doubt)):
         more = segments(network, [test.scaled(own)], values) if own else plain
         columns.append([a.r - b.r for a, b in zip(plain, more, strict=True)])
     return {s.channel: np.column_stack([c[i] for c in columns]) for i, s in enumerate(plain)}
+
+
+def _flow(network: Network, test: Test, doubt: Doubt, quantity: str) -> dict[str, float]:
+    return {n: 1.0 + doubt["flow"] for n in test.inputs if network.measures(n) == quantity}
+
+
+def jumps(network: Network, test: Test, doubt: Doubt) -> dict[str, float]:
+    """Input that heat follows by its square -> factor on it in this test, if it jumps where it is taken as straight.
+
+    Between u and v the mean square is (u^2 + u v + v^2) / 3 on a straight line and (u^2 + v^2) / 2 of two steps.
+    """
+    out = {}
+    for n in test.inputs:
+        fine = test.recorded if test.recorded and n in test.recorded.inputs else test
+        time, u = fine.time, np.asarray(fine.inputs[n], float)
+        step, a, b = np.diff(time), u[:-1], u[1:]
+        straight = float(step @ (a * a + a * b + b * b)) / 3.0
+        more = float(step @ (b - a) ** 2) / 6.0
+        if network.measures(n) in SQUARED and more > SMOOTH * straight:
+            out[n] = float(np.sqrt(1.0 + doubt["between samples"] * more / straight))
+    return out
 
 
 def placements(
