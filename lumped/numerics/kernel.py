@@ -36,7 +36,8 @@ from lumped.numerics.stages import (
 )  # fmt: skip
 from lumped.numerics.terms import (
     DYNAMIC,
-    ROWS,
+    END,
+    ROW,
     SOURCE,
     Floats,
     Ints,
@@ -117,8 +118,8 @@ def _along_time(T, K0, a, q, out):
     for e in range(T.m.size):
         if T.kind[e, DYNAMIC] and T.m[e] != 0.0:
             c = T.m[e] * q.f[0, e] * tau[e, 0]
-            turn = T.m[e] * directional(e, q.f[0, e], q.df[e], tau, vw, T.row.size)
-            for s in range(T.start[e, ROWS], T.start[e + 1, ROWS]):
+            turn = T.m[e] * directional(T, e, q.f[0, e], q.df[e], tau, vw)
+            for s in range(T.part[e, ROW], T.part[e, END]):
                 out[T.row[s]] -= c * vw[s] + turn * v[s]
 
 
@@ -188,7 +189,7 @@ def _heat(T, K0, a, q):
         q.heat[0, i] = q.heat[1, i] = 0.0
     for e in range(T.m.size):
         if T.kind[e, SOURCE] and T.kind[e, DYNAMIC] and T.m[e] != 0.0:
-            for s in range(T.start[e, ROWS], T.start[e + 1, ROWS]):
+            for s in range(T.part[e, ROW], T.part[e, END]):
                 start = -T.m[e] * q.f[0, e] * a.tau[0, e, 0] * a.v[0, s]
                 end = -T.m[e] * q.f[1, e] * a.tau[2, e, 0] * a.v[2, s]
                 q.heat[0, T.row[s]] += min(start, end)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from lumped.numerics.dense import axpy, copy, lu, solve, solve_many
 from lumped.numerics.jit import entry, inner, pasted
 from lumped.numerics.stages import finite
-from lumped.numerics.terms import ROWS, clear, flow, jacobian
+from lumped.numerics.terms import END, ROW, clear, flow, jacobian
 
 MOST_ITERATIONS, CONVERGED_K = 50, 1e-9
 
@@ -52,7 +52,7 @@ def _tangents(T, S, C, f, a, q):
     clear(q.R[0])
     for i in range(S.term.size):
         e = S.term[i]
-        for s in range(T.start[e, ROWS], T.start[e + 1, ROWS]):
+        for s in range(T.part[e, ROW], T.part[e, END]):
             q.R[0, T.row[s], S.tangent[i]] -= S.slope[i] * f[e] * a.tau[0, e, 0] * a.v[0, s]
     outside(q, 1.0, q.R[0])
     for i in range(C.size):

@@ -15,7 +15,8 @@ from lumped.numerics.steady_start import outside
 from lumped.numerics.terms import (
     BENDS,
     DYNAMIC,
-    ROWS,
+    END,
+    ROW,
     STIFF,
     Floats,
     Ints,
@@ -52,7 +53,7 @@ def _moved(T, S, stage, a, q, h, out):
     """out -= d m times what a stage takes out, for every multiplier a tangent moves."""
     for i in range(S.term.size):
         e, j, slope = S.term[i], S.tangent[i], S.slope[i]
-        for s in range(T.start[e, ROWS], T.start[e + 1, ROWS]):
+        for s in range(T.part[e, ROW], T.part[e, END]):
             out[T.row[s], j] -= slope * taken(T, e, s, stage, a, q, h)
 
 
@@ -141,7 +142,7 @@ def _euler(T, S, K0, C, h, x0, U, a, q):
     for e in range(T.m.size):
         if T.kind[e, DYNAMIC] and T.kind[e, STIFF] and T.kind[e, BENDS] and T.m[e] != 0.0:
             c = T.m[e] * q.f[1, e]
-            spread(T, e, 0.0, a.vw[0], c * a.tau[1, e, 1], c * a.tau[1, e, 2], q.H)
+            spread(T, e, a.vw[0], c * a.tau[1, e, 1], c * a.tau[1, e, 2], q.H)
     for i in range(n):
         for j in range(len(q.D)):
             q.M[i, j] = -h * (q.G[i, j] + q.H[i, j])
@@ -149,7 +150,7 @@ def _euler(T, S, K0, C, h, x0, U, a, q):
     for i in range(S.term.size):
         e, j, c = S.term[i], S.tangent[i], h * S.slope[i]
         c *= q.f[1, e] * a.tau[1, e, 0]
-        for s in range(T.start[e, ROWS], T.start[e + 1, ROWS]):
+        for s in range(T.part[e, ROW], T.part[e, END]):
             q.R[0, T.row[s], j] -= c * (a.v[1, s] + a.vw[0, s])
     _heavier(S, -1.0, a.w[0], q.R[0])
     solve_many(q.W, q.pivot, q.spans, q.R[0])
