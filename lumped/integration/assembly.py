@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.model.network import Link, Network, Row, Source
+from lumped.numerics.dense import least_fill
 from lumped.numerics.terms import CONSTANT, FILM, LINEAR, POWER, RADIATION, TABLE, Terms
 from lumped.transfer import laws
 
@@ -78,6 +79,17 @@ class Assembly:
         return np.asarray(np.bincount(self._flat, coefficient[self._owner] * self._vals, n * width), float).reshape(
             n, width
         )
+
+    @cached_property
+    def order(self) -> NDArray[np.int64]:
+        """(n,) the order of elimination in which the fewest zeros fill in, whichever terms act."""
+        n = self._shape[0]
+        touches = np.zeros(self._shape, bool)
+        for p in self.patterns:
+            touches[np.ix_(p.row, p.cols)] = True
+            for side in (p.hot, p.cold) if p.bends else ():
+                touches[np.ix_(p.row, side.index)] = True
+        return least_fill(touches[:, :n])
 
     def packed(self, live: Mask, steady: Mask) -> Terms:
         """The live terms without multipliers and factors; a steady one stands in the constant matrix (dynamic 0)."""

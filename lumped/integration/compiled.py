@@ -27,7 +27,10 @@ HOTTEST = 3000.0  # degC: beyond, no part of a machine exists
 
 @dataclass(frozen=True)
 class Compiled:
-    """What the kernel takes: capacities, constant matrix, terms (named by `names`), what drives them, ..."""
+    """What the kernel takes: capacities, constant matrix, terms (named by `names`), what drives them, ...
+
+    order (n,) : in which the states are eliminated
+    """
 
     C: Array
     K0: Array
@@ -37,6 +40,7 @@ class Compiled:
     tangents: Tangents
     rows: Rows
     control: Control
+    order: NDArray[np.int64]
 
     @property
     def stiff(self) -> NDArray[np.bool_]:
@@ -124,6 +128,7 @@ def compiled(
         _pack_tangents(network, slope, names, shifts),
         pack_rows(rows),
         control(network, every, m, factors),
+        every.order,
     )
 
 

@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lumped.numerics.dense import FACTORS, entries
+from lumped.numerics.dense import Factored, factored
 from lumped.numerics.jit import inner, pasted
 from lumped.numerics.terms import Floats, Ints, Terms, directional, flow, patterns
 
@@ -58,7 +58,7 @@ class Stages(NamedTuple):
 class Work(NamedTuple):
     """Scratch.  f (2, ne) input factors at start and end of the step, df (ne,), du (nb,) slopes of both
 
-    F (3, n) right-hand side as z;  W (n, n), G, H (n, n + nb) by states and boundaries, pivot
+    F (3, n) right-hand side as z;  G, H (n, n + nb) by states and boundaries;  L : an LU for rest
     error (2, n) of the step and of the run so far
     heat (2, n) least and most of all sources
     D (n + nb, p) tangents of states and boundaries, R (4, n, p) of the stages and one more
@@ -69,18 +69,13 @@ class Work(NamedTuple):
     df: Floats
     du: Floats
     F: Floats
-    W: Floats
     G: Floats
     H: Floats
-    pivot: Ints
-    spans: Ints
+    L: Factored
     error: Floats
     heat: Floats
     D: Floats
     R: Floats
-    X: Floats
-    M: Floats
-    factors: Floats
     V: Floats
 
 
@@ -105,10 +100,9 @@ def stages(x0: Floats, u0: Floats, T: Terms) -> Stages:
 def work(n: int, nb: int, T: Terms, p: int) -> Work:
     """Scratch for n states, nb boundaries, some terms and p tangents."""
     ne = T.m.size
-    (W, X), (G, H, M) = np.zeros((2, n, n)), np.zeros((3, n, n + nb))
-    twice = np.zeros((2, 2, n))
-    return Work(np.zeros((2, ne)), np.zeros(ne), np.zeros(nb), np.zeros((3, n)), W, G, H, np.zeros(n, np.int64),
-                entries(n), twice[0], twice[1], np.zeros((n + nb, p)), np.zeros((4, n, p)), X, M, FACTORS,
+    (G, H), twice = np.zeros((2, n, n + nb)), np.zeros((2, 2, n))
+    return Work(np.zeros((2, ne)), np.zeros(ne), np.zeros(nb), np.zeros((3, n)), G, H, factored(1, np.arange(n)),
+                twice[0], twice[1], np.zeros((n + nb, p)), np.zeros((4, n, p)),
                 np.zeros((T.begin.size - 1, p)))  # fmt: skip
 
 

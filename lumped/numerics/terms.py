@@ -262,14 +262,22 @@ def directional(T, e, f, df, tau, v_dot):
     return f * turn + df * tau[e, 0]
 
 
-@inner
+@inner_reordered
 def _looked(T, s, D, V):
-    """Row s of V = what it sees of D."""
-    for j in range(V[s].size):
-        V[s, j] = 0.0
-    for i in range(T.begin[s], T.begin[s + 1]):
+    """Row s of V = what it sees of D; four at a time, so that V is written a quarter as often."""
+    out, i, last = V[s], T.begin[s], T.begin[s + 1]
+    for j in range(out.size):
+        out[j] = 0.0
+    while i + 3 < last and max(T.at[i], T.at[i + 1], T.at[i + 2], T.at[i + 3]) < len(D):
+        w0, w1, w2, w3 = T.weight[i], T.weight[i + 1], T.weight[i + 2], T.weight[i + 3]
+        d0, d1, d2, d3 = D[T.at[i]], D[T.at[i + 1]], D[T.at[i + 2]], D[T.at[i + 3]]
+        for j in range(out.size):
+            out[j] += w0 * d0[j] + w1 * d1[j] + w2 * d2[j] + w3 * d3[j]
+        i += 4
+    while i < last:
         if T.at[i] < len(D):
-            axpy(T.weight[i], D[T.at[i]], V[s])
+            axpy(T.weight[i], D[T.at[i]], out)
+        i += 1
 
 
 @inner
