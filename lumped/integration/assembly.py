@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.model.network import Link, Network, Row, Source
-from lumped.numerics.dense import least_fill
+from lumped.numerics.dense import Structure, least_fill
 from lumped.numerics.terms import CONSTANT, FILM, LINEAR, POWER, RADIATION, TABLE, Terms
 from lumped.transfer import laws
 
@@ -81,8 +81,8 @@ class Assembly:
         )
 
     @cached_property
-    def order(self) -> NDArray[np.int64]:
-        """(n,) the order of elimination in which the fewest zeros fill in, whichever terms act."""
+    def elimination(self) -> tuple[NDArray[np.int64], Structure]:
+        """(n,) the order in which the fewest zeros fill in, whichever terms act, and what does."""
         n = self._shape[0]
         touches = np.zeros(self._shape, bool)
         for p in self.patterns:

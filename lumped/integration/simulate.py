@@ -13,12 +13,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError, NoSolution
-from lumped.integration.compiled import Compiled, compiled, hidden_states
+from lumped.integration.compiled import Compiled, compiled, hidden_states, reordered
 from lumped.integration.failure import failure
 from lumped.integration.record import Record
 from lumped.model.network import Network, Parameter, Row
 from lumped.numerics.dense import factored
-from lumped.numerics.kernel import DONE, FACTORED, FULL, LOW, NEXT, SAMPLE, STATUS, Control, Position, Trace, integrate
+from lumped.numerics.kernel import (
+    DONE,
+    FACTORED,
+    FULL,
+    LOW,
+    NEXT,
+    NODE,
+    SAMPLE,
+    STATUS,
+    Control,
+    Position,
+    Trace,
+    integrate,
+)
 from lumped.numerics.stages import EULER, GAMMA, Steps, stages, work
 from lumped.numerics.steady_start import settle
 from lumped.numerics.tangents import differentiate
@@ -131,20 +144,26 @@ def march(
 
 
 class _Course:
-    """A run in the making: the arrays that the kernel writes, portion after portion."""
+    """A run in the making: the arrays that the kernel writes, portion after portion, in the order of elimination.
+
+    order (n + nb,) : the state or boundary in every place;  place (n + nb,) : the other way round
+    """
 
     def __init__(
         self, network: Network, record: Record, core: Compiled, keep_states: bool, begin: Stand | None,
         steps: Steps | None,
     ) -> None:  # fmt: skip
-        self.network, self.core, self.given, self.taken = network, core, steps, 0
+        self.network, self.named, self.given, self.taken = network, core, steps, 0
+        self.core = core = reordered(core)
         self.time = np.asarray(record.time, float)
         nt, n, nb, nr = self.time.size, core.C.size, core.forcing.u.shape[1], core.rows.start.size - 1
         self.tangents = core.tangents.first.shape[1]
         p = self.tangents + -self.tangents % ABREAST
         self.z, self.y = np.zeros((nt if keep_states else 0, n + nb)), np.zeros((nt, nr))
         self.dy, self.late = np.zeros((nt, nr, p)), np.zeros(nr)
-        x0, u0 = begin.x if begin else initial_state(network, record.initial), core.forcing.u[0]
+        self.order = np.concatenate([core.order, np.arange(n, n + nb)])
+        self.place = np.argsort(self.order)
+        x0, u0 = (begin.x if begin else initial_state(network, record.initial))[core.order], core.forcing.u[0]
         self.both, self.scratch = stages(x0, u0, core.terms), work(n, nb, core.terms, 0)
         self.moved = (stages(x0, u0, core.terms), work(n, nb, core.terms, p)) if p else (self.both, self.scratch)
         most = min(core.forcing.time.size * 2 if steps is None else steps.knot.size, PORTION)
@@ -155,7 +174,8 @@ class _Course:
         self.path: list[Array] | None = None
         self.moved[1].D[:, : self.tangents] = core.tangents.first
         if begin:
-            self.moved[1].D[:, : self.tangents], self.scratch.error[1] = begin.D, begin.error
+            self.moved[1].D[:, : self.tangents] = begin.D[self.order]
+            self.scratch.error[1] = begin.error[core.order]
             self.position.clock[[NEXT, LOW]] = begin.step, min(begin.coldest, self.position.clock[LOW])
 
     def over(self, part: slice, rests: bool) -> None:
@@ -178,7 +198,11 @@ class _Course:
         core, own = self.core, self.moved[1]
         scratch = self.scratch._replace(D=own.D, R=own.R)
         if not settle(core.C, core.K0, core.terms, core.tangents, forcing.factor[0], self.both, scratch):
-            raise NoSolution(failure(self.network, core, forcing, self.position))
+            raise self._failed(forcing)
+
+    def _failed(self, forcing: Forcing) -> NoSolution:
+        self.position.at[NODE] = self.order[self.position.at[NODE]]
+        return NoSolution(failure(self.network, self.named, forcing, self.position))
 
     def _portion(self, forcing: Forcing, first: int) -> bool:
         """As many steps as the trace holds; whether there are more."""
@@ -187,12 +211,12 @@ class _Course:
         shared = (core.rows, control, self.trace, self.position, self.both, self.scratch)
         integrate(forcing, core.C, core.K0, core.terms, *shared, self.z, self.y, self.late)
         if at[STATUS] not in (0, FULL):
-            raise NoSolution(failure(self.network, core, forcing, self.position))
+            raise self._failed(forcing)
         done, X = int(at[DONE]), self.trace
         self.taken += done
         self.steps.append(Steps(X.knot[:done] + first, X.share[:done].copy(), X.kind[:done].copy()))
         if self.path is not None:
-            self.path.append(ends(X, done))
+            self.path.append(ends(X, done)[:, self.place[: core.C.size]])
         if self.tangents:
             given = (core.rows, core.curved, X, done, sample, int(at[SAMPLE]), *self.moved, self.dy)
             differentiate(forcing, core.C, core.K0, core.terms, core.tangents, *given)
@@ -209,16 +233,18 @@ class _Course:
 
     def run(self) -> Run:
         """What came of it."""
-        n, (_, own), clock = self.core.C.size, self.moved, self.position.clock
-        error = self.scratch.error[1].copy()
-        end = Stand(
-            self.both.z[0, :n].copy(), own.D[:, : self.tangents].copy(), error, float(clock[NEXT]), float(clock[LOW])
+        clock, states = self.position.clock, self.place[: self.core.C.size]
+        x, D, error = (
+            self.both.z[0, states],
+            self.moved[1].D[self.place, : self.tangents],
+            self.scratch.error[1, states],
         )
+        end = Stand(x, D, error, float(clock[NEXT]), float(clock[LOW]))
         steps = Steps(*(np.concatenate(x) for x in zip(*self.steps, strict=True)))
         dy = np.ascontiguousarray(self.dy[:, :, : self.tangents]) if self.tangents else None
         return Run(
             self.time,
-            self.z if len(self.z) else None,
+            self.z[:, self.place] if len(self.z) else None,
             self.y,
             dy,
             end,
@@ -243,7 +269,7 @@ def _trace(ns: int, core: Compiled, nb: int, moves: bool) -> Trace:
 
     return Trace(
         whole(), np.zeros(ns), np.zeros(ns), whole(), np.zeros((ns, n + nb)), np.zeros((ns, 3, n)), np.zeros(ns),
-        whole(), factored(slots, core.order), np.zeros((slots, n, nb)),
+        whole(), factored(slots, core.structure), np.zeros((slots, n, nb)),
     )  # fmt: skip
 
 

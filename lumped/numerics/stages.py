@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lumped.numerics.dense import Factored, factored
+from lumped.numerics.dense import Factored, dense, factored
 from lumped.numerics.jit import inner, pasted
 from lumped.numerics.terms import Floats, Ints, Terms, directional, flow, patterns
 
@@ -101,7 +101,7 @@ def work(n: int, nb: int, T: Terms, p: int) -> Work:
     """Scratch for n states, nb boundaries, some terms and p tangents."""
     ne = T.m.size
     (G, H), twice = np.zeros((2, n, n + nb)), np.zeros((2, 2, n))
-    return Work(np.zeros((2, ne)), np.zeros(ne), np.zeros(nb), np.zeros((3, n)), G, H, factored(1, np.arange(n)),
+    return Work(np.zeros((2, ne)), np.zeros(ne), np.zeros(nb), np.zeros((3, n)), G, H, factored(1, dense(n)),
                 twice[0], twice[1], np.zeros((n + nb, p)), np.zeros((4, n, p)),
                 np.zeros((T.begin.size - 1, p)))  # fmt: skip
 

@@ -60,7 +60,7 @@ def _tangents(T, S, C, f, a, q):
     for i in range(C.size):
         if C[i] > 0.0:
             copy(q.D[i], q.R[0, i])
-    solve_many(q.L, 0, q.R[0], q.R[3])
+    solve_many(q.L, 0, q.R[0])
     for i in range(C.size):
         copy(q.R[0, i], q.D[i])
 

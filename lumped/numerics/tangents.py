@@ -89,7 +89,7 @@ def _rosenbrock(T, S, C, h, curved, L, slot, B, a, q):
     outside(B, q.D, gh, q.R[0])
     for i in range(n):
         axpy(C[i], q.D[i], q.R[0, i])
-    solve_many(L, slot, q.R[0], q.R[3])
+    solve_many(L, slot, q.R[0])
     for i in range(n):
         axpy(-1.0, q.D[i], q.R[0, i])
         axpy(1.0 / GAMMA, q.R[0, i], q.D[i])
@@ -104,11 +104,11 @@ def _rosenbrock(T, S, C, h, curved, L, slot, B, a, q):
         axpy(1.0, q.R[3, i], q.R[2, i])
     _earlier(C, S, GAMMA * C21, a.w[0], q.R[0], q.R[1])
     _earlier(C, S, GAMMA * C31, a.w[0], q.R[0], q.R[2])
-    solve_many(L, slot, q.R[1], q.R[3])
+    solve_many(L, slot, q.R[1])
     for i in range(n):
         axpy(-1.0, q.D[i], q.R[1, i])
     _earlier(C, S, GAMMA * C32, a.w[1], q.R[1], q.R[2])
-    solve_many(L, slot, q.R[2], q.R[3])
+    solve_many(L, slot, q.R[2])
     for i in range(n):
         axpy(-1.0, q.D[i], q.R[2, i])
         axpy(1.0, q.R[2, i], q.D[i])
@@ -140,7 +140,7 @@ def _euler(T, S, K0, C, h, x0, U, L, slot, a, q):
         for s in range(T.part[e, ROW], T.part[e, END]):
             q.R[0, T.row[s], j] -= c * (a.v[1, s] + a.vw[0, s])
     _heavier(S, -1.0, a.w[0], q.R[0])
-    solve_many(L, slot, q.R[0], q.R[3])
+    solve_many(L, slot, q.R[0])
     for i in range(n):
         axpy(1.0, q.R[0, i], q.D[i])
 
