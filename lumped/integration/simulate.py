@@ -40,7 +40,7 @@ from lumped.numerics.terms import Forcing
 Array = NDArray[np.float64]
 PORTION = 4096  # steps whose states are kept for their tangents
 ABREAST = 8  # columns of tangents are filled up to whole vectors of a processor: what is left over is done one by one
-FACTORS = 2**19  # numbers of the LU of those steps, which their tangents take too: 4 MB, what a core has for itself
+FACTORS = 2**18  # numbers of the LU of those steps, which their tangents take too: 2 MB, what a core has for itself
 
 
 @dataclass(frozen=True)

@@ -57,18 +57,27 @@ def _moved(T, S, stage, a, q, h, out):
 
 
 @inner
-def _earlier(C, S, c, U, dU, out):
-    """out += c d(C U), with C moving too."""
-    for i in range(C.size):
-        axpy(c * C[i], dU[i], out[i])
-    _heavier(S, c, U, out)
-
-
-@inner
 def _heavier(S, c, U, out):
     """out += c dC U."""
     for i in range(S.state.size):
         out[S.state[i], S.column[i]] += c * U[S.state[i]] * S.mass[i]
+
+
+@inner
+def _common(c, d, first, turn, second, third):
+    """What the second and third stage share: turn + c d, and what each has of the first."""
+    c2, c3 = GAMMA * C21 * c, GAMMA * C31 * c
+    for k in range(d.size):
+        both = turn[k] + c * d[k]
+        second[k] += both + c2 * first[k]
+        third[k] += both + c3 * first[k]
+
+
+@inner
+def _less(x, y):
+    """y -= x."""
+    for k in range(x.size):
+        y[k] -= x[k]
 
 
 @inner
@@ -77,41 +86,40 @@ def _rosenbrock(T, S, C, h, curved, L, slot, B, a, q):
 
     With W = C + gh G of the start, W^-1 gh G D = D - W^-1 C D: no product with G is needed.
     """
-    n, gh = C.size, GAMMA * h
+    n, gh, R0, R1, R2, R3 = C.size, GAMMA * h, q.R[0], q.R[1], q.R[2], q.R[3]
+    for stage in range(4):
+        clear(q.R[stage])
     if curved:
         seen(T, q.D, q.V)
+        late = slope_of(0) * h, slope_of(1) * h, slope_of(2) * h
+        bend(T, q.f[0], q.df, late, a.tau[0], a.v[0], a.vw, gh, q.V, q.R)
     for stage in range(3):
-        clear(q.R[stage])
-        if curved:
-            bend(T, q.f[0], q.df, slope_of(stage) * h, a.tau[0], a.v[0], a.vw[stage], gh, q.V, q.R[stage])
         _moved(T, S, stage, a, q, h, q.R[stage])
         _heavier(S, -1.0, a.w[stage], q.R[stage])
-    outside(B, q.D, gh, q.R[0])
+    outside(B, q.D, gh, R0)
     for i in range(n):
-        axpy(C[i], q.D[i], q.R[0, i])
-    solve_many(L, slot, q.R[0])
+        axpy(C[i], q.D[i], R0[i])
+    solve_many(L, slot, R0)
     for i in range(n):
-        axpy(-1.0, q.D[i], q.R[0, i])
-        axpy(1.0 / GAMMA, q.R[0, i], q.D[i])
-    clear(q.R[3])
+        _less(q.D[i], R0[i])
+        axpy(1.0 / GAMMA, R0[i], q.D[i])
     if curved:
         seen(T, q.D, q.V)
-        turned(T, q.f, a.tau, a.v, gh, q.V, q.R[3])
-    outside(B, q.D, gh, q.R[3])
+        turned(T, q.f, a.tau, a.v, gh, q.V, R3)
+    outside(B, q.D, gh, R3)
+    _heavier(S, GAMMA * C21, a.w[0], R1)
+    _heavier(S, GAMMA * C31, a.w[0], R2)
     for i in range(n):
-        axpy(C[i], q.D[i], q.R[3, i])
-        axpy(1.0, q.R[3, i], q.R[1, i])
-        axpy(1.0, q.R[3, i], q.R[2, i])
-    _earlier(C, S, GAMMA * C21, a.w[0], q.R[0], q.R[1])
-    _earlier(C, S, GAMMA * C31, a.w[0], q.R[0], q.R[2])
-    solve_many(L, slot, q.R[1])
+        _common(C[i], q.D[i], R0[i], R3[i], R1[i], R2[i])
+    solve_many(L, slot, R1)
+    _heavier(S, GAMMA * C32, a.w[1], R2)
     for i in range(n):
-        axpy(-1.0, q.D[i], q.R[1, i])
-    _earlier(C, S, GAMMA * C32, a.w[1], q.R[1], q.R[2])
-    solve_many(L, slot, q.R[2])
+        _less(q.D[i], R1[i])
+        axpy(GAMMA * C32 * C[i], R1[i], R2[i])
+    solve_many(L, slot, R2)
     for i in range(n):
-        axpy(-1.0, q.D[i], q.R[2, i])
-        axpy(1.0, q.R[2, i], q.D[i])
+        _less(q.D[i], R2[i])
+        axpy(1.0, R2[i], q.D[i])
 
 
 @inner

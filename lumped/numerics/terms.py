@@ -319,22 +319,41 @@ def turned(T, f, tau, v, scale, V, out):
 
 @inner
 def bend(T, f, df, late, tau, v, v_dot, scale, V, out):
-    """out -= scale times how G changes along v_dot and over `late` seconds, times D.
+    """out (3, n, p) -= scale times how G changes along v_dot (3, nv) and over `late` (3,) seconds, times D.
 
     df (ne,) slopes of the factors;  V : of `seen`
     """
-    turn = 0.0
+    t0, t1, t2 = 0.0, 0.0, 0.0
     for k in range(T.order.size):
         e = T.order[k]
         if T.kind[e, DYNAMIC] and T.kind[e, STIFF] and T.m[e] != 0.0:
-            m, slope, hot, cold = scale * T.m[e], late * df[e], T.part[e, HOT], T.part[e, COLD]
-            by_hot = slope * tau[e, 1] + f[e] * (tau[e, 3] * v_dot[hot] + tau[e, 4] * v_dot[cold])
-            by_cold = slope * tau[e, 2] + f[e] * (tau[e, 4] * v_dot[hot] + tau[e, 5] * v_dot[cold])
-            turn += m * directional(T, e, f[e], slope, tau, v_dot)
-            for s in range(T.part[e, ROW], T.part[e, END] if T.kind[e, BENDS] else T.part[e, ROW]):
-                axpy(-m * (by_hot * v[s] + f[e] * tau[e, 1] * v_dot[s]), V[hot], out[T.row[s]])
-                axpy(-m * (by_cold * v[s] + f[e] * tau[e, 2] * v_dot[s]), V[cold], out[T.row[s]])
+            m = scale * T.m[e]
+            t0 += m * directional(T, e, f[e], late[0] * df[e], tau, v_dot[0])
+            t1 += m * directional(T, e, f[e], late[1] * df[e], tau, v_dot[1])
+            t2 += m * directional(T, e, f[e], late[2] * df[e], tau, v_dot[2])
+            for stage in range(3 if T.kind[e, BENDS] else 0):
+                _bent(T, e, m, f[e], late[stage] * df[e], tau, v, v_dot[stage], V, out[stage])
         if _ends(T, k):
             for s in range(T.part[e, ROW], T.part[e, END]):
-                axpy(-turn, V[s], out[T.row[s]])
-            turn = 0.0
+                if t0 != 0.0 or t1 != 0.0 or t2 != 0.0:
+                    _thrice(t0, t1, t2, V[s], out[0, T.row[s]], out[1, T.row[s]], out[2, T.row[s]])
+            t0, t1, t2 = 0.0, 0.0, 0.0
+
+
+@inner
+def _bent(T, e, m, f, slope, tau, v, v_dot, V, out):
+    """The part of a law that follows temperature."""
+    hot, cold = T.part[e, HOT], T.part[e, COLD]
+    by_hot = slope * tau[e, 1] + f * (tau[e, 3] * v_dot[hot] + tau[e, 4] * v_dot[cold])
+    by_cold = slope * tau[e, 2] + f * (tau[e, 4] * v_dot[hot] + tau[e, 5] * v_dot[cold])
+    for s in range(T.part[e, ROW], T.part[e, END]):
+        axpy(-m * (by_hot * v[s] + f * tau[e, 1] * v_dot[s]), V[hot], out[T.row[s]])
+        axpy(-m * (by_cold * v[s] + f * tau[e, 2] * v_dot[s]), V[cold], out[T.row[s]])
+
+
+@inner
+def _thrice(a, b, c, x, y0, y1, y2):
+    for k in range(x.size):
+        y0[k] -= a * x[k]
+        y1[k] -= b * x[k]
+        y2[k] -= c * x[k]
