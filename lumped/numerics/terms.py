@@ -332,7 +332,7 @@ def bend(T, f, df, late, tau, v, v_dot, scale, V, out):
             t1 += m * directional(T, e, f[e], late[1] * df[e], tau, v_dot[1])
             t2 += m * directional(T, e, f[e], late[2] * df[e], tau, v_dot[2])
             for stage in range(3 if T.kind[e, BENDS] else 0):
-                _bent(T, e, m, f[e], late[stage] * df[e], tau, v, v_dot[stage], V, out[stage])
+                _law_turns(T, e, m, f[e], late[stage] * df[e], tau, v, v_dot[stage], V, out[stage])
         if _ends(T, k):
             for s in range(T.part[e, ROW], T.part[e, END]):
                 if t0 != 0.0 or t1 != 0.0 or t2 != 0.0:
@@ -341,7 +341,7 @@ def bend(T, f, df, late, tau, v, v_dot, scale, V, out):
 
 
 @inner
-def _bent(T, e, m, f, slope, tau, v, v_dot, V, out):
+def _law_turns(T, e, m, f, slope, tau, v, v_dot, V, out):
     """The part of a law that follows temperature."""
     hot, cold = T.part[e, HOT], T.part[e, COLD]
     by_hot = slope * tau[e, 1] + f * (tau[e, 3] * v_dot[hot] + tau[e, 4] * v_dot[cold])
