@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable, Sequence
+from collections.abc import Hashable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.model.network import Link, Network, Row, Source
+from lumped.numerics.dense import Structure, least_fill
 from lumped.numerics.terms import CONSTANT, FILM, LINEAR, POWER, RADIATION, TABLE, Terms
 from lumped.transfer import laws
 
@@ -78,6 +79,17 @@ class Assembly:
         return np.asarray(np.bincount(self._flat, coefficient[self._owner] * self._vals, n * width), float).reshape(
             n, width
         )
+
+    @cached_property
+    def elimination(self) -> tuple[NDArray[np.int64], Structure]:
+        """(n,) the order in which the fewest zeros fill in, whichever terms act, and what does."""
+        n = self._shape[0]
+        touches = np.zeros(self._shape, bool)
+        for p in self.patterns:
+            touches[np.ix_(p.row, p.cols)] = True
+            for side in (p.hot, p.cold) if p.bends else ():
+                touches[np.ix_(p.row, side.index)] = True
+        return least_fill(touches[:, :n])
 
     def packed(self, live: Mask, steady: Mask) -> Terms:
         """The live terms without multipliers and factors; a steady one stands in the constant matrix (dynamic 0)."""
@@ -150,23 +162,32 @@ def ints(parts: Iterable[Sequence | NDArray]) -> NDArray[np.int64]:
 def _pack(patterns: Sequence[Pattern], steady: Mask) -> Terms:
     tables = [_table(p.law.temperature) for p in patterns]
     codes = [_code(p.law.temperature) for p in patterns]
-    rows = starts([p.row for p in patterns])
-    seen = [(p.hot, p.cold) if p.bends else (NOTHING, NOTHING) for p in patterns]
-    at = [ints([p.cols, hot.index, cold.index]) for p, (hot, cold) in zip(patterns, seen, strict=True)]
-    to = [
-        ints([rows[e] + p.to, np.repeat(rows[-1] + 2 * e + np.arange(2), [x.index.size for x in seen[e]])])
-        for e, p in enumerate(patterns)
-    ]
-    weight = [x for p, (hot, cold) in zip(patterns, seen, strict=True) for x in (p.vals, hot.weights, cold.weights)]
+    points = starts(tables)
+    shared = _numbered([(p.cols.tobytes(), p.vals.tobytes(), p.row.tobytes(), p.to.tobytes()) for p in patterns])
+    distinct = [patterns[k] for k in np.unique(shared, return_index=True)[1]]
+    rows = starts([p.row for p in distinct])
+    probes = [side if p.bends else NOTHING for p in patterns for side in (p.hot, p.cold)]
+    seen = _numbered([(x.index.tobytes(), x.weights.tobytes()) for x in probes]).reshape(-1, 2)
+    looked = [probes[k] for k in np.unique(seen, return_index=True)[1]]
+    to = ints(first + p.to for first, p in zip(rows, distinct, strict=False))
+    by_row = np.argsort(to, kind="stable")
     kind = [(c[0], not s, p.stiff, p.bends, p.heats) for c, p, s in zip(codes, patterns, steady, strict=True)]
+    width = [*np.bincount(to, minlength=rows[-1]), *(x.index.size for x in looked)]
     return Terms(
-        start=np.column_stack([starts(at), rows, starts(tables)]),
-        to=ints(to),
-        at=ints(at),
-        weight=floats(weight),
-        row=ints(p.row for p in patterns),
+        begin=np.concatenate([[0], np.cumsum(width)]).astype(np.int64),
+        at=ints([ints(p.cols for p in distinct)[by_row], *(x.index for x in looked)]),
+        weight=floats([floats(p.vals for p in distinct)[by_row], *(x.weights for x in looked)]),
+        row=ints(p.row for p in distinct),
+        part=np.column_stack([shared, rows[shared], rows[shared + 1], rows[-1] + seen, points[:-1], points[1:]]),
+        order=np.argsort(shared, kind="stable"),
         kind=np.array(kind, np.int64).reshape(-1, 5),
         par=np.array([c[1:] for c in codes], float).reshape(-1, 2),
         point=np.concatenate([np.empty((0, 2)), *tables]),
         m=np.empty(0),
     )
+
+
+def _numbered(keys: Sequence[Hashable]) -> NDArray[np.int64]:
+    """Equal keys have equal numbers, in the order in which they appear."""
+    known: dict[Hashable, int] = {}
+    return np.array([known.setdefault(key, len(known)) for key in keys], np.int64)

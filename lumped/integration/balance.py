@@ -8,13 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from lumped.integration.assembly import floats, starts
 from lumped.integration.compiled import Compiled, compiled
 from lumped.integration.record import Record
 from lumped.integration.simulate import Run, march
 from lumped.model.network import Link, Network
 from lumped.numerics.heat_integrals import count
 from lumped.numerics.stages import Steps, stages, work
-from lumped.numerics.terms import ROWS
+from lumped.numerics.terms import END, ROW
 
 Array = NDArray[np.float64]
 # Radau's quadrature of order five over a step, which does not look at its start (Hairer and Wanner 1996, sec. IV.5)
@@ -67,7 +68,7 @@ def counted(network: Network, core: Compiled, run: Run, way: Walk) -> Balance:
     """The balance of a run that was walked along; core with all terms."""
     mean = np.array(["#" not in s for s in network.states], float)
     assert run.z is not None
-    through = np.stack([_through(network, core, mean), mean[core.terms.row]])
+    through = np.stack([_through(network, core, mean), floats(mean[at] for at in _rows(core))])
     heat, left = _counted(core, way, through, run.time.size)
     links, n = len(network.links), len(network.states)
     return Balance(
@@ -112,7 +113,8 @@ def _counted(core: Compiled, way: Walk, through: Array, nt: int) -> Array:
     forcing, n, ne = core.forcing, core.C.size, core.terms.m.size
     out, u = np.zeros((len(through), nt, ne)), forcing.u
     arrays = stages(np.zeros(n), u[0], core.terms), work(n, u.shape[1], core.terms, 0)
-    count(forcing, core.K0, core.terms, through, way.steps, way.x, way.weight, way.row, *arrays, out)
+    first = starts(_rows(core))[:-1]
+    count(forcing, core.K0, core.terms, through, first, way.steps, way.x, way.weight, way.row, *arrays, out)
     return np.cumsum(out, axis=1)
 
 
@@ -138,11 +140,14 @@ def _nodes(steps: Steps, time: Array, samples: Array) -> tuple[Steps, Array, Arr
 
 def _through(network: Network, core: Compiled, mean: Array) -> Array:
     """(rows of all terms,) +1 on the first place's rows, or -1 on the second's where the first is outside."""
-    out = np.zeros(core.terms.row.size)
-    for e, link in enumerate(network.links):
-        span = slice(*core.terms.start[e : e + 2, ROWS])
-        out[span] = mean[core.terms.row[span]] * _side(network, link)[core.terms.row[span]]
-    return out
+    rows, links = _rows(core), len(network.links)
+    sides = [mean[at] * _side(network, link)[at] for at, link in zip(rows, network.links, strict=False)]
+    return floats([*sides, *(np.zeros(at.size) for at in rows[links:])])
+
+
+def _rows(core: Compiled) -> list[NDArray[np.int64]]:
+    """The states that every term takes from, term by term."""
+    return [core.terms.row[first:end] for first, end in core.terms.part[:, [ROW, END]]]
 
 
 def _side(network: Network, link: Link) -> Array:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,7 @@ from lumped.integration.signals import Signals
 from lumped.model.multipliers import multipliers, slopes
 from lumped.model.network import Network, Parameter, Row
 from lumped.model.once import once
+from lumped.numerics.dense import Structure
 from lumped.numerics.kernel import Control, Rows
 from lumped.numerics.tangents import Tangents
 from lumped.numerics.terms import BENDS, DYNAMIC, STIFF, Forcing, Terms
@@ -27,7 +28,10 @@ HOTTEST = 3000.0  # degC: beyond, no part of a machine exists
 
 @dataclass(frozen=True)
 class Compiled:
-    """What the kernel takes: capacities, constant matrix, terms (named by `names`), what drives them, ..."""
+    """What the kernel takes: capacities, constant matrix, terms (named by `names`), what drives them, ...
+
+    order (n,) : in which the states are best eliminated;  structure : of an LU in that order
+    """
 
     C: Array
     K0: Array
@@ -37,6 +41,8 @@ class Compiled:
     tangents: Tangents
     rows: Rows
     control: Control
+    order: NDArray[np.int64]
+    structure: Structure
 
     @property
     def stiff(self) -> NDArray[np.bool_]:
@@ -47,6 +53,20 @@ class Compiled:
     def curved(self) -> bool:
         """Whether any dynamic term touches the matrix."""
         return bool(np.any(self.stiff))
+
+
+def reordered(core: Compiled) -> Compiled:
+    """The same with its states in the order of elimination."""
+    order, nz = core.order, core.K0.shape[1]
+    columns = np.concatenate([order, np.arange(order.size, nz)])
+    place = np.argsort(columns)
+    T, S, L = core.terms, core.tangents, core.control
+    return replace(
+        core, C=core.C[order], K0=np.ascontiguousarray(core.K0[np.ix_(order, columns)]),
+        terms=T._replace(row=place[T.row], at=place[T.at]), rows=core.rows._replace(at=place[core.rows.at]),
+        tangents=S._replace(state=place[S.state], first=S.first[columns[:-1]]),
+        control=L._replace(unit=L.unit[order], node=L.node[order]),
+    )  # fmt: skip
 
 
 def capacity_multipliers(network: Network, m: Mapping[str, float]) -> Array:
@@ -124,6 +144,7 @@ def compiled(
         _pack_tangents(network, slope, names, shifts),
         pack_rows(rows),
         control(network, every, m, factors),
+        *every.elimination,
     )
 
 

@@ -13,11 +13,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError, NoSolution
-from lumped.integration.compiled import Compiled, compiled, hidden_states
+from lumped.integration.compiled import Compiled, compiled, hidden_states, reordered
 from lumped.integration.failure import failure
 from lumped.integration.record import Record
 from lumped.model.network import Network, Parameter, Row
-from lumped.numerics.kernel import DONE, FACTORED, FULL, LOW, NEXT, SAMPLE, STATUS, Control, Position, Trace, integrate
+from lumped.numerics.dense import factored
+from lumped.numerics.kernel import (
+    DONE,
+    FACTORED,
+    FULL,
+    LOW,
+    NEXT,
+    NODE,
+    SAMPLE,
+    STATUS,
+    Control,
+    Position,
+    Trace,
+    integrate,
+)
 from lumped.numerics.stages import EULER, GAMMA, Steps, stages, work
 from lumped.numerics.steady_start import settle
 from lumped.numerics.tangents import differentiate
@@ -25,6 +39,8 @@ from lumped.numerics.terms import Forcing
 
 Array = NDArray[np.float64]
 PORTION = 4096  # steps whose states are kept for their tangents
+ABREAST = 8  # columns of tangents are filled up to whole vectors of a processor: what is left over is done one by one
+FACTORS = 2**18  # numbers of the LU of those steps, which their tangents take too: 2 MB, what a core has for itself
 
 
 @dataclass(frozen=True)
@@ -128,29 +144,38 @@ def march(
 
 
 class _Course:
-    """A run in the making: the arrays that the kernel writes, portion after portion."""
+    """A run in the making: the arrays that the kernel writes, portion after portion, in the order of elimination.
+
+    order (n + nb,) : the state or boundary in every place;  place (n + nb,) : the other way round
+    """
 
     def __init__(
         self, network: Network, record: Record, core: Compiled, keep_states: bool, begin: Stand | None,
         steps: Steps | None,
     ) -> None:  # fmt: skip
-        self.network, self.core, self.given, self.taken = network, core, steps, 0
+        self.network, self.named, self.given, self.taken = network, core, steps, 0
+        self.core = core = reordered(core)
         self.time = np.asarray(record.time, float)
         nt, n, nb, nr = self.time.size, core.C.size, core.forcing.u.shape[1], core.rows.start.size - 1
-        p = core.tangents.first.shape[1]
+        self.tangents = core.tangents.first.shape[1]
+        p = self.tangents + -self.tangents % ABREAST
         self.z, self.y = np.zeros((nt if keep_states else 0, n + nb)), np.zeros((nt, nr))
         self.dy, self.late = np.zeros((nt, nr, p)), np.zeros(nr)
-        x0, u0 = begin.x if begin else initial_state(network, record.initial), core.forcing.u[0]
+        self.order = np.concatenate([core.order, np.arange(n, n + nb)])
+        self.place = np.argsort(self.order)
+        x0, u0 = (begin.x if begin else initial_state(network, record.initial))[core.order], core.forcing.u[0]
         self.both, self.scratch = stages(x0, u0, core.terms), work(n, nb, core.terms, 0)
         self.moved = (stages(x0, u0, core.terms), work(n, nb, core.terms, p)) if p else (self.both, self.scratch)
-        self.trace = _trace(min(core.forcing.time.size * 2 if steps is None else steps.knot.size, PORTION), n, nb)
+        most = min(core.forcing.time.size * 2 if steps is None else steps.knot.size, PORTION)
+        self.trace = _trace(min(most, max(FACTORS // n**2, 1)) if p else most, core, nb, bool(p))
         self.position = Position(np.zeros(6, np.int64), np.array([0.0, -1.0, 1e300, 1e300]))
         self.position.clock[LOW] = np.append(x0[core.control.node == 1], u0).min()
         self.steps: list[Steps] = []
         self.path: list[Array] | None = None
-        self.moved[1].D[:] = core.tangents.first
+        self.moved[1].D[:, : self.tangents] = core.tangents.first
         if begin:
-            self.moved[1].D[:], self.scratch.error[1] = begin.D, begin.error
+            self.moved[1].D[:, : self.tangents] = begin.D[self.order]
+            self.scratch.error[1] = begin.error[core.order]
             self.position.clock[[NEXT, LOW]] = begin.step, min(begin.coldest, self.position.clock[LOW])
 
     def over(self, part: slice, rests: bool) -> None:
@@ -173,7 +198,11 @@ class _Course:
         core, own = self.core, self.moved[1]
         scratch = self.scratch._replace(D=own.D, R=own.R)
         if not settle(core.C, core.K0, core.terms, core.tangents, forcing.factor[0], self.both, scratch):
-            raise NoSolution(failure(self.network, core, forcing, self.position))
+            raise self._failed(forcing)
+
+    def _failed(self, forcing: Forcing) -> NoSolution:
+        self.position.at[NODE] = self.order[self.position.at[NODE]]
+        return NoSolution(failure(self.network, self.named, forcing, self.position))
 
     def _portion(self, forcing: Forcing, first: int) -> bool:
         """As many steps as the trace holds; whether there are more."""
@@ -182,13 +211,13 @@ class _Course:
         shared = (core.rows, control, self.trace, self.position, self.both, self.scratch)
         integrate(forcing, core.C, core.K0, core.terms, *shared, self.z, self.y, self.late)
         if at[STATUS] not in (0, FULL):
-            raise NoSolution(failure(self.network, core, forcing, self.position))
+            raise self._failed(forcing)
         done, X = int(at[DONE]), self.trace
         self.taken += done
         self.steps.append(Steps(X.knot[:done] + first, X.share[:done].copy(), X.kind[:done].copy()))
         if self.path is not None:
-            self.path.append(ends(X, done))
-        if self.dy.shape[2]:
+            self.path.append(ends(X, done)[:, self.place[: core.C.size]])
+        if self.tangents:
             given = (core.rows, core.curved, X, done, sample, int(at[SAMPLE]), *self.moved, self.dy)
             differentiate(forcing, core.C, core.K0, core.terms, core.tangents, *given)
         return bool(at[STATUS] == FULL)
@@ -204,14 +233,18 @@ class _Course:
 
     def run(self) -> Run:
         """What came of it."""
-        n, (_, own), clock = self.core.C.size, self.moved, self.position.clock
-        error = self.scratch.error[1].copy()
-        end = Stand(self.both.z[0, :n].copy(), own.D.copy(), error, float(clock[NEXT]), float(clock[LOW]))
+        clock, states = self.position.clock, self.place[: self.core.C.size]
+        x, D, error = (
+            self.both.z[0, states],
+            self.moved[1].D[self.place, : self.tangents],
+            self.scratch.error[1, states],
+        )
+        end = Stand(x, D, error, float(clock[NEXT]), float(clock[LOW]))
         steps = Steps(*(np.concatenate(x) for x in zip(*self.steps, strict=True)))
-        dy = self.dy if self.dy.shape[2] else None
+        dy = np.ascontiguousarray(self.dy[:, :, : self.tangents]) if self.tangents else None
         return Run(
             self.time,
-            self.z if len(self.z) else None,
+            self.z[:, self.place] if len(self.z) else None,
             self.y,
             dy,
             end,
@@ -227,13 +260,17 @@ def ends(X: Trace, done: int) -> Array:
     return np.asarray(X.x[:done, : inner.shape[1]] + inner + X.U[:done, 2])
 
 
-def _trace(ns: int, n: int, nb: int) -> Trace:
+def _trace(ns: int, core: Compiled, nb: int, moves: bool) -> Trace:
+    """Of ns steps;  moves : for tangents, which need the LU of every step."""
+    n, slots = core.C.size, ns if moves else 1
+
     def whole() -> NDArray[np.int64]:
         return np.zeros(ns, np.int64)
 
     return Trace(
-        whole(), np.zeros(ns), np.zeros(ns), whole(), np.zeros((ns, n + nb)), np.zeros((ns, 3, n)), np.zeros(ns)
-    )
+        whole(), np.zeros(ns), np.zeros(ns), whole(), np.zeros((ns, n + nb)), np.zeros((ns, 3, n)), np.zeros(ns),
+        whole(), factored(slots, core.structure), np.zeros((slots, n, nb)),
+    )  # fmt: skip
 
 
 def _parts(time: Array, C: Array) -> list[slice]:

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from lumped.numerics.dense import copy, lu, shifted, solve
+from lumped.numerics.dense import Factored, copy, lu, shifted, solve
 from lumped.numerics.jit import entry, inner, pasted
 from lumped.numerics.stages import (
     C21,
@@ -36,7 +36,8 @@ from lumped.numerics.stages import (
 )  # fmt: skip
 from lumped.numerics.terms import (
     DYNAMIC,
-    ROWS,
+    END,
+    ROW,
     SOURCE,
     Floats,
     Ints,
@@ -80,7 +81,10 @@ class Control(NamedTuple):
 
 class Trace(NamedTuple):
     """The steps of a portion (ns): in the interval before which knot, from which share of it to which, ROSENBROCK or
-    EULER, states at the start (ns, n + nb), increments (ns, 3, n), length (s)."""
+    EULER, states at the start (ns, n + nb), increments (ns, 3, n), length (s).
+
+    L : the LU they were taken with, in slot (ns,);  B (slots, n, nb) : -dF by the boundaries, likewise
+    """
 
     knot: Ints
     start: Floats
@@ -89,6 +93,9 @@ class Trace(NamedTuple):
     x: Floats
     U: Floats
     h: Floats
+    slot: Ints
+    L: Factored
+    B: Floats
 
 
 class Position(NamedTuple):
@@ -117,50 +124,50 @@ def _along_time(T, K0, a, q, out):
     for e in range(T.m.size):
         if T.kind[e, DYNAMIC] and T.m[e] != 0.0:
             c = T.m[e] * q.f[0, e] * tau[e, 0]
-            turn = T.m[e] * directional(e, q.f[0, e], q.df[e], tau, vw, T.row.size)
-            for s in range(T.start[e, ROWS], T.start[e + 1, ROWS]):
+            turn = T.m[e] * directional(T, e, q.f[0, e], q.df[e], tau, vw)
+            for s in range(T.part[e, ROW], T.part[e, END]):
                 out[T.row[s]] -= c * vw[s] + turn * v[s]
 
 
 @inner
-def _rosenbrock(T, K0, C, h, a, q):
+def _rosenbrock(T, K0, C, h, L, slot, a, q):
     """The stages with the matrix at hand: x1 and F there into slot 2, the error of the step."""
     n, gh, w0, w1, w2, Ft = C.size, GAMMA * h, a.w[0], a.w[1], a.w[2], q.F[2]
     _along_time(T, K0, a, q, Ft)
     for i in range(n):
         w0[i] = gh * (q.F[0, i] + gh * Ft[i])
-    solve(q.W, q.pivot, q.spans, w0[:n])
+    solve(L, slot, w0[:n])
     for i in range(n):
         a.z[1, i] = a.z[0, i] + w0[i] / GAMMA
     flow(T, K0, a.z[1], q.f[1], a.tau[1], a.v[1], q.F[1])
     for i in range(n):
         w1[i] = gh * (q.F[1, i] + SLOPE2 * h * Ft[i]) + GAMMA * C21 * C[i] * w0[i]
-    solve(q.W, q.pivot, q.spans, w1[:n])
+    solve(L, slot, w1[:n])
     for i in range(n):
         w2[i] = gh * q.F[1, i] + GAMMA * C[i] * (C31 * w0[i] + C32 * w1[i])
-    solve(q.W, q.pivot, q.spans, w2[:n])
+    solve(L, slot, w2[:n])
     for i in range(n):
         a.z[2, i] = a.z[1, i] + w2[i]
     flow(T, K0, a.z[2], q.f[1], a.tau[2], a.v[2], q.F[2])
     for i in range(n):
         q.error[0, i] = gh * q.F[2, i] - GAMMA * C[i] * (END1 * w0[i] + END2 * w1[i] + END3 * w2[i])
-    solve(q.W, q.pivot, q.spans, q.error[0])
+    solve(L, slot, q.error[0])
 
 
 @inner
-def _euler(T, K0, C, h, a, q):
+def _euler(T, K0, C, h, L, slot, a, q):
     """The step by an M-matrix, with the coefficients of the start; the error of the step is what it moves."""
     n = C.size
     for i in range(n):
         a.z[1, i] = a.z[0, i]
     flow(T, K0, a.z[1], q.f[1], a.tau[1], a.v[1], q.F[1])
     conductances(T, K0, q.f[1], a.tau[1], q.G)
-    shifted(q.G, h, C, q.W)
-    if not lu(q.W, q.pivot, q.spans):
+    shifted(q.G, h, C, L, slot)
+    if not lu(L, slot):
         return False
     for i in range(n):
         a.w[0, i], a.w[1, i], a.w[2, i] = h * q.F[1, i], 0.0, 0.0
-    solve(q.W, q.pivot, q.spans, a.w[0][:n])
+    solve(L, slot, a.w[0][:n])
     for i in range(n):
         a.z[2, i] = a.z[0, i] + a.w[0, i]
         q.error[0, i] = 0.5 * a.w[0, i]
@@ -188,7 +195,7 @@ def _heat(T, K0, a, q):
         q.heat[0, i] = q.heat[1, i] = 0.0
     for e in range(T.m.size):
         if T.kind[e, SOURCE] and T.kind[e, DYNAMIC] and T.m[e] != 0.0:
-            for s in range(T.start[e, ROWS], T.start[e + 1, ROWS]):
+            for s in range(T.part[e, ROW], T.part[e, END]):
                 start = -T.m[e] * q.f[0, e] * a.tau[0, e, 0] * a.v[0, s]
                 end = -T.m[e] * q.f[1, e] * a.tau[2, e, 0] * a.v[2, s]
                 q.heat[0, T.row[s]] += min(start, end)
@@ -228,22 +235,24 @@ def _outside(T, K0, C, h, P, a, q):
 
 
 @inner
-def _tried(T, K0, C, kind, h, build, L, P, a, q):
+def _tried(T, K0, C, kind, h, build, L, X, slot, P, a, q):
     """A step; how many times the allowed error it has, at least: below 1 it may stand."""
     if kind == EULER:
-        if not _euler(T, K0, C, h, a, q):
+        if not _euler(T, K0, C, h, X.L, slot, a, q):
             P.at[STATUS] = SINGULAR
             return 1e300
         P.clock[FACTORED] = -1.0
     else:
         if build:
-            shifted(q.G, GAMMA * h, C, q.W)
-            if not lu(q.W, q.pivot, q.spans):
+            for i in range(C.size):
+                copy(q.G[i, C.size :], X.B[slot, i])
+            shifted(q.G, GAMMA * h, C, X.L, slot)
+            if not lu(X.L, slot):
                 P.at[STATUS] = SINGULAR
                 P.clock[FACTORED] = -1.0
                 return 1e300
             P.clock[FACTORED] = h
-        _rosenbrock(T, K0, C, h, a, q)
+        _rosenbrock(T, K0, C, h, X.L, slot, a, q)
     if not finite(a.z[2]):
         P.at[STATUS] = SINGULAR
         return 1e300
@@ -257,10 +266,11 @@ def _tried(T, K0, C, kind, h, build, L, P, a, q):
 
 
 @inner
-def _kept(X, k, P, L, kind, h, s1, a, q, C):
+def _kept(X, k, slot, P, L, kind, h, s1, a, q, C):
     """Write down the step and go to its end."""
     n = C.size
     X.knot[k], X.start[k], X.share[k], X.kind[k], X.h[k] = P.at[KNOT], P.clock[SHARE], s1, kind, h
+    X.slot[k] = slot
     for i in range(X.x[k].size):
         X.x[k, i] = a.z[0, i]
     for stage in range(3):
@@ -269,7 +279,7 @@ def _kept(X, k, P, L, kind, h, s1, a, q, C):
     for i in range(n):
         q.error[1, i] = C[i] * (q.error[1, i] - q.error[0, i])
     if kind == ROSENBROCK:
-        solve(q.W, q.pivot, q.spans, q.error[1])
+        solve(X.L, slot, q.error[1])
     for i in range(n):
         q.error[1, i] += q.error[0, i]
         if L.node[i] and not abs(a.z[2, i]) < L.hottest[0]:
@@ -289,7 +299,7 @@ def _step(Q, C, K0, T, L, X, k, P, a, q):
     if P.at[FRESH] == 0:
         forced(Q, j, s0, 1.0, a, q)
         flow(T, K0, a.z[0], q.f[0], a.tau[0], a.v[0], q.F[0])
-    known, wanted = False, P.clock[NEXT]
+    known, wanted, last = False, P.clock[NEXT], X.slot[k - 1] if k > 0 else -1
     for tries in range(MOST_TRIES + 1):
         rest = (1.0 - s0) * span
         count = max(1.0, -((-rest * (1.0 - 1e-9)) // wanted))
@@ -307,11 +317,12 @@ def _step(Q, C, K0, T, L, X, k, P, a, q):
         if build and kind == ROSENBROCK and not known:
             jacobian(T, K0, q.f[0], a.tau[0], a.v[0], q.G)
             known = True
+        slot = (last + 1) % len(X.B) if build or kind == EULER or tries > 0 else last
         P.at[STATUS] = 0
-        size = _tried(T, K0, C, kind, h, build, L, P, a, q)
+        size = _tried(T, K0, C, kind, h, build, L, X, slot, P, a, q)
         if size <= 1.0 or (P.at[STATUS] == 0 and (L.follow[0] or kind == EULER)) or (L.follow[0] and size < 1e300):
             P.at[STATUS] = 0
-            _kept(X, k, P, L, kind, h, s1, a, q, C)
+            _kept(X, k, slot, P, L, kind, h, s1, a, q, C)
             P.clock[SHARE], P.clock[NEXT], P.at[FRESH] = s1, h * min(max(0.9 * size ** (-1 / 3), 0.2), 8.0), 1
             return P.at[STATUS] == 0
         if L.follow[0]:
@@ -367,7 +378,7 @@ def integrate(Q, C, K0, T, R, L, X, P, a, q, z, y, late):
     z (nt or 0, n + nb), y (nt, nr), late (nr,) : states, outputs, largest error of each output (K): filled here
     """
     n, nb = C.size, q.du.size
-    P.at[DONE], P.at[STATUS] = 0, 0
+    P.at[DONE], P.at[STATUS], P.clock[FACTORED] = 0, 0, -1.0
     while P.at[KNOT] < Q.time.size:
         j = P.at[KNOT]
         if j > 0 and Q.time[j] > Q.time[j - 1]:

@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lumped.numerics.dense import FACTORS, entries
+from lumped.numerics.dense import Factored, dense, factored
 from lumped.numerics.jit import inner, pasted
 from lumped.numerics.terms import Floats, Ints, Terms, directional, flow, patterns
 
@@ -44,7 +44,7 @@ ROSENBROCK, EULER = 0, 1
 class Stages(NamedTuple):
     """First axis of z, v, tau: 0 the start of a step, 1 its inner stages, 2 its end; of w, vw: the three stages.
 
-    z (3, nz) z+, v (3, nv + 2 ne) rows of all terms and temperatures of their laws, tau (3, ne, 6) temperature laws
+    z (3, nz) z+, v (3, nv) rows of all patterns and temperatures that laws see, tau (3, ne, 6) temperature laws
     w (3, nz) increments U of the states, and of the boundaries what D moves them by;  vw what that makes of v
     """
 
@@ -58,29 +58,24 @@ class Stages(NamedTuple):
 class Work(NamedTuple):
     """Scratch.  f (2, ne) input factors at start and end of the step, df (ne,), du (nb,) slopes of both
 
-    F (3, n) right-hand side as z;  W (n, n), G, H (n, n + nb) by states and boundaries, pivot
+    F (3, n) right-hand side as z;  G, H (n, n + nb) by states and boundaries;  L : an LU for rest
     error (2, n) of the step and of the run so far
     heat (2, n) least and most of all sources
     D (n + nb, p) tangents of states and boundaries, R (4, n, p) of the stages and one more
-    V (nv + 2 ne, p) what all terms see of them
+    V (nv, p) what patterns and laws see of them
     """
 
     f: Floats
     df: Floats
     du: Floats
     F: Floats
-    W: Floats
     G: Floats
     H: Floats
-    pivot: Ints
-    spans: Ints
+    L: Factored
     error: Floats
     heat: Floats
     D: Floats
     R: Floats
-    X: Floats
-    M: Floats
-    factors: Floats
     V: Floats
 
 
@@ -95,7 +90,7 @@ class Steps(NamedTuple):
 def stages(x0: Floats, u0: Floats, T: Terms) -> Stages:
     """The arrays of the stages, with the first states and boundary temperatures in place."""
     ne = T.m.size
-    nv = T.row.size + 2 * ne
+    nv = T.begin.size - 1
     tau, z = np.zeros((3, ne, 6)), np.tile(np.concatenate([x0, u0, [1.0]]), (3, 1))
     nz = z.shape[1]
     tau[..., 0] = 1.0
@@ -105,11 +100,10 @@ def stages(x0: Floats, u0: Floats, T: Terms) -> Stages:
 def work(n: int, nb: int, T: Terms, p: int) -> Work:
     """Scratch for n states, nb boundaries, some terms and p tangents."""
     ne = T.m.size
-    (W, X), (G, H, M) = np.zeros((2, n, n)), np.zeros((3, n, n + nb))
-    twice = np.zeros((2, 2, n))
-    return Work(np.zeros((2, ne)), np.zeros(ne), np.zeros(nb), np.zeros((3, n)), W, G, H, np.zeros(n, np.int64),
-                entries(n), twice[0], twice[1], np.zeros((n + nb, p)), np.zeros((4, n, p)), X, M, FACTORS,
-                np.zeros((T.row.size + 2 * ne, p)))  # fmt: skip
+    (G, H), twice = np.zeros((2, n, n + nb)), np.zeros((2, 2, n))
+    return Work(np.zeros((2, ne)), np.zeros(ne), np.zeros(nb), np.zeros((3, n)), G, H, factored(1, dense(n)),
+                twice[0], twice[1], np.zeros((n + nb, p)), np.zeros((4, n, p)),
+                np.zeros((T.begin.size - 1, p)))  # fmt: skip
 
 
 @pasted
@@ -173,7 +167,7 @@ def restored(T, K0, x0, U, h, a, q):
 def taken(T, e, s, stage, a, q, h):
     """What a stage takes out of row s by term e, times the step and without m; it linearises at the start."""
     at = min(stage, 1)
-    turn = directional(e, q.f[0, e], slope_of(stage) * h * q.df[e], a.tau[0], a.vw[stage], T.row.size)
+    turn = directional(T, e, q.f[0, e], slope_of(stage) * h * q.df[e], a.tau[0], a.vw[stage])
     now = q.f[at, e] * a.tau[at, e, 0] * a.v[at, s]
     return GAMMA * h * (now + q.f[0, e] * a.tau[0, e, 0] * a.vw[stage, s] + turn * a.v[0, s])
 

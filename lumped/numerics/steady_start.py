@@ -5,7 +5,7 @@ from __future__ import annotations
 from lumped.numerics.dense import axpy, copy, lu, solve, solve_many
 from lumped.numerics.jit import entry, inner, pasted
 from lumped.numerics.stages import finite
-from lumped.numerics.terms import ROWS, clear, flow, jacobian
+from lumped.numerics.terms import END, ROW, clear, flow, jacobian
 
 MOST_ITERATIONS, CONVERGED_K = 50, 1e-9
 
@@ -20,15 +20,16 @@ def _newton(T, K0, C, f, a, q):
     for _ in range(MOST_ITERATIONS):
         flow(T, K0, a.z[0], f, a.tau[0], a.v[0], q.F[0])
         jacobian(T, K0, f, a.tau[0], a.v[0], q.G)
+        W = q.L.A[0]
         for i in range(n):
-            copy(q.G[i, :n], q.W[i])
+            copy(q.G[i, :n], W[i])
             if C[i] > 0.0:
                 q.F[0, i] = 0.0
-                clear(q.W[i : i + 1])
-                q.W[i, i] = 1.0
-        if not lu(q.W, q.pivot, q.spans):
+                clear(W[i : i + 1])
+                W[i, i] = 1.0
+        if not lu(q.L, 0):
             return False
-        solve(q.W, q.pivot, q.spans, q.F[0])
+        solve(q.L, 0, q.F[0])
         largest = 0.0
         for i in range(n):
             a.z[0, i] += q.F[0, i]
@@ -39,11 +40,12 @@ def _newton(T, K0, C, f, a, q):
 
 
 @inner
-def outside(q, c, out):
-    """out -= c G D of the boundaries."""
-    for i in range(len(out)):
-        for b in range(len(out), len(q.D)):
-            axpy(-c * q.G[i, b], q.D[b], out[i])
+def outside(B, D, c, out):
+    """out -= c B D of the boundaries.  B (n, nb) : what G has in their columns"""
+    n = len(out)
+    for i in range(n):
+        for b in range(len(D) - n):
+            axpy(-c * B[i, b], D[n + b], out[i])
 
 
 @pasted
@@ -52,13 +54,13 @@ def _tangents(T, S, C, f, a, q):
     clear(q.R[0])
     for i in range(S.term.size):
         e = S.term[i]
-        for s in range(T.start[e, ROWS], T.start[e + 1, ROWS]):
+        for s in range(T.part[e, ROW], T.part[e, END]):
             q.R[0, T.row[s], S.tangent[i]] -= S.slope[i] * f[e] * a.tau[0, e, 0] * a.v[0, s]
-    outside(q, 1.0, q.R[0])
+    outside(q.G[:, C.size :], q.D, 1.0, q.R[0])
     for i in range(C.size):
         if C[i] > 0.0:
             copy(q.D[i], q.R[0, i])
-    solve_many(q.W, q.pivot, q.spans, q.R[0])
+    solve_many(q.L, 0, q.R[0])
     for i in range(C.size):
         copy(q.R[0, i], q.D[i])
 

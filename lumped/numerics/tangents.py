@@ -8,20 +8,20 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from lumped.numerics.dense import axpy, copy, inverse, lu, product, shifted, solve_many
+from lumped.numerics.dense import axpy, solve_many
 from lumped.numerics.jit import entry, inner, pasted
 from lumped.numerics.stages import C21, C31, C32, EULER, GAMMA, forced, inside, restored, slope_of, taken
 from lumped.numerics.steady_start import outside
 from lumped.numerics.terms import (
     BENDS,
     DYNAMIC,
-    ROWS,
+    END,
+    ROW,
     STIFF,
     Floats,
     Ints,
     bend,
     clear,
-    conductances,
     flow,
     jacobian,
     patterns,
@@ -52,16 +52,8 @@ def _moved(T, S, stage, a, q, h, out):
     """out -= d m times what a stage takes out, for every multiplier a tangent moves."""
     for i in range(S.term.size):
         e, j, slope = S.term[i], S.tangent[i], S.slope[i]
-        for s in range(T.start[e, ROWS], T.start[e + 1, ROWS]):
+        for s in range(T.part[e, ROW], T.part[e, END]):
             out[T.row[s], j] -= slope * taken(T, e, s, stage, a, q, h)
-
-
-@inner
-def _earlier(C, S, c, U, dU, out):
-    """out += c d(C U), with C moving too."""
-    for i in range(C.size):
-        axpy(c * C[i], dU[i], out[i])
-    _heavier(S, c, U, out)
 
 
 @inner
@@ -72,59 +64,66 @@ def _heavier(S, c, U, out):
 
 
 @inner
-def _solved(q, out):
-    """out = W^-1 out."""
-    if 3 * out[0].size < len(out):  # an inverse would cost more than it saves
-        solve_many(q.W, q.pivot, q.spans, out)
-        return
-    product(q.X, out, q.factors, 0, q.R[3])
-    for i in range(len(out)):
-        copy(q.R[3, i], out[i])
+def _common(c, d, first, turn, second, third):
+    """What the second and third stage share: turn + c d, and what each has of the first."""
+    c2, c3 = GAMMA * C21 * c, GAMMA * C31 * c
+    for k in range(d.size):
+        both = turn[k] + c * d[k]
+        second[k] += both + c2 * first[k]
+        third[k] += both + c3 * first[k]
 
 
 @inner
-def _rosenbrock(T, S, C, h, curved, a, q):
+def _less(x, y):
+    """y -= x."""
+    for k in range(x.size):
+        y[k] -= x[k]
+
+
+@inner
+def _rosenbrock(T, S, C, h, curved, L, slot, B, a, q):
     """Move the tangents q.D over a step whose stages are restored and whose matrix is factored.
 
     With W = C + gh G of the start, W^-1 gh G D = D - W^-1 C D: no product with G is needed.
     """
-    n, gh = C.size, GAMMA * h
+    n, gh, R0, R1, R2, R3 = C.size, GAMMA * h, q.R[0], q.R[1], q.R[2], q.R[3]
+    for stage in range(4):
+        clear(q.R[stage])
     if curved:
         seen(T, q.D, q.V)
+        late = slope_of(0) * h, slope_of(1) * h, slope_of(2) * h
+        bend(T, q.f[0], q.df, late, a.tau[0], a.v[0], a.vw, gh, q.V, q.R)
     for stage in range(3):
-        clear(q.R[stage])
-        if curved:
-            bend(T, q.f[0], q.df, slope_of(stage) * h, a.tau[0], a.v[0], a.vw[stage], gh, q.V, q.R[stage])
         _moved(T, S, stage, a, q, h, q.R[stage])
         _heavier(S, -1.0, a.w[stage], q.R[stage])
-    outside(q, gh, q.R[0])
+    outside(B, q.D, gh, R0)
     for i in range(n):
-        axpy(C[i], q.D[i], q.R[0, i])
-    _solved(q, q.R[0])
+        axpy(C[i], q.D[i], R0[i])
+    solve_many(L, slot, R0)
     for i in range(n):
-        axpy(-1.0, q.D[i], q.R[0, i])
-        axpy(1.0 / GAMMA, q.R[0, i], q.D[i])
+        _less(q.D[i], R0[i])
+        axpy(1.0 / GAMMA, R0[i], q.D[i])
     if curved:
         seen(T, q.D, q.V)
-    for stage in range(1, 3):
-        if curved:
-            turned(T, q.f, a.tau, a.v, gh, q.V, q.R[stage])
-        outside(q, gh, q.R[stage])
-        for i in range(n):
-            axpy(C[i], q.D[i], q.R[stage, i])
-        _earlier(C, S, GAMMA * (C21 if stage == 1 else C31), a.w[0], q.R[0], q.R[stage])
-    _solved(q, q.R[1])
+        turned(T, q.f, a.tau, a.v, gh, q.V, R3)
+    outside(B, q.D, gh, R3)
+    _heavier(S, GAMMA * C21, a.w[0], R1)
+    _heavier(S, GAMMA * C31, a.w[0], R2)
     for i in range(n):
-        axpy(-1.0, q.D[i], q.R[1, i])
-    _earlier(C, S, GAMMA * C32, a.w[1], q.R[1], q.R[2])
-    _solved(q, q.R[2])
+        _common(C[i], q.D[i], R0[i], R3[i], R1[i], R2[i])
+    solve_many(L, slot, R1)
+    _heavier(S, GAMMA * C32, a.w[1], R2)
     for i in range(n):
-        axpy(-1.0, q.D[i], q.R[2, i])
-        axpy(1.0, q.R[2, i], q.D[i])
+        _less(q.D[i], R1[i])
+        axpy(GAMMA * C32 * C[i], R1[i], R2[i])
+    solve_many(L, slot, R2)
+    for i in range(n):
+        _less(q.D[i], R2[i])
+        axpy(1.0, R2[i], q.D[i])
 
 
 @inner
-def _euler(T, S, K0, C, h, x0, U, a, q):
+def _euler(T, S, K0, C, h, x0, U, L, slot, a, q):
     """Move the tangents over a step of implicit Euler with the coefficients of its start."""
     n = C.size
     for i in range(n):
@@ -133,26 +132,23 @@ def _euler(T, S, K0, C, h, x0, U, a, q):
         a.w[0, i] = 0.0
     flow(T, K0, a.z[1], q.f[1], a.tau[1], a.v[1], q.F[1])
     patterns(T, a.w[0], a.vw[0])
-    conductances(T, K0, q.f[1], a.tau[1], q.G)
-    shifted(q.G, h, C, q.W)
-    lu(q.W, q.pivot, q.spans)
     jacobian(T, K0, q.f[1], a.tau[1], a.v[1], q.G)
     clear(q.H)
     for e in range(T.m.size):
         if T.kind[e, DYNAMIC] and T.kind[e, STIFF] and T.kind[e, BENDS] and T.m[e] != 0.0:
             c = T.m[e] * q.f[1, e]
-            spread(T, e, 0.0, a.vw[0], c * a.tau[1, e, 1], c * a.tau[1, e, 2], q.H)
+            spread(T, e, a.vw[0], c * a.tau[1, e, 1], c * a.tau[1, e, 2], q.H)
+    clear(q.R[0])
     for i in range(n):
         for j in range(len(q.D)):
-            q.M[i, j] = -h * (q.G[i, j] + q.H[i, j])
-    product(q.M, q.D, q.factors, 0, q.R[0])
+            axpy(-h * (q.G[i, j] + q.H[i, j]), q.D[j], q.R[0, i])
     for i in range(S.term.size):
         e, j, c = S.term[i], S.tangent[i], h * S.slope[i]
         c *= q.f[1, e] * a.tau[1, e, 0]
-        for s in range(T.start[e, ROWS], T.start[e + 1, ROWS]):
+        for s in range(T.part[e, ROW], T.part[e, END]):
             q.R[0, T.row[s], j] -= c * (a.v[1, s] + a.vw[0, s])
     _heavier(S, -1.0, a.w[0], q.R[0])
-    solve_many(q.W, q.pivot, q.spans, q.R[0])
+    solve_many(L, slot, q.R[0])
     for i in range(n):
         axpy(1.0, q.R[0, i], q.D[i])
 
@@ -178,7 +174,7 @@ def _printed(R, t, until, D, dy):
 @inner
 def _within(Q, R, X, k, t, q, dy):
     """The tangents of the outputs at samples inside a step, whose end is q.D and whose stages are q.R; the next."""
-    n, j, s0, s1 = len(q.W), X.knot[k], X.start[k], X.share[k]
+    n, j, s0, s1 = len(q.G), X.knot[k], X.start[k], X.share[k]
     while t < Q.first[j + 1] and Q.share[t] < 1.0 and Q.share[t] <= s1:
         _outputs(R, q.D, dy[t])
         for stage in range(3):
@@ -199,26 +195,17 @@ def differentiate(Q, C, K0, T, S, R, curved, X, steps, t, until, a, q, dy):
     X, steps : the trace of the run and how many steps it holds;  all else as for the kernel
     a, q : the tangents of states and boundaries start at q.D and are left there at the end
     """
-    last = -1.0
     for k in range(steps):
-        j, h = X.knot[k], X.h[k]
+        j, h, slot = X.knot[k], X.h[k], X.slot[k]
         t = _printed(R, t, Q.first[j], q.D, dy)
         for i in range(a.z[0].size - 1):
             a.z[0, i] = X.x[k, i]
         forced(Q, j, X.start[k], X.share[k], a, q)
         if X.kind[k] == EULER:
-            _euler(T, S, K0, C, h, X.x[k], X.U[k], a, q)
-            last = -1.0
+            _euler(T, S, K0, C, h, X.x[k], X.U[k], X.L, slot, a, q)
         else:
             restored(T, K0, X.x[k], X.U[k], h, a, q)
-            if Q.renew[j] == 2 or (Q.renew[j] == 1 and X.start[k] == 0.0) or h != last:
-                jacobian(T, K0, q.f[0], a.tau[0], a.v[0], q.G)
-                shifted(q.G, GAMMA * h, C, q.W)
-                lu(q.W, q.pivot, q.spans)
-                if 3 * q.D[0].size >= C.size:
-                    inverse(q.W, q.pivot, q.spans, q.X)
-            last = h
-            _rosenbrock(T, S, C, h, curved, a, q)
+            _rosenbrock(T, S, C, h, curved, X.L, slot, X.B[slot], a, q)
         t = _within(Q, R, X, k, t, q, dy)
         if X.share[k] == 1.0:
             t = _printed(R, t, Q.first[j + 1], q.D, dy)

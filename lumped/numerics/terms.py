@@ -12,14 +12,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.numerics.dense import axpy, matvec
-from lumped.numerics.jit import inner, pasted
+from lumped.numerics.jit import inner, inner_reordered, pasted
 from lumped.transfer.laws import FILMS, FIRST_C, STEP_K
 
 SIGMA = 5.670374419e-8
 ZERO_C = 273.15
 SMOOTH = 0.01  # K: |dT| ** p is smoothed below this difference, where its derivative would be unbounded
 CONSTANT, POWER, RADIATION, LINEAR, TABLE, FILM = range(6)
-ENTRIES, ROWS, POINTS = range(3)
+PATTERN, ROW, END, HOT, COLD, POINT, LAST = range(7)
 CODE, DYNAMIC, STIFF, BENDS, SOURCE = range(5)
 
 Floats = NDArray[np.float64]
@@ -27,22 +27,25 @@ Ints = NDArray[np.int64]
 
 
 class Terms(NamedTuple):
-    """The terms the kernel follows one by one, as flat arrays.
+    """The terms the kernel follows one by one, as flat arrays. Films of one face share a pattern, whatever their laws.
 
-    start (ne + 1, 3) : where each term begins: ENTRIES in (to, at, weight), ROWS in row, POINTS in point
-    to, at, weight : v[to] += weight z+[at] makes v = [P z+ of all terms; then hot and cold of each in turn]
-    row (nv,) : the state each row of P takes from
+    begin (nv + 1,), at, weight : v = [P z+ of all patterns; temperatures that laws see], row by row over z+
+    row : the state each row of a pattern takes from
+    part (ne, 7) : PATTERN of each term, whose rows are ROW up to END of v; rows HOT and COLD that its law sees;
+        POINT up to LAST of its table
+    order (ne,) : the terms, those of one pattern in a row
     kind (ne, 5) : CODE of the temperature law; DYNAMIC: assembled every step, else it stands in the constant matrix;
         STIFF: touches the matrix; BENDS: its law depends on temperature; SOURCE: puts heat in
     par (ne, 2), point (np, 2) : of the temperature law: its numbers, its table (x, y)
     m : multipliers
     """
 
-    start: Ints
-    to: Ints
+    begin: Ints
     at: Ints
     weight: Floats
     row: Ints
+    part: Ints
+    order: Ints
     kind: Ints
     par: Floats
     point: Floats
@@ -158,13 +161,14 @@ def clear(A):
             A[i, j] = 0.0
 
 
-@inner
+@inner_reordered
 def patterns(T, z, out):
-    """Rows of all terms at z+, and the two temperatures of their laws."""
+    """Rows of all patterns at z+, and the temperatures that laws see."""
     for s in range(out.size):
-        out[s] = 0.0
-    for i in range(T.at.size):
-        out[T.to[i]] += T.weight[i] * z[T.at[i]]
+        acc = 0.0
+        for i in range(T.begin[s], T.begin[s + 1]):
+            acc += T.weight[i] * z[T.at[i]]
+        out[s] = acc
 
 
 @pasted
@@ -172,11 +176,11 @@ def _evaluate(T, v, tau):
     """Temperature laws of all terms: tau (ne, 6) = value, d/dhot, d/dcold, hh, hc, cc."""
     for e in range(T.m.size):
         if T.kind[e, BENDS]:
-            hot, cold = v[T.row.size + 2 * e], v[T.row.size + 2 * e + 1]
+            hot, cold = v[T.part[e, HOT]], v[T.part[e, COLD]]
             if T.kind[e, CODE] == TABLE:
-                _tabulated(T.point, T.start[e, POINTS], T.start[e + 1, POINTS] - 1, hot - cold, tau[e])
+                _tabulated(T.point, T.part[e, POINT], T.part[e, LAST] - 1, hot - cold, tau[e])
             elif T.kind[e, CODE] == FILM:
-                _filmed(T.point, T.start[e, POINTS], int(T.par[e, 0]), hot, cold, tau[e])
+                _filmed(T.point, T.part[e, POINT], int(T.par[e, 0]), hot, cold, tau[e])
             else:
                 law(T.kind[e, CODE], T.par[e, 0], T.par[e, 1], hot, cold, tau[e])
 
@@ -190,22 +194,34 @@ def flow(T, K0, z, f, tau, v, out):
     for e in range(T.m.size):
         if T.kind[e, DYNAMIC] and T.m[e] != 0.0:
             c = T.m[e] * f[e] * tau[e, 0]
-            for s in range(T.start[e, ROWS], T.start[e + 1, ROWS]):
+            for s in range(T.part[e, ROW], T.part[e, END]):
                 out[T.row[s]] -= c * v[s]
 
 
 @inner
-def spread(T, e, c, v, by_hot, by_cold, A):
-    """A += c P + v (by_hot hot + by_cold cold)' on the columns that A has, for term e."""
-    first = T.row.size + 2 * e
-    for i in range(T.start[e, ENTRIES], T.start[e + 1, ENTRIES]):
-        if T.at[i] < A[0].size:
-            if T.to[i] < first:
-                A[T.row[T.to[i]], T.at[i]] += c * T.weight[i]
-            else:
-                by = T.weight[i] * (by_hot if T.to[i] == first else by_cold)
-                for s in range(T.start[e, ROWS], T.start[e + 1, ROWS]):
-                    A[T.row[s], T.at[i]] += v[s] * by
+def spread(T, e, v, by_hot, by_cold, A):
+    """A += v (by_hot hot + by_cold cold)' on the columns that A has, for term e."""
+    for side in range(2):
+        seen_at, by = T.part[e, COLD if side else HOT], by_cold if side else by_hot
+        for i in range(T.begin[seen_at], T.begin[seen_at + 1]):
+            if T.at[i] < A[0].size:
+                for s in range(T.part[e, ROW], T.part[e, END]):
+                    A[T.row[s], T.at[i]] += v[s] * (by * T.weight[i])
+
+
+@inner
+def _placed(T, e, c, A):
+    """A += c P on the columns that A has, for the pattern of term e."""
+    for s in range(T.part[e, ROW], T.part[e, END]):
+        for i in range(T.begin[s], T.begin[s + 1]):
+            if T.at[i] < A[0].size:
+                A[T.row[s], T.at[i]] += c * T.weight[i]
+
+
+@pasted
+def _ends(T, k):
+    """Whether term order[k] is the last of its pattern."""
+    return k + 1 == T.order.size or T.part[T.order[k + 1], PATTERN] != T.part[T.order[k], PATTERN]
 
 
 @inner
@@ -214,10 +230,18 @@ def jacobian(T, K0, f, tau, v, G):
     for i in range(len(G)):
         for j in range(G[0].size):
             G[i, j] = K0[i, j]
-    for e in range(T.m.size):
+    c = 0.0
+    for k in range(T.order.size):
+        e = T.order[k]
         if T.kind[e, DYNAMIC] and T.kind[e, STIFF] and T.m[e] != 0.0:
             mf = T.m[e] * f[e]
-            spread(T, e, mf * tau[e, 0], v, mf * tau[e, 1], mf * tau[e, 2], G)
+            c += mf * tau[e, 0]
+            if T.kind[e, BENDS]:
+                spread(T, e, v, mf * tau[e, 1], mf * tau[e, 2], G)
+        if _ends(T, k):
+            if c != 0.0:
+                _placed(T, e, c, G)
+            c = 0.0
 
 
 @inner
@@ -228,60 +252,108 @@ def conductances(T, K0, f, tau, K):
             K[i, j] = K0[i, j]
     for e in range(T.m.size):
         if T.kind[e, DYNAMIC] and T.kind[e, STIFF] and T.m[e] != 0.0:
-            c = T.m[e] * f[e] * tau[e, 0]
-            for i in range(T.start[e, ENTRIES], T.start[e + 1, ENTRIES]):
-                if T.at[i] < len(K) and T.to[i] < T.row.size:
-                    K[T.row[T.to[i]], T.at[i]] += c * T.weight[i]
+            _placed(T, e, T.m[e] * f[e] * tau[e, 0], K)
 
 
 @inner
-def directional(e, f, df, tau, v_dot, rows):
+def directional(T, e, f, df, tau, v_dot):
     """d/ds of the coefficient c (without m) of term e along v_dot, and along time with df = df/dt."""
-    turn = tau[e, 1] * v_dot[rows + 2 * e] + tau[e, 2] * v_dot[rows + 2 * e + 1]
+    turn = tau[e, 1] * v_dot[T.part[e, HOT]] + tau[e, 2] * v_dot[T.part[e, COLD]]
     return f * turn + df * tau[e, 0]
+
+
+@inner_reordered
+def _looked(T, s, D, V):
+    """Row s of V = what it sees of D; four at a time, so that V is written a quarter as often."""
+    out, i, last = V[s], T.begin[s], T.begin[s + 1]
+    for j in range(out.size):
+        out[j] = 0.0
+    while i + 3 < last and max(T.at[i], T.at[i + 1], T.at[i + 2], T.at[i + 3]) < len(D):
+        w0, w1, w2, w3 = T.weight[i], T.weight[i + 1], T.weight[i + 2], T.weight[i + 3]
+        d0, d1, d2, d3 = D[T.at[i]], D[T.at[i + 1]], D[T.at[i + 2]], D[T.at[i + 3]]
+        for j in range(out.size):
+            out[j] += w0 * d0[j] + w1 * d1[j] + w2 * d2[j] + w3 * d3[j]
+        i += 4
+    while i < last:
+        if T.at[i] < len(D):
+            axpy(T.weight[i], D[T.at[i]], out)
+        i += 1
 
 
 @inner
 def seen(T, D, V):
-    """V = P D of all dynamic terms that touch the matrix, then what their laws see: rows of v, a column per tangent."""
-    clear(V)
-    for e in range(T.m.size):
+    """V = P D of all acting terms that touch the matrix, and what their laws see: rows of v, a column per tangent."""
+    acts, last = False, -1
+    for k in range(T.order.size):
+        e = T.order[k]
         if T.kind[e, DYNAMIC] and T.kind[e, STIFF] and T.m[e] != 0.0:
-            for i in range(T.start[e, ENTRIES], T.start[e + 1, ENTRIES]):
-                if T.at[i] < len(D):
-                    axpy(T.weight[i], D[T.at[i]], V[T.to[i]])
+            acts = True
+            same = last >= 0 and T.part[e, HOT] == T.part[last, HOT] and T.part[e, COLD] == T.part[last, COLD]
+            if T.kind[e, BENDS] and not same:
+                _looked(T, T.part[e, HOT], D, V)
+                _looked(T, T.part[e, COLD], D, V)
+                last = e
+        if _ends(T, k):
+            for s in range(T.part[e, ROW], T.part[e, END] if acts else T.part[e, ROW]):
+                _looked(T, s, D, V)
+            acts = False
 
 
 @inner
 def turned(T, f, tau, v, scale, V, out):
     """out -= scale times how G differs between slots 1 and 0, times D.  V : of `seen`"""
-    rows = T.row.size
-    for e in range(T.m.size):
+    other = 0.0
+    for k in range(T.order.size):
+        e = T.order[k]
         if T.kind[e, DYNAMIC] and T.kind[e, STIFF] and T.m[e] != 0.0:
-            m, a, b, hot, cold = scale * T.m[e], f[0, e], f[1, e], rows + 2 * e, rows + 2 * e + 1
-            other = m * (b * tau[1, e, 0] - a * tau[0, e, 0])
-            for s in range(T.start[e, ROWS], T.start[e + 1, ROWS]):
+            m, a, b = scale * T.m[e], f[0, e], f[1, e]
+            other += m * (b * tau[1, e, 0] - a * tau[0, e, 0])
+            for s in range(T.part[e, ROW], T.part[e, END] if T.kind[e, BENDS] else T.part[e, ROW]):
+                axpy(-m * (b * tau[1, e, 1] * v[1, s] - a * tau[0, e, 1] * v[0, s]), V[T.part[e, HOT]], out[T.row[s]])
+                axpy(-m * (b * tau[1, e, 2] * v[1, s] - a * tau[0, e, 2] * v[0, s]), V[T.part[e, COLD]], out[T.row[s]])
+        if _ends(T, k):
+            for s in range(T.part[e, ROW], T.part[e, END]):
                 axpy(-other, V[s], out[T.row[s]])
-                if T.kind[e, BENDS]:
-                    axpy(-m * (b * tau[1, e, 1] * v[1, s] - a * tau[0, e, 1] * v[0, s]), V[hot], out[T.row[s]])
-                    axpy(-m * (b * tau[1, e, 2] * v[1, s] - a * tau[0, e, 2] * v[0, s]), V[cold], out[T.row[s]])
+            other = 0.0
 
 
 @inner
 def bend(T, f, df, late, tau, v, v_dot, scale, V, out):
-    """out -= scale times how G changes along v_dot and over `late` seconds, times D.
+    """out (3, n, p) -= scale times how G changes along v_dot (3, nv) and over `late` (3,) seconds, times D.
 
     df (ne,) slopes of the factors;  V : of `seen`
     """
-    rows = T.row.size
-    for e in range(T.m.size):
+    t0, t1, t2 = 0.0, 0.0, 0.0
+    for k in range(T.order.size):
+        e = T.order[k]
         if T.kind[e, DYNAMIC] and T.kind[e, STIFF] and T.m[e] != 0.0:
-            m, slope, hot, cold = scale * T.m[e], late * df[e], rows + 2 * e, rows + 2 * e + 1
-            by_hot = slope * tau[e, 1] + f[e] * (tau[e, 3] * v_dot[hot] + tau[e, 4] * v_dot[cold])
-            by_cold = slope * tau[e, 2] + f[e] * (tau[e, 4] * v_dot[hot] + tau[e, 5] * v_dot[cold])
-            turn = directional(e, f[e], slope, tau, v_dot, rows)
-            for s in range(T.start[e, ROWS], T.start[e + 1, ROWS]):
-                axpy(-m * turn, V[s], out[T.row[s]])
-                if T.kind[e, BENDS]:
-                    axpy(-m * (by_hot * v[s] + f[e] * tau[e, 1] * v_dot[s]), V[hot], out[T.row[s]])
-                    axpy(-m * (by_cold * v[s] + f[e] * tau[e, 2] * v_dot[s]), V[cold], out[T.row[s]])
+            m = scale * T.m[e]
+            t0 += m * directional(T, e, f[e], late[0] * df[e], tau, v_dot[0])
+            t1 += m * directional(T, e, f[e], late[1] * df[e], tau, v_dot[1])
+            t2 += m * directional(T, e, f[e], late[2] * df[e], tau, v_dot[2])
+            for stage in range(3 if T.kind[e, BENDS] else 0):
+                _law_turns(T, e, m, f[e], late[stage] * df[e], tau, v, v_dot[stage], V, out[stage])
+        if _ends(T, k):
+            for s in range(T.part[e, ROW], T.part[e, END]):
+                if t0 != 0.0 or t1 != 0.0 or t2 != 0.0:
+                    _thrice(t0, t1, t2, V[s], out[0, T.row[s]], out[1, T.row[s]], out[2, T.row[s]])
+            t0, t1, t2 = 0.0, 0.0, 0.0
+
+
+@inner
+def _law_turns(T, e, m, f, slope, tau, v, v_dot, V, out):
+    """The part of a law that follows temperature."""
+    hot, cold = T.part[e, HOT], T.part[e, COLD]
+    by_hot = slope * tau[e, 1] + f * (tau[e, 3] * v_dot[hot] + tau[e, 4] * v_dot[cold])
+    by_cold = slope * tau[e, 2] + f * (tau[e, 4] * v_dot[hot] + tau[e, 5] * v_dot[cold])
+    for s in range(T.part[e, ROW], T.part[e, END]):
+        axpy(-m * (by_hot * v[s] + f * tau[e, 1] * v_dot[s]), V[hot], out[T.row[s]])
+        axpy(-m * (by_cold * v[s] + f * tau[e, 2] * v_dot[s]), V[cold], out[T.row[s]])
+
+
+@inner
+def _thrice(a, b, c, x, y0, y1, y2):
+    for k in range(x.size):
+        y0[k] -= a * x[k]
+        y1[k] -= b * x[k]
+        y2[k] -= c * x[k]

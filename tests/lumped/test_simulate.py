@@ -11,7 +11,7 @@ from lumped.integration.compiled import compiled
 from lumped.integration.simulate import Record, simulate
 from lumped.model.build import bare_network, node_link, node_source
 from lumped.numerics.stages import Steps
-from lumped.transfer.laws import Fixed, InputPower, Law, Linear, Table
+from lumped.transfer.laws import Fixed, InputPower, Law, Linear, Power, Table
 
 
 def exact_two_masses(t, loss=100.0, start=20.0, ambient=20.0):
@@ -190,3 +190,22 @@ def test_a_source_of_the_square_of_a_linear_current_is_exact():
     a, b = current[:-1], current[1:]
     heat = 7 * np.sum(np.diff(time) * (a * a + a * b + b * b) / 3)
     assert_allclose(z[-1, 0], 20.0 + heat / 50.0, rtol=1e-13)
+
+
+def test_films_of_one_face_share_a_pattern_and_add_up():
+    """Forced 3 and 7 W/K with a natural film between them on the list, against forced 10 W/K and the natural film."""
+    time, body = np.arange(0.0, 1801.0, 30.0), bare_network("body", {"body": 900.0}, ("ambient",))
+    record = Record(time, {"speed_rpm": 800.0 + 300.0 * np.sin(time / 200.0)}, {"ambient": 20.0}, 80.0)
+
+    def films(**laws):
+        return body.extended([node_link(body, name, "film", "body", "ambient", law) for name, law in laws.items()])
+
+    def forced(conductance):
+        return InputPower(conductance, (("speed_rpm", 1000.0, 0.8),))
+
+    natural = Fixed(0.5, Power(0.25))
+    three, two = films(a=forced(3.0), b=natural, c=forced(7.0)), films(a=forced(10.0), b=natural)
+    assert compiled(three, record).terms.row.size == 1
+    z, sum_of_both = (simulate(net, record, keep_states=True).z for net in (three, two))
+    assert z[-1, 0] < 40.0
+    assert_allclose(z, sum_of_both, atol=1e-9)

@@ -10,7 +10,7 @@ import numpy as np
 
 from lumped.numerics import stages
 from lumped.numerics.steady_start import CONVERGED_K
-from lumped.numerics.terms import ENTRIES, POINTS, ROWS
+from lumped.numerics.terms import COLD, END, HOT, POINT, ROW
 from lumped.transfer.laws import FILMS, FIRST_C, STEP_K
 from thermoscope.export.flat import Flat, flat
 from thermoscope.export.heading import heading
@@ -34,7 +34,7 @@ def sizes(model: Model) -> str:
     counts = {
         "STATES": len(model.states), "BOUNDARIES": len(model.boundaries), "INPUTS": len(model.inputs),
         "SIGNALS": len(model.signals), "OUTPUTS": len(model.outputs), "TERMS": len(model.factors),
-        "ROWS": T.row.size, "ENTRIES": T.at.size,
+        "ROWS": T.begin.size - 1,
     }  # fmt: skip
     numbers = {
         "C21": stages.C21, "C31": stages.C31, "C32": stages.C32, "SLOPE2": stages.SLOPE2, "END1": stages.END1,
@@ -58,10 +58,12 @@ def data(model: Model) -> str:
     starts = np.concatenate([[0], np.cumsum([r.index.size for r in rows])]).astype(int)
     parts = [
         reals("C", model.C), _matrix("K0", model.K0), reals("UNIT", model.unit), ints("NODE", model.node),
-        ints("ENTRY_START", T.start[:, ENTRIES]), ints("ENTRY_TO", T.to), ints("ENTRY_AT", T.at),
-        reals("ENTRY_WEIGHT", T.weight), ints("ROW_START", T.start[:, ROWS]), ints("ROW", T.row),
+        ints("ENTRY_START", T.begin), ints("ENTRY_AT", T.at), reals("ENTRY_WEIGHT", T.weight),
+        ints("ROW_FIRST", T.part[:, ROW]), ints("ROW_END", T.part[:, END]), ints("ROW", T.row),
+        ints("HOT", T.part[:, HOT]), ints("COLD", T.part[:, COLD]),
         ints("LAW", T.kind[:, 0]), reals("LAW_A", T.par[:, 0]), reals("LAW_B", T.par[:, 1]),
-        ints("POINT_START", T.start[:, POINTS]), reals("POINT_X", T.point[:, 0]), reals("POINT_Y", T.point[:, 1]),
+        ints("POINT_START", [*T.part[:, POINT], len(T.point)]), reals("POINT_X", T.point[:, 0]),
+        reals("POINT_Y", T.point[:, 1]),
         *_functions(F), ints("OUTPUT_START", starts), ints("OUTPUT_AT", joined(r.index for r in rows)),
         reals("OUTPUT_WEIGHT", joined(r.weights for r in rows)), f"#define FILMS {FILMS}",
         f"#define FILM_FIRST ((thermal_real){FIRST_C})", f"#define FILM_STEP ((thermal_real){STEP_K})",

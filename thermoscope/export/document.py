@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from lumped.numerics.terms import ENTRIES, FILM, POINTS, Terms
+from lumped.numerics.terms import COLD, END, FILM, HOT, LAST, POINT, ROW, Terms
 from lumped.transfer.laws import FILMS, FIRST_C, STEP_K
 from thermoscope.export.heading import heading
 from thermoscope.export.model import Model, Output
@@ -43,21 +43,24 @@ def _output(o: Output) -> dict[str, Any]:
 
 def _term(model: Model, e: int) -> dict[str, Any]:
     T = model.terms
-    some = slice(T.start[e, ENTRIES], T.start[e + 1, ENTRIES])
-    to, at, weight, first = T.to[some], T.at[some], T.weight[some], T.row.size + 2 * e
-    own = to < T.row.size
-    sides = {
-        name: {"col": at[to == first + k], "val": weight[to == first + k]} for k, name in enumerate(("hot", "cold"))
-    }
+    first, end = T.part[e, [ROW, END]]
+    own = slice(T.begin[first], T.begin[end])
     return {
-        "name": model.term_names[e], "row": T.row[to[own]], "col": at[own], "val": weight[own], **sides,
+        "name": model.term_names[e], "row": np.repeat(T.row[first:end], np.diff(T.begin[first : end + 1])),
+        "col": T.at[own], "val": T.weight[own],
+        "hot": _weighted_sum(T, T.part[e, HOT]), "cold": _weighted_sum(T, T.part[e, COLD]),
         "law": _law(T, e), "factor": factor(model.factors[e]),
     }  # fmt: skip
 
 
+def _weighted_sum(T: Terms, row: int) -> dict[str, Any]:
+    some = slice(T.begin[row], T.begin[row + 1])
+    return {"col": T.at[some], "val": T.weight[some]}
+
+
 def _law(T: Terms, e: int) -> dict[str, Any]:
     code, (a, b) = int(T.kind[e, 0]), T.par[e]
-    points = T.point[T.start[e, POINTS] : T.start[e + 1, POINTS]]
+    points = T.point[slice(*T.part[e, [POINT, LAST]])]
     out = {"kind": LAWS[code], "a": float(a), "b": float(b), "x": points[:, 0], "y": points[:, 1]}
     if code == FILM:
         films = FIRST_C + STEP_K * np.arange(FILMS)

@@ -132,7 +132,7 @@ class Process:
         tau[:, 0] = 1.0
         F, G = np.empty(n), np.empty((n, n))
         z = np.concatenate([x, u, [1.0]])
-        instant(T, core.K0, z, np.ascontiguousarray(f), tau, np.empty(T.row.size + 2 * T.m.size), F, G)
+        instant(T, core.K0, z, np.ascontiguousarray(f), tau, np.empty(T.begin.size - 1), F, G)
         return F, G
 
     def propagated(self, core: Compiled, step: Linear, X: Array, heat: Array) -> Array:

@@ -120,10 +120,12 @@ static void law(int e, real hot, real cold, real *out) {
     }
 }
 
-/* v: rows of all terms at z, then hot and cold of each. */
+/* v: rows of all patterns at z, then the temperatures that laws see. */
 static void patterns(const real *z, real *v) {
-    for (int i = 0; i < NV + 2 * NE; i++) v[i] = 0;
-    for (int i = 0; i < THERMAL_ENTRIES; i++) v[ENTRY_TO[i]] += ENTRY_WEIGHT[i] * z[ENTRY_AT[i]];
+    for (int r = 0; r < NV; r++) {
+        v[r] = 0;
+        for (int i = ENTRY_START[r]; i < ENTRY_START[r + 1]; i++) v[r] += ENTRY_WEIGHT[i] * z[ENTRY_AT[i]];
+    }
 }
 
 /* F = -K0 z - sum of all terms. */
@@ -135,8 +137,8 @@ static void flow(const real *z, const real *f, real (*tau)[3], real *v, real *F)
         F[i] = -sum;
     }
     for (int e = 0; e < NE; e++) {
-        law(e, v[NV + 2 * e], v[NV + 2 * e + 1], tau[e]);
-        for (int r = ROW_START[e]; r < ROW_START[e + 1]; r++) F[ROW[r]] -= f[e] * tau[e][0] * v[r];
+        law(e, v[HOT[e]], v[COLD[e]], tau[e]);
+        for (int r = ROW_FIRST[e]; r < ROW_END[e]; r++) F[ROW[r]] -= f[e] * tau[e][0] * v[r];
     }
 }
 
@@ -144,14 +146,16 @@ static void flow(const real *z, const real *f, real (*tau)[3], real *v, real *F)
 static void jacobian(const real *f, real (*tau)[3], const real *v, int frozen, real (*G)[N]) {
     for (int i = 0; i < N; i++) memcpy(G[i], K0[i], N * sizeof(real));
     for (int e = 0; e < NE; e++) {
-        int first = NV + 2 * e;
-        for (int i = ENTRY_START[e]; i < ENTRY_START[e + 1]; i++) {
-            if (ENTRY_AT[i] >= N) continue;
-            if (ENTRY_TO[i] < NV) {
-                G[ROW[ENTRY_TO[i]]][ENTRY_AT[i]] += f[e] * tau[e][0] * ENTRY_WEIGHT[i];
-            } else if (!frozen) {
-                real by = f[e] * ENTRY_WEIGHT[i] * tau[e][ENTRY_TO[i] == first ? 1 : 2];
-                for (int r = ROW_START[e]; r < ROW_START[e + 1]; r++) G[ROW[r]][ENTRY_AT[i]] += v[r] * by;
+        for (int r = ROW_FIRST[e]; r < ROW_END[e]; r++) {
+            for (int i = ENTRY_START[r]; i < ENTRY_START[r + 1]; i++)
+                if (ENTRY_AT[i] < N) G[ROW[r]][ENTRY_AT[i]] += f[e] * tau[e][0] * ENTRY_WEIGHT[i];
+        }
+        for (int side = 0; side < 2 && !frozen; side++) {
+            int seen = side ? COLD[e] : HOT[e];
+            for (int i = ENTRY_START[seen]; i < ENTRY_START[seen + 1]; i++) {
+                real by = f[e] * ENTRY_WEIGHT[i] * tau[e][side + 1];
+                if (ENTRY_AT[i] >= N) continue;
+                for (int r = ROW_FIRST[e]; r < ROW_END[e]; r++) G[ROW[r]][ENTRY_AT[i]] += v[r] * by;
             }
         }
     }
@@ -216,9 +220,9 @@ static void along_time(thermal_work *w, real h) {
         for (int b = 0; b < NB; b++) w->Ft[i] -= K0[i][N + b] * z[N + b];
     }
     for (int e = 0; e < NE; e++) {
-        real turn = w->tau0[e][1] * v[NV + 2 * e] + w->tau0[e][2] * v[NV + 2 * e + 1];
+        real turn = w->tau0[e][1] * v[HOT[e]] + w->tau0[e][2] * v[COLD[e]];
         real change = w->f0[e] * turn + w->df[e] * w->tau0[e][0];
-        for (int r = ROW_START[e]; r < ROW_START[e + 1]; r++)
+        for (int r = ROW_FIRST[e]; r < ROW_END[e]; r++)
             w->Ft[ROW[r]] -= w->f0[e] * w->tau0[e][0] * v[r] + change * w->v0[r];
     }
 }

@@ -26,7 +26,7 @@ typedef struct {
 
 typedef struct {
     thermal_real z0[THERMAL_STATES + THERMAL_BOUNDARIES + 1], z1[THERMAL_STATES + THERMAL_BOUNDARIES + 1];
-    thermal_real v0[THERMAL_ROWS + 2 * THERMAL_TERMS + 1], v1[THERMAL_ROWS + 2 * THERMAL_TERMS + 1];
+    thermal_real v0[THERMAL_ROWS + 1], v1[THERMAL_ROWS + 1];
     thermal_real tau0[THERMAL_TERMS + 1][3], tau1[THERMAL_TERMS + 1][3];
     thermal_real f0[THERMAL_TERMS + 1], fm[THERMAL_TERMS + 1], f1[THERMAL_TERMS + 1], df[THERMAL_TERMS + 1];
     thermal_real u0[THERMAL_SIGNALS + 1], u1[THERMAL_SIGNALS + 1], um[THERMAL_SIGNALS + 1];
