@@ -25,11 +25,12 @@ from viz.figures.curves import wrongness
 from viz.figures.errors import PALE, error_paths
 from viz.machine.thermocouples import LABELS
 from viz.recordings import scale
-from viz.recordings.arrangement import apart, blueprint
+from viz.recordings.arrangement import apart, beside, blueprint, eye
 from viz.rendering.cut import QUARTER, Surface, Wedge, cut_away
 from viz.rendering.edges import outline_strips
 from viz.rendering.nodes import SplitMesh, on_nodes
 from viz.rendering.scale import rounded
+from viz.rendering.visibility import covered, obstacle
 
 if TYPE_CHECKING:
     import rerun as rr
@@ -75,7 +76,7 @@ def write_recording(
     scale.colour_bar(stream, *rounded(float(fields.min()), float(fields.max())))
     scale.inputs(stream, comparison, TIME)
     scale.events(stream, comparison, TIME)
-    _sensors(stream, comparison, times, positions, revision_residuals, surface.points)
+    _sensors(stream, comparison, times, positions, revision_residuals, surface)
     _curves(stream, comparison)
     _revisions(stream, history)
     stream.flush()
@@ -130,7 +131,7 @@ def _colours(
 
 def _sensors(
     stream: rr.RecordingStream, c: Comparison, times: Array, positions: Mapping[str, Sequence[float]],
-    revisions: Sequence[Mapping[str, float]], points: Array,
+    revisions: Sequence[Mapping[str, float]], surface: Surface,
 ) -> None:  # fmt: skip
     import rerun as rr
 
@@ -142,19 +143,32 @@ def _sensors(
         radii=rr.Radius.ui_points(5.0), show_labels=False,
     )  # fmt: skip
     stream.log("machine/sensors", dots, static=True)
-    ranked = sorted(placed, key=lambda channel: -c.rmse(channel) / c.limit_K(channel))
-    free = apart(np.array([positions[channel.name] for channel in ranked]), points)
-    named = [channel for channel, clear in zip(ranked, free, strict=True) if clear][:LABELS]
-    labels = rr.Points3D(
-        [positions[channel.name] for channel in named], labels=[short(channel.name) for channel in named],
-        radii=rr.Radius.ui_points(0.0), show_labels=True, colors=[255, 255, 255],
-    )  # fmt: skip
-    stream.log("machine/names", labels, static=True)
+    _names(stream, sorted(placed, key=lambda channel: -c.rmse(channel) / c.limit_K(channel)), positions, surface)
     residual = np.stack([np.interp(times, c.test.time, c.residual(channel)) for channel in placed], axis=1)
     _markers(stream, c, placed, rr.TimeColumn(TIME, duration=times), residual)
     if revisions:
         ends = np.array([[row.get(channel.name, np.nan) for channel in placed] for row in revisions])
         _markers(stream, c, placed, rr.TimeColumn(REVISION, sequence=range(len(ends))), ends)
+
+
+def _names(
+    stream: rr.RecordingStream, ranked: Sequence[Channel], positions: Mapping[str, Sequence[float]], surface: Surface
+) -> None:
+    """Names of the first that have room; what the machine hides has its name beside it, on a line from its place."""
+    import rerun as rr
+
+    places = np.array([positions[channel.name] for channel in ranked])
+    hidden = covered(obstacle(surface), places, eye(surface.points))
+    at = np.where(hidden[:, None], beside(places, surface.points), places)
+    chosen = np.flatnonzero(apart(at, surface.points))[:LABELS]
+    labels = rr.Points3D(
+        at[chosen], labels=[short(ranked[i].name) for i in chosen], radii=rr.Radius.ui_points(0.0), show_labels=True,
+        colors=[255, 255, 255],
+    )  # fmt: skip
+    stream.log("machine/names", labels, static=True)
+    stubs = [np.stack([places[i], at[i]]) for i in chosen if hidden[i]]
+    lines = rr.LineStrips3D(stubs, colors=_rgba(LIGHT.ink), radii=rr.Radius.ui_points(0.8))
+    stream.log("machine/stubs", lines, static=True)
 
 
 def _markers(
@@ -215,6 +229,7 @@ def _rgba(colour: str) -> int:
 
 _LEGEND = """Sensors: green within the uncertainty, vermilion where the machine is hotter than the model,
 blue where it is colder. Six have names, those furthest beyond their uncertainty; the others under the pointer.
+A name on a line belongs to a sensor inside or behind.
 
 Timelines (chosen at the bottom left): **test_time** runs through the test; for the tab *revisions* choose **revision**.
 """
