@@ -52,6 +52,7 @@ def write_recording(
     revision_fields: Array | None = None,
     revision_residuals: Sequence[Mapping[str, float]] = (),
     wedge: Wedge | None = QUARTER,
+    limits: tuple[float, float] | None = None,
 ) -> Path:
     """Write an .rrd file and return its path.
 
@@ -60,6 +61,7 @@ def write_recording(
     history : revisions as in viz.figures.errors.staircase
     revision_fields : (n_revisions + 1, n_nodes) degC, the field at the end of the test, start first
     revision_residuals : for each of these channel -> measured - modelled (K) then
+    limits : of the colour scale (degC), widened to round numbers; those of all fields if not given
     """
     import rerun as rr
 
@@ -72,8 +74,9 @@ def write_recording(
     worst = max(comparison.channels, key=comparison.rmse).name
     surface = cut_away(nodes, wedge)
     stream.save(path, default_blueprint=blueprint(comparison, worst, surface.points, bool(history)))
-    _machine(stream, surface, times, fields, revision_fields)
-    scale.colour_bar(stream, *rounded(float(fields.min()), float(fields.max())))
+    ends = rounded(*(limits or (float(fields.min()), float(fields.max()))))
+    _machine(stream, surface, times, fields, revision_fields, ends)
+    scale.colour_bar(stream, *ends)
     scale.inputs(stream, comparison, TIME)
     scale.events(stream, comparison, TIME)
     _sensors(stream, comparison, times, positions, revision_residuals, surface)
@@ -100,21 +103,21 @@ def verify(path: str | Path) -> None:
 
 
 def _machine(
-    stream: rr.RecordingStream, surface: Surface, times: Array, fields: Array, revisions: Array | None
-) -> None:
+    stream: rr.RecordingStream, surface: Surface, times: Array, fields: Array, revisions: Array | None,
+    limits: tuple[float, float],
+) -> None:  # fmt: skip
     import rerun as rr
 
-    low, high = rounded(float(fields.min()), float(fields.max()))
     stream.log("machine", rr.ViewCoordinates.RIGHT_HAND_Y_UP, static=True)
     mesh = rr.Mesh3D(vertex_positions=surface.points, triangle_indices=surface.triangles)
     stream.log("machine/field", mesh, static=True)
     lines = rr.LineStrips3D(list(outline_strips(surface)), colors=[31, 41, 51, 150], radii=rr.Radius.ui_points(0.6))
     stream.log("machine/edges", lines, static=True)
     stream.log("legend", rr.TextDocument(_LEGEND, media_type="text/markdown"), static=True)
-    _colours(stream, surface, rr.TimeColumn(TIME, duration=times), fields, (low, high))
+    _colours(stream, surface, rr.TimeColumn(TIME, duration=times), fields, limits)
     if revisions is not None:
         steps = rr.TimeColumn(REVISION, sequence=range(len(revisions)))
-        _colours(stream, surface, steps, on_nodes(surface.nodes, revisions), (low, high))
+        _colours(stream, surface, steps, on_nodes(surface.nodes, revisions), limits)
 
 
 def _colours(

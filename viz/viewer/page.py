@@ -76,16 +76,17 @@ def write_viewer(
 def document(
     title: str, nodes: SplitMesh, tests: Sequence[Recorded], positions: Mapping[str, Sequence[float]],
     conductivity: Mapping[str, tuple[float, float]] | None = None, revisions: Sequence[str] = ("now", "before"),
-    mesh: NamedMesh | None = None,
+    mesh: NamedMesh | None = None, limits: tuple[float, float] | None = None,
 ) -> dict[str, Any]:  # fmt: skip
     """All the page draws.
 
     conductivity : part -> across and along the axis (W/m/K), for heat flux;  revisions : names of a test's states
-    mesh : where the nodes of the tests' networks are
+    mesh : where the nodes of the tests' networks are;  limits : of the colours (degC), wider where a state is beyond
     """
     every, runs = [part for t in tests for part in t.states], [t.network for t in tests if t.network is not None]
     order, colours = np.argsort(nodes.region, kind="stable"), part_colours(nodes.parts, nodes.identities)
-    low, high = rounded(min(float(f.min()) for f in every), max(float(f.max()) for f in every))
+    ends = [*(limits or ()), *(float(end) for f in every for end in (f.min(), f.max()))]
+    low, high = rounded(min(ends), max(ends))
     return {
         "title": title, "points": packed_numbers(nodes.points), "tets": packed_integers(nodes.tets[order]),
         "faces": packed_integers(_faces(nodes)[order, None]), "parts": _parts(nodes, colours),
