@@ -10,7 +10,7 @@ from pathlib import Path
 from PIL import Image
 
 from thermoscope.case_folder.folder import load_case
-from thermoscope.case_folder.runs import before_last, by_interest, fields, held
+from thermoscope.case_folder.runs import before_last, by_interest, fields, held, temperature_range
 from viz import Comparison, cutaway, sensors, split
 from viz.colours import LIGHT
 from viz.rendering import scene
@@ -25,7 +25,8 @@ def draw(case: Path, png: Path) -> None:
     nodes = split(folder.built.mesh)  # type: ignore[union-attr]
     before, after = last.rmse_K[test.name]
     title = f"{test.name}: measured minus modelled"
-    p = cutaway(nodes, fields(earlier, test, nodes, 1)[1][-1], sensors=wrong, title=title)
+    ends = temperature_range(folder, nodes)
+    p = cutaway(nodes, fields(earlier, test, nodes, 1)[1][-1], sensors=wrong, title=title, limits=ends)
     words = f"found missing:\n{last.effect}\nadded: {before:.2f} K → {after:.2f} K rms"
     line = p.add_text(words, position=(0.69, 0.04), viewport=True, font_size=12, color=LIGHT.ink)
     scene.set_font(line.GetTextProperty())

@@ -151,7 +151,8 @@ def main() -> None:
     folder.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as home, sync_playwright() as engine:
         case = shutil.copytree(sys.argv[1], Path(home) / "case", ignore=shutil.ignore_patterns("out"))
-        command = [sys.executable, "-c", "from thermoscope.cli import main; main()", "serve", str(case), "--port", "0"]
+        program = [sys.executable, "-c", "from thermoscope.cli import main; main()"]
+        command = [*program, "show", "serve", str(case), "--port", "0"]
         server = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
         try:
             address = str(server.stdout.readline()).split()[1]  # type: ignore[union-attr]

@@ -8,6 +8,7 @@ import sys
 import pytest
 
 pytestmark = pytest.mark.heavy
+LARGEST = 1e6  # bytes of the page of a shipped case
 
 pytest.importorskip("material", reason="needs mkdocs-material: uv pip install mkdocs-material 'mkdocstrings[python]'")
 pytest.importorskip("mkdocstrings")
@@ -40,6 +41,7 @@ def test_gallery_shows_every_example(root, site):
 
 def test_a_machine_can_be_turned_in_the_browser(site):
     page = (site / "road-test-viewer.html").read_text()
+    assert len(page.encode()) < LARGEST
     data = json.loads(page.partition('id="data">')[2].partition("</script>")[0])
     assert len(data["tests"]) == 5
     assert {"flange.right", "winding.armature.left"} <= {part["name"] for part in data["parts"]}

@@ -9,6 +9,7 @@ from geom.errors import InputError
 from thermoscope.case_folder.folder import load_case
 from thermoscope.commands.show.plan import plan
 from validation.planning.predicted_curves import UNCHANGED, predicted_curves, schedule
+from viz.figures.experiment import predicted
 
 RIVALS = ("convection@flange", "radiation@flange")
 
@@ -38,6 +39,15 @@ def test_what_it_cannot_plan_is_one_message(case, tmp_path, effects, test, words
 def test_a_file_that_is_no_page_is_refused(case, tmp_path):
     with pytest.raises(InputError, match="is no name"):
         plan(str(case), RIVALS, None, tmp_path / "p.png", None)
+
+
+def test_the_names_of_hypotheses_cover_no_curve(case):
+    folder = load_case(case)
+    figure = predicted(predicted_curves(folder.case, {"as it is": folder.case.model, "again": folder.case.model}))
+    figure.draw_without_rendering()
+    (legend,) = figure.legends
+    assert [text.get_text() for text in legend.get_texts()] == ["as it is", "again"]
+    assert not any(legend.get_window_extent().overlaps(ax.get_window_extent()) for ax in figure.axes)
 
 
 def test_one_model_twice_is_not_told_apart(case):

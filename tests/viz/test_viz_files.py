@@ -31,6 +31,13 @@ def test_mp4_has_every_frame(tmp_path):
     assert seconds == pytest.approx(1.0, abs=0.4)  # the encoder rounds the last frame's duration
 
 
+def test_words_of_later_pictures_have_the_font_of_the_first(tmp_path):
+    """VTK draws a second headline as soon as it is there, with whatever font it has by then. Equal pictures are one."""
+    file = animate(NODES, [0.0, 600.0], FIELDS[[0, 0]], tmp_path / "warm.gif", titles=["12 min", "12 min"])
+    with Image.open(file) as film:
+        assert getattr(film, "n_frames", 1) == 1
+
+
 def test_other_endings_are_refused(tmp_path):
     with pytest.raises(InputError, match=r"\.gif or \.mp4"):
         animate(NODES, [0.0], FIELDS[:1], tmp_path / "warm.avi")

@@ -27,13 +27,13 @@ def heat():
         node_link(net, "contact:housing|yoke", "contact", "housing", "yoke", Fixed(2.0)),
         node_link(net, "film:housing.outer", "film", "housing", "ambient", Fixed(5.0)),
     ]
-    net = net.extended(links, [node_source(net, "loss:iron", "iron", {"yoke": 1.0}, Fixed(100.0))])
+    losses = {"loss:iron": 90.0, "loss:iron^speed_rpm": 10.0}  # the second is what an exponent off its value changes
+    net = net.extended(links, [node_source(net, n, "iron", {"yoke": 1.0}, Fixed(w)) for n, w in losses.items()])
     seconds = np.array([0.0, 10.0])
     z = np.array([72.5, 35.0, 20.0])  # 75 W through 2 W/K and 5 W/K, air at 20 degC
     through = {"contact:housing|yoke": -75.0 * seconds, "film:housing.outer": 75.0 * seconds}
-    return heat_flows(
-        net, Balance(seconds, through, {"loss:iron": 100.0 * seconds}, 75.0 * seconds, 25.0 * seconds), z=z
-    )
+    made = {name: watts * seconds for name, watts in losses.items()}
+    return heat_flows(net, Balance(seconds, through, made, 75.0 * seconds, 25.0 * seconds), z=z)
 
 
 def test_what_is_lost_leaves_or_is_stored(heat):
@@ -82,6 +82,16 @@ def test_ribbons_carry_their_watts():
     shown = ["copper  300 W", "iron  100 W", "400 W", "fan  200 W", "housing  120 W", "warms the machine  79 W"]
     assert [word for word in shown if word not in text] == []
     assert "shaft" not in text
+
+
+@pytest.mark.parametrize("count", [1, 14])
+def test_ribbons_stay_inside_the_drawing(count):
+    (ax,) = sankey_of_losses(Heat({f"loss {i}": 100.0 for i in range(count)}, (), {"housing": 1.0})).axes
+    low, high = ax.get_ylim()
+    for ribbon in ax.patches:
+        y = ribbon.get_path().vertices[:, 1]
+        assert low - 1e-9 <= y.min()
+        assert y.max() <= high + 1e-9
 
 
 def test_no_losses_no_ribbons():

@@ -12,7 +12,7 @@ from fictional import HISTORY, PLACES, POSITIONS, TIME, comparison
 from small_motor import motor
 
 from geom.errors import InputError
-from viz.recordings.arrangement import apart, blueprint
+from viz.recordings.arrangement import apart, beside, blueprint, seen
 from viz.recordings.recording import TIME as TIME_LINE
 from viz.recordings.recording import verify, write_recording
 from viz.rendering.nodes import split
@@ -92,6 +92,16 @@ def test_names_of_sensors_cover_none_before_them():
     _, right, up = View().axes()
     places = np.array([[0.0, 0.0, 0.0], 0.01 * diagonal * right, 0.125 * diagonal * up, 0.2 * diagonal * right])
     assert apart(places, NODES.points) == [True, False, True, True]
+
+
+def test_names_of_what_is_hidden_stand_beside_the_machine():
+    """On the line from the middle through the sensor as it is first seen, beyond every point of the machine."""
+    places = np.array([[0.01, 0.0, 0.3], [0.1, -0.1, 0.5], [-0.12, 0.1, 0.2]])
+    at, outline = (seen(points, NODES.points)[0] for points in (beside(places, NODES.points), NODES.points))
+    for end, before in zip(at, seen(places, NODES.points)[0], strict=True):
+        away = end / np.linalg.norm(end)
+        assert away == pytest.approx(before / np.linalg.norm(before))
+        assert (outline @ away).max() < end @ away
 
 
 def test_a_broken_file_is_not_valid(recording, tmp_path):

@@ -8,13 +8,17 @@ from test_viz_ghost import eye_of, first_hit
 
 from geom import build_mesh, load_machine
 from viz import QUARTER, Sensor, split
+from viz.appearance.portrait import VIEW
 from viz.machine.parts import ASIDE
 from viz.machine.thermocouples import LABELS, marked
 from viz.rendering.cut import cut_away
+from viz.rendering.ghost import RADIUS
 from viz.rendering.scene import View
 from viz.rendering.visibility import SLACK
 
-VIEWS = {"default": View(), "other side": View((1.0, 0.42, 0.62)), "aside": ASIDE, "below": View((-1.0, -0.5, -0.4))}
+VIEWS = {"default": View(), "other side": View((1.0, 0.42, 0.62)), "aside": ASIDE, "below": View((-1.0, -0.5, -0.4)),
+         "portrait": VIEW}  # fmt: skip
+WIDE = 0.25  # of a whole window: half of it even between two neighbours, and more than its sensor's dot covers
 
 
 def placed(root):
@@ -45,7 +49,7 @@ def cases(request):
 def test_every_label_points_at_its_own_part(cases, view):
     """Six labels at a time, as pictures have them; so many rounds that every sensor has had one."""
     for surface, known in cases.values():
-        eye = eye_of(surface.points, VIEWS[view])
+        eye, size = eye_of(surface.points, VIEWS[view]), np.linalg.norm(np.ptp(surface.nodes.points, axis=0))
         names = list(known)
         for first in range(0, len(names), LABELS):
             chosen = names[first : first + LABELS]
@@ -57,3 +61,10 @@ def test_every_label_points_at_its_own_part(cases, view):
                 at, part = first_hit(seen.cut.solid, eye, known[name][0])
                 assert np.linalg.norm(at - known[name][0]) < SLACK, name
                 assert part == known[name][1], name
+            for one in seen.cut.windows:
+                assert outlined(one.rim) > WIDE * np.pi * (RADIUS * size) ** 2
+
+
+def outlined(rim):
+    """Area inside a flat closed line through (n, 3) points (m2)."""
+    return np.linalg.norm(np.cross(rim, np.roll(rim, -1, axis=0)).sum(axis=0)) / 2

@@ -8,22 +8,26 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from small_motor import motor
+from small_motor import RADII, motor
 
+from geom import build_mesh, load_machine
 from lumped.model.network import Row
 from validation.case import Channel, Test
 from viz import split
 from viz.data import Comparison
-from viz.viewer.error_map import ERROR, ErrorMap, packed_maps
+from viz.viewer.error_map import ERROR, SHARE, ErrorMap, packed_maps
 from viz.viewer.flux import nodal_flux
 from viz.viewer.low_rank import ERROR_K, low_rank
 from viz.viewer.network import NetworkRun
 from viz.viewer.packing import packed_integers, packed_numbers, unpacked
-from viz.viewer.page import Earlier, Recorded, document, render, write_viewer
+from viz.viewer.page import STEP_K, Earlier, Recorded, document, render, write_viewer
+from viz.viewer.part_shapes import mixed, packed_fields
 
 NODES = split(motor(24))
 TIMES = np.linspace(0.0, 3600.0, 13)
 PLACE = {"T_housing": (0.0, 0.22, 0.3), "T_shaft": (0.0, 0.0, 0.3)}
+LARGEST = 1e6  # bytes of a page
+CASE_MESH_M = 0.06  # size of the elements of a case, see thermoscope.pipeline.build
 BROWSER = shutil.which("chromium") or shutil.which("google-chrome")
 
 
@@ -50,6 +54,41 @@ def test_mixed_shapes_are_the_fields():
     assert np.abs(found.fields() - fields).max() <= ERROR_K
 
 
+def test_every_part_mixes_its_own_shapes_to_the_fields():
+    """Parts out of step with each other: the machine as a whole needs more shapes than any part does."""
+    fields = warming(60.0)
+    packed = packed_fields(fields, NODES, ERROR_K, STEP_K)
+    assert len(packed["blocks"]) == len(NODES.parts)
+    assert max(block["columns"] - 1 for block in packed["blocks"]) < len(low_rank(fields).shapes)
+    assert np.abs(mixed(packed) - fields).max() < 1.5 * ERROR_K
+
+
+def paced(nodes, times: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """Ten patterns in every part, each at a pace of its own: parts of a condensed network have no more."""
+    x, y, z = (nodes.points / np.abs(nodes.points).max(axis=0)).T
+    patterns = np.stack([np.ones_like(x), x, y, z, x * y, y * z, x * z, x * x, y * y, z * z])
+    fields = np.zeros((len(times), nodes.size))
+    for part in range(len(nodes.parts)):
+        K, tau = rng.normal(0.0, 5.0, len(patterns)), rng.uniform(300.0, 3000.0, len(patterns))
+        own = nodes.owner == part
+        fields[:, own] = (K * (1 - np.exp(-times[:, None] / tau))) @ patterns[:, own]
+    return fields
+
+
+def test_the_page_of_a_shipped_machine_is_small():
+    """A mesh as fine as that of its case, five tests of an hour with three models each."""
+    nodes, rng = split(build_mesh(load_machine("series-dc-100kw"), CASE_MESH_M)), np.random.default_rng(2)
+    times = np.linspace(0.0, 3600.0, 61)
+    readings = recorded().comparison.model
+    tests = [
+        replace(recorded(), times=times, fields=paced(nodes, times, rng), before=paced(nodes, times, rng),
+                earlier=(Earlier(paced(nodes, times, rng), readings),))
+        for _ in range(5)
+    ]  # fmt: skip
+    page = render(document("motor", nodes, tests, PLACE, revisions=["2", "1", "0"]))
+    assert len(page.encode()) < LARGEST
+
+
 def test_a_field_that_stays_needs_no_shape():
     assert len(low_rank(np.full((3, 5), 20.0)).shapes) == 0
 
@@ -62,15 +101,19 @@ def test_packing_loses_no_whole_number_and_half_a_step_of_others():
     assert np.abs(unpacked(packed_numbers(numbers)) - numbers).max() <= np.ptp(numbers, axis=0).max() / 65535 / 2 * 1.01
 
 
+def test_packing_keeps_what_is_not_known():
+    numbers = np.array([[np.nan, 1.0, np.nan], [2.0, np.nan, np.nan], [3.0, 5.0, np.nan]])
+    assert unpacked(packed_numbers(numbers, 0.5)) == pytest.approx(numbers, nan_ok=True)
+
+
 @pytest.mark.parametrize("before", [True, False])
 def test_the_page_holds_the_fields_it_was_made_from(before):
     one = recorded(before)
     held = document("motor", NODES, [one], PLACE)
-    mean, shapes = unpacked(held["mean"])[:, 0], unpacked(held["shapes"])
-    states = held["tests"][0]["states"]
+    found, states = mixed(held["fields"]), held["tests"][0]["states"]
     assert len(states) == 1 + before
-    for state, fields in zip(states, one.states, strict=True):
-        assert np.abs(mean + np.array(state) @ shapes.T - fields).max() < 1.5 * ERROR_K
+    for first, fields in zip(states, one.states, strict=True):
+        assert np.abs(found[first : first + len(fields)] - fields).max() < 1.5 * ERROR_K
     assert np.abs(unpacked(held["points"]) - NODES.points).max() < 1e-5
 
 
@@ -117,6 +160,56 @@ def test_a_browser_draws_it_without_complaint(tmp_path):
     assert said == []
 
 
+@pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
+def test_parts_are_ghosted_and_hidden_and_the_cut_is_the_true_section(tmp_path):
+    """What lay on top is no longer under the pointer; the cut shaft has the area of its polygon, in the plane."""
+    playwright = pytest.importorskip("playwright.sync_api")
+    write_viewer(tmp_path / "v.html", "motor", NODES, [recorded()], PLACE)
+    with playwright.sync_playwright() as engine:
+        arguments = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+        browser = engine.chromium.launch(executable_path=BROWSER, args=arguments)
+        page, said = browser.new_page(viewport={"width": 800, "height": 600}), []
+        page.on("console", lambda message: said.append(message.text))
+        page.on("pageerror", lambda fault: said.append(str(fault)))
+        page.goto((tmp_path / "v.html").as_uri())
+        page.wait_for_function("window.viewer && viewer.frames > 0")
+        page.click("text=Parts: shown, ghost, hidden")
+        page.select_option("#axis", "-1")
+        top, pictures = page.evaluate(TOP)["name"], {}
+        for state in ("shown", "ghost", "hidden"):
+            button = page.locator("#parts button", has_text=top)
+            assert button.inner_text().endswith(state)
+            page.wait_for_function("!viewer.dirty && viewer.smooth")
+            assert (page.evaluate(TOP)["name"] == top) == (state == "shown")
+            pictures[state] = page.locator("#stage").screenshot()
+            button.click()
+        page.wait_for_function("!viewer.dirty && viewer.smooth")
+        assert page.locator("#stage").screenshot() == pictures["shown"]
+        assert len(set(pictures.values())) == 3
+        assert np.ptp(section(page, "2", 0.4), axis=(0, 1))[2] == pytest.approx(0.0, abs=1e-6)
+        area = np.linalg.norm(np.cross(*np.moveaxis(np.diff(section(page, "2", 0.4, "shaft"), axis=1), 1, 0)), axis=1)
+        assert area.sum() / 2 == pytest.approx(24 / 2 * RADII[1] ** 2 * np.sin(2 * np.pi / 24), rel=1e-3)
+        browser.close()
+    assert said == []
+
+
+def section(page, axis: str, share: float, part: str | None = None) -> np.ndarray:
+    """(n, 3, 3) m: corners of the triangles in the page's cut across an axis, of one part or all."""
+    page.select_option("#axis", axis)
+    page.evaluate("(v) => { $('cut').value = 1000 * v; $('cut').oninput(); }", share)
+    rows = np.array(page.evaluate(SECTION)).reshape(-1, 9)[:, :3]
+    first, count = (0, len(rows)) if part is None else page.evaluate("viewer.section.spans")[NODES.parts.index(part)]
+    return rows[first : first + count].reshape(-1, 3, 3)
+
+
+TOP = "viewer.pick($('gl').clientWidth * 0.45, $('gl').clientHeight * 0.5)"
+SECTION = """(() => {
+  const v = viewer, out = new Float32Array(9 * v.section.spans.reduce((n, [, count]) => n + count, 0));
+  v.gl.bindBuffer(v.gl.ARRAY_BUFFER, v.section.buffer); v.gl.getBufferSubData(v.gl.ARRAY_BUFFER, 0, out);
+  return Array.from(out);
+})()"""
+
+
 def test_flux_of_a_linear_field_is_the_conductivity_times_its_slope():
     """Fourier: 100 K/m along the axis and 50 K/m across it in parts of their own conductivities, to rounding."""
     k = {part: (2.0 + i, 30.0 + i) for i, part in enumerate(NODES.parts)}
@@ -160,9 +253,9 @@ def mapped() -> Recorded:
 def test_errors_between_sensors_are_told_by_residuals():
     """The packed map is the map within two hundredths of a residual; silent sensors tell nothing."""
     one = mapped()
-    packed = packed_maps([one.error_map])
-    gains = unpacked(packed["gains"]) @ np.array(list(packed["amplitudes"][0].values())).T
-    assert np.abs(gains - one.error_map.gain).max() < 1.5 * ERROR
+    packed = packed_maps([one.error_map], NODES)
+    assert np.abs(mixed(packed["gains"]).T - one.error_map.gain).max() < 1.5 * ERROR
+    assert np.abs(mixed(packed["told"])[0] - one.error_map.explained).max() < 1.5 * SHARE
     silent = one.error_map.at({name: np.array([np.nan]) for name in PLACE})
     assert (silent == 0.0).all()
 

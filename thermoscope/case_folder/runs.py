@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 ORDER = {"hold-out": 0, "validate": 1, "calibrate": 2}  # of tests by what they tell of a model
 HOT = "hottest point of "
+RANGE_FRAMES = 25  # of a test: between two of them a machine moves by less than colours are rounded
 BLIND = 0.9  # an interval this wide, compared with the one expected before, taught nothing
 
 
@@ -85,6 +86,16 @@ def fields(case: Case, test: Test, nodes: SplitMesh, frames: int) -> tuple[Array
     states = np.asarray(run.z)[chosen, : len(network.states)]
     T = [np.concatenate([recovery.of_part(part, x) for part in nodes.parts]) for x in states]
     return run.time[chosen], np.array(T)
+
+
+def temperature_range(folder: Folder, nodes: SplitMesh) -> tuple[float, float]:
+    """Coldest and hottest temperature (degC) of all tests, with the model now and before its last step.
+
+    Pictures, films, recordings, viewer and workbench of a case take their colours from it, so that they compare.
+    """
+    models = [case for case in (folder.case, before_last(folder)) if case is not None]
+    every = [fields(case, test, nodes, RANGE_FRAMES)[1] for case in models for test in case.tests]
+    return min(float(T.min()) for T in every), max(float(T.max()) for T in every)
 
 
 def steps(folder: Folder) -> list[dict[str, Any]]:

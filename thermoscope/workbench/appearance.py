@@ -31,12 +31,6 @@ class Appearance:
     curves: Mapping[str, Comparison]
     frames: Mapping[str, Frames]
 
-    @property
-    def limits(self) -> tuple[float, float]:
-        """Coldest and hottest temperature of all tests (degC)."""
-        values = [T for _, T in self.frames.values()]
-        return min(float(T.min()) for T in values), max(float(T.max()) for T in values)
-
     def test(self, name: str) -> Mapping[str, Any]:
         """The errors of one test."""
         return next(t for t in self.errors["tests"] if t["name"] == name)

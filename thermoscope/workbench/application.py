@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from geom.errors import MissingDependency
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import History
-from thermoscope.case_folder.runs import at_revision
+from thermoscope.case_folder.runs import at_revision, temperature_range
 from thermoscope.console.terminal import Progress
 from thermoscope.workbench.appearance import Appearance, appearance_of
 
@@ -30,6 +31,12 @@ class Bench:
     first: Appearance
     surface: Surface | None = None
     why_flat: str = ""
+
+    @cached_property
+    def limits(self) -> tuple[float, float]:
+        """Coldest and hottest temperature that colours show (degC), of a case with a surface."""
+        assert self.surface is not None
+        return temperature_range(self.folder, self.surface.nodes)
 
 
 def at(folder: Folder, history: History) -> Folder:

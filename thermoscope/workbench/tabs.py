@@ -37,7 +37,7 @@ class Tab:
         server: Any = get_server(name, client_type="vue3")
         self.session = Session(bench, server, turn_to)
         if bench.surface is not None:
-            self.session.shown.stage = Stage(bench.surface, bench.first.limits, self._picked)
+            self.session.shown.stage = Stage(bench.surface, bench.limits, self._picked)
         draw(self.session)
         self._server, self._task = server, server.start(
             backend="generic", exec_mode="task", show_connection_info=False, open_browser=False, timeout=0,

@@ -42,8 +42,11 @@ def predicted(plan: PredictedCurves, *, sensors: int = SENSORS, png: str | Path 
         end_labels(ax, ends, [f"{end:.1f}" for end in ends], COLOURS)
     for ax in axes[len(chosen) :]:
         ax.set_visible(False)
-    for i, (name, colour) in enumerate(zip(plan.curves, COLOURS, strict=False)):
-        axes[0].text(0.03, 0.97 - 0.1 * i, name, transform=axes[0].transAxes, va="top", color=colour, fontsize=8.5)
+    names = list(plan.curves)[: len(COLOURS)]
+    figure.legend(
+        axes[0].get_lines(), names, loc="outside upper left", ncols=2, frameon=False, labelcolor="linecolor",
+        handlelength=0.0, fontsize=8.5,
+    )  # fmt: skip
     figure.supxlabel(f"time ({unit})", fontsize=9.5, color=LIGHT.ink)
     figure.supylabel("temperature (°C)", fontsize=9.5, color=LIGHT.ink)
     return paper.saved(figure, png)

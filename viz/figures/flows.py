@@ -60,7 +60,10 @@ def heat_flows(network: Network, balance: Balance, step: int = -1, z: Array | No
 
     z : (n_states + n_boundaries,) degC after that step; the conductances follow from it
     """
-    losses = {s.name.removeprefix("loss:"): float(balance.power(s.name)[step]) for s in network.sources}
+    losses: dict[str, float] = {}
+    for source in network.sources:
+        name = source.name.removeprefix("loss:").partition("^")[0]  # what an exponent changes is the loss's own
+        losses[name] = losses.get(name, 0.0) + float(balance.power(source.name)[step])
     pairs: dict[tuple[str, str, str], Array] = {}
     out: dict[str, float] = {}
     for link in network.links:

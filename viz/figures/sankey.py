@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 SMALL = 0.01  # of the total: smaller exits are drawn as one
 WARMS, ELSEWHERE = "warms the machine", "elsewhere"
 LOW, HIGH = 0.3, 1.3  # of the total: the drawing reaches below and above the trunk
+GAP = 0.065  # of the total between ribbons: nearly the height of a name; less where there are many
 
 
 @paper.styled
@@ -60,7 +61,7 @@ def colour_of(name: str, heat: Heat) -> str:
 
 def _side(ax: Axes, parts: dict[str, float], outer: float, inner: float, colours: dict[str, str], total: float) -> None:
     """Ribbons from a column at `outer`, spread out so that names fit, to the trunk at `inner`."""
-    gap = 0.065 * total
+    gap = min(GAP, (HIGH + LOW - 1) / max(len(parts) - 1, 1)) * total
     room = sum(parts.values()) + gap * (len(parts) - 1)
     y, at = total, (total + room) / 2 if room > total else total
     middles, sign = [], -1 if outer < inner else 1

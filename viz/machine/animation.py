@@ -34,6 +34,7 @@ def animate(
     frames_per_second: float = 12.0,
     titles: Sequence[str] = (),
     sensors: Sequence[Sequence[Sensor]] = (),
+    limits: tuple[float, float] | None = None,
     size: tuple[int, int] = (960, 600),
     tell: Callable[[int], None] = lambda number: None,
 ) -> Path:
@@ -41,6 +42,7 @@ def animate(
 
     titles : one per field, else the minute of the test;  tell : called with the number of each picture that is drawn
     sensors : one row per field, all in one order; those that the model misses pulse
+    limits : of the colour scale (degC), those of all fields if not given
 
     An .mp4 needs imageio-ffmpeg (the extra [video]), which brings an encoder of its own, under the GPL.
     """
@@ -53,7 +55,7 @@ def animate(
         raise InputError(f"{len(sensors)} rows of sensors but {len(T)} fields", "animation", "one row per field")
     p, view = scene.plotter(theme, size), view or View()
     surface = cut_away(nodes, wedge)
-    data = field.paint(p, surface, T[0], (float(T.min()), float(T.max())), theme)
+    data = field.paint(p, surface, T[0], limits or (float(T.min()), float(T.max())), theme)
     scene.colour_bar(p, field.UNIT, theme)
     scene.look(p, surface.points, view, Room(right=0.12, top=scene.TITLE))
     pictures, pulses = [], Pulses(p, surface, sensors[0]) if sensors else None

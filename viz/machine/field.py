@@ -98,14 +98,15 @@ def pair(
     after: Array,
     *,
     titles: tuple[str, str] = ("before", "after"),
+    limits: tuple[float, float] | None = None,
     wedge: Wedge | None = QUARTER,
     view: View | None = None,
     theme: Theme = LIGHT,
     png: str | Path | None = None,
 ) -> pyvista.Plotter:
-    """Two fields side by side on one colour scale."""
+    """Two fields side by side on one colour scale, its limits (degC) those of both if not given."""
     fields = [on_nodes(nodes, before), on_nodes(nodes, after)]
-    limits = min(f.min() for f in fields), max(f.max() for f in fields)
+    limits = limits or (min(f.min() for f in fields), max(f.max() for f in fields))
     p, view = scene.plotter(theme, (1280, 600), (1, 2)), view or View()
     surface = cut_away(nodes, wedge)
     for i, field in enumerate(fields):

@@ -15,6 +15,7 @@ from viz.pages import html
 if TYPE_CHECKING:
     from validation.planning.predicted_curves import PredictedCurves
 
+BLANK = "\u2007" * 6  # room for a pen
 DECISIVE = 2.0  # one-sigma distances from which a reading speaks for one of two
 
 
@@ -64,10 +65,15 @@ def _ends(plan: PredictedCurves) -> str:
     """Temperatures at the end by hypothesis; a column to write into."""
     chosen = sorted(plan.test.channels, key=lambda c: -plan.spread_K(c.name))[: 2 * SENSORS]
     rows: list[list[html.Cell]] = [
-        [short(c.name), *(round(float(y[c.name][-1]), 1) for y in plan.curves.values()), ""] for c in chosen
+        [short(c.name), *(_degrees(y[c.name][-1]) for y in plan.curves.values()), BLANK] for c in chosen
     ]
     return "<h3>At the end (°C)</h3>" + html.table(["sensor", *plan.curves, "read"], rows)
 
 
 def _clock(second: float) -> str:
     return f"{second / 60:.0f} min"
+
+
+def _degrees(T: float) -> str:
+    """One digit after the point, all points below one another."""
+    return f"{T:6.1f}".replace(" ", "\u2007")

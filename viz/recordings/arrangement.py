@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 SPEED = 360.0  # times as fast as the test: an hour in ten seconds
 NAME = 0.16, 0.04  # width and height of a sensor's name, share of the machine's diagonal in the first view
+OUT = 0.05  # of the diagonal: as far beyond the machine's outline stand the names of what it hides
 DISTANCE = 1.02  # of the machine's diagonal: fills the view at rerun's own angle of view
 
 
@@ -24,8 +25,11 @@ def blueprint(comparison: Comparison, first: str, points: NDArray[np.float64], w
 
     end = float(comparison.test.time[-1])
     names = sorted((c.name for c in comparison.channels), key=lambda name: name != first)
-    curves = rrb.Tabs(*(_over_time(f"curves/{name}", f"{short(name)} (°C)", end) for name in names), active_tab=0)
-    below: list[Any] = [_over_time("inputs", "inputs", end)] if comparison.test.inputs else []
+    low = rrb.Corner2D.RightBottom  # free where a machine warms up
+    warming = (_over_time(f"curves/{name}", f"{short(name)} (°C)", end, low) for name in names)
+    curves = rrb.Tabs(*warming, active_tab=0)
+    shares = "inputs, shares of the largest"
+    below: list[Any] = [_over_time("inputs", shares, end)] if comparison.test.inputs else []
     below += [rrb.TextLogView(origin="events", name="events")] if comparison.events else []
     right = rrb.Vertical(curves, _over_time("residual", "measured − model (K)", end), *below)
     shown = rrb.Horizontal(_machine(comparison, points), _bar(), column_shares=[6, 1])
@@ -54,6 +58,28 @@ def apart(places: NDArray[np.float64], points: NDArray[np.float64]) -> list[bool
     return out
 
 
+def eye(points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(3,) m, from where the machine is first seen."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    return np.asarray((low + high) / 2 + DISTANCE * np.linalg.norm(high - low) * View().axes()[0])
+
+
+def seen(points: NDArray[np.float64], machine: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """(n, 2) to the right and up, per length ahead, and (n,) m ahead, of points (n, 3) m when it is first seen."""
+    towards, right, up = View().axes()
+    ahead = (eye(machine) - points) @ towards
+    return (points - eye(machine)) @ np.stack([right, up], axis=1) / ahead[:, None], ahead
+
+
+def beside(places: NDArray[np.float64], machine: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(n, 3) m: out from places (n, 3) m, across the first line of sight, to just beyond the machine's outline."""
+    _, right, up = View().axes()
+    (at, ahead), outline = seen(places, machine), seen(machine, machine)[0]
+    away = at / np.linalg.norm(at, axis=1, keepdims=True)
+    far = (outline @ away.T).max(axis=0) + OUT / DISTANCE - np.einsum("ij,ij->i", at, away)
+    return np.asarray(places + (far * ahead)[:, None] * (away @ np.stack([right, up])))
+
+
 def _bar() -> rrb.Spatial2DView:
     import rerun.blueprint as rrb
 
@@ -63,15 +89,11 @@ def _bar() -> rrb.Spatial2DView:
 def _machine(comparison: Comparison, points: NDArray[np.float64]) -> rrb.Spatial3DView:
     import rerun.blueprint as rrb
 
-    low, high = points.min(axis=0), points.max(axis=0)
-    towards, _, _ = View().axes()
-    middle = (low + high) / 2
-    eye = rrb.EyeControls3D(
-        position=middle + DISTANCE * np.linalg.norm(high - low) * towards, look_target=middle, eye_up=View().up
-    )  # fmt: skip
+    middle = (points.min(axis=0) + points.max(axis=0)) / 2
+    first = rrb.EyeControls3D(position=eye(points), look_target=middle, eye_up=View().up)
     return rrb.Spatial3DView(
         origin="machine", name=f"{comparison.test.name}: temperature", background=[255, 255, 255], line_grid=False,
-        eye_controls=eye,
+        eye_controls=first,
     )  # fmt: skip
 
 
@@ -81,10 +103,10 @@ def _text(origin: str, name: str) -> rrb.TextDocumentView:
     return rrb.TextDocumentView(origin=origin, name=name)
 
 
-def _over_time(origin: str, name: str, end: float) -> rrb.TimeSeriesView:
+def _over_time(origin: str, name: str, end: float, legend: rrb.Corner2D | None = None) -> rrb.TimeSeriesView:
     import rerun as rr
     import rerun.blueprint as rrb
 
     at = rrb.TimeRangeBoundary.absolute
     axis = rrb.TimeAxis(view_range=rr.TimeRange(start=at(seconds=0.0), end=at(seconds=end)))
-    return rrb.TimeSeriesView(origin=origin, name=name, axis_x=axis)
+    return rrb.TimeSeriesView(origin=origin, name=name, axis_x=axis, plot_legend=legend)

@@ -25,11 +25,12 @@ from viz.figures.curves import wrongness
 from viz.figures.errors import PALE, error_paths
 from viz.machine.thermocouples import LABELS
 from viz.recordings import scale
-from viz.recordings.arrangement import apart, blueprint
+from viz.recordings.arrangement import apart, beside, blueprint, eye
 from viz.rendering.cut import QUARTER, Surface, Wedge, cut_away
 from viz.rendering.edges import outline_strips
 from viz.rendering.nodes import SplitMesh, on_nodes
 from viz.rendering.scale import rounded
+from viz.rendering.visibility import covered, obstacle
 
 if TYPE_CHECKING:
     import rerun as rr
@@ -51,6 +52,7 @@ def write_recording(
     revision_fields: Array | None = None,
     revision_residuals: Sequence[Mapping[str, float]] = (),
     wedge: Wedge | None = QUARTER,
+    limits: tuple[float, float] | None = None,
 ) -> Path:
     """Write an .rrd file and return its path.
 
@@ -59,6 +61,7 @@ def write_recording(
     history : revisions as in viz.figures.errors.staircase
     revision_fields : (n_revisions + 1, n_nodes) degC, the field at the end of the test, start first
     revision_residuals : for each of these channel -> measured - modelled (K) then
+    limits : of the colour scale (degC), widened to round numbers; those of all fields if not given
     """
     import rerun as rr
 
@@ -71,11 +74,12 @@ def write_recording(
     worst = max(comparison.channels, key=comparison.rmse).name
     surface = cut_away(nodes, wedge)
     stream.save(path, default_blueprint=blueprint(comparison, worst, surface.points, bool(history)))
-    _machine(stream, surface, times, fields, revision_fields)
-    scale.colour_bar(stream, *rounded(float(fields.min()), float(fields.max())))
+    ends = rounded(*(limits or (float(fields.min()), float(fields.max()))))
+    _machine(stream, surface, times, fields, revision_fields, ends)
+    scale.colour_bar(stream, *ends)
     scale.inputs(stream, comparison, TIME)
     scale.events(stream, comparison, TIME)
-    _sensors(stream, comparison, times, positions, revision_residuals, surface.points)
+    _sensors(stream, comparison, times, positions, revision_residuals, surface)
     _curves(stream, comparison)
     _revisions(stream, history)
     stream.flush()
@@ -99,21 +103,21 @@ def verify(path: str | Path) -> None:
 
 
 def _machine(
-    stream: rr.RecordingStream, surface: Surface, times: Array, fields: Array, revisions: Array | None
-) -> None:
+    stream: rr.RecordingStream, surface: Surface, times: Array, fields: Array, revisions: Array | None,
+    limits: tuple[float, float],
+) -> None:  # fmt: skip
     import rerun as rr
 
-    low, high = rounded(float(fields.min()), float(fields.max()))
     stream.log("machine", rr.ViewCoordinates.RIGHT_HAND_Y_UP, static=True)
     mesh = rr.Mesh3D(vertex_positions=surface.points, triangle_indices=surface.triangles)
     stream.log("machine/field", mesh, static=True)
     lines = rr.LineStrips3D(list(outline_strips(surface)), colors=[31, 41, 51, 150], radii=rr.Radius.ui_points(0.6))
     stream.log("machine/edges", lines, static=True)
     stream.log("legend", rr.TextDocument(_LEGEND, media_type="text/markdown"), static=True)
-    _colours(stream, surface, rr.TimeColumn(TIME, duration=times), fields, (low, high))
+    _colours(stream, surface, rr.TimeColumn(TIME, duration=times), fields, limits)
     if revisions is not None:
         steps = rr.TimeColumn(REVISION, sequence=range(len(revisions)))
-        _colours(stream, surface, steps, on_nodes(surface.nodes, revisions), (low, high))
+        _colours(stream, surface, steps, on_nodes(surface.nodes, revisions), limits)
 
 
 def _colours(
@@ -130,7 +134,7 @@ def _colours(
 
 def _sensors(
     stream: rr.RecordingStream, c: Comparison, times: Array, positions: Mapping[str, Sequence[float]],
-    revisions: Sequence[Mapping[str, float]], points: Array,
+    revisions: Sequence[Mapping[str, float]], surface: Surface,
 ) -> None:  # fmt: skip
     import rerun as rr
 
@@ -142,19 +146,32 @@ def _sensors(
         radii=rr.Radius.ui_points(5.0), show_labels=False,
     )  # fmt: skip
     stream.log("machine/sensors", dots, static=True)
-    ranked = sorted(placed, key=lambda channel: -c.rmse(channel) / c.limit_K(channel))
-    free = apart(np.array([positions[channel.name] for channel in ranked]), points)
-    named = [channel for channel, clear in zip(ranked, free, strict=True) if clear][:LABELS]
-    labels = rr.Points3D(
-        [positions[channel.name] for channel in named], labels=[short(channel.name) for channel in named],
-        radii=rr.Radius.ui_points(0.0), show_labels=True, colors=[255, 255, 255],
-    )  # fmt: skip
-    stream.log("machine/names", labels, static=True)
+    _names(stream, sorted(placed, key=lambda channel: -c.rmse(channel) / c.limit_K(channel)), positions, surface)
     residual = np.stack([np.interp(times, c.test.time, c.residual(channel)) for channel in placed], axis=1)
     _markers(stream, c, placed, rr.TimeColumn(TIME, duration=times), residual)
     if revisions:
         ends = np.array([[row.get(channel.name, np.nan) for channel in placed] for row in revisions])
         _markers(stream, c, placed, rr.TimeColumn(REVISION, sequence=range(len(ends))), ends)
+
+
+def _names(
+    stream: rr.RecordingStream, ranked: Sequence[Channel], positions: Mapping[str, Sequence[float]], surface: Surface
+) -> None:
+    """Names of the first that have room; what the machine hides has its name beside it, on a line from its place."""
+    import rerun as rr
+
+    places = np.array([positions[channel.name] for channel in ranked])
+    hidden = covered(obstacle(surface), places, eye(surface.points))
+    at = np.where(hidden[:, None], beside(places, surface.points), places)
+    chosen = np.flatnonzero(apart(at, surface.points))[:LABELS]
+    labels = rr.Points3D(
+        at[chosen], labels=[short(ranked[i].name) for i in chosen], radii=rr.Radius.ui_points(0.0), show_labels=True,
+        colors=[255, 255, 255],
+    )  # fmt: skip
+    stream.log("machine/names", labels, static=True)
+    stubs = [np.stack([places[i], at[i]]) for i in chosen if hidden[i]]
+    lines = rr.LineStrips3D(stubs, colors=_rgba(LIGHT.ink), radii=rr.Radius.ui_points(0.8))
+    stream.log("machine/stubs", lines, static=True)
 
 
 def _markers(
@@ -215,6 +232,7 @@ def _rgba(colour: str) -> int:
 
 _LEGEND = """Sensors: green within the uncertainty, vermilion where the machine is hotter than the model,
 blue where it is colder. Six have names, those furthest beyond their uncertainty; the others under the pointer.
+A name on a line belongs to a sensor inside or behind.
 
 Timelines (chosen at the bottom left): **test_time** runs through the test; for the tab *revisions* choose **revision**.
 """

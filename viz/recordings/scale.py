@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from itertools import cycle
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from viz.colours import BLUE, heat
+from viz.colours import BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION, heat
 from viz.data import Comparison
 from viz.rendering.scale import decimals, marks
 
@@ -14,6 +15,7 @@ if TYPE_CHECKING:
     import rerun as rr
 
 WIDE, HIGH = 24, 256  # pixels of the bar
+COLOURS = (BLUE, VERMILION, GREEN, ORANGE, PURPLE, SKY)
 GAP = 14  # pixels from the bar to its numbers
 
 
@@ -34,15 +36,17 @@ def colour_bar(stream: rr.RecordingStream, low: float, high: float) -> None:
 
 
 def inputs(stream: rr.RecordingStream, comparison: Comparison, timeline: str) -> None:
-    """A curve for each input of the test."""
+    """A curve for each input of the test, as a share of its largest value, which its name tells."""
     import rerun as rr
 
     test = comparison.test
-    for name, values in test.inputs.items():
+    for (name, values), colour in zip(test.inputs.items(), cycle(COLOURS), strict=False):
         value = np.broadcast_to(np.asarray(values, float), np.shape(test.time))
-        stream.log(f"inputs/{name}", rr.SeriesLines(colors=int(BLUE[1:] + "ff", 16), names=name), static=True)
+        largest = float(np.nanmax(np.abs(value), initial=0.0)) or 1.0
+        style = rr.SeriesLines(colors=int(colour[1:] + "ff", 16), names=f"{name} / {largest:.4g}")
+        stream.log(f"inputs/{name}", style, static=True)
         index = rr.TimeColumn(timeline, duration=np.asarray(test.time, float))
-        stream.send_columns(f"inputs/{name}", indexes=[index], columns=rr.Scalars.columns(scalars=value))
+        stream.send_columns(f"inputs/{name}", indexes=[index], columns=rr.Scalars.columns(scalars=value / largest))
 
 
 def events(stream: rr.RecordingStream, comparison: Comparison, timeline: str) -> None:

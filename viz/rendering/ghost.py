@@ -15,14 +15,15 @@ from viz.rendering.cut import Surface, joined, section
 Array = NDArray[np.float64]
 SIDES = 20  # of a window: round to the eye
 OPACITY = 0.16  # of ghosted material: it is there, and what is behind it keeps its colour
+SAME = 1e-6  # rad between lines of sight below which no picture tells them apart
 RADIUS = 0.028  # of the machine's diagonal: three times a dot, so that what is around the sensor can be told
 
 
 @dataclass(frozen=True)
 class Window:
-    """normals : (SIDES, 3) into the window, of planes through the eye (m);  bottom : the sensor's place (m)
+    """normals : (n, 3) into the window, of planes through the eye (m);  bottom : the sensor's place (m)
 
-    towards : unit vector from there to the eye;  rim : (SIDES, 3) m around the bottom
+    towards : unit vector from there to the eye;  rim : (n, 3) m around the bottom
     """
 
     eye: Array
@@ -73,11 +74,11 @@ class Ghosted:
 def ghosted(surface: Surface, places: Array, chosen: NDArray[np.bool_], eye: Array) -> Ghosted:
     """The surface with a window to each chosen one of the places (n, 3) m, as seen from `eye` (m); the deepest last.
 
-    Windows keep off the other places, chosen or not: each must show its own part.
+    Where two lines of sight are close, their windows meet midway: each must show its own part.
     """
     size = float(np.linalg.norm(np.ptp(surface.nodes.points, axis=0)))
     rows = np.flatnonzero(chosen).tolist()
-    windows = [window(places[i], eye, min(RADIUS * size, _free(places, i, eye))) for i in rows]
+    windows = [window(places[i], eye, RADIUS * size, np.delete(places, i, axis=0)) for i in rows]
     windows.sort(key=lambda w: float(np.linalg.norm(w.bottom - eye)))
     if not windows:
         return Ghosted(surface)
@@ -90,21 +91,24 @@ def ghosted(surface: Surface, places: Array, chosen: NDArray[np.bool_], eye: Arr
     return Ghosted(joined([*solid, *floors]), joined(ghosts) if ghosts else None, tuple(windows))
 
 
-def _free(places: Array, i: int, eye: Array) -> float:
-    """Half the distance from a place to the nearest other line of sight (m)."""
-    rays = (places - eye) / np.linalg.norm(places - eye, axis=1, keepdims=True)
-    apart = np.linalg.norm(np.cross(np.delete(rays, i, axis=0), places[i] - eye), axis=1)
-    return float(apart.min(initial=np.inf)) / 2
-
-
-def window(at: Array, eye: Array, radius: float) -> Window:
-    """A window of `radius` (m) around a place, its bottom across the line of sight."""
+def window(at: Array, eye: Array, radius: float, others: Array) -> Window:
+    """A window of `radius` (m) around a place, its bottom across the line of sight, up to midway to others (n, 3) m."""
     towards = (eye - at) / np.linalg.norm(eye - at)
     right = np.cross([0.0, 1.0, 0.0], towards)
     right /= np.linalg.norm(right)
     angle = 2 * np.pi * np.arange(SIDES) / SIDES
-    rim = at + radius * (np.cos(angle)[:, None] * right + np.sin(angle)[:, None] * np.cross(towards, right))
-    normals = np.cross(rim - eye, np.roll(rim, -1, axis=0) - eye)
+    spokes = radius * (np.cos(angle)[:, None] * right + np.sin(angle)[:, None] * np.cross(towards, right))
+    normals = np.cross(at + spokes - eye, np.roll(at + spokes, -1, axis=0) - eye)
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     normals *= np.sign(normals @ (at - eye))[:, None]
-    return Window(eye, normals, at, towards, rim)
+    midway = _midway(at, eye, others)
+    reach = np.max(-(spokes @ midway.T) / (midway @ (at - eye)), axis=1, initial=1.0)  # how far a spoke oversteps
+    return Window(eye, np.concatenate([normals, midway]), at, towards, at + spokes / reach[:, None])
+
+
+def _midway(at: Array, eye: Array, others: Array) -> Array:
+    """(n, 3) normals of the planes through the eye that part a line of sight from others; the same line has none."""
+    away = (at - eye) / np.linalg.norm(at - eye) - (others - eye) / np.linalg.norm(others - eye, axis=1, keepdims=True)
+    length = np.linalg.norm(away, axis=1)
+    apart = length > SAME
+    return np.asarray(away[apart] / length[apart, None])

@@ -14,6 +14,7 @@ from geom.meshing.mesh import NamedMesh
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
+FACES = ((1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1))  # of a tetrahedron, seen from outside
 
 
 @dataclass(frozen=True)
@@ -46,9 +47,16 @@ class SplitMesh:
 
     def boundary(self) -> tuple[Index, Index]:
         """Outer triangles of every part, (n, 3), and the part of each, (n,)."""
-        corners = self.tets[:, [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]]].reshape(-1, 3)
-        inner = repeated(corners)
-        return corners[~inner], np.repeat(self.region, 4)[~inner]
+        outer = self.outer().ravel()
+        return self.tets[:, FACES].reshape(-1, 3)[outer], np.repeat(self.region, 4)[outer]
+
+    def outer(self) -> NDArray[np.bool_]:
+        """(n_tets, 4) which FACES bound their part."""
+        return ~repeated(self.tets[:, FACES].reshape(-1, 3)).reshape(-1, 4)
+
+    def touching(self) -> NDArray[np.bool_]:
+        """(n_tets, 4) which FACES bound their part and lie on another one."""
+        return self.outer() & repeated(self.original[self.tets[:, FACES]].reshape(-1, 3)).reshape(-1, 4)
 
 
 def repeated(triangles: Index) -> NDArray[np.bool_]:

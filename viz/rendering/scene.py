@@ -127,14 +127,17 @@ def colour_bar(p: pyvista.Plotter, title: str, theme: Theme = LIGHT, **options: 
 def headline(p: pyvista.Plotter, text: str, theme: Theme = LIGHT) -> None:
     """One line above the picture."""
     if text:
-        actor = p.add_text(text, position=(0.02, 0.94), viewport=True, font_size=14, color=theme.ink, name="headline")
-        set_font(actor.GetTextProperty())
+        _line(p, text, (0.02, 0.94), 14, theme, "headline")
 
 
 def footnote(p: pyvista.Plotter, text: str, theme: Theme = LIGHT) -> None:
     """A small line below the picture."""
-    actor = p.add_text(text, position=(0.02, 0.025), viewport=True, font_size=9, color=theme.ink, name="footnote")
-    set_font(actor.GetTextProperty())
+    _line(p, text, (0.02, 0.025), 9, theme, "footnote")
+
+
+def _line(p: pyvista.Plotter, text: str, at: tuple[float, float], size: int, theme: Theme, name: str) -> None:
+    """In place of the line of that name. Its font comes with it: a plotter that has drawn draws again at once."""
+    p.add_text(text, position=at, viewport=True, font_size=size, color=theme.ink, name=name, font_file=font_file())
 
 
 def save(p: pyvista.Plotter, png: str | Path | None) -> None:
@@ -145,11 +148,16 @@ def save(p: pyvista.Plotter, png: str | Path | None) -> None:
 
 
 def set_font(style: Any) -> None:
-    """DejaVu Sans, which matplotlib always brings along."""
-    from matplotlib import get_data_path
-
+    """The font of all pictures, upright and without a shadow."""
     style.SetFontFamily(4)  # VTK_FONT_FILE, a macro that the Python wheels do not export
-    style.SetFontFile(str(Path(get_data_path()) / "fonts" / "ttf" / "DejaVuSans.ttf"))
+    style.SetFontFile(font_file())
     style.SetItalic(False)
     style.SetBold(False)
     style.SetShadow(False)
+
+
+def font_file() -> str:
+    """DejaVu Sans, which matplotlib always brings along."""
+    from matplotlib import get_data_path
+
+    return str(Path(get_data_path()) / "fonts" / "ttf" / "DejaVuSans.ttf")

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from viz.data import Comparison, short
+from viz.rendering.nodes import SplitMesh
 from viz.rendering.scale import marks, rounded
-from viz.viewer.low_rank import low_rank
-from viz.viewer.packing import packed_numbers
+from viz.viewer.part_shapes import packed_fields
 
 Array = NDArray[np.float64]
 ERROR = 0.02  # of a residual: far below what a sensor can tell
@@ -35,18 +35,13 @@ class ErrorMap:
         return np.asarray(self.gain @ np.nan_to_num(np.stack([residual_K[name] for name in self.sensors])))
 
 
-def packed_maps(maps: Sequence[ErrorMap]) -> dict[str, Any]:
-    """Few shapes for the gains of all tests; for each test and sensor its amplitudes; the share that is explained."""
-    gains = np.concatenate([m.gain.T for m in maps])
-    found = low_rank(np.concatenate([gains, -gains]), ERROR)  # both signs: their mean is zero
-    rows, tests = iter(found.amplitudes.round(4).tolist()), []
-    for m in maps:
-        tests.append({short(name): next(rows) for name in m.sensors})
-    told = np.stack([m.explained for m in maps], axis=1)
+def packed_maps(maps: Sequence[ErrorMap], nodes: SplitMesh) -> dict[str, Any]:
+    """gains : of every test and sensor, in the order of their names;  told : of every test, the explained share."""
     return {
-        "gains": packed_numbers(found.shapes.T, found.steps(STEP)), "amplitudes": tests,
-        "told": packed_numbers(told, np.full(len(maps), SHARE)),
-    }  # fmt: skip
+        "gains": packed_fields(np.concatenate([m.gain.T for m in maps]), nodes, ERROR, STEP),
+        "sensors": [[short(name) for name in m.sensors] for m in maps],
+        "told": packed_fields(np.stack([m.explained for m in maps]), nodes, SHARE, SHARE),
+    }
 
 
 def error_marks(maps: Sequence[ErrorMap], compared: Sequence[Comparison], frames: int) -> list[float]:

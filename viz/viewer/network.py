@@ -12,8 +12,10 @@ from numpy.typing import NDArray
 from geom.meshing.mesh import NamedMesh
 from viz.machine.network import CLOSEST, SMALL, apart, places
 from viz.rendering.nodes import SplitMesh
+from viz.viewer.packing import packed_numbers
 
 Array = NDArray[np.float64]
+STEP_K, STEP_W = 0.1, 0.1  # a tenth of what is printed; the page's words have whole degrees and watts
 OFF_AXIS = 0.25  # of the largest radius: feet and base are drawn so far below the axis, one below the other
 
 
@@ -49,7 +51,7 @@ def network_document(mesh: NamedMesh, nodes: SplitMesh, runs: Sequence[NetworkRu
         "links": [[names.index(a), names.index(b), round(runs[0].conductance.get((a, b), 0.0), 2)] for a, b in drawn],
         "widest": widest, "most": most,
         "tests": [{
-            "T": [[round(float(v), 1) for v in row] for row in np.transpose([r.T[name] for name in names])],
-            "W": [[round(float(v), 1) for v in row] for row in np.transpose([r.watts[pair] for pair in drawn])],
+            "T": packed_numbers(np.transpose([r.T[name] for name in names]), STEP_K),
+            "W": packed_numbers(np.reshape([r.watts[pair] for pair in drawn], (len(drawn), -1)).T, STEP_W),
         } for r in runs],
     }  # fmt: skip

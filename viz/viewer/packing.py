@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+UNKNOWN = -1  # whole numbers of a column begin at zero: this one stands for what is not finite
 
 
 def packed_integers(values: NDArray[np.int64]) -> dict[str, Any]:
@@ -20,13 +21,16 @@ def packed_integers(values: NDArray[np.int64]) -> dict[str, Any]:
     return {"columns": values.shape[1], "data": base64.b64encode(data).decode("ascii")}
 
 
-def packed_numbers(values: Array, step: Array | None = None) -> dict[str, Any]:
-    """Rows of numbers (n, k), each column in its own step (k,), or in 65,535 steps over its range."""
-    low = values.min(axis=0)
-    if step is None:
-        step = np.maximum(np.ptp(values, axis=0), 1e-12) / 65535
-    whole = np.round((values - low) / step).astype(np.int64)
-    return {**packed_integers(whole), "low": low.tolist(), "step": step.tolist()}
+def packed_numbers(values: Array, step: Array | float | None = None) -> dict[str, Any]:
+    """Rows of numbers (n, k), each column in its own step (k,), or in 65,535 steps over its range; NaN stays NaN."""
+    known = np.isfinite(values)
+    low = np.where(known, values, np.inf).min(axis=0, initial=np.inf)
+    low = np.where(np.isfinite(low), low, 0.0)
+    above = np.where(known, values - low, 0.0)
+    fine = np.maximum(above.max(axis=0, initial=0.0), 1e-12) / 65535
+    steps = np.broadcast_to(fine if step is None else step, low.shape)
+    whole = np.where(known, np.round(above / steps), UNKNOWN).astype(np.int64)
+    return {**packed_integers(whole), "low": low.tolist(), "step": steps.tolist()}
 
 
 def unpacked(packed: dict[str, Any]) -> Array:
@@ -35,4 +39,6 @@ def unpacked(packed: dict[str, Any]) -> Array:
     planes = np.frombuffer(zlib.decompress(base64.b64decode(packed["data"])), np.uint8).reshape(4, -1)
     steps = np.ascontiguousarray(planes.T).view("<i4").reshape(columns, -1).T
     whole = np.cumsum(steps, axis=0)
-    return whole * np.array(packed.get("step", 1)) + np.array(packed.get("low", 0))
+    if "step" not in packed:
+        return whole
+    return np.where(whole == UNKNOWN, np.nan, whole * np.array(packed["step"]) + np.array(packed["low"]))

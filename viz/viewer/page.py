@@ -21,13 +21,14 @@ from viz.rendering.nodes import SplitMesh
 from viz.rendering.scale import marks, rounded
 from viz.viewer.error_map import ErrorMap, error_marks, packed_maps
 from viz.viewer.flux import nodal_flux
-from viz.viewer.low_rank import LowRank, low_rank
+from viz.viewer.low_rank import ERROR_K
 from viz.viewer.network import NetworkRun, network_document
 from viz.viewer.packing import packed_integers, packed_numbers
+from viz.viewer.part_shapes import packed_fields
 
 Array = NDArray[np.float64]
 FRAMES = 21  # instants of a test that the range of its errors is looked up at
-STEP_K = 0.02  # of the shapes: small ones then take few bits
+STEP_K = 0.02  # of fields and readings: a twentieth of what a thermocouple tells, and small shapes then take few bits
 
 
 @dataclass(frozen=True)
@@ -75,28 +76,25 @@ def write_viewer(
 def document(
     title: str, nodes: SplitMesh, tests: Sequence[Recorded], positions: Mapping[str, Sequence[float]],
     conductivity: Mapping[str, tuple[float, float]] | None = None, revisions: Sequence[str] = ("now", "before"),
-    mesh: NamedMesh | None = None,
+    mesh: NamedMesh | None = None, limits: tuple[float, float] | None = None,
 ) -> dict[str, Any]:  # fmt: skip
     """All the page draws.
 
     conductivity : part -> across and along the axis (W/m/K), for heat flux;  revisions : names of a test's states
-    mesh : where the nodes of the tests' networks are
+    mesh : where the nodes of the tests' networks are;  limits : of the colours (degC), wider where a state is beyond
     """
     every, runs = [part for t in tests for part in t.states], [t.network for t in tests if t.network is not None]
-    found = low_rank(np.concatenate(every))
-    triangles, part = nodes.boundary()
-    order = np.argsort(part, kind="stable")
-    colours = part_colours(nodes.parts, nodes.identities)
-    low, high = rounded(min(float(f.min()) for f in every), max(float(f.max()) for f in every))
+    order, colours = np.argsort(nodes.region, kind="stable"), part_colours(nodes.parts, nodes.identities)
+    ends = [*(limits or ()), *(float(end) for f in every for end in (f.min(), f.max()))]
+    low, high = rounded(min(ends), max(ends))
     return {
-        "title": title, "points": packed_numbers(nodes.points), "tets": packed_integers(_by_part(nodes)),
-        "triangles": packed_integers(triangles[order]), "owner": packed_integers(nodes.owner[:, None]),
-        "parts": [{"name": name, "colour": colours[name]} for name in nodes.parts],
-        "mean": packed_numbers(found.mean[:, None]), "shapes": packed_numbers(found.shapes.T, found.steps(STEP_K)),
-        "revisions": list(revisions), "tests": _tests(tests, found, positions), "marks": marks(low, high),
+        "title": title, "points": packed_numbers(nodes.points), "tets": packed_integers(nodes.tets[order]),
+        "faces": packed_integers(_faces(nodes)[order, None]), "parts": _parts(nodes, colours),
+        "fields": packed_fields(np.concatenate(every), nodes, ERROR_K, STEP_K),
+        "revisions": list(revisions), "tests": _tests(tests, positions), "marks": marks(low, high),
         "change_marks": _change(tests), "heat": _palette(heat()), "missing": _palette(missing()),
         "k": conductivity and [conductivity[name] for name in nodes.parts], "power": _palette(power()),
-        "flux_marks": conductivity and _flux(nodes, tests, conductivity), "errors": _errors(tests),
+        "flux_marks": conductivity and _flux(nodes, tests, conductivity), "errors": _errors(tests, nodes),
         "network": _network(mesh, nodes, runs) if len(runs) == len(tests) else None,
         "tints": [[int(c[i : i + 2], 16) / 255 for i in (1, 3, 5)] for c in VERDICT.values()],
     }  # fmt: skip
@@ -122,12 +120,12 @@ def _change(tests: Sequence[Recorded]) -> list[float]:
     return marks(*rounded(-max(changes, default=1.0), max(changes, default=1.0)))
 
 
-def _errors(tests: Sequence[Recorded]) -> dict[str, Any] | None:
+def _errors(tests: Sequence[Recorded], nodes: SplitMesh) -> dict[str, Any] | None:
     """What residuals tell between the sensors, if it is known for every test."""
     maps = [t.error_map for t in tests if t.error_map is not None]
     if len(maps) < len(tests):
         return None
-    return {**packed_maps(maps), "marks": error_marks(maps, [t.comparison for t in tests], FRAMES)}
+    return {**packed_maps(maps, nodes), "marks": error_marks(maps, [t.comparison for t in tests], FRAMES)}
 
 
 def _network(mesh: NamedMesh | None, nodes: SplitMesh, runs: Sequence[NetworkRun]) -> dict[str, Any] | None:
@@ -141,46 +139,46 @@ def _flux(nodes: SplitMesh, tests: Sequence[Recorded], conductivity: Mapping[str
     return marks(*rounded(0.0, max(float(np.quantile(q, 0.95)) for q in ends)))
 
 
-def _by_part(nodes: SplitMesh) -> NDArray[np.int64]:
-    return nodes.tets[np.argsort(nodes.region, kind="stable")]
+def _parts(nodes: SplitMesh, colours: Mapping[str, str]) -> list[dict[str, Any]]:
+    """Parts in the order of their nodes, which follow one another."""
+    sizes = np.bincount(nodes.owner, minlength=len(nodes.parts)).tolist()
+    return [{"name": name, "colour": colours[name], "nodes": n} for name, n in zip(nodes.parts, sizes, strict=True)]
 
 
-def _tests(tests: Sequence[Recorded], found: LowRank, positions: Mapping[str, Sequence[float]]) -> list[dict[str, Any]]:
-    """Amplitudes in the order in which the fields were given."""
+def _faces(nodes: SplitMesh) -> NDArray[np.int64]:
+    """(n_tets,) bits: 1, 2, 4, 8 for faces that bound their part, 16, 32, 64, 128 where another part lies on them."""
+    return np.asarray(nodes.outer() @ [1, 2, 4, 8] + nodes.touching() @ [16, 32, 64, 128])
+
+
+def _tests(tests: Sequence[Recorded], positions: Mapping[str, Sequence[float]]) -> list[dict[str, Any]]:
+    """What was read and modelled; `states` are the numbers of their first fields, in the order of those given."""
     out, first = [], 0
     for test in tests:
         n, count = len(test.times), len(test.states)
-        states = [_digits(found.amplitudes[first + i * n : first + (i + 1) * n], 3) for i in range(count)]
-        first += n * count
         name = f"{test.comparison.test.name} ({test.comparison.test.role})"
-        out.append({
-            "name": name, "times": test.times.tolist(), "states": states, "sensors": _sensors(test, positions),
-        })  # fmt: skip
+        states = [first + i * n for i in range(count)]
+        out.append({"name": name, "times": test.times.tolist(), "states": states, **_sensors(test, positions)})
+        first += n * count
     return out
 
 
-def _sensors(test: Recorded, positions: Mapping[str, Sequence[float]]) -> list[dict[str, Any]]:
-    """Readings at the page's instants; null where nothing was read, and for a place that is not known."""
+def _sensors(test: Recorded, positions: Mapping[str, Sequence[float]]) -> dict[str, Any]:
+    """Sensors, their readings and those of every model at the page's instants: a column each. No place is null."""
     shown, clock = test.comparison, np.asarray(test.comparison.test.time, float)
     at = np.clip(np.searchsorted(clock, test.times), 0, len(clock) - 1)
     last = [] if test.before is None or shown.before is None else [shown.before]
     models = [shown.model, *last, *(e.readings for e in test.earlier)]
-    return [
-        {
-            "name": short(c.name), "xyz": [float(x) for x in positions[c.name]] if c.name in positions else None,
-            "limit": shown.limit_K(c),
-            "measured": _digits(np.asarray(c.y, float)[at], 2),
-            "models": [_digits(np.asarray(of[c.name])[at], 2) for of in models],
-        }
-        for c in shown.channels
-    ]  # fmt: skip
+    places = [[float(x) for x in positions[c.name]] if c.name in positions else None for c in shown.channels]
+    known = zip(shown.channels, places, strict=True)
+    return {
+        "sensors": [{"name": short(c.name), "xyz": xyz, "limit": shown.limit_K(c)} for c, xyz in known],
+        "measured": _columns([c.y for c in shown.channels], at),
+        "models": [_columns([of[c.name] for c in shown.channels], at) for of in models],
+    }
 
 
-def _digits(values: Array, digits: int) -> Any:
-    """Rounded lists; null for what is not finite."""
-    if values.ndim > 1:
-        return [_digits(row, digits) for row in values]
-    return [round(float(v), digits) if np.isfinite(v) else None for v in values]
+def _columns(values: Sequence[Array], at: NDArray[np.int64]) -> dict[str, Any]:
+    return packed_numbers(np.stack([np.asarray(v, float)[at] for v in values], axis=1), STEP_K)
 
 
 def _palette(colours: Any) -> list[int]:

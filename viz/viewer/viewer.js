@@ -1,21 +1,28 @@
 const $ = (id) => document.getElementById(id);
 const data = JSON.parse($("data").textContent);
 
-async function unpacked(p) {
+async function unpacked(p) {  // rows of numbers in one array that knows its columns; what is not known is NaN
   const bytes = Uint8Array.from(atob(p.data), (c) => c.charCodeAt(0));
   const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
   const planes = new Uint8Array(await new Response(stream).arrayBuffer());
-  const size = planes.length / 4, rows = size / p.columns;
+  const size = planes.length / 4, rows = p.columns ? size / p.columns : 0;
   const out = p.step ? new Float32Array(size) : new Int32Array(size);
   for (let k = 0; k < p.columns; k++) {
     let sum = 0;
     for (let i = 0; i < rows; i++) {
       const at = k * rows + i;
       sum += planes[at] | (planes[size + at] << 8) | (planes[2 * size + at] << 16) | (planes[3 * size + at] << 24);
-      out[i * p.columns + k] = p.step ? sum * p.step[k] + p.low[k] : sum;
+      out[i * p.columns + k] = !p.step ? sum : sum < 0 ? NaN : sum * p.step[k] + p.low[k];
     }
   }
-  return out;
+  return Object.assign(out, { columns: p.columns });
+}
+
+async function opened(x) {  // the same with all that is packed in it unpacked
+  if (typeof x !== "object" || x === null) return x;
+  if (typeof x.data === "string") return unpacked(x);
+  if (Array.isArray(x)) return Promise.all(x.map(opened));
+  return Object.fromEntries(await Promise.all(Object.entries(x).map(async ([k, v]) => [k, await opened(v)])));
 }
 
 const VERTEX = `#version 300 es
@@ -46,6 +53,14 @@ void main() {
   if (layer == 3 && sure < 0.5 && mod(gl_FragCoord.x + gl_FragCoord.y, 14.0) < 4.0) paint = mix(paint, vec3(0.12, 0.16, 0.2), 0.6);
   colour = vec4(paint, alpha);
 }`;
+const LINES = `#version 300 es
+precision highp float;
+in vec3 place; uniform mat4 view;
+void main() { gl_Position = view * vec4(place, 1.0); gl_Position.z -= 0.0005 * gl_Position.w; }`;
+const LINE = `#version 300 es
+precision highp float;
+out vec4 colour;
+void main() { colour = vec4(0.12, 0.16, 0.2, 0.55); }`;
 const DOTS = `#version 300 es
 precision highp float;
 in vec3 place; in vec3 tint; uniform mat4 view; uniform vec4 plane; uniform float size, nearer; out vec3 ink;
@@ -61,12 +76,13 @@ void main() {
 }`;
 
 class Viewer {
-  constructor(arrays) {
-    Object.assign(this, arrays);
-    this.gl = $("gl").getContext("webgl2", { antialias: true, preserveDrawingBuffer: true });
+  constructor() {
+    this.points = data.points; this.tets = data.tets;
+    this.owner = Int32Array.from(data.parts.flatMap((p, k) => Array(p.nodes).fill(k)));
+    this.gl = $("gl").getContext("webgl2", { antialias: false, preserveDrawingBuffer: true });
     if (!this.gl) throw new Error("this browser has no WebGL 2, which this page draws with");
     this.parts = data.parts.map((p) => ({ ...p, shown: 1 }));
-    this.right = 0; this.left = 1; this.time = 1; this.playing = false; this.frames = 0; this.dirty = true; this.pointers = new Map();
+    this.right = 0; this.left = 1; this.time = 1; this.playing = false; this.frames = 0; this.dirty = true; this.smooth = true; this.moved = -Infinity; this.pointers = new Map();
     this.bounds();
     this.first();
     this.programs();
@@ -99,9 +115,10 @@ class Viewer {
   }
   programs() {
     this.skin = this.program(VERTEX, FRAGMENT, ["place", "normal", "ends", "share"]);
+    this.lines = this.program(LINES, LINE, ["place"]);
     this.dots = this.program(DOTS, DOT, ["place", "tint"]);
   }
-  mesh(rows, floats, sizes) {
+  mesh(floats, sizes, index) {
     const gl = this.gl, vao = gl.createVertexArray(), buffer = gl.createBuffer();
     const stride = 4 * sizes.reduce((a, b) => a + b);
     gl.bindVertexArray(vao); gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
@@ -110,11 +127,28 @@ class Viewer {
       gl.enableVertexAttribArray(k); gl.vertexAttribPointer(k, n, gl.FLOAT, false, stride, offset); offset += 4 * n;
     });
     gl.bufferData(gl.ARRAY_BUFFER, floats, gl.DYNAMIC_DRAW);
-    return { vao, buffer, rows };
+    if (index) {
+      gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
+      gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, index, gl.STATIC_DRAW);
+    }
+    return { vao, buffer };
+  }
+  triangles() {  // corners of the triangles that bound parts: first those that nothing lies on, then the others; by part each
+    const t = this.tets, out = [], spans = [];
+    for (const covered of [0, 1]) {
+      const first = out.length;
+      for (let i = 0; i < data.faces.length; i++)
+        FACES.forEach((face, k) => {
+          const bits = data.faces[i] >> k;
+          if (bits & 1 && (bits >> 4 & 1) === covered) for (const c of face) out.push(t[4 * i + c]);
+        });
+      spans.push(this.spans((out.length - first) / 3, (i) => this.owner[out[first + 3 * i]], first));
+    }
+    return [Int32Array.from(out), spans];
   }
   surface() {  // normals are shared by triangles that meet at less than 40 degrees, so that edges stay sharp
-    const t = this.triangles, n = t.length / 3, p = this.points, flat = new Float32Array(3 * n);
-    const count = new Int32Array(p.length / 3 + 1);
+    const [t, spans] = this.triangles(), n = t.length / 3, p = this.points, nodes = p.length / 3, flat = new Float32Array(3 * n);
+    const count = new Int32Array(nodes + 1);
     for (let i = 0; i < n; i++) {
       const [a, b, c] = [3 * t[3 * i], 3 * t[3 * i + 1], 3 * t[3 * i + 2]];
       const u = [p[b] - p[a], p[b + 1] - p[a + 1], p[b + 2] - p[a + 2]];
@@ -124,8 +158,9 @@ class Viewer {
       for (let k = 0; k < 3; k++) { flat[3 * i + k] = x[k] * s; count[t[3 * i + k] + 1]++; }
     }
     for (let i = 1; i < count.length; i++) count[i] += count[i - 1];
-    const fill = count.slice(), around = new Int32Array(3 * n), out = new Float32Array(3 * n * 9);
+    const fill = count.slice(), around = new Int32Array(3 * n), index = new Uint32Array(3 * n);
     for (let i = 0; i < 3 * n; i++) around[fill[t[i]]++] = Math.floor(i / 3);
+    const last = new Int32Array(nodes).fill(-1), before = [], rows = [];  // a node has one vertex for each of its normals
     for (let i = 0; i < 3 * n; i++) {
       const node = t[i], own = 3 * Math.floor(i / 3), sum = [0, 0, 0];
       for (let j = count[node]; j < count[node + 1]; j++) {
@@ -133,16 +168,23 @@ class Viewer {
         if (flat[o] * flat[own] + flat[o + 1] * flat[own + 1] + flat[o + 2] * flat[own + 2] > 0.77)
           for (let k = 0; k < 3; k++) sum[k] += flat[o + k];
       }
-      out.set([p[3 * node], p[3 * node + 1], p[3 * node + 2], ...sum, node, node, 0], 9 * i);
+      const s = 1 / (Math.hypot(...sum) || 1), same = (at) => (rows[at] * sum[0] + rows[at + 1] * sum[1] + rows[at + 2] * sum[2]) * s > SAME;
+      let vertex = last[node];
+      while (vertex >= 0 && !same(9 * vertex + 3)) vertex = before[vertex];
+      if (vertex < 0) {
+        vertex = before.length; before.push(last[node]); last[node] = vertex;
+        rows.push(p[3 * node], p[3 * node + 1], p[3 * node + 2], sum[0] * s, sum[1] * s, sum[2] * s, node, node, 0);
+      }
+      index[i] = vertex;
     }
-    this.whole = this.mesh(3 * n, out, [3, 3, 2, 1]);
-    this.whole.spans = this.spans(n, (i) => this.owner[t[3 * i]]);
-    this.section = this.mesh(0, new Float32Array(9), [3, 3, 2, 1]);
-    this.beads = this.mesh(0, new Float32Array(6), [3, 3]);
+    this.whole = { ...this.mesh(new Float32Array(rows), [3, 3, 2, 1], index), spans, triangles: t };
+    this.section = this.mesh(new Float32Array(9), [3, 3, 2, 1]);
+    this.outline = this.mesh(new Float32Array(3), [3]);
+    this.beads = { ...this.mesh(new Float32Array(6), [3, 3]), rows: 0 };
   }
-  spans(n, part) {  // of rows sorted by part: [first, count] in vertices
-    const out = this.parts.map(() => [0, 0]);
-    for (let i = 0; i < n; i++) { const s = out[part(i)]; if (!s[1]) s[0] = 3 * i; s[1] += 3; }
+  spans(n, part, first = 0) {  // of n triangles sorted by part: [first, count] in corners
+    const out = this.parts.map(() => [first, 0]);
+    for (let i = 0; i < n; i++) { const s = out[part(i)]; if (!s[1]) s[0] = first + 3 * i; s[1] += 3; }
     return out;
   }
   textures() {
@@ -158,7 +200,8 @@ class Viewer {
     };
     made(0); made(1); made(2);
     gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
-    this.picked = { frame: gl.createFramebuffer(), colour: gl.createRenderbuffer(), depth: gl.createRenderbuffer() };
+    const buffers = () => ({ frame: gl.createFramebuffer(), colour: gl.createRenderbuffer(), depth: gl.createRenderbuffer() });
+    this.picked = buffers(); this.sampled = buffers();
   }
   choose(k) {
     this.test = data.tests[k];
@@ -172,19 +215,44 @@ class Viewer {
     this.move(this.time);
   }
   sure() {  // the share of the variance that the sensors of this test explain, node by node; 1 where nothing is said
-    const gl = this.gl, n = this.owner.length, many = data.tests.length, share = new Float32Array(this.wide * this.high_).fill(1);
-    for (let i = 0; this.told && i < n; i++) share[i] = this.told[many * i + this.number];
+    const gl = this.gl, n = this.owner.length, share = new Float32Array(this.wide * this.high_).fill(1);
+    if (data.errors) {
+      const { told } = data.errors, c = told.weights.columns, both = new Float32Array(2 * n);
+      const weights = told.weights.subarray(c * this.number, c * (this.number + 1));
+      this.mix(told, weights, weights, both);
+      for (let i = 0; i < n; i++) share[i] = both[2 * i];
+    }
     gl.activeTexture(gl.TEXTURE2);
     gl.texImage2D(gl.TEXTURE_2D, 0, gl.R32F, this.wide, this.high_, 0, gl.RED, gl.FLOAT, share);
   }
-  misses(state) {  // amplitudes of what residuals tell between the sensors; a sensor that is silent keeps its last one
-    const gains = data.errors.amplitudes[this.number], out = Object.values(gains)[0].map(() => 0);
-    for (const s of this.test.sensors) {
+  misses(state) {  // weights of what residuals tell between the sensors; a sensor that is silent keeps its last one
+    const { gains, sensors } = data.errors, g = gains.weights, c = g.columns, out = new Float32Array(c);
+    let row = sensors.slice(0, this.number).reduce((n, names) => n + names.length, 0);
+    for (const name of sensors[this.number]) {
+      const j = this.test.sensors.findIndex((s) => s.name === name);
       let k = Math.round(this.place);
-      while (k > 0 && s.measured[k] === null) k--;
-      if (gains[s.name] && s.measured[k] !== null) gains[s.name].forEach((g, i) => { out[i] += g * (s.measured[k] - (s.models[state] ?? s.models[0])[k]); });
+      while (k > 0 && this.residual(j, k, state) === null) k--;
+      const residual = this.residual(j, k, state) ?? 0;
+      for (let i = 0; i < c; i++) out[i] += residual * g[row * c + i];
+      row++;
     }
     return out;
+  }
+  residual(j, k, state) {  // measured - modelled of sensor j at the k-th instant
+    const { measured, models } = this.test, at = k * measured.columns + j, found = measured[at] - (models[state] ?? models[0])[at];
+    return Number.isNaN(found) ? null : found;
+  }
+  mix(fields, right, left, out) {  // values at all nodes (right, left) from the weights of both states
+    let node = 0, first = 0;
+    for (const block of fields.blocks) {
+      const c = block.columns;
+      for (let i = 0; i < block.length; i += c, node++) {
+        let a = 0, b = 0;
+        for (let k = 0; k < c; k++) { const x = block[i + k]; a += right[first + k] * x; b += left[first + k] * x; }
+        out[2 * node] = a; out[2 * node + 1] = b;
+      }
+      first += c;
+    }
   }
   recolour() {
     const gl = this.gl, layer = +$("layer").value, rgb = [data.heat, data.missing, data.power, data.missing][layer];
@@ -204,9 +272,9 @@ class Viewer {
     }));
     this.dirty = true;
   }
-  between(list) {  // the row of a list of rows at the present instant
-    const i = Math.min(Math.floor(this.place), list.length - 2), f = this.place - i;
-    return list[i].map((v, k) => v + f * (list[i + 1][k] - v));
+  between(rows, first = 0) {  // of a run whose rows begin at `first`: the row at the present instant
+    const c = rows.columns, i = Math.min(Math.floor(this.place), this.test.times.length - 2), f = this.place - i, at = (first + i) * c;
+    return Array.from({ length: c }, (_, k) => rows[at + k] + f * (rows[at + c + k] - rows[at + k]));
   }
   move(time) {  // 0 to 1 of the test
     const times = this.test.times, s = times[0] + time * (times[times.length - 1] - times[0]);
@@ -214,14 +282,9 @@ class Viewer {
     let i = 0;
     while (i < times.length - 2 && times[i + 1] <= s) i++;
     this.place = i + (s - times[i]) / (times[i + 1] - times[i]);
-    const wrong = $("layer").value === "3", left = this.test.states[this.left] ? this.left : 0;
-    const [now, before] = [this.right, left].map((state) => wrong ? this.misses(state) : this.between(this.test.states[state]));
-    const r = now.length, n = this.owner.length, v = this.values, shapes = wrong ? this.gains : this.shapes;
-    for (let node = 0; node < n; node++) {
-      let a = wrong ? 0 : this.mean[node], b = a;
-      for (let k = 0; k < r; k++) { const x = shapes[node * r + k]; a += now[k] * x; b += before[k] * x; }
-      v[2 * node] = a; v[2 * node + 1] = b;
-    }
+    const wrong = $("layer").value === "3", left = this.left < this.test.states.length ? this.left : 0, v = this.values;
+    const [right, other] = [this.right, left].map((state) => wrong ? this.misses(state) : this.between(data.fields.weights, this.test.states[state]));
+    this.mix(wrong ? data.errors.gains : data.fields, right, other, v);
     if ($("layer").value === "2") this.fluxes(v);
     const gl = this.gl;
     gl.activeTexture(gl.TEXTURE0);
@@ -279,9 +342,9 @@ class Viewer {
         v[2 * i + side] = Math.hypot(sum[7 * i + 3 * side], sum[7 * i + 3 * side + 1], sum[7 * i + 3 * side + 2]) / sum[7 * i + 6] / 1000;
   }
   readings() {
-    const k = Math.round(this.place);
-    const all = this.test.sensors.map((s) => {
-      const y = s.measured[k], model = (s.models[this.right] ?? s.models[0])[k], residual = y === null || model === null ? null : y - model;
+    const k = Math.round(this.place), { measured } = this.test;
+    const all = this.test.sensors.map((s, j) => {
+      const read = measured[k * measured.columns + j], y = Number.isNaN(read) ? null : read, residual = this.residual(j, k, this.right);
       const verdict = residual === null ? 3 : Math.abs(residual) <= s.limit ? 0 : residual > 0 ? 1 : 2;
       return { ...s, y, residual, verdict, weight: residual === null ? -1 : Math.abs(residual) / s.limit };
     });
@@ -323,6 +386,18 @@ class Viewer {
     this.gl.bindBuffer(this.gl.ARRAY_BUFFER, this.section.buffer);
     this.gl.bufferData(this.gl.ARRAY_BUFFER, new Float32Array(out), this.gl.DYNAMIC_DRAW);
     this.section.spans = this.spans(part.length, (i) => part[i]);
+    this.outlined(d);
+  }
+  outlined(d) {  // where the plane, d away from every node, meets what bounds the parts: a line in each triangle, part by part
+    const p = this.points, t = this.whole.triangles, lines = this.parts.map(() => []);
+    for (let i = 0; i < t.length; i += 3)
+      for (const [a, b] of [[t[i], t[i + 1]], [t[i + 1], t[i + 2]], [t[i + 2], t[i]]])
+        if (d[a] > 0 !== d[b] > 0)
+          for (let k = 0; k < 3; k++) lines[this.owner[a]].push(p[3 * a + k] + d[a] / (d[a] - d[b]) * (p[3 * b + k] - p[3 * a + k]));
+    this.gl.bindBuffer(this.gl.ARRAY_BUFFER, this.outline.buffer);
+    this.gl.bufferData(this.gl.ARRAY_BUFFER, new Float32Array(lines.flat()), this.gl.DYNAMIC_DRAW);
+    let first = 0;
+    this.outline.spans = lines.map(({ length }) => [(first += length / 3) - length / 3, length / 3]);
   }
   matrix() {
     const [ct, st, cp, sp] = [Math.cos(this.turn), Math.sin(this.turn), Math.cos(this.tilt), Math.sin(this.tilt)];
@@ -330,7 +405,7 @@ class Viewer {
     const far = 3.4 * this.size / this.zoom, gl = $("gl"), f = 6.2, aspect = gl.width / gl.height;
     const near = Math.max(far - this.size, 0.01 * this.size), end = far + this.size;
     this.eye = this.middle.map((m, k) => m + far * towards[k]);
-    const fx = aspect < 1.2 ? f * aspect / 1.2 / aspect : f / aspect, fy = aspect < 1.2 ? f * aspect / 1.2 : f;
+    const fy = f * Math.min(1, aspect), fx = fy / aspect;
     const rows = [right, up, towards].map((v) => [...v, -v.reduce((s, x, k) => s + x * this.eye[k], 0)]);
     const a = -(end + near) / (end - near), b = -2 * end * near / (end - near), z = rows[2];
     const m = [rows[0].map((v) => fx * v), rows[1].map((v) => fy * v), z.map((v, k) => a * v + (k === 3 ? b : 0)), z.map((v) => -v)];
@@ -346,28 +421,34 @@ class Viewer {
     gl.uniform1i(s.layer, +$("layer").value); gl.uniform1i(s.mode, mode); gl.uniform1i(s.wide, this.wide);
     gl.uniform1i(s.field, 0); gl.uniform1i(s.palette, 1); gl.uniform1i(s.told, 2);
     gl.uniform1f(s.wipe, this.test.states.length > 1 ? $("wipe").value / 1000 * $("gl").width : 0);
+    const whole = this.parts.every((p) => p.shown === 1);  // then nobody sees a face that another part lies on
     for (const shown of mode ? [1] : [1, 0.5]) {
-      if (shown < 1) { gl.enable(gl.BLEND); gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA); gl.depthMask(false); }
+      if (shown < 1) { this.blending(); gl.depthMask(false); }
       gl.uniform1f(s.alpha, shown < 1 ? 0.16 : 1);
       for (const [mesh, flat] of [[this.whole, 0], [this.section, 1]]) {
         gl.uniform1f(s.flat_, flat);
         gl.bindVertexArray(mesh.vao);
+        (flat ? gl.disable : gl.enable).call(gl, gl.CULL_FACE);  // parts are closed, and closed again where they are cut
         this.parts.forEach((p, k) => {
           gl.uniform1f(s.part, k);
-          if (p.shown === shown && mesh.spans[k][1]) gl.drawArrays(gl.TRIANGLES, ...mesh.spans[k]);
+          if (p.shown !== shown) return;
+          if (flat) gl.drawArrays(gl.TRIANGLES, ...mesh.spans[k]);
+          else for (const spans of whole ? mesh.spans.slice(0, 1) : mesh.spans) gl.drawElements(gl.TRIANGLES, spans[k][1], gl.UNSIGNED_INT, 4 * spans[k][0]);
         });
       }
     }
     gl.disable(gl.BLEND); gl.depthMask(true);
   }
-  draw() {
+  draw(samples) {  // edges are smooth with several samples per pixel
     const gl = this.gl, c = $("gl"), scale = Math.min(devicePixelRatio || 1, 2);
-    const [w, h] = [Math.round(c.clientWidth * scale), Math.round(c.clientHeight * scale)];
+    const [w, h] = [c.clientWidth, c.clientHeight].map((side) => Math.max(1, Math.round(side * scale)));
     if (c.width !== w || c.height !== h) { c.width = w; c.height = h; }
     const paper = getComputedStyle(document.body).backgroundColor.match(/\d+/g).map((v) => v / 255);
+    if (samples > 1) this.target(samples);
     gl.viewport(0, 0, w, h); gl.clearColor(paper[0], paper[1], paper[2], 1); gl.enable(gl.DEPTH_TEST);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     this.skinned(0);
+    this.outlines();
     gl.useProgram(this.dots.p); gl.bindVertexArray(this.beads.vao);
     gl.uniformMatrix4fv(this.dots.view, false, this.matrix()); gl.uniform4fv(this.dots.plane, this.cutting);
     for (const [hollow, test] of [[0.42, false], [0, true]]) {  // hollow everywhere, filled where nothing covers it
@@ -375,8 +456,35 @@ class Viewer {
       gl.uniform1f(this.dots.hollow, hollow); gl.uniform1f(this.dots.size, 15 * scale); gl.uniform1f(this.dots.nearer, test ? 0.002 : 0);
       gl.drawArrays(gl.POINTS, 0, this.beads.rows);
     }
+    if (samples > 1) {
+      gl.bindFramebuffer(gl.READ_FRAMEBUFFER, this.sampled.frame); gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, null);
+      gl.blitFramebuffer(0, 0, w, h, 0, 0, w, h, gl.COLOR_BUFFER_BIT, gl.NEAREST);
+      gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    }
     this.labels(scale);
     this.frames++;
+  }
+  target(samples) {  // draw into a buffer of several samples per pixel, of the canvas's size
+    const gl = this.gl, c = $("gl"), s = this.sampled, size = [c.width, c.height];
+    gl.bindFramebuffer(gl.FRAMEBUFFER, s.frame);
+    if (`${s.size}` === `${size}`) return;
+    for (const [buffer, kind, at] of [[s.colour, gl.RGBA8, gl.COLOR_ATTACHMENT0], [s.depth, gl.DEPTH_COMPONENT24, gl.DEPTH_ATTACHMENT]]) {
+      gl.bindRenderbuffer(gl.RENDERBUFFER, buffer); gl.renderbufferStorageMultisample(gl.RENDERBUFFER, samples, kind, ...size);
+      gl.framebufferRenderbuffer(gl.FRAMEBUFFER, at, gl.RENDERBUFFER, buffer);
+    }
+    s.size = size;
+  }
+  blending() {  // over what is drawn; the canvas itself stays opaque
+    const gl = this.gl;
+    gl.enable(gl.BLEND); gl.blendFuncSeparate(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA, gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
+  }
+  outlines() {  // of the parts in the section
+    const gl = this.gl;
+    gl.useProgram(this.lines.p); gl.bindVertexArray(this.outline.vao);
+    gl.uniformMatrix4fv(this.lines.view, false, this.matrix());
+    this.blending();
+    this.parts.forEach((p, k) => { if (p.shown) gl.drawArrays(gl.LINES, ...this.outline.spans[k]); });
+    gl.disable(gl.BLEND);
   }
   pixel(sensor) {
     const at = [...sensor.xyz, 1], q = this.rows.map((row) => row.reduce((sum, v, k) => sum + v * at[k], 0));
@@ -436,8 +544,14 @@ class Viewer {
       this.move(Math.min(time, 1));
       if (time >= 1) this.play(false);
     }
+    const between = now - this.last, resting = now - this.moved > REST;
     this.last = now;
-    if (this.dirty) { this.dirty = false; this.draw(); }
+    if (this.dirty || resting && !this.smooth) {  // a slow computer draws roughly while something moves, and smoothly once it rests
+      this.smooth = resting || this.smooth && between < SLOW;
+      if (this.dirty) this.moved = now;
+      this.dirty = false;
+      this.draw(this.smooth ? SAMPLES : 1);
+    }
     requestAnimationFrame((t) => this.tick(t));
   }
   play(on) {
@@ -446,6 +560,10 @@ class Viewer {
   }
 }
 
+const FACES = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];  // of a tetrahedron, seen from outside
+const SAME = 0.9999;  // cosine of the angle between normals below which they are one: under a degree
+const SAMPLES = 4;  // per pixel: every WebGL 2 has them
+const SLOW = 25, REST = 200;  // ms from one picture to the next from which edges are rough; ms without a movement until they are smooth
 const WIDE = 1100;  // pixels from which machine and network stand side by side
 const TINTS = data.tints;  // within, hot, cold, unknown: red, green, blue from 0 to 1
 const signed = (v) => v === null ? "–" : (v < 0 ? "−" : "+") + Math.abs(v).toFixed(1);
@@ -521,9 +639,8 @@ function wired(v) {
 
 (async () => {
   try {
-    const names = ["points", "tets", "triangles", "owner", "mean", "shapes", ...(data.errors ? ["gains", "told"] : [])];
-    const arrays = await Promise.all(names.map((n) => unpacked(data[n] ?? data.errors[n])));
-    const v = new Viewer(Object.fromEntries(names.map((n, k) => [n, arrays[k]])));
+    Object.assign(data, await opened(data));
+    const v = new Viewer();
     v.slice();
     wired(v);
     window.viewer = v;

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError
 from thermoscope.case_folder.folder import Folder
-from thermoscope.case_folder.runs import before_last, by_interest, fields, readings
+from thermoscope.case_folder.runs import before_last, by_interest, fields, readings, temperature_range
 from thermoscope.commands.open_case import open_case
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import give, progress
@@ -47,7 +47,8 @@ def film(case: str, out: Path | None, target: str | None) -> int:
         titles = [f"{w}{largest(row)}" for w, row in zip(words, seen, strict=True)]
         T = np.concatenate([values for _, values in played.values()])
         animate(nodes, [t for times, _ in played.values() for t in times], T, file, titles=titles,
-                sensors=seen, tell=lambda k: tell(f"drawing picture {k}/{len(T)}"))  # fmt: skip
+                sensors=seen, limits=temperature_range(folder, nodes),
+                tell=lambda k: tell(f"drawing picture {k}/{len(T)}"))  # fmt: skip
     give({"case": folder.case.name, "film": str(file)}, target, lambda: Answer(f"{file}"))
     return 0
 

@@ -25,6 +25,7 @@ from thermoscope.case_folder.runs import (
     parameters,
     readings,
     steps,
+    temperature_range,
 )
 from thermoscope.commands.open_case import open_case_for_writing
 from thermoscope.commands.show.viewer import viewer_page
@@ -153,13 +154,15 @@ def _pictures(folder: Folder, into: Path, diagnosis: Mapping[str, Any] | None) -
     now, file = fields(folder.case, test, nodes, 1)[1][-1], into / "field.png"
     seen = sensors(held(folder, test), folder.positions)
     title = f"{test.name} at {test.time[-1] / 60:.0f} min: temperature of the model"
-    cutaway(nodes, now, sensors=seen, title=title, png=file)
+    limits = temperature_range(folder, nodes)
+    cutaway(nodes, now, sensors=seen, title=title, limits=limits, png=file)
     out = {f"Temperature at the end of {test.name}; labels: measured minus modelled.": file}
     out |= _missing_heat(diagnosis, nodes, into)
     earlier = before_last(folder)
     if earlier is not None:
         both = into / "field-before-after.png"
-        pair(nodes, fields(earlier, test, nodes, 1)[1][-1], now, titles=("before the last step", "now"), png=both)
+        titles = ("before the last step", "now")
+        pair(nodes, fields(earlier, test, nodes, 1)[1][-1], now, titles=titles, limits=limits, png=both)
         out[f"End of {test.name} before and after the last step of the model."] = both
     return out
 
@@ -188,6 +191,7 @@ def _recording(folder: Folder, into: Path) -> Path:
     return write_recording(
         path, nodes, held(folder, test), frames, folder.positions, history=steps(folder), revision_fields=ends,
         revision_residuals=[residual_at_end(case, test) for case in every_revision(folder)],
+        limits=temperature_range(folder, nodes),
     )  # fmt: skip
 
 

@@ -18,7 +18,7 @@ from lumped.integration.simulate import simulate
 from lumped.schemas.reader import known
 from thermoscope.case_folder.error_field import error_field
 from thermoscope.case_folder.folder import Folder, Progress
-from thermoscope.case_folder.runs import before_last, by_interest, fields, held, named_rows, steps
+from thermoscope.case_folder.runs import before_last, by_interest, fields, held, named_rows, steps, temperature_range
 from thermoscope.commands.open_case import open_case
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import give, progress
@@ -78,6 +78,11 @@ class Subject:
 
         return split(self.built.mesh)
 
+    @cached_property
+    def limits(self) -> tuple[float, float]:
+        """Of the colours (degC)."""
+        return temperature_range(self.folder, self.nodes)
+
     def field(self, case: Case | None = None) -> Array:
         """(n_nodes,) degC at the end of the test."""
         return np.asarray(fields(case or self.folder.case, self.test, self.nodes, 1)[1][-1])
@@ -100,7 +105,8 @@ def _field(s: Subject, png: Path) -> None:
     from viz import cutaway, sensors
 
     seen = sensors(held(s.folder, s.test), s.folder.positions)
-    cutaway(s.nodes, s.field(), sensors=seen, title=f"{s.when}: temperature of the model", png=png).close()
+    title = f"{s.when}: temperature of the model"
+    cutaway(s.nodes, s.field(), sensors=seen, title=title, limits=s.limits, png=png).close()
 
 
 def _machine(s: Subject, png: Path) -> None:
@@ -112,8 +118,8 @@ def _machine(s: Subject, png: Path) -> None:
 def _temperature(s: Subject, png: Path) -> None:
     from viz import portrait
 
-    machine = s.built.machine
-    portrait(machine, nodes=s.nodes, T=s.field(), title=f"{s.when}: temperature of the model", png=png).close()
+    title = f"{s.when}: temperature of the model"
+    portrait(s.built.machine, nodes=s.nodes, T=s.field(), title=title, limits=s.limits, png=png).close()
 
 
 def _difference(s: Subject, png: Path) -> None:

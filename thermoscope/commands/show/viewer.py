@@ -13,7 +13,15 @@ from thermoscope.case_folder.error_field import error_gain
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import Revision
 from thermoscope.case_folder.network_run import network_run
-from thermoscope.case_folder.runs import at_revision, before_last, by_interest, fields, held, readings
+from thermoscope.case_folder.runs import (
+    at_revision,
+    before_last,
+    by_interest,
+    fields,
+    held,
+    readings,
+    temperature_range,
+)
 from thermoscope.commands.open_case import open_case
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import Progress, give, progress
@@ -67,8 +75,10 @@ def viewer_page(folder: Folder, tell: Progress) -> str:
         tests.append(replace(played, error_map=between, network=network_run(folder.case, test, played.times)))
     conductivity = {part.name: folder.built.machine.conductivity(part.name) for part in folder.built.machine.parts}
     names = [f"{r.number}: {r.effect or (r.action if r.number else 'as it was')}" for r in revisions(folder)]
-    page = document(folder.case.name, nodes, tests, folder.positions, conductivity, names or ["now"], folder.built.mesh)
-    return render(page)
+    return render(document(
+        folder.case.name, nodes, tests, folder.positions, conductivity, names or ["now"], folder.built.mesh,
+        temperature_range(folder, nodes),
+    ))  # fmt: skip
 
 
 def revisions(folder: Folder) -> list[Revision]:

@@ -1,0 +1,50 @@
+"""Pictures, film, recording, viewer and workbench of a case take their colours from one range of temperatures."""
+
+import json
+from functools import partial
+
+import numpy as np
+import pytest
+
+import viz
+from lumped.condensation.reduction import Recipe
+from thermoscope import pipeline
+from thermoscope.case_folder.folder import load_case
+from thermoscope.case_folder.runs import by_interest, fields, temperature_range
+from thermoscope.commands.show import pages, viewer
+from thermoscope.workbench.appearance import appearance_of
+from thermoscope.workbench.application import Bench
+from viz.rendering.scale import rounded
+
+pytestmark = pytest.mark.heavy
+TINY = Recipe(tolerance=0.3, random_points=1, local_points=1, local_states=1, max_states=40)
+
+
+@pytest.fixture(scope="module")
+def folder(root):
+    quick = partial(pipeline.build, size_m=0.15, segments=24, recipe=TINY)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(pipeline, "build", quick)
+        return load_case(root / "cases" / "road-test")
+
+
+def silent(message):
+    pass
+
+
+def test_one_range_for_all(folder, tmp_path, monkeypatch):
+    """What is drawn at one instant of one test shows colours of all instants of all tests."""
+    nodes, given = viz.split(folder.built.mesh), []
+    expected = temperature_range(folder, nodes)
+    every = [fields(folder.case, test, nodes, 7)[1] for test in by_interest(folder)]
+    assert expected[0] <= min(T.min() for T in every) + 1.0
+    assert expected[1] >= max(T.max() for T in every) - 1.0
+    monkeypatch.setattr(viz, "cutaway", lambda *_, limits, **__: given.append(limits))
+    monkeypatch.setattr(viz, "write_recording", lambda path, *_, limits, **__: given.append(limits) or path)
+    for module in (pages, viewer):  # one test: what costs time is done for each
+        monkeypatch.setattr(module, "by_interest", lambda folder: by_interest(folder)[:1])
+    pages.rendered(folder, tmp_path, silent)
+    data = json.loads(viewer.viewer_page(folder, silent).partition('id="data">')[2].partition("</script>")[0])
+    given.append(Bench(folder, appearance_of(folder, None), viz.rendering.cut.cut_away(nodes)).limits)
+    assert np.array(given) == pytest.approx(np.array([expected] * 3))
+    assert (data["marks"][0], data["marks"][-1]) == rounded(*expected)
