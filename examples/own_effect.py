@@ -27,7 +27,7 @@ class Sun(Effect):
     typical, prior_sd, high, confused_with = (5.0, 50.0), 20.0, 200.0, ("loss.constant",)
 
     @classmethod
-    def where(cls, scene):
+    def candidate_places(cls, scene):
         return [p for p in scene.network.places if p == "housing"]
 
     def extend(self, network):
@@ -49,7 +49,7 @@ network = ts.read_network({
     "links": {"film": {"between": ["housing", "air"], "G_W_K": G}},
 })  # fmt: skip
 sun = ts.effects()["acme.sun"]("housing")
-places = sun.where(Scene(network))
+places = sun.candidate_places(Scene(network))
 sunny = extended(network, [sun])
 computed = ts.steady(sunny, {}, {"air": AIR}, {sun.name: Q})["housing"]
 expected = AIR + Q / G

@@ -11,7 +11,7 @@ from PIL import Image
 import viz
 from fem.matrices.material import Conductivity
 from geom import load_machine
-from lumped import Record, balance, simulate
+from lumped import Record, balance
 from thermoscope.pipeline import Built, build
 from viz.machine.parts import exploded, regions
 
@@ -28,10 +28,10 @@ def record() -> Record:
 def draw(built: Built) -> None:
     """All pictures, 1280 x 800 unless their content wants another shape."""
     network, nodes = built.network, viz.split(built.mesh)
-    z = simulate(network, record(), keep_states=True).z
-    assert z is not None
+    flows = balance(network, record())
     assert network.recovery is not None
-    x = z[-1, : len(network.states)]
+    z = flows.z[-1]
+    x = z[: len(network.states)]
     T = np.concatenate([network.recovery.of_part(part, x) for part in nodes.parts])
     viz.cutaway(nodes, T, title="100 kW traction motor after an hour at 130 A", png=HERE / "field.png").close()
     exploded(nodes, title="The motor pulled apart", png=HERE / "exploded.png").close()
@@ -40,9 +40,9 @@ def draw(built: Built) -> None:
     found = {part.name: built.machine.material_of(part.name) for part in built.machine.parts}
     k = {name: Conductivity(m.k_plane, m.k_plane, m.k_axial) for name, m in found.items()}
     viz.flux_arrows(nodes, T, k, title="Heat flux after an hour;", png=HERE / "flux.png").close()
-    heat = viz.heat_flows(network, balance(network, record()), z=z[-1])
+    heat = viz.heat_flows(network, flows)
     viz.sankey_of_losses(heat, png=HERE / "losses.png")
-    means = dict(zip([*network.states, *network.boundaries], z[-1].tolist(), strict=True))
+    means = dict(zip([*network.states, *network.boundaries], z.tolist(), strict=True))
     viz.network_in_machine(built.mesh, means, heat, title="Heat flows after an hour;", png=HERE / "network.png").close()
 
 

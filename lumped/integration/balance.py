@@ -30,6 +30,7 @@ class Balance:
     through : link -> (nt,) from its first place to its second; for a stream what it carries out of the network
     injected : source -> (nt,)
     out : (nt,) all heat that left the network;  stored : (nt,) sum of C (T - T at the start)
+    z : (nt, n_states + n_boundaries) degC of the run
     """
 
     time: Array
@@ -37,6 +38,7 @@ class Balance:
     injected: Mapping[str, Array]
     out: Array
     stored: Array
+    z: Array
 
     @property
     def residual(self) -> Array:
@@ -77,6 +79,7 @@ def counted(network: Network, core: Compiled, run: Run, way: Walk) -> Balance:
         {name: -left[:, links + s] for s, name in enumerate(core.names[links:])},
         left[:, :links].sum(axis=1),
         (run.z[:, :n] - run.z[0, :n]) @ (core.C * mean),
+        run.z,
     )
 
 

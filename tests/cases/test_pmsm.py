@@ -7,13 +7,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from paper_pages import differences
 
 from scripts.papers import machines
 from scripts.pmsm_cases import TESTS, folder_of, text
 from thermoscope.case_folder.folder import load_case
 from validation.procedure.measuring.repeats import repeats
-from validation.procedure.reduction.transfer import settled, transferred
-from validation.procedure.reduction.which_base import bases_tried, declared_base, on_base, which_base, wrong_bases
+from validation.procedure.reduction.transfer import settled
+from validation.procedure.reduction.which_base import declared_base, on_base, which_base, wrong_bases
 
 pytestmark = pytest.mark.heavy
 GAP = "k.liner-gap"
@@ -22,7 +23,8 @@ SWITCHES = {"plate": "on_plate", "bench": "on_bench"}
 
 @pytest.fixture(scope="module")
 def bases(root):
-    return load_case(root / "cases" / "pmsm-bases")
+    assert root / "cases" == machines.CASES
+    return machines.m1()
 
 
 @pytest.fixture(scope="module")
@@ -98,10 +100,9 @@ def test_simulation_agrees_on_the_bases(bases):
 
 
 @pytest.mark.parametrize("name", ["m2", "m3"])
-def test_machines_that_were_not_used_are_predicted(root, bases, name):
+def test_machines_that_were_not_used_are_predicted(name):
     """Every difference below the measurement's 95 % uncertainty with M1's values, and closer than without them."""
-    other = load_case(root / "cases" / "pmsm-machines" / name).case
-    found, plain = transferred(bases.case, other), settled(other)
+    found, plain = machines.others()[name], settled(load_case(machines.CASES / "pmsm-machines" / name).case)
     assert "h.stator.core" in found.parameters
     assert not any(name.startswith("loss.") for name in found.parameters)
     assert found.agrees
@@ -131,8 +132,13 @@ def test_wrong_base_is_named(bases, test, said):
     assert not next(h for h in wrong if h.base == right).excluded
 
 
-def test_right_bases_are_believed(bases):
-    assert wrong_bases(bases_tried(bases.case)) == []
+def test_right_bases_are_believed():
+    assert wrong_bases(machines.tried()) == []
+
+
+def test_page_of_the_paper_is_current():
+    """In this file, whose process has fitted the bases already."""
+    assert differences("thermal-test-procedure.md") == []
 
 
 @pytest.fixture

@@ -8,11 +8,14 @@ from PIL import Image
 
 from geom import Machine, load_machine, read_vtu
 from geom.machine_file import machine_from
+from lumped.condensation.reduction import Recipe
 from thermoscope.commands.model import build as command
 from thermoscope.pipeline import build as pipeline
 
 pytestmark = pytest.mark.heavy
 
+# Of any accuracy: what `build` writes and that it closes its balance is the point.
+TINY = Recipe(tolerance=0.3, random_points=1, local_points=1, local_states=1, max_states=40)
 FEW = {
     "series-dc-100kw": {"rotor": {"slots": 12}, "housing": {"fins": 8}},
     "pmsm-m1": {"stator": {"slots": 9, "liner_gap_mm": 0.5}, "rotor": {"poles": 6}},
@@ -36,7 +39,7 @@ def coarse(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("THERMOSCOPE_CACHE", str(tmp_path_factory.mktemp("cache")))
         patch.setattr(command, "load_machine_file", lambda path: small(path.name) if path.name in FEW else usual(path))
-        patch.setattr(command, "built_from", lambda m, accuracy, tell: (pipeline(m, 0.1, 36), None))
+        patch.setattr(command, "built_from", lambda m, accuracy, tell: (pipeline(m, 0.1, 36, TINY), None))
         pictures = command.pictures  # one family is enough
         drawn = lambda built, *rest: pictures(built, *rest) if built.machine.family != "series-dc" else []  # noqa: E731
         patch.setattr(command, "pictures", drawn)

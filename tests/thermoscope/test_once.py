@@ -9,11 +9,12 @@ from small_case import measured, write_csv
 from thermoscope import pipeline
 from thermoscope.case_folder import folder as case_folder
 from thermoscope.case_folder.folder import load_case
-from thermoscope.case_folder.runs import held
+from thermoscope.case_folder.runs import before_last, held, readings
 from thermoscope.commands.model.calibrate import calibrate
 from thermoscope.commands.show.pages import report
 from thermoscope.commands.test.compare import compare
 from validation.comparison import compare as comparison
+from validation.comparison import predict
 
 
 @pytest.fixture
@@ -74,6 +75,20 @@ def test_a_picture_of_one_test_judges_that_test_alone(case):
     alone = folder.limits(chosen)
     assert "compared" not in vars(folder)
     assert alone == pytest.approx(folder.compared.limits[chosen.name], rel=1e-12)
+
+
+def test_every_model_is_run_once_over_a_test_for_all_that_shows_its_readings(case, monkeypatch, capsys):
+    """The model before its last step is one model, however often it is asked for."""
+    calibrate(str(case), True, None)
+    folder = load_case(case)
+
+    def shown():
+        models, tests = (folder.case, before_last(folder)), folder.case.tests
+        return [T.tolist() for model in models for test in tests for T in readings(model, test).values()]
+
+    first = shown()
+    monkeypatch.setattr(predict, "simulate", None)  # no further run
+    assert shown() == first
 
 
 def test_a_machine_is_meshed_and_reduced_once(monkeypatch):

@@ -16,7 +16,7 @@ from validation.comparison.linearisation import segments
 from validation.doubt import USUAL
 from validation.inference.model_error import alone, bridges, joints, jumps, model_error, with_doubts
 from validation.measurement.noise import first_noise
-from validation.measurement.operators import behind
+from validation.measurement.operators import lag
 
 
 @pytest.fixture(scope="module")
@@ -75,7 +75,7 @@ def test_contacts_and_bearings_of_one_parameter_differ_more_than_films_of_one():
 def test_a_core_follows_its_node():
     time = np.arange(0.0, 600.0, 10.0)
     rise = np.where(time > 0, 1.0, 0.0)[:, None]
-    behind(time, rise, np.array([60.0]))
+    lag(time, rise, np.array([60.0]))
     assert rise[-1, 0] == pytest.approx(1.0, abs=1e-3)
     assert np.all(np.diff(rise[:, 0]) >= 0)
 

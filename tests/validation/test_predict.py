@@ -10,14 +10,14 @@ from one_body import measured, one_node
 from lumped.model.network import Parameter
 from validation.calibration.unknowns import nuisances
 from validation.comparison.predict import Watch, predict
-from validation.measurement.operators import behind
+from validation.measurement.operators import lag
 
 TIME = np.arange(0.0, 600.0, 10.0)
 
 
 def lagged(time, T, tau):
     out = T[:, None].copy()
-    behind(time, out, np.array([tau]))
+    lag(time, out, np.array([tau]))
     return out[:, 0]
 
 

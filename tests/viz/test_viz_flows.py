@@ -33,7 +33,7 @@ def heat():
     z = np.array([72.5, 35.0, 20.0])  # 75 W through 2 W/K and 5 W/K, air at 20 degC
     through = {"contact:housing|yoke": -75.0 * seconds, "film:housing.outer": 75.0 * seconds}
     made = {name: watts * seconds for name, watts in losses.items()}
-    return heat_flows(net, Balance(seconds, through, made, 75.0 * seconds, 25.0 * seconds), z=z)
+    return heat_flows(net, Balance(seconds, through, made, 75.0 * seconds, 25.0 * seconds, np.stack([z, z])))
 
 
 def test_what_is_lost_leaves_or_is_stored(heat):
@@ -48,12 +48,13 @@ def test_flow_keeps_the_sign_of_its_link(heat):
     assert flow.watts == pytest.approx(-75.0)
 
 
-@pytest.mark.parametrize(("joules", "step"), [([0, 900, 1800, 1800], 1), ([0, 0, 900, 1000], 1), ([0, 0, 0, 0], -1)])
+@pytest.mark.parametrize(("joules", "step"), [([0, 900, 1800, 1800], 1), ([0, 0, 900, 1000], 1), ([0, 0, 0, 0], 2)])
 def test_a_test_that_ends_at_standstill_is_drawn_where_it_last_ran(joules, step):
     net = bare_network("one", {"yoke": 10.0}, ("ambient",))
     net = net.extended([], [node_source(net, "loss:iron", "iron", {"yoke": 1.0}, Fixed(1.0))])
     seconds, heat = 10.0 * np.arange(4), np.array(joules, float)
-    assert last_running_step(net, Balance(seconds, {}, {"loss:iron": heat}, 0 * heat, heat)) == step
+    z = np.full((4, 2), 20.0)
+    assert last_running_step(net, Balance(seconds, {}, {"loss:iron": heat}, 0 * heat, heat, z)) == step
 
 
 def test_conductance_is_that_of_the_link(heat):
@@ -71,9 +72,11 @@ def test_width_is_conductance_and_colour_is_heat():
     p.close()
 
 
-def test_flows_without_conductances_are_refused():
-    with pytest.raises(InputError, match="z="):
-        network_in_machine(MESH, {"yoke": 90.0, "housing": 40.0}, Heat({}, (Flow("yoke", "housing", "link", 1.0),), {}))
+def test_where_nothing_conducts_no_line_is_drawn():
+    still = Heat({}, (Flow("yoke", "housing", "link", 0.0, 0.0),), {})
+    p = network_in_machine(MESH, {"yoke": 90.0, "housing": 40.0}, still)
+    assert "link 0" not in p.actors
+    p.close()
 
 
 def test_ribbons_carry_their_watts():

@@ -17,7 +17,7 @@ from viz import split
 from viz.data import Comparison
 from viz.viewer.error_map import ERROR, SHARE, ErrorMap, packed_maps
 from viz.viewer.flux import nodal_flux
-from viz.viewer.low_rank import ERROR_K, low_rank
+from viz.viewer.low_rank import BLOCK, ERROR_K, low_rank
 from viz.viewer.network import NetworkRun
 from viz.viewer.packing import packed_integers, packed_numbers, unpacked
 from viz.viewer.page import STEP_K, Earlier, Recorded, document, render, write_viewer
@@ -87,6 +87,18 @@ def test_the_page_of_a_shipped_machine_is_small():
     ]  # fmt: skip
     page = render(document("motor", nodes, tests, PLACE, revisions=["2", "1", "0"]))
     assert len(page.encode()) < LARGEST
+
+
+def test_no_fewer_principal_shapes_would_do():
+    """Against the singular value decomposition, over more nodes than are looked at together."""
+    rng = np.random.default_rng(0)
+    fields = 50.0 + (rng.standard_normal((40, 12)) * np.logspace(1, -3, 12)) @ rng.standard_normal((12, 2 * BLOCK + 7))
+    rest = fields - fields.mean(axis=0)
+    u, s, v = np.linalg.svd(rest, full_matrices=False)
+    errors = [np.abs(rest - (u[:, :r] * s[:r]) @ v[:r]).max() for r in range(13)]
+    found = low_rank(fields)
+    assert np.abs(found.fields() - fields).max() <= ERROR_K
+    assert len(found.shapes) == next(r for r, error in enumerate(errors) if error <= ERROR_K) > 3
 
 
 def test_a_field_that_stays_needs_no_shape():

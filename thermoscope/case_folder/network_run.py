@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.integration.balance import balance
-from lumped.integration.simulate import simulate
 from validation.calibration.unknowns import working
 from validation.case import Case, Test
 from validation.comparison.predict import heat_model, record
@@ -23,12 +22,10 @@ def network_run(case: Case, test: Test, times: NDArray[np.float64]) -> NetworkRu
     from viz.viewer.network import NetworkRun
 
     (network, values), run = heat_model(working(case)[0], case.model.values), record(test, {})
-    heat, done = balance(network, run, values), simulate(network, run, values, keep_states=True)
-    z, nodes = np.asarray(done.z), [*network.states, *network.boundaries]
-    at = np.searchsorted(done.time, times).clip(1, done.time.size - 1)
-    mean = {n: z[at, i] for i, n in enumerate(nodes)}
-    last = last_running_step(network, heat) % (heat.time.size - 1)
-    flows = heat_flows(network, heat, last, z[last + 1]).flows
+    heat = balance(network, run, values)
+    at = np.searchsorted(heat.time, times).clip(1, heat.time.size - 1)
+    mean = {n: heat.z[at, i] for i, n in enumerate([*network.states, *network.boundaries])}
+    flows = heat_flows(network, heat, last_running_step(network, heat)).flows
     conductance: dict[tuple[str, str], float] = {}
     for f in flows:
         conductance[f.start, f.end] = conductance.get((f.start, f.end), 0.0) + f.conductance

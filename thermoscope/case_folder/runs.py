@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
@@ -10,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.condensation.recovery import Shapes
-from lumped.integration.simulate import simulate
+from lumped.integration.simulate import Run, simulate
 from lumped.model.network import Network, Row
+from lumped.model.once import once
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import Revision
 from validation.calibration.unknowns import effects_of, to_value, working
@@ -37,7 +39,20 @@ def by_interest(folder: Folder) -> list[Test]:
 
 
 def at_revision(folder: Folder, revision: Revision) -> Case:
-    """The case with the model of an earlier revision."""
+    """The case with the model of a revision; asked again it is the same one, with all that is known of it."""
+    for known, case in _of_revisions(folder):
+        if known == revision:
+            return case
+    _of_revisions(folder).append((revision, _at_revision(folder, revision)))
+    return _of_revisions(folder)[-1][1]
+
+
+@once
+def _of_revisions(folder: Folder) -> list[tuple[Revision, Case]]:
+    return []
+
+
+def _at_revision(folder: Folder, revision: Revision) -> Case:
     effects = tuple(AddedEffect(*name.partition("@")[::2]) for name in revision.effects)
     model = replace(folder.case.model, effects=effects, values=dict(revision.values), revision=revision.number)
     return replace(folder.case, model=model, answers=revision.answers)
@@ -79,8 +94,7 @@ def accepted(case: Case, test: Test) -> tuple[tuple[float, float], ...]:
 
 def fields(case: Case, test: Test, nodes: SplitMesh, frames: int) -> tuple[Array, Array]:
     """Times (n,) s and temperatures (n, n_nodes) degC on the parts' own nodes; the network needs a recovery."""
-    network, values = heat_model(working(case)[0], case.model.values)
-    run = simulate(network, record(test, {}), values, keep_states=True)
+    network, run = _run(case, test)
     recovery: Any = network.recovery
     chosen = np.unique(np.linspace(run.time.size - 1, 0, frames).astype(int))
     states = np.asarray(run.z)[chosen, : len(network.states)]
@@ -96,6 +110,22 @@ def temperature_range(folder: Folder, nodes: SplitMesh) -> tuple[float, float]:
     models = [case for case in (folder.case, before_last(folder)) if case is not None]
     every = [fields(case, test, nodes, RANGE_FRAMES)[1] for case in models for test in case.tests]
     return min(float(T.min()) for T in every), max(float(T.max()) for T in every)
+
+
+def _run(case: Case, test: Test) -> tuple[Network, Run]:
+    """A run of a case's model with all its states; the last two of a test are remembered: now, and a step before."""
+    network, values = heat_model(working(case)[0], case.model.values)
+    for of, at, run in tuple(_last_runs(test)):
+        if of is network and at == values:
+            return network, run
+    run = simulate(network, record(test, {}), values, keep_states=True)
+    _last_runs(test).append((network, values, run))
+    return network, run
+
+
+@once
+def _last_runs(test: Test) -> deque[tuple[Network, dict[str, float], Run]]:
+    return deque(maxlen=2)
 
 
 def steps(folder: Folder) -> list[dict[str, Any]]:

@@ -43,8 +43,8 @@ def sizes(model: Model) -> str:
     }  # fmt: skip
     lines = [f"#define THERMAL_{k} {v}" for k, v in counts.items()]
     lines += [f"#define THERMAL_{k} {v:.17g}" for k, v in numbers.items()]
-    guard = "THERMAL_NETWORK_SIZES_H"
-    return "\n".join([_comment(heading(model)), f"#ifndef {guard}", f"#define {guard}", *lines, "#endif", ""])
+    macro = "THERMAL_NETWORK_SIZES_H"
+    return "\n".join([_comment(heading(model)), f"#ifndef {macro}", f"#define {macro}", *lines, "#endif", ""])
 
 
 def _comment(lines: Sequence[str]) -> str:

@@ -105,9 +105,9 @@ def _sizes(of: ObserverModel) -> str:
         f"Missing heat q (W), in this order: {', '.join(of.process.bodies)}.",
     ]
     lines = [f"#define THERMAL_{name} {n}" for name, n in counts.items()]
-    guard = "THERMAL_OBSERVER_SIZES_H"
+    macro = "THERMAL_OBSERVER_SIZES_H"
     about = "\n   ".join(said).replace("*/", "* /")
-    return "\n".join([f"/* {about} */", f"#ifndef {guard}", f"#define {guard}", *lines, "#endif", ""])
+    return "\n".join([f"/* {about} */", f"#ifndef {macro}", f"#define {macro}", *lines, "#endif", ""])
 
 
 def _data(of: ObserverModel) -> str:

@@ -196,7 +196,7 @@ def through(
     """Heat through every contact and film of the field, beside the network's, largest difference first."""
     scale, out = max(full.injected, 1e-300), []
 
-    def kept(name: str, parts: tuple[str, ...], fem: float, own: float) -> None:
+    def add(name: str, parts: tuple[str, ...], fem: float, own: float) -> None:
         out.append(LinkCheck(name, parts, fem, own, 100.0 * abs(fem - own) / scale))
 
     for link in network.links:
@@ -204,12 +204,12 @@ def through(
             key = link.name.removeprefix("contact:")
             touch, g = field.contacts[key], c.contacts[key]
             fem = g * float(touch.a.b @ full.T[touch.a.dofs] - touch.b.b @ full.T[touch.b.dofs])
-            kept(link.name, link.places, fem, g * touch.area * (_at(z, link.hot) - _at(z, link.cold)))
+            add(link.name, link.places, fem, g * touch.area * (_at(z, link.hot) - _at(z, link.cold)))
     for face, film in field.films.items():
         place, h, t = network.places[face], c.films.get(face, 0.0), film.trace
         fem = h * float(t.b @ full.T[t.dofs] - t.area * u[film.fluid])
         own = h * t.area * (_at(z, place.mean) - float(z[network.column(film.fluid)]))
-        kept(f"film:{face}", (t.part,), fem, own)
+        add(f"film:{face}", (t.part,), fem, own)
     return tuple(sorted(out, key=lambda link: -link.percent_of_heat))
 
 

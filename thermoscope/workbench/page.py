@@ -55,7 +55,7 @@ def _browser_code(session: Session) -> None:
     session.shown.server.enable_module({"serve": {"__thermoscope": code}, "scripts": ["__thermoscope/drop.js"]})
 
 
-def told(attribute: str, value: str) -> dict[str, list[str]]:
+def aria(attribute: str, value: str) -> dict[str, list[str]]:
     """What a screen reader is told; trame's widgets do not know these attributes by name."""
     return {"raw_attrs": [f'{attribute}="{value}"']}
 
@@ -87,7 +87,7 @@ def _bar(session: Session) -> None:
             v3.VBtn(
                 icon="mdi-close", size="x-small", variant="text", disabled=("busy",), click=(
                     lambda effect: started(session.step("remove", str(effect))), "[e]"),
-                **told(":aria-label", "'take out ' + e"),
+                **aria(":aria-label", "'take out ' + e"),
             )  # fmt: skip
         v3.VSpacer()
         _button("Undo", "undo", "mdi-undo", lambda: started(session.undo()), "busy || !can_undo")
@@ -96,12 +96,12 @@ def _bar(session: Session) -> None:
         html.A("open report", v_if=("report",), href=("report",), target="_blank", id="report-link", rel="noopener")
         v3.VBtn(
             icon=("dark ? 'mdi-weather-sunny' : 'mdi-weather-night'",), click=session.paper,
-            **told(":aria-label", "dark ? 'light page' : 'dark page'"),
+            **aria(":aria-label", "dark ? 'light page' : 'dark page'"),
         )  # fmt: skip
 
 
 def _button(text: str, name: str, icon: str, act: Any, disabled: str) -> None:
-    said = told("aria-label", text)  # narrow pages show the icon alone
+    said = aria("aria-label", text)  # narrow pages show the icon alone
     v3.VBtn(text, id=name, prepend_icon=icon, click=act, disabled=(disabled,), variant="text", **said)
 
 
@@ -115,18 +115,18 @@ def _machine(session: Session) -> None:
             if session.shown.stage is not None:
                 v3.VSlider(
                     v_model=("frame",), min=0, max=("frames",), step=1, hide_details=True, density="compact",
-                    id="frame", **told("aria-label", "instant of the test"),
+                    id="frame", **aria("aria-label", "instant of the test"),
                 )  # fmt: skip
                 html.Span("{{ minute }}", classes="minute")
                 for icon, name in _VIEW:
                     act = session.shown.first_view if name == "first_view" else _turning(session, name)
-                    v3.VBtn(icon=icon, size="x-small", variant="text", click=act, **told("aria-label", _LABEL[name]))
+                    v3.VBtn(icon=icon, size="x-small", variant="text", click=act, **aria("aria-label", _LABEL[name]))
             if session.bench.folder.built is not None:
                 v3.VBtn("{{ viewer ? 'Back' : 'Play' }}", id="view", size="small", variant="outlined",
                         disabled=("busy",), click=lambda: started(session.view()),
-                        **told(":aria-label", "viewer ? 'back to the picture' : 'turn, cut and play the machine here'"),
+                        **aria(":aria-label", "viewer ? 'back to the picture' : 'turn, cut and play the machine here'"),
                         )  # fmt: skip
-        html.Iframe(v_if=("viewer",), src=("viewer",), classes="view", id="viewer", **told("title", "the machine"))
+        html.Iframe(v_if=("viewer",), src=("viewer",), classes="view", id="viewer", **aria("title", "the machine"))
         if session.shown.stage is None:
             html.P("{{ why_flat }}", classes="flat")
             return
@@ -163,16 +163,16 @@ def _curve() -> None:
 
 
 def _messages(session: Session) -> None:
-    with html.Div(**told("role", "status")):
+    with html.Div(**aria("role", "status")):
         with html.Div(v_if=("busy",), classes="card job", id="job"):
             html.B("{{ job.title }}")
             html.Span("{{ job.message }}", classes="faint", id="job-message")
             v3.VProgressLinear(
                 model_value=("job.percent || 0",), indeterminate=("job.percent === null",), color="primary", height=8,
-                id="progress", **told("aria-label", "progress"),
+                id="progress", **aria("aria-label", "progress"),
             )  # fmt: skip
             v3.VBtn("Stop", click=session.stop, size="small", variant="outlined", id="stop")
-        with html.Div(v_if=("error",), classes="card bad", id="error", **told("role", "alert")):
+        with html.Div(v_if=("error",), classes="card bad", id="error", **aria("role", "alert")):
             html.Span("{{ error }}")
             v3.VBtn("Take over", click=lambda: started(session.take_over()), size="small", variant="outlined",
                     v_if=("error.includes('take over')",), id="take-over")  # fmt: skip
@@ -204,7 +204,7 @@ def _sensors(session: Session) -> None:
             v_for="s in sensors", key="s.name", type="button",
             classes=("'bar sensor ' + s.tone + (s.name === sensor ? ' chosen' : '')",), id=("'sensor-' + s.name",),
             click=(lambda name: session.shown.select(str(name)), "[s.name]"),
-            **told(":aria-pressed", "s.name === sensor"),
+            **aria(":aria-pressed", "s.name === sensor"),
         ):  # fmt: skip
             html.Span("{{ s.label }}", classes="name", title=("s.place",))
             with html.Span(classes="track"):
@@ -300,7 +300,7 @@ def _candidates(session: Session) -> None:
                     "Add", size="small", variant=("c.decision === 'no' ? 'text' : 'flat'",),
                     color=("c.decision === 'no' ? '' : 'primary'",), disabled=("busy || c.inside",),
                     click=(lambda effect: started(session.step("add", str(effect))), "[c.effect]"),
-                    id=("'add-' + c.effect",), **told(":aria-label", "'add ' + c.effect"),
+                    id=("'add-' + c.effect",), **aria(":aria-label", "'add ' + c.effect"),
                 )  # fmt: skip
             with html.Td(), html.Span(classes="evidence", title=("'probability ' + c.score",)):
                 html.Span(classes="now", style=("{ width: c.width + '%' }",))

@@ -27,7 +27,7 @@ WORTH = 0.1  # nats: the error of time steps moves an objective by about as much
 ROUGH = 1.0  # nats: a fit under a noise that is only guessed
 SHORTER, MORE, LESS = 0.01, 30.0, 10.0  # damping of the first shorter step; growth where that fails, fall where not
 SHORTEST, BORROWED = 1e6, 1e3  # damping beyond which no step gains; a borrowed Jacobian is given up before
-FORETOLD = 0.5  # of the predicted gain: a Jacobian that delivers less is made anew
+GAIN_RATIO = 0.5  # of the predicted gain: a Jacobian that delivers less is made anew
 
 
 def no_progress(message: str) -> None:
@@ -45,7 +45,7 @@ class Fit:
     theta : (p,) fitted coordinates;  H : (p, p) curvature of the posterior (J'Sigma^-1 J + prior);  parts : residual
     and Jacobian at theta;  gradient : largest |gradient| in units of the posterior sd (0 at the exact optimum)
     error : the model error that the noise was widened by, marginalised in H and the objective
-    foretold : least share of its foretold gain that a step of weight brought; 1 where the model is linear
+    gain_ratio : least share of its predicted gain that a step of weight brought; 1 where the model is linear
     """
 
     network: Network
@@ -58,7 +58,7 @@ class Fit:
     converged: bool
     gradient: float
     error: ModelError | None = None
-    foretold: float = 1.0
+    gain_ratio: float = 1.0
 
     @property
     def values(self) -> dict[str, float]:
@@ -144,20 +144,20 @@ def minimise(
 
     iterations : steps that gain
 
-    The Jacobian costs ten times a run, so it is held as long as steps do what it foretells, and made anew before the
+    The Jacobian costs ten times a run, so it is held as long as steps do what it predicts, and made anew before the
     end (unless `draft`); `known`: one to begin with; `centre`: prior mean (p,), 0 by default; `worth`: gain (nats) for
     which one more step is made; `keep` is told the values after every step, so that an interrupted fit can go on;
     `error`: the covariance of the model error, added to that of the noise.
     """
     fixed = dict(fixed or {})
-    climb = Iterate(network, tests, unknowns, fixed, theta, noise, known, draft, centre, worth, error)
+    iterate = Iterate(network, tests, unknowns, fixed, theta, noise, known, draft, centre, worth, error)
     for iteration in range(iterations):
-        progress(f"calibration step {iteration + 1}, objective {climb.objective:.4g}")
-        done = climb.step()
-        keep(unknowns.values(climb.theta))
+        progress(f"calibration step {iteration + 1}, objective {iterate.objective:.4g}")
+        done = iterate.step()
+        keep(unknowns.values(iterate.theta))
         if done:
             break
-    return climb.fit()
+    return iterate.fit()
 
 
 class Iterate:
@@ -179,7 +179,7 @@ class Iterate:
             not (near or (known is not None and known.stale)),
             False,
         )
-        self.foretold = 1.0
+        self.gain_ratio = 1.0
         self.theta = np.clip(theta, self.low, self.high)
         self.parts = self.begun(known)
         self.noise = noise or first_noise(self.parts)
@@ -241,7 +241,7 @@ class Iterate:
                 return self.stop()
             gained, trial = self.tried(new)
             if predicted > ROUGH and trial:
-                self.foretold = min(self.foretold, gained / predicted)
+                self.gain_ratio = min(self.gain_ratio, gained / predicted)
             if gained > 0.0:
                 return self.taken(new, trial, gained, predicted)
             if self.back():
@@ -259,7 +259,7 @@ class Iterate:
         """Go there; a Jacobian that promised too much is made anew."""
         self.theta, self.parts, self.fresh = new, trial, False
         self.damping = self.damping / LESS if self.damping > SHORTER else 0.0
-        if gained < FORETOLD * predicted and not self.borrowed:
+        if gained < GAIN_RATIO * predicted and not self.borrowed:
             self.renew()
         else:
             self.read()
@@ -292,7 +292,7 @@ class Iterate:
         slack = float(np.max(np.abs(g / np.sqrt(np.diag(H)))[inside], initial=0.0))
         return Fit(
             self.network, self.unknowns, self.theta, H, tuple(self.parts), self.noise, self.objective,
-            self.done or slack < STATIONARY, slack, self.error, self.foretold,
+            self.done or slack < STATIONARY, slack, self.error, self.gain_ratio,
         )  # fmt: skip
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.model.network import Network, Parameter
+from lumped.model.once import once
 from lumped.transfer.laws import Law
 from validation.calibration.model_form import levels, with_model_form
 from validation.case import Case, Channel, Model, Test
@@ -161,7 +162,17 @@ def working(case: Case, more: Sequence[Effect] = ()) -> tuple[Network, Unknowns]
     """The network with the model's effects, `more` effects and measurement nuisances, and what is free in it.
 
     Free are the case's nuisances (all declared parameters when it names none), the effects and the measurement's.
+    Of a case alone it is one network, so what is known of it and of its laws serves again.
     """
+    return _grown(case, more) if more else _as_it_stands(case)
+
+
+@once
+def _as_it_stands(case: Case) -> tuple[Network, Unknowns]:
+    return _grown(case, ())
+
+
+def _grown(case: Case, more: Sequence[Effect]) -> tuple[Network, Unknowns]:
     inside, extra = effects_of(case), nuisances(case.model.network, case.tests, case.doubt)
     network = extended(case.model.network, (*inside, *more))
     network = at_level(network, {e.name for e in (*inside, *more)}, case.tests)

@@ -126,14 +126,14 @@ def sentence(sure: Sequence[Difference], tests: int) -> str:
     own = [d for d in sure if d.test == sure[0].test]
     fixed = max((d for d in own if not d.possible), key=lambda d: abs(d.sd), default=None)
     able = max((d for d in own if d.possible), key=lambda d: d.nats, default=None)
-    told = []
+    clauses = []
     if fixed:
-        told.append(
+        clauses.append(
             f"it would need {needs(fixed)}, which cannot be: conditions differed, or an effect is missing there"
         )
     if able and able.nats > 0.0:
-        told.append(f"{'or ' if fixed else 'it would need '}{needs(able)}, which can differ between tests")
-    return f"{sure[0].test} contradicts the other tests: {'; '.join(told) or 'no parameter alone mends it'}"
+        clauses.append(f"{'or ' if fixed else 'it would need '}{needs(able)}, which can differ between tests")
+    return f"{sure[0].test} contradicts the other tests: {'; '.join(clauses) or 'no parameter alone mends it'}"
 
 
 def needs(d: Difference) -> str:

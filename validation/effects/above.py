@@ -57,7 +57,7 @@ class Above(Effect):
         self.parts()
 
     @classmethod
-    def where(cls, scene: Scene) -> Iterable[str]:
+    def candidate_places(cls, scene: Scene) -> Iterable[str]:
         """Nowhere by itself: readings say at which level."""
         return ()
 

@@ -81,11 +81,11 @@ class Effect(ABC):
     @classmethod
     def places(cls, scene: Scene) -> tuple[str, ...]:
         """Where it can sit on this network with these recordings."""
-        return tuple(cls.where(scene)) if set(cls.needs) <= scene.recorded else ()
+        return tuple(cls.candidate_places(scene)) if set(cls.needs) <= scene.recorded else ()
 
     @classmethod
     @abstractmethod
-    def where(cls, scene: Scene) -> Iterable[str]:
+    def candidate_places(cls, scene: Scene) -> Iterable[str]:
         """Places that suit it, supposing that what it needs is recorded."""
 
     @abstractmethod

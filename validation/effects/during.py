@@ -55,7 +55,7 @@ class During(Effect):
         return f"at {self.base.place} {self.event.words if self.event else f'in {self.gate}'}"
 
     @classmethod
-    def where(cls, scene: Scene) -> Iterable[str]:
+    def candidate_places(cls, scene: Scene) -> Iterable[str]:
         """Nowhere by itself: readings say which of the many there could be."""
         return ()
 

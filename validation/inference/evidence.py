@@ -35,7 +35,7 @@ Array = NDArray[np.float64]
 TWIN = 0.9995  # cosine from which a calibrated parameter does the same as an effect
 ENOUGH = 0.1  # nats: evidence is read to a few tenths
 FINE = 0.02  # nats at which what is told stands: a size is then within a quarter of its deviation of its optimum
-STRAIGHT = 0.9  # of the gain that tangents foretold: a refit that got it needs none of its own
+STRAIGHT = 0.9  # of the gain that tangents predict: a refit that got it needs none of its own
 BENDS = 10.0  # nats that a refit gains, beyond which the tangents of its start point elsewhere at its end
 HOPELESS = 20.0  # nats worse than nothing after a first refit: no second one makes up for that
 LEAN = 0.5  # nats that a tangent gains at a large amplitude before it pays for its own size
@@ -348,7 +348,7 @@ def refit(
     rough = minimise(network, evidence.tests, unknowns, theta, fit.noise, held, 8,
                      KnownSegments(tangents or evidence.parts_of(free)), worth=ENOUGH, error=fit.error)  # fmt: skip
     far = any(evidence.effects[k].whole for k in members)  # exchanged plugs begin where the calibration is wrong
-    straight = rough.foretold > STRAIGHT and before - rough.objective < BENDS
+    straight = rough.gain_ratio > STRAIGHT and before - rough.objective < BENDS
     if straight or (rough.objective > fit.objective + HOPELESS and not far):
         return rough
     return minimise(network, evidence.tests, unknowns, rough.theta, fit.noise, held, SECOND, draft=True, worth=ENOUGH,

@@ -25,7 +25,7 @@ from validation.comparison.linearisation import Segment, segments
 from validation.comparison.predict import heat_model, record
 from validation.doubt import USUAL, Doubt
 from validation.effects.build import Shaped, copy_link, copy_source, exchange, heat
-from validation.measurement.operators import behind, setting
+from validation.measurement.operators import lag, setting
 
 Array = NDArray[np.float64]
 SQUARED = ("current", "torque")  # quantities whose square makes heat
@@ -221,7 +221,7 @@ def with_cores(network: Network, test: Test, values: Mapping[str, float], doubt:
         return network
     T = nodes(network, test, values, own)
     core = T.copy()
-    behind(test.time, core, np.full(len(own), doubt["core time"]))
+    lag(test.time, core, np.full(len(own), doubt["core time"]))
     for i, place in enumerate(own):
         C = float(network.C[place.states[0]])
         q = doubt["core"] * C * np.gradient(T[:, i] - core[:, i], test.time)

@@ -100,7 +100,7 @@ class Stretch:
             out += stem * (one * self.air.reshape(rows) - out)
         tau = np.array([c.lag_s for c in channels]) + each("lag").ravel()
         if np.any(tau > 0.0):
-            self.memory[variant] = behind(self.time, out, tau, self.memory.get(variant))
+            self.memory[variant] = lag(self.time, out, tau, self.memory.get(variant))
         if gain.any():
             out += gain * (out - one * GAIN_ZERO)
         if bias.any():
@@ -131,7 +131,7 @@ def _swap(out: Array, names: list[str], key: str, a: float) -> None:
         out[:, i], out[:, j] = out[:, i] + a * (out[:, j] - out[:, i]), out[:, j] + a * (out[:, i] - out[:, j])
 
 
-def behind(time: Array, T: Array, tau: Array, first: Array | None = None) -> Array:
+def lag(time: Array, T: Array, tau: Array, first: Array | None = None) -> Array:
     """Let first-order lags tau (n_channel,) s follow T (n_time, n_channel, ...), which becomes what they show.
 
     Exact for temperatures linear between the times.

@@ -207,9 +207,9 @@ def observer(
     sd = {process.state(c): USUAL["start"] for c in sensors if c.place in known}
     count, m = len(sensors), len(process.bodies)
     heats = np.hstack([np.zeros((m, count)), np.eye(m)])
-    kept = begun(process, noise, x, sd, float(np.hypot(USUAL["start"], np.std(around))), heats)
+    start = begun(process, noise, x, sd, float(np.hypot(USUAL["start"], np.std(around))), heats)
     sigma = np.array([c.sigma_K for c in sensors])
     allowed = np.hypot(sigma, USUAL["gain"] * rise_K)
     tests = hypotheses(tuple(c.name for c in sensors), sigma, allowed, process.bodies, table_sd)
     states = [SensorState() for _ in sensors]
-    return Observer(kept, table_sd, tuple(sensors), off, states, tests, np.zeros(count))
+    return Observer(start, table_sd, tuple(sensors), off, states, tests, np.zeros(count))

@@ -17,14 +17,14 @@ Array = NDArray[np.float64]
 class Flow:
     """Heat (W) from node `start` to node or boundary `end`, through parallel links of one kind.
 
-    conductance : W/K between the two if each had one temperature; 0 where the flows were made without the states
+    conductance : W/K between the two if each had one temperature
     """
 
     start: str
     end: str
     kind: str
     watts: float
-    conductance: float = 0.0
+    conductance: float
 
 
 @dataclass(frozen=True)
@@ -52,14 +52,12 @@ def last_running_step(network: Network, balance: Balance) -> int:
     """The last step of a balance in which the machine runs; the last one where it never does."""
     total = np.sum([balance.power(s.name) for s in network.sources], axis=0)
     running = np.flatnonzero(total >= RUNNING * total.max(initial=0.0))
-    return int(running[-1]) if running.size and total.max() > 0 else -1
+    return int(running[-1]) if running.size and total.max() > 0 else total.size - 1
 
 
-def heat_flows(network: Network, balance: Balance, step: int = -1, z: Array | None = None) -> Heat:
-    """Losses, flows and exits over one step of the balance, the last one if not told.
-
-    z : (n_states + n_boundaries,) degC after that step; the conductances follow from it
-    """
+def heat_flows(network: Network, balance: Balance, step: int = -1) -> Heat:
+    """Losses, flows and exits over one step of the balance, the last one if not told."""
+    z = balance.z[1:][step]
     losses: dict[str, float] = {}
     for source in network.sources:
         name = source.name.removeprefix("loss:").partition("^")[0]  # what an exponent changes is the loss's own
@@ -75,7 +73,7 @@ def heat_flows(network: Network, balance: Balance, step: int = -1, z: Array | No
             continue
         if start == end:
             continue
-        both = np.array([watts, 0.0 if z is None else conductance(network, link, (start, end), watts, z)])
+        both = np.array([watts, conductance(network, link, (start, end), watts, z)])
         pairs[start, end, link.kind] = pairs.get((start, end, link.kind), np.zeros(2)) + both
         for boundary, part, sign in ((end, start, 1.0), (start, end, -1.0)):
             if boundary in network.boundaries:

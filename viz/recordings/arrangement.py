@@ -65,19 +65,19 @@ def eye(points: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def seen(points: NDArray[np.float64], machine: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """(n, 2) to the right and up, per length ahead, and (n,) m ahead, of points (n, 3) m when it is first seen."""
+    """(n, 2) to the right and up, per length of distance, and (n,) m of distance, of points (n, 3) m when it is first seen."""
     towards, right, up = View().axes()
-    ahead = (eye(machine) - points) @ towards
-    return (points - eye(machine)) @ np.stack([right, up], axis=1) / ahead[:, None], ahead
+    distance = (eye(machine) - points) @ towards
+    return (points - eye(machine)) @ np.stack([right, up], axis=1) / distance[:, None], distance
 
 
 def beside(places: NDArray[np.float64], machine: NDArray[np.float64]) -> NDArray[np.float64]:
     """(n, 3) m: out from places (n, 3) m, across the first line of sight, to just beyond the machine's outline."""
     _, right, up = View().axes()
-    (at, ahead), outline = seen(places, machine), seen(machine, machine)[0]
+    (at, distance), outline = seen(places, machine), seen(machine, machine)[0]
     away = at / np.linalg.norm(at, axis=1, keepdims=True)
     far = (outline @ away.T).max(axis=0) + OUT / DISTANCE - np.einsum("ij,ij->i", at, away)
-    return np.asarray(places + (far * ahead)[:, None] * (away @ np.stack([right, up])))
+    return np.asarray(places + (far * distance)[:, None] * (away @ np.stack([right, up])))
 
 
 def _bar() -> rrb.Spatial2DView:

@@ -41,7 +41,7 @@ def _described(kind: type[Effect], scene: Scene | None) -> dict[str, Any]:
     if scene is None:
         return about
     inputs = [q for q in kind.needs if q not in scene.recorded]
-    suited = list(kind.where(scene))
+    suited = list(kind.candidate_places(scene))
     missing = [*(f"a column of {q} (input {INPUTS.get(q, q)})" for q in inputs), *([] if suited else [kind.sits])]
     return {**about, "places": list(kind.places(scene)), "missing": missing}
 

@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from geom.errors import InputError
 from geom.plugins import plugins
 from lumped.integration.balance import balance
-from lumped.integration.simulate import simulate
 from lumped.schemas.reader import known
 from thermoscope.case_folder.error_field import error_field
 from thermoscope.case_folder.folder import Folder, Progress
@@ -94,11 +93,10 @@ class Subject:
         case, test = self.folder.case, record(self.test, {})
         network, values = heat_model(working(case)[0], case.model.values)
         heat = balance(network, test, values)
-        step = last_running_step(network, heat) % (heat.time.size - 1)
-        z = np.asarray(simulate(network, test, values, keep_states=True).z)[step + 1]
+        step = last_running_step(network, heat)
         when = f"{self.test.name} at {heat.time[step + 1] / 60:.0f} min"
-        means = dict(zip([*network.states, *network.boundaries], z.tolist(), strict=True))
-        return heat_flows(network, heat, step, z), means, when
+        means = dict(zip([*network.states, *network.boundaries], heat.z[step + 1].tolist(), strict=True))
+        return heat_flows(network, heat, step), means, when
 
 
 def _field(s: Subject, png: Path) -> None:

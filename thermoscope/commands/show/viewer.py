@@ -70,8 +70,8 @@ def viewer_page(folder: Folder, tell: Progress) -> str:
     for test in by_interest(folder):
         tell(f"running {test.name}")
         played = _recorded(folder, test, nodes, earlier, [at_revision(folder, r) for r in others])
-        channels, told = error_gain(folder, test, nodes)
-        between = ErrorMap(tuple(c.name for c in channels), told.mean, told.explained)
+        channels, gain = error_gain(folder, test, nodes)
+        between = ErrorMap(tuple(c.name for c in channels), gain.mean, gain.explained)
         tests.append(replace(played, error_map=between, network=network_run(folder.case, test, played.times)))
     conductivity = {part.name: folder.built.machine.conductivity(part.name) for part in folder.built.machine.parts}
     names = [f"{r.number}: {r.effect or (r.action if r.number else 'as it was')}" for r in revisions(folder)]

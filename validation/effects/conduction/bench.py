@@ -30,7 +30,7 @@ class BenchConduction(Effect):
     confused_with = ("convection.constant",)
 
     @classmethod
-    def where(cls, scene: Scene) -> list[str]:
+    def candidate_places(cls, scene: Scene) -> list[str]:
         network = scene.network
         outer = [p for p in outside(network) or [p.name for p in solids(network)] if not turns(network, p)]
         return [p for p in outer if free(network, p)]

@@ -25,7 +25,7 @@ class CableConduction(Effect):
     confused_with = ("loss.winding", "contact")
 
     @classmethod
-    def where(cls, scene: Scene) -> list[str]:
+    def candidate_places(cls, scene: Scene) -> list[str]:
         still = [place for place in windings(scene.network) if not turns(scene.network, place)]
         return still if ambient(scene.network) else []
 

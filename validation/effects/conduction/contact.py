@@ -45,7 +45,7 @@ class ContactResistance(Effect):
     confused_with = ("contact", "loss.winding", "mass")
 
     @classmethod
-    def where(cls, scene: Scene) -> list[str]:
+    def candidate_places(cls, scene: Scene) -> list[str]:
         return [label(link) for link in joints(scene.network)]
 
     def extend(self, network: Network) -> Network:

@@ -25,7 +25,7 @@ class Coupling(Effect):
     confused_with = ("contact", "coupling")
 
     @classmethod
-    def where(cls, scene: Scene) -> list[str]:
+    def candidate_places(cls, scene: Scene) -> list[str]:
         return [f"{a}|{b}" for a, b in near_pairs(scene.network)]
 
     def extend(self, network: Network) -> Network:

@@ -24,7 +24,7 @@ class Mass(Effect):
     confused_with = ("sensor.lag", "contact")
 
     @classmethod
-    def where(cls, scene: Scene) -> list[str]:
+    def candidate_places(cls, scene: Scene) -> list[str]:
         groups = scene.network.capacity_group
         return [p.name for p in solids(scene.network) if groups and groups[p.states[0]]]
 

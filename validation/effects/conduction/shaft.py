@@ -46,7 +46,7 @@ class ShaftConduction(Effect):
     confused_with = ("convection.rotation", "bearing.friction")
 
     @classmethod
-    def where(cls, scene: Scene) -> list[str]:
+    def candidate_places(cls, scene: Scene) -> list[str]:
         return shafts(scene.network) if beyond(scene.network) else []
 
     def extend(self, network: Network) -> Network:

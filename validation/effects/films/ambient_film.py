@@ -18,7 +18,7 @@ class AmbientFilm(Effect):
     unit = "W/m2/K"
 
     @classmethod
-    def where(cls, scene: Scene) -> list[str]:
+    def candidate_places(cls, scene: Scene) -> list[str]:
         return outside(scene.network)
 
     @abstractmethod

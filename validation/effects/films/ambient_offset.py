@@ -26,7 +26,7 @@ class AmbientOffset(Effect):
     fault = True
 
     @classmethod
-    def where(cls, scene: Scene) -> tuple[str, ...]:
+    def candidate_places(cls, scene: Scene) -> tuple[str, ...]:
         return scene.network.boundaries
 
     def extend(self, network: Network) -> Network:

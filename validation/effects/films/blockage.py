@@ -27,7 +27,7 @@ class Blockage(Effect):
     confused_with = ("fouling", "flow")
 
     @classmethod
-    def where(cls, scene: Scene) -> list[str]:
+    def candidate_places(cls, scene: Scene) -> list[str]:
         parts = dict.fromkeys(part_of(scene.network, p) for link in scene.network.links for p in link.places)
         return [p for p in parts if p not in scene.network.boundaries and films(scene.network, p)]
 

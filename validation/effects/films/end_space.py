@@ -29,7 +29,7 @@ class EndSpaceMixing(Effect):
     needs = ("speed",)
 
     @classmethod
-    def where(cls, scene: Scene) -> list[str]:
+    def candidate_places(cls, scene: Scene) -> list[str]:
         wet = {p.fluid for p in scene.network.places.values() if p.kind == "surface"}
         return [f for f in fluids(scene.network, Role.INNER_AIR) if f in wet]
 

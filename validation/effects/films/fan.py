@@ -31,7 +31,7 @@ class FanConvection(AmbientFilm):
     needs = ("speed",)
 
     @classmethod
-    def where(cls, scene: Scene) -> list[str]:
+    def candidate_places(cls, scene: Scene) -> list[str]:
         network = scene.network
         if AIR in scene.recorded:  # a motor of its own drives the fan: then none is on the shaft
             return []

@@ -45,7 +45,7 @@ class GapConvection(Effect):
     needs = ("speed",)
 
     @classmethod
-    def where(cls, scene: Scene) -> list[str]:
+    def candidate_places(cls, scene: Scene) -> list[str]:
         return list(dict.fromkeys(gaps(scene.network)))
 
     def extend(self, network: Network) -> Network:

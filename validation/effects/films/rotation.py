@@ -27,7 +27,7 @@ class RotationConvection(AmbientFilm):
     needs = ("speed",)
 
     @classmethod
-    def where(cls, scene: Scene) -> list[str]:
+    def candidate_places(cls, scene: Scene) -> list[str]:
         return turning(scene.network) if ambient(scene.network) else []
 
     def law(self, network: Network) -> Law:

@@ -24,5 +24,5 @@ class BrushDrop(AddedLoss):
     follows = (("current", 100.0, 1.0),)
 
     @classmethod
-    def where(cls, scene: Scene) -> list[str]:
+    def candidate_places(cls, scene: Scene) -> list[str]:
         return commutators(scene.network)

@@ -24,5 +24,5 @@ class BrushFriction(AddedLoss):
     follows = (("speed", 1000.0, 1.0),)
 
     @classmethod
-    def where(cls, scene: Scene) -> list[str]:
+    def candidate_places(cls, scene: Scene) -> list[str]:
         return commutators(scene.network)

@@ -21,5 +21,5 @@ class ConstantLoss(AddedLoss):
     heats = "extra"
 
     @classmethod
-    def where(cls, scene: Scene) -> list[str]:
+    def candidate_places(cls, scene: Scene) -> list[str]:
         return outside(scene.network)

@@ -25,7 +25,7 @@ class AcCopper(AddedLoss):
     follows = (("speed", 1000.0, 2.0), ("current", 100.0, 2.0))
 
     @classmethod
-    def where(cls, scene: Scene) -> list[str]:
+    def candidate_places(cls, scene: Scene) -> list[str]:
         """Windings that carry a copper loss; a cage has no strands (its own is the load-dependent loss of a rotor)."""
         loaded = heated(scene.network, "copper", windings(scene.network))
         return [p for p in loaded if role(scene.network, p) is not Role.CAGE]

@@ -32,7 +32,7 @@ class CopperFeedback(Effect):
     confused_with = ("copper.ac", "loss.winding")
 
     @classmethod
-    def where(cls, scene: Scene) -> list[str]:
+    def candidate_places(cls, scene: Scene) -> list[str]:
         wound = set(windings(scene.network))
         copper = [s for s in scene.network.sources if not s.origin and _copper(s, wound)]
         return [s.name.split(":", 1)[-1] for s in copper if _reference(s) is not None]

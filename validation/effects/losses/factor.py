@@ -25,7 +25,7 @@ class LossFactor(Effect):
     confused_with = ("input.factor", "loss.winding", "iron")
 
     @classmethod
-    def where(cls, scene: Scene) -> list[str]:
+    def candidate_places(cls, scene: Scene) -> list[str]:
         return [s.name for s in scene.network.sources if not s.origin]
 
     def extend(self, network: Network) -> Network:

@@ -24,5 +24,5 @@ class IronLoss(AddedLoss):
     follows = (("speed", 1000.0, 1.5),)
 
     @classmethod
-    def where(cls, scene: Scene) -> list[str]:
+    def candidate_places(cls, scene: Scene) -> list[str]:
         return heated(scene.network, "iron", cores(scene.network))

@@ -44,7 +44,7 @@ class PwmIronLoss(AddedLoss):
     heats = "iron"
 
     @classmethod
-    def where(cls, scene: Scene) -> list[str]:
+    def candidate_places(cls, scene: Scene) -> list[str]:
         return heated(scene.network, "iron", cores(scene.network))
 
     def law(self, network: Network) -> Law:

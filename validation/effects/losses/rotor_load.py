@@ -26,6 +26,6 @@ class RotorLoadLoss(AddedLoss):
     follows = (("speed", 1000.0, 2.0), ("current", 100.0, 2.0))
 
     @classmethod
-    def where(cls, scene: Scene) -> list[str]:
+    def candidate_places(cls, scene: Scene) -> list[str]:
         """Rotors and magnets; a winding that turns has the same law as AC copper loss."""
-        return [p for p in turning(scene.network) if p not in AcCopper.where(scene)]
+        return [p for p in turning(scene.network) if p not in AcCopper.candidate_places(scene)]

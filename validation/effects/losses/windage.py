@@ -24,5 +24,5 @@ class Windage(AddedLoss):
     follows = (("speed", 1000.0, 3.0),)
 
     @classmethod
-    def where(cls, scene: Scene) -> list[str]:
+    def candidate_places(cls, scene: Scene) -> list[str]:
         return turning(scene.network)

@@ -24,5 +24,5 @@ class WindingLoss(AddedLoss):
     follows = (("current", 100.0, 2.0),)
 
     @classmethod
-    def where(cls, scene: Scene) -> list[str]:
+    def candidate_places(cls, scene: Scene) -> list[str]:
         return heated(scene.network, "copper", windings(scene.network))

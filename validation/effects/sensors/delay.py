@@ -30,5 +30,5 @@ class SensorDelay(ReadingFault):
         return (-300.0, -150.0, -60.0, 60.0, 150.0, 300.0)
 
     @classmethod
-    def where(cls, scene: Scene) -> tuple[str, ...]:
+    def candidate_places(cls, scene: Scene) -> tuple[str, ...]:
         return scene.tests

@@ -53,7 +53,7 @@ class InputFault(Effect):
     fault = True
 
     @classmethod
-    def where(cls, scene: Scene) -> list[str]:
+    def candidate_places(cls, scene: Scene) -> list[str]:
         """Inputs that an instrument measured; what is counted, such as a speed, is not a few per cent off."""
         names = dict.fromkeys(name for name, _ in read(scene.network))
         return [n for n in names if n in scene.inputs and scene.network.measures(n) not in COUNTED]

@@ -18,7 +18,7 @@ class ReadingFault(Effect):
     fault = True
 
     @classmethod
-    def where(cls, scene: Scene) -> Iterable[str]:
+    def candidate_places(cls, scene: Scene) -> Iterable[str]:
         return scene.channels
 
     def extend(self, network: Network) -> Network:

@@ -27,6 +27,6 @@ class Swap(ReadingFault):
     whole = True
 
     @classmethod
-    def where(cls, scene: Scene) -> Iterator[str]:
+    def candidate_places(cls, scene: Scene) -> Iterator[str]:
         names = scene.channels
         return (f"{a}|{b}" for i, a in enumerate(names) for b in names[i + 1 :])

@@ -31,7 +31,7 @@ class AirLeak(Effect):
     confused_with = ("flow",)
 
     @classmethod
-    def where(cls, scene: Scene) -> list[str]:
+    def candidate_places(cls, scene: Scene) -> list[str]:
         return [link.name.split(":", 1)[-1] for link in streams(scene.network)]
 
     def extend(self, network: Network) -> Network:

@@ -41,7 +41,7 @@ class CoolantLink(Effect):
     confused_with = ("contact", "convection.constant")
 
     @classmethod
-    def where(cls, scene: Scene) -> list[str]:
+    def candidate_places(cls, scene: Scene) -> list[str]:
         network = scene.network
         wet = list(dict.fromkeys(part for fluid in coolants(network) for part in washed(network, fluid)))
         near = {b for part in wet for b in neighbours(network).get(part, set())}

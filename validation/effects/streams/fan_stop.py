@@ -45,7 +45,7 @@ class FanStop(Effect):
     needs = ("time",)
 
     @classmethod
-    def where(cls, scene: Scene) -> list[str]:
+    def candidate_places(cls, scene: Scene) -> list[str]:
         names = [p.name for p in flows(scene.network)]
         return [f"{flow}:{test}:{part}" for flow in names for test in scene.tests for part in PARTS]
 

@@ -45,7 +45,7 @@ class Flow(Effect):
     confused_with = ("convection", "convection.constant")
 
     @classmethod
-    def where(cls, scene: Scene) -> list[str]:
+    def candidate_places(cls, scene: Scene) -> list[str]:
         return [p.name for p in flows(scene.network)]
 
     def extend(self, network: Network) -> Network:
