@@ -65,7 +65,7 @@ def eye(points: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def seen(points: NDArray[np.float64], machine: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """(n, 2) to the right and up, per length of distance, and (n,) m of distance, of points (n, 3) m when it is first seen."""
+    """(n, 2) right and up per metre of distance, and (n,) m of distance, of points (n, 3) m when it is first seen."""
     towards, right, up = View().axes()
     distance = (eye(machine) - points) @ towards
     return (points - eye(machine)) @ np.stack([right, up], axis=1) / distance[:, None], distance
