@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from playground import Truth, network
 
+from geom.description.identity import Identity
+from geom.description.roles import Role
 from lumped.model.build import bare_network, node_link, node_source
 from lumped.model.network import Parameter
 from lumped.transfer.laws import Fixed, InputPower
@@ -124,6 +126,8 @@ def test_losses_that_follow_the_load_or_the_frequency_unsaid_are_doubted():
     for name, base, share in (("iron*current_A", iron, inputs["current_A"] / 20.0),
                               ("copper*speed_rpm", copper, inputs["speed_rpm"] / 3000.0)):  # fmt: skip
         np.testing.assert_allclose(own[name].law.factor(inputs), base.law.factor(inputs) * share**2)
+    direct = replace(net, declared={"core": Identity(Role.COMMUTATOR)})
+    assert not any(p.name.endswith("*speed_rpm") for p in with_doubts(direct, USUAL, [test])[1])
     assert not any("*" in p.name for p in with_doubts(net, USUAL)[1])  # without tests there is no largest load
 
 

@@ -14,6 +14,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.description.roles import Role
 from lumped.integration.simulate import simulate
 from lumped.model.network import Link, Network, Parameter, Place, Row, Source
 from lumped.model.quantities import AIR, LIQUID
@@ -25,6 +26,7 @@ from validation.comparison.linearisation import Segment, segments
 from validation.comparison.predict import heat_model, record
 from validation.doubt import USUAL, Doubt
 from validation.effects.build import Shaped, copy_link, copy_source, exchange, heat
+from validation.effects.sites import with_role
 from validation.measurement.operators import lag, setting
 
 Array = NDArray[np.float64]
@@ -137,6 +139,8 @@ def _each_loss(network: Network, doubt: Doubt) -> Iterator[Parameter]:
 def _unsaid(network: Network, tests: Sequence[Test], doubt: Doubt) -> Iterator[tuple[Source, SquareOf, float]]:
     """Losses that follow the load or the frequency although their laws do not say so, with what they follow."""
     load, frequency = (SquareOf.of(network, tests, x) for x in (("current", "torque"), ("speed", "frequency")))
+    if with_role(network, Role.COMMUTATOR):  # fields and shunts carry direct current
+        frequency = None
     for s in network.sources:
         what, sd = (frequency, doubt["skin"]) if s.kind == "copper" else (load, doubt["load"])
         own = s.origin or s.kind == "measured" or s.law.looks_at_all  # what follows nothing by itself
