@@ -193,6 +193,22 @@ def test_parts_are_ghosted_and_hidden_and_the_cut_is_the_true_section(tmp_path):
     assert said == []
 
 
+@pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
+def test_a_browser_without_gl_says_so_in_one_message(tmp_path):
+    playwright = pytest.importorskip("playwright.sync_api")
+    write_viewer(tmp_path / "v.html", "motor", NODES, [recorded()], PLACE)
+    with playwright.sync_playwright() as engine:
+        browser = engine.chromium.launch(executable_path=BROWSER, args=["--no-sandbox", "--disable-3d-apis"])
+        page, faults = browser.new_page(), []
+        page.on("pageerror", lambda fault: faults.append(str(fault)))
+        page.goto((tmp_path / "v.html").as_uri())
+        page.wait_for_selector("#fault:visible")
+        assert "no WebGL 2" in page.inner_text("#fault")
+        assert page.inner_text("#title") == "motor"
+        browser.close()
+    assert faults == []
+
+
 def section(page, axis: str, share: float, part: str | None = None) -> np.ndarray:
     """(n, 3, 3) m: corners of the triangles in the page's cut across an axis, of one part or all."""
     page.select_option("#axis", axis)
