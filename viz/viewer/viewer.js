@@ -89,7 +89,7 @@ class Viewer {
     this.gl = $("gl").getContext("webgl2", { antialias: false, preserveDrawingBuffer: true });
     if (!this.gl) throw new Error("this browser has no WebGL 2, which this page draws with");
     this.parts = data.parts.map((p) => ({ ...p, shown: 1 }));
-    this.right = 0; this.left = 1; this.time = 1; this.playing = false; this.frames = 0; this.dirty = true; this.smooth = true; this.moved = -Infinity; this.pointers = new Map();
+    this.right = 0; this.left = 1; this.time = 1; this.playing = false; this.frames = 0; this.dirty = true; this.smooth = false; this.slow = true; this.moved = -Infinity; this.pointers = new Map();
     this.bounds();
     this.first();
     this.programs();
@@ -565,15 +565,20 @@ class Viewer {
       this.move(Math.min(time, 1));
       if (time >= 1) this.play(false);
     }
-    const between = now - this.last, resting = now - this.moved > REST;
     this.last = now;
+    const resting = now - this.moved > REST;
     if (this.dirty || resting && !this.smooth) {  // a slow computer draws roughly while something moves, and smoothly once it rests
-      this.smooth = resting || this.smooth && between < SLOW;
+      this.smooth = !this.slow || !this.dirty;
       if (this.dirty) this.moved = now;
       this.dirty = false;
       this.draw(this.smooth ? SAMPLES : 1);
+      if (this.smooth && resting) this.slow = this.finished() - now > SLOW;
     }
     requestAnimationFrame((t) => this.tick(t));
+  }
+  finished() {  // ms, when the picture is there: reading a pixel waits for it
+    this.gl.readPixels(0, 0, 1, 1, this.gl.RGBA, this.gl.UNSIGNED_BYTE, new Uint8Array(4));
+    return performance.now();
   }
   play(on) {
     if (on && this.time >= 1) this.move(0);
@@ -584,7 +589,7 @@ class Viewer {
 const FACES = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];  // of a tetrahedron, seen from outside
 const SAME = 0.9999;  // cosine of the angle between normals below which they are one: under a degree
 const SAMPLES = 4;  // per pixel: every WebGL 2 has them
-const SLOW = 25, REST = 200;  // ms from one picture to the next from which edges are rough; ms without a movement until they are smooth
+const SLOW = 12, REST = 200;  // ms that a smooth picture takes from which moving ones are rough; ms without a movement until it is smooth
 const WINDOW = 22, ABOVE = 0.01;  // pixels around a labelled sensor in which what hides it is ghosted; of the machine's size
 const WIDE = 1100;  // pixels from which machine and network stand side by side
 const TINTS = data.tints;  // within, hot, cold, unknown: red, green, blue from 0 to 1
