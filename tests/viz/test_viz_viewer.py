@@ -205,6 +205,54 @@ def test_parts_are_ghosted_and_hidden_and_the_cut_is_the_true_section(tmp_path):
     assert said == []
 
 
+@pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
+def test_what_hides_a_labelled_sensor_is_ghosted_around_it(tmp_path):
+    """The shaft's lies inside: without its window other pixels, and only those around labelled sensors."""
+    playwright = pytest.importorskip("playwright.sync_api")
+    write_viewer(tmp_path / "v.html", "motor", NODES, [recorded()], PLACE)
+    with playwright.sync_playwright() as engine:
+        arguments = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+        browser = engine.chromium.launch(executable_path=BROWSER, args=arguments)
+        page = browser.new_page(viewport={"width": 800, "height": 600})
+        page.goto((tmp_path / "v.html").as_uri())
+        page.wait_for_function("window.viewer && viewer.frames > 0")
+        page.select_option("#axis", "-1")
+        drawn = [np.array(page.evaluate(DRAWN, windows)) for windows in (True, False)]
+        wide, near = page.evaluate("[viewer.gl.drawingBufferWidth, WINDOW]")
+        places = page.evaluate("viewer.sensors.map((s) => [viewer.pixel(s)[0], $('gl').height - viewer.pixel(s)[1]])")
+        browser.close()
+    changed = np.flatnonzero(drawn[0] != drawn[1])
+    at = np.stack([changed % wide, changed // wide], axis=1)
+    away = np.linalg.norm(at[:, None] - np.array(places), axis=2)
+    assert (away.min(axis=1) < near + 1).all()
+    assert (away[:, list(PLACE).index("T_shaft")] < near).sum() > near**2
+
+
+DRAWN = """(windows) => {  // one number per pixel, from the lower left
+  const v = viewer, gl = v.gl, size = gl.drawingBufferWidth * gl.drawingBufferHeight, out = new Uint8Array(4 * size);
+  if (!windows) v.labelled = () => [];
+  v.draw(SAMPLES);
+  gl.readPixels(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight, gl.RGBA, gl.UNSIGNED_BYTE, out);
+  return Array.from({ length: size }, (_, i) => out[4 * i] + 256 * out[4 * i + 1] + 65536 * out[4 * i + 2]);
+}"""
+
+
+@pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
+def test_a_browser_without_gl_says_so_in_one_message(tmp_path):
+    playwright = pytest.importorskip("playwright.sync_api")
+    write_viewer(tmp_path / "v.html", "motor", NODES, [recorded()], PLACE)
+    with playwright.sync_playwright() as engine:
+        browser = engine.chromium.launch(executable_path=BROWSER, args=["--no-sandbox", "--disable-3d-apis"])
+        page, faults = browser.new_page(), []
+        page.on("pageerror", lambda fault: faults.append(str(fault)))
+        page.goto((tmp_path / "v.html").as_uri())
+        page.wait_for_selector("#fault:visible")
+        assert "no WebGL 2" in page.inner_text("#fault")
+        assert page.inner_text("#title") == "motor"
+        browser.close()
+    assert faults == []
+
+
 def section(page, axis: str, share: float, part: str | None = None) -> np.ndarray:
     """(n, 3, 3) m: corners of the triangles in the page's cut across an axis, of one part or all."""
     page.select_option("#axis", axis)

@@ -41,9 +41,16 @@ const FRAGMENT = `#version 300 es
 precision highp float;
 in vec3 at; in vec3 facing; in vec2 T; in float sure;
 uniform vec4 plane; uniform vec3 eye; uniform vec2 range; uniform float wipe, alpha, part, flat_; uniform int layer, mode;
-uniform sampler2D palette; out vec4 colour;
+uniform vec3 windows[6]; uniform float reach; uniform sampler2D palette; out vec4 colour;
 void main() {
   if (flat_ < 0.5 && dot(at, plane.xyz) > plane.w) discard;
+  if (mode != 1) {  // in a window what is nearer than the sensor keeps one pixel of four; mode 2 draws what is behind
+    bool nearer = false, behind = false;
+    for (int i = 0; i < 6; i++) if (distance(gl_FragCoord.xy, windows[i].xy) < reach) {
+      nearer = nearer || gl_FragCoord.z < windows[i].z; behind = behind || gl_FragCoord.z >= windows[i].z;
+    }
+    if (mode == 0 ? nearer && mod(floor(gl_FragCoord.x) + 2.0 * floor(gl_FragCoord.y), 4.0) > 0.5 : nearer || !behind) discard;
+  }
   float value = layer == 1 ? T.x - T.y : (gl_FragCoord.x < wipe ? T.y : T.x);
   float s = (value - range.x) / (range.y - range.x);
   if (mode == 1) { float q = clamp(s, 0.0, 1.0) * 65535.0; colour = vec4((part + 1.0) / 255.0, floor(q / 256.0) / 255.0, mod(q, 256.0) / 255.0, layer == 3 && sure < 0.5 ? 0.0 : 1.0); return; }
@@ -82,7 +89,7 @@ class Viewer {
     this.gl = $("gl").getContext("webgl2", { antialias: false, preserveDrawingBuffer: true });
     if (!this.gl) throw new Error("this browser has no WebGL 2, which this page draws with");
     this.parts = data.parts.map((p) => ({ ...p, shown: 1 }));
-    this.right = 0; this.left = 1; this.time = 1; this.playing = false; this.frames = 0; this.dirty = true; this.smooth = true; this.moved = -Infinity; this.pointers = new Map();
+    this.right = 0; this.left = 1; this.time = 1; this.playing = false; this.frames = 0; this.dirty = true; this.smooth = false; this.slow = true; this.moved = -Infinity; this.pointers = new Map();
     this.bounds();
     this.first();
     this.programs();
@@ -413,22 +420,23 @@ class Viewer {
     this.rows = m;
     return new Float32Array([0, 1, 2, 3].flatMap((c) => m.map((row) => row[c])));
   }
-  skinned(mode) {
+  skinned(mode, reach = 0) {  // 0 as it is seen, 1 numbers for the pointer, 2 what windows of `reach` pixels show
     const gl = this.gl, s = this.skin;
     gl.useProgram(s.p);
     gl.uniformMatrix4fv(s.view, false, this.matrix());
     gl.uniform4fv(s.plane, this.cutting); gl.uniform3fv(s.eye, this.eye); gl.uniform2fv(s.range, this.range);
     gl.uniform1i(s.layer, +$("layer").value); gl.uniform1i(s.mode, mode); gl.uniform1i(s.wide, this.wide);
+    gl.uniform3fv(s["windows[0]"], this.windows()); gl.uniform1f(s.reach, reach);
     gl.uniform1i(s.field, 0); gl.uniform1i(s.palette, 1); gl.uniform1i(s.told, 2);
     gl.uniform1f(s.wipe, this.test.states.length > 1 ? $("wipe").value / 1000 * $("gl").width : 0);
-    const whole = this.parts.every((p) => p.shown === 1);  // then nobody sees a face that another part lies on
+    const whole = mode < 2 && this.parts.every((p) => p.shown === 1);  // then nobody sees a face that another part lies on
     for (const shown of mode ? [1] : [1, 0.5]) {
       if (shown < 1) { this.blending(); gl.depthMask(false); }
       gl.uniform1f(s.alpha, shown < 1 ? 0.16 : 1);
       for (const [mesh, flat] of [[this.whole, 0], [this.section, 1]]) {
         gl.uniform1f(s.flat_, flat);
         gl.bindVertexArray(mesh.vao);
-        (flat ? gl.disable : gl.enable).call(gl, gl.CULL_FACE);  // parts are closed, and closed again where they are cut
+        (flat || mode === 2 ? gl.disable : gl.enable).call(gl, gl.CULL_FACE);  // parts are closed, and closed again where they are cut
         this.parts.forEach((p, k) => {
           gl.uniform1f(s.part, k);
           if (p.shown !== shown) return;
@@ -447,7 +455,9 @@ class Viewer {
     if (samples > 1) this.target(samples);
     gl.viewport(0, 0, w, h); gl.clearColor(paper[0], paper[1], paper[2], 1); gl.enable(gl.DEPTH_TEST);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-    this.skinned(0);
+    const reach = samples > 1 ? WINDOW * scale : 0;  // windows cost a second pass: rough pictures have none
+    this.skinned(0, reach);
+    if (reach) this.skinned(2, reach);
     this.outlines();
     gl.useProgram(this.dots.p); gl.bindVertexArray(this.beads.vao);
     gl.uniformMatrix4fv(this.dots.view, false, this.matrix()); gl.uniform4fv(this.dots.plane, this.cutting);
@@ -490,12 +500,23 @@ class Viewer {
     const at = [...sensor.xyz, 1], q = this.rows.map((row) => row.reduce((sum, v, k) => sum + v * at[k], 0));
     return [(q[0] / q[3] + 1) / 2 * $("gl").width, (1 - q[1] / q[3]) / 2 * $("gl").height];
   }
+  labelled() { return [...this.sensors].sort((a, b) => b.weight - a.weight).slice(0, 6); }  // furthest beyond their uncertainty
+  windows() {  // of what is labelled: pixels, and the depth down to which material is ghosted, just above the sensor
+    const out = new Float32Array(18);
+    this.labelled().forEach((s, i) => {
+      const far = this.eye.map((e, k) => e - s.xyz[k]), share = ABOVE * this.size / Math.hypot(...far);
+      const at = [...s.xyz.map((v, k) => v + share * far[k]), 1], [x, y] = this.pixel(s);
+      const [z, w] = [2, 3].map((row) => this.rows[row].reduce((sum, v, k) => sum + v * at[k], 0));
+      out.set([x, $("gl").height - y, 0.5 + z / w / 2], 3 * i);
+    });
+    return out;
+  }
   labels(scale) {  // of the six sensors furthest beyond their uncertainty; none covers a dot or another label
     const c = $("over"), x = c.getContext("2d"), d = 9 * scale;
     const taken = this.sensors.map((s) => this.pixel(s)).map((p) => [p[0] - d, p[1] - d, 2 * d, 2 * d]);
     c.width = $("gl").width; c.height = $("gl").height;
     x.font = `${13 * scale}px "DejaVu Sans", system-ui, sans-serif`; x.textBaseline = "middle";
-    for (const s of [...this.sensors].sort((a, b) => b.weight - a.weight).slice(0, 6)) {
+    for (const s of this.labelled()) {
       const at = this.pixel(s);
       const text = `${s.name}  ${signed(s.residual)} K`, wide = x.measureText(text).width + 12 * scale, tall = 22 * scale;
       const room = c.width - 100 * scale - wide;
@@ -544,15 +565,20 @@ class Viewer {
       this.move(Math.min(time, 1));
       if (time >= 1) this.play(false);
     }
-    const between = now - this.last, resting = now - this.moved > REST;
     this.last = now;
+    const resting = now - this.moved > REST;
     if (this.dirty || resting && !this.smooth) {  // a slow computer draws roughly while something moves, and smoothly once it rests
-      this.smooth = resting || this.smooth && between < SLOW;
+      this.smooth = !this.slow || !this.dirty;
       if (this.dirty) this.moved = now;
       this.dirty = false;
       this.draw(this.smooth ? SAMPLES : 1);
+      if (this.smooth && resting) this.slow = this.finished() - now > SLOW;
     }
     requestAnimationFrame((t) => this.tick(t));
+  }
+  finished() {  // ms, when the picture is there: reading a pixel waits for it
+    this.gl.readPixels(0, 0, 1, 1, this.gl.RGBA, this.gl.UNSIGNED_BYTE, new Uint8Array(4));
+    return performance.now();
   }
   play(on) {
     if (on && this.time >= 1) this.move(0);
@@ -563,7 +589,8 @@ class Viewer {
 const FACES = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];  // of a tetrahedron, seen from outside
 const SAME = 0.9999;  // cosine of the angle between normals below which they are one: under a degree
 const SAMPLES = 4;  // per pixel: every WebGL 2 has them
-const SLOW = 25, REST = 200;  // ms from one picture to the next from which edges are rough; ms without a movement until they are smooth
+const SLOW = 12, REST = 200;  // ms that a smooth picture takes from which moving ones are rough; ms without a movement until it is smooth
+const WINDOW = 22, ABOVE = 0.01;  // pixels around a labelled sensor in which what hides it is ghosted; of the machine's size
 const WIDE = 1100;  // pixels from which machine and network stand side by side
 const TINTS = data.tints;  // within, hot, cold, unknown: red, green, blue from 0 to 1
 const signed = (v) => v === null ? "–" : (v < 0 ? "−" : "+") + Math.abs(v).toFixed(1);
