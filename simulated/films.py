@@ -23,11 +23,6 @@ def air_nu(T: ArrayLike) -> Array:
     return 1.338e-5 * ((np.asarray(T) + 273.15) / 273.15) ** 1.76
 
 
-def air_rho_cp(T: ArrayLike) -> Array:
-    """Heat capacity of air at 1 bar (J/m3/K)."""
-    return 1006.0 * 353.0 / (np.asarray(T) + 273.15)
-
-
 def rayleigh(dT: ArrayLike, T: ArrayLike, length: float) -> Array:
     """Ra = g beta dT L^3 Pr / nu^2 at film temperature T."""
     beta = 1 / (np.asarray(T) + 273.15)

@@ -168,8 +168,3 @@ def _anew(
     progress("network from the field")
     condensed = reduced(ready, recipe).network(max_states=recipe.max_states)
     return Built(machine, ready.mesh, ready.field, motor_network(machine, condensed), ready.meshing)
-
-
-def motor_model(machine: Machine, progress: Progress = silent) -> Network:
-    """The network a case runs: the default mesh and recipe."""
-    return build(machine, progress=progress).network

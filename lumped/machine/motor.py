@@ -2,7 +2,7 @@
 
     films, contacts = nominal_coefficients(machine, faces, contact_names)  # what the condensation is centred on
     condensed = condense(field, films, contacts, fluids(machine), boundaries(machine), ...)
-    network = motor_network(machine, condensed)          # or thermoscope.pipeline.motor_model(machine) for all of it
+    network = motor_network(machine, condensed)          # or thermoscope.pipeline.build(machine).network: all of it
 
 What comes out, for every family and for imported machines alike (the machine file decides, no names do):
 

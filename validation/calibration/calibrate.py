@@ -367,11 +367,6 @@ def residual_noise(fit: Fit) -> Noise:
     return fit_noise(InnerProduct(fit.parts, fit.noise, fit.error).explained(fit.parts, fit.error))
 
 
-def chi_square(parts: Sequence[Segment], noise: Noise) -> float:
-    """r'Sigma^-1 r, summed over segments."""
-    return sum(float(np.sum(noise.whiten(s, s.r[:, None]) ** 2)) for s in parts)
-
-
 def calibrated(
     network: Network,
     tests: Sequence[Test],

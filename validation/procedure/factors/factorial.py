@@ -116,10 +116,6 @@ class Effects:
         return sorted(self.effects.items(), key=lambda e: -abs(e[1]))
 
     @property
-    def mains(self) -> list[tuple[str, float]]:
-        return [(letters, e) for letters, e in self.ranked if len(letters) == 1]
-
-    @property
     def active(self) -> tuple[str, ...]:
         """Effects beyond the simultaneous limit."""
         return tuple(letters for letters, e in self.ranked if abs(e) > self.simultaneous)
