@@ -43,7 +43,6 @@ TABLE: Mapping[str, Line] = MappingProxyType({
     "bearing": Line(0.25, "1", "friction of two bearings of a kind differs with load, grease and seals"),
     "split": Line(0.1, "1", "how one loss divides over the nodes that carry it"),
     "load": Line(0.1, "1", "iron, magnets and bearings lose more under load than at rest: stray load losses"),
-    "skin": Line(0.05, "1", "resistance of a winding grows by some per cent up to its highest frequency"),
     "conductivity": Line(0.15, "1", "catalogue values of laminated and wound parts"),
     "capacity": Line(0.05, "1", "masses by drawing, heat capacities by catalogue"),
     "film exponent": Line(0.08, "1", "a coefficient taken as constant follows the temperature difference a little"),

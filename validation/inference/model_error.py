@@ -14,19 +14,17 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from geom.description.roles import Role
 from lumped.integration.simulate import simulate
 from lumped.model.network import Link, Network, Parameter, Place, Row, Source
 from lumped.model.quantities import AIR, LIQUID
 from lumped.model.topology import FRICTION
 from lumped.transfer.laws import CONSTANT, Constant, Fixed, Inputs, Law, TemperatureLaw
-from validation.calibration.model_form import KNOTS, SETTLE_K, Table, is_film
+from validation.calibration.model_form import KNOTS, KNOWN, SETTLE_K, Table, is_film
 from validation.case import Channel, Test
 from validation.comparison.linearisation import Segment, segments
 from validation.comparison.predict import heat_model, record
 from validation.doubt import USUAL, Doubt
 from validation.effects.build import Shaped, copy_link, copy_source, exchange, heat
-from validation.effects.sites import with_role
 from validation.measurement.operators import lag, setting
 
 Array = NDArray[np.float64]
@@ -78,14 +76,14 @@ class SquareOf:
 def with_doubts(network: Network, doubt: Doubt, tests: Sequence[Test] = ()) -> tuple[Network, tuple[Parameter, ...]]:
     """The network with a neutral parameter for each doubt of its links, losses and capacities; prior_sd is its size.
 
-    tests : whose largest load and speed are those that losses are in doubt at; without any they follow their laws
+    tests : whose largest load is that at which losses are in doubt; without any they follow their laws
     """
     before = len(network.parameters)
     new = [*_each_link(network, doubt), *_each_loss(network, doubt), *_each_capacity(network, doubt)]
-    for loss, square, sd in _unsaid(network, tests, doubt):
+    for loss, square in _under_load(network, tests):
         name = f"{loss.name}*{'*'.join(square.inputs)}"
         network = copy_source(network, loss, name, Shaped(loss.law, square, also_reads=square.inputs))
-        new.append(_amplitude(f"doubt:{name}", name, sd, "1"))
+        new.append(_amplitude(f"doubt:{name}", name, doubt["load"], "1"))
     for link in [x for x in network.links if _constant_film(network, x)]:
         name = f"{link.name}^dT?"
         network = copy_link(network, link, name, Bent(link.law))
@@ -136,16 +134,13 @@ def _each_loss(network: Network, doubt: Doubt) -> Iterator[Parameter]:
             yield _log(s.name, doubt["bearing" if s.kind in FRICTION and s.name in own else "split"])
 
 
-def _unsaid(network: Network, tests: Sequence[Test], doubt: Doubt) -> Iterator[tuple[Source, SquareOf, float]]:
-    """Losses that follow the load or the frequency although their laws do not say so, with what they follow."""
-    load, frequency = (SquareOf.of(network, tests, x) for x in (("current", "torque"), ("speed", "frequency")))
-    if with_role(network, Role.COMMUTATOR):  # fields and shunts carry direct current
-        frequency = None
+def _under_load(network: Network, tests: Sequence[Test]) -> Iterator[tuple[Source, SquareOf]]:
+    """Losses that may follow the load although their laws do not say so, with the load; copper's follow it anyway."""
+    load = SquareOf.of(network, tests, ("current", "torque"))
     for s in network.sources:
-        what, sd = (frequency, doubt["skin"]) if s.kind == "copper" else (load, doubt["load"])
-        own = s.origin or s.kind == "measured" or s.law.looks_at_all  # what follows nothing by itself
-        if what is not None and not own and not set(what.inputs) & set(s.law.reads):
-            yield s, what, sd
+        known = s.origin or s.kind in KNOWN or s.law.looks_at_all
+        if load is not None and not known and not set(load.inputs) & set(s.law.reads):
+            yield s, load
 
 
 def _shared(network: Network) -> set[str]:
@@ -277,7 +272,7 @@ def model_error(
 ) -> ModelError:  # fmt: skip
     """The model error of a network at some values of its parameters, over the instants of its tests' segments.
 
-    sensed : tests whose sensors' placement is in doubt, and whose largest load and speed count; by default `tests`
+    sensed : tests whose sensors' placement is in doubt, and whose largest load counts; by default `tests`
     """
     grown, doubts = with_doubts(network, doubt, sensed or tests)
     out: dict[tuple[str, str], Array] = {}
