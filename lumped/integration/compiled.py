@@ -82,7 +82,9 @@ def _pack_tangents(
     network: Network, slope: Sequence[Mapping[str, float]], names: Sequence[str], shifts: Sequence[str | None]
 ) -> Tangents:
     moved = [(j, names.index(t), s) for j, d in enumerate(slope) for t, s in d.items() if t in names and s != 0.0]
-    dC = np.array([network.C * capacity_slopes(network, d) for d in slope]).reshape(len(slope), len(network.C))
+    dC = np.zeros((len(slope), len(network.C)))
+    for j in (j for j, d in enumerate(slope) if any(t.startswith("capacity:") for t in d)):
+        dC[j] = network.C * capacity_slopes(network, slope[j])
     column, state = np.nonzero(dC)
     hidden = hidden_states(network)
     first = np.zeros((hidden.size + len(network.boundaries), len(slope) + len(shifts)))
