@@ -290,10 +290,7 @@ def with_noise(evidence: Evidence, members: Sequence[int], noise: Noise) -> floa
 def under(evidence: Evidence, noise: Noise) -> Evidence:
     """The evidence under another noise, the calibration gone on under it."""
     e = evidence
-    new = gone_on(e.fit, e.tests, noise, e.parts_of([]))
-    left = {(s.test, s.channel): s.r for s in new.parts}
-    parts = tuple(replace(s, r=left[s.test, s.channel]) for s in e.parts)
-    return weighed(e.tests, new, e.network, e.effects, e.parameters, parts, e.jumps, e.large)
+    return _calibrated_to(e, gone_on(e.fit, e.tests, noise, e.parts_of([])))
 
 
 def settled(evidence: Evidence) -> Evidence:
@@ -304,10 +301,15 @@ def settled(evidence: Evidence) -> Evidence:
     e, fit = evidence, evidence.fit
     new = minimise(fit.network, e.tests, fit.unknowns, fit.theta, fit.noise, values_of(fit.network, fit.values), ROUNDS,
                    KnownSegments(fit.parts, nearby=False, stale=True), worth=ENOUGH, error=fit.error)  # fmt: skip
-    own = {(s.test, s.channel): s for s in new.parts}
+    return _calibrated_to(e, new)
+
+
+def _calibrated_to(evidence: Evidence, fit: Fit) -> Evidence:
+    """The evidence about another calibration; candidates keep the tangents they had."""
+    e, own = evidence, {(s.test, s.channel): s for s in fit.parts}
     here = [(s, own[s.test, s.channel]) for s in e.parts]
     parts = tuple(replace(s, r=n.r, J=np.column_stack([n.J, s.J[:, e.p :]])) for s, n in here)
-    return weighed(e.tests, new, e.network, e.effects, e.parameters, parts, e.jumps, e.large)
+    return weighed(e.tests, fit, e.network, e.effects, e.parameters, parts, e.jumps, e.large)
 
 
 def gone_on(fit: Fit, tests: Sequence[Test], noise: Noise, parts: Sequence[Segment]) -> Fit:
