@@ -3,6 +3,7 @@
 import json
 import shutil
 import subprocess
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
@@ -136,20 +137,28 @@ def test_what_a_name_holds_is_never_run(tmp_path):
     assert "https://" not in page
 
 
-@pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
-def test_a_browser_draws_it_without_complaint(tmp_path):
-    """A part and its true temperature under the pointer, other colours at another time, nothing on the console."""
+@contextmanager
+def drawn_by_a_browser(file: Path, width: int = 800, height: int = 600):
+    """The page of a file once it has drawn, and what it says on the console; by software GL."""
     playwright = pytest.importorskip("playwright.sync_api")
-    file, one = tmp_path / "viewer.html", recorded()
-    write_viewer(file, "motor", NODES, [one], PLACE)
     with playwright.sync_playwright() as engine:
         arguments = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
         browser = engine.chromium.launch(executable_path=BROWSER, args=arguments)
-        page, said = browser.new_page(viewport={"width": 800, "height": 600}), []
+        page, said = browser.new_page(viewport={"width": width, "height": height}), []
         page.on("console", lambda message: said.append(message.text))
         page.on("pageerror", lambda fault: said.append(str(fault)))
         page.goto(file.as_uri())
         page.wait_for_function("window.viewer && viewer.frames > 0")
+        yield page, said
+        browser.close()
+
+
+@pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
+def test_a_browser_draws_it_without_complaint(tmp_path):
+    """A part and its true temperature under the pointer, other colours at another time, nothing on the console."""
+    file, one = tmp_path / "viewer.html", recorded()
+    write_viewer(file, "motor", NODES, [one], PLACE)
+    with drawn_by_a_browser(file) as (page, said):
         found = page.evaluate("viewer.pick($('gl').clientWidth * 0.45, $('gl').clientHeight * 0.5)")
         assert found["name"] in NODES.parts
         mine = one.fields[-1][NODES.of(found["name"])]
@@ -168,23 +177,14 @@ def test_a_browser_draws_it_without_complaint(tmp_path):
         for sensor in page.evaluate("viewer.sensors.map((s) => [s.name, ...viewer.pixel(s)])"):
             page.mouse.move(*sensor[1:])
             assert sensor[0] in page.inner_text("#hover")
-        browser.close()
     assert said == []
 
 
 @pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
 def test_parts_are_ghosted_and_hidden_and_the_cut_is_the_true_section(tmp_path):
     """What lay on top is no longer under the pointer; the cut shaft has the area of its polygon, in the plane."""
-    playwright = pytest.importorskip("playwright.sync_api")
     write_viewer(tmp_path / "v.html", "motor", NODES, [recorded()], PLACE)
-    with playwright.sync_playwright() as engine:
-        arguments = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
-        browser = engine.chromium.launch(executable_path=BROWSER, args=arguments)
-        page, said = browser.new_page(viewport={"width": 800, "height": 600}), []
-        page.on("console", lambda message: said.append(message.text))
-        page.on("pageerror", lambda fault: said.append(str(fault)))
-        page.goto((tmp_path / "v.html").as_uri())
-        page.wait_for_function("window.viewer && viewer.frames > 0")
+    with drawn_by_a_browser(tmp_path / "v.html") as (page, said):
         page.click("text=Parts: shown, ghost, hidden")
         page.select_option("#axis", "-1")
         top, pictures = page.evaluate(TOP)["name"], {}
@@ -201,26 +201,18 @@ def test_parts_are_ghosted_and_hidden_and_the_cut_is_the_true_section(tmp_path):
         assert np.ptp(section(page, "2", 0.4), axis=(0, 1))[2] == pytest.approx(0.0, abs=1e-6)
         area = np.linalg.norm(np.cross(*np.moveaxis(np.diff(section(page, "2", 0.4, "shaft"), axis=1), 1, 0)), axis=1)
         assert area.sum() / 2 == pytest.approx(24 / 2 * RADII[1] ** 2 * np.sin(2 * np.pi / 24), rel=1e-3)
-        browser.close()
     assert said == []
 
 
 @pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
 def test_what_hides_a_labelled_sensor_is_ghosted_around_it(tmp_path):
     """The shaft's lies inside: without its window other pixels, and only those around labelled sensors."""
-    playwright = pytest.importorskip("playwright.sync_api")
     write_viewer(tmp_path / "v.html", "motor", NODES, [recorded()], PLACE)
-    with playwright.sync_playwright() as engine:
-        arguments = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
-        browser = engine.chromium.launch(executable_path=BROWSER, args=arguments)
-        page = browser.new_page(viewport={"width": 800, "height": 600})
-        page.goto((tmp_path / "v.html").as_uri())
-        page.wait_for_function("window.viewer && viewer.frames > 0")
+    with drawn_by_a_browser(tmp_path / "v.html") as (page, _):
         page.select_option("#axis", "-1")
         drawn = [np.array(page.evaluate(DRAWN, windows)) for windows in (True, False)]
         wide, near = page.evaluate("[viewer.gl.drawingBufferWidth, WINDOW]")
         places = page.evaluate("viewer.sensors.map((s) => [viewer.pixel(s)[0], $('gl').height - viewer.pixel(s)[1]])")
-        browser.close()
     changed = np.flatnonzero(drawn[0] != drawn[1])
     at = np.stack([changed % wide, changed // wide], axis=1)
     away = np.linalg.norm(at[:, None] - np.array(places), axis=2)
@@ -281,22 +273,15 @@ def test_flux_of_a_linear_field_is_the_conductivity_times_its_slope():
 @pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
 def test_the_browser_mixes_the_same_heat_flux(tmp_path):
     """Node by node within what rounding of the shapes leaves: 0.1 K over the shortest edge."""
-    playwright = pytest.importorskip("playwright.sync_api")
     one, k = recorded(before=False), {part: (2.0 + i, 30.0 + i) for i, part in enumerate(NODES.parts)}
     file = tmp_path / "viewer.html"
     file.write_text(render(document("motor", NODES, [one], PLACE, k)), encoding="utf-8")
     expected = nodal_flux(NODES, one.fields[-1], k)
-    with playwright.sync_playwright() as engine:
-        arguments = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
-        browser = engine.chromium.launch(executable_path=BROWSER, args=arguments)
-        page = browser.new_page()
-        page.goto(file.as_uri())
-        page.wait_for_function("window.viewer && viewer.frames > 0")
+    with drawn_by_a_browser(file) as (page, _):
         page.select_option("#layer", "2")
         assert page.inner_text("#unit") == "kW/m²"
         found = np.array(page.evaluate("Array.from(viewer.values)"))[: 2 * NODES.size : 2]
         assert page.evaluate("viewer.range[1]") >= np.quantile(expected, 0.95)
-        browser.close()
     assert np.abs(found - expected).max() < 0.02 * expected.max()
 
 
@@ -335,20 +320,12 @@ OVERLAPS = """() => {
 @pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
 def test_errors_and_network_stand_in_the_page_at_every_width(tmp_path):
     """Painted and hatched as the map says, the network beside or below, no control out of sight, a silent console."""
-    playwright = pytest.importorskip("playwright.sync_api")
-    one, said = mapped(), []
+    one = mapped()
     page_text = render(document("motor", NODES, [one], PLACE, mesh=motor(24)))
     (tmp_path / "v.html").write_text(page_text, encoding="utf-8")
     residual = {c.name: one.comparison.residual(c) for c in one.comparison.channels}
     expected = one.error_map.at(residual)[:, -1]
-    with playwright.sync_playwright() as engine:
-        arguments = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
-        browser = engine.chromium.launch(executable_path=BROWSER, args=arguments)
-        page = browser.new_page(viewport={"width": 1280, "height": 700})
-        page.on("console", lambda message: said.append(message.text))
-        page.on("pageerror", lambda fault: said.append(str(fault)))
-        page.goto((tmp_path / "v.html").as_uri())
-        page.wait_for_function("window.viewer && viewer.frames > 0")
+    with drawn_by_a_browser(tmp_path / "v.html", 1280, 700) as (page, said):
         assert page.is_visible("#network")
         page.select_option("#layer", "3")
         page.wait_for_function("!viewer.dirty")
@@ -367,7 +344,6 @@ def test_errors_and_network_stand_in_the_page_at_every_width(tmp_path):
             assert page.evaluate("document.documentElement.scrollWidth") <= width
             assert page.evaluate(INSIDE) == []
             assert page.evaluate(OVERLAPS) == 0
-        browser.close()
     assert said == []
 
 
