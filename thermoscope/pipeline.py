@@ -27,7 +27,9 @@ from thermoscope.caches import cache_folder
 Progress = Callable[[str], None]
 ACROSS = 1  # elements over a compact face: windings are quadratic, so their hot spots are within 0.5 % with one
 AXIAL = 0.75  # thickest layer over the size of a triangle: 45 mm, a stack of 140 mm in four layers
-SMALL = Recipe(tolerance=0.03, max_states=130)
+SMALL = Recipe(tolerance=0.003, random_points=6, film_factors=(0.3, 10.0), joined_contacts=(5.0,), max_states=190)
+
+FEW = 100  # means and shapes of the network that fits run
 
 
 def silent(message: str) -> None:
@@ -56,13 +58,14 @@ class Meshing:
 
 @dataclass(frozen=True)
 class Built:
-    """A machine at every stage;  meshing : how its mesh was made."""
+    """A machine at every stage;  meshing : how its mesh was made;  small : a network of fewer shapes from the same field"""
 
     machine: Machine
     mesh: NamedMesh
     field: FieldModel
     network: Network
     meshing: Meshing
+    small: Network | None = None
 
 
 def field_of(machine: Machine, mesh: NamedMesh) -> FieldModel:
@@ -166,5 +169,6 @@ def _anew(
 ) -> Built:  # fmt: skip
     ready = prepared(machine, size_m, segments, progress, axial_m)
     progress("network from the field")
-    condensed = reduced(ready, recipe).network(max_states=recipe.max_states)
-    return Built(machine, ready.mesh, ready.field, motor_network(machine, condensed), ready.meshing)
+    reduction = reduced(ready, recipe)
+    network, small = (motor_network(machine, reduction.network(max_states=n)) for n in (recipe.max_states, FEW))
+    return Built(machine, ready.mesh, ready.field, network, ready.meshing, small)

@@ -149,11 +149,24 @@ class Model:
 
 
 @dataclass(frozen=True)
+class LowFidelity:
+    """A smaller network of the same machine, with the same places, links and parameters, for the many runs of a fit.
+
+    of : the network it stands for;  rows : (test, channel) -> where that sensor looks in the smaller one
+    """
+
+    of: Network
+    network: Network
+    rows: Mapping[tuple[str, str], Row]
+
+
+@dataclass(frozen=True)
 class Case:
     """A model and the tests it is held against.
 
     doubt : what models of this kind get wrong, the usual table or with lines that the case widens
     answers : what the user said about a test, an event or a fault: was it so?
+    low : a smaller network of the same machine, where there is one
     """
 
     name: str
@@ -162,6 +175,7 @@ class Case:
     nuisances: tuple[Parameter, ...] = ()
     doubt: Doubt = field(default_factory=lambda: USUAL)
     answers: Mapping[str, bool] = field(default_factory=dict)
+    low: LowFidelity | None = None
 
     def training(self) -> Case:
         """The case without its held-out tests: all that may be fitted, chosen or accepted with."""

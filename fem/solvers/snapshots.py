@@ -32,6 +32,8 @@ class Recipe:
     film_factors : least and largest factor on films at these points, where they are to reach further than contacts
     flux_points : solve the unit fluxes at the random points too
     local_points : further points at which each part is solved for alone, between neighbours in `local_states` states
+    joined_contacts : factors on all contacts at once, at which losses are solved, steady and at the shifts: corners of
+        the range that random points do not reach
     max_states : largest number of mean nodes and shapes together; parts compete for shapes by energy
     """
 
@@ -46,6 +48,7 @@ class Recipe:
     seed: int = 1
     max_states: int | None = None
     film_factors: tuple[float, float] | None = None
+    joined_contacts: tuple[float, ...] = ()
 
     def other_films(self, films: Mapping[str, float], rng: np.random.Generator) -> dict[str, float]:
         """Those of a random point."""
@@ -96,6 +99,9 @@ def snapshots(
         out.append(
             solver.factor(field.stiffness(h, g))(np.column_stack([loads, fluxes]) if recipe.flux_points else loads)
         )
+    for factor in recipe.joined_contacts:
+        other = field.stiffness(films, {name: factor * g for name, g in contacts.items()})
+        out += [solver.factor(other, shift)(loads) for shift in (0.0, *recipe.shifts)]
     return of_unit_energy(np.column_stack(out), nominal)
 
 

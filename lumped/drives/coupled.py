@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from geom.errors import ThermoscopeError
 from lumped.drives.drive import Controller, Cycle, SeriesMachine, Vehicle, drive_cycle
 from lumped.drives.permanent_magnet import PMMachine
+from lumped.integration.compiled import READINGS
 from lumped.integration.simulate import Record, Run, initial_state, simulate
 from lumped.model.network import Network, Row
 from lumped.sources.losses import ALPHA_CU
@@ -50,7 +51,7 @@ def coupled(
     for _ in range(most):
         inputs = {**record.inputs, **drive(T)}
         given = replace(record, inputs=inputs)
-        run = simulate(network, given, values, [*looks, *rows], keep_states=True, every_sample=True)
+        run = simulate(network, given, values, [*looks, *rows], keep_states=True, precision=READINGS)
         new = {name: run.y[:, k] for k, name in enumerate(watched)}
         residuals.append(max((float(np.abs(new[n] - T[n]).max()) for n in watched), default=0.0))
         T = new

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError, NoSolution
-from lumped.integration.compiled import Compiled, compiled, hidden_states, reordered
+from lumped.integration.compiled import RUN, Compiled, Precision, compiled, hidden_states, reordered
 from lumped.integration.failure import failure
 from lumped.integration.record import Record
 from lumped.model.network import Network, Parameter, Row
@@ -110,7 +110,7 @@ def simulate(
     keep_states: bool = False,
     begin: Stand | None = None,
     steps: Steps | None = None,
-    every_sample: bool = False,
+    precision: Precision = RUN,
     shifts: Sequence[str | None] = (),
 ) -> Run:
     """Integrate the network over the record.
@@ -122,12 +122,11 @@ def simulate(
     shifts : further tangents, by an offset (K) of these boundaries, or of the start (None)
     begin : where another run of the same network, values and tangents ended, at this record's first time
     steps : those of another run over the same record, to be taken here too whatever their errors are
-    every_sample : end a step at every sample, whether the inputs ask for that or not: for runs in turn, whose inputs
-        change a little from one to the next
+    precision : what a step may be wrong by, and whether one ends at every sample
 
     Raises ThermoscopeError where a node runs away or no step keeps what physics allows.
     """
-    core = compiled(network, record, values, rows, tangents, shifts=shifts, every_sample=every_sample)
+    core = compiled(network, record, values, rows, tangents, precision=precision, shifts=shifts)
     return march(network, record, core, keep_states, begin, steps)
 
 

@@ -19,11 +19,11 @@ from thermoscope.case_folder.recording_checks import Finding, Patient
 from thermoscope.case_folder.settings import Entry, Settings, read_settings
 from thermoscope.recordings.formats import recording
 from thermoscope.recordings.quantities import with_quantities
-from thermoscope.recordings.readings import read_test
+from thermoscope.recordings.readings import read_test, rows_of
 from thermoscope.recordings.sheet import Sheet, load_sheet
 from thermoscope.recordings.tables import Samples, load_table
 from validation.calibration.unknowns import matching, working
-from validation.case import AddedEffect, Case, Model, Test
+from validation.case import AddedEffect, Case, LowFidelity, Model, Test
 from validation.measurement.sampling import SampleStep
 
 if TYPE_CHECKING:
@@ -116,8 +116,10 @@ def load_case(
     tests = tuple(replace(_allowing(r.test, settings.model_K), frees=frees[r.test.name]) for r in read)
     sheets = [one.sheet for one in patients.values()]
     network = with_quantities(network, sheets, tests)
+    small = built.small if built else None
+    low = small and _low_fidelity(network, with_quantities(small, sheets, tests), patients.values())
     case = Case(settings.name, _model(network, history), tests, _free(network, settings), settings.doubt,
-                history.last.answers)  # fmt: skip
+                history.last.answers, low)  # fmt: skip
     steps = {r.test.name: r.step for r in read}
     return Folder(
         settings, _checked(case, history, settings), history, notes, _positions(sheets), built, findings, steps
@@ -139,6 +141,12 @@ def patient_of(entry: Entry, progress: Progress = lambda message: None) -> Patie
             _read.pop(next(iter(_read)))
         _read[key] = load_table(entry.file, sheet)
     return Patient(entry.name, sheet, _read[key])
+
+
+def _low_fidelity(network: Network, small: Network, patients: Iterable[Patient]) -> LowFidelity:
+    """The smaller network with the rows of all sensors."""
+    rows = {(p.name, name): row for p in patients for name, row in rows_of(p.sheet, p.samples, small).items()}
+    return LowFidelity(network, small, rows)
 
 
 def _stamp(file: Path) -> tuple[str, int, int, int]:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError
 from lumped.integration.assembly import Assembly, assembly
-from lumped.integration.compiled import ERROR_K, ERROR_SHARE, capacity_multipliers, state_units
+from lumped.integration.compiled import RUN, capacity_multipliers, state_units
 from lumped.model.multipliers import multipliers
 from lumped.model.network import Network, Row
 from lumped.numerics.terms import Terms
@@ -76,7 +76,7 @@ class Model:
     outputs: tuple[Output, ...]
     unit: Array
     node: NDArray[np.int64]
-    tolerance: tuple[float, float] = (ERROR_K, ERROR_SHARE)
+    tolerance: tuple[float, float] = (RUN.error_K, RUN.error_share)
     initial_degC: float = USUAL_C
 
     @property

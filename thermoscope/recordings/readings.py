@@ -45,7 +45,7 @@ def read_test(
     _complete(network, fine, {**air, **sheet.boundaries}, sheet)
     fine, doubts = checked_heat(sheet, samples, fine, network)
     notes += doubts
-    sensors = [*_channels(sheet, samples, network), *_means(sheet, network)]
+    sensors = _sensors(sheet, samples, network)
     if not sensors:
         raise InputError(
             "no measured temperature of the machine", sheet.where, "a temperature column with a place on it"
@@ -161,6 +161,15 @@ def row_of(network: Network, place: str, position_mm: tuple[float, ...], where: 
         return network.recovery.row(network.places[place].part, 1e-3 * np.array(position_mm))
     except InputError as fault:
         raise InputError(fault.what, f"{where} position_mm", fault.right) from None
+
+
+def rows_of(sheet: Sheet, samples: Samples, network: Network) -> dict[str, Row]:
+    """Channel -> where its sensor looks in a network."""
+    return {s.channel.name: s.channel.row for s in _sensors(sheet, samples, network)}
+
+
+def _sensors(sheet: Sheet, samples: Samples, network: Network) -> list[Sensor]:
+    return [*_channels(sheet, samples, network), *_means(sheet, network)]
 
 
 def _channels(sheet: Sheet, samples: Samples, network: Network) -> list[Sensor]:

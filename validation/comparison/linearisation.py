@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from lumped.integration.compiled import FIT
 from lumped.model.network import Network, Parameter
 from lumped.model.once import once
 from validation.case import Channel, Test
@@ -51,7 +52,10 @@ def segments(
     tangents: Sequence[Parameter] = (),
     instants: int = INSTANTS,
 ) -> list[Segment]:
-    """Every channel of every test with residual and derivatives; tests run side by side (the kernel frees the GIL)."""
+    """Every channel of every test with residual and derivatives, as precise as a fit needs them.
+
+    Tests run side by side, the longest first (the kernel frees the GIL).
+    """
 
     def look(test: Test) -> list[Segment]:
         return _of_test(network, test, values, tangents, instants)
@@ -59,14 +63,15 @@ def segments(
     if len(tests) < 2 or len(tests[0].time) * network.size < WORTH_A_THREAD:
         return [s for test in tests for s in look(test)]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        return [s for found in pool.map(look, tests) for s in found]
+        begun = {i: pool.submit(look, tests[i]) for i in sorted(range(len(tests)), key=lambda i: -len(tests[i].time))}
+        return [s for i in range(len(tests)) for s in begun[i].result()]
 
 
 def _of_test(
     network: Network, test: Test, values: Mapping[str, float], tangents: Sequence[Parameter], instants: int
 ) -> list[Segment]:
     n, length = len(test.time), stretch(len(test.channels), len(tangents))
-    watch, start = Watch(network, test, values, tangents), groups(n, instants)
+    watch, start = Watch(network, test, values, tangents, FIT), groups(n, instants)
     means = [Blocks(start, 2 + len(tangents)) for _ in test.channels]
     for first in range(0, n, length):
         own = slice(first, min(first + length, n))

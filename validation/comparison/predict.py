@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from lumped.integration.compiled import READINGS, Precision
 from lumped.integration.simulate import Record, Run, Stand, simulate
 from lumped.model.network import Network, Parameter
 from lumped.model.once import once
@@ -56,10 +57,11 @@ def heat_model(network: Network, values: Mapping[str, float]) -> tuple[Network, 
 
 
 def predict(
-    network: Network, test: Test, values: Mapping[str, float], tangents: Sequence[Parameter] = ()
-) -> Prediction:
+    network: Network, test: Test, values: Mapping[str, float], tangents: Sequence[Parameter] = (),
+    precision: Precision = READINGS,
+) -> Prediction:  # fmt: skip
     """Readings of every channel of a test and their derivatives with respect to `tangents`."""
-    return Watch(network, test, values, tangents).until(len(test.time))
+    return Watch(network, test, values, tangents, precision).until(len(test.time))
 
 
 def record(test: Test, shift: Mapping[str, float]) -> Record:
@@ -82,7 +84,7 @@ def here(test: Test, boundary: str) -> str:
 
 
 @once
-def last_runs(test: Test) -> deque[tuple[Network, tuple[tuple[str, float], ...], Run]]:
+def last_runs(test: Test) -> deque[tuple[Network, tuple[tuple[tuple[str, float], ...], Precision], Run]]:
     """The last runs over a test, newest last; they go with it."""
     return deque(maxlen=16)
 
@@ -92,8 +94,9 @@ class Course:
 
     def __init__(
         self, network: Network, test: Test, heat: Mapping[str, float], shift: Mapping[str, float],
-        tangents: Sequence[Parameter] = (), shifts: Sequence[str | None] = (),
+        tangents: Sequence[Parameter] = (), shifts: Sequence[str | None] = (), precision: Precision = READINGS,
     ) -> None:  # fmt: skip
+        self.precision = precision
         self.network, self.test, self.heat, self.tangents = network, test, heat, tangents
         self.shift, self.shifts, self.kept = shift, shifts, slice(0, 0)
         self.end: Stand | None = None
@@ -119,18 +122,20 @@ class Course:
         if not whole or self.tangents or self.shifts or self.test.time.size * len(self.test.channels) > CACHED_NUMBERS:
             return self._simulated(some)
         key = (*self.heat.items(), *((k, v) for k, v in self.shift.items() if k.startswith(MOVING)))
+        how = (key, self.precision)
         for network, at, run in tuple(last_runs(self.test)):
-            if network is self.network and at == key:
+            if network is self.network and at == how:
                 return run
         run = self._simulated(some)
-        last_runs(self.test).append((self.network, key, run))
+        last_runs(self.test).append((self.network, how, run))
         return run
 
     def _simulated(self, some: slice) -> Run:
         part, rows = stretch_of_record(self.test, self.shift, some), [c.row for c in self.test.channels]
         # a step at every sample: then a test cut in two, or looked at in stretches, is the same to the bit
         return simulate(
-            self.network, part, self.heat, rows, self.tangents, begin=self.end, shifts=self.shifts, every_sample=True
+            self.network, part, self.heat, rows, self.tangents, begin=self.end, shifts=self.shifts,
+            precision=self.precision,
         )
 
 
@@ -141,8 +146,9 @@ class Watch:
     """
 
     def __init__(
-        self, network: Network, test: Test, values: Mapping[str, float], tangents: Sequence[Parameter] = ()
-    ) -> None:
+        self, network: Network, test: Test, values: Mapping[str, float], tangents: Sequence[Parameter] = (),
+        precision: Precision = READINGS,
+    ) -> None:  # fmt: skip
         self.network, self.test, self.tangents = network, test, tangents
         self.now, self.done, self.memory = setting(network.parameters, values), 0, Memory()
         (bare, heat), self.heads = heat_model(network, values), [head(p) for p in tangents]
@@ -150,7 +156,8 @@ class Watch:
         hot = [i for i, (_, kind) in each if kind == "thermal"]
         moved_by = {i: _shift(test, p) for i, (p, kind) in each if kind in SHIFTS and _felt(network, test, p)}
         self.hot = [*hot, *moved_by]
-        self.course = Course(bare, test, heat, self.now, [tangents[i] for i in hot], list(moved_by.values()))
+        moving = [tangents[i] for i in hot], list(moved_by.values())
+        self.course = Course(bare, test, heat, self.now, *moving, precision)
         self.late_s, self.spread = abs(self.now.get(f"delay:{test.name}", 0.0)), test.spread
 
     def until(self, stop: int) -> Prediction:

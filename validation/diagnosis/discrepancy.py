@@ -16,6 +16,7 @@ from validation.conditions.robust import quiet_fit
 from validation.conditions.windows import pulses
 from validation.diagnosis.missing_heat import MissingHeat, missing_heat
 from validation.inference.evidence import calibrated_case, diagnosing
+from validation.inference.multifidelity import at_low_fidelity
 from validation.threads import one_blas_thread
 
 
@@ -44,6 +45,7 @@ def discrepancies(case: Case, progress: Callable[[str], None] = no_progress) -> 
     network, _ = working(case)
     now = physical(case)
     left = patterns(segments(network, case.tests, now), case.tests)
+    case = at_low_fidelity(case, progress)
     tests = diagnosing(case)
     fit = quiet_fit(calibrated_case(case, progress), tests)
     progress("looking for where heat is missing")

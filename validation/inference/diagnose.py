@@ -32,6 +32,7 @@ from validation.inference.evidence import (
     under,
     with_noise,
 )
+from validation.inference.multifidelity import at_low_fidelity
 from validation.inference.posterior import (
     Hypothesis,
     Posterior,
@@ -69,10 +70,11 @@ def diagnose(
     kinds : restrict the catalogue;  plan : also rank the next tests and sensors
     budget : channel -> error (K) of the model's own numbers there; what moves no reading by more is not named
     A test that stood on another base than its sheet says is told before anything else. Readings of a channel that is
-    plainly broken are told, and left out.
+    plainly broken are told, and left out. Where the case has a small network beside its own, that is run.
     """
+    broken = broken_channels(case.training().tests)
+    case = at_low_fidelity(case, progress)
     training = case.training()
-    broken = broken_channels(training.tests)
     training = replace(training, tests=without(training.tests, broken))
     stood = bases_tried(training, progress)
     posterior = infer(training, kinds, progress)

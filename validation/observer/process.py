@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from scipy.linalg import get_lapack_funcs
 
 from lumped.correlations import RangeWarning
-from lumped.integration.compiled import Compiled, compiled
+from lumped.integration.compiled import READINGS, Compiled, compiled
 from lumped.integration.record import Record
 from lumped.model.network import Network, Row
 from lumped.numerics.instant import instant
@@ -95,7 +95,7 @@ class Process:
     def driven(self, record: Record) -> Driven:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", RangeWarning)  # a comparison says so once; here it would be every row
-            core = compiled(self.network, record, self.values, every_sample=True)
+            core = compiled(self.network, record, self.values, precision=READINGS)
         at = core.forcing.first[1:] > core.forcing.first[:-1]
         return Driven(core, np.asarray(record.time, float), core.forcing.factor[at], core.forcing.u[at])
 
