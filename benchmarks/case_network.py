@@ -1,11 +1,10 @@
 """The network that a case runs against its field, at the hot spot of every heated part, away from where it was made.
 
-    python benchmarks/case_network.py [MACHINE ...] [--recipe wide] [--states N ...] [--json FILE]
+    python benchmarks/case_network.py [MACHINE ...] [--states N ...] [--json FILE]
 
 Points: nominal; all films x0.3 and x10; all contacts x0.2 and x5; every film and contact drawn between x0.2 and x5.
 Steady, errors are in percent of the part's own rise, at least a tenth of the machine's largest. After a step of loss,
 from 30 s to two hours, in percent of the machine's largest rise at that time. Rated losses, fluids and streams.
-The recipe "wide" learns from films x0.3 to x10 and keeps 200 means and shapes.
 """
 
 from __future__ import annotations
@@ -21,18 +20,15 @@ from typing import Any
 
 import numpy as np
 
-from lumped.condensation.reduction import Recipe
 from lumped.machine.bases import on_all, on_every_base
 from lumped.machine.motor import motor_network
 from lumped.model.network import Array, Network
 from thermoscope.case_folder.folder import load_machine_file
-from thermoscope.pipeline import ACROSS, AXIAL, SMALL, Meshing, Prepared, meshed, reduced
+from thermoscope.pipeline import ACROSS, AXIAL, CASE, Meshing, Prepared, meshed, reduced
 from thermoscope.verification.crosscheck import FLOOR
 from thermoscope.verification.fixed_coefficients import FixedCoefficients, rated
 
 EARLY = 2  # steps of 10 s that are left out
-WIDE = Recipe(tolerance=0.003, random_points=8, max_states=200, film_factors=(0.3, 10.0))
-RECIPES = {"default": SMALL, "wide": WIDE}
 
 
 def points(nominal: FixedCoefficients) -> dict[str, FixedCoefficients]:
@@ -76,10 +72,10 @@ def errors(
         yield name, worst, off[worst]
 
 
-def rows(machine: str, recipe: Recipe, states: list[int]) -> Iterator[dict[str, Any]]:
+def rows(machine: str, states: list[int]) -> Iterator[dict[str, Any]]:
     described = on_all(load_machine_file(Path(machine)))
     ready = meshed(described, Meshing(0.06, 48, ACROSS, 0.06 * AXIAL))
-    reduction = reduced(ready, recipe)
+    reduction = reduced(ready, CASE)
     networks = [on_every_base(motor_network(described, reduction.network(max_states=n))) for n in states]
     asked = points(rated(described, networks[0], ready.films, ready.contacts))
     exact = fields(ready, asked)
@@ -92,16 +88,12 @@ def rows(machine: str, recipe: Recipe, states: list[int]) -> Iterator[dict[str, 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("machines", nargs="*", default=["series-dc-100kw"], metavar="MACHINE")
-    parser.add_argument("--recipe", choices=list(RECIPES), default="default")
-    parser.add_argument(
-        "--states", type=int, nargs="+", metavar="N", help="means and shapes; else as the recipe has it"
-    )
+    parser.add_argument("--states", type=int, nargs="+", metavar="N", help="means and shapes; else as a case has it")
     parser.add_argument("--json", type=Path, metavar="FILE")
     given = parser.parse_args()
     found = []
     for machine in given.machines:
-        recipe = RECIPES[given.recipe]
-        for row in rows(machine, recipe, given.states or [recipe.max_states]):
+        for row in rows(machine, given.states or [CASE.max_states]):
             found.append(row)
             print(f"{row['case']:60} {row['ours']:6.2f} {row['unit']}  {row['measure']}", flush=True)
     if given.json:

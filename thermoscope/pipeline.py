@@ -27,9 +27,8 @@ from thermoscope.caches import cache_folder
 Progress = Callable[[str], None]
 ACROSS = 1  # elements over a compact face: windings are quadratic, so their hot spots are within 0.5 % with one
 AXIAL = 0.75  # thickest layer over the size of a triangle: 45 mm, a stack of 140 mm in four layers
-SMALL = Recipe(tolerance=0.003, random_points=6, film_factors=(0.3, 10.0), joined_contacts=(5.0,), max_states=190)
-
-FEW = 100  # means and shapes of the network that fits run
+CASE = Recipe(tolerance=0.003, random_points=6, film_factors=(0.3, 10.0), joined_contacts=(5.0,), max_states=190)
+FEW = 100  # means and shapes of the network that a diagnosis runs: its effects are within 1 % (median) of the larger's
 
 
 def silent(message: str) -> None:
@@ -58,7 +57,7 @@ class Meshing:
 
 @dataclass(frozen=True)
 class Built:
-    """A machine at every stage;  meshing : how its mesh was made;  small : a network of fewer shapes from the same field"""
+    """A machine at every stage;  meshing : how its mesh was made;  small : a network of fewer shapes, for many runs"""
 
     machine: Machine
     mesh: NamedMesh
@@ -148,7 +147,7 @@ def reduced(ready: Prepared, recipe: Recipe, zones: Mapping[str, Zone] | None = 
 
 
 def build(
-    machine: Machine, size_m: float = 0.06, segments: int = 48, recipe: Recipe = SMALL, progress: Progress = silent,
+    machine: Machine, size_m: float = 0.06, segments: int = 48, recipe: Recipe = CASE, progress: Progress = silent,
     axial_m: float | None = None,
 ) -> Built:  # fmt: skip
     """Everything from the machine file to the network, at one mesh size; once for each machine in a process."""

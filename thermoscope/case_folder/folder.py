@@ -116,8 +116,9 @@ def load_case(
     tests = tuple(replace(_allowing(r.test, settings.model_K), frees=frees[r.test.name]) for r in read)
     sheets = [one.sheet for one in patients.values()]
     network = with_quantities(network, sheets, tests)
-    small = built.small if built else None
-    low = small and _low_fidelity(network, with_quantities(small, sheets, tests), patients.values())
+    low = None
+    if built and built.small:
+        low = _low_fidelity(network, with_quantities(built.small, sheets, tests), patients.values())
     case = Case(settings.name, _model(network, history), tests, _free(network, settings), settings.doubt,
                 history.last.answers, low)  # fmt: skip
     steps = {r.test.name: r.step for r in read}

@@ -134,7 +134,13 @@ class Course:
         part, rows = stretch_of_record(self.test, self.shift, some), [c.row for c in self.test.channels]
         # a step at every sample: then a test cut in two, or looked at in stretches, is the same to the bit
         return simulate(
-            self.network, part, self.heat, rows, self.tangents, begin=self.end, shifts=self.shifts,
+            self.network,
+            part,
+            self.heat,
+            rows,
+            self.tangents,
+            begin=self.end,
+            shifts=self.shifts,
             precision=self.precision,
         )
 

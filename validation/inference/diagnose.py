@@ -32,7 +32,7 @@ from validation.inference.evidence import (
     under,
     with_noise,
 )
-from validation.inference.multifidelity import at_low_fidelity
+from validation.inference.multifidelity import at_low_fidelity, fidelity_error
 from validation.inference.posterior import (
     Hypothesis,
     Posterior,
@@ -73,12 +73,13 @@ def diagnose(
     plainly broken are told, and left out. Where the case has a small network beside its own, that is run.
     """
     broken = broken_channels(case.training().tests)
-    case = at_low_fidelity(case, progress)
+    whole, case = case, at_low_fidelity(case, progress)
     training = case.training()
     training = replace(training, tests=without(training.tests, broken))
     stood = bases_tried(training, progress)
     posterior = infer(training, kinds, progress)
-    wrong = wrong_bases(stood)
+    wrong, small = wrong_bases(stood), fidelity_error(whole, case, posterior)
+    budget = {c: budget.get(c, 0.0) + small.get(c, 0.0) for c in {**budget, **small}}
     choice = steady(posterior, lambda p: above(p, decide(p.evidence, p.hypotheses), budget))
     if wrong:  # nothing else is accused of what the base does
         choice = Decision("data", (), choice.sure)

@@ -4,23 +4,27 @@ Every reading loses what the large network predicts above the small one at some 
 
     r(theta) = y - y_small(theta) - [y_large(theta_0) - y_small(theta_0)]
 
-At theta_0 the residuals are those of the large network; away from it they miss the change of the bracket, which is the
-small network's error in what the parameters change. Source: additive corrections of multi-fidelity optimisation,
-Alexandrov and others 2001, J. Aircraft 38, 1093.
+At theta_0 the residuals are those of the large network. Away from it they miss how far the bracket changes, which is
+the small network's error in what the parameters change; `fidelity_error` says how much that is.
+Source: additive corrections between models of two fidelities, Kennedy and O'Hagan 2000, Biometrika 87, 1.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lumped.model.network import Network
 from validation.calibration.calibrate import calibrated, no_progress
 from validation.calibration.unknowns import working
 from validation.case import Case, LowFidelity, Test
 from validation.comparison.predict import predict
+from validation.effects import extended
+from validation.inference.evidence import with_members
+from validation.inference.posterior import Posterior
 
 Array = NDArray[np.float64]
 
@@ -53,13 +57,38 @@ def corrected(case: Case, values: Mapping[str, float]) -> Case:
     low = case.low
     small = replace(case, model=replace(case.model, network=low.network), low=None,
                     tests=tuple(_seen_by(low, test) for test in case.tests))  # fmt: skip
-    large_network, small_network = working(case)[0], working(small)[0]
-    gaps = [
-        predict(large_network, test, values).y - predict(small_network, own, values).y
-        for test, own in zip(case.tests, small.tests, strict=True)
+    gaps = _gaps(working(case)[0], case.tests, working(small)[0], small.tests, values)
+    return replace(small, tests=tuple(_less(test, gap) for test, gap in zip(small.tests, gaps, strict=True)))
+
+
+def fidelity_error(case: Case, small: Case, posterior: Posterior) -> dict[str, float]:
+    """Channel -> how far (K) the small network's prediction of the most probable hypothesis is from the large one's.
+
+    small : of `at_low_fidelity`, which the posterior is about; no error where that is the case itself
+    """
+    if small is case:
+        return {}
+    e, h = posterior.evidence, posterior.best
+    network, _, held = with_members(e, h.members)
+    values = {**held, **(h.fit.values if h.fit else e.fit.values)}
+    large = extended(working(case)[0], [e.effects[k] for k in h.members])
+    known = {t.name: t for t in case.tests}
+    tests = [known[t.name] for t in e.tests]
+    out: dict[str, float] = {}
+    for test, own, gap in zip(tests, e.tests, _gaps(large, tests, network, e.tests, values), strict=True):
+        for j, (c, lowered) in enumerate(zip(test.channels, own.channels, strict=True)):
+            off = float(np.nanmax(np.abs(gap[:, j] - (c.y - lowered.y)), initial=0.0))
+            out[c.name] = max(out.get(c.name, 0.0), off)
+    return out
+
+
+def _gaps(
+    large: Network, tests: Sequence[Test], small: Network, own: Sequence[Test], values: Mapping[str, float]
+) -> list[Array]:
+    """What the large network predicts above the small one (n_time, n_channel) K, test by test."""
+    return [
+        predict(large, test, values).y - predict(small, seen, values).y for test, seen in zip(tests, own, strict=True)
     ]
-    tests = tuple(_less(test, gap) for test, gap in zip(small.tests, gaps, strict=True))
-    return replace(small, tests=tests)
 
 
 def _seen_by(low: LowFidelity, test: Test) -> Test:

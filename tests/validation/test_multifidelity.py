@@ -1,0 +1,116 @@
+"""A small network that stands for a large one: exact where it is corrected, the same answers, its error known."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from playground import Truth, network, wind
+
+from lumped.transfer.laws import Fixed
+from validation import diagnose
+from validation.calibration.unknowns import working
+from validation.case import LowFidelity
+from validation.comparison.linearisation import segments
+from validation.effects import extended
+from validation.inference.diagnose import infer
+from validation.inference.evidence import with_members
+from validation.inference.multifidelity import at_low_fidelity, corrected, fidelity_error
+
+WIND = 16.0  # W/K at 10 m/s
+OFF = 1.15  # of every joint: more than a network of half the shapes is off
+
+
+def coarse():
+    """The playground's network with joints 15 % too good and heat capacities 5 % too large."""
+    made = network()
+    links = tuple(replace(x, law=Fixed(OFF * x.law.value)) if x.kind == "contact" else x for x in made.links)
+    return replace(made, links=links, C=1.05 * made.C)
+
+
+@cache
+def case(hidden=True):
+    found = Truth(10, wind("flange.right", WIND) if hidden else None).case()
+    rows = {(t.name, c.name): c.row for t in found.tests for c in t.channels}
+    return replace(found, low=LowFidelity(found.model.network, coarse(), rows))
+
+
+def test_residuals_are_those_of_the_large_network_where_it_is_corrected():
+    given, values = case(), {"fan.flow": 1.2, "contact.housing|yoke": 0.8}
+    small = corrected(given, values)
+    large = segments(working(given)[0], given.tests, values)
+    for own, other in zip(segments(working(small)[0], small.tests, values), large, strict=True):
+        assert_allclose(own.r, other.r, atol=0.02)  # two runs of a fit's precision
+
+
+def test_the_uncorrected_small_network_is_far_off():
+    """Else the tests here show nothing."""
+    given = case()
+    large = segments(working(given)[0], given.tests, {})
+    raw = segments(coarse(), given.tests, {})
+    assert max(np.abs(a.r - b.r).max() for a, b in zip(raw, large, strict=True)) > 1.0
+
+
+@cache
+def answers(hidden):
+    return diagnose(replace(case(hidden), low=None), plan=False), diagnose(case(hidden), plan=False)
+
+
+def test_a_hidden_effect_is_named_as_by_the_large_network():
+    large, small = answers(True)
+    assert small.verdict == large.verdict == "named"
+    assert small.named == large.named == ("convection@flange.right",)
+    assert small.candidates[0].value == pytest.approx(large.candidates[0].value, rel=0.1)
+    assert small.candidates[0].ci95[0] < WIND * 1.2
+    assert small.candidates[0].ci95[1] > WIND / 1.2
+
+
+def test_nothing_hidden_is_adequate_as_by_the_large_network():
+    large, small = answers(False)
+    assert small.verdict == large.verdict == "adequate"
+    assert small.p_nothing == pytest.approx(large.p_nothing, abs=0.1)
+
+
+def test_held_out_errors_are_those_of_the_large_network():
+    large, small = answers(True)
+    assert_allclose(small.candidates[0].holdout_rmse_K, large.candidates[0].holdout_rmse_K, atol=0.15)
+
+
+def test_the_error_of_the_small_network_is_what_it_misses_of_the_large_one():
+    whole = case()
+    small = at_low_fidelity(whole)
+    posterior = infer(small.training())
+    e, h = posterior.evidence, posterior.best
+    _, _, held = with_members(e, h.members)
+    values = {**held, **(h.fit or e.fit).values}
+
+    large = extended(working(whole)[0], [e.effects[k] for k in h.members])
+    own = extended(working(small)[0], [e.effects[k] for k in h.members])
+    off = {}
+    for a, b in zip(segments(large, whole.training().tests, values), segments(own, e.tests, values), strict=True):
+        off[a.channel] = max(off.get(a.channel, 0.0), float(np.abs(a.r - b.r).max()))
+    found = fidelity_error(whole, small, posterior)
+    assert_allclose([found[c] for c in off], list(off.values()), atol=0.03)
+    assert max(found.values()) < 0.5
+
+
+def test_a_sensor_that_the_small_network_does_not_know_leaves_the_large_one():
+    given = case()
+    fewer = dict(list(given.low.rows.items())[1:])
+    assert at_low_fidelity(replace(given, low=replace(given.low, rows=fewer))).model.network is given.model.network
+
+
+def test_another_network_than_it_was_made_for_leaves_that_one():
+    given = case()
+    other = replace(given, model=replace(given.model, network=network()))
+    assert at_low_fidelity(other) is other
+
+
+def test_a_channel_that_stands_still_is_told_although_its_readings_are_corrected():
+    given = case(False)
+    first, *rest = given.tests
+    c = first.channels[0]
+    stuck = replace(c, y=np.where(first.time > 1200.0, c.y[200], c.y))
+    broken = replace(given, tests=(replace(first, channels=(stuck, *first.channels[1:])), *rest))
+    assert "check the measurement first" in diagnose(broken, plan=False).words
