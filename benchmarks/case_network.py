@@ -1,6 +1,6 @@
 """The network that a case runs against its field, at the hot spot of every heated part, away from where it was made.
 
-    python benchmarks/case_network.py [MACHINE ...] [--states N ...] [--json FILE]
+    python benchmarks/case_network.py [MACHINE ...] [--json FILE]
 
 Points: nominal; all films x0.3 and x10; all contacts x0.2 and x5; every film and contact drawn between x0.2 and x5.
 Steady, errors are in percent of the part's own rise, at least a tenth of the machine's largest. After a step of loss,
@@ -21,10 +21,9 @@ from typing import Any
 import numpy as np
 
 from lumped.machine.bases import on_all, on_every_base
-from lumped.machine.motor import motor_network
 from lumped.model.network import Array, Network
 from thermoscope.case_folder.folder import load_machine_file
-from thermoscope.pipeline import ACROSS, AXIAL, CASE, Meshing, Prepared, meshed, reduced
+from thermoscope.pipeline import ACROSS, AXIAL, CASE, Meshing, Prepared, meshed, networks_of, reduced
 from thermoscope.verification.crosscheck import FLOOR
 from thermoscope.verification.fixed_coefficients import FixedCoefficients, rated
 
@@ -72,11 +71,11 @@ def errors(
         yield name, worst, off[worst]
 
 
-def rows(machine: str, states: list[int]) -> Iterator[dict[str, Any]]:
+def rows(machine: str) -> Iterator[dict[str, Any]]:
+    """Of the network that a case runs, and of the small one that its diagnosis runs."""
     described = on_all(load_machine_file(Path(machine)))
     ready = meshed(described, Meshing(0.06, 48, ACROSS, 0.06 * AXIAL))
-    reduction = reduced(ready, CASE)
-    networks = [on_every_base(motor_network(described, reduction.network(max_states=n))) for n in states]
+    networks = [on_every_base(x) for x in networks_of(described, reduced(ready, CASE), CASE)]
     asked = points(rated(described, networks[0], ready.films, ready.contacts))
     exact = fields(ready, asked)
     for network in networks:
@@ -88,12 +87,11 @@ def rows(machine: str, states: list[int]) -> Iterator[dict[str, Any]]:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("machines", nargs="*", default=["series-dc-100kw"], metavar="MACHINE")
-    parser.add_argument("--states", type=int, nargs="+", metavar="N", help="means and shapes; else as a case has it")
     parser.add_argument("--json", type=Path, metavar="FILE")
     given = parser.parse_args()
     found = []
     for machine in given.machines:
-        for row in rows(machine, given.states or [CASE.max_states]):
+        for row in rows(machine):
             found.append(row)
             print(f"{row['case']:60} {row['ours']:6.2f} {row['unit']}  {row['measure']}", flush=True)
     if given.json:

@@ -34,6 +34,7 @@ class Recipe:
     local_points : further points at which each part is solved for alone, between neighbours in `local_states` states
     joined_contacts : factors on all contacts at once, at which losses are solved, steady and at the shifts: corners of
         the range that random points do not reach
+    favour : weight on the root of energy of parts that losses heat, since their hot spots are what is asked for
     max_states : largest number of mean nodes and shapes together; parts compete for shapes by energy
     """
 
@@ -49,6 +50,7 @@ class Recipe:
     max_states: int | None = None
     film_factors: tuple[float, float] | None = None
     joined_contacts: tuple[float, ...] = ()
+    favour: float = 1.0
 
     def other_films(self, films: Mapping[str, float], rng: np.random.Generator) -> dict[str, float]:
         """Those of a random point."""
