@@ -177,6 +177,19 @@ class Case:
     answers: Mapping[str, bool] = field(default_factory=dict)
     low: LowFidelity | None = None
 
+    @property
+    def small(self) -> Case:
+        """The case on its small network, where there is one that knows all its sensors; else as it is."""
+        low = self.low
+        if low is None or low.of is not self.model.network:
+            return self
+        if any((t.name, c.name) not in low.rows for t in self.tests for c in t.channels):
+            return self
+        tests = tuple(
+            replace(t, channels=tuple(replace(c, row=low.rows[t.name, c.name]) for c in t.channels)) for t in self.tests
+        )
+        return replace(self, model=replace(self.model, network=low.network), tests=tests, low=None)
+
     def training(self) -> Case:
         """The case without its held-out tests: all that may be fitted, chosen or accepted with."""
         return replace(self, tests=tuple(t for t in self.tests if t.role != "hold-out"))

@@ -51,6 +51,13 @@ class Folder:
     findings: tuple[Finding, ...] = ()
     steps: Mapping[str, SampleStep] = field(default_factory=dict)
 
+    @property
+    def small(self) -> Folder:
+        """The same on the small network, where there is one; its error budget is that network's."""
+        if self.built is None or self.built.small is None or self.case.small is self.case:
+            return self
+        return replace(self, case=self.case.small, built=replace(self.built, network=self.built.small))
+
     @cached_property
     def budgets(self) -> Mapping[str, ErrorBudget]:
         """Test -> what mesh, condensation and time steps may put wrong in the model's numbers; computed once."""

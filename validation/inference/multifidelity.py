@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from lumped.model.network import Network
 from validation.calibration.calibrate import calibrated, no_progress
 from validation.calibration.unknowns import working
-from validation.case import Case, LowFidelity, Test
+from validation.case import Case, Test
 from validation.comparison.predict import predict
 from validation.effects import extended
 from validation.inference.evidence import with_members
@@ -34,29 +34,19 @@ def at_low_fidelity(case: Case, progress: Callable[[str], None] = no_progress) -
 
     A model that was never calibrated is calibrated roughly first, and begins there, where the correction holds.
     """
-    if not usable(case):
-        return case
     small = corrected(case, case.model.values)
-    if case.model.values:
+    if small is case or case.model.values:
         return small
     network, unknowns = working(small)
     fit = calibrated(network, small.training().tests, unknowns, {}, 1, progress, rough=True)
     return corrected(replace(case, model=replace(case.model, values=fit.values)), fit.values)
 
 
-def usable(case: Case) -> bool:
-    """Whether the case has a small network of the one it stands on, which knows all its sensors."""
-    low = case.low
-    known = low is not None and all((t.name, c.name) in low.rows for t in case.tests for c in t.channels)
-    return known and low is not None and low.of is case.model.network
-
-
 def corrected(case: Case, values: Mapping[str, float]) -> Case:
-    """The case on its small network, its readings corrected at some values."""
-    assert case.low is not None
-    low = case.low
-    small = replace(case, model=replace(case.model, network=low.network), low=None,
-                    tests=tuple(_seen_by(low, test) for test in case.tests))  # fmt: skip
+    """The case on its small network, its readings corrected at some values; as it is where there is none."""
+    small = case.small
+    if small is case:
+        return case
     gaps = _gaps(working(case)[0], case.tests, working(small)[0], small.tests, values)
     return replace(small, tests=tuple(_less(test, gap) for test, gap in zip(small.tests, gaps, strict=True)))
 
@@ -89,10 +79,6 @@ def _gaps(
     return [
         predict(large, test, values).y - predict(small, seen, values).y for test, seen in zip(tests, own, strict=True)
     ]
-
-
-def _seen_by(low: LowFidelity, test: Test) -> Test:
-    return replace(test, channels=tuple(replace(c, row=low.rows[test.name, c.name]) for c in test.channels))
 
 
 def _less(test: Test, gap: Array) -> Test:

@@ -100,7 +100,7 @@ def _observer(
     from thermoscope.verification.error_budget import model_of
 
     with progress() as tell:
-        folder = open_case(case, tell)
+        folder = open_case(case, tell).small  # a controller's memory is short
         channels = {c.name: c for t in folder.case.tests for c in t.channels}
         sensors = chosen([*channels.values()], given, str(folder.settings.path))
         design = designed(folder, tell)
