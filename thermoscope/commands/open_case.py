@@ -29,10 +29,10 @@ def in_short(folder: Folder, name: str) -> list[str]:
     return [*lines, *([f"{more} more such things: thermoscope test doctor {name}"] if more > 0 else [])]
 
 
-def open_case_for_writing(name: str, progress: Progress) -> Folder:
-    """The case for writing: one that lies inside the installed package is copied to the working folder first."""
+def open_case_for_writing(name: str, progress: Progress, package: Path = PACKAGE) -> Folder:
+    """The case for writing: one that lies inside the installed `package` is copied to the working folder first."""
     path = find_case(name)
-    if PACKAGE in path.resolve().parents:
+    if package in path.resolve().parents:
         copy = Path(path.name)
         if copy.exists():
             raise InputError("is in the way of a copy of the shipped case", str(copy), "another working folder")

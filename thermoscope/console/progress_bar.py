@@ -30,6 +30,7 @@ class ProgressBar:
     """The stages of one piece of work: how long each took so far, and the last time.
 
     last : stage -> s of the last time, in their order;  clock : s, rising
+    shortest_s : work that took less the last time has no share and no time left (s)
     block : which of several pieces of work that have one bar, 0 of a single one; the same word in two of them is two
     stages
     """
@@ -40,6 +41,7 @@ class ProgressBar:
     now: str = ""
     since: float = 0.0
     block: int = 0
+    shortest_s: float = WORTH_S
 
     def enter(self, message: str) -> bool:
         """Whether another stage begins; messages that begin with the same word are of one stage."""
@@ -64,14 +66,14 @@ class ProgressBar:
         A stage that takes longer than the last time counts as done when it ends, so the share never falls.
         """
         total = sum(self.last.values())
-        if total < WORTH_S:
+        if total < self.shortest_s:
             return None
         here = self.clock() - self.since if self.now else 0.0
         running = min(here, self.last.get(self.now, 0.0))
         done = running + sum(min(self.took.get(s, 0.0), t) if s == self.now else t
                              for s, t in self.last.items() if s in self.took)  # fmt: skip
         spent = here + sum(self.took.values())
-        pace = spent / done if done > WORTH_S else 1.0
+        pace = spent / done if done > self.shortest_s else 1.0
         return min(done / total, 0.99), max(total - done, 0.0) * pace
 
     def words(self, message: str) -> str:
@@ -99,9 +101,12 @@ def progress() -> Iterator[Progress]:
 
 
 @contextmanager
-def one_bar() -> Iterator[None]:
-    """Several pieces of work, each with its `progress`, have one bar: share and time left are of all of them."""
-    with _remembering(_command()) as stages:
+def one_bar(shortest_s: float = WORTH_S) -> Iterator[None]:
+    """Several pieces of work, each with its `progress`, have one bar: share and time left are of all of them.
+
+    shortest_s : what takes less has neither (s)
+    """
+    with _remembering(_command(), shortest_s) as stages:
         token = _whole.set(stages)
         try:
             yield
@@ -110,14 +115,14 @@ def one_bar() -> Iterator[None]:
 
 
 @contextmanager
-def _remembering(key: str) -> Iterator[ProgressBar]:
+def _remembering(key: str, shortest_s: float = WORTH_S) -> Iterator[ProgressBar]:
     """Stages that know how long they took the last time; what they take now is kept for the next."""
     known = _remembered()
-    stages = ProgressBar(known.get(key) or _usual().get(key, {}))
+    stages = ProgressBar(known.get(key) or _usual().get(key, {}), shortest_s=shortest_s)
     try:
         yield stages
         stages.leave()
-        if sum(stages.took.values()) > WORTH_S:
+        if sum(stages.took.values()) > shortest_s:
             _remember({**{k: v for k, v in known.items() if k != key}, key: stages.took})
     finally:
         stages.leave()

@@ -43,6 +43,7 @@ class Reader:
     """What a recording is read with.  test : of the case, whose sheet the columns have;  case : without its tests
 
     tests : their names, of which none is running here
+    piece : rows that are in memory at once
     """
 
     case: Case
@@ -50,6 +51,7 @@ class Reader:
     sheet: Sheet
     step_s: float
     tests: tuple[str, ...] = ()
+    piece: int = PIECE
 
     def statistics(self, recording: Recording) -> Statistics:
         """All pieces of a recording together."""
@@ -57,7 +59,7 @@ class Reader:
         network = self.case.model.network
         with opened(str(recording.file)) as stream:
             _, table, lines = table_of(stream, str(recording.file), {self.test.name: self.sheet}, network, None)
-            for part in together(lines, PIECE):
+            for part in together(lines, self.piece):
                 if total is None or len(part) >= LEAST:
                     one = statistics(self.case, self._test(table.rows(part), recording, network))
                     total = one if total is None else total + one

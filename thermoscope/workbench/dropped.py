@@ -132,8 +132,8 @@ def write(dropped: Dropped, settings: Settings, network: Network, tell: Progress
     return folder
 
 
-async def stored(parts: MultipartReader, folder: Path) -> list[Path]:
-    """The files of an upload, under their own names but nowhere else. HTTP 413 for more than LARGEST bytes."""
+async def stored(parts: MultipartReader, folder: Path, largest: int) -> list[Path]:
+    """The files of an upload, under their own names but nowhere else. HTTP 413 for more than `largest` bytes."""
     files, size = [], 0
     async for part in parts:
         if not isinstance(part, BodyPartReader) or not part.filename:
@@ -145,8 +145,8 @@ async def stored(parts: MultipartReader, folder: Path) -> list[Path]:
         with files[-1].open("wb") as out:
             while chunk := await part.read_chunk(CHUNK):
                 size += len(chunk)
-                if size > LARGEST:
-                    raise web.HTTPRequestEntityTooLarge(LARGEST, size)
+                if size > largest:
+                    raise web.HTTPRequestEntityTooLarge(largest, size)
                 out.write(chunk)
     return files
 

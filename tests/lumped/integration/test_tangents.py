@@ -1,20 +1,18 @@
 """Tangents are the derivative of the discrete scheme itself; links without strength change nothing, to the bit."""
 
-import sys
-
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from small_networks import boundaries, every_law, inputs
 
-from lumped.integration.simulate import Record, simulate
+from lumped.integration.compiled import compiled
+from lumped.integration.simulate import Record, march, simulate
 from lumped.model.build import node_link
 from lumped.model.multipliers import multipliers
 from lumped.model.network import Parameter
 from lumped.transfer.laws import Fixed, InputPower, Power, Radiation
 
 NETWORK = every_law()
-simulating = sys.modules[simulate.__module__]  # `lumped.integration.simulate` itself is the function
 TIME = np.arange(0.0, 1200.0, 10.0)
 RECORD = Record(TIME, inputs(TIME), boundaries(TIME), 35.0)
 ROWS = [NETWORK.place(node).mean for node in NETWORK.states]
@@ -71,10 +69,10 @@ def test_asking_for_tangents_leaves_the_answer_as_it_is():
 
 
 @pytest.mark.parametrize("steps", [1, 7, TIME.size - 1])
-def test_a_run_in_portions_is_the_run_in_one(steps, monkeypatch):
+def test_a_run_in_portions_is_the_run_in_one(steps):
     whole = simulate(NETWORK, RECORD, None, ROWS, NETWORK.parameters, keep_states=True)
-    monkeypatch.setattr(simulating, "PORTION", steps)
-    cut = simulate(NETWORK, RECORD, None, ROWS, NETWORK.parameters, keep_states=True)
+    core = compiled(NETWORK, RECORD, None, ROWS, NETWORK.parameters)
+    cut = march(NETWORK, RECORD, core, keep_states=True, portion=steps)
     for name in ("z", "y", "dy"):
         assert_allclose(getattr(cut, name), getattr(whole, name), rtol=1e-12)
 

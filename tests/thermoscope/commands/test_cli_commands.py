@@ -140,15 +140,14 @@ def test_document_to_a_file_leaves_the_table_on_stdout(thermoscope, case):
 
 
 def test_a_case_inside_the_package_is_copied_before_writing(tmp_path, monkeypatch, capsys):
-    from thermoscope.commands import open_case as opened
+    from thermoscope.commands.open_case import open_case_for_writing
 
     package = tmp_path / "package"
     shipped = small_case(package / "cases")
     here = tmp_path / "here"
     here.mkdir()
     monkeypatch.chdir(here)
-    monkeypatch.setattr(opened, "PACKAGE", package)
-    folder = opened.open_case_for_writing(str(shipped), lambda message: None)
+    folder = open_case_for_writing(str(shipped), lambda message: None, package=package)
     assert folder.settings.path.resolve() == here / "three"
     assert "copied the shipped case" in capsys.readouterr().err
 

@@ -72,11 +72,10 @@ def test_time_left_follows_the_pace_of_this_run():
 
 def test_several_pieces_of_work_have_one_bar(tmp_path, monkeypatch, capsys):
     monkeypatch.setenv("THERMOSCOPE_CACHE", str(tmp_path))
-    monkeypatch.setattr("thermoscope.console.progress_bar.WORTH_S", 1e-3)
     monkeypatch.setattr("sys.argv", ["thermoscope", "demo", "--out", "x"])
     monkeypatch.setattr("thermoscope.console.progress_bar._usual", dict)
     for _ in range(2):
-        with one_bar():
+        with one_bar(shortest_s=1e-3):
             for _ in range(2):
                 with progress() as tell:
                     tell("reading a")

@@ -51,9 +51,8 @@ def test_it_is_halved_until_its_share_is_kept(second_order, accuracy, halved):
     assert found.percent["bearing"] < found.percent["winding"]  # of a tenth of the largest rise, not of its own
 
 
-def test_a_mesh_that_grows_too_large_is_told(second_order, monkeypatch):
-    monkeypatch.setattr(mesh_choice, "MOST_POINTS", 10_000)
-    found = chosen_mesh(MACHINE, 0.1, FIRST, silent)
+def test_a_mesh_that_grows_too_large_is_told(second_order):
+    found = chosen_mesh(MACHINE, 0.1, FIRST, silent, most_points=10_000)
     assert not found.met
     assert found.meshing == FIRST.finer
 

@@ -62,9 +62,9 @@ def main() -> None:
     from thermoscope.workbench.access_control import AccessControl
     from thermoscope.workbench.serve import application, serve
 
-    case, gate = small_case(Path(sys.argv[1])), AccessControl("127.0.0.1", os.environ.get("THERMOSCOPE_TOKEN", ""))
-    app = application(with_motor(case), gate, lambda message: None)
-    serve(app, gate, 0, lambda url: print(url, flush=True))
+    case, access = small_case(Path(sys.argv[1])), AccessControl("127.0.0.1", os.environ.get("THERMOSCOPE_TOKEN", ""))
+    app = application(with_motor(case), access, lambda message: None)
+    serve(app, access, 0, lambda url: print(url, flush=True))
 
 
 if __name__ == "__main__":

@@ -25,25 +25,25 @@ TOKEN = "a-token-of-enough-characters"
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    return with_motor(small_case(tmp_path_factory.mktemp("gate")))
+    return with_motor(small_case(tmp_path_factory.mktemp("access")))
 
 
-def asked(folder, gate, questions):
+def asked(folder, access, questions):
     """Run `questions(address, session)` against a server of the case."""
 
     async def main():
-        async with running(folder, gate) as address, ClientSession(cookie_jar=CookieJar(unsafe=True)) as session:
+        async with running(folder, access) as address, ClientSession(cookie_jar=CookieJar(unsafe=True)) as session:
             return await questions(address, session)
 
     return asyncio.run(main())
 
 
 @asynccontextmanager
-async def running(folder, gate):
+async def running(folder, access, **options):
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
-    runner = web.AppRunner(application(folder, gate, lambda message: None))
+    runner = web.AppRunner(application(folder, access, lambda message: None, **options))
     await runner.setup()
     await web.TCPSite(runner, "127.0.0.1", port).start()
     try:
@@ -175,14 +175,14 @@ def test_no_request_breaks_the_server(folder):
 
 def test_serve_always_asks_for_a_token(folder, monkeypatch):
     """The command makes one on loopback too, and prints it with the address."""
-    gates = []
+    controls = []
     monkeypatch.delenv("THERMOSCOPE_TOKEN", raising=False)
-    monkeypatch.setattr("thermoscope.workbench.serve.application", lambda folder, gate, tell: gates.append(gate))
+    monkeypatch.setattr("thermoscope.workbench.serve.application", lambda folder, access, tell: controls.append(access))
     monkeypatch.setattr("thermoscope.workbench.serve.serve", lambda *given: None)
     for host in ("127.0.0.1", "localhost", "::1", "0.0.0.0"):
         assert serve(str(folder.settings.path), host, 0) == 0
-    assert all(len(gate.token) >= 32 for gate in gates)
-    assert len({gate.token for gate in gates}) == len(gates) == 4
+    assert all(len(access.token) >= 32 for access in controls)
+    assert len({access.token for access in controls}) == len(controls) == 4
 
 
 def test_a_duplicated_tab_gets_a_session_of_its_own(folder):

@@ -88,7 +88,7 @@ def test_a_case_beside_the_open_one(case, dropped):
     assert again == case.parent / "bench-2"
 
 
-def upload(case, files, token=TOKEN):
+def upload(case, files, token=TOKEN, **options):
     """(status, what arrived) of a drop on a tab of the served case."""
     from thermoscope.workbench.session import Session
 
@@ -99,7 +99,7 @@ def upload(case, files, token=TOKEN):
 
     async def main():
         folder = load_case(case)
-        async with running(folder, AccessControl("127.0.0.1", TOKEN)) as address, ClientSession(
+        async with running(folder, AccessControl("127.0.0.1", TOKEN), **options) as address, ClientSession(
             cookie_jar=CookieJar(unsafe=True)
         ) as session:  # fmt: skip
             await session.get(f"{address}?token={TOKEN}", allow_redirects=False)
@@ -130,8 +130,7 @@ def test_strangers_cannot_drop(case):
     assert seen == []
 
 
-def test_a_drop_that_is_too_large_is_refused(case, monkeypatch):
-    monkeypatch.setattr("thermoscope.workbench.dropped.LARGEST", 10)
-    status, seen = upload(case, [("a.csv", b"x" * 100)])
+def test_a_drop_that_is_too_large_is_refused(case):
+    status, seen = upload(case, [("a.csv", b"x" * 100)], largest_drop=10)
     assert status == 413
     assert seen == []

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from one_body import FILM, LOSS, MASS, measured, one_node
 
-from validation.comparison import linearisation as sheet
+from validation.comparison import linearisation
 from validation.measurement.blocks import Blocks, groups
 
 FREE = (LOSS, FILM, MASS)
@@ -14,23 +14,22 @@ FREE = (LOSS, FILM, MASS)
 
 @pytest.mark.parametrize("samples", [2, 7, 199])
 def test_stretches_change_nothing(samples, monkeypatch):
-    (whole,) = sheet.segments(one_node(*FREE), [measured()], {}, FREE)
-    monkeypatch.setattr(sheet, "stretch", lambda channels, tangents: samples)
-    (part,) = sheet.segments(one_node(*FREE), [measured()], {}, FREE)
+    (whole,) = linearisation.segments(one_node(*FREE), [measured()], {}, FREE)
+    monkeypatch.setattr(linearisation, "stretch", lambda channels, tangents, numbers: samples)
+    (part,) = linearisation.segments(one_node(*FREE), [measured()], {}, FREE)
     np.testing.assert_allclose(part.J, whole.J, rtol=1e-9, atol=1e-9)
     np.testing.assert_allclose(part.r, whole.r, atol=1e-9)
     np.testing.assert_array_equal(part.time, whole.time)
 
 
-def test_a_long_record_takes_no_more_memory_than_a_short_one(monkeypatch):
+def test_a_long_record_takes_no_more_memory_than_a_short_one():
     """Besides the record itself: 4 times as long, at most a quarter more."""
-    monkeypatch.setattr(sheet, "NUMBERS", 2**17)
 
     def peak(samples):
         test = measured(samples=samples)
-        sheet.segments(one_node(*FREE), [test], {}, FREE)
+        linearisation.segments(one_node(*FREE), [test], {}, FREE, numbers=2**17)
         tracemalloc.start()
-        sheet.segments(one_node(*FREE), [test], {}, FREE)
+        linearisation.segments(one_node(*FREE), [test], {}, FREE, numbers=2**17)
         high = tracemalloc.get_traced_memory()[1]
         tracemalloc.stop()
         return high
