@@ -32,7 +32,7 @@ from fem.solvers.solve import Fluids, steady
 from geom import library, load_machine
 from lumped.condensation.reduction_error import Errors, errors, merged
 from lumped.model.network import Network
-from thermoscope.verification.network_size import SizedNetwork, smallest_network
+from thermoscope.verification.network_size import NetworkSize, smallest_network
 
 WANTED = {"mean": 1.0, "hot": 2.0, "point": 2.0}
 AT_RANDOM = {**WANTED, "hot": 3.0}
@@ -120,7 +120,7 @@ def energy(pair: Pair) -> float:
     return steady(r.solver, r.films, r.contacts, pair.field_loads[:, 0], fluids).energy_balance
 
 
-def recovery_rows(found: SizedNetwork, z: np.ndarray) -> Iterator[Row]:
+def recovery_rows(found: NetworkSize, z: np.ndarray) -> Iterator[Row]:
     """Milliseconds for the whole field, the hot spot of every part, and one more sensor."""
     network, field = found.built.network, found.built.field
     shapes, x = network.recovery, z[: len(network.states)]

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 import thermoscope as ts
-from thermoscope.case_folder.runs import held
+from thermoscope.case_folder.runs import comparison_of
 from viz import measured_and_model, residuals
 from viz.live import against_input, parity, saved
 
@@ -22,7 +22,7 @@ out = Path(sys.argv[1] if len(sys.argv) > 1 else "out/examples")
 # %% The case and one of its held-out profiles.
 case = ts.open("hust-ipmsm")
 test = next(t for t in case.tests.values() if t.role == "hold-out")
-comparison = held(case.folder, test)
+comparison = comparison_of(case.folder, test)
 
 # %% On paper.
 measured_and_model(comparison, png=out / "residuals-1.png")

@@ -92,7 +92,10 @@ def along(of: ParameterPosterior, name: str, record: Record, rows: Mapping[str, 
     inputs = {n: np.broadcast_to(np.asarray(u, float), nt) for n, u in record.inputs.items()}
     inputs = {n: u for n, u in inputs.items() if n not in (CLOCK, f"{RUNNING}{name}")}
     air = {n: np.broadcast_to(np.asarray(u, float), nt) for n, u in record.boundaries.items()}
-    time, source = apart(record.time), record.inputs.source if isinstance(record.inputs, Signals) else None
+    time, source = (
+        strictly_increasing(record.time),
+        record.inputs.source if isinstance(record.inputs, Signals) else None,
+    )
     fine = Recorded(source.time, {n: source.signals[n] for n in inputs}, time, inputs) if source else None
     test = Test(name, "hold-out", time, inputs, air, (), record.initial, recorded=fine)
     return bands(of, test, [Place(n, row) for n, row in rows.items()])
@@ -111,7 +114,7 @@ def field_half95(folder: Folder, test: Test, parts: Sequence[str], progress: Pro
     return NORMAL_95 * np.sqrt(np.sum(there**2, axis=1) + (of.doubt["slow"] * rise) ** 2)
 
 
-def apart(time: Array) -> Array:
+def strictly_increasing(time: Array) -> Array:
     """The times, where one is given twice (a jump) a microsecond apart: rates of change are taken of them."""
     return time + JUMP_S * np.cumsum(np.diff(time, prepend=-np.inf) == 0.0)
 

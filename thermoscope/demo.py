@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from geom.errors import InputError, MissingDependency
 from thermoscope.case_folder.folder import find_case
-from thermoscope.case_folder.runs import by_interest, fields, held
+from thermoscope.case_folder.runs import by_interest, comparison_of, fields
 from thermoscope.commands.explain.diagnose import answer as diagnosis_answer
 from thermoscope.commands.explain.diagnose import diagnosed
 from thermoscope.commands.model.build import build
@@ -54,7 +54,7 @@ def demo(out: Path, target: str | None) -> int:
         picture(machine_picture(case, out), "the parts and their names")
         headline("2  Calibrated on the brake stand")
         calibrate(str(case), True, None)
-    folder = opened(case)
+    folder = open_demo(case)
     headline("3  Held against the road")
     with within(SHORT):
         stages = [Stage("calibrated on the stand", print_comparison(folder))]
@@ -71,7 +71,7 @@ def demo(out: Path, target: str | None) -> int:
         headline(f"6  Add {named[0]}")
         with within(SHORT):
             done = add(str(case), named[0], False, str(out / "add.json")) == 0
-        folder = opened(case)
+        folder = open_demo(case)
         stages.append(Stage(f"with {named[0]}", folder.compared.document()))
     headline("7  What is left, and where to look")
     say(left_over(found, stages[-1].errors))
@@ -106,7 +106,7 @@ def next_likely(found: Mapping[str, Any]) -> str:
     return ""
 
 
-def opened(case: Path) -> Folder:
+def open_demo(case: Path) -> Folder:
     """The case with its model as it stands; it serves all that is said and drawn of that model."""
     with progress() as tell:
         return open_case(str(case), tell)
@@ -145,9 +145,9 @@ def machine_picture(case: Path, out: Path) -> Path | None:
     """The parts, each with its name."""
     from viz import regions, split
 
-    built = opened(case).built
+    built = open_demo(case).built
     assert built is not None, "the demo's case is built from geometry"
-    return _drawn(out / "1-machine.png", lambda png: regions(split(built.mesh), png=png).close())
+    return _picture(out / "1-machine.png", lambda png: regions(split(built.mesh), png=png).close())
 
 
 def misses(folder: Folder, out: Path) -> Path | None:
@@ -160,12 +160,12 @@ def misses(folder: Folder, out: Path) -> Path | None:
     def draw(png: Path) -> None:
         nodes = split(built.mesh)
         now = fields(folder.case, test, nodes, 1)[1][-1]
-        cutaway(nodes, now, sensors=sensors(held(folder, test), folder.positions), title=test.name, png=png)
+        cutaway(nodes, now, sensors=sensors(comparison_of(folder, test), folder.positions), title=test.name, png=png)
 
-    return _drawn(out / "2-misses.png", draw)
+    return _picture(out / "2-misses.png", draw)
 
 
-def _drawn(png: Path, draw: Callable[[Path], Any]) -> Path | None:
+def _picture(png: Path, draw: Callable[[Path], Any]) -> Path | None:
     """The picture, None where graphics are missing (`thermoscope check` says how to get them)."""
     from viz import require_gl
 

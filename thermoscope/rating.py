@@ -13,7 +13,7 @@ from geom.description.identity import Identity
 from geom.errors import InputError
 from lumped.model.network import Network, Row
 from lumped.model.quantities import USUAL
-from lumped.schemas.reader import known
+from lumped.schemas.reader import suggestion
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.runs import named_rows
 from thermoscope.recordings.csv_file import read_csv
@@ -27,7 +27,7 @@ INLET_C = 20.0  # what [cooling] takes where it does not say
 
 
 @dataclass(frozen=True)
-class Asked:
+class RatingRequest:
     """limits : place -> degC;  at : input or boundary -> value;  loads : inputs that carry the load, if not the usual
 
     losses : a map, at a voltage;  overload : of S1;  cycle : a file or a name;  mapped : whether a map is wanted
@@ -53,7 +53,7 @@ class Rated:
     limits: Mapping[str, float]
 
 
-def rated_model(folder: Folder, asked: Asked) -> Rated:
+def rated_model(folder: Folder, asked: RatingRequest) -> Rated:
     """Of a case as it stands, or of a machine at its rated point."""
     network, values = model_of(folder)
     rows = named_rows(network, folder)
@@ -83,7 +83,7 @@ def places(
         roles = {n: i.role.value for n, i in what.items() if i.role is not None}
         mine = [name] if name in rows else [n for n in rows if roles.get(n) == name]
         if not mine:
-            raise InputError(f"no temperature '{name}' to limit", "--limit", known(name, rows))
+            raise InputError(f"no temperature '{name}' to limit", "--limit", suggestion(name, rows))
         out |= dict.fromkeys(mine, T)
     return out
 

@@ -11,7 +11,7 @@ from functools import cached_property
 
 import numpy as np
 
-from fem.solvers.snapshots import drawn
+from fem.solvers.snapshots import random_coefficients
 from fem.solvers.solve import coupled, film_columns
 from lumped.condensation.linear import linear, unit_load
 from lumped.condensation.reduction import Reduction
@@ -19,7 +19,7 @@ from lumped.machine.motor import rated_inputs
 from lumped.model.network import Network
 from thermoscope.verification.crosscheck import coefficients, fluid_nodes
 from thermoscope.verification.load_cases import rated_watts
-from thermoscope.verification.network_size import SizedNetwork
+from thermoscope.verification.network_size import NetworkSize
 
 Floats = np.ndarray
 WARM = 20.0  # K, of a coolant's inlet over the surroundings in the third load case
@@ -50,7 +50,7 @@ class Pair:
     streams: Floats
 
     @classmethod
-    def of(cls, found: SizedNetwork) -> Pair:
+    def of(cls, found: NetworkSize) -> Pair:
         """Load cases: rated losses, losses drawn at random, half of rated with a warm inlet or another draw."""
         machine, network, zones = found.built.machine, found.built.network, list(found.reduction.zones)
         rated, fluids = rated_watts(machine, network), fluid_nodes(network)
@@ -94,7 +94,7 @@ class Pair:
     def random(self, seed: int) -> Point:
         """Every film, contact and the flow times 5 ** U(-1, 1), from draws that nothing was learned from."""
         rng = np.random.default_rng([2024, seed])
-        h, g = (drawn(c, SPREAD, rng) for c in (self.reduction.films, self.reduction.contacts))
+        h, g = (random_coefficients(c, SPREAD, rng) for c in (self.reduction.films, self.reduction.contacts))
         return Point("random", f"draw {seed}", h, g, SPREAD ** rng.uniform(-1, 1))
 
     def of_field(self, point: Point) -> Floats:

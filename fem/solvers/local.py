@@ -29,7 +29,7 @@ def local_solutions(
     points : matrices (n, n) of the machine at other coefficients
     """
     found = {part: [np.zeros((block.n, 0))] for part, block in field.blocks.items()}
-    own = {part: _own(field, loads, part) for part in field.blocks}
+    own = {part: _unit_loads(field, loads, part) for part in field.blocks}
     order: dict[str, Symbolic] = {}
     for K in points:
         state = S @ (rng.standard_normal((S.shape[1], width)) / np.sqrt(S.shape[1]))
@@ -42,7 +42,7 @@ def local_solutions(
     return {part: np.hstack(fields) for part, fields in found.items()}
 
 
-def _own(field: FieldModel, loads: Floats, part: str) -> Floats:
+def _unit_loads(field: FieldModel, loads: Floats, part: str) -> Floats:
     """(n_part, k) the zones' and the faces' unit loads that are in the part."""
     rows = field.block(part).dofs
     fluxes = [field.flux(face)[rows] for face, film in field.films.items() if film.trace.part == part]

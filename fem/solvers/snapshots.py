@@ -50,7 +50,7 @@ class Recipe:
     def other_films(self, films: Mapping[str, float], rng: np.random.Generator) -> dict[str, float]:
         """Those of a random point."""
         if self.film_factors is None:
-            return drawn(films, self.spread, rng)
+            return random_coefficients(films, self.spread, rng)
         low, high = np.log(self.film_factors)
         return {name: value * float(np.exp(rng.uniform(low, high))) for name, value in films.items()}
 
@@ -92,14 +92,14 @@ def snapshots(
     out += [solver.factor(nominal, shift)(fluxes) for shift in recipe.flux_shifts]
     rng = np.random.default_rng(recipe.seed)
     for _ in range(recipe.random_points):
-        h, g = recipe.other_films(films, rng), drawn(contacts, recipe.spread, rng)
+        h, g = recipe.other_films(films, rng), random_coefficients(contacts, recipe.spread, rng)
         out.append(
             solver.factor(field.stiffness(h, g))(np.column_stack([loads, fluxes]) if recipe.flux_points else loads)
         )
     return of_unit_energy(np.column_stack(out), nominal)
 
 
-def drawn(coefficients: Mapping[str, float], spread: float, rng: np.random.Generator) -> dict[str, float]:
+def random_coefficients(coefficients: Mapping[str, float], spread: float, rng: np.random.Generator) -> dict[str, float]:
     """Every coefficient times spread ** U(-1, 1)."""
     return {name: value * spread ** rng.uniform(-1, 1) for name, value in coefficients.items()}
 
@@ -132,7 +132,9 @@ def isolated_part(
     """part -> (n_part, k) fields of the part by itself at the recipe's local points; none: (n_part, 0)."""
     rng = np.random.default_rng([recipe.seed, 2])
     points = (
-        field.stiffness(drawn(films, recipe.spread, rng), drawn(contacts, recipe.spread, rng))
+        field.stiffness(
+            random_coefficients(films, recipe.spread, rng), random_coefficients(contacts, recipe.spread, rng)
+        )
         for _ in range(recipe.local_points)
     )
     return local_solutions(field, S, loads, points, recipe.local_states, rng)

@@ -19,18 +19,18 @@ from geom.description.machine import Machine
 from geom.description.part import Part
 from geom.errors import InputError
 
-OWN = "own"
+OWN_BASE = "own"
 PIECES = ("foot", "base")
 
 
 def based(machine: Machine, load: Callable[[str], Machine], where: str) -> Machine:
     """The machine with the bases that its section [bases] names; itself if there is none."""
     said = machine.sections.get("bases", {})
-    others = {name: other for name, other in said.items() if other != OWN}
+    others = {name: other for name, other in said.items() if other != OWN_BASE}
     place, have = f"{where} [bases]", [part.name for part in machine.parts]
     if said and (len(others) > 1 or len(said) - len(others) != 1 or "base" not in have):
         raise InputError(
-            f"{dict(said)!r} is not possible", place, f"one base {OWN!r} of this file and one other machine"
+            f"{dict(said)!r} is not possible", place, f"one base {OWN_BASE!r} of this file and one other machine"
         )
     for name, other in others.items():
         machine = _with_base(machine, name, load(str(other)), place)

@@ -91,7 +91,7 @@ def _refuse_unknown(declared: Mapping[str, Parameter], table: Mapping[str, Any],
     groups = {parameter.group for parameter in declared.values()}
     for group, keys in table.items():
         if group not in groups or not isinstance(keys, Mapping):
-            raise InputError(f"unknown section [geometry.{group}]", where, _known(group, groups))
+            raise InputError(f"unknown section [geometry.{group}]", where, _suggestion(group, groups))
         ratios = {p.ratio_name for p in declared.values() if p.group == group and p.of is not None}
         for name in keys:
             if f"{group}.{name}" not in declared and name not in ratios:
@@ -107,10 +107,10 @@ def _refuse_key(declared: Mapping[str, Parameter], group: str, name: str, where:
     ]
     if with_unit:
         raise InputError(f"{name!r} lacks its unit", place, f"write {with_unit[0]}")
-    raise InputError(f"unknown key {name!r}", place, _known(name, [*siblings, *ratios]))
+    raise InputError(f"unknown key {name!r}", place, _suggestion(name, [*siblings, *ratios]))
 
 
-def _known(word: str, words: Iterable[str]) -> str:
+def _suggestion(word: str, words: Iterable[str]) -> str:
     near = difflib.get_close_matches(word, sorted(words), n=1)
     hint = f"did you mean {near[0]!r}? " if near else ""
     return f"{hint}known: {', '.join(sorted(words))}"

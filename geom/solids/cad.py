@@ -45,8 +45,8 @@ def solids(part: Part, cache: Path | str | None = None) -> list[cq.Solid]:
 def _built(part: Part) -> list[cq.Solid]:
     import cadquery as cq
 
-    if part.made is not None:
-        return carved(part.made)
+    if part.cad_shape is not None:
+        return carved(part.cad_shape)
     prisms = [prism(profile, z0, z1) for profile, z0, z1 in part.prisms]
     if len(_stacked(part)) == len(prisms):
         return prisms
@@ -78,7 +78,7 @@ def export_cad(
     """Write the machine as a STEP assembly (mm), a GLB scene (m) and one STL per part (mm); returns what was written.
 
     Keys are "step", "glb" and "stl:<part>". Beside the STEP file its materials are written, as `import_step` reads
-    them. It reads prisms: of a machine with parts made otherwise (`Part.made`) they are in "step:prisms".
+    them. It reads prisms: of a machine with parts made otherwise (`Part.cad_shape`) they are in "step:prisms".
     Raises InputError for an unknown format.
     """
     for name in formats:
@@ -104,8 +104,8 @@ def export_cad(
 def _steps(machine: Machine, whole: cq.Assembly, folder: Path, cache: Path | str | None) -> dict[str, Path]:
     """STEP files with their sidecars: as made, and where that differs, as prisms."""
     files = {"step": (folder / f"{machine.name}.step", whole)}
-    if any(part.made is not None for part in machine.parts):
-        plain = replace(machine, parts=tuple(replace(part, made=None) for part in machine.parts))
+    if any(part.cad_shape is not None for part in machine.parts):
+        plain = replace(machine, parts=tuple(replace(part, cad_shape=None) for part in machine.parts))
         files["step:prisms"] = (folder / f"{machine.name}-prisms.step", assembly(plain, cache))
     for path, what in files.values():
         what.export(str(path))

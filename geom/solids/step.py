@@ -59,11 +59,11 @@ def import_step(path: str | Path) -> Machine:
         raise InputError("no such file", str(path), "a STEP file with named solids")
     beside = step_sidecar(path)
     said = _read_sidecar(beside)
-    solids = _left_in(_solids(path, said.get("import", {}), str(beside)), said, str(beside))
+    solids = _without_excluded(_solids(path, said.get("import", {}), str(beside)), said, str(beside))
     prisms = _all_sliced(solids, path)
     fluids = said.get("fluids", {})
     _refuse_unused({**said.get("materials", {}), **fluids, **said.get("roles", {})}, prisms, str(beside))
-    what = _said(said.get("roles", {}), prisms, f"{beside} [roles]")
+    what = _declared_roles(said.get("roles", {}), prisms, f"{beside} [roles]")
     made_of = {name: _material(name, said.get("materials", {}), str(beside)) for name in prisms if name not in fluids}
     header = said.get("machine", {})
     return Machine(
@@ -99,7 +99,7 @@ def _space(material_: str) -> Role:
     return Role.INNER_AIR if material_ == "air" else Role.COOLANT
 
 
-def _said(patterns: Mapping[str, Any], names: Iterable[str], where: str) -> dict[str, Identity]:
+def _declared_roles(patterns: Mapping[str, Any], names: Iterable[str], where: str) -> dict[str, Identity]:
     """Solid -> what [roles] says it is; a full name goes before a pattern."""
     out = {}
     for name in names:
@@ -174,7 +174,9 @@ def _assembly(path: Path) -> Any:
         raise InputError(f"not readable: {error}", str(path), "a STEP assembly of named solids") from error
 
 
-def _left_in(solids: dict[str, list[cq.Solid]], said: Mapping[str, Any], where: str) -> dict[str, list[cq.Solid]]:
+def _without_excluded(
+    solids: dict[str, list[cq.Solid]], said: Mapping[str, Any], where: str
+) -> dict[str, list[cq.Solid]]:
     patterns = said.get("import", {}).get("leave_out", [])
     for pattern in patterns:
         if not any(fnmatchcase(name, pattern) for name in solids):

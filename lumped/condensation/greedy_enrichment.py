@@ -60,7 +60,7 @@ class Size:
     def of(cls, reduction: Any, asked: int, points: Sequence[Any], cases: LoadCases, allowed: Accuracy) -> Size:
         """points : the nominal one first, then random ones, all solved in full"""
         network = reduction.network(tolerance=0.0, max_states=max(asked, len(reduction.field.blocks)))
-        nominal, *drawn = (seen(network, point, cases) for point in points)
+        nominal, *drawn = (point_error(network, point, cases) for point in points)
         random = merged(drawn)
         return cls(asked, network, nominal, random, max(excess(nominal, allowed), excess(random, allowed)) <= RESERVE)
 
@@ -88,7 +88,7 @@ def enrich(
     for k in range(rounds):
         network = allotted_shapes(reduction, [*learned, *guides], cases, allowed, weights)
         new = [reduction.random_point(begun + fresh * k + j) for j in range(fresh)]
-        found = merged([seen(network, point, cases) for point in new])
+        found = merged([point_error(network, point, cases) for point in new])
         done.append(Round(len(network.states), tuple(p.name for p in new), found, excess(found, allowed) <= 1.0))
         tell(f"{len(network.states)} states: {found}")
         if done[-1].met or k == rounds - 1:
@@ -109,7 +109,7 @@ def allotted_shapes(
     """Deal out shapes until the points already solved are met: parts that miss get more."""
     network = reduction.network(weights=weights)
     for _ in range(FAVOURS):
-        found = merged([seen(network, point, cases) for point in learned])
+        found = merged([point_error(network, point, cases) for point in learned])
         missing = {part: allowed.excess(e) for part, e in found.parts.items() if allowed.excess(e) > MARGIN}
         if not missing:
             break
@@ -119,5 +119,5 @@ def allotted_shapes(
     return network
 
 
-def seen(network: Network, point: Any, cases: LoadCases) -> Errors:
+def point_error(network: Network, point: Any, cases: LoadCases) -> Errors:
     return point_errors(network, point.films, point.contacts, point.X, cases)

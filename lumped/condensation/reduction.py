@@ -21,11 +21,11 @@ from fem.solvers.snapshots import (
     Principal,
     Recipe,
     bases,
-    drawn,
     energies,
     enriched,
     isolated_part,
     principals,
+    random_coefficients,
     snapshots,
 )
 from fem.solvers.solve import Solve, Solver, film_columns
@@ -106,7 +106,11 @@ class Reduction:
     def random_point(self, seed: int) -> FullPoint:
         """Every film and contact times spread ** U(-1, 1)."""
         rng, spread = np.random.default_rng([self.recipe.seed, seed]), self.recipe.spread
-        return self.at(f"random {seed}", drawn(self.films, spread, rng), drawn(self.contacts, spread, rng))
+        return self.at(
+            f"random {seed}",
+            random_coefficients(self.films, spread, rng),
+            random_coefficients(self.contacts, spread, rng),
+        )
 
     def joined_point(self, factor: float) -> FullPoint:
         """All contacts times a factor."""

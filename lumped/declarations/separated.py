@@ -24,7 +24,7 @@ from lumped.transfer.properties import Fluid
 POINTS = 97  # of a table, closer near rest, where a film changes most
 TOLERANCE, SMALL = 3e-3, 1.0  # relative, of a film of at least SMALL (W/m2/K)
 MOST = 6  # products: where regimes change the speed of that turns with temperature, and no few products follow
-USUAL, BEYOND = (0.0, 120.0), 0.25  # degC, film temperatures of machines; weight of errors beyond
+USUAL, OUTSIDE_WEIGHT = (0.0, 120.0), 0.25  # degC, film temperatures of machines; weight of errors beyond
 Film = Callable[[float], tuple[float, Info]]
 Indices = NDArray[np.int64]
 
@@ -98,7 +98,7 @@ def following(of: str, film: Callable[[Fluid], Film], fluid: Callable[[float], F
     film : over the input, for a fluid;  fluid : of degC;  usual_degC : at which ranges are checked
     """
     over = FilmOver(of, film(fluid(usual_degC)), top)
-    degC = _known(fluid) if liquid else film_degC()
+    degC = _liquid_range(fluid) if liquid else film_degC()
     h = np.stack([over_grid(film(fluid(T)), over.at) for T in degC], axis=1)
     law = TableLaw(tuple(degC), ()) if liquid else FilmTable((0.0, 1.0), ())
     found = enumerate(products(h, weights(np.array(degC))))
@@ -107,7 +107,7 @@ def following(of: str, film: Callable[[Fluid], Film], fluid: Callable[[float], F
 
 def weights(degC: Array) -> Array:
     """Of errors at film temperatures."""
-    return np.where((degC >= USUAL[0]) & (degC <= USUAL[1]), 1.0, BEYOND)
+    return np.where((degC >= USUAL[0]) & (degC <= USUAL[1]), 1.0, OUTSIDE_WEIGHT)
 
 
 def film_degC() -> list[float]:
@@ -115,7 +115,7 @@ def film_degC() -> list[float]:
     return [FIRST_C + STEP_K * k for k in range(FILMS)]
 
 
-def _known(fluid: Callable[[float], Fluid]) -> list[float]:
+def _liquid_range(fluid: Callable[[float], Fluid]) -> list[float]:
     """Where a liquid is one."""
     out = []
     for T in WARMTH:

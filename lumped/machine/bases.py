@@ -16,7 +16,7 @@ from geom.description.roles import Role
 from lumped.model.network import Link, Network, Parameter, Place
 from lumped.transfer.laws import Array, Inputs, Law, TemperatureLaw
 
-OWN = "own"
+OWN_BASE = "own"
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ def on_every_base(network: Network) -> Network:
 def switches(machine: Any) -> dict[str, str]:
     """Input -> the foot it couples."""
     said = machine.sections.get("bases", {})
-    return {f"on_{name}": "foot" if machine_ == OWN else f"foot.{name}" for name, machine_ in said.items()}
+    return {f"on_{name}": "foot" if machine_ == OWN_BASE else f"foot.{name}" for name, machine_ in said.items()}
 
 
 def switched(machine: Any, network: Network) -> Network:

@@ -17,7 +17,7 @@ from lumped.declarations.losses import loss_laws
 from lumped.machine.settings import Losses, read
 from lumped.machine.shapes import wound
 from lumped.model.network import Network, Place, Row, Source
-from lumped.schemas.reader import Table, known
+from lumped.schemas.reader import Table, suggestion
 from lumped.sources.losses import PowerLoss
 from lumped.transfer.laws import InputPower, Law, Linear
 
@@ -122,7 +122,7 @@ def place_of(network: Network, name: str) -> Place:
     stem = name
     while stem not in network.places:
         if "." not in stem:
-            raise InputError(f"no place '{name}'", f"{network.name} [losses]", known(name, network.places))
+            raise InputError(f"no place '{name}'", f"{network.name} [losses]", suggestion(name, network.places))
         stem = stem.rpartition(".")[0]
     return network.places[stem]
 

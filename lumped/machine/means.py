@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from lumped.model.network import Network, Place
-from lumped.schemas.reader import Table, known
+from lumped.schemas.reader import Table, suggestion
 
 COPPER, RESIN = 8930.0, 1350.0  # kg/m3, as in the mixtures of geom.description.materials
 
@@ -29,7 +29,7 @@ def _mean(machine: Any, network: Network, name: str, table: Table) -> Place:
     table.close()
     for part in parts:
         if part not in [p.name for p in machine.parts]:
-            raise table.error(f"no part '{part}'", known(part, [p.name for p in machine.parts]))
+            raise table.error(f"no part '{part}'", suggestion(part, [p.name for p in machine.parts]))
     weights = np.array([_amount(machine, part, by) for part in parts])
     if not weights.sum() > 0:
         raise table.error("no copper in these parts", 'by = "mass"')

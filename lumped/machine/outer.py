@@ -105,13 +105,13 @@ def outer_of(machine: Any, part: str, films: Films) -> Outer:
     size = t.number("size_mm") / 1e3 if "size_mm" in t or surface != usual.surface else usual.size
     found = Outer(
         surface, size, t.number("emissivity", usual.emissivity), t.number("view", usual.view),
-        t.number("factor", usual.factor), usual.spacing, _own_fan(t),
+        t.number("factor", usual.factor), usual.spacing, _fan_law(t),
     )  # fmt: skip
     t.close()
     return found
 
 
-def _own_fan(table: Table) -> Law | None:
+def _fan_law(table: Table) -> Law | None:
     if "fan" not in table:
         return None
     inner = Table(table.raw("fan"), f"{table.where} fan")

@@ -9,7 +9,7 @@ from geom.errors import InputError
 from lumped.machine.air import BETWEEN_POLES
 from lumped.machine.path import stem
 from lumped.model.network import Link, Network, Parameter, Place, Source
-from lumped.schemas.reader import known
+from lumped.schemas.reader import suggestion
 
 LOSS_SPREAD = {
     "copper": 0.05, "iron": 0.25, "friction": 0.25, "bearing": 0.25, "brush": 0.15, "windage": 0.3, "magnet": 0.5,
@@ -92,7 +92,7 @@ def _conductivities(machine: Any, network: Network) -> list[Parameter]:
     for group, parts in groups.items():
         for part in parts:
             if part not in network.places:
-                raise InputError(f"no part '{part}'", where, known(part, [p.name for p in machine.parts]))
+                raise InputError(f"no part '{part}'", where, suggestion(part, [p.name for p in machine.parts]))
         spread = max(machine.material_of(part).spread for part in parts)
         acts = tuple((inner[part], 1.0) for part in parts if part in inner)
         if acts:

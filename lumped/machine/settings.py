@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 
 from geom.errors import InputError
 from lumped.schemas.bounds import bounds
-from lumped.schemas.reader import Table, shown
+from lumped.schemas.reader import Table, excerpt
 
 K_AIR = 0.026  # W/m/K, still air in a contact gap near 30 degC
 
@@ -108,4 +108,4 @@ def _coefficient(entry: Any, where: str) -> float:
         if key in ("gap_mm", "h_W_m2K") and value != 0 and bounds(key).hold(value):
             return K_AIR / (value * 1e-3) if key == "gap_mm" else float(value)
     right = "{gap_mm = 0.03} or {h_W_m2K = 900}, a positive number"
-    raise InputError(f"{shown(entry)} is no contact", where, right)
+    raise InputError(f"{excerpt(entry)} is no contact", where, right)

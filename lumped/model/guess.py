@@ -126,7 +126,7 @@ def _by_heat(top: Topology, body: str, turns: Mapping[str, bool]) -> Evidence | 
     if "magnet" in kinds:
         return Role.MAGNET, "carries a loss of magnets"
     if kinds & {"copper", "ripple"}:
-        return (Role.CAGE, "copper loss of its own current, and turns") if turning_ and _own_current(
+        return (Role.CAGE, "copper loss of its own current, and turns") if turning_ and _has_separate_current(
             top, body, turns) else (Role.WINDING, "carries a copper loss")  # fmt: skip
     if body in top.bearings:
         washed = [b for b in top.network.boundaries if b in top.neighbours.get(body, frozenset())]
@@ -138,7 +138,7 @@ def _by_heat(top: Topology, body: str, turns: Mapping[str, bool]) -> Evidence | 
     return None
 
 
-def _own_current(top: Topology, body: str, turns: Mapping[str, bool]) -> bool:
+def _has_separate_current(top: Topology, body: str, turns: Mapping[str, bool]) -> bool:
     """Does its copper loss follow none of the inputs that a standing one follows, while there is a standing one?"""
     others = [
         top.reads[b, "copper"] for b in top.bodies if b != body and not turns.get(b) and (b, "copper") in top.reads

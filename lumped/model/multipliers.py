@@ -30,7 +30,7 @@ def values_of(network: Network, values: Mapping[str, float] | None) -> dict[str,
     return {**declared, **{k: float(v) for k, v in (values or {}).items()}}
 
 
-def _known_targets(network: Network) -> set[str]:
+def _valid_targets(network: Network) -> set[str]:
     groups = {f"capacity:{g}" for g in network.capacity_group}
     return {link.name for link in network.links} | {source.name for source in network.sources} | groups
 
@@ -50,7 +50,7 @@ def _targets(network: Network, parameter: Parameter, known: set[str]) -> list[tu
 @once
 def _acting(network: Network) -> dict[str, list[tuple[str, float]]]:
     """Target -> what acts on it: (parameter, exponent)."""
-    known = _known_targets(network)
+    known = _valid_targets(network)
     out: dict[str, list[tuple[str, float]]] = {}
     for p in network.parameters:
         for target, exponent in _targets(network, p, known):

@@ -78,7 +78,7 @@ def loose(top: Topology) -> dict[str, str]:
     strongest, anchor = max(top.joints.values(), default=0.0), standing(top)
     best: tuple[float, dict[str, str]] = (LOOSE * strongest, {})
     for (a, b), G in top.joints.items():
-        side = _beyond(top, a, b)
+        side = _far_side(top, a, b)
         kinds = frozenset().union(*(top.heat.get(x, frozenset()) for x in side))
         driven = any(top.reads.get((x, kind)) for x in side for kind in kinds)
         if a not in side and not side & set(anchor) and driven and "copper" not in kinds and best[0] > G:
@@ -86,7 +86,7 @@ def loose(top: Topology) -> dict[str, str]:
     return best[1]
 
 
-def _beyond(top: Topology, a: str, b: str) -> set[str]:
+def _far_side(top: Topology, a: str, b: str) -> set[str]:
     """All that is reached from b without the joint to a."""
     out, edge = {b}, [b]
     while edge:

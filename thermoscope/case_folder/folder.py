@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from geom.errors import InputError
 from lumped.machine.losses import ASSUMED, ASSUMED_W, checked_losses
 from lumped.model.network import Network, Parameter
-from lumped.schemas.reader import known
+from lumped.schemas.reader import suggestion
 from thermoscope.case_folder.doctor import examined
 from thermoscope.case_folder.history import History, checked_values, load_history
 from thermoscope.case_folder.recording_checks import Finding, Patient
@@ -178,7 +178,7 @@ def find_case(name: str | Path) -> Path:
         return shipped[str(name)]
     if path.exists():
         raise InputError("is a file", str(path), "a folder with a case.toml")
-    raise InputError("no such case folder", str(path), known(str(name), shipped or ["no case came along"]))
+    raise InputError("no such case folder", str(path), suggestion(str(name), shipped or ["no case came along"]))
 
 
 def _homes() -> list[Path]:
@@ -191,7 +191,7 @@ def _free(network: Network, settings: Settings) -> tuple[Parameter, ...]:
     """The parameters that calibration may move; a pattern that matches nothing is an error."""
     for pattern in settings.free:
         if not matching(network, [pattern]):
-            right = known(pattern, [p.name for p in network.parameters])
+            right = suggestion(pattern, [p.name for p in network.parameters])
             raise InputError(
                 f"'{pattern}' matches no parameter", f"{settings.path / 'case.toml'} [calibration] free", right
             )

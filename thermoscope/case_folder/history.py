@@ -12,7 +12,7 @@ import tomlkit
 from geom.description.toml_file import read_toml
 from geom.errors import InputError
 from lumped.model.network import Parameter
-from lumped.schemas.reader import Table, known
+from lumped.schemas.reader import Table, suggestion
 from thermoscope.case_folder.files import locked, write_whole
 
 ACTIONS = ("calibrate", "add", "remove", "answer", "step back")
@@ -126,10 +126,10 @@ def checked_values(revision: Revision, parameters: Iterable[Parameter], where: s
         raise InputError(f"effect '{again}' is in the model twice", place, "each effect once")
     for name in revision.intervals:
         if name not in revision.values:
-            raise InputError(f"intervals: '{name}' has no value", place, known(name, revision.values))
+            raise InputError(f"intervals: '{name}' has no value", place, suggestion(name, revision.values))
     for name, value in revision.values.items():
         if name not in have:
-            raise InputError(f"unknown parameter '{name}'", place, known(name, have))
+            raise InputError(f"unknown parameter '{name}'", place, suggestion(name, have))
         low, high = have[name].low, have[name].high
         slack = ROUNDED * max(abs(low), abs(high))
         if not low - slack <= value <= high + slack:

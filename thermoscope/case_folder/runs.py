@@ -77,7 +77,7 @@ def ends(case: Case, test: Test, names: Sequence[str]) -> list[float]:
     return simulate(network, record(test, {}), values, [rows[n] for n in names]).y[-1].tolist()
 
 
-def held(folder: Folder, test: Test) -> Comparison:
+def comparison_of(folder: Folder, test: Test) -> Comparison:
     """A test against the model, and against the model before its last step."""
     from viz.data import Comparison
 

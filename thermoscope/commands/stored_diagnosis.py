@@ -83,7 +83,7 @@ def save_diagnosis(folder: Folder, document: Mapping[str, Any]) -> None:
     store(folder.settings.out / NAME, {**document, "model": model_of(folder), "plan": plan_of(path)})
 
 
-def saved_diagnosis(folder: Folder) -> dict[str, Any] | None:
+def current_diagnosis(folder: Folder) -> dict[str, Any] | None:
     """The kept diagnosis, if it is of these tests and this model: also after a step that was undone."""
     saved = last_diagnosis(folder)
     same = saved and saved.get("model") == model_of(folder) and saved.get("plan") == plan_of(folder.settings.path)

@@ -92,11 +92,11 @@ def progress() -> Iterator[Progress]:
     whole = _whole.get()
     if whole is not None:
         whole.block += 1
-        with _shown(whole) as tell:
+        with _display(whole) as tell:
             yield tell
         whole.leave()
         return
-    with _remembering(f"{_command()} {next(_blocks)}") as stages, _shown(stages) as tell:
+    with _remembering(f"{_command()} {next(_blocks)}") as stages, _display(stages) as tell:
         yield tell
 
 
@@ -134,7 +134,7 @@ def _command() -> str:
 
 
 @contextmanager
-def _shown(stages: ProgressBar) -> Iterator[Progress]:
+def _display(stages: ProgressBar) -> Iterator[Progress]:
     from rich.console import Console
 
     console = Console(stderr=True)

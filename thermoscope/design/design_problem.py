@@ -11,7 +11,7 @@ import numpy as np
 
 from geom.errors import InputError
 from lumped.model.network import Network
-from lumped.schemas.reader import known
+from lumped.schemas.reader import suggestion
 from thermoscope.bands import posterior_of
 from thermoscope.case_folder.folder import Folder, Progress
 from thermoscope.case_folder.runs import named_rows
@@ -34,7 +34,7 @@ INPUT_RANGE = (0.5, 2.0)  # of an input's value at the operating point, where no
 
 
 @dataclass(frozen=True)
-class Asked:
+class DesignRequest:
     """limits : place -> degC, the first is what peaks;  torque (N m);  at : input or boundary -> value
 
     vary : variable -> its bounds, or None for the usual ones; empty for all usual variables
@@ -50,7 +50,7 @@ class Asked:
     cycle: str | None = None
 
 
-def design_problem(folder: Folder, asked: Asked, progress: Progress) -> tuple[Problem, MachineFile | None]:
+def design_problem(folder: Folder, asked: DesignRequest, progress: Progress) -> tuple[Problem, MachineFile | None]:
     """The problem with what its reduced model gets wrong about other geometries learned, and the file of its machine.
 
     Raises InputError for what is not known, and where a limit is exceeded without any load.
@@ -115,7 +115,7 @@ def _variables(
                 *(GAINS if driven is not None else ()),
                 *([v.name for v in file.usual()] if file is not None else []),
             ]
-            raise InputError(f"'{name}' is nothing that a design could change", "--vary", known(name, here))
+            raise InputError(f"'{name}' is nothing that a design could change", "--vary", suggestion(name, here))
     return out
 
 
@@ -129,7 +129,7 @@ def _gain(key: str, driven: Driven, bounds: tuple[float, float] | None) -> Varia
     return Variable(key, low, high, driven.usual(key))
 
 
-def _driven(folder: Folder, network: Network, asked: Asked, ratings: Mapping[str, float]) -> Driven:
+def _driven(folder: Folder, network: Network, asked: DesignRequest, ratings: Mapping[str, float]) -> Driven:
     """The vehicle of a cycle, its windings at the first limit."""
     from thermoscope.case_folder.cycle import find_cycle, load_cycle
 

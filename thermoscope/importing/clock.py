@@ -47,7 +47,7 @@ class Clock:
 
 def clock_of(source: Source, period_s: float | None = None) -> Clock:
     """period_s : time between rows, where the file has no clock. InputError for times that run back."""
-    found = _found(source)
+    found = _guessed_clock(source)
     if found is None or period_s is not None:
         step = 1.0 if period_s is None else period_s
         seconds = step * np.arange(source.rows, dtype=np.float64)
@@ -73,7 +73,7 @@ def checked(clock: Clock, source: Source) -> Clock:
     return Clock(t - first, start, clock.columns, clock.words, clock.sure)
 
 
-def _found(source: Source) -> Clock | None:
+def _guessed_clock(source: Source) -> Clock | None:
     """A date with a time of day beside it, an instant, a clock, or numbers under a name for time."""
     dates = [c for c in source.cells if _mostly(source.cells[c], is_date)]
     clocks = [c for c in source.cells if _mostly(source.cells[c], is_clock)]

@@ -148,13 +148,13 @@ def single(found: list[Guess], target: Target) -> list[Guess]:
         if key not in taken:
             taken[key] = g.column
         elif g.feeds and g.feeds not in target.inputs and not WANTED & set(tokens(g.column)):
-            out[g.column] = replace(g, feeds=own_input(g))
+            out[g.column] = replace(g, feeds=input_name(g))
         else:
             out[g.column] = g.without(f"{taken[key]} gives {key} already")
     return [out[g.column] for g in found]
 
 
-def own_input(g: Guess) -> str:
+def input_name(g: Guess) -> str:
     """An input called after the column, with the unit that memory holds."""
     held = QUANTITIES[g.quantity].feeds.rpartition("_")[2]
     words = [w for w in tokens(g.column) if w.isascii()]

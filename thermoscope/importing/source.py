@@ -15,7 +15,7 @@ from geom.errors import InputError
 from thermoscope.importing.cells import EMPTY, SWITCH, in_thousands, number, split_unit
 from thermoscope.importing.rows import layout
 from thermoscope.importing.text import text_rows
-from thermoscope.recordings.formats import READERS, TIME, opened, read_frame
+from thermoscope.recordings.formats import READERS, TIME, guarded, read_frame
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -103,7 +103,7 @@ def _book(file: Path) -> list[list[Any]]:
         largest = max(sheets, key=lambda sheet: sheet.size)
         return [[None if pd.isna(c) else c for c in row] for row in largest.to_numpy(object).tolist()]
 
-    rows: list[list[Any]] = opened(file, "an Excel workbook", "openpyxl", read)
+    rows: list[list[Any]] = guarded(file, "an Excel workbook", "openpyxl", read)
     return rows
 
 

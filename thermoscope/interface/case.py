@@ -139,13 +139,13 @@ class Case:
 
         test : its name; else the first that was never used to fit. Raises InputError for an unknown one.
         """
-        from thermoscope.case_folder.runs import by_interest, held
+        from thermoscope.case_folder.runs import by_interest, comparison_of
         from viz import measured_and_model
 
         if test is not None and test not in self.tests:
             raise InputError(f"no test '{test}'", f"case '{self.name}'", f"one of {', '.join(self.tests)}")
         chosen = by_interest(self.folder)[0] if test is None else self.tests[test]
-        return measured_and_model(held(self.folder, chosen), png=png)
+        return measured_and_model(comparison_of(self.folder, chosen), png=png)
 
     def _after(self, step: Revision) -> Case:
         from thermoscope.commands.model.revise import evidence, recorded

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from geom.errors import InputError
 from lumped.model.network import Network
 from thermoscope.case_folder.folder import Progress
-from thermoscope.monitoring.live_rows import Rows, opened, table_of, together
+from thermoscope.monitoring.live_rows import Rows, open_stream, table_of, together
 from thermoscope.recordings.formats import stem_of
 from thermoscope.recordings.sheet import Sheet
 from validation.case import RUNNING, Case, Channel, Test
@@ -57,7 +57,7 @@ class Reader:
         """All pieces of a recording together."""
         total: Statistics | None = None
         network = self.case.model.network
-        with opened(str(recording.file)) as stream:
+        with open_stream(str(recording.file)) as stream:
             _, table, lines = table_of(stream, str(recording.file), {self.test.name: self.sheet}, network, None)
             for part in together(lines, self.piece):
                 if total is None or len(part) >= LEAST:

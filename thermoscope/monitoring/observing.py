@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from geom.disk_cache import recalled
 from geom.errors import InputError
 from lumped.integration.record import Record
-from lumped.schemas.reader import known
+from lumped.schemas.reader import suggestion
 from lumped.transfer.laws import CLOCK
 from thermoscope.bands import case_key
 from thermoscope.caches import cache_folder
@@ -71,7 +71,7 @@ def chosen(here: Sequence[Channel], given: Sequence[str], where: str) -> list[Ch
     names = [c.name for c in here]
     for name in given:
         if name not in names:
-            raise InputError(f"no sensor '{name}'", "--sensor", known(name, names or ["no sensor in the rows"]))
+            raise InputError(f"no sensor '{name}'", "--sensor", suggestion(name, names or ["no sensor in the rows"]))
     if not here:
         raise InputError("no sensor of the machine", where, "a temperature column that the test's sheet knows")
     return [c for c in here if c.name in given or not given]

@@ -22,10 +22,10 @@ def with_quantities(network: Network, sheets: Iterable[Sheet], tests: Sequence[T
         said |= {name: columns[of[0]] for name, of in sheet.squares.items() if of}
     network = replace(network, quantities={**said, **network.quantities})
     fitted = [t for t in tests if t.role != "hold-out"] or list(tests)
-    return replace(network, signals={q: own for q in INPUTS if (own := _own(network, fitted, q)) is not None})
+    return replace(network, signals={q: own for q in INPUTS if (own := _largest_of(network, fitted, q)) is not None})
 
 
-def _own(network: Network, tests: Sequence[Test], quantity: str) -> str | None:
+def _largest_of(network: Network, tests: Sequence[Test], quantity: str) -> str | None:
     """Of the inputs of a quantity those that a loss follows, else all; of these the largest by root mean square.
 
     The machine's current is never smaller than its components, and a film may follow the speed of another fan.

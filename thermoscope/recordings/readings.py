@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError
 from lumped.model.network import Link, Network, Row, Source
-from lumped.schemas.reader import known
+from lumped.schemas.reader import suggestion
 from lumped.transfer.laws import CLOCK
 from thermoscope.recordings.consistency import checked_heat, checked_sheet
 from thermoscope.recordings.grid import averaged, bridged, grid_of, read, rms
@@ -53,7 +53,7 @@ def read_test(
     step = _step(network, samples, fine, sheet.boundaries, air, sensors, wished)
     grid, _ = grid_of(samples, step.step_s, sheet.where)
     inputs, boundaries, doubts = _on_grid(sheet, samples, network, grid, fine)
-    channels = tuple(replace(s.channel, y=_seen(s, samples, grid)) for s in sensors)
+    channels = tuple(replace(s.channel, y=_sensor_readings(s, samples, grid)) for s in sensors)
     start = _initial(sheet, channels, samples, network)
     test = Test(name, role, grid, inputs, boundaries, channels, start, (), _finer(sheet, samples, grid, fine, inputs))
     return Reading(test, [*notes, *doubts], step)
@@ -129,7 +129,7 @@ def _root_sum_square(name: str, of: tuple[str, ...], sheet: Sheet, inputs: Mappi
     for column in of:
         if column not in feeds:
             raise InputError(
-                f"unknown column '{column}'", f"{sheet.where} [root_sum_square] {name}", known(column, feeds)
+                f"unknown column '{column}'", f"{sheet.where} [root_sum_square] {name}", suggestion(column, feeds)
             )
     return np.asarray(np.sqrt(np.sum([inputs[feeds[column]] ** 2 for column in of], axis=0)))
 
@@ -154,7 +154,7 @@ def row_of(network: Network, place: str, position_mm: tuple[float, ...], where: 
     if place in network.boundaries:
         raise InputError(f"'{place}' is a boundary", where, f"a place of the machine: {', '.join(network.places)}")
     if place not in network.places:
-        raise InputError(f"unknown place '{place}'", where, known(place, [*network.places, *network.boundaries]))
+        raise InputError(f"unknown place '{place}'", where, suggestion(place, [*network.places, *network.boundaries]))
     if not position_mm or network.recovery is None:
         return network.places[place].mean
     try:
@@ -182,14 +182,14 @@ def _means(sheet: Sheet, network: Network) -> list[Sensor]:
         for name in mean.of:
             if name not in named:
                 what = f"averages '{name}', which is no temperature column of the machine"
-                raise InputError(what, mean.where, known(name, named))
+                raise InputError(what, mean.where, suggestion(name, named))
     return [
         Sensor(Channel(m.name, m.place, row_of(network, m.place, (), m.where), NONE, m.sigma_K, m.lag_s), m.of)
         for m in sheet.means
     ]
 
 
-def _seen(sensor: Sensor, samples: Samples, grid: Array) -> Array:
+def _sensor_readings(sensor: Sensor, samples: Samples, grid: Array) -> Array:
     """Readings on the grid; a value carried back to the instant of switching off stands at its end."""
     y = np.mean([read(samples.time, samples.values[name], grid) for name in sensor.columns], axis=0)
     if sensor.at_switch_off:

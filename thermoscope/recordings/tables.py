@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError
 from lumped.schemas.bounds import COLDEST, HOTTEST
-from lumped.schemas.reader import known
+from lumped.schemas.reader import suggestion
 from thermoscope.recordings.alignment import clock_shift
 from thermoscope.recordings.csv_file import NumberTable, read_numbers
 from thermoscope.recordings.formats import HEADER, cell, merged, numbers, read_frame, recording
@@ -56,7 +56,7 @@ def load_table(path: Path, sheet: Sheet) -> Samples:
         if name not in table.columns:
             here = [str(c) for c in table.columns]
             raise InputError(
-                f"column '{name}' is not in the file", f"{file} (asked for by {sheet.where})", known(name, here)
+                f"column '{name}' is not in the file", f"{file} (asked for by {sheet.where})", suggestion(name, here)
             )
     time = _times(table, replace(sheet, time_unit="s") if sheet.recorders else sheet, file)
     rows = _window(time, sheet, file)
@@ -121,7 +121,7 @@ def _beside(main: pd.DataFrame, time: str, recorder: Recorder) -> tuple[pd.DataF
 def _has(table: pd.DataFrame, names: Sequence[str], where: str) -> None:
     for name in names:
         if name not in table.columns:
-            right = known(name, [str(c) for c in table.columns])
+            right = suggestion(name, [str(c) for c in table.columns])
             raise InputError(f"column '{name}' is not in the file", where, right)
 
 

@@ -85,7 +85,7 @@ def _looked_for(machine: Machine, share: float, first: Meshing, progress: Progre
     asked = _at_rated_point(own)
     hot = _hot_spots(asked, own)
     while True:
-        fine = meshed(machine, own.meshing.finer, partial(_said, progress))
+        fine = meshed(machine, own.meshing.finer, partial(_report, progress))
         there = _hot_spots(asked, fine)
         floor = FLOOR * max(there.values())
         percent = {p: SAFETY * _left(hot[p], there[p]) / max(there[p], floor) for p in hot}
@@ -95,7 +95,7 @@ def _looked_for(machine: Machine, share: float, first: Meshing, progress: Progre
         own, hot = fine, there
 
 
-def _said(progress: Progress, message: str) -> None:
+def _report(progress: Progress, message: str) -> None:
     progress(f"estimating the error of the mesh: {message}")
 
 

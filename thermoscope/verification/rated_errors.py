@@ -88,7 +88,7 @@ def at_rated_point(built: Built, looks: MonitoredPlaces) -> Rated:
     fine, other = reader.read(T), rough.read(asked.of_field(coarse))
     left = {name: 0.0 for name in fine}
     for exact, own in chain([(T, asked.of_network(network, field))], _elsewhere(asked, field, network)):
-        for name, off in reader.apart(exact, own).items():
+        for name, off in reader.differences(exact, own).items():
             left[name] = max(left[name], off)
     nodes = {f"{HOT}{p}": int(np.argmax(T[field.blocks[p].dofs])) for p in asked.watts}
     return Rated({n: abs(fine[n] - other[n]) for n in fine}, left, max(map(abs, fine.values())), nodes)
@@ -115,7 +115,7 @@ class Reader:
         sensors = {name: float(row @ T) for name, row in self.rows.items()}
         return sensors | {f"{HOT}{p}": float(T[self.field.blocks[p].dofs].max()) for p in self.asked.watts}
 
-    def apart(self, one: Array, other: Array) -> dict[str, float]:
+    def differences(self, one: Array, other: Array) -> dict[str, float]:
         """name -> K between two answers on the same mesh"""
         a, b = self.read(one), self.read(other)
         return {name: abs(a[name] - b[name]) for name in a}

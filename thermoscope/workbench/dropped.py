@@ -11,7 +11,7 @@ from uuid import uuid4
 from aiohttp import BodyPartReader, MultipartReader, web
 
 from geom.errors import InputError
-from thermoscope.commands.test.new import drafts_of, model_of_case, read_recording, written
+from thermoscope.commands.test.new import drafts_of, model_of_case, read_recording, save_case
 from thermoscope.console.terminal import Progress
 from thermoscope.importing.aligned import Recording
 from thermoscope.importing.cells import number
@@ -128,7 +128,7 @@ def write(dropped: Dropped, settings: Settings, network: Network, tell: Progress
     taken = [p.name for p in settings.path.resolve().parent.iterdir()]
     folder = settings.path.resolve().parent / test_name(dropped.records[0].source.file, taken)
     dialogue = Dialogue(dropped.target, False, dict(dropped.constants))
-    written(folder, model_of_case(settings, network), drafts_of(dropped.records, dialogue), tell)
+    save_case(folder, model_of_case(settings, network), drafts_of(dropped.records, dialogue), tell)
     return folder
 
 

@@ -12,7 +12,7 @@ from typing import Any
 from geom.errors import InputError, ThermoscopeError
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import History, Revision, load_history, save_history
-from thermoscope.commands.stored_diagnosis import save_diagnosis, saved_diagnosis
+from thermoscope.commands.stored_diagnosis import current_diagnosis, save_diagnosis
 from thermoscope.workbench import revisions as ledger
 from thermoscope.workbench import steps
 from thermoscope.workbench.appearance import Appearance
@@ -52,8 +52,8 @@ class Session:
     def open(self) -> None:
         """Show the model, and the last diagnosis if it is of this model; then what others have made of it since."""
         self.shown.model(self.history, self.bench.first)
-        self.diagnosis = saved_diagnosis(self.folder)
-        self.shown.found(self.diagnosis)
+        self.diagnosis = current_diagnosis(self.folder)
+        self.shown.show_candidates(self.diagnosis)
         started(self.take_over())
 
     async def diagnose(self) -> None:
@@ -64,7 +64,7 @@ class Session:
                 save_diagnosis(self.folder, found)
             with self.state:
                 self.diagnosis = dict(found)
-                self.shown.found(self.diagnosis)
+                self.shown.show_candidates(self.diagnosis)
 
     async def step(self, action: str, effect: str = "") -> None:
         """Add or remove an effect, or calibrate; what is not accepted waits for `keep_anyway`."""
@@ -139,7 +139,7 @@ class Session:
         """A new case of the dropped files beside this one; new tabs open it."""
         case, bench = self.folder, self.bench
         made = await self._calculate(
-            "Writing the case", steps.made, self.dropped, case.settings, case.case.model.network, bench.surface
+            "Writing the case", steps.new_case, self.dropped, case.settings, case.case.model.network, bench.surface
         )
         if made is not None:
             folder, look = made
@@ -191,7 +191,7 @@ class Session:
         look = next((look for r, look in self._known if ledger.same(r, history.last)), None)
         if look is None:
             folder = at(self.bench.folder, history)
-            look = await self._calculate("Running the model", steps.seen, folder, self.bench.surface)
+            look = await self._calculate("Running the model", steps.appearance, folder, self.bench.surface)
         if look is not None:
             with self.state:
                 self.state.error, self.history = "", history
@@ -201,8 +201,8 @@ class Session:
         last = self.history.last
         self._known = [*((r, x) for r, x in self._known if not ledger.same(r, last)), (last, look)][-REMEMBERED:]
         self.shown.model(self.history, look)
-        self.diagnosis = saved_diagnosis(self.folder)
-        self.shown.found(self.diagnosis)
+        self.diagnosis = current_diagnosis(self.folder)
+        self.shown.show_candidates(self.diagnosis)
 
     async def _calculate(self, title: str, work: Callable[..., Any], *arguments: Any) -> Any:
         """The result of a process of its own; None when it failed, was stopped, or another one is running."""

@@ -13,7 +13,7 @@ from viz.pages.next_tests import deciding
 from viz.pages.words import verdict
 
 Row = dict[str, Any]
-SHOWN = 12  # candidates of a tab
+MOST_ROWS = 12  # candidates of a tab
 
 
 def tests(look: Appearance, scale: float, before: Mapping[str, float]) -> list[Row]:
@@ -80,7 +80,7 @@ def candidates(diagnosis: Mapping[str, Any], effects: tuple[str, ...]) -> list[R
             "alike": ", ".join(c["confused_with"][:3]), "decision": c["decision"],
             "test": c.get("isolating_test", ""), "inside": c["effect"] in effects,
         }
-        for c in diagnosis["candidates"][:SHOWN]
+        for c in diagnosis["candidates"][:MOST_ROWS]
     ]  # fmt: skip
 
 

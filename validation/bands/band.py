@@ -61,7 +61,7 @@ class Deviations:
 
 def deviations(of: ParameterPosterior, test: Test, places: Sequence[Place]) -> Deviations:
     """test : the record: time, inputs, boundaries, start; its channels do not matter"""
-    asked = replace(test, channels=tuple(_asked(p, test) for p in places))
+    asked = replace(test, channels=tuple(_virtual_channel(p, test) for p in places))
     network, free, size = acting(of, asked)
     now = {**values_of(network, None), **of.values}
     plain = predict(network, asked, now).y
@@ -116,5 +116,5 @@ def _variance(by: Deviations) -> Array:
     return np.concatenate([np.sum((columns @ by.root) ** 2, axis=2) for columns in _columns(by)])
 
 
-def _asked(place: Place, test: Test) -> Channel:
+def _virtual_channel(place: Place, test: Test) -> Channel:
     return Channel(f"at {place.name}", place.name, place.row, np.zeros(test.time.size))

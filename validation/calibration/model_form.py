@@ -21,11 +21,11 @@ from validation.doubt import USUAL, Doubt
 from validation.effects.build import copy_link, copy_source
 
 Array = NDArray[np.float64]
-SETTLE_K = 40.0  # a usual rise: there an exponent moves no coefficient
-SETTLE_C = 40.0  # a usual temperature of a bearing
+REFERENCE_RISE_K = 40.0  # a usual rise: there an exponent moves no coefficient
+REFERENCE_DEGC = 40.0  # a usual temperature of a bearing
 KNOTS = (0.0, 1.0, 2.0, 5.0, 10.0, 20.0, 40.0, 80.0, 160.0, 320.0)
 FARTHEST = np.log(10.0)
-KNOWN = ("copper", "measured")  # losses whose law is not in doubt
+EXACT_LOSSES = ("copper", "measured")  # losses whose law is not in doubt
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ class TemperatureSlopeError(Law):
 
     base: Law
     reads: tuple[str, ...] = field(init=False, default=())
-    temperature: TemperatureLaw = field(init=False, default=Linear(1.0, SETTLE_C + 1.0))
+    temperature: TemperatureLaw = field(init=False, default=Linear(1.0, REFERENCE_DEGC + 1.0))
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "reads", self.base.reads)
@@ -100,7 +100,7 @@ def exponent_derivative(law: TemperatureLaw) -> Table | FilmTable:
 
 
 def _turn(difference: Array) -> Array:
-    return np.log(np.clip(difference / SETTLE_K, 0.1, 10.0))
+    return np.log(np.clip(difference / REFERENCE_RISE_K, 0.1, 10.0))
 
 
 def levels(tests: Sequence[Test]) -> dict[str, float]:
@@ -131,7 +131,7 @@ def with_model_form(
         if p.mapping == "log" or p.name in added:
             own = [x for x in network.links if first.get(x.name) == p.name]
             films = [x for x in own if p.name in added or is_film(network, x)]
-            losses = [x for x in network.sources if first.get(x.name) == p.name and x.kind not in KNOWN]
+            losses = [x for x in network.sources if first.get(x.name) == p.name and x.kind not in EXACT_LOSSES]
             laws = [x.law for x in films] + [x.law for x in losses]
             for name in dict.fromkeys(r for law in laws for r in law.reads if r in moving):
                 network = _with_input(network, p.name, name, films, losses, level, doubt)

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from validation.calibration.calibrate import Fit, KnownSegments, Progress, minimise, no_progress
+from validation.calibration.calibrate import CachedSegments, Fit, Progress, minimise, no_progress
 from validation.calibration.intervals import NORMAL_95, Profile
 from validation.calibration.unknowns import Unknowns, to_value
 from validation.case import Test
@@ -64,7 +64,7 @@ class Line:
         values = {**self.held, **fit.values, p.name: to_value(p, at)}
         free = Unknowns(tuple(fit.unknowns.parameters[j] for j in rest))
         best = minimise(
-            fit.network, self.tests, free, start, fit.noise, values, known=KnownSegments(near), error=fit.error
+            fit.network, self.tests, free, start, fit.noise, values, known=CachedSegments(near), error=fit.error
         )
         objective = best.objective + 0.5 * (at / p.prior_sd) ** 2
         return float(np.sqrt(max(2.0 * (objective - fit.objective), 0.0)))

@@ -29,7 +29,7 @@ from validation.effects.sites import neighbours
 from validation.effects.time_window import Event, event
 from validation.inference.evidence import Evidence, extended_prior, projected, weighed
 from validation.inference.posterior import log_bayes_of
-from validation.inference.score import Score, apart, score, total
+from validation.inference.score import Score, per_test, score, total
 
 Array = NDArray[np.float64]
 TESTS, EVENTS, EACH = 16, 4, 6  # conditions of whole tests, events, and explanations of each that join the others
@@ -64,8 +64,8 @@ def conditions(
         found, own = explained(evidence, bases, s, looked, known)
         events.append(found)
         chosen += best(own, EACH)
-    for gate, share in declared_conditions(case, evidence, events):
-        effects = [During.of(base, gate, share / len(bases)) for base in bases]
+    for name, share in declared_conditions(case, evidence, events):
+        effects = [During.of(base, name, share / len(bases)) for base in bases]
         chosen += best(scored_in(evidence, effects, known, odds_against_nothing(share / len(bases))), EACH)
     ordered = sorted(chosen, key=lambda c: -c.worth)
     once = {c.effect.name: c.effect for c in reversed(ordered)}  # two stretches may come to the same ends
@@ -104,7 +104,7 @@ def single_test_conditions(evidence: Evidence, bases: Sequence[Effect], known: M
     parameters = extended(evidence.fit.network, bases).parameters[-len(bases) :]
     theta, sd = extended_prior(evidence.fit)
     sign = np.tile([q.sign for q in parameters], len(names)).astype(int)
-    found = score(apart(projected(evidence.fit, parts)), theta, sd, sign)
+    found = score(per_test(projected(evidence.fit, parts)), theta, sd, sign)
     usual = np.array([q.prior_sd for q in parameters])
     every, out = sets_of(len(names)), []
     for chosen in every:
@@ -112,9 +112,9 @@ def single_test_conditions(evidence: Evidence, bases: Sequence[Effect], known: M
         one = len(chosen) == 1
         held = FORM["one whole test" if one else "several whole tests"]
         share = held / (len(bases) * (len(names) if one else len(every) - len(names)))
-        gate = gate_of([evidence.tests[t] for t in chosen])
+        name = condition_of([evidence.tests[t] for t in chosen])
         out += [
-            Condition(During.of(base, gate, share), float(b) + odds_against_nothing(share))
+            Condition(During.of(base, name, share), float(b) + odds_against_nothing(share))
             for base, b, visible in zip(bases, log_bayes_of(own, usual), seen, strict=True) if visible
         ]  # fmt: skip
     return out
@@ -139,7 +139,7 @@ def together(found: Score, bases: int, chosen: Sequence[int]) -> tuple[Score, ND
     return own, found.visible[rows].all(axis=1)
 
 
-def gate_of(tests: Sequence[Test]) -> str:
+def condition_of(tests: Sequence[Test]) -> str:
     """A test by its name, several as an event that lasts all of each."""
     if len(tests) == 1:
         return tests[0].name

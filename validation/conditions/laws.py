@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from validation.calibration.model_form import KNOWN, is_film
+from validation.calibration.model_form import EXACT_LOSSES, is_film
 from validation.conditions.refine import columns
 from validation.doubt import PRIOR, RARE
 from validation.effects import extended
@@ -42,7 +42,7 @@ def laws(evidence: Evidence, known: Mapping[str, float]) -> list[Above]:
 def targets(evidence: Evidence, inputs: Sequence[str]) -> dict[str, list[str]]:
     """Declared losses with every input, but for those whose law is not in doubt; films with those they follow."""
     network = evidence.fit.network
-    losses = {s.name: list(inputs) for s in network.sources if not s.origin and s.kind not in KNOWN}
+    losses = {s.name: list(inputs) for s in network.sources if not s.origin and s.kind not in EXACT_LOSSES}
     films = [x for x in network.links if not x.origin and is_film(network, x)]
     return losses | {x.name: [r for r in x.law.reads if r in inputs] for x in films}
 

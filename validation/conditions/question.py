@@ -50,9 +50,9 @@ def concerns(effect: Effect, about: str) -> bool:
         return effect.name == about
     asked = event(about)
     if asked is None:
-        return about in effect.tests or about == effect.gate
+        return about in effect.tests or about == effect.condition
     if effect.event is None:
-        return effect.gate in asked.tests
+        return effect.condition in asked.tests
     return effect.event.overlap(asked) > LIKE
 
 
@@ -61,7 +61,7 @@ def best_question(posterior: Posterior) -> Question | None:
     P, e = probabilities(posterior.hypotheses), posterior.evidence
     if P.max() >= SURE:
         return None
-    asked = dict.fromkeys(x.gate if isinstance(x, During) else x.name for x in e.effects
+    asked = dict.fromkeys(x.condition if isinstance(x, During) else x.name for x in e.effects
                           if isinstance(x, During) or x.fault)  # fmt: skip
     rows = [(about, yes_of(posterior, P, about)) for about in asked]
     about, yes = max(rows, key=lambda row: information(row[1]), default=("", 0.0))

@@ -21,9 +21,9 @@ from validation.inference.posterior import one_size
 from validation.inference.score import Score, score, total
 
 Array = NDArray[np.float64]
-Known = Mapping[str, float]
+Values = Mapping[str, float]
 Spans = Mapping[str, Sequence[Span]]
-TRIED = 15  # instants around each end
+GRID_POINTS = 15  # instants around each end
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class TimedEvent:
     ends: tuple[tuple[Span, Span], ...]
 
 
-def refined(evidence: Evidence, base: Effect, event: Event, reach_s: Mapping[str, float], known: Known) -> TimedEvent:
+def refined(evidence: Evidence, base: Effect, event: Event, reach_s: Mapping[str, float], known: Values) -> TimedEvent:
     """Ends of every span in turn, the others where they are.  reach_s : test -> how far an end may move"""
     spans, log_share = {t: list(own) for t, own in event.spans.items()}, 0.0
     ends: list[tuple[Span, Span]] = []
@@ -56,7 +56,7 @@ def refined(evidence: Evidence, base: Effect, event: Event, reach_s: Mapping[str
 
 
 def moved(
-    evidence: Evidence, base: Effect, test: Test, span: Span, others: Spans, reach_s: float, known: Known,
+    evidence: Evidence, base: Effect, test: Test, span: Span, others: Spans, reach_s: float, known: Values,
     usual_s: float | None = None,
 ) -> TimedEvent:  # fmt: skip
     """Begin and end of one span: every two instants around them, each pair a difference of two steps.
@@ -84,7 +84,7 @@ def pulse(u: Array, V: Array, a: NDArray[np.int64], b: NDArray[np.int64]) -> tup
     return u[a] - u[b] + u[rest], own + V[rest, rest] + 2.0 * (V[a, rest] - V[b, rest])
 
 
-def repeats(evidence: Evidence, base: Effect, event: Event, known: Known) -> Event:
+def repeats(evidence: Evidence, base: Effect, event: Event, known: Values) -> Event:
     """The event without the repeats that the others do not predict; of one that does not repeat nothing is left out.
 
     Each is left out in turn: at the amplitude of the others it must fit better than without. The worst goes first.
@@ -127,7 +127,7 @@ def around(test: Test, at: float, reach_s: float) -> Array:
     """Samples near an instant, inside the record."""
     t, step = test.time, float(np.median(np.diff(test.time)))
     low, high = max(at - reach_s, t[0]), min(at + reach_s, t[-1])
-    count = int(min(TRIED, round((high - low) / step) + 1))
+    count = int(min(GRID_POINTS, round((high - low) / step) + 1))
     return np.unique(t[0] + step * np.round((np.linspace(low, high, max(count, 1)) - t[0]) / step))
 
 
@@ -138,7 +138,7 @@ def between(at: Array, weight: Array) -> Span:
     return float(at[order[low]]), float(at[order[min(high, at.size - 1)]])
 
 
-def steps(evidence: Evidence, base: Effect, test: Test, at: Array, others: Spans, known: Known) -> tuple[Array, Array]:
+def steps(evidence: Evidence, base: Effect, test: Test, at: Array, others: Spans, known: Values) -> tuple[Array, Array]:
     """Efficient score of an effect that begins at each of some instants of a test, and last that of the other spans."""
     last = float(test.time[-1]) + 1.0
     events = [Event.of({test.name: [(t, last)]}) for t in at]
@@ -151,7 +151,7 @@ def steps(evidence: Evidence, base: Effect, test: Test, at: Array, others: Spans
     return np.pad(found.u, (0, missing)), np.pad(found.V, (0, missing))
 
 
-def columns(evidence: Evidence, effects: Sequence[Effect], known: Known) -> list[Segment]:
+def columns(evidence: Evidence, effects: Sequence[Effect], known: Values) -> list[Segment]:
     """The segments with the columns of calibration and of some effects; only tests are run in which one acts."""
     fit, p = evidence.fit, evidence.p
     network = extended(fit.network, effects)
@@ -167,4 +167,4 @@ def columns(evidence: Evidence, effects: Sequence[Effect], known: Known) -> list
 
 def acts_in(effect: Effect, test: Test) -> bool:
     """Can the effect act in the test?  What an input says may be in any."""
-    return not isinstance(effect, During) or test.name in effect.tests or effect.gate in test.inputs
+    return not isinstance(effect, During) or test.name in effect.tests or effect.condition in test.inputs

@@ -16,7 +16,7 @@ from validation.calibration.calibrate import Fit
 from validation.case import Test
 from validation.comparison.linearisation import segments
 from validation.conditions.conditional_effects import joined
-from validation.conditions.refine import TRIED, around
+from validation.conditions.refine import GRID_POINTS, around
 from validation.effects import Effect, extended
 from validation.effects.during import During
 from validation.effects.time_window import Event, Span
@@ -80,7 +80,7 @@ def ends_of(evidence: Evidence, fit: Fit, effect: During, event: Event, reach_s:
 def span_of(evidence: Evidence, fit: Fit, effect: During, test: Test, span: Span, reach_s: float) -> Span:
     """Begin and end that fit best: first some instants around them, then every sample around the best of these."""
     best = span
-    for reach in (reach_s, 2.0 * reach_s / TRIED):
+    for reach in (reach_s, 2.0 * reach_s / GRID_POINTS):
         begins, ends = around(test, best[0], reach), around(test, best[1], reach)
         u, V = steps(fit, effect.base, test, np.concatenate([span, begins, ends]))
         a = size(fit, effect)

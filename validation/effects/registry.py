@@ -56,9 +56,9 @@ def effect(name: str, scene: Scene | None = None) -> Effect:
     if kind == KIND:
         return Above(place)
     found = _of(kind, kinds(), f"effect '{name}'")
-    base, held, gate = place.rpartition(IN)
+    base, held, condition = place.rpartition(IN)
     if held:
-        return During.of(found(base), _known(gate, scene, name))
+        return During.of(found(base), _checked_condition(condition, scene, name))
     if scene is not None and place not in (places := found.places(scene)):
         needs = ", ".join(found.needs)
         right = (
@@ -70,15 +70,15 @@ def effect(name: str, scene: Scene | None = None) -> Effect:
     return found(place)
 
 
-def _known(gate: str, scene: Scene | None, name: str) -> str:
-    """The gate, if the scene has what it speaks of."""
-    if scene is not None and gate not in scene.inputs:
-        found = event(gate)
-        for test in found.tests if found else (gate,):
+def _checked_condition(condition: str, scene: Scene | None, name: str) -> str:
+    """The condition, if the scene has what it speaks of."""
+    if scene is not None and condition not in scene.inputs:
+        found = event(condition)
+        for test in found.tests if found else (condition,):
             if test not in scene.tests:
                 raise InputError(f"unknown test or event '{test}'", f"effect '{name}'",
                                  f"one of {', '.join(scene.tests)}, or an event as `diagnose` names it")  # fmt: skip
-    return gate
+    return condition
 
 
 def extended(network: Network, effects: Iterable[Effect]) -> Network:

@@ -141,7 +141,7 @@ def part_of(network: Network, place: str) -> str:
     return network.places[place].part if place in network.places else place
 
 
-def own_links(network: Network) -> list[Link]:
+def model_links(network: Network) -> list[Link]:
     """Links that no effect has added."""
     return [link for link in network.links if not link.origin]
 

@@ -22,7 +22,7 @@ from validation.fleet.unit import UnitHistory
 
 Array = NDArray[np.float64]
 FREEDOM = 4.0  # of Student's t: a motor at four deviations counts half
-ROUNDS, SETTLED = 300, 1e-4
+ROUNDS, TOLERANCE = 300, 1e-4
 NARROW = 1e-3  # smallest spread (of the logarithm): a per mille is no difference
 OUTLIER = 0.01  # probability that a fleet without one has a motor that far off: over all motors and parameters
 DIFFERS = 0.01  # probability of as much spread where all motors are equal
@@ -129,7 +129,7 @@ def population(units: Sequence[UnitHistory]) -> Population:
     H, eta = zip(*(_of_unit(u, middle, drifts) for u in units), strict=True)
     first = units[0].parts[0]
     prior = np.concatenate([first.sd, first.drift_sd]) if drifts else first.sd
-    found, weights = _settled(np.array(H), np.array(eta), prior)
+    found, weights = _converged_moments(np.array(H), np.array(eta), prior)
     p, (m, P) = len(names), found.posterior()
     sd = np.sqrt(np.einsum("uii->ui", P))
     own = _mean_sd(found, weights)
@@ -157,7 +157,7 @@ def _of_unit(unit: UnitHistory, middle: float, drifts: bool) -> tuple[Array, Arr
     return H, eta
 
 
-def _settled(H: Array, eta: Array, prior_sd: Array) -> tuple[_Moments, Array]:
+def _converged_moments(H: Array, eta: Array, prior_sd: Array) -> tuple[_Moments, Array]:
     """Mean and variance that no longer move, and the weights of the motors."""
     k, weights = eta.shape[1], np.ones(len(H))
     now = _Moments(H, eta, prior_sd, np.zeros(k), np.full(k, FIRST**2)).with_mean(weights)
@@ -168,7 +168,7 @@ def _settled(H: Array, eta: Array, prior_sd: Array) -> tuple[_Moments, Array]:
         moved = float(np.max(np.abs(np.log(variance / now.variance))))
         now = replace(now, variance=variance).with_mean(weights)
         weights = now.weights()
-        if moved < SETTLED:
+        if moved < TOLERANCE:
             break
     return now, weights
 

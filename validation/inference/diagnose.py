@@ -25,10 +25,10 @@ from validation.inference.evidence import (
     Evidence,
     calibrated_case,
     candidates,
+    converged,
     log_evidence,
     noise_beside,
     scored,
-    settled,
     under,
     with_noise,
 )
@@ -48,7 +48,7 @@ from validation.inference.steadiness import steady
 from validation.inference.tables import tabulate
 from validation.measurement.faults import PlainFaults, broken_channels, without
 from validation.measurement.noise import Noise
-from validation.procedure.reduction.which_base import bases_tried, wrong_bases
+from validation.procedure.reduction.which_base import base_hypotheses, wrong_bases
 from validation.threads import one_blas_thread
 
 Progress = Callable[[str], None]
@@ -74,7 +74,7 @@ def diagnose(
     training = case.training()
     broken = broken_channels(training.tests)
     training = replace(training, tests=without(training.tests, broken))
-    stood = bases_tried(training, progress)
+    stood = base_hypotheses(training, progress)
     posterior = infer(training, kinds, progress)
     wrong = wrong_bases(stood)
     choice = steady(posterior, lambda p: above(p, decide(p.evidence, p.hypotheses), budget))
@@ -117,11 +117,11 @@ def infer(case: Case, kinds: Sequence[str] | None = None, progress: Progress = n
     known = {**case.model.values, **evidence.fit.values}
     bent = laws(evidence, known) if kinds is None or KIND in kinds else []
     first = len(evidence.effects)
-    evidence = settled(sharpened(joined(evidence, [*chosen, *bent], known), range(first, first + len(chosen))))
+    evidence = converged(sharpened(joined(evidence, [*chosen, *bent], known), range(first, first + len(chosen))))
     found, heat = weighed(case, evidence, looked, fit.noise, progress)
     timed, noise = retimed(evidence, found, reach(looked)), noise_of_refits(found)
     if noise is not None or timed is not evidence:
-        evidence = settled(under(timed, noise or timed.fit.noise))
+        evidence = converged(under(timed, noise or timed.fit.noise))
         begun = {h.members: h.fit for h in found if h.fit and h.members}
         found, heat = weighed(case, evidence, looked, fit.noise, progress, begun)
     every = further(case, evidence, finely(evidence, found), progress)

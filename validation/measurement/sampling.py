@@ -89,7 +89,7 @@ class Modes:
         )  # fmt: skip
 
 
-def apart(x: Array) -> Array:
+def interpolation_error(x: Array) -> Array:
     """g(x) above."""
     full = np.maximum(x, SMALL)
     return np.abs(np.where(x < SMALL, x / 24.0, 0.5 + np.expm1(-0.5 * full) / full + np.expm1(-full) / 12.0))
@@ -159,7 +159,7 @@ class _Felt:
             inside = row.index < len(self.states)
             own = row.weights[inside] @ self.modes.shape[row.index[inside]]
             parts = np.abs(change @ (own[:, None] * push).T)
-            late = parts @ apart(h / np.maximum(1.0 / self.modes.rate + lag, 1e-9))
+            late = parts @ interpolation_error(h / np.maximum(1.0 / self.modes.rate + lag, 1e-9))
             if (error := float(np.sqrt(np.sum(late**2) / at.size))) > best.error_K:
                 best = SampleStep(h, error, name, *self._fastest(parts[int(late.argmax())]))
         return best

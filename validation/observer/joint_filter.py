@@ -138,13 +138,13 @@ class _Run:
 
     def _shown(self, c: Channel, z: Array) -> float:
         j = self.at[c.name]
-        row = self.of.constants.seen(j, self.w)
+        row = self.of.constants.sensor_row(j, self.w)
         return float(row.weights @ z[row.index]) + self.of.constants.bias(j, self.w)
 
     def _slope(self, c: Channel, z: Array) -> Array:
         """(N,) what a reading sees of everything."""
         j, h = self.at[c.name], np.zeros(len(self.P))
-        h[: self.process.slow.size] = self.process.seen(self.of.constants.seen(j, self.w), self.along)
+        h[: self.process.slow.size] = self.process.sensed(self.of.constants.sensor_row(j, self.w), self.along)
         for k, slope in self.of.constants.by_sensor(j, z):
             h[self.n + k] = slope
         return h

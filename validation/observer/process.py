@@ -151,7 +151,7 @@ class Process:
             out[self.fast] = -np.linalg.solve(G[np.ix_(self.fast, self.fast)], G[np.ix_(self.fast, self.slow)])
         return out
 
-    def seen(self, row: Row, along: Array) -> Array:
+    def sensed(self, row: Row, along: Array) -> Array:
         """(n_slow,) what a sensor sees of the slow states."""
         own = row.index < along.shape[0]
         return np.asarray(row.weights[own] @ along[row.index[own]])

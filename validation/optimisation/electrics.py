@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from geom.errors import InputError
 from lumped.drives.drive import RPM, SeriesMachine
-from lumped.schemas.reader import known
+from lumped.schemas.reader import suggestion
 
 CURRENT, SPEED = "current_A", "speed_rpm"
 
@@ -73,5 +73,5 @@ def wanted_inputs(inputs: Mapping[str, float], torque: float | None, electrics: 
     if torque is None:
         return dict(inputs)
     if CURRENT not in inputs:
-        raise InputError("no law reads the current", "--torque", known(CURRENT, tuple(inputs)))
+        raise InputError("no law reads the current", "--torque", suggestion(CURRENT, tuple(inputs)))
     return {**inputs, CURRENT: electrics.current(torque)}

@@ -28,7 +28,7 @@ from lumped.transfer.terms_value import temperature_value
 Array = NDArray[np.float64]
 ABOVE_K = 30.0  # of the first guess: still air takes nothing without a difference
 SMALLEST = 1e-6  # of the largest heat capacity: what stands for none
-SETTLED = 0.05  # of the rise that is left at the settling time
+REMAINING = 0.05  # of the rise that is left at the settling time
 GRID = np.geomspace(1e-4, 10.0, 400)  # of the slowest time constant
 
 
@@ -54,11 +54,11 @@ class Rest:
         away = np.linalg.solve(shapes, self.start - self.z[:n]) * (row.dense(n) @ shapes)
         time = GRID / rate.real.min()
         left = np.abs((np.exp(-np.outer(time, rate)) @ away).real)
-        late = np.flatnonzero(left > SETTLED * abs(away.sum().real))
+        late = np.flatnonzero(left > REMAINING * abs(away.sum().real))
         if not late.size or late[-1] == time.size - 1:
             return float(time[0 if not late.size else -1])
         k = int(late[-1])
-        return float(np.interp(SETTLED * abs(away.sum().real), [left[k + 1], left[k]], [time[k + 1], time[k]]))
+        return float(np.interp(REMAINING * abs(away.sum().real), [left[k + 1], left[k]], [time[k + 1], time[k]]))
 
 
 def rest(

@@ -31,7 +31,7 @@ class Experiment:
     needs: tuple[str, ...] = ()
     hours: float = 4.0
 
-    def made_from(self, test: Test, network: Network) -> Test:
+    def modified(self, test: Test, network: Network) -> Test:
         """The planned test; its channels have no readings yet."""
         base = repeated(test, self.hours)
         inputs, boundaries = self.change(base.time, dict(base.inputs), dict(base.boundaries), network)
@@ -153,7 +153,7 @@ CANDIDATE_TESTS = (
 def candidate_tests(test: Test, network: Network) -> list[tuple[Experiment, Test]]:
     """Experiments that change something on this machine, and the tests made from the one at hand."""
     measured = {network.measures(name) for name in test.inputs}
-    made = [(e, e.made_from(test, network)) for e in CANDIDATE_TESTS if set(e.needs) <= measured]
+    made = [(e, e.modified(test, network)) for e in CANDIDATE_TESTS if set(e.needs) <= measured]
     return [(e, new) for e, new in made if _differ(new, repeated(test, e.hours))]
 
 

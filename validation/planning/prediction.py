@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.model.multipliers import values_of
-from validation.calibration.calibrate import Fit, KnownSegments, minimise
+from validation.calibration.calibrate import CachedSegments, Fit, minimise
 from validation.calibration.unknowns import Unknowns, nuisances
 from validation.case import Test
 from validation.comparison.linearisation import segments
@@ -99,7 +99,7 @@ def _difference(evidence: Evidence, found: CompetingModels, new: Sequence[Test],
     near += segments(network, read, here, free)
     theta, tests = np.concatenate([rival.theta, np.zeros(len(own))]), (*evidence.tests, *read)
     error = widened_error(evidence, read)
-    fit = minimise(network, tests, Unknowns(free), theta, found.noise, held, STEPS, KnownSegments(near),
+    fit = minimise(network, tests, Unknowns(free), theta, found.noise, held, STEPS, CachedSegments(near),
                    worth=ENOUGH, error=error)  # fmt: skip
     return deviance_difference(fit, found.fit(right))
 

@@ -12,7 +12,7 @@ from geom.description.roles import Role
 from geom.errors import InputError
 from lumped.model.network import Link, Network
 from lumped.model.quantities import AIR, LIQUID
-from lumped.schemas.reader import known
+from lumped.schemas.reader import suggestion
 from lumped.transfer.laws import CLOCK, Law, Radiation, TemperatureLaw
 from validation.case import Test
 
@@ -70,12 +70,14 @@ def operation(
     for name in given:
         if name not in (*reads, *network.boundaries):
             raise InputError(
-                f"'{name}' is no input or boundary of the model", "--at", known(name, (*reads, *network.boundaries))
+                f"'{name}' is no input or boundary of the model",
+                "--at",
+                suggestion(name, (*reads, *network.boundaries)),
             )
     seen = [t for t in tests if all(n in t.inputs for n in reads)]
     for name in carry:
         if name not in reads:
-            raise InputError(f"'{name}' is no input of the model", "--load", known(name, tuple(reads)))
+            raise InputError(f"'{name}' is no input of the model", "--load", suggestion(name, tuple(reads)))
     loads = tuple(carry) or tuple(n for n in reads if network.measures(n) in LOADS)
     if not loads:
         raise InputError(

@@ -210,12 +210,12 @@ def judge(action: str, changes: Sequence[Change], fits: Sequence[Fit], made: Seq
     fell = now <= (GETS_WORSE * was if action == "calibrate" or foretells else was)
     reasons = [
         failures(made), "" if converged else "not converged", f"rms over the tests used {fall(was, now)}",
-        *unseen(changes),
+        *held_out_changes(changes),
     ]  # fmt: skip
     return bool(fell and converged and not failures(made)), "; ".join(filter(None, reasons))
 
 
-def unseen(changes: Sequence[Change]) -> list[str]:
+def held_out_changes(changes: Sequence[Change]) -> list[str]:
     """What became of the tests that were not fitted, in words."""
     own = [c for c in changes if c.role == "hold-out"]
     if not own:

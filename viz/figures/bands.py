@@ -50,7 +50,7 @@ def predicted(time: Array, places: Sequence[Predicted], *, title: str = "", png:
     figure.suptitle(f"{title}{left}", fontsize=10, color=LIGHT.ink)
     figure.supxlabel("time (min)", fontsize=9.5, color=LIGHT.ink)
     figure.supylabel("temperature, 95 % band (°C)", fontsize=9.5, color=LIGHT.ink)
-    return paper.saved(figure, png)
+    return paper.save(figure, png)
 
 
 def _panel(ax: Axes, minutes: Array, place: Predicted) -> None:

@@ -49,4 +49,4 @@ def columns(panels: Sequence[Panel], title: str, *, png: str | Path | None = Non
     for ax in axes[len(shown) :]:
         ax.set_visible(False)
     figure.suptitle(title, fontsize=10)
-    return paper.saved(figure, png)
+    return paper.save(figure, png)

@@ -41,7 +41,7 @@ def screened(found: Row, *, unit: str = "K", title: str = "", png: str | Path | 
         ax.set_xlabel(f"|high - low| ({unit})")
     left.legend(fontsize=8, frameon=False, loc="lower right")
     left.set_title(title)
-    return paper.saved(figure, png)
+    return paper.save(figure, png)
 
 
 def _half_normal(ax: Axes, rows: Sequence[Row]) -> None:
@@ -62,7 +62,7 @@ def ranking(rows: Sequence[Row], *, measure: str, title: str = "", png: str | Pa
     _bars(ax, [r["factor"] for r in up], sizes, [BLUE] * len(up))
     ax.errorbar(sizes, range(len(up)), xerr=[r["conf95"] for r in up], fmt="none", ecolor=LIGHT.ink, lw=1.0)
     ax.set(xlabel=measure, title=title, xlim=(0, None))
-    return paper.saved(figure, png)
+    return paper.save(figure, png)
 
 
 def _bars(ax: Axes, words: Sequence[str], sizes: Sequence[float], colours: Sequence[str]) -> None:

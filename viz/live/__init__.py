@@ -1,6 +1,6 @@
 """The same figures to move about in: plotly, for the workbench, notebooks and pages that may be 5 MB.
 
-Each function returns a plotly figure; viz.live.style.saved writes it as HTML, or as PNG or SVG where a Chromium is
+Each function returns a plotly figure; viz.live.style.save writes it as HTML, or as PNG or SVG where a Chromium is
 installed. The drawings on paper (viz.figures) need no browser.
 """
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from viz.colours import BLUE, LIGHT, PURPLE, VERMILION, Theme
-from viz.figures.candidates import DECISION, SHOWN
+from viz.figures.candidates import DECISION, LEAST_PROBABILITY
 from viz.live.style import figure, plain
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ MOST = 10  # hypotheses drawn
 
 def posterior(odds: Sequence[Mapping[str, Any]], *, theme: Theme = LIGHT) -> go.Figure:
     """The probability of every hypothesis that carries weight as bars, most probable on top."""
-    best = [o for o in odds if o["probability"] >= SHOWN][:MOST][::-1]
+    best = [o for o in odds if o["probability"] >= LEAST_PROBABILITY][:MOST][::-1]
     out = figure(theme, title={"text": "What the readings say", "x": 0.02})
     colours = [BLUE if o["hypothesis"] == "nothing" else VERMILION if o["effects"] else PURPLE for o in best]
     out.add_bar(

@@ -63,7 +63,7 @@ def network_in_machine(
     at = {name: xyz + front for name, xyz in at.items() if xyz[1] > 0 and name in temperatures}
     low, high = surface.points.min(axis=0), surface.points.max(axis=0)
     length = float(np.ptp(nodes.points[:, 2]))
-    at = apart(at, CLOSEST * length)
+    at = spread_out(at, CLOSEST * length)
     frame = front + np.array([[0, -0.2 * high[1], low[2]], [0, high[1], high[2]]])
     widest = _lines(p, at, flow, power() if theme == LIGHT else power().reversed(), length)
     _nodes(p, at, temperatures)
@@ -102,7 +102,7 @@ def _in_plane(points: Array, weight: Array) -> Array:
     return np.array([0.0, mean[1] if off_axis else radius, mean[2]])
 
 
-def apart(at: Mapping[str, Array], least: float) -> dict[str, Array]:
+def spread_out(at: Mapping[str, Array], least: float) -> dict[str, Array]:
     """Points that lie closer than `least` (m) pushed apart along the axis, so that lines between them can be seen."""
     names, xyz = list(at), np.array(list(at.values()))
     for _ in range(100):

@@ -29,7 +29,7 @@ class BenchPage:
     plan: PredictedCurves
     driven: str
     holding: list[tuple[str, float, float, float]]
-    made: str = ""
+    provenance: str = ""
 
 
 def write_bench_page(page: BenchPage, path: str | Path) -> Path:
@@ -56,7 +56,7 @@ def render(page: BenchPage) -> str:
     parts = [
         head + html.text(says), html.section("Drive", driven),
         html.section("What to expect", html.plot(predicted(plan), "predicted", caption), _ends(plan)),
-        f"<footer>{escape(page.made)}</footer>" if page.made else "",
+        f"<footer>{escape(page.provenance)}</footer>" if page.provenance else "",
     ]  # fmt: skip
     return html.page(f"thermoscope: {plan.experiment.name}", parts)
 

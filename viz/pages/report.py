@@ -49,7 +49,7 @@ class Report:
     pictures: Mapping[str, str | Path | bytes] = field(default_factory=dict)
     assumptions: Sequence[str] = ()
     commands: Sequence[str] = ()
-    made: str = ""
+    provenance: str = ""
     earlier: bool = False
     error_budget: Mapping[str, Sequence[Document]] = field(default_factory=dict)
     viewer: str = ""
@@ -271,7 +271,9 @@ def _assumed(r: Report) -> str:
 
 def _repeat(r: Report) -> str:
     commands = f"<pre>{escape(chr(10).join(r.commands))}</pre>" if r.commands else ""
-    return html.section("How to repeat this", commands) + (f"<footer>{escape(r.made)}</footer>" if r.made else "")
+    return html.section("How to repeat this", commands) + (
+        f"<footer>{escape(r.provenance)}</footer>" if r.provenance else ""
+    )
 
 
 def _number(value: Any) -> float | None:

@@ -46,7 +46,7 @@ def blueprint(comparison: Comparison, first: str, points: NDArray[np.float64], w
     return rrb.Blueprint(layout, plays, collapse_panels=True)
 
 
-def apart(places: NDArray[np.float64], points: NDArray[np.float64]) -> list[bool]:
+def non_overlapping(places: NDArray[np.float64], points: NDArray[np.float64]) -> list[bool]:
     """Which names, at places (n, 3) m in order of weight, cover none before them when the machine is first seen."""
     _, right, up = View().axes()
     size = np.linalg.norm(np.ptp(points, axis=0)) * np.array(NAME)
@@ -64,7 +64,9 @@ def eye(points: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray((low + high) / 2 + DISTANCE * np.linalg.norm(high - low) * View().axes()[0])
 
 
-def seen(points: NDArray[np.float64], machine: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def in_view(
+    points: NDArray[np.float64], machine: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """(n, 2) right and up per metre of distance, and (n,) m of distance, of points (n, 3) m when it is first seen."""
     towards, right, up = View().axes()
     distance = (eye(machine) - points) @ towards
@@ -74,7 +76,7 @@ def seen(points: NDArray[np.float64], machine: NDArray[np.float64]) -> tuple[NDA
 def beside(places: NDArray[np.float64], machine: NDArray[np.float64]) -> NDArray[np.float64]:
     """(n, 3) m: out from places (n, 3) m, across the first line of sight, to just beyond the machine's outline."""
     _, right, up = View().axes()
-    (at, distance), outline = seen(places, machine), seen(machine, machine)[0]
+    (at, distance), outline = in_view(places, machine), in_view(machine, machine)[0]
     away = at / np.linalg.norm(at, axis=1, keepdims=True)
     far = (outline @ away.T).max(axis=0) + OUT / DISTANCE - np.einsum("ij,ij->i", at, away)
     return np.asarray(places + (far * distance)[:, None] * (away @ np.stack([right, up])))

@@ -6,10 +6,10 @@ import math
 from typing import Any
 
 from geom.description import shapes
-from geom.description.part import Made, Part, Port, Prism, fluid
+from geom.description.part import CadShape, Part, Port, Prism, fluid
 from geom.description.profile import Profile
 from geom.description.roles import Role
-from geom.families.nozzles import Nozzle, opened_ring, slices
+from geom.families.nozzles import Nozzle, bored_ring, slices
 from geom.families.radial_flux.layout import Layout
 from geom.families.turns import Turns
 
@@ -42,7 +42,7 @@ def _skirts(g: Any, at: Layout) -> tuple[Prism, ...]:
 def _housing(g: Any, at: Layout) -> tuple[Part, ...]:
     prisms = {"none": _none, "plain": _plain, "axial-fins": _axial_fins, "radial-fins": _radial_fins, "spiral": _spiral}
     walls = prisms[g.housing.kind](g, at)
-    return (Part("housing", "aluminium-cast", walls, made=_made(g, at), role=Role.HOUSING),) if walls else ()
+    return (Part("housing", "aluminium-cast", walls, cad_shape=_cad_shape(g, at), role=Role.HOUSING),) if walls else ()
 
 
 def _none(g: Any, at: Layout) -> tuple[Prism, ...]:
@@ -99,17 +99,19 @@ def _spiral(g: Any, at: Layout) -> tuple[Prism, ...]:
         (piece, low, high)
         for a, b in rings
         for low, high, ports in slices(a, b, nozzles(g, at))
-        for piece in opened_ring(at.channel, at.body, ports)
+        for piece in bored_ring(at.channel, at.body, ports)
     ]
     return (*ribs, *((shapes.ring(at.core, at.wall), a, b) for a, b in rings), *outer)
 
 
-def _made(g: Any, at: Layout) -> Made | None:
+def _cad_shape(g: Any, at: Layout) -> CadShape | None:
     """A spiral jacket as it is made: a helix for the rings, round bores."""
     if g.housing.kind != "spiral":
         return None
     drills = (nozzle.drill for nozzle in nozzles(g, at))
-    return Made(((shapes.ring(at.core, at.body), at.cap0, at.cap1),), (turns_of(g, at).helix(g.housing.port), *drills))
+    return CadShape(
+        ((shapes.ring(at.core, at.body), at.cap0, at.cap1),), (turns_of(g, at).helix(g.housing.port), *drills)
+    )
 
 
 def turns_of(g: Any, at: Layout) -> Turns:

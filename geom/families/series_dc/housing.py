@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from geom.description import shapes
-from geom.description.part import Made, Part, Prism
+from geom.description.part import CadShape, Part, Prism
 from geom.description.profile import Profile
 from geom.description.roles import Role
 from geom.families.nozzles import Nozzle
@@ -35,11 +35,11 @@ def enclosure(g: Any, z: Axial) -> tuple[Part, ...]:
 def _housing(g: Any, z: Axial, r: Radii) -> Part:
     """The housing; with jackets, as it is made: round bores, and a helix for the rings."""
     bored, helical = nozzles(g), g.jacket.layout == "helical"
-    made = None
+    cad_shape = None
     if bored:
         helices = [turns_of(g, r, *span).helix(g.jacket.port) for span in z.jackets.values() if helical]
-        made = Made(_walls(g, z, r, None if helical else ()), (*helices, *(nozzle.drill for nozzle in bored)))
-    return Part("housing", "aluminium-cast", _walls(g, z, r, bored), made=made, role=Role.HOUSING)
+        cad_shape = CadShape(_walls(g, z, r, None if helical else ()), (*helices, *(nozzle.drill for nozzle in bored)))
+    return Part("housing", "aluminium-cast", _walls(g, z, r, bored), cad_shape=cad_shape, role=Role.HOUSING)
 
 
 def _walls(g: Any, z: Axial, r: Radii, bored: Sequence[Nozzle] | None) -> tuple[Prism, ...]:

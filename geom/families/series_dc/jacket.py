@@ -10,7 +10,7 @@ from geom.description import shapes
 from geom.description.part import Part, Port, Prism, fluid
 from geom.description.profile import Profile
 from geom.description.roles import Role
-from geom.families.nozzles import CLEAR, Nozzle, opened_circle, opened_ring, slices
+from geom.families.nozzles import CLEAR, Nozzle, bored_circle, bored_ring, slices
 from geom.families.series_dc.layout import Axial, Radii
 from geom.families.turns import Turns
 
@@ -39,7 +39,7 @@ def jacket_walls(g: Any, r: Radii, z0: float, z1: float, bored: Sequence[Nozzle]
         (piece, low, high)
         for a, b in turns
         for low, high, ports in slices(a, b, bored)
-        for piece in opened_ring(r.channel, r.jacket, ports)
+        for piece in bored_ring(r.channel, r.jacket, ports)
     ]
     return [*ribs, *((shapes.ring(r.yoke1, r.shell), a, b) for a, b in turns), *outer]
 
@@ -48,7 +48,7 @@ def _pierced(r: Radii, sectors: list[Sector], bored: Sequence[Nozzle]) -> Profil
     """Section of a zigzag jacket; a bore opens the channel under it."""
     inside = shapes.circle_loop(r.yoke1)
     under = [next(s for s in sectors if _spans(s, nozzle.angle)) for nozzle in bored]
-    out = opened_circle(r.jacket, under, (r.shell, r.channel), bored) if bored else shapes.circle_loop(r.jacket)
+    out = bored_circle(r.jacket, under, (r.shell, r.channel), bored) if bored else shapes.circle_loop(r.jacket)
     closed = (shapes.sector(r.shell, r.channel, *s).outer for s in sectors if s not in under)
     return Profile(out, (inside, *closed))
 

@@ -16,8 +16,8 @@ def only_new_parts():
     seen, machines = set(), {}
     for name in library():
         machine = thinned(load_machine(name))
-        new = tuple(part for part in machine.parts if (part.name, part.prisms, part.made) not in seen)
-        seen |= {(part.name, part.prisms, part.made) for part in new}
+        new = tuple(part for part in machine.parts if (part.name, part.prisms, part.cad_shape) not in seen)
+        seen |= {(part.name, part.prisms, part.cad_shape) for part in new}
         if new:
             machines[name] = type(machine)(**{**vars(machine), "parts": new})
     return machines
@@ -41,7 +41,7 @@ def test_solids_are_watertight_and_have_the_volume_of_the_formula(written):
     """A round port and its square prisms differ in what a curved wall leaves of them: 0.6 % of the port."""
     machine, _, cache = written
     for check in check_cad(machine, 0.1, cache):
-        exact = 0.01 if check.part.endswith("tube") else 1e-4 if machine.part(check.part).made else 1e-9
+        exact = 0.01 if check.part.endswith("tube") else 1e-4 if machine.part(check.part).cad_shape else 1e-9
         assert check.watertight, check.part
         assert check.solid_volume == pytest.approx(check.volume, rel=exact), check.part
 
@@ -53,7 +53,7 @@ def test_step_keeps_names_and_volumes(written):
     assert back.keys() == {part.name for part in machine.parts}
     for part in machine.parts:
         volume = sum(solid.Volume() for solid in back[part.name].Solids()) * 1e-9
-        exact = 1e-4 if part.made else 1e-6
+        exact = 1e-4 if part.cad_shape else 1e-6
         assert volume == pytest.approx(_volume(part, folder), rel=exact), part.name
 
 

@@ -11,7 +11,7 @@ def thinned(machine):
 
 
 def _thin(part):
-    return part if part.made else replace(part, prisms=_distinct(part.prisms))
+    return part if part.cad_shape else replace(part, prisms=_distinct(part.prisms))
 
 
 def _distinct(prisms):

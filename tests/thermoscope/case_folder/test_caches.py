@@ -9,7 +9,7 @@ from small_case import measured, write_csv
 from thermoscope import pipeline
 from thermoscope.case_folder import folder as case_folder
 from thermoscope.case_folder.folder import load_case
-from thermoscope.case_folder.runs import before_last, held, readings
+from thermoscope.case_folder.runs import before_last, comparison_of, readings
 from thermoscope.commands.model.calibrate import calibrate
 from thermoscope.commands.show.pages import report
 from thermoscope.commands.test.compare import compare
@@ -64,7 +64,7 @@ def test_one_comparison_serves_tables_and_pictures(case, monkeypatch):
     folder = load_case(case)
     limits = folder.compared.limits
     for test in folder.case.tests:
-        assert held(folder, test).limits == limits[test.name]
+        assert comparison_of(folder, test).limits == limits[test.name]
     assert sorted(calls) == ["road", "stand", "town"]
 
 

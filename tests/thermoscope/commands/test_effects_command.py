@@ -6,7 +6,7 @@ import pytest
 
 from thermoscope.commands.explain.effects import effects, quantities
 from thermoscope.quantities_page import PAGE, page
-from thermoscope.recordings.units import HELD, QUANTITIES, converted
+from thermoscope.recordings.units import MEMORY_UNIT, QUANTITIES, converted
 from validation.effects.base import Effect
 from validation.effects.registry import kinds
 
@@ -47,7 +47,7 @@ def test_the_catalogue_without_a_case(tmp_path, capsys):
 
 def test_quantities_and_what_memory_holds(tmp_path, capsys):
     rows = {q["quantity"]: q for q in asked(quantities, tmp_path)["quantities"]}
-    assert set(rows) == set(QUANTITIES) == set(HELD)
+    assert set(rows) == set(QUANTITIES) == set(MEMORY_UNIT)
     for name, row in rows.items():
         if name != "share":
             assert float(converted(7.0, name, row["held_as"])) == 7.0

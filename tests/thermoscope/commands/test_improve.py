@@ -98,5 +98,5 @@ def test_only_physics_that_stands_alone_is_added_without_asking(found, name):
 def test_asking_takes_a_number_of_the_list(word, name, monkeypatch, capsys):
     found = answer("group", row("mass@yoke", "group"), row("iron@yoke", "group"))
     monkeypatch.setattr("sys.stdin", io.StringIO(word))
-    assert command.asked(found, offered(found)) == name
+    assert command.user_choice(found, offered(found)) == name
     assert capsys.readouterr().out == ""  # stdout belongs to the result

@@ -16,7 +16,7 @@ from geom.families import families
 from thermoscope.cli import app
 from thermoscope.commands.use.optimise import read_bounds
 from thermoscope.design.condensations import Condensations
-from thermoscope.design.machine_keys import MachineFile, written
+from thermoscope.design.machine_keys import MachineFile, machine_file_text
 from validation.optimisation.space import Space
 
 EFFORT = ("--population", "12", "--generations", "4")
@@ -79,7 +79,7 @@ def test_a_design_is_a_machine_file_that_builds(tmp_path):
     file = MachineFile.read(Path("series-dc-100kw-jacket-one"))
     wanted = {"geometry.jacket.channels": 17.0, "geometry.jacket.height_mm": 9.5, "cooling.flow_L_per_min": 11.25}
     path = tmp_path / "design-01.toml"
-    path.write_text(written(file, wanted, "design-01", ["a design"]))
+    path.write_text(machine_file_text(file, wanted, "design-01", ["a design"]))
     machine = load_machine(path)
     assert machine.name == "design-01"
     assert machine.geometry.jacket.channels == 17

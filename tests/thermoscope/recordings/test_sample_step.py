@@ -12,7 +12,7 @@ from lumped.transfer.laws import Fixed, InputPower
 from thermoscope.case_folder.folder import load_case
 from validation import diagnose
 from validation.comparison.compare import compare
-from validation.measurement.sampling import Modes, apart, sample_step, sampled
+from validation.measurement.sampling import Modes, interpolation_error, sample_step, sampled
 
 STEPS = (5.0, 10.0, 30.0)
 
@@ -121,5 +121,5 @@ def test_modes_and_what_a_mean_leaves_of_them():
     assert (modes.shape @ modes.weight).real == pytest.approx(np.array([[0.5]]))
     for x in (0.3, 3.0, 30.0):
         mean = quad(lambda t, x=x: -np.expm1(-x * t), 0.0, 0.5)[0]
-        assert apart(np.array([x]))[0] == pytest.approx(abs(mean + np.expm1(-x) / 12.0), abs=1e-9)
-    assert apart(np.array([1e-6]))[0] == pytest.approx(1e-6 / 24.0, rel=1e-3)
+        assert interpolation_error(np.array([x]))[0] == pytest.approx(abs(mean + np.expm1(-x) / 12.0), abs=1e-9)
+    assert interpolation_error(np.array([1e-6]))[0] == pytest.approx(1e-6 / 24.0, rel=1e-3)

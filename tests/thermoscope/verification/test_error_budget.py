@@ -67,7 +67,7 @@ def test_a_network_of_more_states_leaves_less(built, looks, found):
     larger = build(built.machine, SIZE, SEGMENTS, replace(RECIPE, max_states=None, tolerance=0.01), axial_m=AXIAL)
     asked = rated(built.machine, built.network, *coefficients_on(built.machine, built.mesh))
     reader, T = Reader(built.field, built.network, asked, looks), asked.of_field(built.field)
-    small, large = (reader.apart(T, asked.of_network(b.network, built.field)) for b in (built, larger))
+    small, large = (reader.differences(T, asked.of_network(b.network, built.field)) for b in (built, larger))
     assert max(large.values()) < 0.5 * max(small.values())
     assert all(small[name] <= found.condensation_K[name] for name in small)
 

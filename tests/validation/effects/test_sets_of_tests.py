@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from one_body import measured
 
-from validation.conditions.conditional_effects import gate_of, sets_of, together
+from validation.conditions.conditional_effects import condition_of, sets_of, together
 from validation.effects.time_window import event
 from validation.inference.score import Score
 
@@ -34,7 +34,7 @@ def test_what_one_of_the_tests_does_not_show_is_no_candidate():
 
 def test_several_whole_tests_are_an_event_that_lasts_all_of_each():
     day, night = measured("day"), measured("night")
-    assert gate_of([day]) == "day"
-    found = event(gate_of([day, night]))
+    assert condition_of([day]) == "day"
+    found = event(condition_of([day, night]))
     assert found is not None
     assert found.spans == {t.name: ((t.time[0], t.time[-1]),) for t in (day, night)}

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from playground import Truth, wind
 
-from validation.calibration.calibrate import KnownSegments, calibrated, minimise, residual_noise
+from validation.calibration.calibrate import CachedSegments, calibrated, minimise, residual_noise
 from validation.calibration.unknowns import working
 from validation.effects import effect
-from validation.inference.evidence import calibrated_case, scored, settled, under
+from validation.inference.evidence import calibrated_case, converged, scored, under
 
 NAMES = ("convection@flange.right", "loss.constant@yoke", "sensor.bias@yoke", "mass@yoke")
 
@@ -25,7 +25,7 @@ def test_a_fit_goes_on_with_the_jacobian_it_has(evidence):
     fit = evidence.fit
     held = {p.name: p.value for p in fit.network.parameters} | fit.values
     setting = (fit.network, evidence.tests, fit.unknowns, fit.theta, residual_noise(fit), held)
-    kept, made = minimise(*setting, known=KnownSegments(fit.parts, nearby=False)), minimise(*setting)
+    kept, made = minimise(*setting, known=CachedSegments(fit.parts, nearby=False)), minimise(*setting)
     np.testing.assert_allclose(kept.theta, made.theta, rtol=1e-9, atol=1e-12)
     assert kept.objective == pytest.approx(made.objective, rel=1e-12)
 
@@ -44,7 +44,7 @@ def test_nothing_is_fitted_to_its_end_under_another_noise(evidence):
     """From wherever a fit stands: ever more steps of ever finer worth gain less than the evidence is read to."""
     far = replace(evidence.fit, theta=evidence.fit.theta + 0.5 * evidence.fit.unknowns.sd)
     other = under(replace(evidence, fit=far), residual_noise(evidence.fit))
-    end = settled(other).fit
+    end = converged(other).fit
     assert end.objective <= other.fit.objective
     held = {p.name: p.value for p in end.network.parameters} | end.values
     finer = minimise(end.network, evidence.tests, end.unknowns, end.theta, end.noise, held, 30, worth=0.005,

@@ -14,7 +14,7 @@ from validation.calibration.unknowns import working
 from validation.case import Test
 from validation.comparison.linearisation import segments
 from validation.doubt import USUAL
-from validation.inference.model_error import alone, bridges, joints, jumps, model_error, with_doubts
+from validation.inference.model_error import alone, joints, jumps, lumping_errors, model_error, with_doubts
 from validation.measurement.noise import first_noise
 from validation.measurement.operators import lag
 
@@ -36,7 +36,7 @@ def test_a_network_with_neutral_doubts_reads_the_same(case):
 def test_a_column_is_what_the_doubt_does(case):
     """A bridge of one sigma: small against what it spans, so that the machine with it differs by the column."""
     plain = network()
-    a, b, G = bridges(plain, USUAL["bridge"])[0]
+    a, b, G = lumping_errors(plain, USUAL["bridge"])[0]
     grown, doubts = with_doubts(plain, USUAL, case.tests)
     k = [p.name for p in doubts].index(f"doubt:beside:{a}|{b}")
     error = model_error(plain, case.tests, {}, USUAL)

@@ -32,7 +32,7 @@ def one_speed(time, rng):
 
 
 def planned(name, test):
-    return next(e for e in CANDIDATE_TESTS if e.name == name).made_from(test, network())
+    return next(e for e in CANDIDATE_TESTS if e.name == name).modified(test, network())
 
 
 @cache

@@ -12,7 +12,7 @@ from viz.figures import paper
 from viz.figures.flows import Flow, Heat, heat_flows, last_running_step
 from viz.figures.sankey import sankey_of_losses
 from viz.machine.animation import animate
-from viz.machine.network import LABEL, NODE, apart, clear_place, network_in_machine, places
+from viz.machine.network import LABEL, NODE, clear_place, network_in_machine, places, spread_out
 from viz.rendering.nodes import split
 
 MESH = motor(24)
@@ -111,7 +111,7 @@ def test_nodes_stand_where_their_parts_are():
 
 
 def test_nodes_on_one_spot_are_pushed_apart():
-    moved = apart({"a": np.zeros(3), "b": np.zeros(3), "c": np.array([0, 0, 1.0])}, 0.1)
+    moved = spread_out({"a": np.zeros(3), "b": np.zeros(3), "c": np.array([0, 0, 1.0])}, 0.1)
     assert np.linalg.norm(moved["a"] - moved["b"]) >= 0.1
     assert moved["c"].tolist() == [0, 0, 1.0]
 

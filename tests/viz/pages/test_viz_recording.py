@@ -12,7 +12,7 @@ from fictional import HISTORY, PLACES, POSITIONS, TIME, comparison
 from small_motor import motor
 
 from geom.errors import InputError
-from viz.recordings.arrangement import apart, beside, blueprint, seen
+from viz.recordings.arrangement import beside, blueprint, in_view, non_overlapping
 from viz.recordings.recording import TIME as TIME_LINE
 from viz.recordings.recording import verify, write_recording
 from viz.rendering.nodes import split
@@ -91,14 +91,14 @@ def test_names_of_sensors_cover_none_before_them():
     diagonal = np.linalg.norm(np.ptp(NODES.points, axis=0))
     _, right, up = View().axes()
     places = np.array([[0.0, 0.0, 0.0], 0.01 * diagonal * right, 0.125 * diagonal * up, 0.2 * diagonal * right])
-    assert apart(places, NODES.points) == [True, False, True, True]
+    assert non_overlapping(places, NODES.points) == [True, False, True, True]
 
 
 def test_names_of_what_is_hidden_stand_beside_the_machine():
     """On the line from the middle through the sensor as it is first seen, beyond every point of the machine."""
     places = np.array([[0.01, 0.0, 0.3], [0.1, -0.1, 0.5], [-0.12, 0.1, 0.2]])
-    at, outline = (seen(points, NODES.points)[0] for points in (beside(places, NODES.points), NODES.points))
-    for end, before in zip(at, seen(places, NODES.points)[0], strict=True):
+    at, outline = (in_view(points, NODES.points)[0] for points in (beside(places, NODES.points), NODES.points))
+    for end, before in zip(at, in_view(places, NODES.points)[0], strict=True):
         away = end / np.linalg.norm(end)
         assert away == pytest.approx(before / np.linalg.norm(before))
         assert (outline @ away).max() < end @ away

@@ -8,10 +8,10 @@ from PIL import Image
 from geom import load_machine
 from geom.description.roles import Role
 from viz.appearance.body import Body, Finish
-from viz.appearance.cutting import opened
+from viz.appearance.cutting import cut_body
 from viz.appearance.dressed import dressed
 from viz.appearance.making import ball, bolt, box, extruded, oval, revolved, rod, rounded, swept
-from viz.appearance.portrait import SAID, portrait
+from viz.appearance.portrait import CAPTION, portrait
 from viz.appearance.shape import joined
 from viz.rendering.cut import QUARTER
 from viz.rendering.nodes import SplitMesh
@@ -42,7 +42,7 @@ def test_every_meshed_part_is_shown_where_it_is(machine, bodies):
         mine = [b.shape for b in bodies if b.part == part.name and not b.added]
         assert mine, part.name
         z = joined(mine).points[:, 2]
-        rounder = part.made or part.identity.role is Role.WINDING  # than its prisms: a pipe, a slanted coil
+        rounder = part.cad_shape or part.identity.role is Role.WINDING  # than its prisms: a pipe, a slanted coil
         slanted = 0.1 * (part.span[1] - part.span[0]) if rounder else 1e-6
         assert part.span[0] - slanted <= z.min()
         assert z.max() <= part.span[1] + slanted
@@ -95,7 +95,7 @@ def test_a_ring_swept_shut_is_closed():
 
 def test_nothing_cut_is_left_in_the_wedge_and_caps_close_it():
     ring = Body("ring", Finish.CAST, revolved(shapely.box(1.0, 0.0, 2.0, 1.0)))
-    surface, caps = opened(ring, QUARTER)
+    surface, caps = cut_body(ring, QUARTER)
     for piece in (surface, caps):
         x, y = np.asarray(piece.points)[:, :2].T
         assert not ((x < -1e-6) & (y > 1e-6)).any()
@@ -108,8 +108,8 @@ def test_bolts_are_never_cut():
     head = bolt(0.01)
     there = Body("a", Finish.STEEL, head.on_end(np.deg2rad(135), 1.0, 0.0, 1), whole=True)
     beside = Body("a", Finish.STEEL, head.on_end(np.deg2rad(60), 1.0, 0.0, 1), whole=True)
-    assert opened(there, QUARTER) is None
-    surface, caps = opened(beside, QUARTER)
+    assert cut_body(there, QUARTER) is None
+    surface, caps = cut_body(beside, QUARTER)
     assert caps is None
     assert surface.n_cells == len(head.triangles)
 
@@ -131,7 +131,7 @@ def test_bodies_take_the_temperature_of_the_part_they_stand_for():
 def test_a_portrait_says_that_its_details_are_only_for_the_eye(tmp_path):
     machine = load_machine("tefc-industrial")
     p = portrait(machine, size=(640, 400), png=tmp_path / "p.png")
-    assert p.actors["footnote"].GetInput() == SAID
+    assert p.actors["footnote"].GetInput() == CAPTION
     p.close()
     picture = np.asarray(Image.open(tmp_path / "p.png").convert("RGB")).astype(int)
     assert 0.1 < (picture < 245).any(axis=2).mean() < 0.8

@@ -6,7 +6,7 @@ from PIL import Image
 from small_motor import motor
 
 from viz import Sensor, misses, split, uncertainty
-from viz.machine.misses import GUESS, SAID
+from viz.machine.misses import CAPTION, GUESS
 from viz.machine.pulses import Pulses
 from viz.rendering import scene
 from viz.rendering.cut import cut_away
@@ -28,7 +28,7 @@ def test_stripes_stand_where_it_is_a_guess_and_only_there(tmp_path):
     (all_told, limits, said), plain = drawn(np.ones(NODES.size), tmp_path / "a.png")
     (half_told, _, _), hatched = drawn(np.where(right, GUESS / 2, 1.0), tmp_path / "b.png")
     assert limits[0] == -limits[1]
-    assert said == SAID
+    assert said == CAPTION
     assert "hatched" not in all_told
     assert "hatched" in half_told
     changed = (np.abs(hatched - plain).max(axis=2) > 20).any(axis=0)

@@ -31,10 +31,10 @@ def answer(document: Mapping[str, Any]) -> Answer:
         better = [h["base"] for h in document["hypotheses"] if h["test"] == test and not h["excluded"]]
         words.append(f"{test} did not stand on the base its sheet says; the readings allow: {', '.join(better)}")
     sentence = "; ".join(words) or "No test's readings exclude the base that its sheet says"
-    return Answer(f"{sentence}.", [bases_tried(document["hypotheses"])])
+    return Answer(f"{sentence}.", [hypotheses_table(document["hypotheses"])])
 
 
-def bases_tried(hypotheses: Sequence[Mapping[str, Any]]) -> Grid:
+def hypotheses_table(hypotheses: Sequence[Mapping[str, Any]]) -> Grid:
     """Each with its deviance over the best, all tests calibrated together for each."""
     headers = ["test", "base", "said", "deviance", "verdict", "conduction (W)", "convection (W)", "radiation (W)",
                "W/K", "body W/K"]  # fmt: skip

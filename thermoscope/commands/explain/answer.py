@@ -25,7 +25,7 @@ def answer(case: str, word: str, about: str | None, target: str | None) -> int:
         raise InputError(f"'{word}' is no answer", "thermoscope explain answer", "yes or no")
     with progress() as tell:
         folder = open_case_for_writing(case, tell)
-    yes, subject = WORDS[word.lower()], known(folder, about or asked(folder))
+    yes, subject = WORDS[word.lower()], checked_subject(folder, about or open_question(folder))
     why = f"{subject}: {'yes' if yes else 'no'}"
     step = replace(folder.history.last, action="answer", effect="", why=why, rmse_K={}, answers={subject: yes})
     history = folder.history.and_then(step)
@@ -36,7 +36,7 @@ def answer(case: str, word: str, about: str | None, target: str | None) -> int:
     return 0
 
 
-def asked(folder: Folder) -> str:
+def open_question(folder: Folder) -> str:
     """What the last diagnosis asked about."""
     question = (last_diagnosis(folder) or {}).get("question")
     if not question:
@@ -52,7 +52,7 @@ def _fault(about: str, tests: Mapping[str, Test]) -> bool:
     return bool(at) and (place in channels or kind in kinds())
 
 
-def known(folder: Folder, about: str) -> str:
+def checked_subject(folder: Folder, about: str) -> str:
     """A test, an event inside the tests, a fault, or an input."""
     tests, found = {t.name: t for t in folder.case.tests}, event(about)
     if found:

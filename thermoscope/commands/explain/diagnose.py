@@ -6,14 +6,14 @@ from collections.abc import Mapping, Sequence
 from shlex import quote
 from typing import TYPE_CHECKING, Any
 
-from thermoscope.commands.bench.bases import bases_tried
+from thermoscope.commands.bench.bases import hypotheses_table
 from thermoscope.commands.explain.next_tests import next_tests
 from thermoscope.commands.model.error_budget import budget, in_short, sampling
 from thermoscope.commands.open_case import open_case
 from thermoscope.commands.stored_diagnosis import checked_diagnosis, save_diagnosis
 from thermoscope.commands.test.compare import contradiction
 from thermoscope.console.answer import Answer, Grid, cell
-from thermoscope.console.terminal import Progress, give, notes, progress, sized
+from thermoscope.console.terminal import Progress, give, notes, progress, value_with_interval
 
 if TYPE_CHECKING:
     from thermoscope.case_folder.folder import Folder
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 RIVALS = 3  # named in a sentence
 ODDS, ROWS = 5, 10  # shown of hypotheses and of candidates
-SHOWN = 0.005  # probabilities below half a per cent are in --json
+LEAST_PROBABILITY = 0.005  # probabilities below half a per cent are in --json
 
 
 def diagnose(case: str, target: str | None, older: bool = False) -> int:
@@ -54,7 +54,7 @@ def answer(document: Mapping[str, Any], called: str) -> Answer:
     sentence, case = f"{document['verdict']}: {document['words']}", quote(called)
     bases, steps = document.get("bases", []), document.get("sampling", {})
     if any(h["declared"] and h["excluded"] for h in bases):
-        return Answer(sentence, [bases_tried(bases)], f"--json FILE; thermoscope bench bases {case}")
+        return Answer(sentence, [hypotheses_table(bases)], f"--json FILE; thermoscope bench bases {case}")
     named = document.get("named", [])
     step = f"Next: thermoscope model add {case} {named[0]}" if named else f"Next: thermoscope explain effects {case}"
     hidden = [f"{h['effect']} below {cell(h['smallest_detectable'])} {h['unit']}" for h in document["cannot_see"]]
@@ -78,7 +78,11 @@ def question(document: Mapping[str, Any], case: str) -> str:
 
 def _odds(document: Mapping[str, Any]) -> Grid:
     """Every hypothesis with its probability."""
-    rows = [[o["hypothesis"], f"{100 * o['probability']:.1f}"] for o in document["odds"] if o["probability"] > SHOWN]
+    rows = [
+        [o["hypothesis"], f"{100 * o['probability']:.1f}"]
+        for o in document["odds"]
+        if o["probability"] > LEAST_PROBABILITY
+    ]
     return Grid("What the readings say", ["hypothesis", "probability (%)"], rows[:ODDS])
 
 
@@ -86,13 +90,15 @@ def _candidates(found: Sequence[Mapping[str, Any]]) -> Grid:
     """Size with interval and detection limit, and what it buys."""
     headers = ["effect", "%", "size (95 %)", "detectable", "unit", "refitted (K)", "held out (K)", "decision"]
     keep = ["size (95 %)", "%", "detectable", "unit", "refitted (K)"]
-    rows = [_row(c) for c in found if c["probability"] > SHOWN or c["decision"] != "no"] or [_row(c) for c in found[:1]]
+    rows = [_row(c) for c in found if c["probability"] > LEAST_PROBABILITY or c["decision"] != "no"] or [
+        _row(c) for c in found[:1]
+    ]
     return Grid("Candidates", headers, rows[:ROWS], ["named", "group"], keep)
 
 
 def _leader(found: Sequence[Mapping[str, Any]]) -> list[str]:
     """From which size the leader shows, what it buys and looks like, and the experiment that proves it."""
-    if not found or found[0]["probability"] <= SHOWN:
+    if not found or found[0]["probability"] <= LEAST_PROBABILITY:
         return []
     first = found[0]
     lines = [f"Detection limit: these tests show {first['effect']} from {limit(first)} on."]
@@ -108,7 +114,7 @@ def _lost(found: Sequence[Mapping[str, Any]], named: Sequence[str]) -> list[str]
     if not named:
         return []
     refitted = [f"Against {c['effect']}: it {c['note']} than {found[0]['effect']}." for c in found[1:ROWS]
-                if c["note"] and c["probability"] > SHOWN and c["effect"] not in named]  # fmt: skip
+                if c["note"] and c["probability"] > LEAST_PROBABILITY and c["effect"] not in named]  # fmt: skip
     rivals = sorted((c for c in found if c["effect"] not in named and not c["note"]), key=lambda c: -c["score"])
     each = ", ".join(f"{c['effect']} {c['score']:.1f}" for c in rivals[:RIVALS])
     lead = next(c["score"] for c in found if c["effect"] == named[0])
@@ -134,7 +140,7 @@ def events(document: Mapping[str, Any], likely: bool = True) -> list[Grid]:
     rows = [
         [f"event@{i}", e["words"], f"{100 * e['probability']:.1f}", e["effect"].split(" in ")[0], e["value"],
          "" if e["unit"] == "1" else e["unit"]] for i, e in enumerate(document.get("events", []), 1)
-        if likely == (e["probability"] > SHOWN)
+        if likely == (e["probability"] > LEAST_PROBABILITY)
     ]  # fmt: skip
     headers = ["to add", "when", "%", "most likely", "size", "unit"]
     title = "What may have differed for a while" if likely else "Stretches in which hardly anything differed"
@@ -144,7 +150,7 @@ def events(document: Mapping[str, Any], likely: bool = True) -> list[Grid]:
 def _row(c: Mapping[str, Any]) -> list[Any]:
     size, share = c["amplitude"], f"{100 * c['probability']:.1f}"
     return [
-        c["effect"], share, sized(size["value"], *size["ci95"]), cell(c["smallest_detectable"]),
+        c["effect"], share, value_with_interval(size["value"], *size["ci95"]), cell(c["smallest_detectable"]),
         "" if size["unit"] == "1" else size["unit"], _arrow(c["rmse_K"]), _arrow(c["holdout_rmse_K"]), c["decision"],
     ]  # fmt: skip
 

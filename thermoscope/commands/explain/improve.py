@@ -16,7 +16,7 @@ from thermoscope.commands.model.revise import recorded
 from thermoscope.commands.open_case import open_case_for_writing
 from thermoscope.commands.stored_diagnosis import save_diagnosis
 from thermoscope.console.answer import Answer, Grid
-from thermoscope.console.terminal import give, progress, sized
+from thermoscope.console.terminal import give, progress, value_with_interval
 from viz.pages.next_tests import deciding
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ def improve(case: str, yes: bool, most: int, target: str | None) -> int:
         folder = open_case_for_writing(case, tell)
         checked_columns(folder)
         ledger = Ledger(folder)
-        guide = Supervisor(singletons if yes else asked, ledger.keep)
+        guide = Supervisor(singletons if yes else user_choice, ledger.keep)
         done = improve(folder.case, guide, most, tell, folder.settings.kinds)
     found = {"case": folder.case.name, "revision": ledger.history.last.number, **done.diagnosis.document()}
     save_diagnosis(folder, json.loads(json.dumps(found, default=float)))
@@ -54,7 +54,7 @@ class Ledger:
         write_columns(self.folder, self.history.last.effects)
 
 
-def asked(found: Diagnosis, choice: Sequence[Candidate]) -> str | None:
+def user_choice(found: Diagnosis, choice: Sequence[Candidate]) -> str | None:
     """The user's word, on stderr and stdin: a number of the list, or nothing to stop."""
     lines = [f"  {i + 1}  {offer(c)}" for i, c in enumerate(choice)]
     print(f"{found.words}\n" + "\n".join(lines), file=sys.stderr)
@@ -67,7 +67,7 @@ def asked(found: Diagnosis, choice: Sequence[Candidate]) -> str | None:
 
 def offer(c: Candidate) -> str:
     """A candidate as the question shows it."""
-    size = f"{sized(c.value, *c.ci95)} {c.unit}".removesuffix(" 1")
+    size = f"{value_with_interval(c.value, *c.ci95)} {c.unit}".removesuffix(" 1")
     fell = f", refitted {c.rmse_K[0]:.2f} -> {c.rmse_K[1]:.2f} K" if c.rmse_K else ""
     return f"{c.effect}: {c.title}, {size}, probability {100 * c.probability:.0f} %{fell}"
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from geom.solids.surfaces import CadCheck
     from thermoscope.console.terminal import Progress
     from thermoscope.pipeline import Built
-    from thermoscope.verification.network_size import SizedNetwork
+    from thermoscope.verification.network_size import NetworkSize
 
 ERRORS = ("mean", "hot", "point")
 
@@ -70,7 +70,7 @@ def pictures(built: Built, folder: Path, tell: Progress) -> list[Path]:
 
 def built_from(
     described: Machine, accuracy: float | None, tell: Progress, size_m: float = 0.06
-) -> tuple[Built, SizedNetwork | None]:
+) -> tuple[Built, NetworkSize | None]:
     """At the size a case runs, or at the smallest that is accurate enough.  size_m : of the mesh's triangles (m)"""
     from lumped.machine.bases import on_all
     from thermoscope.pipeline import build as usual
@@ -124,7 +124,7 @@ def answer(document: Mapping[str, Any], folder: Path) -> Answer:
     parts = Grid("Parts", headers, [_row(part) for part in document["parts"]], ["NO"], ["mass (kg)", "watertight"])
     sizes = _sizes(document["sizes"]) if "sizes" in document else []
     shown = [*sizes, crosscheck.parts(document), parts]
-    rest = [crosscheck.links(document), crosscheck.hand(document)]
+    rest = [crosscheck.links(document), crosscheck.hand_formula_table(document)]
     return Answer(sentence, shown, f"solids, mesh, tables and pictures in {folder}; --json FILE", rest)
 
 

@@ -19,10 +19,10 @@ from thermoscope.console.terminal import give, plain, progress
 if TYPE_CHECKING:
     from thermoscope.console.terminal import Progress
     from thermoscope.pipeline import Built
-    from thermoscope.verification.network_size import SizedNetwork
+    from thermoscope.verification.network_size import NetworkSize
 
 HOT = 200.0  # degC, what insulation bears
-SHOWN = 12  # rows of a long table on the screen; the files hold all
+MOST_ROWS = 12  # rows of a long table on the screen; the files hold all
 
 
 def crosscheck(machine: str, out: Path | None, accuracy: float, target: str | None) -> int:
@@ -39,7 +39,7 @@ def crosscheck(machine: str, out: Path | None, accuracy: float, target: str | No
     return 0 if found.met else 1
 
 
-def checked(built: Built, found: SizedNetwork | None, tell: Progress) -> dict[str, Any]:
+def checked(built: Built, found: NetworkSize | None, tell: Progress) -> dict[str, Any]:
     """Part by part and link by link at a point where the machine settles, and the hand formulas there."""
     from lumped.machine.losses import loss_shares
     from thermoscope.verification.crosscheck import crosscheck as compare
@@ -118,7 +118,7 @@ def answer(document: Mapping[str, Any], folder: Path) -> Answer:
     sentence = (f"Steady at the rated point, network and field differ by {abs(off['percent_of_rise']):.2g} % of "
                 f"the rise at most ({off['place']}); its energy balance {document['energy_balance']:.1e}.")  # fmt: skip
     point = ", ".join(f"{name} {value:.4g}" for name, value in document["operating_point"].items())
-    shown = [parts(document), links(document), hand(document)]
+    shown = [parts(document), links(document), hand_formula_table(document)]
     return Answer(sentence, shown, f"all rows in {folder}/crosscheck*.csv; --json FILE", [f"Operating point: {point}"])
 
 
@@ -140,11 +140,11 @@ def parts(document: Mapping[str, Any]) -> Grid:
 def links(document: Mapping[str, Any]) -> Grid:
     """Heat through links, the largest difference first."""
     rows = [[link["link"], link["fem_W"], link["network_W"], link["percent_of_heat"]] for link in document["links"]]
-    return Grid("Heat through links (W)", ["link", "field", "network", "off (% of all heat)"], rows[:SHOWN])
+    return Grid("Heat through links (W)", ["link", "field", "network", "off (% of all heat)"], rows[:MOST_ROWS])
 
 
-def hand(document: Mapping[str, Any]) -> Grid:
+def hand_formula_table(document: Mapping[str, Any]) -> Grid:
     """Hand formulas, the furthest off first."""
     rows = sorted(document["hand"], key=lambda row: -abs(row["ratio"] - 1.0))
-    body = [list(row.values()) for row in rows[:SHOWN]]
+    body = [list(row.values()) for row in rows[:MOST_ROWS]]
     return Grid("Hand formulas (K/W)", ["link", "formula", "textbook", "field", "ratio"], body, keep=["ratio", "field"])

@@ -13,7 +13,7 @@ from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import Revision, save_history
 from thermoscope.case_folder.runs import at_revision, by_interest, ends, mean_rows
 from thermoscope.commands.open_case import open_case_for_writing
-from thermoscope.commands.stored_diagnosis import saved_diagnosis
+from thermoscope.commands.stored_diagnosis import current_diagnosis
 from thermoscope.console.answer import Answer, Grid, cell
 from thermoscope.console.terminal import give, notes, progress
 from validation.comparison.compare import errors
@@ -43,7 +43,7 @@ def meant(folder: Folder, effect: str) -> str:
     kind, _, which = effect.partition("@")
     if kind != "event":
         return effect
-    found = (saved_diagnosis(folder) or {}).get("events", [])
+    found = (current_diagnosis(folder) or {}).get("events", [])
     names = {name: e["effect"] for i, e in enumerate(found) for name in (str(i + 1), e["event"])}
     if which not in names:
         right = f"event@1 to event@{len(found)}" if found else NO_EVENT
@@ -123,7 +123,7 @@ def recorded(result: revise.Revision, evidence: Mapping[str, float | str]) -> Re
 
 def evidence(folder: Folder, result: revise.Revision) -> dict[str, float | str]:
     """What the last diagnosis of this very model said about the effect; empty when there was none."""
-    found = saved_diagnosis(folder) if result.action == "add" else None
+    found = current_diagnosis(folder) if result.action == "add" else None
     rows = [c for c in (found or {}).get("candidates", []) if c["effect"] == result.effect]
     return {key: rows[0][key] for key in ("probability", "score", "threshold", "decision")} if rows else {}
 

@@ -8,8 +8,8 @@ from pathlib import Path
 from geom.errors import InputError
 from thermoscope.case_folder.folder import Folder
 from thermoscope.commands.open_case import open_case
-from thermoscope.commands.show.pages import made
-from thermoscope.commands.stored_diagnosis import saved_diagnosis
+from thermoscope.commands.show.pages import provenance
+from thermoscope.commands.stored_diagnosis import current_diagnosis
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import give, progress
 
@@ -30,7 +30,7 @@ def plan(case: str, effects: Sequence[str], test: str | None, out: Path | None, 
         found = predicted_curves(folder.case, models, test)
         file = out or Path("out") / f"{folder.case.name}-plan.html"
         last = folder.case.tests[-1]
-        write_bench_page(BenchPage(folder.case.name, found, last.name, schedule(found.test, last), made()), file)
+        write_bench_page(BenchPage(folder.case.name, found, last.name, schedule(found.test, last), provenance()), file)
     document = {
         "case": folder.case.name, "test": found.experiment.name, "hours": found.experiment.hours,
         "hypotheses": list(found.curves), "closest_sigma": found.closest(), "page": str(file),
@@ -42,7 +42,7 @@ def plan(case: str, effects: Sequence[str], test: str | None, out: Path | None, 
 
 def suspected(folder: Folder) -> list[str]:
     """The effects that the last diagnosis of this model holds for possible, most probable first."""
-    document = saved_diagnosis(folder)
+    document = current_diagnosis(folder)
     if document is None:
         right = f"thermoscope explain diagnose {folder.case.name} first, or --effect EFFECT@PLACE"
         raise InputError("has no diagnosis of the model as it stands", folder.case.name, right)

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from geom.errors import InputError, MissingDependency, ThermoscopeError
-from lumped.schemas.reader import known
+from lumped.schemas.reader import suggestion
 from thermoscope.case_folder.files import write_whole
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.workbook import tables, write_csvs, write_xlsx
@@ -26,7 +26,7 @@ def export(
 ) -> int:  # fmt: skip
     """A workbook, CSV files, the model as C, FMU, JSON or MAT file, or its observer.  sensors : of the observer"""
     if form not in (*WORKBOOKS, *MODELS):
-        raise InputError(f"'{form}' is no form to export", "--as", known(form, (*WORKBOOKS, *MODELS)))
+        raise InputError(f"'{form}' is no form to export", "--as", suggestion(form, (*WORKBOOKS, *MODELS)))
     if version not in VERSIONS:
         raise InputError(f"FMI {version} is not written", "--fmi", "2 or 3")
     if sensors and form != "observer":
@@ -113,7 +113,7 @@ def _observer(
     written = [write_whole(where / name, text) for name, text in observer_files(of).items()]
     document = {
         "case": folder.case.name, "revision": folder.case.model.revision, "as": "observer",
-        "files": [str(p) for p in written], "state_bytes": of.bytes, "inputs": of.given,
+        "files": [str(p) for p in written], "state_bytes": of.bytes, "inputs": of.input_names,
         "sensors": [c.name for c in sensors], "missing_heat": of.process.bodies, "outputs": [o.name for o in looks],
     }  # fmt: skip
     sentence = f"An observer of {len(sensors)} sensors, {of.bytes} bytes from step to step."

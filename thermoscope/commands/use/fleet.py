@@ -12,7 +12,7 @@ import numpy as np
 
 from geom.errors import InputError
 from lumped.integration.ensemble import dask_cluster
-from lumped.schemas.reader import known
+from lumped.schemas.reader import suggestion
 from thermoscope.commands.open_case import open_case
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import give, progress
@@ -33,7 +33,7 @@ def fleet(case: str, names: Sequence[Path], like: str | None, cluster: str | Non
         folder = open_case(case, tell)
         sheets = {e.name: e.sheet for e in folder.settings.tests}
         if like is not None and like not in sheets:
-            raise InputError(f"no test '{like}'", "--like", known(like, sheets))
+            raise InputError(f"no test '{like}'", "--like", suggestion(like, sheets))
         test = next(t for t in folder.case.tests if like in (None, t.name))
         reader = Reader(replace(folder.case, tests=()), test, load_sheet(sheets[test.name]),
                         folder.settings.sample_s or STEP_S, tuple(sheets))  # fmt: skip

@@ -22,9 +22,9 @@ from thermoscope.commands.open_case import open_case
 from thermoscope.commands.use.export import read_limits
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import Progress, give, notes, progress
-from thermoscope.rating import Asked, Rated, rated_model
+from thermoscope.rating import Rated, RatingRequest, rated_model
 from thermoscope.rating_rows import derated, load_of, point, row
-from validation.rating.envelope import FORMS, rated, until
+from validation.rating.envelope import DUTIES, rated, until
 from validation.rating.holding_map import holding_times
 from validation.rating.operation import Operation
 from validation.rating.repeated_cycle import Lap, share_for_ever, time_to_limit
@@ -40,7 +40,7 @@ def rate(
 ) -> int:  # fmt: skip
     """Ratings of a case, or of a machine with nothing measured."""
     given = read_limits(limits), read_at(at), tuple(loads)
-    asked = Asked(*given, losses, voltage, overload / 100.0, top_rpm, cycle, mapped)
+    asked = RatingRequest(*given, losses, voltage, overload / 100.0, top_rpm, cycle, mapped)
     if voltage is not None and losses is None:
         raise InputError(
             "is of a loss map, and none is given", "--voltage", "--losses FILE.csv with a column voltage_V"
@@ -98,17 +98,17 @@ def once() -> Iterator[list[str]]:
     said.extend(f"{what} (a rating looks beyond what it ends at)" for what in last.values())
 
 
-def document_of(folder: Folder, asked: Asked, sure: bool | None, tell: Progress) -> dict[str, Any]:
+def document_of(folder: Folder, asked: RatingRequest, sure: bool | None, tell: Progress) -> dict[str, Any]:
     it = rated_model(folder, asked)
     model, op, limits = it.model, it.op, it.limits
     tell("ratings")
-    here = {form: rated(model, op, limits, form, None) for form in FORMS}
+    here = {form: rated(model, op, limits, form, None) for form in DUTIES}
     old = _before(folder, asked, tell)
-    before = {} if old is None else {form: load_of(old, form, None) for form in FORMS}
+    before = {} if old is None else {form: load_of(old, form, None) for form in DUTIES}
     posterior = posterior_of(folder, tell) if asked.losses is None and wanted(model.network, sure) else None
     tell("envelope over the speed")
     speeds = _speeds(folder, op, asked)
-    envelope = [rated(model, op, limits, form, n) for form in FORMS for n in speeds]
+    envelope = [rated(model, op, limits, form, n) for form in DUTIES for n in speeds]
     tell("derating")
     load, main = here["S1"].load, op.inputs[op.main]
     return {
@@ -123,7 +123,7 @@ def document_of(folder: Folder, asked: Asked, sure: bool | None, tell: Progress)
     }  # fmt: skip
 
 
-def _before(folder: Folder, asked: Asked, tell: Progress) -> Rated | None:
+def _before(folder: Folder, asked: RatingRequest, tell: Progress) -> Rated | None:
     """The model before its last step; none without a step."""
     earlier = before_last(folder)
     if earlier is None:
@@ -143,7 +143,7 @@ def _map(it: Rated, ends: tuple[float, float], speeds: Sequence[float], tell: Pr
     return {"speed_rpm": list(speeds), it.op.main: [main * x for x in loads], "seconds": seconds.tolist()}
 
 
-def _cycle(folder: Folder, it: Rated, asked: Asked, tell: Progress) -> dict[str, Any]:
+def _cycle(folder: Folder, it: Rated, asked: RatingRequest, tell: Progress) -> dict[str, Any]:
     """The share of a drive cycle's load that may be repeated for ever; how long all of it from cold."""
     if asked.cycle is None:
         return {}
@@ -165,7 +165,7 @@ def _cycle(folder: Folder, it: Rated, asked: Asked, tell: Progress) -> dict[str,
     return {"name": cycle.name, "share": share, "at": at, "until_s": time_to_limit(it.model, op, it.limits, lap)}
 
 
-def _speeds(folder: Folder, op: Operation, asked: Asked) -> list[float]:
+def _speeds(folder: Folder, op: Operation, asked: RatingRequest) -> list[float]:
     """From rest to the largest speed that was recorded or asked for."""
     if op.speed is None:
         return []
@@ -174,7 +174,7 @@ def _speeds(folder: Folder, op: Operation, asked: Asked) -> list[float]:
     return [float(n) for n in np.linspace(0.0, top, POINTS)] if top > 0.0 else []
 
 
-def _overload(it: Rated, asked: Asked, load: float) -> dict[str, Any]:
+def _overload(it: Rated, asked: RatingRequest, load: float) -> dict[str, Any]:
     """How long at a multiple of the continuous rating, from cold and from rest at three quarters of it."""
     if not np.isfinite(load):
         return {}

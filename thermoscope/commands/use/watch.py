@@ -19,7 +19,7 @@ from thermoscope.case_folder.runs import mean_rows
 from thermoscope.commands.open_case import PACKAGE, open_case
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import STDOUT, give, progress, say
-from thermoscope.monitoring.live_rows import PIPE, TOGETHER, Rows, opened, table_of, together
+from thermoscope.monitoring.live_rows import PIPE, TOGETHER, Rows, open_stream, table_of, together
 from thermoscope.monitoring.observing import chosen, designed, joined, record_of, started
 from thermoscope.recordings.formats import stem_of
 from thermoscope.recordings.sheet import load_sheet
@@ -35,7 +35,7 @@ MINUTE = 60.0
 
 def watch(case: str, follow: str, given: Sequence[str], like: str | None, out: Path | None, target: str | None) -> int:
     """Rows from a file or a pipe.  given : sensors to use, by default all;  like : test whose sheet the rows have"""
-    with opened(follow) as stream:
+    with open_stream(follow) as stream:
         with progress() as tell:
             folder = open_case(case, tell)
             sheets = {e.name: load_sheet(e.sheet) for e in folder.settings.tests}
@@ -144,7 +144,7 @@ class Session:
         places = [c.place for c in self.sensors]
         places += [n for n in self.design.process.bodies if n not in places]
         shown = [f"{n} {seen[n][0]:.1f} +- {1.96 * seen[n][1]:.1f}" for n in dict.fromkeys(places) if n in seen]
-        said = [_said(e.kind, e.where, e.amplitude, e.probability) for e in self.one.open.values()]
+        said = [_alarm_text(e.kind, e.where, e.amplitude, e.probability) for e in self.one.open.values()]
         return f"{sample.time_s / MINUTE:7.1f} min  {', '.join(shown)} degC{''.join('; ' + s for s in said)}"
 
     def csv(self) -> str:
@@ -181,7 +181,7 @@ def _interval(value: float, sd: float) -> list[float]:
     return [value - 1.96 * sd, value + 1.96 * sd]
 
 
-def _said(kind: str, where: str, amplitude: float, probability: float) -> str:
+def _alarm_text(kind: str, where: str, amplitude: float, probability: float) -> str:
     if kind == "model":
         return f"the model fails at {where}: {amplitude:+.3g} W beyond doubt ({100 * probability:.0f} %)"
     size = f" by {amplitude:+.2g} K" if np.isfinite(amplitude) else ""
@@ -194,7 +194,7 @@ def answer(document: dict[str, Any]) -> Answer:
     sentence = (f"{document['duration_s'] / MINUTE:.0f} min watched; hottest: {hottest['place']}, "
                 f"{hottest['max_C']:.1f} degC.")  # fmt: skip
     rows = [[p["place"], p["end_C"], p["end_ci95"][1] - p["end_C"], p["max_C"]] for p in document["places"]]
-    events = [[_said(e["kind"], e["where"], _number(e["amplitude"]), e["probability"]), e["from_s"], e["to_s"]]
+    events = [[_alarm_text(e["kind"], e["where"], _number(e["amplitude"]), e["probability"]), e["from_s"], e["to_s"]]
               for e in document["events"]]  # fmt: skip
     held = [[w["sensor"], w["rmse_K"], w["open_loop_rmse_K"]] for w in document["withheld"]]
     parts = [

@@ -27,17 +27,17 @@ LATE = 0.75  # share of a test after which its readings count as its end
 
 @dataclass(frozen=True)
 class Curve:
-    """One sensor in one test.  warming, settled : None where `why` says what is missing for it"""
+    """One sensor in one test.  warming, equilibrium : None where `why` says what is missing for it"""
 
     channel: str
     place: str
     warming: Warming | None
-    settled: Equilibrium | None
+    equilibrium: Equilibrium | None
     why: str = ""
 
     def document(self) -> dict[str, Any]:
         return {"channel": self.channel, "place": self.place, "eq8": self.warming and self.warming.document(),
-                "equilibrium": self.settled and self.settled.document(), "why": self.why}  # fmt: skip
+                "equilibrium": self.equilibrium and self.equilibrium.document(), "why": self.why}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -81,11 +81,11 @@ def curve(test: Test, channel: Channel, resolution_K: float = 0.5) -> Curve:
     """Eq. 8 and eq. 9 of one sensor, as far as its record allows."""
     minutes, fine = test.time / 60.0, max(resolution_K, channel.sigma_K)
     start = test.initial if isinstance(test.initial, float) else None
-    warming, why = _tried(lambda: fit_eq8(minutes, channel.y, start, resolution_K))
+    warming, why = _result_or_reason(lambda: fit_eq8(minutes, channel.y, start, resolution_K))
     if not constant(test):
         warming, why = None, "the load varies: eq. 8 is for constant load"
-    settled, short = _tried(lambda: equilibrium(minutes, channel.y, fine, window_min(test, channel)))
-    return Curve(channel.name, channel.place, warming, settled, "; ".join(w for w in (why, short) if w))
+    steady, short = _result_or_reason(lambda: equilibrium(minutes, channel.y, fine, window_min(test, channel)))
+    return Curve(channel.name, channel.place, warming, steady, "; ".join(w for w in (why, short) if w))
 
 
 def window_min(test: Test, channel: Channel) -> float:
@@ -94,7 +94,7 @@ def window_min(test: Test, channel: Channel) -> float:
     return max(10.0, 2.0 * float(np.median(np.diff(read)))) if read.size > 1 else 10.0
 
 
-def _tried(look: Any) -> tuple[Any, str]:
+def _result_or_reason(look: Any) -> tuple[Any, str]:
     try:
         return look(), ""
     except InputError as fault:
@@ -110,7 +110,7 @@ def constant(test: Test) -> bool:
 
 def _rules(test: Test, predicted: Array, resolution_K: float) -> tuple[Assembly, ...]:
     window = max((window_min(test, c) for c in test.channels), default=10.0)
-    found, _ = _tried(lambda: assemblies(test, predicted, resolution_K, window))
+    found, _ = _result_or_reason(lambda: assemblies(test, predicted, resolution_K, window))
     return tuple(found or ())
 
 

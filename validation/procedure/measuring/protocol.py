@@ -23,7 +23,7 @@ ROOM_K = 1.0  # the machine counts as cold within this of the room
 WAIT_H = 12.0  # usual time after a run until it is
 SPEED_SHARE = 0.005  # of the speed; as much of a back-EMF is 5 K of a NdFeB magnet (-0.1 %/K)
 DRIFT_K_H = 2.0  # IEC 60034-1: less than 1 K per half hour
-APART_S, SPAN_S = 20.0, 300.0  # s; every 15 s for 5 min is asked for
+INTERVAL_S, SPAN_S = 20.0, 300.0  # s; every 15 s for 5 min is asked for
 
 
 @dataclass(frozen=True)
@@ -215,7 +215,7 @@ def _hot_ohm(record: Record) -> tuple[State, str]:
     done = _guarded(lambda: _range_words(record.ohmmeter, hot.cooling[0][1], hot.range_high, "hot resistance"))
     if done[0] == "refused":
         return done
-    if len(times) < 4 or times[-1] < SPAN_S * 0.8 or max(np.diff(times)) > APART_S:
+    if len(times) < 4 or times[-1] < SPAN_S * 0.8 or max(np.diff(times)) > INTERVAL_S:
         return (
             "doubtful",
             f"{len(times)} readings to {times[-1]:g} s; every 15 s for 5 min let the fits judge themselves",

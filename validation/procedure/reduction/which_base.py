@@ -110,7 +110,7 @@ def deviance(fit: Fit) -> float:
     return 2.0 * fit.objective
 
 
-def bases_tried(case: Case, progress: Progress = no_progress) -> list[Hypothesis]:
+def base_hypotheses(case: Case, progress: Progress = no_progress) -> list[Hypothesis]:
     """Every base for every test; none where the network has no bases."""
     return which_base(case, progress=progress) if switches(case.model.network) else []
 
