@@ -33,9 +33,9 @@ JUMP_S = 1e-6  # far below any step, far above the rounding of a day in seconds
 LAYOUT = 2  # of a kept file: a change here makes old ones be left alone
 
 
-def wanted(network: Network, asked: bool | None) -> bool:
+def wanted(network: Network, requested: bool | None) -> bool:
     """Whether bands are made: as asked, else where they cost little."""
-    return len(network.states) <= SMALL if asked is None else asked
+    return len(network.states) <= SMALL if requested is None else requested
 
 
 def posterior_of(folder: Folder, progress: Progress) -> ParameterPosterior:
@@ -119,14 +119,14 @@ def strictly_increasing(time: Array) -> Array:
     return time + JUMP_S * np.cumsum(np.diff(time, prepend=-np.inf) == 0.0)
 
 
-def documents(found: Bands) -> dict[str, dict[str, Any]]:
+def documents(bands: Bands) -> dict[str, dict[str, Any]]:
     """Place -> the fields of its band: at its largest temperature, at the end, and where it is widest."""
     out = {}
-    for k, name in enumerate(found.names):
-        hottest = int(np.argmax(found.y[:, k]))
+    for k, name in enumerate(bands.names):
+        hottest = int(np.argmax(bands.y[:, k]))
         out[name] = {
-            "max_ci95": interval(found, hottest, k), "end_ci95": interval(found, -1, k),
-            "widest_ci95_K": float(2.0 * found.half95[:, k].max()),
+            "max_ci95": interval(bands, hottest, k), "end_ci95": interval(bands, -1, k),
+            "widest_ci95_K": float(2.0 * bands.half95[:, k].max()),
         }  # fmt: skip
     return out
 
@@ -154,7 +154,7 @@ def of_tests(folder: Folder, progress: Progress) -> list[dict[str, Any]]:
     return out
 
 
-def interval(found: Bands, at: int, k: int) -> list[float]:
+def interval(bands: Bands, at: int, k: int) -> list[float]:
     """Central 95 % (degC)."""
-    half = float(found.half95[at, k])
-    return [float(found.y[at, k]) - half, float(found.y[at, k]) + half]
+    half = float(bands.half95[at, k])
+    return [float(bands.y[at, k]) - half, float(bands.y[at, k]) + half]

@@ -107,10 +107,10 @@ def check(target: str | None, browsers: Sequence[str] = BROWSERS) -> int:
     return 0 if document["ready"] else 1
 
 
-def answer(found: list[Finding]) -> Answer:
+def answer(parts: list[Finding]) -> Answer:
     """What is missing, and the command that fixes it."""
-    missing = [f.name for f in found if f.needed and not f.found]
-    lines = [_line(f) for f in found]
+    missing = [f.name for f in parts if f.needed and not f.found]
+    lines = [_line(f) for f in parts]
     sentence = f"This computer lacks {', '.join(missing)}." if missing else "This computer has all that is needed."
     return Answer(sentence, lines)
 

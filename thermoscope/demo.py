@@ -81,27 +81,27 @@ def demo(out: Path, target: str | None) -> int:
     return closing(stages, done, out, target, time.monotonic() - begun)
 
 
-def left_over(found: Mapping[str, Any], errors: Mapping[str, Any]) -> str:
+def left_over(diagnosis: Mapping[str, Any], errors: Mapping[str, Any]) -> str:
     """What the worst sensor still misses, and what that is: as the diagnosis says it, or that it cannot be told."""
     rows = [(c, t["name"]) for t in errors["tests"] for c in t["channels"] if c["verdict"] == "over"]
     if not rows:
         return "Every sensor is within its limit in every test."
     worst, test = max(rows, key=lambda row: row[0]["rmse_K"] / row[0]["limit_K"])
-    said = [r["words"] for r in found.get("remainder", []) if r["channel"] == worst["channel"]]
+    said = [r["words"] for r in diagnosis.get("remainder", []) if r["channel"] == worst["channel"]]
     if said:
         return str(said[0])
     return (
         f"{worst['channel']} is still {worst['rmse_K']:.1f} K off in {test} (limit {worst['limit_K']:.1f} K): within "
-        f"the doubts of the model, these data cannot tell why{next_likely(found)}."
+        f"the doubts of the model, these data cannot tell why{next_likely(diagnosis)}."
     )
 
 
-def next_likely(found: Mapping[str, Any]) -> str:
+def next_likely(diagnosis: Mapping[str, Any]) -> str:
     """The most probable second effect and the test that would tell."""
-    tests = {c["effect"]: c["isolating_test"] for c in found["candidates"] if c["isolating_test"]}
-    for row in found["odds"]:
-        more = [e for e in row["effects"] if e not in found["named"]]
-        if len(row["effects"]) == len(found["named"]) + 1 and more[0] in tests and not row.get("tests"):
+    tests = {c["effect"]: c["isolating_test"] for c in diagnosis["candidates"] if c["isolating_test"]}
+    for row in diagnosis["odds"]:
+        more = [e for e in row["effects"] if e not in diagnosis["named"]]
+        if len(row["effects"]) == len(diagnosis["named"]) + 1 and more[0] in tests and not row.get("tests"):
             return f"; likeliest {more[0]} ({100 * row['probability']:.0f} %): {tests[more[0]]}"
     return ""
 
@@ -178,13 +178,13 @@ def _picture(png: Path, draw: Callable[[Path], Any]) -> Path | None:
     return png
 
 
-def odds(found: Mapping[str, Any], out: Path) -> Path | None:
+def odds(diagnosis: Mapping[str, Any], out: Path) -> Path | None:
     """The probability of every hypothesis."""
     from viz import posterior
 
-    if not found:
+    if not diagnosis:
         return None
-    posterior(found["odds"], png=out / "3-odds.png")
+    posterior(diagnosis["odds"], png=out / "3-odds.png")
     return out / "3-odds.png"
 
 

@@ -53,19 +53,19 @@ class Rated:
     limits: Mapping[str, float]
 
 
-def rated_model(folder: Folder, asked: RatingRequest) -> Rated:
+def rated_model(folder: Folder, request: RatingRequest) -> Rated:
     """Of a case as it stands, or of a machine at its rated point."""
     network, values = model_of(folder)
     rows = named_rows(network, folder)
-    limits = places(asked.limits, rows, network.identities)
+    limits = places(request.limits, rows, network.identities)
     tests, usual = folder.case.tests, rated_point(folder, network)
-    if asked.losses is not None:
-        grid = loss_grid(columns_of(asked.losses), str(asked.losses), asked.voltage)
-        network = with_losses(network, grid, str(asked.losses))
+    if request.losses is not None:
+        grid = loss_grid(columns_of(request.losses), str(request.losses), request.voltage)
+        network = with_losses(network, grid, str(request.losses))
         network = replace(network, quantities={TORQUE: USUAL[TORQUE], SPEED: USUAL[SPEED], **network.quantities})
         usual = {**usual, TORQUE: float(grid.torque.max()), SPEED: float(np.median(grid.speed)), **_air(folder)}
         tests = ()
-    op = operation(network, tests, asked.at, asked.loads, usual)
+    op = operation(network, tests, request.at, request.loads, usual)
     mine = {p.name for p in network.parameters}
     model = Model(network, {k: v for k, v in values.items() if k in mine}, [rows[p] for p in limits])
     return Rated(model, op, limits)

@@ -160,16 +160,16 @@ def _principal(block: Block, S: Floats, A: sp.csr_array) -> Principal:
 
 def bases(
     field: FieldModel,
-    found: Mapping[str, Principal],
+    principal: Mapping[str, Principal],
     energy: Mapping[str, sp.csr_array],
     recipe: Recipe,
     weights: Mapping[str, float] | None = None,
 ) -> dict[str, Basis]:
     """Shapes of every part, as many as the recipe allows; weights above 1 favour a part (on the root of energy)."""
-    favour = {name: (weights or {}).get(name, 1.0) ** 2 for name in found}
-    least = _least(np.concatenate([p.strength * favour[n] for n, p in found.items()]), len(found), recipe)
+    favour = {name: (weights or {}).get(name, 1.0) ** 2 for name in principal}
+    least = _least(np.concatenate([p.strength * favour[n] for n, p in principal.items()]), len(principal), recipe)
     return {
-        name: _shaped(block, found[name].fields[:, found[name].strength * favour[name] > least], energy[name])
+        name: _shaped(block, principal[name].fields[:, principal[name].strength * favour[name] > least], energy[name])
         for name, block in field.blocks.items()
     }
 
@@ -196,7 +196,7 @@ def _shaped(block: Block, Phi: NDArray[np.floating], A: sp.csr_array) -> Basis:
 
 def enriched(
     field: FieldModel,
-    found: Mapping[str, Principal],
+    principal: Mapping[str, Principal],
     S: Floats,
     films: Mapping[str, float],
     contacts: Mapping[str, float],
@@ -206,6 +206,6 @@ def enriched(
     S = of_unit_energy(S, field.stiffness(films, contacts))
     out = {}
     for name, block in field.blocks.items():
-        own = np.asarray(found[name].fields, float) * np.sqrt(found[name].strength)
+        own = np.asarray(principal[name].fields, float) * np.sqrt(principal[name].strength)
         out[name] = _principal(block, np.column_stack([own, S[block.dofs]]), energy[name])
     return out

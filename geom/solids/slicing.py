@@ -142,11 +142,11 @@ def _chained(pieces: list[Piece]) -> list[Loop] | None:
     return loops
 
 
-def _next(left: list[Piece], end: np.ndarray) -> tuple[int, bool] | None:
+def _next(pieces: list[Piece], end: np.ndarray) -> tuple[int, bool] | None:
     """Which edge goes on from here, and whether it runs the other way."""
-    ends = np.array([[piece[0], piece[1]] for piece in left]).reshape(-1, 2) - end
+    ends = np.array([[piece[0], piece[1]] for piece in pieces]).reshape(-1, 2) - end
     distance = np.hypot(*ends.T)
-    if not len(left) or distance.min() > _JOIN:
+    if not len(pieces) or distance.min() > _JOIN:
         return None
     index, turned = divmod(int(distance.argmin()), 2)
     return index, bool(turned)

@@ -58,14 +58,16 @@ def import_step(path: str | Path) -> Machine:
     if not path.is_file():
         raise InputError("no such file", str(path), "a STEP file with named solids")
     beside = step_sidecar(path)
-    said = _read_sidecar(beside)
-    solids = _without_excluded(_solids(path, said.get("import", {}), str(beside)), said, str(beside))
+    sidecar = _read_sidecar(beside)
+    solids = _without_excluded(_solids(path, sidecar.get("import", {}), str(beside)), sidecar, str(beside))
     prisms = _all_sliced(solids, path)
-    fluids = said.get("fluids", {})
-    _refuse_unused({**said.get("materials", {}), **fluids, **said.get("roles", {})}, prisms, str(beside))
-    what = _declared_roles(said.get("roles", {}), prisms, f"{beside} [roles]")
-    made_of = {name: _material(name, said.get("materials", {}), str(beside)) for name in prisms if name not in fluids}
-    header = said.get("machine", {})
+    fluids = sidecar.get("fluids", {})
+    _refuse_unused({**sidecar.get("materials", {}), **fluids, **sidecar.get("roles", {})}, prisms, str(beside))
+    what = _declared_roles(sidecar.get("roles", {}), prisms, f"{beside} [roles]")
+    made_of = {
+        name: _material(name, sidecar.get("materials", {}), str(beside)) for name in prisms if name not in fluids
+    }
+    header = sidecar.get("machine", {})
     return Machine(
         name=checked_name(header["name"], f"{beside} [machine] name") if "name" in header else path.stem,
         family="step",
@@ -88,7 +90,7 @@ def import_step(path: str | Path) -> Machine:
             ),
             Part(INSIDE, "air", (), solid=False, role=Role.INNER_AIR),
         ),
-        sections={name: table for name, table in said.items() if name in SECTIONS and name != "machine"},
+        sections={name: table for name, table in sidecar.items() if name in SECTIONS and name != "machine"},
         geometry=None,
         face_names={},
     )
@@ -128,9 +130,9 @@ def step_sidecar(path: Path | str) -> Path:
 def _read_sidecar(path: Path) -> dict[str, Any]:
     if not path.is_file():
         return {}
-    said = read_toml(path, "what a STEP file does not say: [materials], [fluids], [losses.NAME] ...")
+    sidecar = read_toml(path, "what a STEP file does not say: [materials], [fluids], [losses.NAME] ...")
     known = ("import", "fluids", "roles", *(section for section in SECTIONS if section != "geometry"))
-    for section, table in said.items():
+    for section, table in sidecar.items():
         if section not in known or not isinstance(table, Mapping):
             raise InputError(f"unknown section [{section}]", str(path), f"known: {', '.join(known)}")
         for key in table:
@@ -138,14 +140,14 @@ def _read_sidecar(path: Path) -> dict[str, Any]:
                 raise InputError(
                     f"unknown key {key!r}", f"{path} [{section}]", f"known: {', '.join(_ALLOWED[section])}"
                 )
-    return said
+    return sidecar
 
 
-def _solids(path: Path, said: Mapping[str, Any], where: str) -> dict[str, list[cq.Solid]]:
+def _solids(path: Path, sidecar: Mapping[str, Any], where: str) -> dict[str, list[cq.Solid]]:
     """Solids (mm) by name, turned and moved so that the machine's axis is z."""
     import cadquery as cq
 
-    axis, origin = said.get("axis", "z"), said.get("origin_mm", [0.0, 0.0, 0.0])
+    axis, origin = sidecar.get("axis", "z"), sidecar.get("origin_mm", [0.0, 0.0, 0.0])
     if axis not in _ROTATIONS:
         raise InputError(f"{axis!r} is no axis", f"{where} [import] axis", f"one of {', '.join(_ROTATIONS)}")
     if not (isinstance(origin, list) and len(origin) == 3 and all(isinstance(x, (int, float)) for x in origin)):
@@ -175,9 +177,9 @@ def _assembly(path: Path) -> Any:
 
 
 def _without_excluded(
-    solids: dict[str, list[cq.Solid]], said: Mapping[str, Any], where: str
+    solids: dict[str, list[cq.Solid]], sidecar: Mapping[str, Any], where: str
 ) -> dict[str, list[cq.Solid]]:
-    patterns = said.get("import", {}).get("leave_out", [])
+    patterns = sidecar.get("import", {}).get("leave_out", [])
     for pattern in patterns:
         if not any(fnmatchcase(name, pattern) for name in solids):
             raise _no_solid(pattern, solids, f"{where} [import] leave_out")

@@ -45,9 +45,9 @@ class BasisCache:
         near = sorted((file for file, d in far.items() if d <= np.log(spread) + 1e-9), key=lambda file: far[file])
         return recalled(near[0], _pairs) if near else None
 
-    def keep(self, centre: Centre, found: Mapping[str, Any], least: float = WEAKEST) -> Pairs:
+    def keep(self, centre: Centre, bases: Mapping[str, Any], least: float = WEAKEST) -> Pairs:
         """What is worth keeping of principal fields, in single precision, written if there is a folder."""
-        pairs = {part: _worth(p.strength, p.fields, min(least, WEAKEST)) for part, p in found.items()}
+        pairs = {part: _worth(p.strength, p.fields, min(least, WEAKEST)) for part, p in bases.items()}
         if self.folder is None:
             return pairs
         out: dict[str, Any] = {"centre": centre.values}

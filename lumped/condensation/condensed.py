@@ -19,7 +19,7 @@ from lumped.transfer.laws import Fixed
 
 def network_in(
     field: Any,
-    found: Mapping[str, Any],
+    bases: Mapping[str, Any],
     contacts: Mapping[str, float],
     loads: Mapping[str, Array],
     whole: frozenset[str],
@@ -29,7 +29,7 @@ def network_in(
 ) -> Network:
     """The network of a field in given bases: conduction and contacts as links, faces, parts and zones as places.
 
-    field : fem.matrices.assembly.FieldModel;  found : part -> its shapes;  contacts : W/m2/K
+    field : fem.matrices.assembly.FieldModel;  bases : part -> its shapes;  contacts : W/m2/K
     loads : zone -> (n,) unit loss;  whole : the zones that are a whole part, uniformly heated
     """
     states: list[str] = []
@@ -37,7 +37,7 @@ def network_in(
     groups: list[str] = []
     shapes: dict[str, PartShape] = {}
     for part, block in field.blocks.items():
-        basis = found[part]
+        basis = bases[part]
         own = np.arange(len(states), len(states) + 1 + len(basis.capacity))
         states += [part, *(f"{part}#{k + 1}" for k in range(len(basis.capacity)))]
         C += [block.capacity, *basis.capacity]
@@ -45,7 +45,7 @@ def network_in(
         V = np.column_stack([np.ones(block.n), basis.Phi])
         shapes[part] = PartShape(block.points, block.elements, V, block.w / block.volume, own)
     states, C, groups = [*states, *fluids], [*C, *fluids.values()], [*groups, *fluids]
-    links = [_conduction(part, shape, found[part]) for part, shape in shapes.items() if len(shape.states) > 1]
+    links = [_conduction(part, shape, bases[part]) for part, shape in shapes.items() if len(shape.states) > 1]
     links += [_contact(field, shapes, key, touch, contacts[key]) for key, touch in field.contacts.items()]
     places = {key: _surface(field, shapes, key) for key in field.films}
     places |= {key: _loss(field, shapes, key, load, key in whole) for key, load in loads.items()}

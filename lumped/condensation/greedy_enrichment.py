@@ -57,12 +57,14 @@ class Size:
     met: bool
 
     @classmethod
-    def of(cls, reduction: Any, asked: int, points: Sequence[Any], cases: LoadCases, allowed: Accuracy) -> Size:
+    def of(cls, reduction: Any, requested: int, points: Sequence[Any], cases: LoadCases, allowed: Accuracy) -> Size:
         """points : the nominal one first, then random ones, all solved in full"""
-        network = reduction.network(tolerance=0.0, max_states=max(asked, len(reduction.field.blocks)))
+        network = reduction.network(tolerance=0.0, max_states=max(requested, len(reduction.field.blocks)))
         nominal, *drawn = (point_error(network, point, cases) for point in points)
         random = merged(drawn)
-        return cls(asked, network, nominal, random, max(excess(nominal, allowed), excess(random, allowed)) <= RESERVE)
+        return cls(
+            requested, network, nominal, random, max(excess(nominal, allowed), excess(random, allowed)) <= RESERVE
+        )
 
     def document(self) -> dict[str, Any]:
         return {
@@ -98,9 +100,9 @@ def enrich(
     return Enrichment(reduction, network, dict(weights), tuple(done))
 
 
-def excess(found: Errors, allowed: Accuracy) -> float:
+def excess(errors: Errors, allowed: Accuracy) -> float:
     """1 where the worst part is just good enough."""
-    return max(map(allowed.excess, found.parts.values()))
+    return max(map(allowed.excess, errors.parts.values()))
 
 
 def allotted_shapes(

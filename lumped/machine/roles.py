@@ -37,9 +37,11 @@ def part_identities(machine: Any, contacts: Iterable[str]) -> dict[str, Identity
     }
 
 
-def _turned(known: Identity, turns: bool) -> Identity:
-    role = Role.ROTOR if known.role is Role.IRON and turns else known.role
-    return replace(known, role=role, turns=turns, why=f"{known.why}, {'hangs on the shaft' if turns else 'stands'}")
+def _turned(identity: Identity, turns: bool) -> Identity:
+    role = Role.ROTOR if identity.role is Role.IRON and turns else identity.role
+    return replace(
+        identity, role=role, turns=turns, why=f"{identity.why}, {'hangs on the shaft' if turns else 'stands'}"
+    )
 
 
 def _by_material(machine: Any, part: Any) -> Identity:
@@ -62,11 +64,11 @@ def _on_axis(part: Any) -> bool:
     return all(profile.to_polygon(grid).contains(shapely.Point(0.0, 0.0)) for profile, _, _ in part.prisms)
 
 
-def _hung(known: dict[str, Identity], contacts: Iterable[str]) -> frozenset[str]:
+def _hung(identities: dict[str, Identity], contacts: Iterable[str]) -> frozenset[str]:
     """All that hangs on what turns through contacts, without a bearing or a standing part between."""
     pairs = [tuple(name.split("|")) for name in contacts]
-    held = [pair for pair in pairs if all(p in known and known[p].turns is not False for p in pair)]
-    found, reached = {name for name, i in known.items() if i.turns}, -1
+    held = [pair for pair in pairs if all(p in identities and identities[p].turns is not False for p in pair)]
+    found, reached = {name for name, i in identities.items() if i.turns}, -1
     while len(found) > reached:
         reached = len(found)
         found |= {part for pair in held if found & set(pair) for part in pair}

@@ -35,14 +35,14 @@ def _valid_targets(network: Network) -> set[str]:
     return {link.name for link in network.links} | {source.name for source in network.sources} | groups
 
 
-def _targets(network: Network, parameter: Parameter, known: set[str]) -> list[tuple[str, float]]:
+def _targets(network: Network, parameter: Parameter, valid: set[str]) -> list[tuple[str, float]]:
     thermal = [(t, e) for t, e in parameter.targets if not t.startswith(CHANNEL_OPERATORS)]
     for target, _ in thermal:
-        if target not in known:
+        if target not in valid:
             raise InputError(
                 f"target '{target}' is no link, source or capacity group",
                 f"parameter '{parameter.name}' of {network.title}",
-                f"known: {', '.join(sorted(known))}",
+                f"known: {', '.join(sorted(valid))}",
             )
     return thermal
 

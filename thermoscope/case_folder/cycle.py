@@ -93,11 +93,11 @@ def load_cycle(path: Path, network: Network, ratings: Mapping[str, float]) -> Cy
     return cycle
 
 
-def _constants(top: Table, key: str, time: Array, given: Mapping[str, Array]) -> dict[str, Array]:
+def _constants(top: Table, key: str, time: Array, columns: Mapping[str, Array]) -> dict[str, Array]:
     """What stays as it is; InputError for what the columns or the duty give already."""
     found = top.table(key).constants(key)
     for name in found:
-        if name in given:
+        if name in columns:
             raise top.error(f"'{name}' is given twice", f"[{key}] {name}, or a column or [load] of that name")
     return {name: np.full(time.size, value) for name, value in found.items()}
 

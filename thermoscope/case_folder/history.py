@@ -94,16 +94,16 @@ def load_history(path: Path) -> History:
     return History(revisions)
 
 
-def save_history(path: Path, history: History, known: History) -> History:
-    """Write `history` over `known`, and return it as the file has it.
+def save_history(path: Path, history: History, before: History) -> History:
+    """Write `history` over `before`, and return it as the file has it.
 
     Raises InputError when the file holds something else by now: another command or tab was quicker.
     """
     with locked(path.parent):
         standing = load_history(path)
-        if standing != known:
+        if standing != before:
             what = f"the model was changed by another tab or command: it is at revision {standing.last.number}, this "
-            raise InputError(f"{what}step began at {known.last.number}", str(path),
+            raise InputError(f"{what}step began at {before.last.number}", str(path),
                              "the step again (in the workbench 'take over' first)")  # fmt: skip
         write_whole(path, _text(history))
         return load_history(path)

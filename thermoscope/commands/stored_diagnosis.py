@@ -85,9 +85,9 @@ def save_diagnosis(folder: Folder, document: Mapping[str, Any]) -> None:
 
 def current_diagnosis(folder: Folder) -> dict[str, Any] | None:
     """The kept diagnosis, if it is of these tests and this model: also after a step that was undone."""
-    saved = last_diagnosis(folder)
-    same = saved and saved.get("model") == model_of(folder) and saved.get("plan") == plan_of(folder.settings.path)
-    return saved if same else None
+    last = last_diagnosis(folder)
+    same = last and last.get("model") == model_of(folder) and last.get("plan") == plan_of(folder.settings.path)
+    return last if same else None
 
 
 def last_diagnosis(folder: Folder) -> dict[str, Any] | None:

@@ -185,11 +185,11 @@ def _stages_in(file: Path) -> dict[str, dict[str, float]]:
     return {}
 
 
-def _remember(known: dict[str, dict[str, float]]) -> None:
+def _remember(stages: dict[str, dict[str, float]]) -> None:
     with suppress(OSError):
         file = _file()
         file.parent.mkdir(parents=True, exist_ok=True)
-        newest = dict(list(known.items())[-MOST:])
+        newest = dict(list(stages.items())[-MOST:])
         partial = file.with_name(f".{file.name}.{time.time_ns()}")
         partial.write_text(json.dumps(newest), encoding="utf-8")
         partial.replace(file)

@@ -58,9 +58,16 @@ class Condensations:
         rows = {n: p.mean for n, p in grown.places.items()}
         spots = hot_spots(grown, rows, {s.name: s.limit for s in self.problem.spots})
         inputs = {n: u for n, u in self.problem.inputs.items() if n in _reads(grown)}
-        taken = tuple(n for n in self.problem.taken if n in inputs)
+        from_tests = tuple(n for n in self.problem.taken if n in inputs)
         return replace(
-            self.problem, network=grown, values={}, inputs=inputs, spots=spots, scaling=None, sure=None, taken=taken
+            self.problem,
+            network=grown,
+            values={},
+            inputs=inputs,
+            spots=spots,
+            scaling=None,
+            sure=None,
+            taken=from_tests,
         )
 
     def ratios(self, named: Mapping[str, float]) -> dict[str, float]:

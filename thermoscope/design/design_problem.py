@@ -50,25 +50,25 @@ class DesignRequest:
     cycle: str | None = None
 
 
-def design_problem(folder: Folder, asked: DesignRequest, progress: Progress) -> tuple[Problem, MachineFile | None]:
+def design_problem(folder: Folder, request: DesignRequest, progress: Progress) -> tuple[Problem, MachineFile | None]:
     """The problem with what its reduced model gets wrong about other geometries learned, and the file of its machine.
 
     Raises InputError for what is not known, and where a limit is exceeded without any load.
     """
     network, values = model_of(folder)
     file = None if folder.settings.machine is None else MachineFile.read(folder.settings.machine)
-    op = operation(network, folder.case.tests, asked.at or {}, (), rated_point(folder, network))
+    op = operation(network, folder.case.tests, request.at or {}, (), rated_point(folder, network))
     sections = {} if file is None else file.sections
     electrics = electrics_of(
         "" if file is None else file.machine.family, sections.get("ratings", {}), sections.get("losses", {})
     )
-    inputs = wanted_inputs(op.inputs, asked.torque, electrics)
-    grown, sure = _grown(folder, network, asked.robust, progress)
+    inputs = wanted_inputs(op.inputs, request.torque, electrics)
+    grown, sure = _grown(folder, network, request.robust, progress)
     rows = named_rows(network, folder)
-    limits = places(asked.limits, rows, network.identities)
-    first = len(places(dict(list(asked.limits.items())[:1]), rows, network.identities))
-    driven = None if asked.cycle is None else _driven(folder, network, asked, sections.get("ratings", {}))
-    space = Space(tuple(_variables(grown, inputs, file, asked.vary or {}, driven)))
+    limits = places(request.limits, rows, network.identities)
+    first = len(places(dict(list(request.limits.items())[:1]), rows, network.identities))
+    driven = None if request.cycle is None else _driven(folder, network, request, sections.get("ratings", {}))
+    space = Space(tuple(_variables(grown, inputs, file, request.vary or {}, driven)))
     machine = {} if file is None else _of_machine(grown, file, space, inputs)
     aimed = (PEAK, SETTLING, COPPER) if file is None else OBJECTIVES
     problem = Problem(
@@ -129,22 +129,22 @@ def _gain(key: str, driven: Driven, bounds: tuple[float, float] | None) -> Varia
     return Variable(key, low, high, driven.usual(key))
 
 
-def _driven(folder: Folder, network: Network, asked: DesignRequest, ratings: Mapping[str, float]) -> Driven:
+def _driven(folder: Folder, network: Network, request: DesignRequest, ratings: Mapping[str, float]) -> Driven:
     """The vehicle of a cycle, its windings at the first limit."""
     from thermoscope.case_folder.cycle import find_cycle, load_cycle
 
-    cycle = load_cycle(find_cycle(folder.settings.path, str(asked.cycle)), network, ratings)
+    cycle = load_cycle(find_cycle(folder.settings.path, str(request.cycle)), network, ratings)
     s = cycle.series
     if s is None:
-        raise InputError("the cycle has no controller", f"--cycle {asked.cycle}", "a cycle with [vehicle]")
+        raise InputError("the cycle has no controller", f"--cycle {request.cycle}", "a cycle with [vehicle]")
     found = Driven(s.machine, s.vehicle, s.controller, np.asarray(cycle.record.time, float), s.wanted, s.slope)
-    return found.at(next(iter(asked.limits.values())), s.reference_degC)
+    return found.at(next(iter(request.limits.values())), s.reference_degC)
 
 
 def _of_machine(network: Network, file: MachineFile, space: Space, inputs: Mapping[str, float]) -> dict[str, Any]:
     names = {v.name for v in space.variables}
-    taken = tuple(n for key, n in FLOWS.items() if key in names and n in inputs)
-    return {"machine_at": partial(_machine_at, file), "scaling": Scaling(network, file.machine), "taken": taken}
+    from_machine = tuple(n for key, n in FLOWS.items() if key in names and n in inputs)
+    return {"machine_at": partial(_machine_at, file), "scaling": Scaling(network, file.machine), "taken": from_machine}
 
 
 def _machine_at(file: MachineFile, values: Mapping[str, float]) -> Any:

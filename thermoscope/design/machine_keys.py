@@ -121,14 +121,14 @@ def short_key(key: str) -> str:
     return key.rpartition(".")[2]
 
 
-def machine_file_text(file: MachineFile, values: Mapping[str, float], name: str, said: Iterable[str]) -> str:
-    """A machine file of a design; `said` are its comments. Lengths that the file left to proportions are left so."""
+def machine_file_text(file: MachineFile, values: Mapping[str, float], name: str, comments: Iterable[str]) -> str:
+    """A machine file of a design; with `comments`. Lengths that the file left to proportions are left so."""
     import tomlkit
 
     tables = file.tables({k: float(f"{v:.6g}") for k, v in values.items() if file.knows(k)})
     tables["machine"] = {**tables.get("machine", {}), "name": name}
     out = tomlkit.document()
-    for line in said:
+    for line in comments:
         out.add(tomlkit.comment(line))
     for section, table in tables.items():
         out[section] = table

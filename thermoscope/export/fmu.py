@@ -182,9 +182,9 @@ def _co_simulation(root: Element, model: Model, version: int) -> None:
                 SubElement(listed, "File", name=file)
 
 
-def _variables(root: Element, own: Sequence[Variable], version: int) -> None:
+def _variables(root: Element, variables: Sequence[Variable], version: int) -> None:
     listed = SubElement(root, "ModelVariables")
-    for reference, v in enumerate(own):
+    for reference, v in enumerate(variables):
         said: Attributes = {"name": v.name, "valueReference": str(reference), "causality": v.causality}
         said["variability"] = "fixed" if v.causality == "parameter" else "continuous"
         if v.about:

@@ -147,11 +147,11 @@ class CompiledObserver:
 
     def __init__(self, of: ObserverModel, extra: Sequence[str] = ()) -> None:
         self.of = of
-        taken_in = {**observer_files(of)}
-        network = taken_in.pop("thermal_network.c")
-        main = taken_in.pop("thermal_observer.c").replace('#include "thermal_network.c"', network)
+        sources = {**observer_files(of)}
+        network = sources.pop("thermal_network.c")
+        main = sources.pop("thermal_observer.c").replace('#include "thermal_network.c"', network)
         run = (RUNTIME / "thermal_observer_run.c").read_text(encoding="utf-8")
-        files = {**taken_in, "run.c": run.replace('#include "thermal_observer.c"', main)}
+        files = {**sources, "run.c": run.replace('#include "thermal_observer.c"', main)}
         with tempfile.TemporaryDirectory() as folder:
             file = Path(folder) / f"observer{here().ending}"
             file.write_bytes(library(files, here(), extra))

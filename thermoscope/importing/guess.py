@@ -137,21 +137,21 @@ def _fed(base: Guess, label: str, target: Target) -> Guess:
     return replace(base, feeds=named or QUANTITIES[base.quantity].feeds)
 
 
-def single(found: list[Guess], target: Target) -> list[Guess]:
+def single(guesses: list[Guess], target: Target) -> list[Guess]:
     """One column per boundary and per input; of several readings go before set points, the first before the rest."""
-    taken: dict[str, str] = {}
-    out = {g.column: g for g in found}
-    for g in sorted(found, key=lambda g: (bool(WANTED & set(tokens(g.column))), not READ & set(tokens(g.column)))):
+    used: dict[str, str] = {}
+    out = {g.column: g for g in guesses}
+    for g in sorted(guesses, key=lambda g: (bool(WANTED & set(tokens(g.column))), not READ & set(tokens(g.column)))):
         key = g.feeds or (g.place if g.place in target.boundaries else "")
         if not key:
             continue
-        if key not in taken:
-            taken[key] = g.column
+        if key not in used:
+            used[key] = g.column
         elif g.feeds and g.feeds not in target.inputs and not WANTED & set(tokens(g.column)):
             out[g.column] = replace(g, feeds=input_name(g))
         else:
-            out[g.column] = g.without(f"{taken[key]} gives {key} already")
-    return [out[g.column] for g in found]
+            out[g.column] = g.without(f"{used[key]} gives {key} already")
+    return [out[g.column] for g in guesses]
 
 
 def input_name(g: Guess) -> str:

@@ -80,11 +80,11 @@ def _recorded(sheet: Sheet, samples: Samples) -> dict[str, Array]:
 
 
 def _step(
-    network: Network, samples: Samples, fine: Mapping[str, Array], given: Mapping[str, float], air: Mapping[str, str],
+    network: Network, samples: Samples, fine: Mapping[str, Array], start: Mapping[str, float], air: Mapping[str, str],
     sensors: Sequence[Sensor], wished: float | None,
 ) -> SampleStep:  # fmt: skip
     """The step that the sensors do not feel."""
-    around = {**given, **{place: float(np.nanmean(samples.values[column])) for place, column in air.items()}}
+    around = {**start, **{place: float(np.nanmean(samples.values[column])) for place, column in air.items()}}
     level = max(float(np.nanmax(samples.values[c])) for s in sensors for c in s.columns)
     seen = [(s.channel.name, s.channel.row, s.channel.sigma_K, s.channel.lag_s) for s in sensors]
     return sample_step(network, samples.time, {**fine, CLOCK: samples.time}, around, seen, level, wished)

@@ -81,18 +81,18 @@ def _read(text: str) -> MeshChoice:
 
 
 def _looked_for(machine: Machine, share: float, first: Meshing, progress: Progress, most_points: int) -> MeshChoice:
-    own = meshed(machine, first, progress)
-    asked = _at_rated_point(own)
-    hot = _hot_spots(asked, own)
+    mesh = meshed(machine, first, progress)
+    point = _at_rated_point(mesh)
+    hot = _hot_spots(point, mesh)
     while True:
-        fine = meshed(machine, own.meshing.finer, partial(_report, progress))
-        there = _hot_spots(asked, fine)
+        fine = meshed(machine, mesh.meshing.finer, partial(_report, progress))
+        there = _hot_spots(point, fine)
         floor = FLOOR * max(there.values())
         percent = {p: SAFETY * _left(hot[p], there[p]) / max(there[p], floor) for p in hot}
-        found = MeshChoice(own.meshing, percent, own.field.n, max(percent.values()) <= share)
-        if found.met or len(fine.mesh.points) > most_points:
-            return found
-        own, hot = fine, there
+        choice = MeshChoice(mesh.meshing, percent, mesh.field.n, max(percent.values()) <= share)
+        if choice.met or len(fine.mesh.points) > most_points:
+            return choice
+        mesh, hot = fine, there
 
 
 def _report(progress: Progress, message: str) -> None:
@@ -111,7 +111,7 @@ def _at_rated_point(ready: Prepared) -> FixedCoefficients:
     return rated(machine, network, ready.films, ready.contacts)
 
 
-def _hot_spots(asked: FixedCoefficients, ready: Prepared) -> dict[str, float]:
+def _hot_spots(point: FixedCoefficients, ready: Prepared) -> dict[str, float]:
     """Heated part -> its largest rise (K)."""
-    T = asked.of_field(ready.field)
-    return {part: float(np.max(T[ready.field.blocks[part].dofs])) for part in asked.watts}
+    T = point.of_field(ready.field)
+    return {part: float(np.max(T[ready.field.blocks[part].dofs])) for part in point.watts}

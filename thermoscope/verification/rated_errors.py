@@ -38,11 +38,11 @@ class Rated:
     nodes: Mapping[str, int]
 
 
-def hot_rows(network: Network, found: Rated) -> dict[str, Row]:
+def hot_rows(network: Network, rated: Rated) -> dict[str, Row]:
     """The hot spots as rows over the network's z."""
     shapes = network.recovery
     assert isinstance(shapes, Shapes)
-    return {name: _at_node(shapes.parts[name.removeprefix(HOT)], node) for name, node in found.nodes.items()}
+    return {name: _at_node(shapes.parts[name.removeprefix(HOT)], node) for name, node in rated.nodes.items()}
 
 
 def _at_node(shape: PartShape, node: int) -> Row:
@@ -94,10 +94,10 @@ def at_rated_point(built: Built, looks: MonitoredPlaces) -> Rated:
     return Rated({n: abs(fine[n] - other[n]) for n in fine}, left, max(map(abs, fine.values())), nodes)
 
 
-def _elsewhere(asked: FixedCoefficients, field: FieldModel, network: Network) -> Iterator[tuple[Array, Array]]:
+def _elsewhere(point: FixedCoefficients, field: FieldModel, network: Network) -> Iterator[tuple[Array, Array]]:
     """The step of loss, and a steady state at other coefficients; field and network."""
-    yield from zip(asked.steps_of_field(field), asked.steps_of_network(network, field), strict=True)
-    moved = asked.moved(SPREAD)
+    yield from zip(point.steps_of_field(field), point.steps_of_network(network, field), strict=True)
+    moved = point.moved(SPREAD)
     yield moved.of_field(field), moved.of_network(network, field)
 
 

@@ -125,8 +125,8 @@ def dragged(g: Guess, record: Recording, to: str, target: Target) -> Guess:
 
 def write(dropped: Dropped, settings: Settings, network: Network, tell: Progress) -> Path:
     """A new case beside the open one, with its machine or network; the folder."""
-    taken = [p.name for p in settings.path.resolve().parent.iterdir()]
-    folder = settings.path.resolve().parent / test_name(dropped.records[0].source.file, taken)
+    names = [p.name for p in settings.path.resolve().parent.iterdir()]
+    folder = settings.path.resolve().parent / test_name(dropped.records[0].source.file, names)
     dialogue = Dialogue(dropped.target, False, dict(dropped.constants))
     save_case(folder, model_of_case(settings, network), drafts_of(dropped.records, dialogue), tell)
     return folder

@@ -23,11 +23,11 @@ SWEEP_S = 30.0  # between looks for idle tabs
 SHORTEST = 16  # characters: 64 bits where they are hexadecimal
 
 
-def token_for(given: str | None) -> str:
+def token_for(token: str | None) -> str:
     """What a browser must show: the given token or a new one. Other users and programs share this computer's ports."""
-    if given is not None and len(given) < SHORTEST:
-        raise InputError(f"the token has {len(given)} characters", "THERMOSCOPE_TOKEN", f"at least {SHORTEST}")
-    return given or secrets.token_urlsafe(24)
+    if token is not None and len(token) < SHORTEST:
+        raise InputError(f"the token has {len(token)} characters", "THERMOSCOPE_TOKEN", f"at least {SHORTEST}")
+    return token or secrets.token_urlsafe(24)
 
 
 def application(folder: Folder, access: AccessControl, tell: Progress, largest_drop: int = LARGEST) -> web.Application:

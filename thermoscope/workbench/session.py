@@ -119,11 +119,11 @@ class Session:
         if found is not None:
             self.show_dropped(found)
 
-    def show_dropped(self, found: Dropped | None) -> None:
+    def show_dropped(self, dropped: Dropped | None) -> None:
         """The columns on the page, None for none any more."""
-        self.dropped = found
+        self.dropped = dropped
         with self.state:
-            self.state.drop, self.state.error = found and found.document, ""
+            self.state.drop, self.state.error = dropped and dropped.document, ""
 
     def edit_dropped(self, change: str, key: str, value: str) -> None:
         """A column dragged to a part ("move"), or what was not recorded ("constant")."""

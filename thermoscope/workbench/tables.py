@@ -89,8 +89,14 @@ def conclusion(diagnosis: Mapping[str, Any]) -> Row:
     tone, sentence = verdict(diagnosis, None)
     hidden = [h["effect"] for h in diagnosis["cannot_see"]]
     further_tests = [f"{o.kind} {o.what}: separates {', '.join(o.separates)}" for o in deciding(diagnosis)[:3]]
-    unseen = f"{len(hidden)} effects could be there unseen, e.g. {', '.join(hidden[:4])}." if hidden else ""
-    return {"tone": tone, "sentence": sentence, "words": diagnosis["words"], "unseen": unseen, "ahead": further_tests}
+    hidden_words = f"{len(hidden)} effects could be there unseen, e.g. {', '.join(hidden[:4])}." if hidden else ""
+    return {
+        "tone": tone,
+        "sentence": sentence,
+        "words": diagnosis["words"],
+        "unseen": hidden_words,
+        "ahead": further_tests,
+    }
 
 
 def percent(value: float, whole: float) -> float:

@@ -132,7 +132,7 @@ def minimise(
     noise: Noise | None = None,
     fixed: Mapping[str, float] | None = None,
     iterations: int = 12,
-    known: CachedSegments | None = None,
+    cache: CachedSegments | None = None,
     draft: bool = False,
     centre: Array | None = None,
     worth: float = WORTH,
@@ -145,12 +145,12 @@ def minimise(
     iterations : steps that gain
 
     The Jacobian costs ten times a run, so it is held as long as steps do what it predicts, and made anew before the
-    end (unless `draft`); `known`: one to begin with; `centre`: prior mean (p,), 0 by default; `worth`: gain (nats) for
+    end (unless `draft`); `cache`: one to begin with; `centre`: prior mean (p,), 0 by default; `worth`: gain (nats) for
     which one more step is made; `keep` is told the values after every step, so that an interrupted fit can go on;
     `error`: the covariance of the model error, added to that of the noise.
     """
     fixed = dict(fixed or {})
-    iterate = Iterate(network, tests, unknowns, fixed, theta, noise, known, draft, centre, worth, error)
+    iterate = Iterate(network, tests, unknowns, fixed, theta, noise, cache, draft, centre, worth, error)
     for iteration in range(iterations):
         progress(f"calibration step {iteration + 1}, objective {iterate.objective:.4g}")
         done = iterate.step()
@@ -165,32 +165,32 @@ class Iterate:
 
     def __init__(
         self, network: Network, tests: Sequence[Test], unknowns: Unknowns, fixed: dict[str, float], theta: Array,
-        noise: Noise | None, known: CachedSegments | None, draft: bool, centre: Array | None, worth: float,
+        noise: Noise | None, cache: CachedSegments | None, draft: bool, centre: Array | None, worth: float,
         error: ModelError | None,
     ) -> None:  # fmt: skip
-        near = known is not None and known.nearby
+        near = cache is not None and cache.nearby
         self.network, self.tests, self.unknowns, self.fixed = network, tests, unknowns, fixed
-        self.draft, self.outdated, self.worth = draft or near, known is not None and known.outdated, worth
+        self.draft, self.outdated, self.worth = draft or near, cache is not None and cache.outdated, worth
         self.centre = np.zeros_like(theta) if centre is None else centre
         self.low, self.high = unknowns.bounds
         self.weight, self.damping, self.fresh, self.done = (
             unknowns.sd**-2.0,
             0.0,
-            not (near or (known is not None and known.stale)),
+            not (near or (cache is not None and cache.stale)),
             False,
         )
         self.gain_ratio = 1.0
         self.theta = np.clip(theta, self.low, self.high)
-        self.parts = self.begun(known)
+        self.parts = self.begun(cache)
         self.noise = noise or first_noise(self.parts)
         self.error, self.measure = error, InnerProduct(self.parts, self.noise, error)
         self.weigh()
 
-    def begun(self, known: CachedSegments | None) -> list[Segment]:
+    def begun(self, cache: CachedSegments | None) -> list[Segment]:
         """Residuals and Jacobian where the fit begins."""
-        if known is None:
+        if cache is None:
             return self.tangents(self.theta)
-        return self.residuals(self.theta, known.parts) if known.nearby else list(known.parts)
+        return self.residuals(self.theta, cache.parts) if cache.nearby else list(cache.parts)
 
     def tangents(self, x: Array) -> list[Segment]:
         now = {**self.fixed, **self.unknowns.values(x)}

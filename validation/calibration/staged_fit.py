@@ -52,10 +52,10 @@ def fit_stages(case: Case, tests: Sequence[Test], unknowns: Unknowns) -> list[St
     return [*out, Stage(together, frozenset(left))] if together else out
 
 
-def _freed_groups(case: Case, test: Test, left: set[str]) -> tuple[str, ...]:
+def _freed_groups(case: Case, test: Test, remaining: set[str]) -> tuple[str, ...]:
     for pattern in test.frees:
-        if not any(belongs(n, pattern) for n in left):
-            right = f"free and not freed by an earlier test: {', '.join(sorted(left))}"
+        if not any(belongs(n, pattern) for n in remaining):
+            right = f"free and not freed by an earlier test: {', '.join(sorted(remaining))}"
             raise InputError(f"'{pattern}' frees nothing", f"case '{case.name}' test '{test.name}'", right)
     return test.frees
 

@@ -22,7 +22,7 @@ MOST, HOPELESS = 4, 5.0  # laws that join the other effects; nats below nothing 
 VARIED = 0.2  # of its largest value: an input that moves less shows no law
 
 
-def laws(evidence: Evidence, known: Mapping[str, float]) -> list[Above]:
+def laws(evidence: Evidence, values: Mapping[str, float]) -> list[Above]:
     """Corrections that could carry weight."""
     turns = levels(evidence)
     effects = [Above(f"{x}|{name}>{level:g}") for x, names in targets(evidence, list(turns)).items()
@@ -32,7 +32,7 @@ def laws(evidence: Evidence, known: Mapping[str, float]) -> list[Above]:
     share = 1.0 / len(effects)
     prior = np.log(PRIOR["effect"].share * RARE[KIND].share * share / PRIOR["nothing"].share)
     sd = np.array([q.prior_sd for q in extended(evidence.fit.network, effects).parameters[-len(effects) :]])
-    found = score(total(projected(evidence.fit, columns(evidence, effects, known))), *extended_prior(evidence.fit),
+    found = score(total(projected(evidence.fit, columns(evidence, effects, values))), *extended_prior(evidence.fit),
                   np.zeros(len(effects), int))  # fmt: skip
     worth = log_bayes_of(found, sd) + prior
     order = [int(k) for k in np.argsort(-worth) if found.visible[k] and worth[k] > -HOPELESS]

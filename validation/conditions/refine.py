@@ -39,7 +39,7 @@ class TimedEvent:
     ends: tuple[tuple[Span, Span], ...]
 
 
-def refined(evidence: Evidence, base: Effect, event: Event, reach_s: Mapping[str, float], known: Values) -> TimedEvent:
+def refined(evidence: Evidence, base: Effect, event: Event, reach_s: Mapping[str, float], values: Values) -> TimedEvent:
     """Ends of every span in turn, the others where they are.  reach_s : test -> how far an end may move"""
     spans, log_share = {t: list(own) for t, own in event.spans.items()}, 0.0
     ends: list[tuple[Span, Span]] = []
@@ -48,7 +48,7 @@ def refined(evidence: Evidence, base: Effect, event: Event, reach_s: Mapping[str
     for test, own in event.spans.items():
         for i in range(len(own)):
             others = {t: [s for k, s in enumerate(all_) if (t, k) != (test, i)] for t, all_ in spans.items()}
-            one = moved(evidence, base, tests[test], own[i], others, reach_s[test], known, usual if ends else None)
+            one = moved(evidence, base, tests[test], own[i], others, reach_s[test], values, usual if ends else None)
             spans[test][i] = one.event.spans[test][0]
             log_share += one.log_share
             ends += one.ends
@@ -56,7 +56,7 @@ def refined(evidence: Evidence, base: Effect, event: Event, reach_s: Mapping[str
 
 
 def moved(
-    evidence: Evidence, base: Effect, test: Test, span: Span, others: Spans, reach_s: float, known: Values,
+    evidence: Evidence, base: Effect, test: Test, span: Span, others: Spans, reach_s: float, values: Values,
     usual_s: float | None = None,
 ) -> TimedEvent:  # fmt: skip
     """Begin and end of one span: every two instants around them, each pair a difference of two steps.
@@ -65,7 +65,7 @@ def moved(
     """
     begins, ends = around(test, span[0], reach_s), around(test, span[1], reach_s)
     at = np.concatenate([begins, ends])
-    u, V = steps(evidence, base, test, at, others, known)
+    u, V = steps(evidence, base, test, at, others, values)
     a, b = (x.ravel() for x in np.meshgrid(np.arange(begins.size), np.arange(begins.size, at.size), indexing="ij"))
     a, b = a[at[a] < at[b]], b[at[a] < at[b]]
     bayes = log_bayes(*pulse(u, V, a, b), evidence, base)
@@ -84,7 +84,7 @@ def pulse(u: Array, V: Array, a: NDArray[np.int64], b: NDArray[np.int64]) -> tup
     return u[a] - u[b] + u[rest], own + V[rest, rest] + 2.0 * (V[a, rest] - V[b, rest])
 
 
-def repeats(evidence: Evidence, base: Effect, event: Event, known: Values) -> Event:
+def repeats(evidence: Evidence, base: Effect, event: Event, values: Values) -> Event:
     """The event without the repeats that the others do not predict; of one that does not repeat nothing is left out.
 
     Each is left out in turn: at the amplitude of the others it must fit better than without. The worst goes first.
@@ -94,7 +94,7 @@ def repeats(evidence: Evidence, base: Effect, event: Event, known: Values) -> Ev
         return event
     effects = [During.of(base, Event.of({t: [span]}).name) for t, span in every]
     theta, sd = extended_prior(evidence.fit)
-    parts = columns(evidence, effects, known)
+    parts = columns(evidence, effects, values)
     found = score(total(projected(evidence.fit, parts)), theta, sd, np.zeros(len(every), int))
     stays = list(range(len(every)))
     while len(stays) > 1 and min(gain := [gained(found, i, stays) for i in stays]) <= 0.0:
@@ -105,14 +105,14 @@ def repeats(evidence: Evidence, base: Effect, event: Event, known: Values) -> Ev
     return Event.of(spans)
 
 
-def gained(found: Score, i: int, every: Sequence[int]) -> float:
+def gained(scores: Score, i: int, every: Sequence[int]) -> float:
     """Log likelihood that a repeat gains at the amplitude of the others."""
     others = [j for j in every if j != i]
-    felt = float(np.sum(found.V[np.ix_(others, others)]))
+    felt = float(np.sum(scores.V[np.ix_(others, others)]))
     if felt <= 0.0:  # the others move no reading: they predict nothing
         return 0.0
-    a = float(np.sum(found.u[others])) / felt
-    return a * (float(found.u[i]) - a * float(np.sum(found.V[i, others]))) - 0.5 * a**2 * float(found.V[i, i])
+    a = float(np.sum(scores.u[others])) / felt
+    return a * (float(scores.u[i]) - a * float(np.sum(scores.V[i, others]))) - 0.5 * a**2 * float(scores.V[i, i])
 
 
 def log_bayes(u: Array, V: Array, evidence: Evidence, base: Effect) -> Array:
@@ -138,13 +138,15 @@ def between(at: Array, weight: Array) -> Span:
     return float(at[order[low]]), float(at[order[min(high, at.size - 1)]])
 
 
-def steps(evidence: Evidence, base: Effect, test: Test, at: Array, others: Spans, known: Values) -> tuple[Array, Array]:
+def steps(
+    evidence: Evidence, base: Effect, test: Test, at: Array, others: Spans, values: Values
+) -> tuple[Array, Array]:
     """Efficient score of an effect that begins at each of some instants of a test, and last that of the other spans."""
     last = float(test.time[-1]) + 1.0
     events = [Event.of({test.name: [(t, last)]}) for t in at]
     rest = Event.of({t: own for t, own in others.items() if own})
     effects = [During.of(base, e.name) for e in (*events, *([rest] if rest.spans else []))]
-    parts = columns(evidence, effects, known)
+    parts = columns(evidence, effects, values)
     theta, sd = extended_prior(evidence.fit)
     found = score(total(projected(evidence.fit, parts)), theta, sd, np.zeros(len(effects), int))
     missing = 0 if rest.spans else 1

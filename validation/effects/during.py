@@ -68,13 +68,13 @@ class During(Effect):
             return with_parameter(network, replace(own, name=self.name, targets=self._in_test(own)))
         return self._copied(network, own)
 
-    def _in_test(self, own: Parameter) -> tuple[tuple[str, float], ...]:
-        return tuple((f"{target}{IN}{self.condition}", factor) for target, factor in own.targets)
+    def _in_test(self, parameter: Parameter) -> tuple[tuple[str, float], ...]:
+        return tuple((f"{target}{IN}{self.condition}", factor) for target, factor in parameter.targets)
 
     def _law(self, law: Law, factor: float = 1.0) -> Law:
         return Shaped(law, TimeWindow(self.condition, factor), law.temperature, (CLOCK,))
 
-    def _conditional(self, network: Network, grown: Network, own: Parameter) -> Network:
+    def _conditional(self, network: Network, grown: Network, parameter: Parameter) -> Network:
         """What the other effect adds, times the condition."""
         links, sources = grown.links[len(network.links) :], grown.sources[len(network.sources) :]
         items: list[Link | Source] = [*links, *sources]
@@ -82,7 +82,7 @@ class During(Effect):
         parameters = tuple(
             replace(p, targets=tuple((new.get(t, t), e) for t, e in p.targets))
             if any(t in new for t, _ in p.targets) else p
-            for p in (*grown.parameters[:-1], replace(own, name=self.name))
+            for p in (*grown.parameters[:-1], replace(parameter, name=self.name))
         )  # fmt: skip
         return replace(
             network, parameters=parameters,
@@ -90,7 +90,7 @@ class During(Effect):
             sources=(*network.sources, *(replace(x, name=new[x.name], law=self._law(x.law)) for x in sources)),
         )  # fmt: skip
 
-    def _copied(self, network: Network, own: Parameter) -> Network:
+    def _copied(self, network: Network, parameter: Parameter) -> Network:
         """A share of what is there, more or less while the condition holds.
 
         Copies that others of its kind have brought in are not copied again: with n of them there would be 2^n, for the
@@ -98,7 +98,7 @@ class During(Effect):
         """
         links, sources = {x.name: x for x in network.links}, {x.name: x for x in network.sources}
         names = []
-        for target, exponent in own.targets:
+        for target, exponent in parameter.targets:
             if target not in links and target not in sources:
                 raise InputError(f"'{self.base.name}' cannot hold for a while", self.name, "a film, a flow or a loss")
             if gated((links if target in links else sources)[target].law):
@@ -108,7 +108,7 @@ class During(Effect):
                 network = copy_link(network, links[target], names[-1], self._law(links[target].law, exponent))
             else:
                 network = copy_source(network, sources[target], names[-1], self._law(sources[target].law, exponent))
-        amplitude = replace(own, name=self.name, targets=tuple((n, 1.0) for n in names), mapping="amplitude")
+        amplitude = replace(parameter, name=self.name, targets=tuple((n, 1.0) for n in names), mapping="amplitude")
         return with_parameter(network, replace(amplitude, value=0.0, neutral=0.0))
 
 

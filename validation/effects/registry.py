@@ -44,10 +44,10 @@ def catalogue(scene: Scene, only: Iterable[str] | None = None) -> tuple[Effect, 
     return tuple(cls(place) for cls in chosen for place in cls.places(scene))
 
 
-def _of(kind: str, known: Mapping[str, type[Effect]], where: str) -> type[Effect]:
-    if kind not in known:
-        raise InputError(f"unknown effect '{kind}'", where, f"known: {', '.join(known)}")
-    return known[kind]
+def _of(kind: str, classes: Mapping[str, type[Effect]], where: str) -> type[Effect]:
+    if kind not in classes:
+        raise InputError(f"unknown effect '{kind}'", where, f"known: {', '.join(classes)}")
+    return classes[kind]
 
 
 def effect(name: str, scene: Scene | None = None) -> Effect:

@@ -75,9 +75,9 @@ def event(name: str) -> Event | None:
     return Event.of(dict(found)) if len(found) == len(pieces) else None  # type: ignore[arg-type]
 
 
-def checked(found: Event, test: str, first: float, last: float, where: str) -> None:
+def checked(timed: Event, test: str, first: float, last: float, where: str) -> None:
     """Spans run forwards, lie inside the record and do not overlap."""
-    for begin, end in found.spans[test]:
+    for begin, end in timed.spans[test]:
         if not begin < end:
             raise InputError(
                 f"an event ends at {end:g} s, not after it begins at {begin:g} s", where, "begin, then end"
@@ -85,7 +85,7 @@ def checked(found: Event, test: str, first: float, last: float, where: str) -> N
         if begin < first or end > last:
             raise InputError(f"an event from {begin:g} to {end:g} s is outside the record", where,
                              f"{first:g} to {last:g} s")  # fmt: skip
-    for (a, b), (c, d) in pairwise(found.spans[test]):
+    for (a, b), (c, d) in pairwise(timed.spans[test]):
         if c < b:
             raise InputError(f"an event overlaps itself: {a:g} to {b:g} s and {c:g} to {d:g} s", where,
                              "spans that follow one another, or two events")  # fmt: skip

@@ -74,23 +74,23 @@ def diagnose(
     training = case.training()
     broken = broken_channels(training.tests)
     training = replace(training, tests=without(training.tests, broken))
-    stood = base_hypotheses(training, progress)
+    base_rows = base_hypotheses(training, progress)
     posterior = infer(training, kinds, progress)
-    wrong = wrong_bases(stood)
+    wrong = wrong_bases(base_rows)
     choice = steady(posterior, lambda p: above(p, decide(p.evidence, p.hypotheses), budget))
     if wrong:  # nothing else is accused of what the base does
         choice = Decision("data", (), choice.sure)
     progress("writing the tables")
-    return tabulate(case, posterior, choice, PlainFaults(tuple(broken), tuple(wrong)), tuple(stood), plan)
+    return tabulate(case, posterior, choice, PlainFaults(tuple(broken), tuple(wrong)), tuple(base_rows), plan)
 
 
 def above(posterior: Posterior, choice: Decision, budget: Mapping[str, float]) -> Decision:
     """The decision without what the error of the model's own numbers could pass for."""
     e, single = posterior.evidence, posterior.single
-    kept = tuple(g for g in choice.groups if signal_to_error(moved(e, single[g[0]]), budget).above_budget)
-    if len(kept) == len(choice.groups):
+    clear = tuple(g for g in choice.groups if signal_to_error(moved(e, single[g[0]]), budget).above_budget)
+    if len(clear) == len(choice.groups):
         return choice
-    return Decision(choice.verdict if kept else "adequate", kept, choice.sure)
+    return Decision(choice.verdict if clear else "adequate", clear, choice.sure)
 
 
 def moved(evidence: Evidence, h: Hypothesis) -> dict[str, float]:
@@ -115,9 +115,9 @@ def infer(case: Case, kinds: Sequence[str] | None = None, progress: Progress = n
     heat = looked.read(evidence.fit.parts, evidence.fit.noise, evidence.fit.theta, evidence.fit.error)
     chosen = conditions(calm, case, looked, heat, kinds, progress)
     known = {**case.model.values, **evidence.fit.values}
-    bent = laws(evidence, known) if kinds is None or KIND in kinds else []
+    law_errors = laws(evidence, known) if kinds is None or KIND in kinds else []
     first = len(evidence.effects)
-    evidence = converged(sharpened(joined(evidence, [*chosen, *bent], known), range(first, first + len(chosen))))
+    evidence = converged(sharpened(joined(evidence, [*chosen, *law_errors], known), range(first, first + len(chosen))))
     found, heat = weighed(case, evidence, looked, fit.noise, progress)
     timed, noise = retimed(evidence, found, reach(looked)), noise_of_refits(found)
     if noise is not None or timed is not evidence:

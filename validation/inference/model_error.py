@@ -237,10 +237,10 @@ def solid(network: Network) -> list[Place]:
     return [p for p in network.places.values() if p.kind == "node" and network.C[p.states[0]] > 0]
 
 
-def nodes(network: Network, test: Test, values: Mapping[str, float], own: Sequence[Place]) -> Array:
+def nodes(network: Network, test: Test, values: Mapping[str, float], places: Sequence[Place]) -> Array:
     """Temperatures (n_time, n) of some nodes in a test."""
     bare, now = heat_model(network, values)
-    return simulate(bare, record(test, setting(network.parameters, values)), now, [p.mean for p in own]).y
+    return simulate(bare, record(test, setting(network.parameters, values)), now, [p.mean for p in places]).y
 
 
 @dataclass(frozen=True)

@@ -55,8 +55,8 @@ def tabulate(
     return Diagnosis(
         verdict=verdict, words=sentence(verdict, posterior, choice, rows, pulls, broken) + unsteady(posterior, choice),
         named=tuple(g[0] for g in groups), groups=groups, candidates=rows, cannot_see=hidden_effects(e),
-        where=posterior.heat, next_tests=tuple(tests), next_sensors=tuple(sensors), rmse_K=rmse(e.fit.parts), floor_K=floor(e),
-        threshold=float(np.min(thresholds(e))), pulls=pulls, cosine=confusion(e, [c.effect for c in rows[:12]]),
+        where=posterior.heat, next_tests=tuple(tests), next_sensors=tuple(sensors), rmse_K=rmse(e.fit.parts),
+        floor_K=floor(e), threshold=float(np.min(thresholds(e))), pulls=pulls, cosine=confusion(e, [c.effect for c in rows[:12]]),
         bases=bases, odds=odds(posterior, broken.names), p_nothing=0.0 if broken.names else 1.0 - choice.sure,
         events=possible_events(posterior),
         remainder=remainder(posterior, choice, single),

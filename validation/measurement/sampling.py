@@ -97,11 +97,11 @@ def interpolation_error(x: Array) -> Array:
 
 def sample_step(
     network: Network, time: Array, inputs: Mapping[str, Array], around: Mapping[str, float],
-    seen: Sequence[Sensor], level: float, wished: float | None = None,
+    sensors: Sequence[Sensor], level: float, wished: float | None = None,
 ) -> SampleStep:  # fmt: skip
     """The step for one record: no finer than its own, no coarser than `wished` (s) or the instants of a fit.
 
-    time (n,) s, inputs (n,): as recorded;  around : boundary -> degC;  seen : sensors
+    time (n,) s, inputs (n,): as recorded;  around : boundary -> degC;  sensors : sensors
     level : degC of a warm machine
     """
     usual = float(np.median(np.diff(time)))
@@ -109,8 +109,8 @@ def sample_step(
     steps = sorted({usual, *(h for h in (*STEPS, *([wished] if wished else [])) if usual < h <= most)})
     felt, chosen = _Felt.of(network, time, inputs, around, level), SampleStep(steps[0], 0.0, None, None, None)
     for h in steps[1:]:
-        found = felt.worst(h, seen)
-        if found.error_K > ALLOWED * min(sigma for _, _, sigma, _ in seen):
+        found = felt.worst(h, sensors)
+        if found.error_K > ALLOWED * min(sigma for _, _, sigma, _ in sensors):
             break
         chosen = found
     return chosen
@@ -148,14 +148,14 @@ class _Felt:
         table = np.stack([factors[e] for e in moving], axis=1) if moving else np.zeros((time.size, 0))
         return cls(network.states, Modes.of(G, C), time, table, heat)
 
-    def worst(self, h: float, seen: Sequence[Sensor]) -> SampleStep:
+    def worst(self, h: float, sensors: Sequence[Sensor]) -> SampleStep:
         """With steps of h (s)."""
         at = self.time[:: max(1, self.time.size // MOST)]
         rows = np.minimum(np.searchsorted(self.time, [at, at + h]), self.time.size - 1)
         change = self.factor[rows[1]] - self.factor[rows[0]]
         change = change[np.argsort(-np.abs(change) @ np.abs(self.heat).sum(axis=0))[:MOMENTS]]
         push, best = self.modes.weight @ self.heat, SampleStep(h, 0.0, None, None, None)
-        for name, row, _, lag in seen:
+        for name, row, _, lag in sensors:
             inside = row.index < len(self.states)
             own = row.weights[inside] @ self.modes.shape[row.index[inside]]
             parts = np.abs(change @ (own[:, None] * push).T)

@@ -100,8 +100,8 @@ class _Run:
             self._step(f, self.u[k - 1] + share * (self.u[k] - self.u[k - 1]), h)
         z = np.concatenate([self.x, self.u[k]])
         keeps = [np.exp(-seconds / c.lag_s) if k and c.lag_s > 0.0 else 0.0 for c in self.test.channels]
-        shown = np.array([self._shown(c, z) for c in self.test.channels])
-        self.lagged = shown + np.array(keeps) * (self.lagged - shown)
+        readings = np.array([self._shown(c, z) for c in self.test.channels])
+        self.lagged = readings + np.array(keeps) * (self.lagged - readings)
         change = np.zeros(len(self.P))
         for i, c in enumerate(self.test.channels):
             if np.isfinite(c.y[k]):
@@ -171,10 +171,10 @@ class _Terms:
         self._bent = [(e, p.law.temperature, p.hot, p.cold) for e, p in enumerate(patterns) if p.bends]
         self._known, self._close = np.full(constants.sd.size, np.inf), close * constants.sd
 
-    def factors(self, given: Record) -> Array:
+    def factors(self, record: Record) -> Array:
         """(nt, ne) of a record."""
-        u, nt = given.inputs, given.time.shape
-        signals = u if isinstance(u, Signals) else Signals(u, given.time.size)
+        u, nt = record.inputs, record.time.shape
+        signals = u if isinstance(u, Signals) else Signals(u, record.time.size)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", RangeWarning)  # a comparison says so
             every = [signals.factor(p.name, p.law) for p in self.every.patterns]

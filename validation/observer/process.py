@@ -66,8 +66,8 @@ class Process:
     @cached_property
     def slow(self) -> NDArray[np.int64]:
         """The states of the reduced model."""
-        shown = np.array(["#" not in s for s in self.network.states], bool)
-        return np.flatnonzero(shown & (self.network.C > 0.0))
+        visible = np.array(["#" not in s for s in self.network.states], bool)
+        return np.flatnonzero(visible & (self.network.C > 0.0))
 
     @cached_property
     def fast(self) -> NDArray[np.int64]:

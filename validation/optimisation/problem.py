@@ -135,18 +135,18 @@ class Problem:
         return again, True
 
     def _temperatures(
-        self, found: Rest, values: Mapping[str, float], inputs: Mapping[str, float], share: Array
+        self, rest: Rest, values: Mapping[str, float], inputs: Mapping[str, float], share: Array
     ) -> tuple[dict[str, float], float]:
         """Place -> degC, of the hottest point; the settling time (s) of the hottest of the first `peak` places."""
         around = float(np.mean(list(self.boundaries.values())))
         rows, out = {}, {}
         for s in self.spots:
-            T, rows[s.name] = s.hottest(found.z)
+            T, rows[s.name] = s.hottest(rest.z)
             out[s.name] = around + (T - around) * self.corrections.ratio(s.name, share)
             if self.sure is not None:
                 out[s.name] += 1.96 * self.sure.sd(values, inputs, self.boundaries, rows[s.name])
         hottest = max([s.name for s in self.spots][: self.peak], key=lambda name: out[name])
-        return out, found.settling(rows[hottest])
+        return out, rest.settling(rows[hottest])
 
     def _impossible(self, why: str) -> Performance:
         limits = [f"{s.name} <= {s.limit:g} degC" for s in self.spots]

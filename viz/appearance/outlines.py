@@ -91,8 +91,8 @@ def _along(prisms: list[tuple[Polygon, float, float]], angle: float) -> tuple[tu
     return tuple(sorted(out))
 
 
-def _pieces(found: Any) -> list[Any]:
-    pieces = getattr(found, "geoms", [found])
+def _pieces(shape: Any) -> list[Any]:
+    pieces = getattr(shape, "geoms", [shape])
     return [piece for piece in pieces if not piece.is_empty and piece.geom_type in ("Polygon", "LineString")]
 
 

@@ -45,18 +45,18 @@ def portrait(
     theme: Theme = LIGHT,
     size: tuple[int, int] = scene.SIZE,
     title: str = "",
-    said: str = CAPTION,
+    caption: str = CAPTION,
     png: str | Path | None = None,
 ) -> pyvista.Plotter:
     """A machine as it looks, cut open or (wedge None) whole; of its materials, or coloured by temperature.
 
     nodes, T : a mesh and temperatures (degC) per node; limits : of the colour scale (degC)
-    said : below the picture
+    caption : below the picture
     """
     warm = None if nodes is None or T is None else Warm(nodes, on_nodes(nodes, T), limits)
     p = staged(machine, warm, wedge, view, theme, size, bool(title))[0]
     scene.headline(p, title, theme)
-    scene.footnote(p, said, theme)
+    scene.footnote(p, caption, theme)
     scene.save(p, png)
     return p
 

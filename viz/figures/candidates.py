@@ -54,12 +54,12 @@ def posterior(odds: Sequence[Mapping[str, Any]], *, most: int = 10, png: str | P
 
 
 @paper.styled
-def differences(found: Mapping[str, Any], *, most: int = 10, png: str | Path | None = None) -> Figure:
+def differences(contradiction: Mapping[str, Any], *, most: int = 10, png: str | Path | None = None) -> Figure:
     """What would have to differ between tests, in standard deviations; what cannot differ is red.
 
-    found : the contradiction of a diagnosis or comparison
+    contradiction : the contradiction of a diagnosis or comparison
     """
-    rows = found["differences"][:most][::-1]
+    rows = contradiction["differences"][:most][::-1]
     figure, (ax,) = paper.subplots(8.4, 0.3 * len(rows) + 1.2)
     ax.barh(range(len(rows)), [d["sd"] for d in rows], height=0.62,
             color=[BLUE if d["possible"] else VERMILION for d in rows])  # fmt: skip
@@ -67,7 +67,7 @@ def differences(found: Mapping[str, Any], *, most: int = 10, png: str | Path | N
         ax.text(
             d["sd"], y, f"\u00a0{factor(d)}\u00a0", va="center", ha="left" if d["sd"] > 0 else "right", fontsize=8.5
         )
-    for limit in (-found["limit"], found["limit"]):
+    for limit in (-contradiction["limit"], contradiction["limit"]):
         ax.axvline(limit, color=LIGHT.ink, lw=1.0, ls=":")
     ax.axvline(0.0, color=LIGHT.ink, lw=1.0)
     ax.set_yticks(range(len(rows)), [f"{d['parameter']} in {d['test']}" for d in rows])

@@ -131,7 +131,7 @@ def _lines(p: pyvista.Plotter, at: Mapping[str, Array], flow: Heat, colours: Col
     most = max((f.watts for f in inner), default=1.0)
     drawn = sorted((f for f in inner if f.conductance > 0 and f.watts >= SMALL * most), key=lambda f: -f.watts)
     widest = max((f.conductance for f in drawn), default=0.0)
-    taken: list[Array] = []
+    occupied: list[Array] = []
     for i, f in enumerate(drawn):
         a, b = at[f.start], at[f.end]
         line = pyvista.Line(a, b)
@@ -141,14 +141,14 @@ def _lines(p: pyvista.Plotter, at: Mapping[str, Array], flow: Heat, colours: Col
             name=f"link {i}", line_width=max(2.0, 24 * np.sqrt(f.conductance / widest)),
         )  # fmt: skip
         on_top(actor, 1)
-        place = clear_place(a, b, list(at.values()), taken, length) if len(taken) < LABELLED else None
+        place = clear_place(a, b, list(at.values()), occupied, length) if len(occupied) < LABELLED else None
         if place is not None:
             p.add_actor(text(f"{f.watts:.0f} W", place, "#6B2A12", 0, 11), reset_camera=False)
-            taken.append(place)
+            occupied.append(place)
     return widest
 
 
-def clear_place(a: Array, b: Array, nodes: Sequence[Array], taken: Sequence[Array], length: float) -> Array | None:
+def clear_place(a: Array, b: Array, nodes: Sequence[Array], occupied: Sequence[Array], length: float) -> Array | None:
     """Where a label on the line from a to b (m) covers no node and no other label, near its middle; None: nowhere.
 
     length : of the machine (m), which the sizes of labels and nodes go by
@@ -156,7 +156,9 @@ def clear_place(a: Array, b: Array, nodes: Sequence[Array], taken: Sequence[Arra
     half, dot = length * np.array(LABEL), length * NODE
 
     def clear(at: Array) -> bool:
-        near = [np.abs(at - other)[1:] < half + dot for other in nodes] + [np.abs(at - o)[1:] < 2 * half for o in taken]
+        near = [np.abs(at - other)[1:] < half + dot for other in nodes] + [
+            np.abs(at - o)[1:] < 2 * half for o in occupied
+        ]
         return not any(one.all() for one in near)
 
     return next((at for at in (a + share * (b - a) for share in SHARES) if clear(at)), None)

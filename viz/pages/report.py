@@ -122,7 +122,7 @@ def _curves(r: Report) -> str:
             f"curves{i}",
             f"{name}: readings, what counts as within, and the model.",
         )
-        parts.append(html.more(name, both, opened=i == 0))
+        parts.append(html.more(name, both, expanded=i == 0))
     return html.section("Measured and modelled", *parts)
 
 
@@ -250,7 +250,7 @@ def _sensors(r: Report) -> str:
             "verdict",
         ]
         name = f"{test['name']} ({test['role']}), rms {test['rmse_K']:.2f} K"
-        parts.append(html.more(name, html.table(headers, rows), opened=test["role"] == "hold-out"))
+        parts.append(html.more(name, html.table(headers, rows), expanded=test["role"] == "hold-out"))
     rule = f"<p>Error is measured − model; {RULE}.</p>"
     return html.section("Every sensor", rule, *parts)
 

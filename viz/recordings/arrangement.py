@@ -32,8 +32,8 @@ def blueprint(comparison: Comparison, first: str, points: NDArray[np.float64], w
     below: list[Any] = [_over_time("inputs", shares, end)] if comparison.test.inputs else []
     below += [rrb.TextLogView(origin="events", name="events")] if comparison.events else []
     right = rrb.Vertical(curves, _over_time("residual", "measured − model (K)", end), *below)
-    shown = rrb.Horizontal(_machine(comparison, points), _bar(), column_shares=[6, 1])
-    left = rrb.Vertical(shown, _text("legend", "legend"), row_shares=[5, 1])
+    views = rrb.Horizontal(_machine(comparison, points), _bar(), column_shares=[6, 1])
+    left = rrb.Vertical(views, _text("legend", "legend"), row_shares=[5, 1])
     layout: Any = rrb.Horizontal(left, right, column_shares=[3, 2], name="test")
     if with_history:
         error = rrb.TimeSeriesView(origin="error", name="rms error (K)")
@@ -50,11 +50,11 @@ def non_overlapping(places: NDArray[np.float64], points: NDArray[np.float64]) ->
     """Which names, at places (n, 3) m in order of weight, cover none before them when the machine is first seen."""
     _, right, up = View().axes()
     size = np.linalg.norm(np.ptp(points, axis=0)) * np.array(NAME)
-    taken: list[NDArray[np.float64]] = []
+    occupied: list[NDArray[np.float64]] = []
     out = []
     for at in np.stack([places @ right, places @ up], axis=1):
-        out.append(not any((np.abs(at - other) < size).all() for other in taken))
-        taken += [at] if out[-1] else []
+        out.append(not any((np.abs(at - other) < size).all() for other in occupied))
+        occupied += [at] if out[-1] else []
     return out
 
 

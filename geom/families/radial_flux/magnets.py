@@ -49,9 +49,9 @@ def _fits(g: Any, radius: float, width: float) -> bool:
     return inside and apart and _distance(found) >= _SHAFT * g.shaft.diameter / 2
 
 
-def _distance(found: Corners) -> float:
+def _distance(corners_xy: Corners) -> float:
     """Of a polygon's edges to the axis (m)."""
-    return min(_to_axis(a, b) for a, b in zip(found, [*found[1:], found[0]], strict=True))
+    return min(_to_axis(a, b) for a, b in zip(corners_xy, [*corners_xy[1:], corners_xy[0]], strict=True))
 
 
 def _to_axis(a: tuple[float, float], b: tuple[float, float]) -> float:

@@ -25,7 +25,7 @@ def test_a_fit_goes_on_with_the_jacobian_it_has(evidence):
     fit = evidence.fit
     held = {p.name: p.value for p in fit.network.parameters} | fit.values
     setting = (fit.network, evidence.tests, fit.unknowns, fit.theta, residual_noise(fit), held)
-    kept, made = minimise(*setting, known=CachedSegments(fit.parts, nearby=False)), minimise(*setting)
+    kept, made = minimise(*setting, cache=CachedSegments(fit.parts, nearby=False)), minimise(*setting)
     np.testing.assert_allclose(kept.theta, made.theta, rtol=1e-9, atol=1e-12)
     assert kept.objective == pytest.approx(made.objective, rel=1e-12)
 

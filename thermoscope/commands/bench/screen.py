@@ -69,16 +69,16 @@ def answer(document: Mapping[str, Any]) -> Answer:
                   "--out DIR for plots; --json FILE")  # fmt: skip
 
 
-def _effects(name: str, found: Mapping[str, Any]) -> Grid:
-    rows = [[e["effect"], e["words"], e["value"], "yes" if e["active"] else ""] for e in found["effects"]]
-    title = f"{name}: beyond {found['simultaneous']:.2f} is not chance (Lenth, simultaneous 95 %)"
+def _effects(name: str, effects: Mapping[str, Any]) -> Grid:
+    rows = [[e["effect"], e["words"], e["value"], "yes" if e["active"] else ""] for e in effects["effects"]]
+    title = f"{name}: beyond {effects['simultaneous']:.2f} is not chance (Lenth, simultaneous 95 %)"
     headers = ["effect", "factors", f"high - low ({unit_of(name)})", "active"]
     return Grid(title, headers, rows, ["yes"], headers[2:])
 
 
-def _ranking(name: str, found: Mapping[str, Any]) -> Grid:
-    rows = [[r["factor"], r["measure"], r["conf95"], r["spread"]] for r in found["ranking"]]
-    title = f"{name}: {found['method']}, {found['runs']} runs"
+def _ranking(name: str, indices: Mapping[str, Any]) -> Grid:
+    rows = [[r["factor"], r["measure"], r["conf95"], r["spread"]] for r in indices["ranking"]]
+    title = f"{name}: {indices['method']}, {indices['runs']} runs"
     return Grid(title, ["factor", "measure", "+- 95 %", "spread"], rows)
 
 
@@ -119,13 +119,13 @@ def two_paths(case: str, winding: str, machine: str, target: str | None) -> int:
     return 0
 
 
-def paths(found: Mapping[str, Mapping[str, Any]]) -> Answer:
+def paths(resistances: Mapping[str, Mapping[str, Any]]) -> Answer:
     """Two resistances per test."""
     headers = ["test", "R_ext (K/W)", "R_w (K/W)", "winding (K)", "machine (K)", "left at other loads (K)"]
     keys = ("R_ext", "R_w", "winding_K", "machine_K", "largest_residual_K")
-    left = max(one["largest_residual_K"] for one in found.values())
-    sentence = f"Two resistances describe {len(found)} tests to {left:.2g} K at other loads."
-    return Answer(sentence, [Grid("", headers, [[name, *(one[k] for k in keys)] for name, one in found.items()])])
+    left = max(one["largest_residual_K"] for one in resistances.values())
+    sentence = f"Two resistances describe {len(resistances)} tests to {left:.2g} K at other loads."
+    return Answer(sentence, [Grid("", headers, [[name, *(one[k] for k in keys)] for name, one in resistances.items()])])
 
 
 def carry(source: str, targets: list[str], target: str | None) -> int:
@@ -149,8 +149,10 @@ def show_transfer(document: Mapping[str, Any]) -> Answer:
     rows = [[r["channel"], one["case"], *(r[key] for key in keys), "within" if r["within"] else "over"]
             for one in document["targets"] for r in sorted(one["rows"], key=lambda r: r["within"])]  # fmt: skip
     over = sum(row[-1] == "over" for row in rows)
-    taken = document["targets"][0]["parameters"] if document["targets"] else []
+    parameters = document["targets"][0]["parameters"] if document["targets"] else []
     sentence = (f"{document['source']}, revision {document['revision']}, on other machines: {over} of {len(rows)} "
                 "sensors are over.")  # fmt: skip
     keep = ["case", "difference (K)", "95 % (K)", "verdict"]
-    return Answer(sentence, [Grid("", headers, rows, ["over"], keep), f"Taken over: {', '.join(taken) or 'nothing'}."])
+    return Answer(
+        sentence, [Grid("", headers, rows, ["over"], keep), f"Taken over: {', '.join(parameters) or 'nothing'}."]
+    )

@@ -58,12 +58,12 @@ def answer(document: Mapping[str, Any], called: str) -> Answer:
     named = document.get("named", [])
     step = f"Next: thermoscope model add {case} {named[0]}" if named else f"Next: thermoscope explain effects {case}"
     hidden = [f"{h['effect']} below {cell(h['smallest_detectable'])} {h['unit']}" for h in document["cannot_see"]]
-    unseen = f"{len(hidden)} effects could be there unseen: {', '.join(hidden[:2])}, ..." if hidden else ""
+    hidden_words = f"{len(hidden)} effects could be there unseen: {', '.join(hidden[:2])}, ..." if hidden else ""
     remaining = " ".join(row["words"] for row in document.get("remainder", []))
     found = document["candidates"]
     parts = [_odds(document), _candidates(found), *_leader(found), *_lost(found, named), remaining, *events(document),
              *contradiction(document.get("contradiction")), next_tests(document),
-             in_short(document.get("error_budget", {}), steps), unseen, question(document, case)]  # fmt: skip
+             in_short(document.get("error_budget", {}), steps), hidden_words, question(document, case)]  # fmt: skip
     rest = [*events(document, likely=False), *budget(document.get("error_budget", {}), steps), *hidden]
     return Answer(sentence, parts, f"{step}; --json FILE; thermoscope show report {case}", rest)
 
@@ -86,21 +86,21 @@ def _odds(document: Mapping[str, Any]) -> Grid:
     return Grid("What the readings say", ["hypothesis", "probability (%)"], rows[:ODDS])
 
 
-def _candidates(found: Sequence[Mapping[str, Any]]) -> Grid:
+def _candidates(candidates: Sequence[Mapping[str, Any]]) -> Grid:
     """Size with interval and detection limit, and what it buys."""
     headers = ["effect", "%", "size (95 %)", "detectable", "unit", "refitted (K)", "held out (K)", "decision"]
     keep = ["size (95 %)", "%", "detectable", "unit", "refitted (K)"]
-    rows = [_row(c) for c in found if c["probability"] > LEAST_PROBABILITY or c["decision"] != "no"] or [
-        _row(c) for c in found[:1]
+    rows = [_row(c) for c in candidates if c["probability"] > LEAST_PROBABILITY or c["decision"] != "no"] or [
+        _row(c) for c in candidates[:1]
     ]
     return Grid("Candidates", headers, rows[:ROWS], ["named", "group"], keep)
 
 
-def _leader(found: Sequence[Mapping[str, Any]]) -> list[str]:
+def _leader(candidates: Sequence[Mapping[str, Any]]) -> list[str]:
     """From which size the leader shows, what it buys and looks like, and the experiment that proves it."""
-    if not found or found[0]["probability"] <= LEAST_PROBABILITY:
+    if not candidates or candidates[0]["probability"] <= LEAST_PROBABILITY:
         return []
-    first = found[0]
+    first = candidates[0]
     lines = [f"Detection limit: these tests show {first['effect']} from {limit(first)} on."]
     lines += [bought(first)] if first.get("tests") and first["decision"] != "no" else []
     lines += [f"Proof: {first['isolating_test']}."] if first["isolating_test"] else []
@@ -109,15 +109,15 @@ def _leader(found: Sequence[Mapping[str, Any]]) -> list[str]:
     return lines
 
 
-def _lost(found: Sequence[Mapping[str, Any]], named: Sequence[str]) -> list[str]:
+def _lost(candidates: Sequence[Mapping[str, Any]], named: Sequence[str]) -> list[str]:
     """Why the rivals lost: where a refit is worse, or how little evidence there is for the next ones alone."""
     if not named:
         return []
-    refitted = [f"Against {c['effect']}: it {c['note']} than {found[0]['effect']}." for c in found[1:ROWS]
+    refitted = [f"Against {c['effect']}: it {c['note']} than {candidates[0]['effect']}." for c in candidates[1:ROWS]
                 if c["note"] and c["probability"] > LEAST_PROBABILITY and c["effect"] not in named]  # fmt: skip
-    rivals = sorted((c for c in found if c["effect"] not in named and not c["note"]), key=lambda c: -c["score"])
+    rivals = sorted((c for c in candidates if c["effect"] not in named and not c["note"]), key=lambda c: -c["score"])
     each = ", ".join(f"{c['effect']} {c['score']:.1f}" for c in rivals[:RIVALS])
-    lead = next(c["score"] for c in found if c["effect"] == named[0])
+    lead = next(c["score"] for c in candidates if c["effect"] == named[0])
     return [*refitted, f"Rivals alone have less evidence: {each}; {named[0]} {lead:.1f} nats."] if each else refitted
 
 

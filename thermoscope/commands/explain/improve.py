@@ -32,8 +32,8 @@ def improve(case: str, yes: bool, most: int, target: str | None) -> int:
         folder = open_case_for_writing(case, tell)
         checked_columns(folder)
         ledger = Ledger(folder)
-        guide = Supervisor(singletons if yes else user_choice, ledger.keep)
-        done = improve(folder.case, guide, most, tell, folder.settings.kinds)
+        supervisor = Supervisor(singletons if yes else user_choice, ledger.keep)
+        done = improve(folder.case, supervisor, most, tell, folder.settings.kinds)
     found = {"case": folder.case.name, "revision": ledger.history.last.number, **done.diagnosis.document()}
     save_diagnosis(folder, json.loads(json.dumps(found, default=float)))
     document = {"case": folder.case.name, **done.document(), "written": ledger.written}
@@ -54,11 +54,11 @@ class Ledger:
         write_columns(self.folder, self.history.last.effects)
 
 
-def user_choice(found: Diagnosis, choice: Sequence[Candidate]) -> str | None:
+def user_choice(diagnosis: Diagnosis, choice: Sequence[Candidate]) -> str | None:
     """The user's word, on stderr and stdin: a number of the list, or nothing to stop."""
     lines = [f"  {i + 1}  {offer(c)}" for i, c in enumerate(choice)]
-    print(f"{found.words}\n" + "\n".join(lines), file=sys.stderr)
-    for further in deciding(found.document())[:3]:
+    print(f"{diagnosis.words}\n" + "\n".join(lines), file=sys.stderr)
+    for further in deciding(diagnosis.document())[:3]:
         print(f"  would decide: {further.kind} {further.what} ({further.hours:.3g} h)", file=sys.stderr)
     print("add which? (number, or Enter to stop) ", end="", file=sys.stderr, flush=True)
     word = sys.stdin.readline().strip()

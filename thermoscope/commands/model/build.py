@@ -123,9 +123,9 @@ def answer(document: Mapping[str, Any], folder: Path) -> Answer:
                "watertight"]  # fmt: skip
     parts = Grid("Parts", headers, [_row(part) for part in document["parts"]], ["NO"], ["mass (kg)", "watertight"])
     sizes = _sizes(document["sizes"]) if "sizes" in document else []
-    shown = [*sizes, crosscheck.parts(document), parts]
+    tables = [*sizes, crosscheck.parts(document), parts]
     rest = [crosscheck.links(document), crosscheck.hand_formula_table(document)]
-    return Answer(sentence, shown, f"solids, mesh, tables and pictures in {folder}; --json FILE", rest)
+    return Answer(sentence, tables, f"solids, mesh, tables and pictures in {folder}; --json FILE", rest)
 
 
 def _row(part: Mapping[str, Any]) -> list[Any]:
@@ -136,12 +136,14 @@ def _row(part: Mapping[str, Any]) -> list[Any]:
 
 def _sizes(sizes: Mapping[str, Any]) -> list[Grid | str]:
     """Error against number of states, and what the guard saw at points nothing was fitted to."""
-    asked = sizes["wish_percent"]
+    requested = sizes["wish_percent"]
     rows = [["means only" if not s["asked"] else f"up to {s['asked']}", *_errors(s)] for s in sizes["sizes"]]
     rows += [
         ["learned", g["states"], "-", "-", "-", *(g["random"][k] for k in ERRORS), _word(g)] for g in sizes["guard"]
     ]
-    title = f"Error in % of a part's rise (asked: means {asked['mean']:g}, hot spots and points {asked['hot']:g})"
+    title = (
+        f"Error in % of a part's rise (asked: means {requested['mean']:g}, hot spots and points {requested['hot']:g})"
+    )
     headers = ["network", "states", "mean", "hot spot", "point", "mean, random", "hot, random", "point, random", "met"]
     notes: list[Grid | str] = []
     if mesh := sizes["mesh"]:

@@ -39,7 +39,7 @@ def crosscheck(machine: str, out: Path | None, accuracy: float, target: str | No
     return 0 if found.met else 1
 
 
-def checked(built: Built, found: NetworkSize | None, tell: Progress) -> dict[str, Any]:
+def checked(built: Built, size: NetworkSize | None, tell: Progress) -> dict[str, Any]:
     """Part by part and link by link at a point where the machine settles, and the hand formulas there."""
     from lumped.machine.losses import loss_shares
     from thermoscope.verification.crosscheck import crosscheck as compare
@@ -48,14 +48,14 @@ def checked(built: Built, found: NetworkSize | None, tell: Progress) -> dict[str
 
     tell("field against network")
     point = bearable(built)
-    loads = None if found is None else found.reduction.loads
-    solver = None if found is None else found.reduction.solver
+    loads = None if size is None else size.reduction.loads
+    solver = None if size is None else size.reduction.solver
     shares = loss_shares(built.machine, built.network)
     check = compare(built.field, built.network, point, solver=solver, loads=loads, shares=shares)
     tell("laws point by point")
     local = with_local_laws(built.field, built.network, point, check, shares, loads, solver).T
     tell("hand formulas")
-    hand = hand_formulas(built.machine, built.field, check)
+    formulas = hand_formulas(built.machine, built.field, check)
     responsible = {part.place: check.responsible(part.place) for part in check.parts}
     return {
         "operating_point": point,
@@ -68,7 +68,7 @@ def checked(built: Built, found: NetworkSize | None, tell: Progress) -> dict[str
             for part, link in zip(check.parts, responsible.values(), strict=True)
         ],
         "links": [vars(link) for link in check.links],
-        "hand": [row.document() for row in hand],
+        "hand": [row.document() for row in formulas],
         "energy_balance": check.energy_balance,
     }
 
@@ -118,8 +118,8 @@ def answer(document: Mapping[str, Any], folder: Path) -> Answer:
     sentence = (f"Steady at the rated point, network and field differ by {abs(off['percent_of_rise']):.2g} % of "
                 f"the rise at most ({off['place']}); its energy balance {document['energy_balance']:.1e}.")  # fmt: skip
     point = ", ".join(f"{name} {value:.4g}" for name, value in document["operating_point"].items())
-    shown = [parts(document), links(document), hand_formula_table(document)]
-    return Answer(sentence, shown, f"all rows in {folder}/crosscheck*.csv; --json FILE", [f"Operating point: {point}"])
+    tables = [parts(document), links(document), hand_formula_table(document)]
+    return Answer(sentence, tables, f"all rows in {folder}/crosscheck*.csv; --json FILE", [f"Operating point: {point}"])
 
 
 def worst(document: Mapping[str, Any]) -> Mapping[str, Any]:

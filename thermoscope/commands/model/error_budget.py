@@ -26,8 +26,8 @@ def budget(budgets: Mapping[str, Places], steps: Steps) -> list[Grid | str]:
     rows = sorted(worst(budgets), key=_total, reverse=True)
     if not rows:
         return _sampled(steps)
-    shown = [["-" if row[key] is None else row[key] for key in KEYS] for row in rows]
-    return [Grid("Error budget: what the model's own numbers may be wrong by", HEADERS, shown, keep=["sum (K)"]),
+    cells = [["-" if row[key] is None else row[key] for key in KEYS] for row in rows]
+    return [Grid("Error budget: what the model's own numbers may be wrong by", HEADERS, cells, keep=["sum (K)"]),
             words(rows), *_sampled(steps)]  # fmt: skip
 
 

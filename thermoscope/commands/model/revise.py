@@ -91,8 +91,8 @@ def revised(case: str, step: Callable[..., revise.Revision], anyway: bool, targe
         longer = folder.history.and_then(recorded(result, evidence(folder, result)))
         save_history(folder.settings.model_file, longer, folder.history)
         write_columns(folder, longer.last.effects)
-    unseen = unmeasured(folder, result)
-    document = {**result.document(), "case": folder.case.name, "written": keep, "unmeasured": unseen}
+    places = unmeasured(folder, result)
+    document = {**result.document(), "case": folder.case.name, "written": keep, "unmeasured": places}
     give(document, target, lambda: answer(document, folder, case))
     return 0 if keep else 1
 

@@ -46,10 +46,10 @@ def export(
     return 0
 
 
-def read_limits(said: Sequence[str]) -> dict[str, float]:
+def read_limits(words: Sequence[str]) -> dict[str, float]:
     """PLACE=DEGC, ..."""
     out = {}
-    for one in said:
+    for one in words:
         place, equals, value = one.rpartition("=")
         if place in out:
             raise InputError(f"'{place}' is given twice", "--limit", "one limit for each place")
@@ -72,7 +72,7 @@ def _model(
         folder = open_case(case, tell, untested=True)
         tell("collecting the network")
         model = exported(folder, limits)
-        apart = _differences(folder, model, tell) if form in ("c", "fmu") else {}
+        differences = _differences(folder, model, tell) if form in ("c", "fmu") else {}
         files, platforms = _files(model, form, version, tell)
     where = out or folder.settings.out / form
     written = [write_whole(where / name, content) for name, content in files.items()]
@@ -82,14 +82,14 @@ def _model(
         "step_multiplications": step_operations(model), "inputs": [vars(s) for s in model.signals],
         "outputs": [{"name": o.name, "limit_degC": o.limit, "error_K": o.error_K, "role": o.role}
                     for o in model.outputs],
-        "difference_K": apart,
+        "difference_K": differences,
     }  # fmt: skip
     give(document, target, lambda: answer(document))
     return 0
 
 
 def _observer(
-    case: str, out: Path | None, limits: Mapping[str, float], given: Sequence[str], target: str | None
+    case: str, out: Path | None, limits: Mapping[str, float], names: Sequence[str], target: str | None
 ) -> int:
     """The observer of a case in C99."""
     import numpy as np
@@ -102,7 +102,7 @@ def _observer(
     with progress() as tell:
         folder = open_case(case, tell)
         channels = {c.name: c for t in folder.case.tests for c in t.channels}
-        sensors = chosen([*channels.values()], given, str(folder.settings.path))
+        sensors = chosen([*channels.values()], names, str(folder.settings.path))
         design = designed(folder, tell)
         tell("writing the observer")
         looks = outputs(model_of(folder)[0], folder, limits)
@@ -138,9 +138,9 @@ def _differences(folder: Folder, model: Any, tell: Progress) -> dict[str, float]
         return {}
     network, values = model_of(folder)
     out = {t.name: difference(code, network, sampled(record(t, {})), values) for t in folder.case.tests}
-    for test, apart in out.items():
-        if not apart <= AGREES_K:
-            raise ThermoscopeError(f"the exported code differs from the simulation of '{test}' by {apart:.3g} K")
+    for test, by_sensor in out.items():
+        if not by_sensor <= AGREES_K:
+            raise ThermoscopeError(f"the exported code differs from the simulation of '{test}' by {by_sensor:.3g} K")
     return out
 
 
@@ -169,7 +169,9 @@ def answer(document: Mapping[str, Any]) -> Answer:
     """What was written and how well it agrees."""
     sentence = f"{document['states']} states, {document['state_bytes']} bytes from step to step."
     lines = [f"Compiled for {', '.join(document['platforms'])}."] if document["platforms"] else []
-    if apart := document["difference_K"]:
-        test = max(apart, key=lambda t: apart[t])
-        lines.append(f"Largest difference from simulate over {len(apart)} tests: {apart[test]:.2g} K ({test}).")
+    if differences := document["difference_K"]:
+        test = max(differences, key=lambda t: differences[t])
+        lines.append(
+            f"Largest difference from simulate over {len(differences)} tests: {differences[test]:.2g} K ({test})."
+        )
     return Answer(sentence, [*lines, *document["files"]], "--json FILE")

@@ -36,12 +36,12 @@ def optimise(
     """The Pareto set of a case or a machine file; table, plots and machine files in a folder."""
     if method not in METHODS:
         raise InputError(f"'{method}' is no method", "--method", ", ".join(METHODS))
-    asked = DesignRequest(read_limits(limits), torque, read_at(at), read_bounds(vary), robust, cycle)
-    if not asked.limits:
+    request = DesignRequest(read_limits(limits), torque, read_at(at), read_bounds(vary), robust, cycle)
+    if not request.limits:
         raise InputError("no limit is given", "--limit", "PLACE=DEGC, for example winding=155")
     with progress() as tell, once() as said, _executor(cluster) as executor:
         folder = case_or_machine(name, tell)
-        problem, file = design_problem(folder, asked, tell)
+        problem, file = design_problem(folder, request, tell)
         designs = pareto_set(problem, METHODS[method], effort, executor, tell)
         document = document_of(problem, designs, method, effort)
         if file is not None and any(v.conducts for v in problem.space.variables):
@@ -66,10 +66,10 @@ def _executor(cluster: str | None) -> Iterator[Executor | None]:
         yield executor
 
 
-def read_bounds(said: Sequence[str]) -> dict[str, tuple[float, float] | None]:
+def read_bounds(words: Sequence[str]) -> dict[str, tuple[float, float] | None]:
     """NAME or NAME=LOW:HIGH, ..."""
     out: dict[str, tuple[float, float] | None] = {}
-    for one in said:
+    for one in words:
         name, equals, bounds = one.partition("=")
         out[name] = None
         if equals:
@@ -128,10 +128,12 @@ def _write(
     for row, design in zip(rows, designs, strict=True) if file is not None else ():
         assert file is not None
         name, does = row["design"], design.performance.objectives
-        said = [f"A design of {file.where}: " + ", ".join(f"{o} {does[o]:.4g}" for o in problem.aimed)]
+        comments = [f"A design of {file.where}: " + ", ".join(f"{o} {does[o]:.4g}" for o in problem.aimed)]
         values = problem.space.named(design.x)
         out.append(
-            write_whole(folder / f"{name}.toml", machine_file_text(file, values, f"{file.machine.name}-{name}", said))
+            write_whole(
+                folder / f"{name}.toml", machine_file_text(file, values, f"{file.machine.name}-{name}", comments)
+            )
         )
     return [str(path) for path in out]
 

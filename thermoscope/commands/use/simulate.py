@@ -79,7 +79,7 @@ def _cycles(folder: Folder, network: Network, cycle: str | None) -> Iterable[Cyc
 
 def _ran(
     network: Network, values: Mapping[str, float], cycle: Cycle, folder: Folder, into: Path, tell: Progress,
-    known: ParameterPosterior | None,
+    posterior: ParameterPosterior | None,
 ) -> dict[str, Any]:  # fmt: skip
     tell(f"running {cycle.name}")
     from thermoscope.verification.error_budget import error_budgets
@@ -103,7 +103,7 @@ def _ran(
     heat = audit(network, record, values)
     if heat.mismatch > MISMATCH:
         raise ThermoscopeError(f"{cycle.name}: injected and declared losses differ by {100 * heat.mismatch:.3g} %")
-    band = None if known is None else along(known, cycle.name, record, rows)
+    band = None if posterior is None else along(posterior, cycle.name, record, rows)
     file = write_whole(into / f"simulate-{cycle.name}.csv", _csv(record, rows, y, band))
     budget = error_budgets(folder, {cycle.name: record}, tell)[cycle.name]
     document = _document(cycle, record, rows, y, heat, residuals, file)

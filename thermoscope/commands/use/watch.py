@@ -33,8 +33,8 @@ Array = NDArray[np.float64]
 MINUTE = 60.0
 
 
-def watch(case: str, follow: str, given: Sequence[str], like: str | None, out: Path | None, target: str | None) -> int:
-    """Rows from a file or a pipe.  given : sensors to use, by default all;  like : test whose sheet the rows have"""
+def watch(case: str, follow: str, names: Sequence[str], like: str | None, out: Path | None, target: str | None) -> int:
+    """Rows from a file or a pipe.  names : sensors to use, by default all;  like : test whose sheet the rows have"""
     with open_stream(follow) as stream:
         with progress() as tell:
             folder = open_case(case, tell)
@@ -43,7 +43,7 @@ def watch(case: str, follow: str, given: Sequence[str], like: str | None, out: P
             name, table, lines = table_of(stream, follow, sheets, network, like)
             channels = {c.name: c for t in folder.case.tests if t.name == name for c in t.channels}
             here = [c for n, c in channels.items() if n in table.sensors()]
-            sensors = chosen(here, given, follow)
+            sensors = chosen(here, names, follow)
             design = designed(folder, tell)
         session = Session(folder, design, sensors, [c for c in here if c not in sensors], target != STDOUT)
         with suppress(KeyboardInterrupt):
@@ -138,14 +138,18 @@ class Session:
             self.spoken = sample.time_s
             say(self._line(sample, seen))
 
-    def _line(self, sample: Sample, seen: dict[str, tuple[float, float]]) -> str:
+    def _line(self, sample: Sample, estimates: dict[str, tuple[float, float]]) -> str:
         """One line for the terminal."""
         assert self.one is not None
         places = [c.place for c in self.sensors]
         places += [n for n in self.design.process.bodies if n not in places]
-        shown = [f"{n} {seen[n][0]:.1f} +- {1.96 * seen[n][1]:.1f}" for n in dict.fromkeys(places) if n in seen]
+        temperatures = [
+            f"{n} {estimates[n][0]:.1f} +- {1.96 * estimates[n][1]:.1f}"
+            for n in dict.fromkeys(places)
+            if n in estimates
+        ]
         said = [_alarm_text(e.kind, e.where, e.amplitude, e.probability) for e in self.one.open.values()]
-        return f"{sample.time_s / MINUTE:7.1f} min  {', '.join(shown)} degC{''.join('; ' + s for s in said)}"
+        return f"{sample.time_s / MINUTE:7.1f} min  {', '.join(temperatures)} degC{''.join('; ' + s for s in said)}"
 
     def csv(self) -> str:
         head = ["time_s", *(x for n in self.rows for x in (f"T {n} (degC)", f"sd T {n} (K)"))]

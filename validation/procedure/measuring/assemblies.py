@@ -46,10 +46,10 @@ class Assembly:
 
 def assembly(place: str, T_exp: tuple[float, bool], T_calc: float, ambient: float, u_K: float = 0.0) -> Assembly:
     """T_exp : (degC, whether it had settled);  u_K : its standard uncertainty."""
-    measured, settled = T_exp
+    measured, steady = T_exp
     off = 100.0 * abs(T_calc - measured)
     rise = max(abs(measured - ambient), 1e-9)
-    return Assembly(place, settled, measured, T_calc, off / abs(measured), off / rise, 200.0 * u_K / abs(measured))
+    return Assembly(place, steady, measured, T_calc, off / abs(measured), off / rise, 200.0 * u_K / abs(measured))
 
 
 def assemblies(test: Test, predicted: Array, resolution_K: float = 0.5, window_min: float = 10.0) -> list[Assembly]:

@@ -75,19 +75,19 @@ def which_base(case: Case, names: Sequence[str] = (), progress: Progress = no_pr
     if unknown := [n for n in names if n not in [t.name for t in tests]]:
         known = ", ".join(t.name for t in tests)
         raise InputError(f"no test '{unknown[0]}'", case.name, f"tests that are not held out: {known}")
-    as_said = _fitted(case, tests, None)
+    declared_fit = _fitted(case, tests, None)
     chosen = [t for t in tests if not names or t.name in names]
-    return [h for test in chosen for h in _of_test(case, tests, test, bases, as_said, progress)]
+    return [h for test in chosen for h in _of_test(case, tests, test, bases, declared_fit, progress)]
 
 
 def _of_test(
-    case: Case, tests: Sequence[Test], test: Test, bases: Mapping[str, str], as_said: Fit, progress: Progress
+    case: Case, tests: Sequence[Test], test: Test, bases: Mapping[str, str], declared_fit: Fit, progress: Progress
 ) -> list[Hypothesis]:
     said, found = declared_base(test, bases), {}
     for base in (NONE, *bases):
         progress(f"{test.name} on {base}")
         moved = [on_base(t, base, bases) if t is test else t for t in tests]
-        found[base] = as_said if base == said else _fitted(case, moved, as_said)
+        found[base] = declared_fit if base == said else _fitted(case, moved, declared_fit)
     cost = {base: deviance(fit) for base, fit in found.items()}
     least = min(cost.values())
     rows = [
@@ -115,15 +115,15 @@ def base_hypotheses(case: Case, progress: Progress = no_progress) -> list[Hypoth
     return which_base(case, progress=progress) if switches(case.model.network) else []
 
 
-def wrong_bases(found: Sequence[Hypothesis]) -> list[str]:
+def wrong_bases(hypotheses: Sequence[Hypothesis]) -> list[str]:
     """In words, every test whose readings exclude the base that its sheet says."""
-    return [_words(h, found) for h in found if h.declared and h.excluded]
+    return [_words(h, hypotheses) for h in hypotheses if h.declared and h.excluded]
 
 
-def _words(said: Hypothesis, found: Sequence[Hypothesis]) -> str:
-    own = [h for h in found if h.test == said.test and not h.excluded]
+def _words(declared: Hypothesis, hypotheses: Sequence[Hypothesis]) -> str:
+    own = [h for h in hypotheses if h.test == declared.test and not h.excluded]
     better = " or ".join(h.base for h in own)
     return (
-        f"{said.test} did not stand on the base its sheet says ({said.base}, deviance {said.deviance:.0f}) but on: "
-        f"{better}. At the base, not in the films of the machine: {said.heat.against(own[0].heat)}"
+        f"{declared.test} did not stand on the base its sheet says ({declared.base}, deviance {declared.deviance:.0f}) "
+        f"but on: {better}. At the base, not in the films of the machine: {declared.heat.against(own[0].heat)}"
     )
