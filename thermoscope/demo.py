@@ -74,22 +74,22 @@ def demo(out: Path, target: str | None) -> int:
         folder = open_demo(case)
         stages.append(Stage(f"with {named[0]}", folder.compared.document()))
     headline("7  What is left, and where to look")
-    say(left_over(found, stages[-1].errors))
+    say(remaining_error(found, stages[-1].errors))
     pages(folder, case, out)
     picture(out / "error.png", "the error, step by step")
     picture(out / "field-before-after.png", "the field before and after")
     return closing(stages, done, out, target, time.monotonic() - begun)
 
 
-def left_over(diagnosis: Mapping[str, Any], errors: Mapping[str, Any]) -> str:
+def remaining_error(diagnosis: Mapping[str, Any], errors: Mapping[str, Any]) -> str:
     """What the worst sensor still misses, and what that is: as the diagnosis says it, or that it cannot be told."""
     rows = [(c, t["name"]) for t in errors["tests"] for c in t["channels"] if c["verdict"] == "over"]
     if not rows:
         return "Every sensor is within its limit in every test."
     worst, test = max(rows, key=lambda row: row[0]["rmse_K"] / row[0]["limit_K"])
-    said = [r["words"] for r in diagnosis.get("remainder", []) if r["channel"] == worst["channel"]]
-    if said:
-        return str(said[0])
+    sentences = [r["words"] for r in diagnosis.get("remainder", []) if r["channel"] == worst["channel"]]
+    if sentences:
+        return str(sentences[0])
     return (
         f"{worst['channel']} is still {worst['rmse_K']:.1f} K off in {test} (limit {worst['limit_K']:.1f} K): within "
         f"the doubts of the model, these data cannot tell why{next_likely(diagnosis)}."

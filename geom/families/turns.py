@@ -49,8 +49,8 @@ class Turns:
     def places(self, bore: float) -> tuple[tuple[float, float], tuple[float, float]]:
         """Angle (rad) and z (m) of inlet and outlet: near the helix' ends, symmetric about the top."""
         (low, _), (_, high) = self.rings[0], self.rings[-1]
-        apart = math.pi * self._short(bore)
-        return (math.pi / 2 + apart, low + CLEAR * bore), (math.pi / 2 - apart, high - CLEAR * bore)
+        spacing = math.pi * self._short(bore)
+        return (math.pi / 2 + spacing, low + CLEAR * bore), (math.pi / 2 - spacing, high - CLEAR * bore)
 
     def _short(self, bore: float) -> float:
         """What the way from inlet to outlet lacks of the rings' turns."""

@@ -43,7 +43,7 @@ def build_mesh(
     """
     axial = 1.5 * size_m if axial_m is None else axial_m
     file = _cache_file(machine, (size_m, segments, across, axial), cache)
-    known = {part.name: said for part in machine.parts if (said := part.identity) is not None}
+    known = {part.name: identity for part in machine.parts if (identity := part.identity) is not None}
     if file is not None and (found := recalled(file, read_npz)) is not None:
         return replace(found, identities=known)
     plan = _planned((*machine.parts, *machine.fluids), segments)

@@ -87,18 +87,18 @@ def export_cad(
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     whole = assembly(machine, cache)
-    written: dict[str, Path] = {}
+    paths: dict[str, Path] = {}
     if "step" in formats:
-        written |= _steps(machine, whole, folder, cache)
+        paths |= _steps(machine, whole, folder, cache)
     if "glb" in formats:
-        written["glb"] = folder / f"{machine.name}.glb"
-        write_glb(whole, written["glb"])
+        paths["glb"] = folder / f"{machine.name}.glb"
+        write_glb(whole, paths["glb"])
     if "stl" in formats:
         for child in whole.children:
-            path = written[f"stl:{child.name}"] = folder / f"{child.name}.stl"
+            path = paths[f"stl:{child.name}"] = folder / f"{child.name}.stl"
             shape: Any = child.obj
             shape.exportStl(str(path), tolerance=0.05, angularTolerance=0.1)
-    return written
+    return paths
 
 
 def _steps(machine: Machine, whole: cq.Assembly, folder: Path, cache: Path | str | None) -> dict[str, Path]:
@@ -117,10 +117,10 @@ def _materials(machine: Machine) -> str:
     """What a STEP file cannot say, as TOML."""
     lines = [f"{json.dumps(part.name)} = {json.dumps(part.material)}" for part in machine.parts]
     head = ["[machine]", f"name = {json.dumps(machine.name)}", f"description = {json.dumps(machine.description)}"]
-    said = [f"{json.dumps(part.name)} = {_role(i)}" for part in machine.parts if (i := part.identity) is not None]
-    return "\n".join([*head, "", "[materials]", *lines, "", *(["[roles]", *said, ""] if said else [])])
+    entries = [f"{json.dumps(part.name)} = {_role(i)}" for part in machine.parts if (i := part.identity) is not None]
+    return "\n".join([*head, "", "[materials]", *lines, "", *(["[roles]", *entries, ""] if entries else [])])
 
 
-def _role(known: Identity) -> str:
-    words = [f"role = {json.dumps(known.role)}"] if known.role is not None else []
-    return f"{{ {', '.join([*words, f'turns = {json.dumps(bool(known.turns))}'])} }}"
+def _role(identity: Identity) -> str:
+    words = [f"role = {json.dumps(identity.role)}"] if identity.role is not None else []
+    return f"{{ {', '.join([*words, f'turns = {json.dumps(bool(identity.turns))}'])} }}"

@@ -69,14 +69,14 @@ class BasisCache:
 
 def _distance(file: Path, centre: Centre) -> float:
     """Largest logarithm of a coefficient's ratio to that of a kept centre."""
-    with np.load(file) as saved:
-        return float(np.abs(saved["centre"] - centre.values).max())
+    with np.load(file) as archive:
+        return float(np.abs(archive["centre"] - centre.values).max())
 
 
 def _pairs(file: Path) -> Pairs:
-    with np.load(file) as saved:
-        parts = [name.removesuffix("/strength") for name in saved.files if name.endswith("/strength")]
-        return {part: (saved[f"{part}/strength"], saved[f"{part}/fields"]) for part in parts}
+    with np.load(file) as archive:
+        parts = [name.removesuffix("/strength") for name in archive.files if name.endswith("/strength")]
+        return {part: (archive[f"{part}/strength"], archive[f"{part}/fields"]) for part in parts}
 
 
 def _worth(strength: Floats, fields: Floats, least: float) -> tuple[Floats, Floats]:

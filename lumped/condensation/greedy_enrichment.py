@@ -47,10 +47,10 @@ class Enrichment:
 class Size:
     """A network of a given size: errors at the nominal coefficients, and the worst of several random ones.
 
-    asked : largest number of states, 0: the means only;  met : with a reserve for points that were not looked at
+    requested : largest number of states, 0: the means only;  met : with a reserve for points that were not looked at
     """
 
-    asked: int
+    requested: int
     network: Network
     nominal: Errors
     random: Errors
@@ -68,7 +68,7 @@ class Size:
 
     def document(self) -> dict[str, Any]:
         return {
-            "asked": self.asked, "states": len(self.network.states), "met": self.met,
+            "asked": self.requested, "states": len(self.network.states), "met": self.met,
             "nominal": self.nominal.document(), "random": self.random.document(),
         }  # fmt: skip
 

@@ -154,13 +154,13 @@ def reduce(
     loads = unit_loads(field, places)
     stored = BasisCache(cache, _geometry(field, loads, recipe))
     centre = Centre({**films}, {**contacts}, {p: float(b.K.diagonal().sum()) for p, b in field.blocks.items()})
-    taken = stored.find(centre, recipe.spread)
-    if taken is None:
+    cached = stored.find(centre, recipe.spread)
+    if cached is None:
         unit = np.column_stack([*loads.values()])
         S = snapshots(field, films, contacts, unit, recipe, solver)
         local = isolated_part(field, films, contacts, S, unit, recipe)
-        taken = stored.keep(centre, principals(field, S, energies(field, films, contacts), local), recipe.tolerance**2)
-    principal = {part: Principal(*pair) for part, pair in taken.items()}
+        cached = stored.keep(centre, principals(field, S, energies(field, films, contacts), local), recipe.tolerance**2)
+    principal = {part: Principal(*pair) for part, pair in cached.items()}
     return Reduction(field, films, contacts, places, fluids, boundaries, name, recipe, principal)
 
 

@@ -191,14 +191,14 @@ def _sources(network: Network, top: Table) -> list[Source]:
     tables = top.tables("losses")
     kinds, laws = loss_kinds(tables), loss_laws(tables, network.quantities)
     out = {name: _source(network, name, table, laws[name]) for name, table in tables.items()}
-    taken = [
+    differences = [
         _difference(out[name], out[other])
         for name, kind in kinds.items() if kind == "measured" for other in deducted(tables[name], kinds)
     ]  # fmt: skip
     for table in tables.values():
         table.raw("prior_sd")
         table.close()
-    return [*out.values(), *taken]
+    return [*out.values(), *differences]
 
 
 def _source(network: Network, name: str, table: Table, law: Law) -> Source:

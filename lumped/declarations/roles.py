@@ -18,7 +18,11 @@ def read_identities(
     for name, table in around.items():
         if name not in boundaries:
             raise table.error(f"'{name}' is no boundary", suggestion(name, boundaries))
-    out = {name: said for name, table in {**nodes, **around}.items() if (said := _declared_identity(table)) is not None}
+    out = {
+        name: declared
+        for name, table in {**nodes, **around}.items()
+        if (declared := _declared_identity(table)) is not None
+    }
     for table in around.values():
         table.close()
     return {**out, **{cell: identity(Role.COOLANT, False) for cell in cells}}

@@ -54,8 +54,8 @@ class FilmOver(Law):
         largest = float(x.max(initial=0.0))
         self.film(min(largest, self.top))
         if largest > self.top:
-            said = f"film over {self.of}: {self.of} = {largest:.4g} outside 0 to {self.top:g}"
-            warnings.warn(said, RangeWarning, stacklevel=2)
+            note = f"film over {self.of}: {self.of} = {largest:.4g} outside 0 to {self.top:g}"
+            warnings.warn(note, RangeWarning, stacklevel=2)
         return np.interp(x, self.at, over_grid(self.film, self.at))
 
 
@@ -146,8 +146,8 @@ def products(h: Array, weight: Array | None = None) -> list[tuple[Array, Array]]
     few = np.arange(0, len(h), 4), np.arange(0, h.shape[1], max(1, h.shape[1] // 30))
     chosen: list[int] = []
     while True:
-        tried = {k: _missed(h, scale, profile, [*chosen, k], *few) for k in few[0].tolist() if k not in chosen}
-        chosen.append(min(tried, key=lambda k: tried[k]))
+        errors = {k: _missed(h, scale, profile, [*chosen, k], *few) for k in few[0].tolist() if k not in chosen}
+        chosen.append(min(errors, key=lambda k: errors[k]))
         share = _shares(h, scale, profile[chosen])
         if np.all(np.abs(h - share @ profile[chosen]) <= TOLERANCE * scale) or len(chosen) == MOST:
             return list(zip(share.T, profile[chosen], strict=True))

@@ -156,7 +156,7 @@ class _Course:
         self, network: Network, record: Record, core: Compiled, keep_states: bool, begin: Stand | None,
         steps: Steps | None, portion: int,
     ) -> None:  # fmt: skip
-        self.network, self.named, self.given, self.taken = network, core, steps, 0
+        self.network, self.named, self.given, self.steps_done = network, core, steps, 0
         self.core = core = reordered(core)
         self.time = np.asarray(record.time, float)
         nt, n, nb, nr = self.time.size, core.C.size, core.forcing.u.shape[1], core.rows.start.size - 1
@@ -216,7 +216,7 @@ class _Course:
         if at[STATUS] not in (0, FULL):
             raise self._failed(forcing)
         done, X = int(at[DONE]), self.trace
-        self.taken += done
+        self.steps_done += done
         self.steps.append(Steps(X.knot[:done] + first, X.share[:done].copy(), X.kind[:done].copy()))
         if self.path is not None:
             self.path.append(ends(X, done)[:, self.place[: core.C.size]])
@@ -228,7 +228,7 @@ class _Course:
     def _follow(self, first: int) -> Control:
         """The next of the given steps into the trace."""
         assert self.given is not None
-        some = slice(self.taken, self.taken + self.trace.h.size)
+        some = slice(self.steps_done, self.steps_done + self.trace.h.size)
         for name, values in self.given._asdict().items():
             part = values[some] - (first if name == "knot" else 0)
             getattr(self.trace, name)[: part.size] = part

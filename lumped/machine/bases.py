@@ -58,8 +58,8 @@ def on_every_base(network: Network) -> Network:
 
 def switches(machine: Any) -> dict[str, str]:
     """Input -> the foot it couples."""
-    said = machine.sections.get("bases", {})
-    return {f"on_{name}": "foot" if machine_ == OWN_BASE else f"foot.{name}" for name, machine_ in said.items()}
+    table = machine.sections.get("bases", {})
+    return {f"on_{name}": "foot" if machine_ == OWN_BASE else f"foot.{name}" for name, machine_ in table.items()}
 
 
 def switched(machine: Any, network: Network) -> Network:

@@ -97,10 +97,10 @@ def outer_films(machine: Any, part: str, films: Films) -> dict[str, Law]:
 def outer_of(machine: Any, part: str, films: Films) -> Outer:
     """What the machine file says of a part's outer face, and for the rest what its shape suggests."""
     usual = _usual(machine, part, films)
-    said = machine.sections.get("films", {}).get("outer", {})
-    if part not in said and "default" not in said:
+    table = machine.sections.get("films", {}).get("outer", {})
+    if part not in table and "default" not in table:
         return usual
-    t = Table(said.get(part, said.get("default")), f"{machine.name} [films.outer] {part}")
+    t = Table(table.get(part, table.get("default")), f"{machine.name} [films.outer] {part}")
     surface = t.word("surface", usual.surface, SURFACES)
     size = t.number("size_mm") / 1e3 if "size_mm" in t or surface != usual.surface else usual.size
     found = Outer(

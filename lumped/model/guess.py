@@ -55,8 +55,8 @@ def _boundaries(top: Topology, declared: Mapping[str, Role]) -> dict[str, Eviden
         air = _ambient(top, free)
         if air is not None:
             out[air[0]] = (Role.AMBIENT, air[1])
-    taken = [b for b in top.network.boundaries if declared.get(b) == Role.AMBIENT or b in out]
-    usual = max((_sink(top, b) for b in taken), default=0.0)
+    assigned = [b for b in top.network.boundaries if declared.get(b) == Role.AMBIENT or b in out]
+    usual = max((_sink(top, b) for b in assigned), default=0.0)
     inlets = {x.places[0] for x in top.links if x.kind == "stream"}
     for boundary in free:
         if boundary in out:

@@ -35,23 +35,23 @@ class Table:
         if not isinstance(data, Mapping):
             raise InputError(f"{excerpt(data)} is no table", where, "key = value pairs")
         self.data, self.where = data, where
-        self.asked: set[str] = set()
+        self.requested: set[str] = set()
 
     def __contains__(self, key: str) -> bool:
-        self.asked.add(key)
+        self.requested.add(key)
         return key in self.data
 
     def close(self) -> None:
         """Refuse keys nobody asked for."""
         for key in self.data:
-            if key not in self.asked:
-                raise InputError(f"unknown key '{key}'", self.where, suggestion(key, self.asked))
+            if key not in self.requested:
+                raise InputError(f"unknown key '{key}'", self.where, suggestion(key, self.requested))
 
     def error(self, what: str, right: str) -> InputError:
         return InputError(what, self.where, right)
 
     def raw(self, key: str, default: Any = None) -> Any:
-        self.asked.add(key)
+        self.requested.add(key)
         return self.data.get(key, default)
 
     def _needed(self, key: str, default: Any, right: str) -> Any:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from lumped.model.network import Link, Network, Source
 from lumped.transfer.laws import InputPower
 from thermoscope.case_folder.recording_checks import (
-    APART_K,
+    OFFSET_K,
     RECORDING_CHECKS,
     WARM_K,
     Finding,
@@ -61,7 +61,7 @@ def _declared(p: Patient, network: Network) -> Iterator[Finding]:
     given = p.sheet.initial
     for c in (c for c in _within(p, network) if c.name in starts):
         first = given if isinstance(given, float) else given.get(c.place) if not isinstance(given, str) else None
-        if first is not None and abs(first - starts[c.name]) > APART_K:
+        if first is not None and abs(first - starts[c.name]) > OFFSET_K:
             yield p.finding(c.name, f"starts at {starts[c.name]:.0f} degC, the sheet says initial = {first:g}",
                           'initial = "first-readings"')  # fmt: skip
         values, lag = p.samples.values[c.name], c.lag_s

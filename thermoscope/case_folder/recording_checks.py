@@ -15,7 +15,7 @@ from thermoscope.recordings.tables import Samples
 Array = NDArray[np.float64]
 FIRST = 5  # readings that say where a column starts
 KELVIN, OFF_K = 273.15, 15.0  # how near a start has to be to that of the others in another unit
-APART_K = 12.0  # how far it has to be as it stands
+OFFSET_K = 12.0  # how far it has to be as it stands
 SPIKE_K, SPIKE_TIMES = 8.0, 20.0  # a reading that leaps and comes back, in K and in usual steps of its column
 UNEVEN = 0.5  # of a long step of a clock, between nine in ten and one in ten of all
 WARM_K = 3.0  # a test in which nothing warms by more shows nothing
@@ -72,7 +72,7 @@ def _units(p: Patient) -> Iterator[Finding]:
     for name, start in starts.items():
         others = [s for n, s in starts.items() if n != name]
         usual = float(np.median(others)) if others else 20.0
-        if abs(start - usual) < APART_K:
+        if abs(start - usual) < OFFSET_K:
             continue
         if abs(start - KELVIN - usual) < OFF_K:
             yield p.finding(name, f"starts at {start:.0f} degC, the others at {usual:.0f}: kelvin?", 'unit = "K"')
@@ -88,7 +88,7 @@ def _scale(p: Patient) -> Iterator[Finding]:
     for name, start in starts.items():
         usual = float(np.median([s for n, s in starts.items() if n != name] or [start]))
         for factor, cure in ((10.0, "divide the column by 10"), (0.1, "multiply the column by 10")):
-            if abs(start - factor * usual) < 0.1 * abs(factor * usual) and abs(start - usual) > APART_K:
+            if abs(start - factor * usual) < 0.1 * abs(factor * usual) and abs(start - usual) > OFFSET_K:
                 yield p.finding(
                     name, f"starts at {start:.4g} degC, the others at {usual:.4g}: tenths of a degree?", cure
                 )

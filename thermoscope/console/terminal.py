@@ -38,12 +38,12 @@ def notes_once() -> Iterator[None]:
 
 def notes(messages: Iterable[str]) -> None:
     """Doubts about the data."""
-    said = NOTES_SO_FAR.get()
+    so_far = NOTES_SO_FAR.get()
     for message in messages:
-        if said is None or message not in said:
+        if so_far is None or message not in so_far:
             _line(f"note: {message}")
-        if said is not None:
-            said.add(message)
+        if so_far is not None:
+            so_far.add(message)
 
 
 def plain(value: Any) -> Any:

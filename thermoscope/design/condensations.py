@@ -58,17 +58,11 @@ class Condensations:
         rows = {n: p.mean for n, p in grown.places.items()}
         spots = hot_spots(grown, rows, {s.name: s.limit for s in self.problem.spots})
         inputs = {n: u for n, u in self.problem.inputs.items() if n in _reads(grown)}
-        from_tests = tuple(n for n in self.problem.taken if n in inputs)
+        from_machine = tuple(n for n in self.problem.from_machine if n in inputs)
         return replace(
-            self.problem,
-            network=grown,
-            values={},
-            inputs=inputs,
-            spots=spots,
-            scaling=None,
-            sure=None,
-            taken=from_tests,
-        )
+            self.problem, network=grown, values={}, inputs=inputs, spots=spots, scaling=None, sure=None,
+            from_machine=from_machine,
+        )  # fmt: skip
 
     def ratios(self, named: Mapping[str, float]) -> dict[str, float]:
         """Quantity -> condensed over scaled, at values of the variables."""

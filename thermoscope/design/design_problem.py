@@ -144,7 +144,11 @@ def _driven(folder: Folder, network: Network, request: DesignRequest, ratings: M
 def _of_machine(network: Network, file: MachineFile, space: Space, inputs: Mapping[str, float]) -> dict[str, Any]:
     names = {v.name for v in space.variables}
     from_machine = tuple(n for key, n in FLOWS.items() if key in names and n in inputs)
-    return {"machine_at": partial(_machine_at, file), "scaling": Scaling(network, file.machine), "taken": from_machine}
+    return {
+        "machine_at": partial(_machine_at, file),
+        "scaling": Scaling(network, file.machine),
+        "from_machine": from_machine,
+    }
 
 
 def _machine_at(file: MachineFile, values: Mapping[str, float]) -> Any:

@@ -185,16 +185,16 @@ def _co_simulation(root: Element, model: Model, version: int) -> None:
 def _variables(root: Element, variables: Sequence[Variable], version: int) -> None:
     listed = SubElement(root, "ModelVariables")
     for reference, v in enumerate(variables):
-        said: Attributes = {"name": v.name, "valueReference": str(reference), "causality": v.causality}
-        said["variability"] = "fixed" if v.causality == "parameter" else "continuous"
+        attributes: Attributes = {"name": v.name, "valueReference": str(reference), "causality": v.causality}
+        attributes["variability"] = "fixed" if v.causality == "parameter" else "continuous"
         if v.about:
-            said["description"] = v.about
+            attributes["description"] = v.about
         if v.causality == "output":
-            said["initial"] = "calculated"
+            attributes["initial"] = "calculated"
         if v.causality == "parameter":
-            said["initial"] = "exact"
+            attributes["initial"] = "exact"
         value: Attributes = {"unit": v.unit} | ({} if v.start is None else {"start": f"{v.start:.17g}"})
         if version == 2:
-            SubElement(SubElement(listed, "ScalarVariable", **said), "Real", **value)
+            SubElement(SubElement(listed, "ScalarVariable", **attributes), "Real", **value)
         else:
-            SubElement(listed, "Float64", **said, **value)
+            SubElement(listed, "Float64", **attributes, **value)

@@ -98,7 +98,7 @@ def observer_files(of: ObserverModel) -> dict[str, str]:
 def _sizes(of: ObserverModel) -> str:
     counts = {"SLOW": of.process.slow.size, "BODIES": len(of.process.bodies), "SENSORS": len(of.sensors),
               "GIVEN": len(of.input_names)}  # fmt: skip
-    said = [
+    comments = [
         f"Observer of '{of.model.name}': {of.bytes} bytes from step to step; single precision but for temperatures.",
         f"Inputs u, in this order: {', '.join(of.input_names)}.",
         f"Sensors y (degC, NAN where nothing was read), in this order: {', '.join(c.name for c in of.sensors)}.",
@@ -106,7 +106,7 @@ def _sizes(of: ObserverModel) -> str:
     ]
     lines = [f"#define THERMAL_{name} {n}" for name, n in counts.items()]
     macro = "THERMAL_OBSERVER_SIZES_H"
-    about = "\n   ".join(said).replace("*/", "* /")
+    about = "\n   ".join(comments).replace("*/", "* /")
     return "\n".join([f"/* {about} */", f"#ifndef {macro}", f"#define {macro}", *lines, "#endif", ""])
 
 

@@ -57,16 +57,16 @@ def guess(source: Source, column: str, target: Target) -> Guess:
     if not source.is_numeric(column):
         return Guess(column, "", doubt="words, not numbers")
     label, unit = source.labels[column], unit_of(source.units[column])
-    written = source.units[column]
-    if written and not unit:
-        return Guess(column, "", doubt=f"its unit '{written}' is of nothing a model reads")
+    unit_text = source.units[column]
+    if unit_text and not unit:
+        return Guess(column, "", doubt=f"its unit '{unit_text}' is of nothing a model reads")
     quantity, why = _quantity(label, unit, target)
     if not quantity:
         quantity, why = _by_values(source, column)
     if not quantity:
         return Guess(column, "", doubt="a clock? say so: time [s]" if _counts_on(source, column) else UNTOLD)
     unit, doubt = _unit(source, column, quantity, unit)
-    if not written and (found := FOREIGN.search(label)):
+    if not unit_text and (found := FOREIGN.search(label)):
         doubt = f"unit '{found[1]}' unknown: {unit} assumed"
     base = Guess(column, quantity, unit, why=why, doubt=doubt)
     return _placed(base, label, target) if quantity == "temperature" else _fed(base, label, target)

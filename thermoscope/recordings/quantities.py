@@ -15,12 +15,12 @@ from validation.case import Test
 
 def with_quantities(network: Network, sheets: Iterable[Sheet], tests: Sequence[Test]) -> Network:
     """The network with what its sheets say of the inputs; what network.toml says of them stands."""
-    said: dict[str, str] = {}
+    declared: dict[str, str] = {}
     for sheet in sheets:
         columns = {c.name: c.quantity for c in sheet.columns}
-        said |= {c.feeds: c.quantity for c in sheet.columns if c.feeds}
-        said |= {name: columns[of[0]] for name, of in sheet.squares.items() if of}
-    network = replace(network, quantities={**said, **network.quantities})
+        declared |= {c.feeds: c.quantity for c in sheet.columns if c.feeds}
+        declared |= {name: columns[of[0]] for name, of in sheet.squares.items() if of}
+    network = replace(network, quantities={**declared, **network.quantities})
     fitted = [t for t in tests if t.role != "hold-out"] or list(tests)
     return replace(network, signals={q: own for q in INPUTS if (own := _largest_of(network, fitted, q)) is not None})
 

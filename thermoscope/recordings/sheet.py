@@ -204,13 +204,13 @@ def _column(name: str, table: Table, filtered: float, folder: Path) -> Column | 
     sigma, settings = _kind_settings(of, unit, table)
     usual = 0.0 if electrical or sigma else SENSORS[kind]
     sigma_K = table.number("sigma_K") if "sigma_K" in table else usual
-    lag, written = table.number("lag_s", 0.0) + filtered, table.word("column", name)
+    lag, header = table.number("lag_s", 0.0) + filtered, table.word("column", name)
     position = table.numbers("position_mm", [])
     if len(position) not in (0, 3):
         raise table.error(f"position_mm has {len(position)} numbers", "position_mm = [x, y, z]")
     table.close()
     return Column(
-        name, of, unit, place, feeds, sigma_K, lag, position, table.where, written, electrical, sigma, settings
+        name, of, unit, place, feeds, sigma_K, lag, position, table.where, header, electrical, sigma, settings
     )
 
 

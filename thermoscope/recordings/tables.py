@@ -135,10 +135,10 @@ def _times(table: pd.DataFrame | NumberTable, sheet: Sheet, file: Path) -> Array
     wrong = np.flatnonzero(np.diff(t) <= 0)
     if wrong.size:
         row = int(wrong[0]) + 1
-        written = [f"{w:.15g}" if isinstance(w, float) else w for w in table[sheet.time]]
-        what = "is given twice" if t[row] == t[row - 1] else f"comes after {written[row - 1]}"
+        texts = [f"{w:.15g}" if isinstance(w, float) else w for w in table[sheet.time]]
+        what = "is given twice" if t[row] == t[row - 1] else f"comes after {texts[row - 1]}"
         count = f" ({wrong.size} such rows)" if wrong.size > 1 else ""
-        raise InputError(f"time {written[row]} {what}{count}", cell(file, sheet.time, row),
+        raise InputError(f"time {texts[row]} {what}{count}", cell(file, sheet.time, row),
                          "times that rise from row to row: sort the file by time and delete repeated rows")  # fmt: skip
     return np.asarray(t - t[0], float)
 

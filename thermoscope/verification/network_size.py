@@ -86,7 +86,7 @@ def smallest_network(
     guides = [reduction.random_point(k) for k in range(LOOKS)]
     points = [reduction.nominal_point(), *(reduction.extreme_point(k) for k in range(LOOKS))]
     points += [reduction.joined_point(factor) for factor in JOINTS]
-    table = tuple(Size.of(reduction, asked, [*points, *guides], cases, allowed) for asked in SIZES)
+    table = tuple(Size.of(reduction, requested, [*points, *guides], cases, allowed) for requested in SIZES)
     good = [size for size in table if size.met]
     found = None if good else enrich(reduction, cases, allowed, rounds, points, guides, tell=progress)
     condensed = good[0].network if good else found.network  # type: ignore[union-attr]

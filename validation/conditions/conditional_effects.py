@@ -80,8 +80,8 @@ def declared_conditions(case: Case, evidence: Evidence, events: Sequence[Event])
     inputs = {n: np.concatenate([t.inputs[n] for t in evidence.tests if n in t.inputs]) for t in evidence.tests
               for n in t.inputs}  # fmt: skip
     switches = [n for n, u in inputs.items() if n not in read and set(np.unique(u)) == {0.0, 1.0}]
-    said = [e for name, yes in case.answers.items() if yes and (e := event(name))]
-    new = [e.name for e in said if all(e.overlap(x) < ALIKE for x in events)]
+    events_confirmed = [e for name, yes in case.answers.items() if yes and (e := event(name))]
+    new = [e.name for e in events_confirmed if all(e.overlap(x) < ALIKE for x in events)]
     return [(n, 0.5 / len(switches)) for n in switches] + [(n, 0.5 / len(evidence.tests)) for n in new]
 
 

@@ -153,12 +153,12 @@ def steps(
     return np.pad(found.u, (0, missing)), np.pad(found.V, (0, missing))
 
 
-def columns(evidence: Evidence, effects: Sequence[Effect], known: Values) -> list[Segment]:
+def columns(evidence: Evidence, effects: Sequence[Effect], base_values: Values) -> list[Segment]:
     """The segments with the columns of calibration and of some effects; only tests are run in which one acts."""
     fit, p = evidence.fit, evidence.p
     network = extended(fit.network, effects)
     own = network.parameters[-len(effects) :]
-    values = {**{q.name: known.get(q.name, q.value) for q in network.parameters}, **fit.values}
+    values = {**{q.name: base_values.get(q.name, q.value) for q in network.parameters}, **fit.values}
     parts = segments(network, [t for t in evidence.tests if any(acts_in(e, t) for e in effects)], values, own)
     new = {(s.test, s.channel): s.J for s in parts}
     return [

@@ -128,9 +128,9 @@ class Scan:
             A[block, block], u[block], JZ[:, block] = g.ZZ[own, own], g.Zr[own], g.JZ[:, own]
         A, u = A - JZ.T @ cov @ JZ, u - JZ.T @ cov @ Jr
         sizes = self.scale * 10.0 ** np.arange(-3.0, 1.5, 0.5)
-        tried = [_evidence(A, u, sizes, root) for root in (*self.roots, self.following(i))]
-        nats, q, sd = max(tried, key=lambda x: x[0].max())
-        best, mean = nats.max(), logsumexp([x[0] for x in tried]) - np.log(len(tried) * sizes.size)
+        evidences = [_evidence(A, u, sizes, root) for root in (*self.roots, self.following(i))]
+        nats, q, sd = max(evidences, key=lambda x: x[0].max())
+        best, mean = nats.max(), logsumexp([x[0] for x in evidences]) - np.log(len(evidences) * sizes.size)
         cut = [slice(a, b) for a, b in pairwise(start)]
         heat_W = {name: (k, q[c], sd[c]) for (name, k), c in zip(self.knots.items(), cut, strict=True)}
         return MissingHeat(self.places[i], float(best), float(mean), heat_W, self._moves(i, heat_W, -cov @ JZ @ q))

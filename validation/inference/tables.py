@@ -56,9 +56,9 @@ def tabulate(
         verdict=verdict, words=sentence(verdict, posterior, choice, rows, pulls, broken) + unsteady(posterior, choice),
         named=tuple(g[0] for g in groups), groups=groups, candidates=rows, cannot_see=hidden_effects(e),
         where=posterior.heat, next_tests=tuple(tests), next_sensors=tuple(sensors), rmse_K=rmse(e.fit.parts),
-        floor_K=floor(e), threshold=float(np.min(thresholds(e))), pulls=pulls, cosine=confusion(e, [c.effect for c in rows[:12]]),
-        bases=bases, odds=odds(posterior, broken.names), p_nothing=0.0 if broken.names else 1.0 - choice.sure,
-        events=possible_events(posterior),
+        floor_K=floor(e), threshold=float(np.min(thresholds(e))), pulls=pulls,
+        cosine=confusion(e, [c.effect for c in rows[:12]]), bases=bases, odds=odds(posterior, broken.names),
+        p_nothing=0.0 if broken.names else 1.0 - choice.sure, events=possible_events(posterior),
         remainder=remainder(posterior, choice, single),
         contradiction=posterior.against, question=best_question(posterior),
     )  # fmt: skip
@@ -179,7 +179,7 @@ class Beside:
     def of(cls, case: Case, posterior: Posterior, lead: Fit | None) -> Beside:
         tests = tuple(t for t in case.tests if t.role == "hold-out")
         e, share = posterior.evidence, tempered_by(posterior.hypotheses)
-        return cls(deviance(e, lead) if lead else {}, share, tests, left_on(tests, e.fit))
+        return cls(deviance(e, lead) if lead else {}, share, tests, held_out_residuals(tests, e.fit))
 
 
 def _row(
@@ -202,7 +202,7 @@ def _row(
         j = within.unknowns.names.index(e.names[k])
         a = float(within.theta[j])
         row = replace(row, value=a, ci95=interval(a, wide * float(within.sd[j]), scatter(e, k)))
-    new = left_on(beside.tests, h.fit)
+    new = held_out_residuals(beside.tests, h.fit)
     held = (rmse(beside.held), rmse(new)) if beside.tests else None
     tests = (*by_test(e.fit.parts, h.fit.parts, False), *by_test(beside.held, new, True))
     return replace(
@@ -234,7 +234,7 @@ def against(e: Evidence, fit: Fit, beside: Beside) -> str:
     return f"fits {channel} in {test} worse by {nats:.1f} nats" if nats > 1.0 else ""
 
 
-def left_on(tests: Sequence[Test], fit: Fit) -> tuple[Segment, ...]:
+def held_out_residuals(tests: Sequence[Test], fit: Fit) -> tuple[Segment, ...]:
     """What a fit leaves on tests that nothing was fitted to."""
     return tuple(segments(fit.network, tests, fit.values)) if tests else ()
 

@@ -54,12 +54,14 @@ def sampled(steps: Mapping[str, SampleStep]) -> str:
     tests: dict[float, list[str]] = {}
     for name, s in steps.items():
         tests.setdefault(s.step_s, []).append(name)
-    said = "; ".join(f"every {h:.3g} s in {', '.join(names)}" for h, names in sorted(tests.items()))
+    sentence = "; ".join(f"every {h:.3g} s in {', '.join(names)}" for h, names in sorted(tests.items()))
     worst = max(steps.values(), key=lambda s: s.error_K)
     if worst.sensor is None:
-        return f"readings and model are compared {said}, as recorded"
+        return f"readings and model are compared {sentence}, as recorded"
     fast = f", where {worst.node} follows in {worst.time_constant_s:.3g} s" if worst.node else ""
-    return f"readings and model are compared {said}; that leaves {worst.error_K:.2g} K (rms) at {worst.sensor}{fast}"
+    return (
+        f"readings and model are compared {sentence}; that leaves {worst.error_K:.2g} K (rms) at {worst.sensor}{fast}"
+    )
 
 
 @dataclass(frozen=True)

@@ -100,7 +100,7 @@ class _Run:
             self._step(f, self.u[k - 1] + share * (self.u[k] - self.u[k - 1]), h)
         z = np.concatenate([self.x, self.u[k]])
         keeps = [np.exp(-seconds / c.lag_s) if k and c.lag_s > 0.0 else 0.0 for c in self.test.channels]
-        readings = np.array([self._shown(c, z) for c in self.test.channels])
+        readings = np.array([self._reading_of(c, z) for c in self.test.channels])
         self.lagged = readings + np.array(keeps) * (self.lagged - readings)
         change = np.zeros(len(self.P))
         for i, c in enumerate(self.test.channels):
@@ -136,7 +136,7 @@ class _Run:
         P[s:, :s], P[self.n :, s : self.n] = P[:s, s:].T, P[s : self.n, self.n :].T
         self.q = keeps * self.q
 
-    def _shown(self, c: Channel, z: Array) -> float:
+    def _reading_of(self, c: Channel, z: Array) -> float:
         j = self.at[c.name]
         row = self.of.constants.sensor_row(j, self.w)
         return float(row.weights @ z[row.index]) + self.of.constants.bias(j, self.w)

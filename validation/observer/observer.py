@@ -102,10 +102,10 @@ class Observer:
 
     def _update(self, by: Driven, k: int, readings: Array, seconds: float) -> None:
         z = np.concatenate([self.filter.x, by.u[k]])
-        shown = np.array([c.row.weights @ z[c.row.index] for c in self.sensors])
+        expected = np.array([c.row.weights @ z[c.row.index] for c in self.sensors])
         lag = np.array([c.lag_s for c in self.sensors])
         keeps = np.exp(-seconds / np.maximum(lag, 1e-9)) if self.started else np.zeros(lag.size)
-        self.lagged = shown + keeps * (self.lagged - shown)
+        self.lagged = expected + keeps * (self.lagged - expected)
         change = np.zeros(len(self.filter.S))
         for j in range(len(self.sensors)):
             self._reading(j, float(readings[j]), change, float(by.time[k]), seconds or 1.0)

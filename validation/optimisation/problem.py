@@ -60,7 +60,7 @@ class Problem:
     network : with `design_parameters`, at `values`;  inputs, boundaries : the operating point
     peak : how many of the limited places, from the first, make up the peak temperature that is minimised
     machine_at : values of variables -> machine;  scaling : of the network's own machine; both None for a network alone
-    taken : inputs that a design's machine decides, such as flows;  aimed : OBJECTIVES that are minimised
+    from_machine : inputs that a design's machine decides, such as flows;  aimed : OBJECTIVES that are minimised
     driven : the cycle that is the load, instead of the inputs' current and speed
     sure : widens temperatures to the upper end of their 95 % band
     """
@@ -75,7 +75,7 @@ class Problem:
     electrics: Electrics = field(default_factory=Electrics)
     machine_at: Callable[[Mapping[str, float]], Any] | None = None
     scaling: Scaling | None = None
-    taken: tuple[str, ...] = ()
+    from_machine: tuple[str, ...] = ()
     corrections: Corrections = NONE
     sure: Uncertainty | None = None
     driven: Driven | None = None
@@ -118,7 +118,7 @@ class Problem:
             from lumped.machine.motor import rated_inputs
 
             given = rated_inputs(machine)
-            out |= {n: given[n] for n in self.taken}
+            out |= {n: given[n] for n in self.from_machine}
         if self.driven is None:
             return out, {}
         load, lag = self.driven.inputs(named)

@@ -1,4 +1,4 @@
-"""The engineer's menu of tests, each made from a test at hand."""
+"""Candidate tests: those an engineer can be asked for, each made from a test at hand."""
 
 from __future__ import annotations
 

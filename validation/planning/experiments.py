@@ -1,4 +1,4 @@
-"""How far the tests of the menu would set rivals apart."""
+"""How far the candidate tests would set rivals apart."""
 
 from __future__ import annotations
 

@@ -109,10 +109,10 @@ def improve(
         progress(f"{found.verdict}: {found.words}")
         if supervisor.offer(found) and len(stairs) > most:
             return Improvement(case, tuple(stairs), found, f"{most} steps are enough for one run")
-        step, said, why = _added(case, supervisor, found, progress)
+        step, document, why = _added(case, supervisor, found, progress)
         if step is None:
             return Improvement(case, tuple(stairs), found, why)
-        case = _with_step(case, step, supervisor, said, stairs)
+        case = _with_step(case, step, supervisor, document, stairs)
 
 
 def _added(
@@ -158,8 +158,8 @@ def leading(diagnosis: Diagnosis) -> tuple[Candidate, ...]:
 
 def evidence(diagnosis: Diagnosis, chosen: Candidate) -> dict[str, float | str]:
     """What speaks for an effect, as the history keeps it."""
-    said: dict[str, float | str] = {
+    numbers: dict[str, float | str] = {
         "probability": chosen.probability, "score": chosen.score, "threshold": chosen.threshold,
         "decision": chosen.decision, "verdict": diagnosis.verdict,
     }  # fmt: skip
-    return said | ({"confused_with": ", ".join(chosen.confused_with)} if chosen.confused_with else {})
+    return numbers | ({"confused_with": ", ".join(chosen.confused_with)} if chosen.confused_with else {})

@@ -28,7 +28,7 @@ WARM_UPS, LOAD_S = 3, 1.0  # a plot finds its scale, and its lines, only after i
 
 def snapshots(recording: str | Path, pictures: Mapping[str | Path, tuple[str, float]]) -> list[Path]:
     """Write PNG pictures of the whole viewer: path -> (timeline, seconds, or the number on `revision`)."""
-    written = []
+    paths = []
     with _viewer() as viewer:
         viewer.open(str(Path(recording).resolve()))
         for png, (timeline, at) in pictures.items():
@@ -41,8 +41,8 @@ def snapshots(recording: str | Path, pictures: Mapping[str | Path, tuple[str, fl
             for _ in range(WARM_UPS):
                 _patiently(lambda path=path: viewer.save_screenshot(str(path)))  # type: ignore[misc]
                 time.sleep(LOAD_S)
-            written.append(path)
-    return written
+            paths.append(path)
+    return paths
 
 
 def _patiently(act: Callable[[], None]) -> None:

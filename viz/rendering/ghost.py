@@ -84,8 +84,8 @@ def ghosted(surface: Surface, places: Array, chosen: NDArray[np.bool_], eye: Arr
         return Ghosted(surface)
     solid, floors, ghosts = [surface], list[Surface](), list[Surface]()
     for one in windows:
-        taken, solid = one.split(solid)
-        ghosts += taken
+        faded, solid = one.split(solid)
+        ghosts += faded
         floor = one.cropped(section(surface.nodes, one.towards, float(one.towards @ one.bottom)))
         floors = [*one.split(floors)[1], floor]
     return Ghosted(joined([*solid, *floors]), joined(ghosts) if ghosts else None, tuple(windows))

@@ -79,7 +79,7 @@ MINUTES = 240.0
 
 
 def carried_out(name: str, base: Plan) -> Plan:
-    """The plan of a test of the menu, to be calibrated with: its four hours are the base's record, over and over."""
+    """The plan of a candidate test, to be calibrated with: its four hours are the base's record, over and over."""
 
     def inputs(rng: np.random.Generator, at: Array) -> Inputs:
         once = at[at < 60.0 * base.minutes]

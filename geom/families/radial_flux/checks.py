@@ -120,8 +120,8 @@ def check_magnets(g: Any, at: Layout) -> None:
     limit = max(0.998 * at.rotor, at.rotor - 0.9 * r.bridge)
     inside = bool((corners**2).sum(axis=1).max() < limit**2)
     clear = shapely.distance(magnets, shapely.Point(0, 0)).min() > 1.02 * g.shaft.diameter / 2
-    apart = 0.004 * 2 * at.rotor * math.sin(math.pi / r.poles)
-    near, far = shapely.STRtree(magnets).query(magnets, predicate="dwithin", distance=min(5e-4, apart))
+    clearance = 0.004 * 2 * at.rotor * math.sin(math.pi / r.poles)
+    near, far = shapely.STRtree(magnets).query(magnets, predicate="dwithin", distance=min(5e-4, clearance))
     refuse((
         (inside, "rotor.bridge_mm", r.bridge * mm, "more, to keep the magnets under the surface"),
         (bool(clear), "rotor.magnet_thickness_mm", r.magnet_thickness * mm, "less, to clear the shaft"),

@@ -45,8 +45,8 @@ def _fits(g: Any, radius: float, width: float) -> bool:
     found = corners(g, radius, width)
     half = math.pi / g.rotor.poles
     inside = max(math.hypot(x, y) for x, y in found) <= radius - 0.95 * g.rotor.bridge
-    apart = all(abs(math.atan2(y, x)) <= _PITCH * half for x, y in found)
-    return inside and apart and _distance(found) >= _SHAFT * g.shaft.diameter / 2
+    inside_pitch = all(abs(math.atan2(y, x)) <= _PITCH * half for x, y in found)
+    return inside and inside_pitch and _distance(found) >= _SHAFT * g.shaft.diameter / 2
 
 
 def _distance(corners_xy: Corners) -> float:

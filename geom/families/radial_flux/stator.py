@@ -38,9 +38,9 @@ def _ends(g: Any, at: Layout, angles: list[float]) -> list[Profile]:
     """Overhang in the plane: a ring, or for coils around single teeth an arch from slot to slot at each tooth."""
     if g.winding.kind == "distributed":
         return [shapes.ring(at.wire0, at.wire1)]
-    apart = math.asin(g.stator.opening / 2 / at.wire0)
+    half_opening = math.asin(g.stator.opening / 2 / at.wire0)
     pitch = 2 * math.pi / g.stator.slots
-    return [shapes.sector(at.wire0, at.wire1, angle + apart, angle + pitch - apart) for angle in angles]
+    return [shapes.sector(at.wire0, at.wire1, angle + half_opening, angle + pitch - half_opening) for angle in angles]
 
 
 def _wedges(g: Any, at: Layout, angles: list[float]) -> tuple[Part, ...]:

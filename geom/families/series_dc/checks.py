@@ -92,8 +92,8 @@ def _ducts_fit(g: Any, r: Radii) -> bool:
         return True
     middle = duct_circle(g, r)
     radius = g.rotor.duct_diameter / 2
-    apart = 2 * middle * math.sin(math.pi / g.rotor.ducts) > 2.2 * radius
-    return apart and middle - 1.1 * radius > g.shaft.core_diameter / 2 and middle + 1.1 * radius < r.slot_bottom
+    clear = 2 * middle * math.sin(math.pi / g.rotor.ducts) > 2.2 * radius
+    return clear and middle - 1.1 * radius > g.shaft.core_diameter / 2 and middle + 1.1 * radius < r.slot_bottom
 
 
 def _fins_fit(g: Any, r: Radii) -> bool:

@@ -49,14 +49,16 @@ def _half_gap(g: Any) -> float:
 
 
 def _bars(g: Any, hub: float, top: float, z0: float, z1: float) -> tuple[Prism, ...]:
-    apart, angles = _half_gap(g), shapes.evenly(g.commutator.bars)
+    half_gap, angles = _half_gap(g), shapes.evenly(g.commutator.bars)
     pitch = angles[1]
-    return extrude([shapes.sector(hub + g.commutator.mica, top, a + apart, a + pitch - apart) for a in angles], z0, z1)
+    return extrude(
+        [shapes.sector(hub + g.commutator.mica, top, a + half_gap, a + pitch - half_gap) for a in angles], z0, z1
+    )
 
 
 def _mica(g: Any, hub: float, top: float, z0: float, z1: float) -> tuple[Prism, ...]:
-    apart, inner = _half_gap(g), hub + g.commutator.mica
-    between = [shapes.sector(inner, top, a - apart, a + apart) for a in shapes.evenly(g.commutator.bars)]
-    ends = sorted(a + side for a in shapes.evenly(g.commutator.bars) for side in (-apart, apart))
+    half_gap, inner = _half_gap(g), hub + g.commutator.mica
+    between = [shapes.sector(inner, top, a - half_gap, a + half_gap) for a in shapes.evenly(g.commutator.bars)]
+    ends = sorted(a + side for a in shapes.evenly(g.commutator.bars) for side in (-half_gap, half_gap))
     around = tuple(shapes.polar(inner, a, shapes.bulge_of(gap)) for a, gap in zip(ends, shapes.gaps(ends)))
     return extrude([Profile(around, (shapes.circle_loop(hub),)), *between], z0, z1)

@@ -11,7 +11,7 @@ from command_line import RUN
 from small_case import small_case
 
 from thermoscope.case_folder.folder import load_case
-from thermoscope.commands.model.revise import MOVED_K, _unseen, unmeasured
+from thermoscope.commands.model.revise import MOVED_K, _unmeasured_words, unmeasured
 
 STRENGTH = 6.0  # W/K at 10 m/s: the convection hidden in the data
 
@@ -94,11 +94,11 @@ def test_places_without_a_sensor_that_a_step_moved_are_told(story):
     found = unmeasured(folder, SimpleNamespace(model=after))
     assert [(p["place"], p["test"]) for p in found] == [("winding", "town")]
     assert found[0]["after_C"] > found[0]["before_C"] + MOVED_K
-    said = _unseen(found)
+    said = _unmeasured_words(found)
     assert said.startswith("No sensor sees: winding ")
     assert len(said) <= 80
-    assert len(_unseen([*found, {**found[0], "place": 60 * "x"}])) == len(said)
-    assert _unseen([{**found[0], "after_C": found[0]["before_C"]}]) == ""
+    assert len(_unmeasured_words([*found, {**found[0], "place": 60 * "x"}])) == len(said)
+    assert _unmeasured_words([{**found[0], "after_C": found[0]["before_C"]}]) == ""
 
 
 def test_progress_goes_to_stderr(story):

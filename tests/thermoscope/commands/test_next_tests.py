@@ -19,7 +19,7 @@ def test_a_test_that_separates_is_shown_and_the_others_are_not():
 
 def test_that_none_would_decide_is_said_with_the_nearest():
     out = shown(next_tests=[planned("spin", 4.0), planned("blower on", 7.0)])
-    assert "No test of the menu" in out
+    assert "No candidate test" in out
     assert "blower on" in out
 
 

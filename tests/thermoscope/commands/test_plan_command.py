@@ -15,7 +15,7 @@ RIVALS = ("convection@flange", "radiation@flange")
 
 
 def test_the_page_names_a_test_and_every_hypothesis(case, tmp_path):
-    """Wind that comes and goes tells convection from radiation: of the menu it separates them most per hour."""
+    """Wind that comes and goes tells convection from radiation: it separates them most per hour."""
     page, target = tmp_path / "new" / "plan.html", tmp_path / "plan.json"
     assert plan(str(case), RIVALS, None, page, str(target)) == 0
     found, text = json.loads(target.read_text()), page.read_text()

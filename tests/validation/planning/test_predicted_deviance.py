@@ -44,7 +44,7 @@ def driven():
 
 @cache
 def raced(more=None):
-    """Evidence and refits of the rivals; more: the test of the menu that was driven besides."""
+    """Evidence and refits of the rivals; more: the candidate test that was driven besides."""
     truth, tests = driven()
     if more:
         plan = planned(more, tests[-1])

@@ -171,7 +171,7 @@ def test_only_what_would_decide_is_proposed():
 
 def test_if_no_test_would_decide_the_report_says_so():
     spin = {"test": "spin without current", "separates": [], "predicted_gain": 3.0, "hours": 4.0}
-    assert "No test of the menu would tell them apart" in told(next_tests=[spin])
+    assert "No candidate test would tell them apart" in told(next_tests=[spin])
 
 
 def test_the_viewer_stands_in_a_frame_that_sees_nothing_of_the_page():

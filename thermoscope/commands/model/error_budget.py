@@ -40,12 +40,14 @@ def _sampled(steps: Steps) -> list[Grid | str]:
 def in_short(budgets: Mapping[str, Places], steps: Steps) -> str:
     """The largest sum and the sample steps in a sentence."""
     rows, every = worst(budgets), sorted({step["step_s"] for step in steps.values()})
-    said = f"compared every {' to '.join(f'{h:.3g}' for h in dict.fromkeys((every[0], every[-1])))} s" if every else ""
+    sampling = (
+        f"compared every {' to '.join(f'{h:.3g}' for h in dict.fromkeys((every[0], every[-1])))} s" if every else ""
+    )
     if not rows:
-        return f"Readings and model are {said}." if said else ""
+        return f"Readings and model are {sampling}." if sampling else ""
     most = max(rows, key=_total)
     good = f"The model's own numbers are good to {_total(most):.2g} K (worst at {most['place']})"
-    return f"{good}, {said}." if said else f"{good}."
+    return f"{good}, {sampling}." if sampling else f"{good}."
 
 
 def worst(budgets: Mapping[str, Places]) -> list[Mapping[str, Any]]:

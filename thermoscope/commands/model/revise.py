@@ -163,7 +163,7 @@ def answer(document: Mapping[str, Any], folder: Folder, called: str) -> Answer:
     passed = [f"passed  {c['check']}: {c['words']}" for c in document["checks"] if c["passed"]]
     step = "explain diagnose" if document["action"] == "calibrate" else "test compare"
     parts: list[Grid | str] = [
-        errors, *failed, _unseen(document["unmeasured"]), *passed, _fixed(document["parameters"]),
+        errors, *failed, _unmeasured_words(document["unmeasured"]), *passed, _fixed(document["parameters"]),
         _blind(document["parameters"]),
     ]  # fmt: skip
     return Answer(
@@ -180,16 +180,16 @@ def _fixed(parameters: Sequence[Mapping[str, Any]]) -> Grid:
     return Grid("What the data fixed (95 %)", headers, rows, keep=["value", "unit", "from", "to"])
 
 
-def _unseen(places: Sequence[Mapping[str, Any]]) -> str:
+def _unmeasured_words(places: Sequence[Mapping[str, Any]]) -> str:
     """Where no reading says whether the step is right: as many places as a line holds."""
     moved = [p for p in places if abs(p["after_C"] - p["before_C"]) >= MOVED_K]
-    said = ""
+    text = ""
     for each in (f"{p['place']} {p['before_C']:.1f} -> {p['after_C']:.1f}" for p in moved):
-        longer = f"{said}, {each}" if said else f"No sensor sees: {each}"
-        if said and len(longer) > LINE:
+        longer = f"{text}, {each}" if text else f"No sensor sees: {each}"
+        if text and len(longer) > LINE:
             break
-        said = longer
-    return f"{said} degC" if said else ""
+        text = longer
+    return f"{text} degC" if text else ""
 
 
 def _blind(parameters: Sequence[Mapping[str, Any]]) -> str:

@@ -123,16 +123,16 @@ def _diagnosis(folder: Folder) -> tuple[Mapping[str, Any] | None, bool]:
 def _plots(folder: Folder, into: Path) -> list[Path]:
     from viz.figures import curves, errors
 
-    written = []
+    paths = []
     for test in by_interest(folder):
         comparison = marked(comparison_of(folder, test), current_diagnosis(folder))
         for name, draw in (("curves", curves.measured_and_model), ("residuals", curves.residuals)):
-            written.append(into / f"{name}-{test.name}.png")
-            draw(comparison, png=written[-1])
+            paths.append(into / f"{name}-{test.name}.png")
+            draw(comparison, png=paths[-1])
     if folder.history.revisions:
-        written.append(into / "error.png")
-        errors.staircase(steps(folder), png=written[-1])
-    return written
+        paths.append(into / "error.png")
+        errors.staircase(steps(folder), png=paths[-1])
+    return paths
 
 
 def _pictures(folder: Folder, into: Path, diagnosis: Mapping[str, Any] | None) -> dict[str, Path]:

@@ -307,16 +307,16 @@ def _moved(tests: Sequence[Mapping[str, Any]]) -> list[str]:
 def _remarks(document: Mapping[str, Any]) -> list[str]:
     """What was assumed, and what looks wrong."""
     tests = document["tests"]
-    said = [note for t in tests for note in (*t["notes"], *(m for f in t["files"] for m in f["notes"]))]
+    remarks = [note for t in tests for note in (*t["notes"], *(m for f in t["files"] for m in f["notes"]))]
     if document["invented_network"]:
-        said.append("no machine and no network was given: network.toml is made from the columns, its numbers are "
+        remarks.append("no machine and no network was given: network.toml is made from the columns, its numbers are "
                     "orders of magnitude")  # fmt: skip
     if document["findings"]:
         count = len(document["findings"])
         things = "thing looks" if count == 1 else "things look"
-        said.append(f"{count} {things} wrong: thermoscope test doctor {document['folder']}")
+        remarks.append(f"{count} {things} wrong: thermoscope test doctor {document['folder']}")
     alike: dict[str, list[str]] = {}
-    for note in dict.fromkeys(said):
+    for note in dict.fromkeys(remarks):
         alike.setdefault(note.partition(":")[0], []).append(note)
     more = {what: f"; {len(notes)} tests alike" if len(notes) > 1 else "" for what, notes in alike.items()}
     return [f"Note: {notes[0]}{more[what]}." for what, notes in alike.items()]

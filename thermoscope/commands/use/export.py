@@ -40,9 +40,9 @@ def export(
         tell("running the model")
         content = tables(folder)
     where, name = out or folder.settings.out, folder.settings.path.resolve().name
-    written = write_csvs(where, content) if form == "csv" else [write_xlsx(where / f"{name}.xlsx", content)]
-    document = {"case": folder.case.name, "files": [str(p) for p in written], "worksheets": list(content)}
-    give(document, target, lambda: Answer(f"{len(written)} files written.", [str(p) for p in written]))
+    paths = write_csvs(where, content) if form == "csv" else [write_xlsx(where / f"{name}.xlsx", content)]
+    document = {"case": folder.case.name, "files": [str(p) for p in paths], "worksheets": list(content)}
+    give(document, target, lambda: Answer(f"{len(paths)} files written.", [str(p) for p in paths]))
     return 0
 
 
@@ -75,9 +75,9 @@ def _model(
         differences = _differences(folder, model, tell) if form in ("c", "fmu") else {}
         files, platforms = _files(model, form, version, tell)
     where = out or folder.settings.out / form
-    written = [write_whole(where / name, content) for name, content in files.items()]
+    paths = [write_whole(where / name, content) for name, content in files.items()]
     document = {
-        "case": folder.case.name, "revision": model.revision, "as": form, "files": [str(p) for p in written],
+        "case": folder.case.name, "revision": model.revision, "as": form, "files": [str(p) for p in paths],
         "platforms": platforms, "states": len(model.states), "state_bytes": state_bytes(model),
         "step_multiplications": step_operations(model), "inputs": [vars(s) for s in model.signals],
         "outputs": [{"name": o.name, "limit_degC": o.limit, "error_K": o.error_K, "role": o.role}
@@ -110,14 +110,14 @@ def _observer(
         of = observer_model(design.process, design.noise, design.noise.sd, design.rise_K, [s.channel for s in own],
                             folder.case.tests, looks, np.array([s.bias_K for s in own]))  # fmt: skip
     where = out or folder.settings.out / "observer"
-    written = [write_whole(where / name, text) for name, text in observer_files(of).items()]
+    paths = [write_whole(where / name, text) for name, text in observer_files(of).items()]
     document = {
         "case": folder.case.name, "revision": folder.case.model.revision, "as": "observer",
-        "files": [str(p) for p in written], "state_bytes": of.bytes, "inputs": of.input_names,
+        "files": [str(p) for p in paths], "state_bytes": of.bytes, "inputs": of.input_names,
         "sensors": [c.name for c in sensors], "missing_heat": of.process.bodies, "outputs": [o.name for o in looks],
     }  # fmt: skip
     sentence = f"An observer of {len(sensors)} sensors, {of.bytes} bytes from step to step."
-    give(document, target, lambda: Answer(sentence, [str(p) for p in written], "--json FILE"))
+    give(document, target, lambda: Answer(sentence, [str(p) for p in paths], "--json FILE"))
     return 0
 
 

@@ -95,9 +95,9 @@ def _factor(mean: float, sd: float) -> list[float]:
 def answer(document: Mapping[str, Any]) -> Answer:
     """The outliers, what differs, what drifts."""
     outliers, count = document["outliers"], len(document["units"])
-    said = "; ".join(f"{o['unit']} ({o['parameter']} x {o['factor']:.2f})" for o in outliers[:3])
+    worst = "; ".join(f"{o['unit']} ({o['parameter']} x {o['factor']:.2f})" for o in outliers[:3])
     names = dict.fromkeys(o["unit"] for o in outliers)
-    sentence = f"{count} motors; {len(names)} stand out: {said}." if outliers else f"{count} motors; none stands out."
+    sentence = f"{count} motors; {len(names)} stand out: {worst}." if outliers else f"{count} motors; none stands out."
     rows = [[o["unit"], o["parameter"], o["factor"], *o["factor_ci95"], o["instead"]] for o in outliers]
     differ = [[p["name"], p["mean"], p["spread_percent"], p["differs"], p.get("drift_percent_year"),
                *(p.get("drift_ci95") or [None, None])]

@@ -47,11 +47,11 @@ def rate(
         )
     if not request.limits:
         raise InputError("no limit is given", "--limit", "PLACE=DEGC, for example winding=155")
-    with progress() as tell, once() as said:
+    with progress() as tell, once() as seen_notes:
         folder = case_or_machine(name, tell)
         document = {"case": folder.case.name, "revision": folder.case.model.revision,
                     **document_of(folder, request, sure, tell)}  # fmt: skip
-    notes(said)
+    notes(seen_notes)
     give(document, target, lambda: answer(document))
     return 0
 

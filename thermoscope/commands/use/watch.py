@@ -148,8 +148,8 @@ class Session:
             for n in dict.fromkeys(places)
             if n in estimates
         ]
-        said = [_alarm_text(e.kind, e.where, e.amplitude, e.probability) for e in self.one.open.values()]
-        return f"{sample.time_s / MINUTE:7.1f} min  {', '.join(temperatures)} degC{''.join('; ' + s for s in said)}"
+        alarms = [_alarm_text(e.kind, e.where, e.amplitude, e.probability) for e in self.one.open.values()]
+        return f"{sample.time_s / MINUTE:7.1f} min  {', '.join(temperatures)} degC{''.join('; ' + s for s in alarms)}"
 
     def csv(self) -> str:
         head = ["time_s", *(x for n in self.rows for x in (f"T {n} (degC)", f"sd T {n} (K)"))]

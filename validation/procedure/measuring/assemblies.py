@@ -26,7 +26,7 @@ class Assembly:
     """
 
     place: str
-    settled: bool
+    steady: bool
     measured: float
     calculated: float
     percent: float
@@ -45,7 +45,7 @@ class Assembly:
 
 
 def assembly(place: str, T_exp: tuple[float, bool], T_calc: float, ambient: float, u_K: float = 0.0) -> Assembly:
-    """T_exp : (degC, whether it had settled);  u_K : its standard uncertainty."""
+    """T_exp : (degC, whether it was steady);  u_K : its standard uncertainty."""
     measured, steady = T_exp
     off = 100.0 * abs(T_calc - measured)
     rise = max(abs(measured - ambient), 1e-9)

@@ -83,15 +83,15 @@ def which_base(case: Case, names: Sequence[str] = (), progress: Progress = no_pr
 def _of_test(
     case: Case, tests: Sequence[Test], test: Test, bases: Mapping[str, str], declared_fit: Fit, progress: Progress
 ) -> list[Hypothesis]:
-    said, found = declared_base(test, bases), {}
+    declared, found = declared_base(test, bases), {}
     for base in (NONE, *bases):
         progress(f"{test.name} on {base}")
         moved = [on_base(t, base, bases) if t is test else t for t in tests]
-        found[base] = declared_fit if base == said else _fitted(case, moved, declared_fit)
+        found[base] = declared_fit if base == declared else _fitted(case, moved, declared_fit)
     cost = {base: deviance(fit) for base, fit in found.items()}
     least = min(cost.values())
     rows = [
-        Hypothesis(test.name, base, base == said, cost[base] - least,
+        Hypothesis(test.name, base, base == declared, cost[base] - least,
                    base_heat(fit.network, on_base(test, base, bases), fit.values))
         for base, fit in found.items()
     ]  # fmt: skip
