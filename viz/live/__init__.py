@@ -12,7 +12,7 @@ from typing import Any
 _HOME = {
     "sensor": "curves", "residuals": "curves", "against_input": "curves", "parity": "curves",
     "staircase": "errors", "posterior": "candidates", "confusion": "candidates", "pareto": "candidates",
-    "sensitivity": "influence", "sankey": "heat", "saved": "style",
+    "sensitivity": "influence", "sankey": "heat", "save": "style",
     "parallel_coordinates": "designs", "objective_space": "designs",
 }  # fmt: skip
 __all__ = sorted(_HOME)

@@ -23,7 +23,7 @@ from viz.live import (
     posterior,
     residuals,
     sankey,
-    saved,
+    save,
     sensor,
     staircase,
 )  # fmt: skip
@@ -71,7 +71,7 @@ def test_figure_is_plain_json_on_light_and_dark_paper(name):
 
 
 def test_every_public_figure_is_tested_here_or_beside():
-    assert set(viz.live.__all__) == {*DRAW, "saved", "sensitivity"}
+    assert set(viz.live.__all__) == {*DRAW, "save", "sensitivity"}
 
 
 def test_designs_are_lines_and_points():
@@ -139,14 +139,14 @@ def test_wrong_names_list_the_right_ones(draw, words):
 
 
 def test_html_needs_nothing_else(tmp_path):
-    text = saved(DRAW["parity"](), tmp_path / "p.html").read_text()
+    text = save(DRAW["parity"](), tmp_path / "p.html").read_text()
     assert "<script src=" not in text
     assert "measured" in text
 
 
 def test_other_endings_are_refused(tmp_path):
     with pytest.raises(InputError, match="ends in"):
-        saved(DRAW["parity"](), tmp_path / "p.txt")
+        save(DRAW["parity"](), tmp_path / "p.txt")
 
 
 BROWSER = next(filter(None, map(shutil.which, BROWSERS)), None)
@@ -157,10 +157,10 @@ def test_static_pictures_through_a_browser(tmp_path, monkeypatch):
     """The sheet is twice the figure's 700 x 500, and shows the points; the SVG carries the axes' words."""
     pytest.importorskip("kaleido", reason="needs kaleido: uv pip install kaleido")
     monkeypatch.setenv("BROWSER_PATH", BROWSER)
-    picture = Image.open(saved(DRAW["parity"](), tmp_path / "p.png")).convert("L")
+    picture = Image.open(save(DRAW["parity"](), tmp_path / "p.png")).convert("L")
     assert picture.size == (1400, 1000)
     assert np.asarray(picture).std() > 8
-    drawing = saved(DRAW["parity"](), tmp_path / "p.svg").read_text()
+    drawing = save(DRAW["parity"](), tmp_path / "p.svg").read_text()
     assert drawing.startswith("<svg")
     assert "measured (°C)" in drawing
 
@@ -171,5 +171,5 @@ def test_without_a_browser_or_kaleido_the_error_says_what_to_install(lacking, tm
         monkeypatch.setitem(sys.modules, "kaleido", None)
     monkeypatch.setenv("BROWSER_PATH", str(tmp_path / "none"))
     with pytest.raises(MissingDependency, match="apt-get install -y chromium"):
-        saved(DRAW["parity"](), tmp_path / "p.png")
+        save(DRAW["parity"](), tmp_path / "p.png")
     assert not (tmp_path / "p.png").exists()
