@@ -109,8 +109,7 @@ def field_half95(folder: Folder, test: Test, parts: Sequence[str], progress: Pro
     of = posterior_of(folder, progress)
     progress(f"uncertainty at the end of {test.name}")
     first, last, R = at_end(of, test)
-    recovery: Any = of.network.recovery
-    there, rise = (np.concatenate([recovery.of_part(p, x) for p in parts]) for x in (R, last - first))
+    there, rise = (of.network.on_parts(parts, x) for x in (R, last - first))
     return NORMAL_95 * np.sqrt(np.sum(there**2, axis=1) + (of.doubt["slow"] * rise) ** 2)
 
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from geom.description.identity import Identity
+from geom.description.machine import Machine
 from geom.errors import InputError
 from lumped.model.network import Network, Row
 from lumped.model.quantities import USUAL
@@ -94,7 +94,7 @@ def rated_point(folder: Folder, network: Network) -> dict[str, float]:
         return {}
     from lumped.machine.motor import rated_inputs
 
-    machine: Any = folder.built.machine
+    machine: Machine = folder.built.machine
     cooling = machine.sections.get("cooling", {})
     wet = dict.fromkeys(coolant_boundaries(network), float(cooling.get("inlet_C", INLET_C)))
     return {**rated_inputs(machine), **dict.fromkeys(air_boundaries(network), AMBIENT_C), **wet}

@@ -15,6 +15,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
+from geom.description.geometry import Geometry
 from geom.description.machine import Machine
 from geom.description.part import Part
 from geom.errors import InputError
@@ -38,7 +39,7 @@ def based(machine: Machine, load: Callable[[str], Machine], where: str) -> Machi
 
 
 def _with_base(machine: Machine, name: str, other: Machine, where: str) -> Machine:
-    if _body(machine.geometry) != _body(other.geometry) or "base" not in [part.name for part in other.parts]:
+    if _body(machine.dimensions) != _body(other.dimensions) or "base" not in [part.name for part in other.parts]:
         raise InputError(f"{other.name} is another machine", where, "one that differs in [geometry.base] alone")
     renamed = {piece: f"{piece}.{name}" for piece in PIECES}
     more = tuple(_turned(other.part(piece), renamed[piece]) for piece in PIECES)
@@ -53,7 +54,7 @@ def _with_base(machine: Machine, name: str, other: Machine, where: str) -> Machi
     return replace(machine, parts=(*machine.parts, *more), sections=sections)
 
 
-def _body(geometry: Any) -> dict[str, Any]:
+def _body(geometry: Geometry) -> dict[str, Any]:
     """All of the geometry but the base."""
     return {name: group for name, group in vars(geometry).items() if name != "base"}
 

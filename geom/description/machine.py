@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from geom.description.geometry import Geometry
 from geom.description.materials import Material, filled, material
 from geom.description.part import Part, Port
 from geom.description.profile import ArcGrid
@@ -34,11 +35,18 @@ class Machine:
     parts: tuple[Part, ...]
     fluids: tuple[Part, ...]
     sections: Mapping[str, Any]
-    geometry: Any
+    geometry: Geometry | None
     face_names: Mapping[tuple[str, str], str]
     source: str = ""
     assumed: str = ""
     ports: tuple[Port, ...] = ()
+
+    @property
+    def dimensions(self) -> Geometry:
+        """The family's parameters; InputError for an imported machine, which has none."""
+        if self.geometry is None:
+            raise InputError("was imported: it has no parameters of a family", self.name, "a machine of a family")
+        return self.geometry
 
     def part(self, name: str) -> Part:
         """The solid or fluid of this name; InputError if there is none."""

@@ -5,14 +5,14 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable, Mapping
 from functools import cache
-from types import SimpleNamespace
 from typing import Any
 
+from geom.description.geometry import Geometry, Group
 from geom.description.parameters import Parameter
 from geom.errors import InputError
 
 
-def read_geometry(parameters: Iterable[Parameter], table: Mapping[str, Any], where: str) -> Any:
+def read_geometry(parameters: Iterable[Parameter], table: Mapping[str, Any], where: str) -> Geometry:
     """Values in SI as `groups.attribute` (e.g. g.rotor.radius), with what is not given from what is.
 
     Raises InputError for an unknown group or key, a missing unit, a length given twice, or a value out of range.
@@ -23,13 +23,13 @@ def read_geometry(parameters: Iterable[Parameter], table: Mapping[str, Any], whe
 
 
 @cache
-def usual_geometry(parameters: tuple[Parameter, ...]) -> Any:
+def usual_geometry(parameters: tuple[Parameter, ...]) -> Geometry:
     """The family's default machine, whose proportions hold where nothing is given."""
-    groups: dict[str, SimpleNamespace] = {}
+    groups: dict[str, Group] = {}
     for p in parameters:
         value = p.default if p.choices or not p.unit else p.usual
-        setattr(groups.setdefault(p.group, SimpleNamespace()), p.attribute, value)
-    return SimpleNamespace(**groups)
+        setattr(groups.setdefault(p.group, Group()), p.attribute, value)
+    return Geometry(**groups)
 
 
 class _Reading:
@@ -38,14 +38,14 @@ class _Reading:
     def __init__(self, parameters: tuple[Parameter, ...], table: Mapping[str, Any], where: str) -> None:
         self.parameters, self.table, self.where = parameters, table, where
         self.known = {(p.group, p.attribute): p for p in parameters}
-        self.so_far = SimpleNamespace(**{p.group: _Group(self, p.group) for p in parameters})
+        self.so_far = Geometry(**{p.group: _Group(self, p.group) for p in parameters})
 
-    def geometry(self) -> Any:
-        groups: dict[str, SimpleNamespace] = {}
+    def geometry(self) -> Geometry:
+        groups: dict[str, Group] = {}
         for p in self.parameters:
             value = getattr(getattr(self.so_far, p.group), p.attribute)
-            setattr(groups.setdefault(p.group, SimpleNamespace()), p.attribute, value)
-        return SimpleNamespace(**groups)
+            setattr(groups.setdefault(p.group, Group()), p.attribute, value)
+        return Geometry(**groups)
 
     def value(self, p: Parameter) -> float | int | str:
         given = self.table.get(p.group, {})

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from geom.description.geometry import Geometry
 from geom.description.part import Part
 from geom.description.roles import Role
 
@@ -22,8 +23,8 @@ def diameters(machine: Machine) -> list[Diameter]:
     named = {"shaft": "shaft", "bearing.left": "bearing", "rotor.core": "rotor", "yoke": "yoke",
              "stator.core": "laminations"}  # fmt: skip
     found = {word: 2 * _radius(known[name]) for name, word in named.items() if name in known}
-    if "rotor" in found and hasattr(machine.geometry, "stator"):
-        found["bore"] = found["rotor"] + 2 * machine.geometry.stator.air_gap
+    if "rotor" in found and (stator := getattr(machine.geometry, "stator", None)):
+        found["bore"] = found["rotor"] + 2 * stator.air_gap
     return sorted(found.items(), key=lambda d: d[1])
 
 
@@ -41,7 +42,9 @@ def counts(machine: Machine) -> str:
     return ", ".join(_counted(machine.geometry))
 
 
-def _counted(g: Any) -> Iterator[str]:
+def _counted(g: Geometry | None) -> Iterator[str]:
+    if g is None:
+        return
     for group in ("stator", "rotor", "commutator", "housing"):
         for key in ("slots", "poles", "bars", "ducts", "fins"):
             number = getattr(getattr(g, group, None), key, 0)

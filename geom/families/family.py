@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
 
+from geom.description.geometry import Geometry
 from geom.description.parameters import Parameter
 from geom.description.part import Part, Port
 
@@ -22,6 +22,6 @@ class Family:
     name: str
     doc: str
     parameters: tuple[Parameter, ...]
-    build: Callable[[Any], tuple[Part, ...]]
+    build: Callable[[Geometry], tuple[Part, ...]]
     face_names: Mapping[tuple[str, str], str] = field(default_factory=dict)
-    ports: Callable[[Any], tuple[Port, ...]] = lambda g: ()
+    ports: Callable[[Geometry], tuple[Port, ...]] = lambda g: ()

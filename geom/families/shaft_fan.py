@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 from geom.description import shapes
+from geom.description.geometry import Group
 from geom.description.part import Part
 from geom.description.roles import Role
 
@@ -16,7 +16,7 @@ WHEEL = (0.2, 0.8)  # of the cowl's depth, from its open end: where the wheel be
 mm = 1e3
 
 
-def shaft_fan(fan: Any, shaft: float, z0: float, z1: float) -> tuple[Part, ...]:
+def shaft_fan(fan: Group, shaft: float, z0: float, z1: float) -> tuple[Part, ...]:
     """Cowl from z0 to the end shield at z1, and the wheel on a shaft of that radius (m); nothing without a fan."""
     if not fan.depth:
         return ()
@@ -35,7 +35,7 @@ def shaft_fan(fan: Any, shaft: float, z0: float, z1: float) -> tuple[Part, ...]:
     )
 
 
-def fan_rules(fan: Any, shaft: float, seat: float, shield: float) -> tuple[Rule, ...]:
+def fan_rules(fan: Group, shaft: float, seat: float, shield: float) -> tuple[Rule, ...]:
     """The cowl stands on the shield around the bearing's seat, the hub between shaft and cowl; diameters (m)."""
     if not fan.depth:
         return ()

@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from geom.description.part import CadShape, Helix, Rod
+from geom.description.profile import Profile
 from geom.errors import InputError
 
 if TYPE_CHECKING:
@@ -27,7 +28,7 @@ def carved(shape: CadShape) -> list[cq.Solid]:
     return [cq.Solid(solid.wrapped) for solid in body.Solids()]
 
 
-def prism(profile: Any, z0: float, z1: float) -> cq.Solid:
+def prism(profile: Profile, z0: float, z1: float) -> cq.Solid:
     """A profile from z0 to z1 (m)."""
     import cadquery as cq
 

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from lumped.condensation.reduction_error import Accuracy, Errors, LoadCases, merged, point_errors
 from lumped.model.network import Network
+
+if TYPE_CHECKING:
+    from lumped.condensation.reduction import FullPoint, Reduction
 
 Tell = Callable[[str], None]
 FAVOURS = 6  # times the shapes are dealt out anew before new solutions are asked for
@@ -33,7 +36,7 @@ class Round:
 class Enrichment:
     """reduction : with the points it learned from;  weights : favour of each part;  rounds : of checks, in order"""
 
-    reduction: Any
+    reduction: Reduction
     network: Network
     weights: Mapping[str, float]
     rounds: tuple[Round, ...] = field(default=())
@@ -57,7 +60,9 @@ class Size:
     met: bool
 
     @classmethod
-    def of(cls, reduction: Any, requested: int, points: Sequence[Any], cases: LoadCases, allowed: Accuracy) -> Size:
+    def of(
+        cls, reduction: Reduction, requested: int, points: Sequence[FullPoint], cases: LoadCases, allowed: Accuracy
+    ) -> Size:
         """points : the nominal one first, then random ones, all solved in full"""
         network = reduction.network(tolerance=0.0, max_states=max(requested, len(reduction.field.blocks)))
         nominal, *drawn = (point_error(network, point, cases) for point in points)
@@ -74,8 +79,8 @@ class Size:
 
 
 def enrich(
-    reduction: Any, cases: LoadCases, allowed: Accuracy, rounds: int = 3, points: Sequence[Any] = (),
-    guides: Sequence[Any] = (), fresh: int = 3, tell: Tell = lambda message: None,
+    reduction: Reduction, cases: LoadCases, allowed: Accuracy, rounds: int = 3, points: Sequence[FullPoint] = (),
+    guides: Sequence[FullPoint] = (), fresh: int = 3, tell: Tell = lambda message: None,
 ) -> Enrichment:  # fmt: skip
     """A network that meets the wish at random points it has not seen, or the one the last of `rounds` looked at.
 
@@ -106,7 +111,7 @@ def excess(errors: Errors, allowed: Accuracy) -> float:
 
 
 def allotted_shapes(
-    reduction: Any, learned: Sequence[Any], cases: LoadCases, allowed: Accuracy, weights: dict[str, float]
+    reduction: Reduction, learned: Sequence[FullPoint], cases: LoadCases, allowed: Accuracy, weights: dict[str, float]
 ) -> Network:
     """Deal out shapes until the points already solved are met: parts that miss get more."""
     network = reduction.network(weights=weights)
@@ -121,5 +126,5 @@ def allotted_shapes(
     return network
 
 
-def point_error(network: Network, point: Any, cases: LoadCases) -> Errors:
+def point_error(network: Network, point: FullPoint, cases: LoadCases) -> Errors:
     return point_errors(network, point.films, point.contacts, point.X, cases)

@@ -11,10 +11,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
+from geom.description.geometry import Geometry
+from geom.description.machine import Machine
 from lumped.correlations.air_gap import taylor_film
 from lumped.correlations.ducts import duct_film
 from lumped.correlations.end_space import end_space
@@ -49,14 +50,14 @@ class Duct:
         return 4 * self.section / self.perimeter
 
 
-def ducts_of(machine: Any) -> dict[str, Duct]:
+def ducts_of(machine: Machine) -> dict[str, Duct]:
     """The ways along the axis beside the air gap, by the fluid's name; none where the geometry is not known."""
     makers = {BETWEEN_POLES: _between_poles, IN_ROTOR: _in_rotor} if machine.geometry is not None else {}
     there = {part.name for part in machine.fluids}
     return {name: make(machine.geometry) for name, make in makers.items() if name in there}
 
 
-def _between_poles(g: Any) -> Duct:
+def _between_poles(g: Geometry) -> Duct:
     bore = g.rotor.outer_diameter / 2 + g.stator.air_gap
     poles, body = g.stator.poles, g.stator.body_width
     depth = g.stator.yoke_inner_diameter / 2 - bore
@@ -66,12 +67,12 @@ def _between_poles(g: Any) -> Duct:
     return Duct(area, perimeter, g.rotor.stack_length)
 
 
-def _in_rotor(g: Any) -> Duct:
+def _in_rotor(g: Geometry) -> Duct:
     number, d = g.rotor.ducts, g.rotor.duct_diameter
     return Duct(number * np.pi * d**2 / 4, number * np.pi * d, g.rotor.stack_length)
 
 
-def fan_shares(machine: Any, fan: Fan) -> dict[str, float]:
+def fan_shares(machine: Machine, fan: Fan) -> dict[str, float]:
     """What each way along the axis takes of the fan's air at its rated flow; together 1."""
     ducts = ducts_of(machine)
     if not ducts:

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
+from geom.description.machine import Machine
 from geom.description.roles import Role
 from lumped.machine.air import BETWEEN_POLES, IN_ROTOR, Duct, channel_film, ducts_of, fan_shares, gap_film, stirred
 from lumped.machine.coolant import Cooling, cooling_of, jacket_film
@@ -27,7 +27,7 @@ TOP_RPM = 3000.0  # films of speed are tabulated at least this far
 class Surroundings:
     """What the films of one machine depend on. contacts : names "a|b", which tell what turns."""
 
-    machine: Any
+    machine: Machine
     contacts: tuple[str, ...]
 
     @cached_property
@@ -82,7 +82,7 @@ class Surroundings:
         return max(TOP_RPM, 2.0 * float(self.machine.sections.get("ratings", {}).get("speed_rpm", 0.0)))
 
 
-def surroundings(machine: Any, contacts: Iterable[str]) -> Surroundings:
+def surroundings(machine: Machine, contacts: Iterable[str]) -> Surroundings:
     return Surroundings(machine, tuple(contacts))
 
 

@@ -8,10 +8,10 @@ resolve stands for its part. Series-wound machines may give plain numbers instea
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
+from geom.description.machine import Machine
 from geom.errors import InputError
 from lumped.declarations.losses import loss_laws
 from lumped.machine.settings import Losses, read
@@ -25,17 +25,17 @@ ARMATURE = ("winding.armature", "winding.armature.left", "winding.armature.right
 Shares = Mapping[str, float]
 
 
-def sources(machine: Any, network: Network) -> list[Source]:
+def sources(machine: Machine, network: Network) -> list[Source]:
     """Every loss of the machine as a source; the weights of each sum to 1 over the mean nodes."""
     return [_source(network, name, kind, parts, law, probe) for name, kind, parts, law, probe in _declared(machine)]
 
 
-def checked_losses(machine: Any) -> None:
+def checked_losses(machine: Machine) -> None:
     """InputError for a table of losses that cannot be; to be asked before minutes are spent on a mesh."""
     _declared(machine)
 
 
-def loss_shares(machine: Any, network: Network) -> dict[str, dict[str, float]]:
+def loss_shares(machine: Machine, network: Network) -> dict[str, dict[str, float]]:
     """Source -> share of its watts per part, zone or fluid of the network."""
     out: dict[str, dict[str, float]] = {}
     for name, _, parts, _, _ in _declared(machine):
@@ -45,7 +45,7 @@ def loss_shares(machine: Any, network: Network) -> dict[str, dict[str, float]]:
     return out
 
 
-def loss_watts(machine: Any, network: Network, inputs: Mapping[str, float]) -> dict[str, float]:
+def loss_watts(machine: Machine, network: Network, inputs: Mapping[str, float]) -> dict[str, float]:
     """Watts per part, zone or fluid at constant inputs, resistances at their reference temperature."""
     signals = {name: np.array([float(value)]) for name, value in inputs.items()}
     out: dict[str, float] = {}
@@ -61,7 +61,7 @@ ASSUMED = "loss:assumed"
 ASSUMED_W = 100.0  # of a machine that declares no losses, so that it can be looked at
 
 
-def _declared(machine: Any) -> list[Declared]:
+def _declared(machine: Machine) -> list[Declared]:
     section = machine.sections.get("losses", {})
     plain = not any(isinstance(value, Mapping) for value in section.values())
     if plain and machine.family == "series-dc":
@@ -77,7 +77,7 @@ def _declared(machine: Any) -> list[Declared]:
     return [_read(name, table, laws[name]) for name, table in tables.items()]
 
 
-def _everywhere(machine: Any) -> Shares:
+def _everywhere(machine: Machine) -> Shares:
     """Windings by volume, or, where nothing is wound, all parts."""
     heated = [part for part in machine.parts if wound(machine, part.name)] or list(machine.parts)
     total = sum(part.volume for part in heated)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
 
+from geom.description.machine import Machine
 from geom.errors import InputError
 from lumped.machine.air import BETWEEN_POLES
 from lumped.machine.path import stem
@@ -19,7 +19,7 @@ FLOW_EXPONENT = 0.8  # of films in turbulent flow
 
 
 def parameters(
-    machine: Any, network: Network, faces: Sequence[Place], films: Sequence[Link], streams: Sequence[Link],
+    machine: Machine, network: Network, faces: Sequence[Place], films: Sequence[Link], streams: Sequence[Link],
     losses: Sequence[Source],
 ) -> list[Parameter]:  # fmt: skip
     """Films 0.3, contacts 0.3, losses by kind, capacity 0.05, flows 0.04 (log-sd), conductivities as declared."""
@@ -80,7 +80,7 @@ def _flows(films: Sequence[Link], streams: Sequence[Link]) -> list[Parameter]:
     return out
 
 
-def _conductivities(machine: Any, network: Network) -> list[Parameter]:
+def _conductivities(machine: Machine, network: Network) -> list[Parameter]:
     """[calibration] conductivity = { GROUP = [parts] }: impregnation, liners; prior from the materials' spread."""
     section = machine.sections.get("calibration", {})
     groups = section.get("conductivity", {})

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
-from typing import Any
 
 from geom.description.identity import Identity, identity
+from geom.description.machine import Machine
+from geom.description.part import Part
 from geom.description.profile import ArcGrid
 from geom.description.roles import Role
 from lumped.machine.path import stem
@@ -20,7 +21,7 @@ OF_MATERIAL = {
 }  # fmt: skip
 
 
-def declared(machine: Any, network: Network, contacts: Iterable[str]) -> dict[str, Identity]:
+def declared(machine: Machine, network: Network, contacts: Iterable[str]) -> dict[str, Identity]:
     """By name.  contacts : "a|b", which tell what hangs on the shaft"""
     spaces = {part.name: part.role for part in machine.fluids if part.role is not None}
     fluids = {state: identity(spaces[stem(state)], False) for state in network.states if stem(state) in spaces}
@@ -28,7 +29,7 @@ def declared(machine: Any, network: Network, contacts: Iterable[str]) -> dict[st
     return {**part_identities(machine, contacts), **fluids, **around}
 
 
-def part_identities(machine: Any, contacts: Iterable[str]) -> dict[str, Identity]:
+def part_identities(machine: Machine, contacts: Iterable[str]) -> dict[str, Identity]:
     """Part -> what it is; imported parts by their material, the shaft by the axis inside it, if nothing is said."""
     known = {part.name: part.identity or _by_material(machine, part) for part in machine.parts}
     hung = _hung(known, contacts)
@@ -44,7 +45,7 @@ def _turned(identity: Identity, turns: bool) -> Identity:
     )
 
 
-def _by_material(machine: Any, part: Any) -> Identity:
+def _by_material(machine: Machine, part: Part) -> Identity:
     role = OF_MATERIAL.get(part.material)
     if role is not None:
         stands = None if role in (Role.IRON, Role.INSULATION) else role.turns
@@ -56,7 +57,7 @@ def _by_material(machine: Any, part: Any) -> Identity:
     return Identity(None, None, "nothing tells")
 
 
-def _on_axis(part: Any) -> bool:
+def _on_axis(part: Part) -> bool:
     """Is the machine's axis inside all of its prisms?"""
     import shapely
 
@@ -75,7 +76,7 @@ def _hung(identities: dict[str, Identity], contacts: Iterable[str]) -> frozenset
     return frozenset(found)
 
 
-def turning(machine: Any, contacts: Iterable[str]) -> frozenset[str]:
+def turning(machine: Machine, contacts: Iterable[str]) -> frozenset[str]:
     """Parts that turn."""
     return frozenset(name for name, i in part_identities(machine, contacts).items() if i.turns)
 

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any, TypeVar
 
+from geom.description.machine import Machine
 from geom.errors import InputError
 from lumped.schemas.bounds import bounds
 from lumped.schemas.reader import Table, excerpt
@@ -68,13 +69,13 @@ class Fan:
     air_C: float = 40.0
 
 
-def read_fan(machine: Any) -> Fan | None:
+def read_fan(machine: Machine) -> Fan | None:
     """The through-flow of [fans], if the machine is open to it."""
     table = {key: value for key, value in machine.sections.get("fans", {}).items() if key != "cowl"}
     return read(Fan, table, f"{machine.name} [fans]") if table else None
 
 
-def read_films(machine: Any) -> Films:
+def read_films(machine: Machine) -> Films:
     table = {key: value for key, value in machine.sections.get("films", {}).items() if key != "outer"}
     return read(Films, table, f"{machine.name} [films]")
 

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from geom.description.machine import Machine
 from geom.errors import InputError
 from lumped.model.network import Network
 from lumped.schemas.reader import suggestion
@@ -151,7 +152,7 @@ def _of_machine(network: Network, file: MachineFile, space: Space, inputs: Mappi
     }
 
 
-def _machine_at(file: MachineFile, values: Mapping[str, float]) -> Any:
+def _machine_at(file: MachineFile, values: Mapping[str, float]) -> Machine:
     return file.at(values)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from datetime import date, datetime, time
 from typing import Any
@@ -87,7 +87,7 @@ def _guessed_clock(source: Source) -> Clock | None:
     return _numeric(source)
 
 
-def _mostly(cells: Sequence[Any], test: Any) -> bool:
+def _mostly(cells: Sequence[Any], test: Callable[[Any], bool]) -> bool:
     if isinstance(cells, np.ndarray) and cells.dtype.kind == "M":
         return bool(test is is_date)
     seen = [c for c in cells[:LOOKED_AT] if c is not None and str(c).strip()]

@@ -150,10 +150,10 @@ def _tdms(file: Path, group: str) -> pd.DataFrame:
     return guarded(file, "TDMS", "nptdms", read)
 
 
-def _tdms_signal(channel: Any) -> tuple[Array, Array]:
+def _tdms_signal(signal: Any) -> tuple[Array, Array]:
     """Times (s) by the waveform's increment where it has one, else by rows."""
-    values = np.asarray(channel[:])
-    step, offset = channel.properties.get("wf_increment"), channel.properties.get("wf_start_offset", 0.0)
+    values = np.asarray(signal[:])
+    step, offset = signal.properties.get("wf_increment"), signal.properties.get("wf_start_offset", 0.0)
     time = np.arange(len(values), dtype=float)
     return (offset + step * time if step else time), values
 

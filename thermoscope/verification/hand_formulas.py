@@ -16,6 +16,8 @@ import numpy as np
 from fem.matrices.assembly import FieldModel
 from geom import Machine
 from geom.description.areas import PartRow, part_table
+from geom.description.part import Prism
+from geom.description.profile import Loop
 from lumped.correlations.windings import mellor
 from lumped.machine.path import stem
 from thermoscope.verification.crosscheck import CrossCheck
@@ -98,13 +100,13 @@ def leg(
     return None
 
 
-def _round(loop: Any) -> bool:
+def _round(loop: Loop) -> bool:
     radii = [float(np.hypot(x, y)) for x, y, _ in loop]
     return max(radii) - min(radii) < 1e-9 and all(abs(bulge) > 0 for _, _, bulge in loop)
 
 
 def _cylinder(
-    prism: Any, k_plane: float, k_axial: float, area: float, field: FieldModel, contact: str
+    prism: Prism, k_plane: float, k_axial: float, area: float, field: FieldModel, contact: str
 ) -> tuple[float, str] | None:
     profile, z0, z1 = prism
     outer = float(np.hypot(*profile.outer[0][:2]))

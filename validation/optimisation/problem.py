@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.description.machine import Machine
 from geom.errors import InputError
 from lumped.model.network import Network, Row
 from validation.optimisation.auxiliaries import auxiliary_power
@@ -73,7 +74,7 @@ class Problem:
     spots: tuple[HotSpots, ...]
     peak: int
     electrics: Electrics = field(default_factory=Electrics)
-    machine_at: Callable[[Mapping[str, float]], Any] | None = None
+    machine_at: Callable[[Mapping[str, float]], Machine] | None = None
     scaling: Scaling | None = None
     from_machine: tuple[str, ...] = ()
     corrections: Corrections = NONE
@@ -94,10 +95,13 @@ class Problem:
         except InputError as error:
             return self._impossible(str(error))
 
-    def judged(self, named: Mapping[str, float], machine: Any) -> Performance:
+    def judged(self, named: Mapping[str, float], machine: Machine | None) -> Performance:
         """A design whose machine is there already."""
         inputs, lag = self._inputs(named, machine)
-        values = {**self.values, **({} if self.scaling is None else self.scaling.of(machine, inputs))}
+        values = {
+            **self.values,
+            **({} if self.scaling is None or machine is None else self.scaling.of(machine, inputs)),
+        }
         found, runaway = self._rest(values, inputs)
         share = self.space.share(named)
         copper = losses(self.network, values, inputs, found.z, ("copper",)) * self.corrections.ratio(COPPER, share)
@@ -111,7 +115,7 @@ class Problem:
         limits = self.electrics.excess(inputs, copper) if self.driven is None else lag
         return Performance(objectives, {**excess, **limits}, places, inputs, "runaway" * runaway)
 
-    def _inputs(self, named: Mapping[str, float], machine: Any) -> tuple[dict[str, float], dict[str, float]]:
+    def _inputs(self, named: Mapping[str, float], machine: Machine | None) -> tuple[dict[str, float], dict[str, float]]:
         """Of the network; and what the drive misses of its cycle."""
         out = {**self.inputs, **{n: u for n, u in named.items() if n in self.inputs}}
         if machine is not None:

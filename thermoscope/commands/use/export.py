@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from geom.errors import InputError, MissingDependency, ThermoscopeError
 from lumped.schemas.reader import suggestion
@@ -14,6 +14,9 @@ from thermoscope.case_folder.workbook import tables, write_csvs, write_xlsx
 from thermoscope.commands.open_case import open_case
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import Progress, give, plain, progress
+
+if TYPE_CHECKING:
+    from thermoscope.export.model import Model
 
 WORKBOOKS = ("xlsx", "csv")
 MODELS = ("c", "fmu", "json", "matlab", "observer")
@@ -121,7 +124,7 @@ def _observer(
     return 0
 
 
-def _differences(folder: Folder, model: Any, tell: Progress) -> dict[str, float]:
+def _differences(folder: Folder, model: Model, tell: Progress) -> dict[str, float]:
     """Test -> largest difference (K) between the code and the simulation; empty where nothing can compile here.
 
     Raises ThermoscopeError where they disagree.
@@ -144,7 +147,7 @@ def _differences(folder: Folder, model: Any, tell: Progress) -> dict[str, float]
     return out
 
 
-def _files(model: Any, form: str, version: int, tell: Progress) -> tuple[dict[str, str | bytes], list[str]]:
+def _files(model: Model, form: str, version: int, tell: Progress) -> tuple[dict[str, str | bytes], list[str]]:
     """File name -> content; the platforms that compiled code in them runs on."""
     import json
 

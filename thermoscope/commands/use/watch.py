@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
+from lumped.integration.record import Record
 from lumped.integration.simulate import initial_state
 from thermoscope.case_folder.files import write_whole
 from thermoscope.case_folder.folder import Folder
@@ -102,7 +103,7 @@ class Session:
         for sample in samples:
             self._note(sample)
 
-    def _open_loop(self, record: Any, count: int) -> list[Array]:
+    def _open_loop(self, record: Record, count: int) -> list[Array]:
         """States (n,) of the model as it stands, without any reading but the very first, the withheld sensors' too."""
         if not self.withheld or self.free is None:
             return []

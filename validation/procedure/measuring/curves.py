@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,7 @@ from validation.procedure.measuring.repeats import Repeats, repeats
 from validation.procedure.measuring.warming import Equilibrium, Warming, equilibrium, fit_eq8
 
 Array = NDArray[np.float64]
+R = TypeVar("R")
 STEADY = 0.02  # a load that strays further from its mean (rms) is no constant load
 ALIKE = 0.02  # tests whose mean loads differ by less are repeats of one test
 LATE = 0.75  # share of a test after which its readings count as its end
@@ -94,7 +95,7 @@ def window_min(test: Test, channel: Channel) -> float:
     return max(10.0, 2.0 * float(np.median(np.diff(read)))) if read.size > 1 else 10.0
 
 
-def _result_or_reason(look: Any) -> tuple[Any, str]:
+def _result_or_reason(look: Callable[[], R]) -> tuple[R | None, str]:
     try:
         return look(), ""
     except InputError as fault:
