@@ -54,7 +54,7 @@ def ducts_of(machine: Machine) -> dict[str, Duct]:
     """The ways along the axis beside the air gap, by the fluid's name; none where the geometry is not known."""
     makers = {BETWEEN_POLES: _between_poles, IN_ROTOR: _in_rotor} if machine.geometry is not None else {}
     there = {part.name for part in machine.fluids}
-    return {name: make(machine.geometry) for name, make in makers.items() if name in there}
+    return {name: make(machine.dimensions) for name, make in makers.items() if name in there}
 
 
 def _between_poles(g: Geometry) -> Duct:
