@@ -50,13 +50,13 @@ class ExponentError(Law):
         level = {k: np.full_like(now, v) for k, v in self.reference.items()}
         at = np.abs(np.asarray(self.base.factor({**level, self.input: now}), float))
         right = np.abs(np.asarray(self.base.factor(level), float))
-        bend = np.log(np.maximum(at, 1e-12 * right) / right)
-        return np.asarray(self.base.factor(inputs) * np.clip(bend, -FARTHEST, FARTHEST))
+        log_ratio = np.log(np.maximum(at, 1e-12 * right) / right)
+        return np.asarray(self.base.factor(inputs) * np.clip(log_ratio, -FARTHEST, FARTHEST))
 
 
 @dataclass(frozen=True)
 class TemperatureSlopeError(Law):
-    """d law / d slope with temperature (1/K), zero at SETTLE_C: friction falls as the grease warms."""
+    """d law / d slope with temperature (1/K), zero at REFERENCE_DEGC: friction falls as the grease warms."""
 
     base: Law
     reads: tuple[str, ...] = field(init=False, default=())
@@ -71,7 +71,7 @@ class TemperatureSlopeError(Law):
 
 @dataclass(frozen=True)
 class DifferenceExponentError(Law):
-    """d law / d exponent of the temperature difference, zero at SETTLE_K."""
+    """d law / d exponent of the temperature difference, zero at REFERENCE_RISE_K."""
 
     base: Law
     reads: tuple[str, ...] = field(init=False, default=())
@@ -86,7 +86,7 @@ class DifferenceExponentError(Law):
 
 
 def exponent_derivative(law: TemperatureLaw) -> Table | FilmTable:
-    """law(dT) ln(dT / SETTLE_K) as a table."""
+    """law(dT) ln(dT / REFERENCE_RISE_K) as a table."""
     if isinstance(law, FilmTable):
         films = np.reshape(law.value, (-1, len(law.difference)))
         return replace(law, value=tuple((films * _turn(np.array(law.difference))).ravel()))
@@ -167,16 +167,16 @@ def _with_input(
     """The exponent of one input in all laws of a parameter that follow it."""
     new = []
 
-    def bend(x: Link | Source) -> ExponentError | None:
+    def exponent_error(x: Link | Source) -> ExponentError | None:
         fit = name in x.law.reads and set(x.law.reads) <= set(level)
         return ExponentError(x.law, name, {k: level[k] for k in x.law.reads}) if fit else None
 
     for film in films:
-        if law := bend(film):
+        if law := exponent_error(film):
             new.append(f"{film.name}^{name}")
             network = copy_link(network, film, new[-1], law)
     for loss in losses:
-        if law := bend(loss):
+        if law := exponent_error(loss):
             new.append(f"{loss.name}^{name}")
             network = copy_source(network, loss, new[-1], law)
     return _with_parameter(network, f"{parent}^{name}", new, doubt["input exponent"])

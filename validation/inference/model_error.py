@@ -37,7 +37,7 @@ LOGARITHM = Table(KNOTS, tuple(np.log(np.clip(np.array(KNOTS) / REFERENCE_RISE_K
 
 @dataclass(frozen=True)
 class ExponentSlope(Law):
-    """d law / d exponent of the temperature difference of a law without one, zero at SETTLE_K."""
+    """d law / d exponent of the temperature difference of a law without one, zero at REFERENCE_RISE_K."""
 
     base: Law
     reads: tuple[str, ...] = field(init=False, default=())
