@@ -69,7 +69,8 @@ LAWS = [
     Shaped(FORCED, lambda u: np.asarray(u["current_A"]) / 20.0, CONSTANT, ("current_A",)), Scaled(FORCED, 0.7),
     AtOneTemperature(Fixed(0.5, Linear(0.004, 20.0)), 90.0),
     ExponentError(FORCED, "speed_rpm", {"speed_rpm": 1500.0}), TemperatureSlopeError(Fixed(0.01)),
-    DifferenceExponentError(Fixed(0.05, Power(0.25))), ExponentSlope(Fixed(0.1)), ExponentRatio(ExponentError(FORCED, "speed_rpm", {"speed_rpm": 1500.0})),
+    DifferenceExponentError(Fixed(0.05, Power(0.25))), ExponentSlope(Fixed(0.1)),
+    ExponentRatio(ExponentError(FORCED, "speed_rpm", {"speed_rpm": 1500.0})),
     Slope(FORCED, "speed_rpm"), Shift(IronLoss(1.0, 0.5, "speed_rpm", 1000.0), "speed_rpm"),
 ]  # fmt: skip
 TEMPERATURES = [
