@@ -6,36 +6,24 @@ import sys
 
 import numpy as np
 import pytest
-from fictional import HISTORY, candidates, comparison
+from fictional import comparison
 from PIL import Image
 
 import viz.live
 from geom.errors import InputError, MissingDependency
 from viz.colours import DARK
-from viz.figures.flows import Heat
 from viz.live import (
     against_input,
     confusion,
     objective_space,
     parallel_coordinates,
-    pareto,
     parity,
-    posterior,
     residuals,
-    sankey,
     save,
     sensor,
-    staircase,
 )  # fmt: skip
 from viz.pages.pdf import BROWSERS
 
-HEAT = Heat({"copper": 300.0, "iron": 100.0}, (), {"fan": 250.0, "base": 90.0})
-ODDS = [
-    {"hypothesis": "convection@flange.right", "effects": ["convection@flange.right"], "probability": 0.93},
-    {"hypothesis": "nothing", "effects": [], "probability": 0.05},
-    {"hypothesis": "heat@yoke", "effects": [], "probability": 0.015},
-    {"hypothesis": "others", "effects": [], "probability": 0.004},
-]
 AIMED = ("peak_degC", "settling_s", "copper_W", "auxiliary_W")
 DESIGNS = [
     {"design": f"design-{k}", "flow": 4.0 + k, **dict(zip(AIMED, (130.0 - k, 900.0, 80.0 - k, float(k**3))))}
@@ -46,11 +34,7 @@ DRAW = {
     "residuals": lambda **o: residuals(comparison(), **o),
     "against_input": lambda **o: against_input(comparison(), "flange.right", "current_A", **o),
     "parity": lambda **o: parity(comparison(), **o),
-    "staircase": lambda **o: staircase(HISTORY, **o),
-    "posterior": lambda **o: posterior(ODDS, **o),
     "confusion": lambda **o: confusion(["a@x", "b@y"], np.array([[1.0, -0.83], [-0.83, 1.0]]), **o),
-    "pareto": lambda **o: pareto(candidates(), **o),
-    "sankey": lambda **o: sankey(HEAT, **o),
     "parallel_coordinates": lambda **o: parallel_coordinates(DESIGNS, AIMED, {"flow": "flow (l/min)"}, **o),
     "objective_space": lambda **o: objective_space(DESIGNS, AIMED, **o),
 }
@@ -71,7 +55,7 @@ def test_figure_is_plain_json_on_light_and_dark_paper(name):
 
 
 def test_every_public_figure_is_tested_here_or_beside():
-    assert set(viz.live.__all__) == {*DRAW, "save", "sensitivity"}
+    assert set(viz.live.__all__) == {*DRAW, "save"}
 
 
 def test_designs_are_lines_and_points():
@@ -97,30 +81,8 @@ def test_only_the_wrong_sensor_is_coloured():
     assert colours["flange.right"] != colours["yoke"]
 
 
-def test_posterior_has_the_most_probable_on_top():
-    trace = data(DRAW["posterior"]())[0]
-    assert trace["x"] == sorted(trace["x"])
-    assert trace["y"][-1] == "convection@flange.right"
-    assert "others" not in trace["y"]
-
-
 def test_confusion_shows_sizes():
     np.testing.assert_allclose(data(DRAW["confusion"]())[0]["z"], [[1.0, 0.83], [0.83, 1.0]])
-
-
-def test_pareto_starts_with_the_largest_fall():
-    assert max(data(DRAW["pareto"]())[0]["y"]) == pytest.approx(4.85 - 0.93)
-
-
-def test_staircase_falls_as_the_history_says():
-    assert named(DRAW["staircase"](), "road-2 (hold-out)")["y"] == [6.4, 4.85, 0.93]
-
-
-def test_sankey_balances():
-    link = data(DRAW["sankey"]())[0]["link"]
-    left = [v for v, s in zip(link["value"], link["source"], strict=True) if s != 2]
-    right = [v for v, s in zip(link["value"], link["source"], strict=True) if s == 2]
-    assert sum(left) == pytest.approx(sum(right)) == 400.0
 
 
 def test_parity_puts_a_right_model_on_the_line():
@@ -131,7 +93,6 @@ def test_parity_puts_a_right_model_on_the_line():
 @pytest.mark.parametrize(("draw", "words"), [
     (lambda: sensor(comparison(), "nowhere"), "known: flange.left"),
     (lambda: against_input(comparison(), "yoke", "wind"), "known: current_A, ambient"),
-    (lambda: sankey(Heat({}, (), {})), "a machine that is running"),
 ])  # fmt: skip
 def test_wrong_names_list_the_right_ones(draw, words):
     with pytest.raises(InputError, match=words):
