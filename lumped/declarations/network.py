@@ -20,8 +20,7 @@ from lumped.model.build import bare_network, node_link, node_source, stream, sur
 from lumped.model.network import Link, Network, Place, Row, Source
 from lumped.model.soundness import checked_names, checked_network, checked_path
 from lumped.schemas.reader import Table, suggestion
-from lumped.sources.loss_measured import Negative
-from lumped.transfer.laws import Law
+from lumped.transfer.laws import Law, Scaled
 from lumped.transfer.reversal import Direction, OneWay
 
 if TYPE_CHECKING:
@@ -212,7 +211,7 @@ def _source(network: Network, name: str, table: Table, law: Law) -> Source:
 def _difference(measured: Source, other: Source) -> Source:
     """What the model injects elsewhere leaves the measured total, at its own temperature, watt for watt."""
     name = f"{measured.name}:less:{other.name.removeprefix('loss:')}"
-    return replace(measured, name=name, law=Negative(other.law), probe=other.probe)
+    return replace(measured, name=name, law=Scaled(other.law, -1.0), probe=other.probe)
 
 
 def _checked(network: Network, where: str) -> Network:

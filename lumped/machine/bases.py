@@ -14,22 +14,17 @@ import numpy as np
 from geom.description.machine import Machine
 from geom.description.roles import Role
 from lumped.model.network import Link, Network, Parameter, Place
-from lumped.transfer.laws import Array, Inputs, Law, TemperatureLaw
+from lumped.transfer.laws import Array, Inputs, Wrapped
 
 OWN_BASE = "own"
 
 
 @dataclass(frozen=True)
-class Switched(Law):
+class Switched(Wrapped):
     """Another law, in force while an input is 1 (closed) or while it is 0 (not closed)."""
 
-    base: Law
     switch: str
     closed: bool
-
-    @property
-    def temperature(self) -> TemperatureLaw:  # type: ignore[override]
-        return self.base.temperature
 
     @property
     def reads(self) -> tuple[str, ...]:  # type: ignore[override]

@@ -9,13 +9,23 @@ They are neutral at zero (shares at one). An effect that was added brings its ex
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lumped.model.network import Link, Network, Parameter, Source
-from lumped.transfer.laws import CONSTANT, FilmTable, Inputs, Law, Linear, Power, Table, TemperatureLaw
+from lumped.transfer.laws import (
+    CONSTANT,
+    FilmTable,
+    Inputs,
+    Linear,
+    Power,
+    Table,
+    TemperatureLaw,
+    WithTemperature,
+    Wrapped,
+)
 from validation.case import Test
 from validation.doubt import USUAL, Doubt
 from validation.effects.build import copy_link, copy_source
@@ -28,22 +38,18 @@ FARTHEST = np.log(10.0)
 EXACT_LOSSES = ("copper", "measured")  # losses whose law is not in doubt
 
 
+GREASE = Linear(1.0, REFERENCE_DEGC + 1.0)  # T - REFERENCE_DEGC: friction falls as the grease warms
+
+
 @dataclass(frozen=True)
-class ExponentError(Law):
+class ExponentError(Wrapped):
     """d law / d exponent of one input: law * ln(law(u) / law(reference)) with the other inputs at their reference.
 
     reference : level of each input at which the law is right
     """
 
-    base: Law
     input: str
     reference: Mapping[str, float]
-    reads: tuple[str, ...] = field(init=False, default=())
-    temperature: TemperatureLaw = field(init=False, default=TemperatureLaw())
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "reads", self.base.reads)
-        object.__setattr__(self, "temperature", self.base.temperature)
 
     def factor(self, inputs: Inputs) -> Array | float:
         now = np.abs(np.asarray(inputs[self.input], float))
@@ -52,37 +58,6 @@ class ExponentError(Law):
         right = np.abs(np.asarray(self.base.factor(level), float))
         log_ratio = np.log(np.maximum(at, 1e-12 * right) / right)
         return np.asarray(self.base.factor(inputs) * np.clip(log_ratio, -FARTHEST, FARTHEST))
-
-
-@dataclass(frozen=True)
-class TemperatureSlopeError(Law):
-    """d law / d slope with temperature (1/K), zero at REFERENCE_DEGC: friction falls as the grease warms."""
-
-    base: Law
-    reads: tuple[str, ...] = field(init=False, default=())
-    temperature: TemperatureLaw = field(init=False, default=Linear(1.0, REFERENCE_DEGC + 1.0))
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "reads", self.base.reads)
-
-    def factor(self, inputs: Inputs) -> Array | float:
-        return self.base.factor(inputs)
-
-
-@dataclass(frozen=True)
-class DifferenceExponentError(Law):
-    """d law / d exponent of the temperature difference, zero at REFERENCE_RISE_K."""
-
-    base: Law
-    reads: tuple[str, ...] = field(init=False, default=())
-    temperature: TemperatureLaw = field(init=False, default=TemperatureLaw())
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "reads", self.base.reads)
-        object.__setattr__(self, "temperature", exponent_derivative(self.base.temperature))
-
-    def factor(self, inputs: Inputs) -> Array | float:
-        return self.base.factor(inputs)
 
 
 def exponent_derivative(law: TemperatureLaw) -> Table | FilmTable:
@@ -186,7 +161,7 @@ def _with_difference(network: Network, parent: str, films: Sequence[Link], doubt
     """The exponent of the temperature difference in the films of free convection."""
     free = [x for x in films if isinstance(x.law.temperature, (Power, Table, FilmTable))]
     for x in free:
-        network = copy_link(network, x, f"{x.name}^dT", DifferenceExponentError(x.law))
+        network = copy_link(network, x, f"{x.name}^dT", WithTemperature(x.law, exponent_derivative(x.law.temperature)))
     return _with_parameter(network, f"{parent}^dT", [f"{x.name}^dT" for x in free], doubt["difference exponent"])
 
 
@@ -194,7 +169,7 @@ def _with_warming(network: Network, parent: str, losses: Sequence[Source], doubt
     """The slope with temperature of friction."""
     greased = [x for x in losses if x.kind == "friction" and x.law.temperature == CONSTANT]
     for x in greased:
-        network = copy_source(network, x, f"{x.name}^T", TemperatureSlopeError(x.law))
+        network = copy_source(network, x, f"{x.name}^T", WithTemperature(x.law, GREASE))
     return _with_parameter(network, f"{parent}^T", [f"{x.name}^T" for x in greased], doubt["warming"], "1/K")
 
 

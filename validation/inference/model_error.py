@@ -8,7 +8,7 @@ sensors and tests included, without a draw: Bayesian approximation error (Kaipio
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
@@ -18,7 +18,7 @@ from lumped.integration.simulate import simulate
 from lumped.model.network import Link, Network, Parameter, Place, Row, Source
 from lumped.model.quantities import AIR, LIQUID
 from lumped.model.topology import FRICTION
-from lumped.transfer.laws import CONSTANT, Constant, Fixed, Inputs, Law, TemperatureLaw
+from lumped.transfer.laws import CONSTANT, Constant, Fixed, Inputs, WithTemperature
 from validation.calibration.model_form import EXACT_LOSSES, KNOTS, REFERENCE_RISE_K, Table, is_film
 from validation.case import Channel, Test
 from validation.comparison.linearisation import Segment, segments
@@ -33,21 +33,6 @@ SMOOTH = 1e-3  # of its mean square: an input that jumps by less is as good as s
 
 
 LOGARITHM = Table(KNOTS, tuple(np.log(np.clip(np.array(KNOTS) / REFERENCE_RISE_K, 0.1, 10.0))))
-
-
-@dataclass(frozen=True)
-class ExponentSlope(Law):
-    """d law / d exponent of the temperature difference of a law without one, zero at REFERENCE_RISE_K."""
-
-    base: Law
-    reads: tuple[str, ...] = field(init=False, default=())
-    temperature: TemperatureLaw = LOGARITHM
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "reads", self.base.reads)
-
-    def factor(self, inputs: Inputs) -> Array | float:
-        return self.base.factor(inputs)
 
 
 @dataclass(frozen=True)
@@ -86,7 +71,7 @@ def with_doubts(network: Network, doubt: Doubt, tests: Sequence[Test] = ()) -> t
         new.append(_amplitude(f"doubt:{name}", name, doubt["load"], "1"))
     for link in [x for x in network.links if _constant_film(network, x)]:
         name = f"{link.name}^dT?"
-        network = copy_link(network, link, name, ExponentSlope(link.law))
+        network = copy_link(network, link, name, WithTemperature(link.law, LOGARITHM))
         new.append(_amplitude(f"doubt:{name}", name, doubt["film exponent"], "1"))
     for a, b, G in lumping_errors(network, doubt["bridge"]):
         name = f"beside:{a}|{b}"

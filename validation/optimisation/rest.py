@@ -22,7 +22,7 @@ from lumped.model.multipliers import multipliers
 from lumped.model.network import Network, Row
 from lumped.numerics.stages import stages, work
 from lumped.numerics.steady_start import settle
-from lumped.transfer.laws import Law, Linear, TemperatureLaw
+from lumped.transfer.laws import Law, Linear, Scaled, WithTemperature
 from lumped.transfer.terms_value import temperature_value
 
 Array = NDArray[np.float64]
@@ -111,32 +111,18 @@ def _T(row: Row, z: Array) -> float:
     return float(row.weights @ z[row.index])
 
 
-@dataclass(frozen=True)
-class AtOneTemperature(Law):
-    """Another law at a temperature of its own (degC)."""
-
-    base: Law
-    T: float
-
-    @property
-    def temperature(self) -> TemperatureLaw:  # type: ignore[override]
-        return Linear(0.0, self.T)
-
-    @property
-    def reads(self) -> tuple[str, ...]:  # type: ignore[override]
-        return self.base.reads
-
-    def factor(self, inputs: Mapping[str, Array]) -> Array | float:
-        return temperature_value(self.base.temperature, self.T, self.T) * np.asarray(self.base.factor(inputs))
-
-
 def without_feedback(network: Network, T: float) -> Network:
     """Losses that grow with temperature at those of T (degC): such a network always rests where a film holds it.
 
     It is above T where the true one is above T or runs away, and below where that one is: which one, a limit can ask.
     """
-    hot = (replace(s, law=AtOneTemperature(s.law, T)) if _grows(s.law) else s for s in network.sources)
+    hot = (replace(s, law=_at(s.law, T)) if _grows(s.law) else s for s in network.sources)
     return replace(network, sources=tuple(hot))
+
+
+def _at(law: Law, T: float) -> Law:
+    """Another law at a temperature of its own (degC)."""
+    return WithTemperature(Scaled(law, temperature_value(law.temperature, T, T)), Linear(0.0, T))
 
 
 def _grows(law: Law) -> bool:

@@ -13,7 +13,7 @@ from geom.errors import InputError
 from lumped.model.network import Link, Network
 from lumped.model.quantities import AIR, LIQUID
 from lumped.schemas.reader import suggestion
-from lumped.transfer.laws import CLOCK, Law, Radiation, TemperatureLaw
+from lumped.transfer.laws import CLOCK, Radiation, Scaled
 from validation.case import Test
 
 Array = NDArray[np.float64]
@@ -135,25 +135,6 @@ def density(altitude_m: float) -> float:
     """Of air over that at sea level."""
     a, b = ISA
     return float((1.0 - a * altitude_m) ** b)
-
-
-@dataclass(frozen=True)
-class Scaled(Law):
-    """Another law times a number."""
-
-    base: Law
-    by: float
-
-    @property
-    def temperature(self) -> TemperatureLaw:  # type: ignore[override]
-        return self.base.temperature
-
-    @property
-    def reads(self) -> tuple[str, ...]:  # type: ignore[override]
-        return self.base.reads
-
-    def factor(self, inputs: Mapping[str, Array]) -> Array | float:
-        return self.by * np.asarray(self.base.factor(inputs))
 
 
 def at_altitude(network: Network, altitude_m: float) -> Network:

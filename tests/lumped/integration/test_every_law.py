@@ -18,7 +18,7 @@ from lumped.machine.bases import Switched
 from lumped.machine.laws import Interpolated
 from lumped.model.build import bare_network, node_link, node_source, stream
 from lumped.sources.loss_map import MapLoss
-from lumped.sources.loss_measured import MeasuredLoss, Negative
+from lumped.sources.loss_measured import MeasuredLoss
 from lumped.sources.losses import BrushLoss, CopperLoss, IronLoss, PowerLoss, RippleLoss
 from lumped.transfer.exchanger import CellFilm, Exchanger, Flow, Rate
 from lumped.transfer.laws import (
@@ -33,18 +33,17 @@ from lumped.transfer.laws import (
     Linear,
     Power,
     Radiation,
+    Scaled,
     Table,
     TemperatureLaw,
+    WithTemperature,
 )
 from lumped.transfer.reversal import Direction, OneWay
 from thermoscope.export.tables import ExponentRatio
-from validation.calibration.model_form import DifferenceExponentError, ExponentError, TemperatureSlopeError
+from validation.calibration.model_form import ExponentError
 from validation.effects.build import Shaped
 from validation.effects.sensors.input_factor import Slope
 from validation.effects.sensors.input_offset import Shift
-from validation.inference.model_error import ExponentSlope
-from validation.optimisation.rest import AtOneTemperature
-from validation.rating.operation import Scaled
 
 CLOSES = 1e-4  # of the heat: a hundredth of a kelvin of a rise of 100 K
 FORCED = InputPower(0.6, (("speed_rpm", 1000.0, 0.8),))
@@ -60,16 +59,15 @@ LAWS = [
     Switched(FORCED, "switch", True), Switched(FORCED, "switch", False),
     FilmOver("speed_rpm", lambda x: (0.3 + 0.01 * np.sqrt(x), None), 4000.0),
     Share(FilmOver("speed_rpm", lambda x: (0.3, None), 4000.0), (0.0, 4000.0), (0.3, 0.7)),
-    Negative(Fixed(0.4)), MeasuredLoss(((1.0, ("electrical_W",)), (-np.pi / 30.0, ("torque_Nm", "speed_rpm")))),
+    Scaled(Fixed(0.4), -1.0), MeasuredLoss(((1.0, ("electrical_W",)), (-np.pi / 30.0, ("torque_Nm", "speed_rpm")))),
     MapLoss((0.0, 4000.0), (0.0, 5.0), ((1.0, 2.0), (3.0, 5.0))), CopperLoss(0.02, ("current_A",)),
     PowerLoss(((2.0, (("speed_rpm", 1000.0, 1.5),)),)), IronLoss(1.0, 0.5, "speed_rpm", 1000.0, "current_A", 10.0),
     BrushLoss(0.2, "current_A", 0.5, "speed_rpm", 1000.0), RippleLoss(48.0, "voltage_V", 1e-3, 1e4, 0.05),
     Rate(BY_FLOW), Exchanger(1.0, BY_FLOW, Flow(3.0)), CellFilm((0.0, 2.0), (4.0, 9.0), BY_FLOW, 0.1, 0.2),
     OneWay(FORCED, "flow", "here", "so"), Direction(FORCED, "to_and_fro", 1), Direction(FORCED, "to_and_fro", -1),
-    Shaped(FORCED, lambda u: np.asarray(u["current_A"]) / 20.0, CONSTANT, ("current_A",)), Scaled(FORCED, 0.7),
-    AtOneTemperature(Fixed(0.5, Linear(0.004, 20.0)), 90.0),
-    ExponentError(FORCED, "speed_rpm", {"speed_rpm": 1500.0}), TemperatureSlopeError(Fixed(0.01)),
-    DifferenceExponentError(Fixed(0.05, Power(0.25))), ExponentSlope(Fixed(0.1)),
+    Shaped(FORCED, lambda u: np.asarray(u["current_A"]) / 20.0, CONSTANT, ("current_A",)),
+    WithTemperature(FORCED, Power(0.25)),
+    ExponentError(FORCED, "speed_rpm", {"speed_rpm": 1500.0}), 
     ExponentRatio(ExponentError(FORCED, "speed_rpm", {"speed_rpm": 1500.0})),
     Slope(FORCED, "speed_rpm"), Shift(IronLoss(1.0, 0.5, "speed_rpm", 1000.0), "speed_rpm"),
 ]  # fmt: skip

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from playground import Truth, network
 
-from lumped.transfer.laws import Fixed, InputPower, Power
-from validation.calibration.model_form import DifferenceExponentError, ExponentError, levels, shares, with_model_form
+from lumped.transfer.laws import Fixed, InputPower, Power, WithTemperature
+from validation.calibration.model_form import ExponentError, exponent_derivative, levels, shares, with_model_form
 from validation.comparison.predict import predict
 from validation.effects import effect, extended
 
@@ -48,7 +48,7 @@ def test_one_input_of_two_is_bent_alone():
 
 
 def test_difference_is_right_where_it_settles():
-    law = DifferenceExponentError(Fixed(3.0, Power(0.25)))
+    law = WithTemperature(Fixed(3.0), exponent_derivative(Power(0.25)))
     table = dict(zip(law.temperature.difference, law.temperature.value))
     assert table[40.0] == 0.0
     assert table[80.0] == pytest.approx(80.0**0.25 * np.log(2.0))
