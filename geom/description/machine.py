@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from geom.description.geometry import Geometry
+from geom.description.geometry import NO_FEATURES, Features, Geometry
 from geom.description.materials import Material, filled, material
 from geom.description.part import Part, Port
 from geom.description.profile import ArcGrid
@@ -40,6 +40,7 @@ class Machine:
     source: str = ""
     assumed: str = ""
     ports: tuple[Port, ...] = ()
+    features: Features = NO_FEATURES
 
     @property
     def dimensions(self) -> Geometry:

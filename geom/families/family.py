@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
-from geom.description.geometry import Geometry
+from geom.description.geometry import Features, Geometry
 from geom.description.parameters import Parameter
 from geom.description.part import Part, Port
 
@@ -16,7 +16,7 @@ class Family:
 
     build : values in SI (see parameters.read_geometry) -> solids and fluids, or InputError if they do not fit
     face_names : (part, fluid) -> name, where it differs from the rule of `Machine.face_name`
-    ports : values in SI -> where liquids enter and leave
+    ports : values in SI -> where liquids enter and leave;  features : what formulas ask beside the solids
     """
 
     name: str
@@ -25,3 +25,4 @@ class Family:
     build: Callable[[Geometry], tuple[Part, ...]]
     face_names: Mapping[tuple[str, str], str] = field(default_factory=dict)
     ports: Callable[[Geometry], tuple[Port, ...]] = lambda g: ()
+    features: Callable[[Geometry], Features] = lambda g: Features()

@@ -10,7 +10,7 @@ import numpy as np
 
 from geom.description.machine import Machine
 from geom.description.roles import Role
-from lumped.machine.air import BETWEEN_POLES, IN_ROTOR, Duct, channel_film, ducts_of, fan_shares, gap_film, stirred
+from lumped.machine.air import channel_film, fan_shares, gap_film, stirred
 from lumped.machine.coolant import Cooling, cooling_of, jacket_film
 from lumped.machine.outer import outer_films
 from lumped.machine.path import stem
@@ -53,10 +53,6 @@ class Surroundings:
         return frozenset(part.name for part in self.machine.fluids if part.role is Role.AIR_GAP)
 
     @cached_property
-    def ducts(self) -> dict[str, Duct]:
-        return ducts_of(self.machine)
-
-    @cached_property
     def shares(self) -> dict[str, float]:
         """Of the fan's air, along each way; empty without a fan."""
         return {} if self.fan is None else fan_shares(self.machine, self.fan)
@@ -95,11 +91,12 @@ def face_films(part: str, fluid: str, around: Surroundings) -> dict[str, Law]:
         return {"": jacket_film(around.machine, stem(fluid), around.cooling)}
     if gap is not None and fluid in around.gaps:
         return {"": gap_film(gap, around.top_rpm)}
-    if fluid == IN_ROTOR and fluid in around.shares:
-        return {"axial": channel_film(around.ducts[fluid], around.shares[fluid], around.usual_flow)}
-    if fluid == BETWEEN_POLES and fluid in around.ducts:
-        past = 1.0 - around.shares.get(IN_ROTOR, 0.0)  # the gap's air mixes with that between the poles
-        axial = {} if around.fan is None else {"axial": channel_film(around.ducts[fluid], past, around.usual_flow)}
+    ducts = around.machine.features.ducts
+    if fluid in ducts and ducts[fluid].turns and fluid in around.shares:
+        return {"axial": channel_film(ducts[fluid], around.shares[fluid], around.usual_flow)}
+    if fluid in ducts and not ducts[fluid].turns:
+        past = 1.0 - sum(share for way, share in around.shares.items() if way in ducts and ducts[way].turns)
+        axial = {} if around.fan is None else {"axial": channel_film(ducts[fluid], past, around.usual_flow)}
         return {**axial, "stirred": stirred(films.channel_wall_share, films, around.tip_radius, around.top_rpm)}
     share = films.moving_wall_share if part in around.turning else films.still_wall_share
     return {"": stirred(share, films, around.tip_radius, around.top_rpm)}

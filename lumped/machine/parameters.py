@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 
 from geom.description.machine import Machine
 from geom.errors import InputError
-from lumped.machine.air import BETWEEN_POLES
 from lumped.machine.path import stem
 from lumped.model.network import Link, Network, Parameter, Place, Source
 from lumped.schemas.reader import suggestion
@@ -28,7 +27,7 @@ def parameters(
         *_contacts(network),
         *_losses(losses),
         _capacity(network),
-        *_flows(films, streams),
+        *_flows(machine, films, streams),
         *_conductivities(machine, network),
     ]
 
@@ -67,12 +66,13 @@ def _capacity(network: Network) -> Parameter:
     return Parameter("capacity.machine", acts, prior_sd=0.05, low=0.5, high=2.0, source="alloys and fill factors")
 
 
-def _flows(films: Sequence[Link], streams: Sequence[Link]) -> list[Parameter]:
+def _flows(machine: Machine, films: Sequence[Link], streams: Sequence[Link]) -> list[Parameter]:
     """A flow moves its streams, and the films of the channels it fills."""
+    beside = {name for name, duct in machine.features.ducts.items() if not duct.turns}
     out = []
     for name, own in (("fan.flow", True), ("coolant.flow", False)):
         moved = [s for s in streams if s.name.startswith("stream:fan:") == own]
-        cells = {BETWEEN_POLES} if own else {s.places[1] for s in moved}
+        cells = beside if own else {s.places[1] for s in moved}
         washed = [(f.name, FLOW_EXPONENT) for f in films if f.places[1] in cells]
         acts = (*((s.name, 1.0) for s in moved), *washed)
         if moved:

@@ -65,15 +65,19 @@ class Gap:
 
 def gap_of(machine: Machine) -> Gap | None:
     """From the fluid that is the gap; its width is the family's where the space reaches into the slots."""
-    rings = [part for part in machine.fluids if part.role is Role.AIR_GAP]
-    if not rings:
+    if not any(part.role is Role.AIR_GAP for part in machine.fluids):
         return None
-    (profile, _, _), *_ = rings[0].prisms
+    (profile, _, _), *_ = machine.part(gap_fluid(machine)).prisms
     if not profile.holes:
         return None
     outer, inner = radius(profile.outer), radius(profile.holes[0])
-    declared = getattr(getattr(machine.geometry, "stator", None), "air_gap", None)
-    return Gap(inner, outer - inner if declared is None else float(declared))
+    declared = machine.features.air_gap
+    return Gap(inner, outer - inner if declared is None else declared)
+
+
+def gap_fluid(machine: Machine) -> str:
+    """The fluid that is the air gap."""
+    return next(part.name for part in machine.fluids if part.role is Role.AIR_GAP)
 
 
 def radius(loop: Iterable[tuple[float, float, float]]) -> float:

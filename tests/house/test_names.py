@@ -121,6 +121,29 @@ def test_every_exception_is_needed(root):
     assert unused == []
 
 
+FAMILY = {"series-dc", "pmsm", "tefc", "poles", "airgap", "yoke", "rotor.core", "rotor.cage", "stator.core",
+          "air.left", "air.right", "air.interpolar", "air.ducts", "air.fan", "winding.field", "winding.armature",
+          "slot.liner", "field.insulation"}  # fmt: skip
+PUBLISHED = {  # a thermal test of one kind of machine, by its parts' names
+    "validation/procedure/factors/screening.py",
+    "validation/procedure/reduction/pm_network.py",
+    "validation/procedure/reduction/base_heat.py",
+    "thermoscope/importing/words.py",  # words of headers in other people's files
+}
+
+
+def words_of_families(tree):
+    return {n.value for n in ast.walk(tree) if isinstance(n, ast.Constant) and n.value in FAMILY}
+
+
+def test_what_a_family_calls_its_parts_stays_in_its_room(root):
+    """The other rooms read roles and `Machine.features`."""
+    others = [f for f in files(root) if f.relative_to(root).parts[0] != "geom"]
+    named = {str(f.relative_to(root)): words_of_families(ast.parse(f.read_text())) for f in others}
+    assert {f: names for f, names in named.items() if names and f not in PUBLISHED} == {}
+    assert all(named[f] for f in PUBLISHED)
+
+
 @pytest.mark.parametrize(
     "text",
     ['"gap" in p.name', 'name.endswith("flow")', '"shaft" in n.lower()', 'link.places[0].split(".")[0] == "foot"',

@@ -60,9 +60,8 @@ def design_problem(folder: Folder, request: DesignRequest, progress: Progress) -
     file = None if folder.settings.machine is None else MachineFile.read(folder.settings.machine)
     op = operation(network, folder.case.tests, request.at or {}, (), rated_point(folder, network))
     sections = {} if file is None else file.sections
-    electrics = electrics_of(
-        "" if file is None else file.machine.family, sections.get("ratings", {}), sections.get("losses", {})
-    )
+    series = file is not None and file.machine.features.series is not None
+    electrics = electrics_of(series, sections.get("ratings", {}), sections.get("losses", {}))
     inputs = wanted_inputs(op.inputs, request.torque, electrics)
     grown, sure = _grown(folder, network, request.robust, progress)
     rows = named_rows(network, folder)

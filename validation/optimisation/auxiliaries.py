@@ -33,8 +33,9 @@ def auxiliary_power(machine: Machine, inputs: Mapping[str, float]) -> float:
     """
     around = surroundings(machine, ())
     out = 0.0 if around.cooling is None else _pump(machine, around.cooling, inputs[FLOW] / 60000.0)
-    if around.fan is not None and around.ducts and inputs[FAN] > 0.0:
-        flow, (way, duct) = inputs[FAN] / 3600.0, next(iter(around.ducts.items()))  # all ways drop the same pressure
+    ducts = machine.features.ducts
+    if around.fan is not None and ducts and inputs[FAN] > 0.0:
+        flow, (way, duct) = inputs[FAN] / 3600.0, next(iter(ducts.items()))  # all ways drop the same pressure
         drop = pressure_drop(duct, around.shares[way] * flow, air(around.fan.air_C))
         out += pumping_power(drop, flow, EFFICIENCY)
     return out

@@ -6,7 +6,7 @@ The axis is z, the shaft extension is on the right (high z), the base lies at -y
 from __future__ import annotations
 
 from geom.description import shapes
-from geom.description.geometry import Geometry
+from geom.description.geometry import Features, Geometry
 from geom.description.part import Part, fluid
 from geom.description.roles import Role
 from geom.families.family import Family
@@ -55,6 +55,10 @@ def _fluids(g: Geometry, at: Layout) -> tuple[Part, ...]:
     )
 
 
+def _features(g: Geometry) -> Features:
+    return Features(air_gap=g.stator.air_gap)
+
+
 PMSM = Family(
     "pmsm",
     "Permanent-magnet machine with interior magnets; open laminations, housing or spiral jacket",
@@ -62,6 +66,7 @@ PMSM = Family(
     build_pmsm,
     _FACES,
     ports,
+    _features,
 )
 TEFC = Family(
     "tefc",
@@ -70,4 +75,5 @@ TEFC = Family(
     build_tefc,
     _FACES,
     ports,
+    _features,
 )

@@ -13,6 +13,7 @@ from geom.description.roles import Role
 from geom.families.family import Family
 from geom.families.series_dc.brushes import brush_gear
 from geom.families.series_dc.checks import check
+from geom.families.series_dc.features import features
 from geom.families.series_dc.housing import enclosure
 from geom.families.series_dc.jacket import coolant, ports
 from geom.families.series_dc.layout import Axial, Radii
@@ -59,4 +60,5 @@ FAMILY = Family(
         **{(f"{side}.{end}.tube", side): f"{side}.{end}.bore" for side in _SIDES for end in ("inlet", "outlet")},
     },
     ports,
+    features,
 )

@@ -4,11 +4,12 @@ import numpy as np
 import pytest
 
 from geom import load_machine
+from geom.description.geometry import Duct
 from lumped.correlations.air_gap import taylor_film
 from lumped.correlations.ducts import duct_film
 from lumped.correlations.fins import heiles
 from lumped.correlations.forced import flat_plate
-from lumped.machine.air import Duct, channel_film, gap_film
+from lumped.machine.air import channel_film, gap_film
 from lumped.machine.films import face_films, surroundings
 from lumped.machine.laws import film_over
 from lumped.machine.shapes import Gap

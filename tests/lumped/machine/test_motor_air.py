@@ -7,10 +7,11 @@ import pytest
 from bare_networks import means_only
 
 from geom import Machine, load_machine
+from geom.description.geometry import NO_FEATURES
 from geom.errors import InputError
 from geom.machine_file import machine_from
 from lumped.integration.steady import steady
-from lumped.machine.air import AIR_HEAT, ducts_of, fan_shares
+from lumped.machine.air import AIR_HEAT, fan_shares
 from lumped.machine.films import surroundings
 from lumped.machine.motor import operating_point
 from lumped.model.network import Network
@@ -52,7 +53,7 @@ def shares_of(machine: Machine) -> dict[str, float]:
 
 
 def test_all_ways_beside_the_gap_drop_the_same_pressure(machine):
-    shares, ducts, rated = shares_of(machine), ducts_of(machine), 138.0 / 3600.0
+    shares, ducts, rated = shares_of(machine), machine.features.ducts, 138.0 / 3600.0
     assert tuple(shares) == WAYS
     assert sum(shares.values()) == pytest.approx(1.0, rel=1e-12)
     assert shares["airgap"] == 0.10, "what the machine file says"
@@ -67,7 +68,7 @@ def test_laminar_ducts_by_hand(machine):
     speed = each / (np.pi * 0.010**2)
     assert speed * 0.020 / warm.nu < 2300.0
     by_hand = 128 * warm.mu * 0.188 * each / (np.pi * 0.020**4) + 1.57 * warm.rho * speed**2 / 2
-    assert pressure_drop(ducts_of(machine)["air.ducts"], 12 * each, warm) == pytest.approx(by_hand, rel=1e-3)
+    assert pressure_drop(machine.features.ducts["air.ducts"], 12 * each, warm) == pytest.approx(by_hand, rel=1e-3)
 
 
 @pytest.mark.parametrize("wider", [with_ducts(24, 10.0), with_ducts(12, 14.0)], ids=["more ducts", "wider ducts"])
@@ -117,7 +118,7 @@ def test_without_flow_the_streams_carry_nothing(machine, network):
     T = at(network, z, "air.ducts")
     assert pytest.approx(at(network, z, "rotor.core"), abs=1e-6) == T, "air shut in by one wall takes its temperature"
     assert not coefficients(network, {**POINT, "fan_flow_m3h": 0.0}, z).streams.any()
-    still = surroundings(machine, ()).ducts["air.ducts"]
+    still = machine.features.ducts["air.ducts"]
     assert still.diameter == pytest.approx(0.020)
     assert at(network, z, "rotor.core") > at(network, rest(network), "rotor.core") + 10.0
 
@@ -137,7 +138,7 @@ def test_imported_machine_is_stirred_by_its_largest_turning_part():
 
     machine = load_machine("pmsm-m1-no-base")
     inside = tuple(part for part in machine.fluids if part.name != "airgap")
-    bare = replace(machine, fluids=inside, geometry=None, sections={})
+    bare = replace(machine, fluids=inside, geometry=None, features=NO_FEATURES, sections={})
     around = surroundings(bare, ("rotor.core|shaft", "magnets|rotor.core", "bearing.left|shaft"))
     assert around.tip_radius == pytest.approx(machine.geometry.stator.bore_diameter / 2 - 1e-3)
     law = face_films("rotor.core", "air.left", around)

@@ -7,6 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from geom.description.roles import Role
 from geom.errors import InputError
 from thermoscope.case_folder.folder import load_machine_file
 from thermoscope.commands.open_case import open_case
@@ -25,8 +26,9 @@ def screen(machine: str, design: str, target: str | None, out: Path | None = Non
     if design not in DESIGNS:
         raise InputError(f"no design '{design}'", "--design", f"one of {', '.join(DESIGNS)}")
     described = load_machine_file(Path(machine))
-    if described.family != "pmsm" or described.geometry.housing.kind != "none":
-        right = "a machine of family pmsm without a housing, e.g. pmsm-m1"
+    roles = {part.role for part in described.parts}
+    if Role.MAGNET not in roles or Role.HOUSING in roles:
+        right = "a machine with magnets in open laminations, e.g. pmsm-m1"
         raise InputError(f"{described.name} has a housing or no magnets", "screening", right)
     with progress() as tell:
         tell(f"screening {described.name}")

@@ -66,7 +66,7 @@ class PmSettings:
 
 
 def pm_network(machine: Machine, settings: PmSettings, rows: Rows | None = None) -> Network:
-    """The network of a machine of family "pmsm" that has no housing; rows : its table of parts, if already made."""
+    """The network of a machine with magnets in open laminations.  rows : its table of parts, if already made"""
     return read_network(pm_document(machine, settings, rows), machine.name)
 
 
