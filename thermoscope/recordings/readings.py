@@ -14,7 +14,7 @@ from lumped.model.network import Link, Network, Row, Source
 from lumped.schemas.reader import suggestion
 from lumped.transfer.laws import CLOCK
 from thermoscope.recordings.consistency import checked_heat, checked_sheet
-from thermoscope.recordings.grid import averaged, bridged, grid_of, read, rms
+from thermoscope.recordings.grid import ROUNDING, averaged, bridged, grid_of, read, rms
 from thermoscope.recordings.sheet import Column, Sheet
 from thermoscope.recordings.tables import Samples
 from validation.case import Channel, Recorded, Role, Test
@@ -204,7 +204,7 @@ def _initial(
     if not isinstance(sheet.initial, str):
         return sheet.initial
     first: dict[str, list[float]] = {}
-    early = samples.time <= START_S
+    early = samples.time <= START_S * (1.0 + ROUNDING)
     for c in channels:
         of = next((m.of for m in sheet.means if m.name == c.name), (c.name,))
         raw = np.concatenate([samples.values[name][early] for name in of])

@@ -1,4 +1,4 @@
-"""What must not move the odds: a test cut in two, and the order of the tests."""
+"""What must not move the odds: a test cut in two, the order of the tests, and half of the samples left out."""
 
 from dataclasses import replace
 
@@ -46,3 +46,17 @@ def test_the_order_of_the_tests_gives_the_same_odds():
     (effects, p), (again, q) = leading(whole), leading(turned)
     assert again == effects
     assert q == pytest.approx(p, abs=0.01)
+
+
+def test_every_second_sample_leads_to_the_same_effect():
+    whole = bench()
+
+    def thinned(test: Test) -> Test:
+        channels = tuple(replace(c, y=c.y[::2]) for c in test.channels)
+        inputs = {n: u[::2] for n, u in test.inputs.items()}
+        around = {n: u[::2] for n, u in test.boundaries.items()}
+        return replace(test, time=test.time[::2], inputs=inputs, boundaries=around, channels=channels)
+
+    (effects, p), (again, q) = leading(whole), leading(replace(whole, tests=tuple(map(thinned, whole.tests))))
+    assert again == effects
+    assert q == pytest.approx(p, abs=0.1)
