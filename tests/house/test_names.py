@@ -66,7 +66,7 @@ ALLOWED = {  # file -> what its strings are, none of them a user's name for a pa
     "thermoscope/commands/test/new.py": "options, NAME=VALUE",
     "thermoscope/case_folder/folder.py": "effects by their own name, KIND@PLACE",
     "thermoscope/recordings/formats.py": "endings of files",
-    "thermoscope/verification/hand_formulas.py": "contacts, A|B",
+    "thermoscope/verification/analytical_checks.py": "contacts, A|B",
     "thermoscope/case_folder/runs.py": "effects by their own name, KIND@PLACE",
     "thermoscope/design/machine_keys.py": "keys of a machine file, geometry.GROUP.NAME",
     "thermoscope/workbench/access_control.py": "hosts of requests",

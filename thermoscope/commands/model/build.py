@@ -124,7 +124,7 @@ def answer(document: Mapping[str, Any], folder: Path) -> Answer:
     parts = Grid("Parts", headers, [_row(part) for part in document["parts"]], ["NO"], ["mass (kg)", "watertight"])
     sizes = _sizes(document["sizes"]) if "sizes" in document else []
     tables = [*sizes, crosscheck.parts(document), parts]
-    rest = [crosscheck.links(document), crosscheck.hand_formula_table(document)]
+    rest = [crosscheck.links(document), crosscheck.analytical_table(document)]
     return Answer(sentence, tables, f"solids, mesh, tables and pictures in {folder}; --json FILE", rest)
 
 

@@ -42,8 +42,8 @@ def crosscheck(machine: str, out: Path | None, accuracy: float, target: str | No
 def checked(built: Built, size: NetworkSize | None, tell: Progress) -> dict[str, Any]:
     """Part by part and link by link at a point where the machine settles, and the hand formulas there."""
     from lumped.machine.losses import loss_shares
+    from thermoscope.verification.analytical_checks import analytical_checks
     from thermoscope.verification.crosscheck import crosscheck as compare
-    from thermoscope.verification.hand_formulas import hand_formulas
     from thermoscope.verification.local_laws import with_local_laws
 
     tell("field against network")
@@ -55,7 +55,7 @@ def checked(built: Built, size: NetworkSize | None, tell: Progress) -> dict[str,
     tell("laws point by point")
     local = with_local_laws(built.field, built.network, point, check, shares, loads, solver).T
     tell("hand formulas")
-    formulas = hand_formulas(built.machine, built.field, check)
+    formulas = analytical_checks(built.machine, built.field, check)
     responsible = {part.place: check.responsible(part.place) for part in check.parts}
     return {
         "operating_point": point,
@@ -118,7 +118,7 @@ def answer(document: Mapping[str, Any], folder: Path) -> Answer:
     sentence = (f"Steady at the rated point, network and field differ by {abs(off['percent_of_rise']):.2g} % of "
                 f"the rise at most ({off['place']}); its energy balance {document['energy_balance']:.1e}.")  # fmt: skip
     point = ", ".join(f"{name} {value:.4g}" for name, value in document["operating_point"].items())
-    tables = [parts(document), links(document), hand_formula_table(document)]
+    tables = [parts(document), links(document), analytical_table(document)]
     return Answer(sentence, tables, f"all rows in {folder}/crosscheck*.csv; --json FILE", [f"Operating point: {point}"])
 
 
@@ -143,7 +143,7 @@ def links(document: Mapping[str, Any]) -> Grid:
     return Grid("Heat through links (W)", ["link", "field", "network", "off (% of all heat)"], rows[:MOST_ROWS])
 
 
-def hand_formula_table(document: Mapping[str, Any]) -> Grid:
+def analytical_table(document: Mapping[str, Any]) -> Grid:
     """Hand formulas, the furthest off first."""
     rows = sorted(document["hand"], key=lambda row: -abs(row["ratio"] - 1.0))
     body = [list(row.values()) for row in rows[:MOST_ROWS]]

@@ -12,6 +12,7 @@ from thermoscope.case_folder.files import write_whole
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.workbook import tables, write_csvs, write_xlsx
 from thermoscope.commands.open_case import open_case
+from thermoscope.commands.pairs import read_pairs
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import Progress, give, plain, progress
 
@@ -51,18 +52,7 @@ def export(
 
 def read_limits(words: Sequence[str]) -> dict[str, float]:
     """PLACE=DEGC, ..."""
-    out = {}
-    for one in words:
-        place, equals, value = one.rpartition("=")
-        if place in out:
-            raise InputError(f"'{place}' is given twice", "--limit", "one limit for each place")
-        try:
-            out[place] = float(value)
-        except ValueError:
-            equals = ""
-        if not (equals and place) or not -273.15 < out[place] < 3000.0:
-            raise InputError(f"'{one}' is no limit", "--limit", "PLACE=DEGC, for example winding=155")
-    return out
+    return read_pairs(words, "--limit", "limit", "PLACE=DEGC, for example winding=155", -273.15, 3000.0)
 
 
 def _model(

@@ -19,6 +19,7 @@ from thermoscope.bands import posterior_of, wanted
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.runs import before_last
 from thermoscope.commands.open_case import open_case
+from thermoscope.commands.pairs import read_pairs
 from thermoscope.commands.use.export import read_limits
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import Progress, give, notes, progress
@@ -58,18 +59,7 @@ def rate(
 
 def read_at(words: Sequence[str]) -> dict[str, float]:
     """NAME=VALUE, ..."""
-    out = {}
-    for one in words:
-        name, _, value = one.rpartition("=")
-        if name in out:
-            raise InputError(f"'{name}' is given twice", "--at", "one value for each")
-        try:
-            out[name] = float(value)
-        except ValueError:
-            name = ""
-        if not name or not np.isfinite(out[name]):
-            raise InputError(f"'{one}' is no operating point", "--at", "NAME=VALUE, for example speed_rpm=2000")
-    return out
+    return read_pairs(words, "--at", "operating point", "NAME=VALUE, for example speed_rpm=2000")
 
 
 def case_or_machine(name: str, tell: Progress) -> Folder:

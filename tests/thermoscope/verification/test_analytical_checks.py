@@ -9,8 +9,8 @@ from lumped.condensation.reduction import Recipe
 from lumped.machine.losses import loss_shares
 from thermoscope.commands.model.crosscheck import save
 from thermoscope.pipeline import build
+from thermoscope.verification.analytical_checks import analytical_checks
 from thermoscope.verification.crosscheck import crosscheck
-from thermoscope.verification.hand_formulas import hand_formulas
 
 
 @pytest.fixture(scope="module")
@@ -28,7 +28,7 @@ def check(built):
 
 @pytest.fixture(scope="module")
 def hand(built, check):
-    return {row.link: row for row in hand_formulas(built.machine, built.field, check)}
+    return {row.link: row for row in analytical_checks(built.machine, built.field, check)}
 
 
 def test_heat_through_links_leaves_the_machine(check):

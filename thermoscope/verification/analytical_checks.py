@@ -29,7 +29,7 @@ LEAST = 0.01  # of all heat: below it a difference over a heat means nothing
 
 
 @dataclass(frozen=True)
-class HandFormula:
+class AnalyticalCheck:
     """Resistances (K/W) of one link: by the textbook, from the field, and their ratio textbook over field."""
 
     link: str
@@ -45,14 +45,14 @@ class HandFormula:
         return {**vars(self), "ratio": self.ratio}
 
 
-def hand_formulas(machine: Machine, field: FieldModel, check: CrossCheck) -> list[HandFormula]:
+def analytical_checks(machine: Machine, field: FieldModel, check: CrossCheck) -> list[AnalyticalCheck]:
     """All links that have a closed form, at the point of a cross-check."""
     rows = {row.name: row for row in part_table(machine, SEGMENTS)}
     films, contacts = check.at.films, check.at.contacts
     return [*_films(rows, field, films), *_contacts(rows, field, contacts), *_means(machine, rows, field, check)]
 
 
-def _films(rows: Mapping[str, PartRow], field: FieldModel, films: Mapping[str, float]) -> Iterator[HandFormula]:
+def _films(rows: Mapping[str, PartRow], field: FieldModel, films: Mapping[str, float]) -> Iterator[AnalyticalCheck]:
     cells: dict[str, list[str]] = {}
     for cell in field.films:
         cells.setdefault(stem(cell), []).append(cell)
@@ -61,19 +61,23 @@ def _films(rows: Mapping[str, PartRow], field: FieldModel, films: Mapping[str, f
         areas = np.array([field.films[cell].trace.area for cell in own])
         G = float(areas @ [films.get(cell, 0.0) for cell in own])
         if G > 0 and exact > 0:
-            yield HandFormula(f"film:{face}", "1/(h A)", areas.sum() / (G * exact), 1 / G)
+            yield AnalyticalCheck(f"film:{face}", "1/(h A)", areas.sum() / (G * exact), 1 / G)
 
 
-def _contacts(rows: Mapping[str, PartRow], field: FieldModel, contacts: Mapping[str, float]) -> Iterator[HandFormula]:
+def _contacts(
+    rows: Mapping[str, PartRow], field: FieldModel, contacts: Mapping[str, float]
+) -> Iterator[AnalyticalCheck]:
     for name, touch in field.contacts.items():
         a, b = name.split("|")
         exact = rows[a].contacts[b]
-        yield HandFormula(f"contact:{name}", "1/(g A)", 1 / (contacts[name] * exact), 1 / (contacts[name] * touch.area))
+        yield AnalyticalCheck(
+            f"contact:{name}", "1/(g A)", 1 / (contacts[name] * exact), 1 / (contacts[name] * touch.area)
+        )
 
 
 def _means(
     machine: Machine, rows: Mapping[str, PartRow], field: FieldModel, check: CrossCheck
-) -> Iterator[HandFormula]:
+) -> Iterator[AnalyticalCheck]:
     mean = {part.place: part.fem_mean_C for part in check.parts}
     for link in check.links:
         kind, name = link.link.split(":", 1)
@@ -83,7 +87,9 @@ def _means(
         one, two = (leg(machine, rows, field, *pair, name) for pair in ((a, b), (b, a)))
         if one is not None and two is not None:
             series = one[0] + 1 / (check.at.contacts[name] * field.contacts[name].area) + two[0]
-            yield HandFormula(f"{a} to {b}", f"{one[1]} + 1/(g A) + {two[1]}", series, (mean[a] - mean[b]) / link.fem_W)
+            yield AnalyticalCheck(
+                f"{a} to {b}", f"{one[1]} + 1/(g A) + {two[1]}", series, (mean[a] - mean[b]) / link.fem_W
+            )
 
 
 def leg(
