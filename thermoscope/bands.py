@@ -44,14 +44,17 @@ def posterior_of(folder: Folder, progress: Progress) -> ParameterPosterior:
     cached = recalled(file, lambda path: _from_cache(folder, path))
     if cached is not None:
         return cached
-    found = parameter_posterior(folder.case, progress)
-    if found.fitted:
+    posterior = parameter_posterior(folder.case, progress)
+    if posterior.fitted:
         out = io.BytesIO()
         np.savez_compressed(
-            out, covariance=found.covariance, offset=found.offset, said=json.dumps([found.names, found.fitted])
+            out,
+            covariance=posterior.covariance,
+            offset=posterior.offset,
+            said=json.dumps([posterior.names, posterior.fitted]),
         )
         write_whole(file, out.getvalue())
-    return found
+    return posterior
 
 
 def _from_cache(folder: Folder, file: Path) -> ParameterPosterior:
@@ -141,13 +144,13 @@ def of_tests(folder: Folder, progress: Progress) -> list[dict[str, Any]]:
     of, rows = posterior_of(folder, progress), named_rows(model_of(folder)[0], folder)
     out = []
     for test in folder.case.tests:
-        found = along(of, test.name, record(test, {}), rows)
+        bands = along(of, test.name, record(test, {}), rows)
         read = {f"sensor {c.name}": c for c in test.channels}
-        for k, name in enumerate(found.names):
-            row = {"test": test.name, "place": name, "mean_ci95_K": float(2.0 * found.half95[:, k].mean())}
-            row["widest_ci95_K"] = float(2.0 * found.half95[:, k].max())
+        for k, name in enumerate(bands.names):
+            row = {"test": test.name, "place": name, "mean_ci95_K": float(2.0 * bands.half95[:, k].mean())}
+            row["widest_ci95_K"] = float(2.0 * bands.half95[:, k].max())
             if c := read.get(name):
-                close = np.abs(c.y - found.y[:, k]) <= np.hypot(found.half95[:, k], NORMAL_95 * c.sigma_K)
+                close = np.abs(c.y - bands.y[:, k]) <= np.hypot(bands.half95[:, k], NORMAL_95 * c.sigma_K)
                 row["inside"] = float(np.mean(close[np.isfinite(c.y)]))
             out.append(row)
     return out

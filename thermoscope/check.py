@@ -49,8 +49,8 @@ def findings(browsers: Sequence[str] = BROWSERS) -> list[Finding]:
 
 
 def _finding(name: str, there: Callable[[], bool], needed_for: str, needed: bool, fix: str) -> Finding:
-    found = there()
-    return Finding(name, found, needed_for, needed, "" if found else as_root(fix))
+    present = there()
+    return Finding(name, present, needed_for, needed, "" if present else as_root(fix))
 
 
 def as_root(command: str) -> str:
@@ -101,9 +101,9 @@ def check(target: str | None, browsers: Sequence[str] = BROWSERS) -> int:
     """Exit code 1 when something is missing that pictures need."""
     with progress() as tell:
         tell("looking for graphics")
-        found = findings(browsers)
-    document = {"ready": all(f.found for f in found if f.needed), "checks": [asdict(f) for f in found]}
-    give(document, target, lambda: answer(found))
+        parts = findings(browsers)
+    document = {"ready": all(f.found for f in parts if f.needed), "checks": [asdict(f) for f in parts]}
+    give(document, target, lambda: answer(parts))
     return 0 if document["ready"] else 1
 
 

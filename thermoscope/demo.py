@@ -64,9 +64,9 @@ def demo(out: Path, target: str | None) -> int:
     stages.append(Stage(f"{KNOB} x {turned.factor:.2f} instead", turned.comparison.document()))
     headline("5  What is missing?")
     with within(LONGER):
-        found = print_diagnosis(folder, out)
-    picture(odds(found, out), "what the readings say")
-    done, named = False, found["named"]
+        diagnosis = print_diagnosis(folder, out)
+    picture(odds(diagnosis, out), "what the readings say")
+    done, named = False, diagnosis["named"]
     if named:
         headline(f"6  Add {named[0]}")
         with within(SHORT):
@@ -74,7 +74,7 @@ def demo(out: Path, target: str | None) -> int:
         folder = open_demo(case)
         stages.append(Stage(f"with {named[0]}", folder.compared.document()))
     headline("7  What is left, and where to look")
-    say(remaining_error(found, stages[-1].errors))
+    say(remaining_error(diagnosis, stages[-1].errors))
     pages(folder, case, out)
     picture(out / "error.png", "the error, step by step")
     picture(out / "field-before-after.png", "the field before and after")

@@ -64,15 +64,15 @@ class Built:
 
 def field_of(machine: Machine, mesh: NamedMesh) -> FieldModel:
     """Conduction of the machine on its mesh, with the materials of its file; windings on quadratic elements."""
-    found = {part.name: machine.material_of(part.name) for part in machine.parts}
-    conductivity: dict[str, HasTensor] = {name: conductivity_of(m) for name, m in found.items()}
+    materials = {part.name: machine.material_of(part.name) for part in machine.parts}
+    conductivity: dict[str, HasTensor] = {name: conductivity_of(m) for name, m in materials.items()}
     for name, coil in machine.features.coils.items():
-        copper = conductivity_of(found[name])
+        copper = conductivity_of(materials[name])
         conductivity[name] = LoopWound(
             copper.k_z, copper.k_r, coil.axes, coil.half_length, coil.half_width, coil.z_centre
         )
-    wires = [name for name in found if wound(machine, name)]
-    return assemble(mesh, conductivity, {name: m.rho * m.cp for name, m in found.items()}, wires)
+    wires = [name for name in materials if wound(machine, name)]
+    return assemble(mesh, conductivity, {name: m.rho * m.cp for name, m in materials.items()}, wires)
 
 
 def conductivity_of(material: Material) -> Conductivity:
@@ -106,8 +106,8 @@ def prepared(
 def meshed(machine: Machine, how: Meshing, progress: Progress = silent) -> Prepared:
     """Mesh and conduction on a mesh of given fineness."""
     progress("mesh")
-    found = build_mesh(machine, how.size_m, how.segments, how.across, how.axial_m, cache_folder())
-    mesh = with_cells(machine, found)
+    plain = build_mesh(machine, how.size_m, how.segments, how.across, how.axial_m, cache_folder())
+    mesh = with_cells(machine, plain)
     progress(f"conduction on {len(mesh.points)} points")
     return Prepared(machine, mesh, field_of(machine, mesh), *coefficients_on(machine, mesh), how)
 

@@ -32,8 +32,8 @@ def point(
     folder: Folder, op: Operation, r: Rating, old: Rated | None, of: ParameterPosterior | None
 ) -> dict[str, Any]:  # fmt: skip
     """A point of the envelope as a rating has it."""
-    found = row(folder, op, r, None if old is None else load_of(old, r.form, r.speed), of)
-    return {"form": r.form, "speed_rpm": r.speed, **{k: v for k, v in found.items() if k != "form"}}
+    rated_row = row(folder, op, r, None if old is None else load_of(old, r.form, r.speed), of)
+    return {"form": r.form, "speed_rpm": r.speed, **{k: v for k, v in rated_row.items() if k != "form"}}
 
 
 def derated(
@@ -91,6 +91,6 @@ def _half95(folder: Folder, op: Operation, r: Rating, of: ParameterPosterior) ->
     load = r.load if r.form == "S1" or r.form in TIMES else r.load * 0.4**0.5
     inputs = {n: np.full(time.size, u) for n, u in op.at(load, r.speed).items()}
     air = {b: np.full(time.size, T) for b, T in op.boundaries.items()}
-    found = along(of, "rating", Record(time, inputs, air, float(np.mean(list(op.boundaries.values())))),
+    bands = along(of, "rating", Record(time, inputs, air, float(np.mean(list(op.boundaries.values())))),
                   {r.at: seen})  # fmt: skip
-    return float(found.half95[-1, 0] / r.slope)
+    return float(bands.half95[-1, 0] / r.slope)

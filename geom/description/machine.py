@@ -63,8 +63,8 @@ class Machine:
 
     def conductivity(self, name: str) -> tuple[float, float]:
         """Conductivity of the part across and along the axis (W/m/K)."""
-        found = self.material_of(name)
-        return found.k_plane, found.k_axial
+        material = self.material_of(name)
+        return material.k_plane, material.k_axial
 
     def face_name(self, part: str, fluid: str) -> str:
         """Name of the face where a part meets a fluid, e.g. "flange.right.outer"."""

@@ -36,10 +36,10 @@ def solids(part: Part, cache: Path | str | None = None) -> list[cq.Solid]:
     solid = recalled(file, lambda path: [cq.Solid(s.wrapped) for s in cq.Shape.importBin(str(path)).Solids()])
     if solid:
         return solid
-    found = _built(part)
+    exact = _built(part)
     with atomic_write(file) as partial:
-        cq.Compound.makeCompound(found).exportBin(str(partial))
-    return found
+        cq.Compound.makeCompound(exact).exportBin(str(partial))
+    return exact
 
 
 def _built(part: Part) -> list[cq.Solid]:

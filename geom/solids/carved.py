@@ -57,9 +57,9 @@ def channel(helix: Helix) -> Any:
     """
     swept = _swept(helix)
     for seam in _SEAMS:  # the kernel loses solids whose edges run through a seam
-        found = _room(helix, seam).intersect(swept)
-        if abs(found.Volume() * 1e-9 / helix.volume - 1) < _VOLUME:
-            return found
+        body = _room(helix, seam).intersect(swept)
+        if abs(body.Volume() * 1e-9 / helix.volume - 1) < _VOLUME:
+            return body
     raise InputError(f"the CAD kernel fails at a helix of {helix.turns:.2f} turns", "jacket", "another rib or height")
 
 

@@ -154,14 +154,14 @@ def _solids(path: Path, sidecar: Mapping[str, Any], where: str) -> dict[str, lis
         raise InputError(f"{origin!r} is no point", f"{where} [import] origin_mm", "write [x, y, z]")
     turned = cq.Location(cq.Vector(), cq.Vector(*_ROTATIONS[axis][0]), _ROTATIONS[axis][1])
     moved = cq.Location(cq.Vector(*(-float(x) for x in origin)))
-    found: dict[str, list[cq.Solid]] = {}
+    by_name: dict[str, list[cq.Solid]] = {}
     for shape, name, place, _ in _assembly(path):
         placed = shape.moved(turned * moved * place)
         if placed.Solids():
-            found.setdefault(name.split("/")[-1].replace("|", "_"), []).extend(placed.Solids())
-    if not found:
+            by_name.setdefault(name.split("/")[-1].replace("|", "_"), []).extend(placed.Solids())
+    if not by_name:
         raise InputError("no solids", str(path), "a STEP assembly of named solids")
-    return found
+    return by_name
 
 
 def _assembly(path: Path) -> Any:
@@ -183,15 +183,15 @@ def _without_excluded(
     for pattern in patterns:
         if not any(fnmatchcase(name, pattern) for name in solids):
             raise _no_solid(pattern, solids, f"{where} [import] leave_out")
-    return {name: found for name, found in solids.items() if not any(fnmatchcase(name, p) for p in patterns)}
+    return {name: pieces for name, pieces in solids.items() if not any(fnmatchcase(name, p) for p in patterns)}
 
 
 def _all_sliced(solids: Mapping[str, list[cq.Solid]], path: Path) -> dict[str, tuple[Prism, ...]]:
     """Prisms by name; one error that names every solid that cannot be sliced."""
     prisms, faults = {}, []
-    for name, found in solids.items():
+    for name, pieces in solids.items():
         try:
-            prisms[name] = tuple(prism for solid in found for prism in sliced(solid, name))
+            prisms[name] = tuple(prism for solid in pieces for prism in sliced(solid, name))
         except InputError as fault:
             faults.append(fault)
     if faults:

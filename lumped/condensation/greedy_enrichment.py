@@ -95,9 +95,9 @@ def enrich(
     for k in range(rounds):
         network = allotted_shapes(reduction, [*learned, *guides], cases, allowed, weights)
         new = [reduction.random_point(begun + fresh * k + j) for j in range(fresh)]
-        found = merged([point_error(network, point, cases) for point in new])
-        done.append(Round(len(network.states), tuple(p.name for p in new), found, excess(found, allowed) <= 1.0))
-        tell(f"{len(network.states)} states: {found}")
+        errors = merged([point_error(network, point, cases) for point in new])
+        done.append(Round(len(network.states), tuple(p.name for p in new), errors, excess(errors, allowed) <= 1.0))
+        tell(f"{len(network.states)} states: {errors}")
         if done[-1].met or k == rounds - 1:
             break
         fuller = [*guides, reduction.extreme_point(begun + k)]
@@ -116,8 +116,8 @@ def allotted_shapes(
     """Deal out shapes until the points already solved are met: parts that miss get more."""
     network = reduction.network(weights=weights)
     for _ in range(FAVOURS):
-        found = merged([point_error(network, point, cases) for point in learned])
-        missing = {part: allowed.excess(e) for part, e in found.parts.items() if allowed.excess(e) > MARGIN}
+        errors = merged([point_error(network, point, cases) for point in learned])
+        missing = {part: allowed.excess(e) for part, e in errors.parts.items() if allowed.excess(e) > MARGIN}
         if not missing:
             break
         for part, excess in missing.items():

@@ -101,8 +101,8 @@ def following(of: str, film: Callable[[Fluid], Film], fluid: Callable[[float], F
     degC = _liquid_range(fluid) if liquid else film_degC()
     h = np.stack([over_grid(film(fluid(T)), over.at) for T in degC], axis=1)
     law = TableLaw(tuple(degC), ()) if liquid else FilmTable((0.0, 1.0), ())
-    found = enumerate(products(h, weights(np.array(degC))))
-    return [Share(over, tuple(over.at), tuple(u), _profile(law, w), k == 0, liquid) for k, (u, w) in found]
+    shares = enumerate(products(h, weights(np.array(degC))))
+    return [Share(over, tuple(over.at), tuple(u), _profile(law, w), k == 0, liquid) for k, (u, w) in shares]
 
 
 def weights(degC: Array) -> Array:

@@ -75,18 +75,18 @@ def cooling_of(machine: Machine) -> Cooling | None:
     ports = {name: Table(t.raw(name, {}), f"{t.where} {name}") for name in jackets}
     outlets = {port.word("outlet", f"{name}.outlet"): name for name, port in ports.items()}
     inlet = t.number("inlet_C", 20.0)
-    found = Cooling(
+    cooling = Cooling(
         t.word("coolant", "glycol-50", LIQUIDS), t.number("flow_L_per_min"),
         t.number("property_C", inlet + 20.0),
         {name: outlets.get(port.word("inlet", f"{name}.inlet"), INLET) for name, port in ports.items()},
     )  # fmt: skip
     t.number("pressure_bar", 1.0)
     for jacket in jackets:
-        if INLET not in found.before(jacket):
+        if INLET not in cooling.before(jacket):
             raise t.error(f"{jacket} is fed by itself", "an inlet that no jacket feeds")
     for table in (*ports.values(), t):
         table.close()
-    return found
+    return cooling
 
 
 @dataclass(frozen=True)

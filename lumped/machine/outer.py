@@ -74,13 +74,13 @@ def cowl_of(machine: Machine) -> Cowl | None:
     if data is None:
         return None
     t = Table(data, f"{machine.name} [fans.cowl]")
-    found = Cowl(
+    cowl = Cowl(
         t.number("air_speed_m_s"), t.number("at_rpm"), t.number("end_share", 0.2),
         t.number("rear_share", 0.774), t.number("front_share", 0.205),
         t.number("turbulence", 1.7), t.word("rear", "left", ("left", "right")),
     )  # fmt: skip
     t.close()
-    return found
+    return cowl
 
 
 def outer_films(machine: Machine, part: str, films: Films) -> dict[str, Law]:
@@ -103,12 +103,12 @@ def outer_of(machine: Machine, part: str, films: Films) -> Outer:
     t = Table(table.get(part, table.get("default")), f"{machine.name} [films.outer] {part}")
     surface = t.word("surface", usual.surface, SURFACES)
     size = t.number("size_mm") / 1e3 if "size_mm" in t or surface != usual.surface else usual.size
-    found = Outer(
+    outer = Outer(
         surface, size, t.number("emissivity", usual.emissivity), t.number("view", usual.view),
         t.number("factor", usual.factor), usual.spacing, _fan_law(t),
     )  # fmt: skip
     t.close()
-    return found
+    return outer
 
 
 def _fan_law(table: Table) -> Law | None:

@@ -84,9 +84,9 @@ def read(kind: type[S], table: Mapping[str, Any], where: str) -> S:
     """A settings object from a table of the machine file; unknown keys and numbers out of bounds are refused."""
     names = [f.name for f in fields(kind)]  # type: ignore[arg-type]
     source = Table(table, where)
-    found = {key: source.number(key) for key in names if key in source}
+    values = {key: source.number(key) for key in names if key in source}
     source.close()
-    return kind(**found)
+    return kind(**values)
 
 
 def contact_coefficients(table: Mapping[str, Any], names: list[str], where: str) -> dict[str, float]:

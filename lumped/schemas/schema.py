@@ -31,11 +31,11 @@ def schema(name: str) -> Schema:
 @cache
 def meanings() -> dict[str, str]:
     """Key -> what it is, for keys that mean the same wherever they stand."""
-    found: dict[str, set[str]] = {}
+    words: dict[str, set[str]] = {}
     for name in FILES:
         for key, text in _described(schema(name)):
-            found.setdefault(key, set()).add(text)
-    return {key: next(iter(texts)) for key, texts in found.items() if len(texts) == 1}
+            words.setdefault(key, set()).add(text)
+    return {key: next(iter(texts)) for key, texts in words.items() if len(texts) == 1}
 
 
 def _described(node: Any) -> Iterator[tuple[str, str]]:

@@ -95,11 +95,11 @@ def load_cycle(path: Path, network: Network, ratings: Mapping[str, float]) -> Cy
 
 def _constants(top: Table, key: str, time: Array, columns: Mapping[str, Array]) -> dict[str, Array]:
     """What stays as it is; InputError for what the columns or the duty give already."""
-    found = top.table(key).constants(key)
-    for name in found:
+    constants = top.table(key).constants(key)
+    for name in constants:
         if name in columns:
             raise top.error(f"'{name}' is given twice", f"[{key}] {name}, or a column or [load] of that name")
-    return {name: np.full(time.size, value) for name, value in found.items()}
+    return {name: np.full(time.size, value) for name, value in constants.items()}
 
 
 def _unread(network: Network, inputs: Mapping[str, Array], drive: Drive | None, where: str) -> Iterator[str]:

@@ -26,10 +26,10 @@ Array = NDArray[np.float64]
 
 def error_field(folder: Folder, test: Test, nodes: SplitMesh) -> Interpolated:
     """Measured minus modelled on the parts' own nodes (K), told by the mean residuals of a test's last fifth."""
-    channels, found = error_gain(folder, test, nodes)
+    channels, gain = error_gain(folder, test, nodes)
     model, late = readings(folder.case, test), last_fifth(test)
     residual_K = [float(np.nanmean((np.asarray(c.y, float) - model[c.name])[late])) for c in channels]
-    return Interpolated(found.mean @ np.array(residual_K), found.explained)
+    return Interpolated(gain.mean @ np.array(residual_K), gain.explained)
 
 
 def error_gain(folder: Folder, test: Test, nodes: SplitMesh) -> tuple[tuple[Channel, ...], Interpolated]:

@@ -78,8 +78,8 @@ class Folder:
 
         case = self.case
         budget = self.numeric_K[test.name]
-        found = judged_error(working(case)[0], test, physical(case), case.doubt, budget)
-        return {c.channel: c.limit_K for c in found.channels if c.limit_K is not None}
+        judged = judged_error(working(case)[0], test, physical(case), case.doubt, budget)
+        return {c.channel: c.limit_K for c in judged.channels if c.limit_K is not None}
 
 
 def _once(settings: Settings, files: Mapping[str, Path]) -> None:
@@ -143,8 +143,8 @@ def patient_of(entry: Entry, progress: Progress = lambda message: None) -> Patie
 
 def _stamp(file: Path) -> tuple[str, int, int, int]:
     """What changes when a file is written: name, number on the disk, length, instant (ns)."""
-    found = file.stat()
-    return str(file.resolve()), found.st_ino, found.st_size, found.st_mtime_ns
+    status = file.stat()
+    return str(file.resolve()), status.st_ino, status.st_size, status.st_mtime_ns
 
 
 def _assumed(network: Network, settings: Settings) -> list[str]:

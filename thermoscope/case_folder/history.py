@@ -74,10 +74,10 @@ class History:
 
     def back_to(self, number: int) -> History:
         """One more revision, equal to an earlier one."""
-        found = {0: Revision(0, "step back"), **{r.number: r for r in self.revisions}}
-        if number not in found:
+        by_number = {0: Revision(0, "step back"), **{r.number: r for r in self.revisions}}
+        if number not in by_number:
             raise InputError(f"no revision {number}", "model.toml", f"0 to {self.last.number}")
-        again, now = found[number], {test: after for test, (_, after) in self.last.rmse_K.items()}
+        again, now = by_number[number], {test: after for test, (_, after) in self.last.rmse_K.items()}
         rmse = {t: (now.get(t, after), after) for t, (_, after) in again.rmse_K.items()}
         return self._longer(replace(again, action="step back", effect="", rmse_K=rmse, why=f"as in revision {number}"))
 

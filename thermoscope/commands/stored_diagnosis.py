@@ -55,15 +55,15 @@ def stored(path: Path) -> dict[str, Any] | None:
     if not checked_result(path).is_file():
         return None
     try:
-        found = json.loads(path.read_text(encoding="utf-8"))
-        seal = found.pop(SEAL)
-        whole = bool(seal == _sealed(found))
+        document = json.loads(path.read_text(encoding="utf-8"))
+        seal = document.pop(SEAL)
+        whole = bool(seal == _sealed(document))
     except (OSError, ValueError, RecursionError, AttributeError, KeyError, TypeError):
         whole = False
     if not whole:
         notes([f"{path} is damaged and is not used; the next result replaces it"])
         return None
-    return dict(found)
+    return dict(document)
 
 
 def _sealed(content: Mapping[str, Any]) -> str:

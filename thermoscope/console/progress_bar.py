@@ -78,8 +78,12 @@ class ProgressBar:
 
     def words(self, message: str) -> str:
         """The message with share and time left."""
-        found = self.left()
-        return message if found is None else f"{message} ({100 * found[0]:.0f} %, about {_span(found[1])} left)"
+        remaining = self.left()
+        return (
+            message
+            if remaining is None
+            else f"{message} ({100 * remaining[0]:.0f} %, about {_span(remaining[1])} left)"
+        )
 
 
 def _span(seconds: float) -> str:
@@ -151,9 +155,12 @@ def _display(stages: ProgressBar) -> Iterator[Progress]:
 
         def tell(message: str) -> None:
             stages.enter(message)
-            found = stages.left()
+            remaining = stages.left()
             bar.update(
-                task, description=stages.words(message), total=found and 1.0, completed=found[0] if found else 0.0
+                task,
+                description=stages.words(message),
+                total=remaining and 1.0,
+                completed=remaining[0] if remaining else 0.0,
             )
 
         yield tell
@@ -180,8 +187,8 @@ def _usual() -> dict[str, dict[str, float]]:
 
 def _stages_in(file: Path) -> dict[str, dict[str, float]]:
     with suppress(OSError, ValueError, TypeError, AttributeError):
-        found = json.loads(file.read_text(encoding="utf-8"))
-        return {str(k): {str(s): float(t) for s, t in v.items()} for k, v in found.items()}
+        document = json.loads(file.read_text(encoding="utf-8"))
+        return {str(k): {str(s): float(t) for s, t in v.items()} for k, v in document.items()}
     return {}
 
 

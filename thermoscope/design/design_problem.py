@@ -137,8 +137,8 @@ def _driven(folder: Folder, network: Network, request: DesignRequest, ratings: M
     s = cycle.series
     if s is None:
         raise InputError("the cycle has no controller", f"--cycle {request.cycle}", "a cycle with [vehicle]")
-    found = Driven(s.machine, s.vehicle, s.controller, np.asarray(cycle.record.time, float), s.wanted, s.slope)
-    return found.at(next(iter(request.limits.values())), s.reference_degC)
+    driven = Driven(s.machine, s.vehicle, s.controller, np.asarray(cycle.record.time, float), s.wanted, s.slope)
+    return driven.at(next(iter(request.limits.values())), s.reference_degC)
 
 
 def _of_machine(network: Network, file: MachineFile, space: Space, inputs: Mapping[str, float]) -> dict[str, Any]:
@@ -159,10 +159,10 @@ def _refuse_hot_at_no_load(problem: Problem, loads: tuple[str, ...]) -> None:
     """A limit that the reference exceeds without any load no design can keep."""
     idle = replace(problem, inputs={**problem.inputs, **dict.fromkeys(loads, 0.0)}, sure=None)
     usual = {v.name: v.usual for v in problem.space.variables if v.name not in loads}
-    found = idle.judged(usual, None if problem.machine_at is None else problem.machine_at(usual))
+    performance = idle.judged(usual, None if problem.machine_at is None else problem.machine_at(usual))
     for s in problem.spots:
-        if found.places[s.name] >= s.limit:
+        if performance.places[s.name] >= s.limit:
             raise InputError(
                 f"the limit of '{s.name}', {s.limit:g} degC, is exceeded without any load "
-                f"({found.places[s.name]:.1f} degC)", "--limit", "a higher limit, cooler surroundings or a lower speed",
+                f"({performance.places[s.name]:.1f} degC)", "--limit", "a higher limit, cooler surroundings or a lower speed",
             )  # fmt: skip

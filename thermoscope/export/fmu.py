@@ -152,15 +152,15 @@ def description(model: Model, version: int) -> bytes:
     SubElement(root, "DefaultExperiment", startTime="0", stopTime="3600", stepSize=f"{STEP_S:g}")
     _variables(root, own if version == 3 else own[:-1], version)
     structure, outputs = SubElement(root, "ModelStructure"), range(len(own))
-    found = [i for i in outputs if own[i].causality == "output"]
+    results = [i for i in outputs if own[i].causality == "output"]
     if version == 2:
         for group in ("Outputs", "InitialUnknowns"):
             listed = SubElement(structure, group)
-            for i in found:
+            for i in results:
                 SubElement(listed, "Unknown", index=str(i + 1))
     else:
         for group in ("Output", "InitialUnknown"):
-            for i in found:
+            for i in results:
                 SubElement(structure, group, valueReference=str(i))
     return _text(root)
 

@@ -47,12 +47,12 @@ class Clock:
 
 def clock_of(source: Source, period_s: float | None = None) -> Clock:
     """period_s : time between rows, where the file has no clock. InputError for times that run back."""
-    found = _guessed_clock(source)
-    if found is None or period_s is not None:
+    clock = _guessed_clock(source)
+    if clock is None or period_s is not None:
         step = 1.0 if period_s is None else period_s
         seconds = step * np.arange(source.rows, dtype=np.float64)
         return Clock(seconds, source.start, (), f"no time column: rows {step:g} s apart", period_s is not None)
-    return checked(found, source)
+    return checked(clock, source)
 
 
 def checked(clock: Clock, source: Source) -> Clock:
@@ -149,12 +149,12 @@ def _parts(cell: Any) -> list[float]:
     late = 12.0 if text.endswith("pm") else 0.0
     digits = re.sub(r"\s?[ap]m$", "", text)
     try:
-        found = [float(x) for x in digits.split(":")] if ":" in digits else []
+        parts = [float(x) for x in digits.split(":")] if ":" in digits else []
     except ValueError:
         return []
-    if found and text.endswith(("am", "pm")):
-        found[0] = found[0] % 12 + late
-    return found
+    if parts and text.endswith(("am", "pm")):
+        parts[0] = parts[0] % 12 + late
+    return parts
 
 
 def _total(parts: list[float], two: bool) -> float:

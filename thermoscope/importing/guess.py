@@ -48,8 +48,8 @@ class Guess:
 
 def guesses(source: Source, clock: Sequence[str], target: Target) -> list[Guess]:
     """One per column that is no clock."""
-    found = [guess(source, c, target) for c in source.cells if c not in clock]
-    return single(found, target)
+    every = [guess(source, c, target) for c in source.cells if c not in clock]
+    return single(every, target)
 
 
 def guess(source: Source, column: str, target: Target) -> Guess:
@@ -66,8 +66,8 @@ def guess(source: Source, column: str, target: Target) -> Guess:
     if not quantity:
         return Guess(column, "", doubt="a clock? say so: time [s]" if _counts_on(source, column) else UNTOLD)
     unit, doubt = _unit(source, column, quantity, unit)
-    if not unit_text and (found := FOREIGN.search(label)):
-        doubt = f"unit '{found[1]}' unknown: {unit} assumed"
+    if not unit_text and (match := FOREIGN.search(label)):
+        doubt = f"unit '{match[1]}' unknown: {unit} assumed"
     base = Guess(column, quantity, unit, why=why, doubt=doubt)
     return _placed(base, label, target) if quantity == "temperature" else _fed(base, label, target)
 

@@ -123,27 +123,27 @@ def _inside(folder: Path) -> list[Path]:
 def _recording(file: Path) -> Recording:
     if not file.is_file():
         raise InputError("no such file", str(file), "CSV files or folders of them")
-    found = DATED.fullmatch(stem_of(file))
-    if found is None:
+    match = DATED.fullmatch(stem_of(file))
+    if match is None:
         return Recording(file, stem_of(file), 0.0)
     try:
-        day = date(int(found["year"]), int(found["month"]), int(found["day"] or 15))
+        day = date(int(match["year"]), int(match["month"]), int(match["day"] or 15))
     except ValueError:
         raise InputError("the name holds no date that exists", str(file), "UNIT@YEAR-MONTH[-DAY].csv") from None
-    return Recording(file, found["unit"], day.year + (day.timetuple().tm_yday - 0.5) / 365.25)
+    return Recording(file, match["unit"], day.year + (day.timetuple().tm_yday - 0.5) / 365.25)
 
 
 def histories(
     files: Sequence[Recording], reader: Reader, tell: Progress, executor: Executor | None = None
 ) -> list[UnitHistory]:
     """Motor by motor, in the order of their names."""
-    found: dict[str, list[tuple[float, Statistics]]] = {}
+    by_unit: dict[str, list[tuple[float, Statistics]]] = {}
     for i, (one, numbers) in enumerate(zip(files, _each(files, reader, executor), strict=True)):
         tell(f"motors: {one.unit}, {i + 1} of {len(files)}")
-        found.setdefault(one.unit, []).append((one.year, numbers))
+        by_unit.setdefault(one.unit, []).append((one.year, numbers))
     return [
         UnitHistory(unit, tuple(y for y, _ in parts), tuple(s for _, s in parts))
-        for unit, parts in sorted(found.items())
+        for unit, parts in sorted(by_unit.items())
     ]
 
 

@@ -54,10 +54,10 @@ def read_events(name: str, table: Table, folder: Path) -> Events:
 
 
 def _value(word: Any, where: str) -> float:
-    found = WORDS.get(word.strip().lower()) if isinstance(word, str) else word
-    if found is None or not bounds("inputs").hold(found):
+    number = WORDS.get(word.strip().lower()) if isinstance(word, str) else word
+    if number is None or not bounds("inputs").hold(number):
         raise InputError(f"{excerpt(word)} is no state of an input", where, f'"on", "off", or {bounds("inputs").words}')
-    return float(found)
+    return float(number)
 
 
 def _of_file(path: Path, name: str) -> tuple[list[float], list[float]]:

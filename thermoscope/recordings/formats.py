@@ -209,11 +209,11 @@ def merged(
 def numbers(table: pd.DataFrame | NumberTable, name: str, file: Path) -> Array:
     """A column as numbers, NaN where nothing was read; InputError with the line of what is no finite number."""
     column = table[name]
-    found = column if isinstance(column, np.ndarray) else _numbers(column, name, file)
-    endless = np.flatnonzero(np.isinf(found))
+    values = column if isinstance(column, np.ndarray) else _numbers(column, name, file)
+    endless = np.flatnonzero(np.isinf(values))
     if endless.size:
         raise InputError("the value is infinite", cell(file, name, int(endless[0])), "a finite number")
-    return found
+    return values
 
 
 def _numbers(column: pd.Series[Any], name: str, file: Path) -> Array:
@@ -222,12 +222,12 @@ def _numbers(column: pd.Series[Any], name: str, file: Path) -> Array:
 
     if column.dtype.kind in "mM":
         raise InputError("holds instants, no numbers", f"{file} column '{name}'", "numbers, or another column")
-    found = np.array(pd.to_numeric(column, errors="coerce"), float)
-    bad = np.flatnonzero(np.isnan(found) & column.notna().to_numpy())
+    values = np.array(pd.to_numeric(column, errors="coerce"), float)
+    bad = np.flatnonzero(np.isnan(values) & column.notna().to_numpy())
     if bad.size:
         raise InputError(f"'{column.iloc[bad[0]]}' is no number", cell(file, name, int(bad[0])),
                          "a number with a decimal point, or nothing where nothing was read")  # fmt: skip
-    return found
+    return values
 
 
 def cell(file: Path, column: str, row: int) -> str:

@@ -30,9 +30,9 @@ def _largest_of(network: Network, tests: Sequence[Test], quantity: str) -> str |
 
     The machine's current is never smaller than its components, and a film may follow the speed of another fan.
     """
-    found = [n for t in tests for n in t.inputs if network.measures(n) == quantity]
+    names = [n for t in tests for n in t.inputs if network.measures(n) == quantity]
     lossy = {name for source in network.sources for name in source.law.reads}
-    level = {n: _level(tests, n) for n in found if n in lossy} or {n: _level(tests, n) for n in found}
+    level = {n: _level(tests, n) for n in names if n in lossy} or {n: _level(tests, n) for n in names}
     return max(level, key=lambda n: level[n]) if level else None
 
 

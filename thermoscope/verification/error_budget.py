@@ -41,16 +41,16 @@ class MonitoredPlaces:
 
 def error_budgets(folder: Folder, records: Mapping[str, Record], progress: Progress) -> dict[str, ErrorBudget]:
     """Run -> what its temperatures may be wrong by, for the model as it stands."""
-    looks, found = MonitoredPlaces.of(folder), None
+    looks, rated = MonitoredPlaces.of(folder), None
     network, values = model_of(folder)
     rows = dict(looks.rows)
     if folder.built is not None and isinstance(network.recovery, Shapes):  # only then the field's packages are loaded
         from thermoscope.verification.rated_errors import cached_errors, hot_rows
 
         progress("estimating the error of mesh and condensation")
-        found = cached_errors(folder.built, looks)
-        rows |= hot_rows(network, found)
-    return {name: _of_run(network, values, run, rows, found) for name, run in records.items()}
+        rated = cached_errors(folder.built, looks)
+        rows |= hot_rows(network, rated)
+    return {name: _of_run(network, values, run, rows, rated) for name, run in records.items()}
 
 
 def budgets_of_tests(folder: Folder, progress: Progress = lambda message: None) -> dict[str, ErrorBudget]:

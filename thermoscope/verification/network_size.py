@@ -67,9 +67,9 @@ def accurate_network(
     condensation may use.  size_m : of the triangles of the first mesh that is looked at (m)"""
     mesh = chosen_mesh(on_all(machine), accuracy, Meshing(size_m, SEGMENTS, ACROSS, AXIAL * size_m), progress)
     how, left = mesh.meshing, max(accuracy - mesh.worst, LEAST * accuracy)
-    found = smallest_network(machine, left, how.size_m, how.segments, progress=progress, across=how.across,
+    size = smallest_network(machine, left, how.size_m, how.segments, progress=progress, across=how.across,
                              axial_m=how.axial_m)  # fmt: skip
-    return replace(found, mesh=mesh)
+    return replace(size, mesh=mesh)
 
 
 def smallest_network(
@@ -88,11 +88,11 @@ def smallest_network(
     points += [reduction.joined_point(factor) for factor in JOINTS]
     table = tuple(Size.of(reduction, requested, [*points, *guides], cases, allowed) for requested in SIZES)
     good = [size for size in table if size.met]
-    found = None if good else enrich(reduction, cases, allowed, rounds, points, guides, tell=progress)
-    condensed = good[0].network if good else found.network  # type: ignore[union-attr]
-    last = reduction if found is None else found.reduction
+    enrichment = None if good else enrich(reduction, cases, allowed, rounds, points, guides, tell=progress)
+    condensed = good[0].network if good else enrichment.network  # type: ignore[union-attr]
+    last = reduction if enrichment is None else enrichment.reduction
     built = Built(machine, ready.mesh, ready.field, motor_network(machine, condensed), ready.meshing)
-    return NetworkSize(built, last, allowed, table, found)
+    return NetworkSize(built, last, allowed, table, enrichment)
 
 
 SIZES = (0, 50, 100, 200, 400)  # 0: the means only

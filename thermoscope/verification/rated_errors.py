@@ -55,9 +55,9 @@ def cached_errors(built: Built, looks: MonitoredPlaces) -> Rated:
     cached = recalled(file, lambda path: Rated(**json.loads(path.read_text(encoding="utf-8"))))
     if cached is not None:
         return cached
-    found = at_rated_point(built, looks)
-    write_whole(file, json.dumps(vars(found)))
-    return found
+    errors = at_rated_point(built, looks)
+    write_whole(file, json.dumps(vars(errors)))
+    return errors
 
 
 def _key(built: Built, looks: MonitoredPlaces) -> str:

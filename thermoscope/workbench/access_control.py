@@ -66,10 +66,10 @@ class AccessControl:
 
     def _let_in(self, request: web.Request) -> web.HTTPFound:
         """The same address without the token, which a cookie carries from now on."""
-        found = web.HTTPFound(request.path)
+        redirect = web.HTTPFound(request.path)
         if self.token:
-            found.set_cookie(cookie_of(request), self.token, httponly=True, samesite="Strict", secure=request.secure)
-        return found
+            redirect.set_cookie(cookie_of(request), self.token, httponly=True, samesite="Strict", secure=request.secure)
+        return redirect
 
 
 def cookie_of(request: web.Request) -> str:

@@ -100,8 +100,8 @@ class Dropped:
 def read(files: Sequence[Path], network: Network, tell: Progress) -> Dropped:
     """Recordings with the guesses of `thermoscope test new`. Raises InputError for a file that is no record."""
     target = target_of(network)
-    found = [read_recording(file, None, tell) for file in files]
-    return Dropped(tuple(Recording(s, c, guesses(s, c.columns, target)) for s, c in found), target)
+    recordings = [read_recording(file, None, tell) for file in files]
+    return Dropped(tuple(Recording(s, c, guesses(s, c.columns, target)) for s, c in recordings), target)
 
 
 def dragged(g: Guess, record: Recording, to: str, target: Target) -> Guess:

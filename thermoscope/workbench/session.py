@@ -58,12 +58,12 @@ class Session:
 
     async def diagnose(self) -> None:
         """Look for what is missing."""
-        found = await self._calculate("Looking for what is missing", steps.searched, self.folder)
-        if found is not None:
+        result = await self._calculate("Looking for what is missing", steps.searched, self.folder)
+        if result is not None:
             if load_history(self.file) == self.history:
-                save_diagnosis(self.folder, found)
+                save_diagnosis(self.folder, result)
             with self.state:
-                self.diagnosis = dict(found)
+                self.diagnosis = dict(result)
                 self.shown.show_candidates(self.diagnosis)
 
     async def step(self, action: str, effect: str = "") -> None:
@@ -115,9 +115,11 @@ class Session:
 
     async def take_in(self, files: Sequence[Path]) -> None:
         """Show what the columns of dropped files are taken for."""
-        found = await self._calculate("Reading the recordings", steps.recordings, files, self.folder.case.model.network)
-        if found is not None:
-            self.show_dropped(found)
+        dropped = await self._calculate(
+            "Reading the recordings", steps.recordings, files, self.folder.case.model.network
+        )
+        if dropped is not None:
+            self.show_dropped(dropped)
 
     def show_dropped(self, dropped: Dropped | None) -> None:
         """The columns on the page, None for none any more."""
@@ -233,8 +235,8 @@ class Session:
 
 def share(message: str) -> float | None:
     """'test 12/40' -> 30.0; None where the message counts nothing."""
-    found = re.search(r"(\d+)/(\d+)", message)
-    return round(100.0 * int(found[1]) / int(found[2]), 1) if found and int(found[2]) else None
+    match = re.search(r"(\d+)/(\d+)", message)
+    return round(100.0 * int(match[1]) / int(match[2]), 1) if match and int(match[2]) else None
 
 
 _running: set[asyncio.Task] = set()

@@ -29,8 +29,8 @@ def searched(folder: Folder, tell: Progress) -> Mapping[str, Any]:
     """A `diagnose` document."""
     from validation import diagnose
 
-    found = diagnose(folder.case, folder.settings.kinds, tell)
-    return {"case": folder.case.name, "revision": folder.case.model.revision, **found.document()}
+    diagnosis = diagnose(folder.case, folder.settings.kinds, tell)
+    return {"case": folder.case.name, "revision": folder.case.model.revision, **diagnosis.document()}
 
 
 def stepped(

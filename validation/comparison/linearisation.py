@@ -63,7 +63,7 @@ def segments(
     if len(tests) < 2 or len(tests[0].time) * network.size < WORTH_A_THREAD:
         return [s for test in tests for s in look(test)]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        return [s for found in pool.map(look, tests) for s in found]
+        return [s for some in pool.map(look, tests) for s in some]
 
 
 def _of_test(

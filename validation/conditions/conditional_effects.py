@@ -61,8 +61,8 @@ def conditions(
     whole = [e for e in single_test_effects(scene) if only is None or e.kind in only]
     chosen, events = best(single_test_conditions(evidence, whole, known), TESTS), []
     for s in likely_intervals(evidence, looked, heat, known, len(bases)):
-        found, own = explained(evidence, bases, s, looked, known)
-        events.append(found)
+        explanations, own = explained(evidence, bases, s, looked, known)
+        events.append(explanations)
         chosen += best(own, EACH)
     for name, share in declared_conditions(case, evidence, events):
         effects = [During.of(base, name, share / len(bases)) for base in bases]
@@ -104,11 +104,11 @@ def single_test_conditions(evidence: Evidence, bases: Sequence[Effect], values: 
     parameters = extended(evidence.fit.network, bases).parameters[-len(bases) :]
     theta, sd = extended_prior(evidence.fit)
     sign = np.tile([q.sign for q in parameters], len(names)).astype(int)
-    found = score(per_test(projected(evidence.fit, parts)), theta, sd, sign)
+    scores = score(per_test(projected(evidence.fit, parts)), theta, sd, sign)
     usual = np.array([q.prior_sd for q in parameters])
     every, out = sets_of(len(names)), []
     for chosen in every:
-        own, seen = together(found, len(bases), chosen)
+        own, seen = together(scores, len(bases), chosen)
         one = len(chosen) == 1
         held = FORM["one whole test" if one else "several whole tests"]
         share = held / (len(bases) * (len(names) if one else len(every) - len(names)))
@@ -150,10 +150,10 @@ def likely_intervals(
     evidence: Evidence, looked: Scan, heat: Sequence[MissingHeat], values: Mapping[str, float], laws: int
 ) -> list[Interval]:
     """The stretches that could carry weight once the price of when, what and where is paid."""
-    found = hat_scores(evidence, looked, values)
+    scores = hat_scores(evidence, looked, values)
     limit = -HOPELESS - odds_against_nothing(0.5 / (laws * len(evidence.tests)))
-    ordered = stretches(found, heat, neighbours(evidence.fit.network))
-    return [s for s in distinct(ordered, EVENTS) if worth(found, s) > limit]
+    ordered = stretches(scores, heat, neighbours(evidence.fit.network))
+    return [s for s in distinct(ordered, EVENTS) if worth(scores, s) > limit]
 
 
 def explained(
@@ -201,10 +201,10 @@ def scored_in(
     parameters = extended(evidence.fit.network, effects).parameters[-len(effects) :]
     theta, sd = extended_prior(evidence.fit)
     parts = columns(evidence, effects, values)
-    found = score(total(projected(evidence.fit, parts)), theta, sd, np.array([q.sign for q in parameters], int))
-    bayes = log_bayes_of(found, np.array([q.prior_sd for q in parameters]))
+    scores = score(total(projected(evidence.fit, parts)), theta, sd, np.array([q.sign for q in parameters], int))
+    bayes = log_bayes_of(scores, np.array([q.prior_sd for q in parameters]))
     moved = np.max([np.max(np.abs(s.J[:, evidence.p :]), axis=0) / s.weight for s in parts], axis=0)
-    clear = found.visible & (moved * np.abs(found.amplitude) > USUAL["excursion"])
+    clear = scores.visible & (moved * np.abs(scores.amplitude) > USUAL["excursion"])
     return [Condition(e, float(b) + prior) for e, b, seen in zip(effects, bayes, clear, strict=True) if seen]
 
 

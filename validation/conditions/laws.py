@@ -32,10 +32,10 @@ def laws(evidence: Evidence, values: Mapping[str, float]) -> list[Above]:
     share = 1.0 / len(effects)
     prior = np.log(PRIOR["effect"].share * RARE[KIND].share * share / PRIOR["nothing"].share)
     sd = np.array([q.prior_sd for q in extended(evidence.fit.network, effects).parameters[-len(effects) :]])
-    found = score(total(projected(evidence.fit, columns(evidence, effects, values))), *extended_prior(evidence.fit),
+    scores = score(total(projected(evidence.fit, columns(evidence, effects, values))), *extended_prior(evidence.fit),
                   np.zeros(len(effects), int))  # fmt: skip
-    worth = log_bayes_of(found, sd) + prior
-    order = [int(k) for k in np.argsort(-worth) if found.visible[k] and worth[k] > -HOPELESS]
+    worth = log_bayes_of(scores, sd) + prior
+    order = [int(k) for k in np.argsort(-worth) if scores.visible[k] and worth[k] > -HOPELESS]
     return [Above(effects[k].place, share) for k in order[:MOST]]
 
 

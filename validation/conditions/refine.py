@@ -95,9 +95,9 @@ def repeats(evidence: Evidence, base: Effect, event: Event, values: Values) -> E
     effects = [During.of(base, Event.of({t: [span]}).name) for t, span in every]
     theta, sd = extended_prior(evidence.fit)
     parts = columns(evidence, effects, values)
-    found = score(total(projected(evidence.fit, parts)), theta, sd, np.zeros(len(every), int))
+    scores = score(total(projected(evidence.fit, parts)), theta, sd, np.zeros(len(every), int))
     stays = list(range(len(every)))
-    while len(stays) > 1 and min(gain := [gained(found, i, stays) for i in stays]) <= 0.0:
+    while len(stays) > 1 and min(gain := [gained(scores, i, stays) for i in stays]) <= 0.0:
         stays.remove(stays[int(np.argmin(gain))])
     spans: dict[str, list[Span]] = {}
     for i in stays:
@@ -148,9 +148,9 @@ def steps(
     effects = [During.of(base, e.name) for e in (*events, *([rest] if rest.spans else []))]
     parts = columns(evidence, effects, values)
     theta, sd = extended_prior(evidence.fit)
-    found = score(total(projected(evidence.fit, parts)), theta, sd, np.zeros(len(effects), int))
+    scores = score(total(projected(evidence.fit, parts)), theta, sd, np.zeros(len(effects), int))
     missing = 0 if rest.spans else 1
-    return np.pad(found.u, (0, missing)), np.pad(found.V, (0, missing))
+    return np.pad(scores.u, (0, missing)), np.pad(scores.V, (0, missing))
 
 
 def columns(evidence: Evidence, effects: Sequence[Effect], base_values: Values) -> list[Segment]:

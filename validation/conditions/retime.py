@@ -47,16 +47,21 @@ def retimed(evidence: Evidence, hypotheses: Sequence[Hypothesis], reach_s: Mappi
 
 def moved(evidence: Evidence, hypotheses: Sequence[Hypothesis], reach_s: Mapping[str, float]) -> dict[int, During]:
     """Events whose refits want other ends, with these."""
-    found: dict[int, During] = {}
+    by_index: dict[int, During] = {}
     for h in hypotheses:
         for k in h.members:
             effect = evidence.effects[k]
-            if k in found or not isinstance(effect, During) or not effect.event or throughout(evidence, effect.event):
+            if (
+                k in by_index
+                or not isinstance(effect, During)
+                or not effect.event
+                or throughout(evidence, effect.event)
+            ):
                 continue
             if h.fit is not None and effect.name in h.fit.values:  # else the machine ran away with the new ends
-                found[k] = with_ends(effect, ends_of(evidence, h.fit, effect, effect.event, reach_s))
-    names = {e.name for i, e in enumerate(evidence.effects) if i not in found}
-    new = {k: e for k, e in found.items() if e.name != evidence.names[k] and e.name not in names}
+                by_index[k] = with_ends(effect, ends_of(evidence, h.fit, effect, effect.event, reach_s))
+    names = {e.name for i, e in enumerate(evidence.effects) if i not in by_index}
+    new = {k: e for k, e in by_index.items() if e.name != evidence.names[k] and e.name not in names}
     return {k: e for k, e in new.items() if [x.name for x in new.values()].count(e.name) == 1}
 
 
@@ -121,5 +126,5 @@ def steps(fit: Fit, base: Effect, test: Test, at: Array) -> tuple[Array, Array]:
     parts = [replace(s, J=np.column_stack([s.J, new.get((s.test, s.channel), np.zeros((s.r.size, len(own))))]))
              for s in fit.parts]  # fmt: skip
     theta, sd = extended_prior(fit)
-    found = score(total(projected(fit, parts)), theta, sd, np.zeros(len(own), int))
-    return found.u[where], found.V[np.ix_(where, where)]
+    scores = score(total(projected(fit, parts)), theta, sd, np.zeros(len(own), int))
+    return scores.u[where], scores.V[np.ix_(where, where)]

@@ -103,8 +103,8 @@ class Scan:
         H = sum(g.JJ for g in grams.values()) + np.diag(weight)
         Jr = sum(g.Jr for g in grams.values()) - weight * theta
         cov = np.asarray(np.linalg.inv(H), float)
-        found = [self._at(i, grams, cov, Jr) for i in range(len(self.places))]
-        return sorted(found, key=lambda x: -x.evidence_nats)
+        heats = [self._at(i, grams, cov, Jr) for i in range(len(self.places))]
+        return sorted(heats, key=lambda x: -x.evidence_nats)
 
     @cached_property
     def roots(self) -> list[Array]:

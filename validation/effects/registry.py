@@ -32,8 +32,8 @@ def kinds() -> dict[str, type[Effect]]:
     for module in walk_packages([str(HERE)], "validation.effects."):
         import_module(module.name)
     root: Any = Effect
-    found = [c for c in _concrete(root) if hasattr(c, "kind")]  # one that holds for a while has that of another
-    own = {c.kind: c for c in found if c.__module__.startswith("validation.effects.")}
+    classes = [c for c in _concrete(root) if hasattr(c, "kind")]  # one that holds for a while has that of another
+    own = {c.kind: c for c in classes if c.__module__.startswith("validation.effects.")}
     return dict(sorted(own.items())) | {c.kind: c for c in plugins("effects").values()}
 
 
@@ -55,26 +55,26 @@ def effect(name: str, scene: Scene | None = None) -> Effect:
     kind, _, place = name.partition("@")
     if kind == KIND:
         return Above(place)
-    found = _of(kind, kinds(), f"effect '{name}'")
+    cls = _of(kind, kinds(), f"effect '{name}'")
     base, held, condition = place.rpartition(IN)
     if held:
-        return During.of(found(base), _checked_condition(condition, scene, name))
-    if scene is not None and place not in (places := found.places(scene)):
-        needs = ", ".join(found.needs)
+        return During.of(cls(base), _checked_condition(condition, scene, name))
+    if scene is not None and place not in (places := cls.places(scene)):
+        needs = ", ".join(cls.needs)
         right = (
             f"it can sit at: {', '.join(places)}"
             if places
             else f"it can sit nowhere here; it needs: {needs or 'a place'}"
         )
         raise InputError(f"'{kind}' cannot sit at '{place}'", f"effect '{name}'", right)
-    return found(place)
+    return cls(place)
 
 
 def _checked_condition(condition: str, scene: Scene | None, name: str) -> str:
     """The condition, if the scene has what it speaks of."""
     if scene is not None and condition not in scene.inputs:
-        found = event(condition)
-        for test in found.tests if found else (condition,):
+        timed_event = event(condition)
+        for test in timed_event.tests if timed_event else (condition,):
             if test not in scene.tests:
                 raise InputError(f"unknown test or event '{test}'", f"effect '{name}'",
                                  f"one of {', '.join(scene.tests)}, or an event as `diagnose` names it")  # fmt: skip

@@ -71,8 +71,8 @@ class Event:
 def event(name: str) -> Event | None:
     """The event that a name describes; None where it is a test's or an input's."""
     pieces = [PIECE.fullmatch(piece) for piece in name.split(AND)]
-    found = [(p[1], [tuple(map(float, s.split("-"))) for s in p[2].split(",")]) for p in pieces if p]
-    return Event.of(dict(found)) if len(found) == len(pieces) else None  # type: ignore[arg-type]
+    spans = [(p[1], [tuple(map(float, s.split("-"))) for s in p[2].split(",")]) for p in pieces if p]
+    return Event.of(dict(spans)) if len(spans) == len(pieces) else None  # type: ignore[arg-type]
 
 
 def checked(timed: Event, test: str, first: float, last: float, where: str) -> None:
@@ -107,12 +107,12 @@ class TimeWindow:
     factor: float = 1.0
 
     def __call__(self, inputs: Inputs) -> Array:
-        time, found = np.asarray(inputs[CLOCK], float), event(self.name)
+        time, timed = np.asarray(inputs[CLOCK], float), event(self.name)
         if self.name in inputs:
             return self.factor * np.asarray(inputs[self.name], float)
-        if found is None:
+        if timed is None:
             return self.factor * np.asarray(inputs.get(f"{RUNNING}{self.name}", np.zeros_like(time)), float)
-        here = [own for test, own in found.spans.items() if f"{RUNNING}{test}" in inputs]
+        here = [own for test, own in timed.spans.items() if f"{RUNNING}{test}" in inputs]
         return self.factor * share(time, here[0]) if here else np.zeros_like(time)
 
 

@@ -129,19 +129,19 @@ def population(units: Sequence[UnitHistory]) -> Population:
     H, eta = zip(*(_of_unit(u, middle, drifts) for u in units), strict=True)
     first = units[0].parts[0]
     prior = np.concatenate([first.sd, first.drift_sd]) if drifts else first.sd
-    found, weights = _converged_moments(np.array(H), np.array(eta), prior)
-    p, (m, P) = len(names), found.posterior()
+    moments, weights = _converged_moments(np.array(H), np.array(eta), prior)
+    p, (m, P) = len(names), moments.posterior()
     sd = np.sqrt(np.einsum("uii->ui", P))
-    own = _mean_sd(found, weights)
-    own[p:] = _mean_sd(found, weights / weights.sum())[p:]
+    own = _mean_sd(moments, weights)
+    own[p:] = _mean_sd(moments, weights / weights.sum())[p:]
     later = {} if not drifts else {
-        "drift": found.mean[p:], "drift_sd": own[p:], "drift_spread": np.sqrt(found.variance[p:]),
+        "drift": moments.mean[p:], "drift_sd": own[p:], "drift_spread": np.sqrt(moments.variance[p:]),
         "unit_drift": m[:, p:], "unit_drift_sd": sd[:, p:],
     }  # fmt: skip
     labels = tuple(u.name for u in units)
     return Population(
-        names, found.mean[:p], own[:p], np.sqrt(found.variance[:p]), _equal(found, weights, p), labels, m[:, :p],
-        sd[:, :p], tuple(_outliers(found, labels, names)), middle, **later,
+        names, moments.mean[:p], own[:p], np.sqrt(moments.variance[:p]), _equal(moments, weights, p), labels, m[:, :p],
+        sd[:, :p], tuple(_outliers(moments, labels, names)), middle, **later,
     )  # fmt: skip
 
 

@@ -118,13 +118,13 @@ def infer(case: Case, kinds: Sequence[str] | None = None, progress: Progress = n
     law_errors = laws(evidence, known) if kinds is None or KIND in kinds else []
     first = len(evidence.effects)
     evidence = converged(sharpened(joined(evidence, [*chosen, *law_errors], known), range(first, first + len(chosen))))
-    found, heat = weighed(case, evidence, looked, fit.noise, progress)
-    timed, noise = retimed(evidence, found, reach(looked)), noise_of_refits(found)
+    hypotheses, heat = weighed(case, evidence, looked, fit.noise, progress)
+    timed, noise = retimed(evidence, hypotheses, reach(looked)), noise_of_refits(hypotheses)
     if noise is not None or timed is not evidence:
         evidence = converged(under(timed, noise or timed.fit.noise))
-        begun = {h.members: h.fit for h in found if h.fit and h.members}
-        found, heat = weighed(case, evidence, looked, fit.noise, progress, begun)
-    every = further(case, evidence, finely(evidence, found), progress)
+        begun = {h.members: h.fit for h in hypotheses if h.fit and h.members}
+        hypotheses, heat = weighed(case, evidence, looked, fit.noise, progress, begun)
+    every = further(case, evidence, finely(evidence, hypotheses), progress)
     return Posterior(evidence, tuple(against_nothing(every)), tuple(heat), against)
 
 
@@ -163,7 +163,7 @@ def noise_of_leader(evidence: Evidence, also: Sequence[int] = ()) -> Noise | Non
     best, worth = None, log_evidence(e) + ones[0].log_prior
     for h in few:
         noise = noise_beside(e, h.members)
-        found = with_noise(e, h.members, noise) + h.log_prior
-        if found > worth:
-            best, worth = noise, found
+        gain = with_noise(e, h.members, noise) + h.log_prior
+        if gain > worth:
+            best, worth = noise, gain
     return best

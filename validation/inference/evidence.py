@@ -106,11 +106,11 @@ def diagnosing(case: Case) -> tuple[Test, ...]:
 def candidates(case: Case, kinds: Sequence[str] | None = None) -> tuple[Effect, ...]:
     """The catalogue on this case, less what the model has already."""
     inside = {e.name for e in case.model.effects}
-    found = tuple(e for e in catalogue(scene_of(case), kinds) if e.name not in inside)
-    if not found:
+    effects = tuple(e for e in catalogue(scene_of(case), kinds) if e.name not in inside)
+    if not effects:
         where = f"case '{case.name}', kinds {', '.join(kinds or ['of the catalogue'])}"
         raise InputError("no effect can sit anywhere in this network", where, "other kinds, or inputs that they need")
-    return found
+    return effects
 
 
 def calibrated_case(
@@ -171,10 +171,10 @@ def weighed(
     sign = np.array([q.sign for q in parameters], int)
     grams = projected(fit, parts)
     theta, sd = extended_prior(fit)
-    found = score(total(grams), theta, sd, sign)
-    whole = np.where([e.whole for e in effects], found.u - 0.5 * np.diag(found.V), -np.inf)
+    scores = score(total(grams), theta, sd, sign)
+    whole = np.where([e.whole for e in effects], scores.u - 0.5 * np.diag(scores.V), -np.inf)
     whole[list(jumps)] = finite(fit, parts, jumps)
-    return Evidence(tests, fit, network, effects, parameters, parts, grams, found, jumps, large, whole)
+    return Evidence(tests, fit, network, effects, parameters, parts, grams, scores, jumps, large, whole)
 
 
 def replaced(evidence: Evidence, by_last: Sequence[int]) -> Evidence:
@@ -212,8 +212,8 @@ def finite(fit: Fit, parts: Sequence[Segment], jumps: Mapping[Any, Sequence[Arra
     p = len(fit.unknowns.parameters)
     own = [replace(s, J=np.column_stack([s.J[:, :p], *(c[i] for c in jumps.values())])) for i, s in enumerate(parts)]
     theta, sd = extended_prior(fit)
-    found = score(total(projected(fit, own)), theta, sd, np.zeros(len(jumps), int))
-    return np.asarray(found.u - 0.5 * np.diag(found.V))
+    scores = score(total(projected(fit, own)), theta, sd, np.zeros(len(jumps), int))
+    return np.asarray(scores.u - 0.5 * np.diag(scores.V))
 
 
 def exchange(parts: Sequence[Segment], effects: Sequence[Effect], p: int) -> None:
@@ -280,10 +280,12 @@ def with_noise(evidence: Evidence, members: Sequence[int], noise: Noise) -> floa
     fit, parts = replace(e.fit, noise=noise), e.parts_of(members)
     theta, sd = extended_prior(fit)
     G = total(projected(fit, parts))
-    found = score(G, theta, sd, e.score.sign[list(members)])
+    scores = score(G, theta, sd, e.score.sign[list(members)])
     usual = np.array([e.parameters[k].prior_sd for k in members])
-    H = found.V + np.diag(usual**-2.0)
-    gain = 0.5 * found.u @ np.linalg.solve(H, found.u) - 0.5 * np.linalg.slogdet(np.diag(usual) @ H @ np.diag(usual))[1]
+    H = scores.V + np.diag(usual**-2.0)
+    gain = (
+        0.5 * scores.u @ np.linalg.solve(H, scores.u) - 0.5 * np.linalg.slogdet(np.diag(usual) @ H @ np.diag(usual))[1]
+    )
     return without_effects(fit, parts, G) + float(gain)
 
 

@@ -74,21 +74,21 @@ def together(
         progress(f"refitting {out[i].name(evidence)}")
     near = all_beside(evidence, out, due)
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        found = list(pool.map(lambda i: laplace(evidence, out[i], near.get(i), begun), due))
-    for i, h in zip(due, found, strict=True):
+        refitted = list(pool.map(lambda i: laplace(evidence, out[i], near.get(i), begun), due))
+    for i, h in zip(due, refitted, strict=True):
         out[i] = h
 
 
 def all_beside(evidence: Evidence, hypotheses: Sequence[Hypothesis], due: Sequence[int]) -> dict[int, Beside]:
     """For pairs of which one effect was fitted by itself: that fit, and the tangents of all the other effects there,
     in one run."""
-    found = {i: a for i in due if (a := fitted_alone(hypotheses, hypotheses[i].members))}
-    fits = {one: fit for one, fit in found.values()}
+    alone = {i: a for i in due if (a := fitted_alone(hypotheses, hypotheses[i].members))}
+    fits = {one: fit for one, fit in alone.values()}
     others: dict[int, list[int]] = {one: [] for one in fits}
-    for i, (one, _) in found.items():
+    for i, (one, _) in alone.items():
         others[one] += [k for k in hypotheses[i].members if k != one]
     columns = {one: tangents_beside(evidence, one, fit, others[one]) for one, fit in fits.items()}
-    return {i: (one, fit, columns[one]) for i, (one, fit) in found.items()}
+    return {i: (one, fit, columns[one]) for i, (one, fit) in alone.items()}
 
 
 def promised(before: Sequence[Hypothesis], after: Sequence[Hypothesis]) -> list[Hypothesis]:
@@ -120,8 +120,8 @@ def shares(hypotheses: Sequence[Hypothesis]) -> Array:
 
 def fitted_alone(hypotheses: Sequence[Hypothesis], members: Sequence[int]) -> tuple[int, Fit] | None:
     """The better fitted of two effects that were fitted each by itself, as far as they were."""
-    found = [(h.members[0], h.fit) for h in hypotheses if h.fit and len(h.members) == 1 and h.members[0] in members]
-    return min(found, key=lambda x: x[1].objective) if found and len(members) > 1 else None
+    fits = [(h.members[0], h.fit) for h in hypotheses if h.fit and len(h.members) == 1 and h.members[0] in members]
+    return min(fits, key=lambda x: x[1].objective) if fits and len(members) > 1 else None
 
 
 def rivals(hypotheses: Sequence[Hypothesis]) -> list[int]:
@@ -153,8 +153,8 @@ def far_from_prior(evidence: Evidence, hypotheses: Sequence[Hypothesis]) -> list
     fit = evidence.fit
     pull = dict(zip(fit.unknowns.names, np.abs(fit.theta / fit.unknowns.sd), strict=True))
     alone = [(i, evidence.twins[h.members[0]]) for i, h in enumerate(hypotheses) if len(h.members) == 1 and not h.fit]
-    found = sorted((-pull[twin], i) for i, twin in alone if twin and pull[twin] > STRAIN)
-    return [i for _, i in found[:MOST_LINEAR]]
+    ranked = sorted((-pull[twin], i) for i, twin in alone if twin and pull[twin] > STRAIN)
+    return [i for _, i in ranked[:MOST_LINEAR]]
 
 
 def laplace(evidence: Evidence, h: Hypothesis, near: Beside | None = None, begun: Begun = NOWHERE,

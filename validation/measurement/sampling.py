@@ -111,10 +111,10 @@ def sample_step(
     steps = sorted({usual, *(h for h in (*STEPS, *([wished] if wished else [])) if usual < h <= most)})
     felt, chosen = _Felt.of(network, time, inputs, around, level), SampleStep(steps[0], 0.0, None, None, None)
     for h in steps[1:]:
-        found = felt.worst(h, sensors)
-        if found.error_K > ALLOWED * min(sigma for _, _, sigma, _ in sensors):
+        worst = felt.worst(h, sensors)
+        if worst.error_K > ALLOWED * min(sigma for _, _, sigma, _ in sensors):
             break
-        chosen = found
+        chosen = worst
     return chosen
 
 

@@ -64,8 +64,8 @@ def narrowed(network: Network, values: Mapping[str, float], case: Case) -> Netwo
     added = {e.name for e in case.model.effects}
 
     def prior(p: Parameter) -> Parameter:
-        found = abs(values.get(p.name, p.value) - p.neutral)
-        return replace(p, prior_sd=min(p.prior_sd, HALF * found)) if p.name in added else p
+        deviation = abs(values.get(p.name, p.value) - p.neutral)
+        return replace(p, prior_sd=min(p.prior_sd, HALF * deviation)) if p.name in added else p
 
     return replace(network, parameters=tuple(prior(p) for p in network.parameters))
 

@@ -102,10 +102,10 @@ class Problem:
             **self.values,
             **({} if self.scaling is None or machine is None else self.scaling.of(machine, inputs)),
         }
-        found, runaway = self._rest(values, inputs)
+        rest, runaway = self._rest(values, inputs)
         share = self.space.share(named)
-        copper = losses(self.network, values, inputs, found.z, ("copper",)) * self.corrections.ratio(COPPER, share)
-        places, slowest = self._temperatures(found, values, inputs, share)
+        copper = losses(self.network, values, inputs, rest.z, ("copper",)) * self.corrections.ratio(COPPER, share)
+        places, slowest = self._temperatures(rest, values, inputs, share)
         hottest = max(list(places.values())[: self.peak])
         objectives = {
             PEAK: hottest, SETTLING: slowest * self.corrections.ratio(SETTLING, share), COPPER: copper,
@@ -130,9 +130,9 @@ class Problem:
 
     def _rest(self, values: Mapping[str, float], inputs: Mapping[str, float]) -> tuple[Rest, bool]:
         """The rest; where the machine would run away, with losses as at the limit: above it then."""
-        found = rest(self.network, values, inputs, self.boundaries)
-        if found is not None and found.stable:
-            return found, False
+        at_rest = rest(self.network, values, inputs, self.boundaries)
+        if at_rest is not None and at_rest.stable:
+            return at_rest, False
         again = rest(self._without_feedback, values, inputs, self.boundaries)
         if again is None:
             raise InputError("the machine does not come to rest", self.network.title, "a way for heat to leave it")

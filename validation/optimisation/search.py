@@ -100,10 +100,10 @@ def _posed(problem: Problem, archive: list[Design], executor: Executor | None) -
             )  # fmt: skip
 
         def _evaluate(self, X: Array, out: dict[str, Array], *args: Any, **others: Any) -> None:
-            found = judged(problem, X, executor)
-            archive.extend(Design(x, p) for x, p in zip(X, found, strict=True))
-            out["F"] = np.array([[p.objectives[o] for o in problem.aimed] for p in found])
-            out["G"] = np.array([[p.excess.get(n, 0.0) for n in limits] for p in found])
+            designs = judged(problem, X, executor)
+            archive.extend(Design(x, p) for x, p in zip(X, designs, strict=True))
+            out["F"] = np.array([[p.objectives[o] for o in problem.aimed] for p in designs])
+            out["G"] = np.array([[p.excess.get(n, 0.0) for n in limits] for p in designs])
 
     return Judged()
 

@@ -105,13 +105,13 @@ def improve(
         progress("calibrating")
         case = _with_step(case, calibrate(case, progress=progress), supervisor, {}, stairs)
     while True:
-        found = diagnose(case, kinds=kinds, progress=progress)
-        progress(f"{found.verdict}: {found.words}")
-        if supervisor.offer(found) and len(stairs) > most:
-            return Improvement(case, tuple(stairs), found, f"{most} steps are enough for one run")
-        step, document, why = _added(case, supervisor, found, progress)
+        diagnosis = diagnose(case, kinds=kinds, progress=progress)
+        progress(f"{diagnosis.verdict}: {diagnosis.words}")
+        if supervisor.offer(diagnosis) and len(stairs) > most:
+            return Improvement(case, tuple(stairs), diagnosis, f"{most} steps are enough for one run")
+        step, document, why = _added(case, supervisor, diagnosis, progress)
         if step is None:
-            return Improvement(case, tuple(stairs), found, why)
+            return Improvement(case, tuple(stairs), diagnosis, why)
         case = _with_step(case, step, supervisor, document, stairs)
 
 

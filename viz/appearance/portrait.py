@@ -114,8 +114,8 @@ def _gathered(bodies: Sequence[Body], wedge: Wedge | None) -> dict[tuple[Finish,
     """By finish, surfaces and sections apart: few things to draw are drawn fast."""
     out: dict[tuple[Finish, bool], Pieces] = defaultdict(list)
     for body in bodies:
-        found = cut_body(body, wedge)
-        for piece, section in zip(found or (), (False, True), strict=False):
+        pieces = cut_body(body, wedge)
+        for piece, section in zip(pieces or (), (False, True), strict=False):
             if piece is not None and piece.n_cells:
                 out[body.finish, section].append((body.part, piece))
     return out

@@ -164,17 +164,17 @@ def _events(diagnosis: Document) -> str:
 
 def _contradiction(diagnosis: Document) -> str:
     """Which test stands against the others, and what it would need."""
-    found = diagnosis.get("contradiction")
-    if not found or not found["differences"]:
+    row = diagnosis.get("contradiction")
+    if not row or not row["differences"]:
         return ""
     rows: list[list[html.Cell]] = [
         [d["test"], d["parameter"], _number(d["others"]), _number(d["here"]), "" if d["unit"] == "1" else d["unit"],
-         _number(abs(d["sd"])), "yes" if d["possible"] else "no"] for d in found["differences"][:12]
+         _number(abs(d["sd"])), "yes" if d["possible"] else "no"] for d in row["differences"][:12]
     ]  # fmt: skip
     headers = ["test", "parameter", "other tests", "this test", "unit", "standard deviations", "can it differ?"]
-    table = html.table(headers, rows, [d["possible"] is False for d in found["differences"][:12]])
-    drawn = html.plot(candidates.differences(found), "differences", "What would have to differ between tests.")
-    head = f"<h3>Tests that contradict each other</h3>{html.text(found['words'])}"
+    table = html.table(headers, rows, [d["possible"] is False for d in row["differences"][:12]])
+    drawn = html.plot(candidates.differences(row), "differences", "What would have to differ between tests.")
+    head = f"<h3>Tests that contradict each other</h3>{html.text(row['words'])}"
     return f"{head}{drawn}{html.more('In numbers', table)}"
 
 

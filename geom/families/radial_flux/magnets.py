@@ -42,11 +42,11 @@ def _fits(g: Geometry, radius: float, width: float) -> bool:
     rise = width / 2 if g.rotor.magnet_shape == "flat" else g.rotor.bridge / 2 + width * math.cos(g.rotor.v)
     if rise >= 0.98 * (radius - g.rotor.bridge):
         return False
-    found = corners(g, radius, width)
+    points = corners(g, radius, width)
     half = math.pi / g.rotor.poles
-    inside = max(math.hypot(x, y) for x, y in found) <= radius - 0.95 * g.rotor.bridge
-    inside_pitch = all(abs(math.atan2(y, x)) <= _PITCH * half for x, y in found)
-    return inside and inside_pitch and _distance(found) >= _SHAFT * g.shaft.diameter / 2
+    inside = max(math.hypot(x, y) for x, y in points) <= radius - 0.95 * g.rotor.bridge
+    inside_pitch = all(abs(math.atan2(y, x)) <= _PITCH * half for x, y in points)
+    return inside and inside_pitch and _distance(points) >= _SHAFT * g.shaft.diameter / 2
 
 
 def _distance(corners_xy: Corners) -> float:

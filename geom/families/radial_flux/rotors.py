@@ -33,9 +33,9 @@ def shapes_of_magnets(g: Geometry, at: Layout) -> list[Profile]:
 
 def _pole(g: Geometry, at: Layout) -> list[Profile]:
     """Magnets of the pole at angle 0, their outermost corners a bridge below the surface."""
-    found = corners(g, at.rotor, g.rotor.magnet_width)
-    one = Profile(tuple((x, y, 0.0) for x, y in found))
-    return [one] if g.rotor.magnet_shape == "flat" else [one, Profile(tuple((x, -y, 0.0) for x, y in reversed(found)))]
+    points = corners(g, at.rotor, g.rotor.magnet_width)
+    one = Profile(tuple((x, y, 0.0) for x, y in points))
+    return [one] if g.rotor.magnet_shape == "flat" else [one, Profile(tuple((x, -y, 0.0) for x, y in reversed(points)))]
 
 
 def cage_rotor(g: Geometry, at: Layout) -> tuple[Part, ...]:

@@ -16,10 +16,10 @@ def bases(case: str, target: str | None) -> int:
 
     with progress() as tell:
         folder = open_case(case, tell)
-        found = which_base(folder.case, progress=tell)
-    wrong = [h for h in found if h.declared and h.excluded]
+        hypotheses = which_base(folder.case, progress=tell)
+    wrong = [h for h in hypotheses if h.declared and h.excluded]
     document = {"case": folder.case.name, "revision": folder.case.model.revision,
-                "wrong": [h.test for h in wrong], "hypotheses": [h.document() for h in found]}  # fmt: skip
+                "wrong": [h.test for h in wrong], "hypotheses": [h.document() for h in hypotheses]}  # fmt: skip
     give(document, target, lambda: answer(document))
     return 1 if wrong else 0
 

@@ -59,13 +59,13 @@ def protocol(file: Path | None, target: str | None) -> int:
     """Exit code 0 when all is measured, 1 when something is still to do, 2 (with the reason) when a step is refused."""
     with progress() as tell:
         tell("checking the record")
-        found = judged(Record(1.0) if file is None else read_record(file))
-    give(found.document(), target, lambda: answer(found))
-    if found.refused:
-        first = found.refused[0]
-        more = f" (and {len(found.refused) - 1} more)" if len(found.refused) > 1 else ""
+        result = judged(Record(1.0) if file is None else read_record(file))
+    give(result.document(), target, lambda: answer(result))
+    if result.refused:
+        first = result.refused[0]
+        more = f" (and {len(result.refused) - 1} more)" if len(result.refused) > 1 else ""
         raise InputError(first.words.split(";")[0], f"{file} [{first.name}]", first.words.partition("; ")[2] + more)
-    return 0 if file is None or found.complete else 1
+    return 0 if file is None or result.complete else 1
 
 
 def read_record(file: Path) -> Record:

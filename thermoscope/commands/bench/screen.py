@@ -63,8 +63,8 @@ def _by_shares(machine: Machine, design: str) -> dict[str, Any]:
 
 def answer(document: Mapping[str, Any]) -> Answer:
     """The factor that moves each response most; a table per response, largest first: the Pareto chart."""
-    tables = [_effects(name, found) for name, found in document.get("effects", {}).items()]
-    tables += [_ranking(name, found) for name, found in document.get("rankings", {}).items()]
+    tables = [_effects(name, effects) for name, effects in document.get("effects", {}).items()]
+    tables += [_ranking(name, effects) for name, effects in document.get("rankings", {}).items()]
     leading = "; ".join(f"{g.title.partition(':')[0]}: {g.rows[0][1] if document.get('effects') else g.rows[0][0]}"
                         for g in tables if g.rows)  # fmt: skip
     return Answer(f"{document['machine']}, {document['design']}: what moves most. {leading}.", tables,
@@ -94,12 +94,12 @@ def plots(document: Mapping[str, Any], out: Path) -> list[Path]:
 
     title = f"{document['machine']}, {document['design']}"
     made = []
-    for name, found in document.get("effects", {}).items():
+    for name, effects in document.get("effects", {}).items():
         made.append(_png(out, name))
-        screened(found, unit=unit_of(name), title=f"{title}: {name}", png=made[-1])
-    for name, found in document.get("rankings", {}).items():
+        screened(effects, unit=unit_of(name), title=f"{title}: {name}", png=made[-1])
+    for name, effects in document.get("rankings", {}).items():
         made.append(_png(out, name))
-        ranking(found["ranking"], measure=found["method"], title=f"{title}: {name}", png=made[-1])
+        ranking(effects["ranking"], measure=effects["method"], title=f"{title}: {name}", png=made[-1])
     return made
 
 
@@ -115,9 +115,9 @@ def two_paths(case: str, winding: str, machine: str, target: str | None) -> int:
         raise InputError(f"'{winding}' is both", "--winding, --machine", "two places of the network")
     with progress() as tell:
         folder = open_case(case, tell)
-        found = {t.name: of_test(folder.case, t, winding, machine).document() for t in folder.case.tests}
-    document = {"case": folder.case.name, "tests": found}
-    give(document, target, lambda: paths(found))
+        by_test = {t.name: of_test(folder.case, t, winding, machine).document() for t in folder.case.tests}
+    document = {"case": folder.case.name, "tests": by_test}
+    give(document, target, lambda: paths(by_test))
     return 0
 
 
@@ -136,11 +136,11 @@ def carry(source: str, targets: list[str], target: str | None) -> int:
 
     with progress() as tell:
         calibrated = open_case(source, tell)
-        found = [transferred(calibrated.case, open_case(name, tell).case) for name in targets]
+        transfers = [transferred(calibrated.case, open_case(name, tell).case) for name in targets]
     document = {"source": calibrated.case.name, "revision": calibrated.case.model.revision,
-                "targets": [one.document() for one in found]}  # fmt: skip
+                "targets": [one.document() for one in transfers]}  # fmt: skip
     give(document, target, lambda: show_transfer(document))
-    return 0 if all(one.agrees for one in found) else 1
+    return 0 if all(one.agrees for one in transfers) else 1
 
 
 def show_transfer(document: Mapping[str, Any]) -> Answer:

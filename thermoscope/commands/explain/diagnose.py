@@ -29,9 +29,9 @@ def diagnose(case: str, target: str | None, older: bool = False) -> int:
     if older:
         notes(["--draws is no longer needed: nothing is drawn"])
     with progress() as tell:
-        found, document = diagnosed(open_case(case, tell), tell)
+        diagnosis, document = diagnosed(open_case(case, tell), tell)
     give(document, target, lambda: answer(document, case))
-    return 0 if found.verdict in ("named", "group", "several") else 1
+    return 0 if diagnosis.verdict in ("named", "group", "several") else 1
 
 
 def diagnosed(folder: Folder, tell: Progress) -> tuple[Diagnosis, dict[str, Any]]:
@@ -42,11 +42,11 @@ def diagnosed(folder: Folder, tell: Progress) -> tuple[Diagnosis, dict[str, Any]
 
     checked_diagnosis(folder)
     budgets = folder.budgets
-    found = search(folder.case, folder.settings.kinds, tell, budget=ErrorBudget.worst(budgets.values()).total_K)
+    diagnosis = search(folder.case, folder.settings.kinds, tell, budget=ErrorBudget.worst(budgets.values()).total_K)
     named = {"case": folder.case.name, "revision": folder.case.model.revision}
-    document = {**named, **found.document(), "error_budget": documents(budgets), **sampling(folder)}
+    document = {**named, **diagnosis.document(), "error_budget": documents(budgets), **sampling(folder)}
     save_diagnosis(folder, document)
-    return found, document
+    return diagnosis, document
 
 
 def answer(document: Mapping[str, Any], called: str) -> Answer:
@@ -60,8 +60,8 @@ def answer(document: Mapping[str, Any], called: str) -> Answer:
     hidden = [f"{h['effect']} below {cell(h['smallest_detectable'])} {h['unit']}" for h in document["cannot_see"]]
     hidden_words = f"{len(hidden)} effects could be there unseen: {', '.join(hidden[:2])}, ..." if hidden else ""
     remaining = " ".join(row["words"] for row in document.get("remainder", []))
-    found = document["candidates"]
-    parts = [_odds(document), _candidates(found), *_leader(found), *_lost(found, named), remaining, *events(document),
+    candidates = document["candidates"]
+    parts = [_odds(document), _candidates(candidates), *_leader(candidates), *_lost(candidates, named), remaining, *events(document),
              *contradiction(document.get("contradiction")), next_tests(document),
              in_short(document.get("error_budget", {}), steps), hidden_words, question(document, case)]  # fmt: skip
     rest = [*events(document, likely=False), *budget(document.get("error_budget", {}), steps), *hidden]
@@ -70,10 +70,10 @@ def answer(document: Mapping[str, Any], called: str) -> Answer:
 
 def question(document: Mapping[str, Any], case: str) -> str:
     """What to ask the user, if an answer would tell more than a guess."""
-    found = document.get("question")
-    if not found:
+    best = document.get("question")
+    if not best:
         return ""
-    return f"One question: {found['words']} Then: thermoscope explain answer {case} yes|no"
+    return f"One question: {best['words']} Then: thermoscope explain answer {case} yes|no"
 
 
 def _odds(document: Mapping[str, Any]) -> Grid:

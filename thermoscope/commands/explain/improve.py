@@ -34,8 +34,8 @@ def improve(case: str, yes: bool, most: int, target: str | None) -> int:
         ledger = Ledger(folder)
         supervisor = Supervisor(singletons if yes else user_choice, ledger.keep)
         done = improve(folder.case, supervisor, most, tell, folder.settings.kinds)
-    found = {"case": folder.case.name, "revision": ledger.history.last.number, **done.diagnosis.document()}
-    save_diagnosis(folder, json.loads(json.dumps(found, default=float)))
+    last = {"case": folder.case.name, "revision": ledger.history.last.number, **done.diagnosis.document()}
+    save_diagnosis(folder, json.loads(json.dumps(last, default=float)))
     document = {"case": folder.case.name, **done.document(), "written": ledger.written}
     give(document, target, lambda: answer(document, folder, case))
     return 0 if done.adequate else 1

@@ -38,18 +38,18 @@ def build(machine: str, out: Path | None, target: str | None, accuracy: float | 
     if Path(machine).is_file() and folder.resolve() == Path(machine).resolve().parent:
         raise InputError("the machine file lies there: a result could take its name", f"--out {folder}", "out/NAME")
     with progress() as tell:
-        built, found = built_from(described, accuracy, tell)
-        checked = crosscheck.checked(built, found, tell)
+        built, size = built_from(described, accuracy, tell)
+        checked = crosscheck.checked(built, size, tell)
         tell("solids")
         solids = check_cad(described)
         tell(f"writing {folder}")
         export_cad(described, folder)
         write_vtu(built.mesh, folder / f"{described.name}.vtu")
-        document = {**described_as(built, solids), **checked, **({} if found is None else {"sizes": found.document()})}
+        document = {**described_as(built, solids), **checked, **({} if size is None else {"sizes": size.document()})}
         crosscheck.save(document, folder)
         document["pictures"] = [str(file) for file in pictures(built, folder, tell)]
     give(document, target, lambda: answer(document, folder))
-    return 0 if found is None or found.met else 1
+    return 0 if size is None or size.met else 1
 
 
 def pictures(built: Built, folder: Path, tell: Progress) -> list[Path]:
@@ -78,8 +78,8 @@ def built_from(
 
     if accuracy is None:
         return usual(on_all(described), size_m, progress=tell), None
-    found = accurate_network(described, accuracy, size_m, tell)
-    return found.built, found
+    size = accurate_network(described, accuracy, size_m, tell)
+    return size.built, size
 
 
 def described_as(built: Built, solids: list[CadCheck]) -> dict[str, Any]:

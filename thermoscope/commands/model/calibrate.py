@@ -68,11 +68,11 @@ class Unfinished:
 
     def values(self, tell: Progress) -> dict[str, float]:
         """Those of an interrupted calibration of this very case, else none."""
-        found = stored(self.path)
-        if found is None or found.get("fingerprint") != self.of:
+        document = stored(self.path)
+        if document is None or document.get("fingerprint") != self.of:
             return {}
         tell("going on with the calibration that was interrupted")
-        self.reached = found["values"]
+        self.reached = document["values"]
         return dict(self.reached)
 
     def keep(self, values: Mapping[str, float]) -> None:

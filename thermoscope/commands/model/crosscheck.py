@@ -32,11 +32,11 @@ def crosscheck(machine: str, out: Path | None, accuracy: float, target: str | No
     described = load_machine_file(Path(machine))
     folder = out or Path("out") / described.name
     with progress() as tell:
-        found = accurate_network(described, accuracy, progress=tell)
-        document = {"machine": described.name, **checked(found.built, found, tell)}
+        size = accurate_network(described, accuracy, progress=tell)
+        document = {"machine": described.name, **checked(size.built, size, tell)}
         save(document, folder)
     give(document, target, lambda: answer(document, folder))
-    return 0 if found.met else 1
+    return 0 if size.met else 1
 
 
 def checked(built: Built, size: NetworkSize | None, tell: Progress) -> dict[str, Any]:

@@ -52,11 +52,11 @@ def in_short(budgets: Mapping[str, Places], steps: Steps) -> str:
 
 def worst(budgets: Mapping[str, Places]) -> list[Mapping[str, Any]]:
     """Of every place the run with the largest sum."""
-    found: dict[str, Mapping[str, Any]] = {}
+    largest: dict[str, Mapping[str, Any]] = {}
     for row in (row for places in budgets.values() for row in places):
-        if row["place"] not in found or _total(row) > _total(found[row["place"]]):
-            found[row["place"]] = row
-    return list(found.values())
+        if row["place"] not in largest or _total(row) > _total(largest[row["place"]]):
+            largest[row["place"]] = row
+    return list(largest.values())
 
 
 def _total(row: Mapping[str, Any]) -> float:

@@ -43,10 +43,10 @@ def meant(folder: Folder, effect: str) -> str:
     kind, _, which = effect.partition("@")
     if kind != "event":
         return effect
-    found = (current_diagnosis(folder) or {}).get("events", [])
-    names = {name: e["effect"] for i, e in enumerate(found) for name in (str(i + 1), e["event"])}
+    events = (current_diagnosis(folder) or {}).get("events", [])
+    names = {name: e["effect"] for i, e in enumerate(events) for name in (str(i + 1), e["event"])}
     if which not in names:
-        right = f"event@1 to event@{len(found)}" if found else NO_EVENT
+        right = f"event@1 to event@{len(events)}" if events else NO_EVENT
         raise InputError(f"no event '{which}'", f"effect '{effect}'", right)
     return str(names[which])
 
@@ -123,8 +123,8 @@ def recorded(result: revise.Revision, evidence: Mapping[str, float | str]) -> Re
 
 def evidence(folder: Folder, result: revise.Revision) -> dict[str, float | str]:
     """What the last diagnosis of this very model said about the effect; empty when there was none."""
-    found = current_diagnosis(folder) if result.action == "add" else None
-    rows = [c for c in (found or {}).get("candidates", []) if c["effect"] == result.effect]
+    diagnosis = current_diagnosis(folder) if result.action == "add" else None
+    rows = [c for c in (diagnosis or {}).get("candidates", []) if c["effect"] == result.effect]
     return {key: rows[0][key] for key in ("probability", "score", "threshold", "decision")} if rows else {}
 
 

@@ -143,10 +143,10 @@ def _difference(s: Subject, png: Path) -> None:
 def _misses(s: Subject, png: Path) -> None:
     from viz import misses, sensors
 
-    found = error_field(s.folder, s.test, s.nodes)
+    error = error_field(s.folder, s.test, s.nodes)
     seen = sensors(comparison_of(s.folder, s.test), s.folder.positions)
     title = f"{s.test.name}, its last fifth: measured minus model"
-    misses(s.nodes, found.mean, found.explained, sensors=seen, title=title, png=png).close()
+    misses(s.nodes, error.mean, error.explained, sensors=seen, title=title, png=png).close()
 
 
 def _uncertainty(s: Subject, png: Path) -> None:
@@ -164,15 +164,15 @@ def _bands(s: Subject, png: Path) -> None:
     from viz import Predicted, predicted
 
     network, test = working(s.folder.case)[0], s.test
-    found = along(posterior_of(s.folder, s.tell), test.name, record(test, {}), named_rows(network, s.folder))
+    bands = along(posterior_of(s.folder, s.tell), test.name, record(test, {}), named_rows(network, s.folder))
     read = {f"sensor {c.name}": c.y for c in test.channels}
     measured = {c.place for c in test.channels}
     places = [
-        Predicted(n, found.y[:, k], found.half95[:, k], read.get(n))
-        for k, n in enumerate(found.names)
+        Predicted(n, bands.y[:, k], bands.half95[:, k], read.get(n))
+        for k, n in enumerate(bands.names)
         if n not in measured
     ]
-    predicted(found.time, places, title=test.name, png=png)
+    predicted(bands.time, places, title=test.name, png=png)
 
 
 def _exploded(s: Subject, png: Path) -> None:

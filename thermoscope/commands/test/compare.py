@@ -101,8 +101,8 @@ def bands_of(rows: Sequence[Mapping[str, Any]]) -> Grid:
     for r in rows:
         if r["place"] not in worst or r["widest_ci95_K"] > worst[r["place"]]["widest_ci95_K"]:
             worst[r["place"]] = r
-    found = sorted(worst.values(), key=lambda r: -r["widest_ci95_K"])
-    body = [[r["place"], r["widest_ci95_K"], r["test"], r.get("inside")] for r in found]
+    widest = sorted(worst.values(), key=lambda r: -r["widest_ci95_K"])
+    body = [[r["place"], r["widest_ci95_K"], r["test"], r.get("inside")] for r in widest]
     return Grid("95 % bands of the model", ["place", "widest (K)", "in", "readings inside"], body)
 
 
@@ -139,8 +139,8 @@ def _why(document: Mapping[str, Any]) -> list[Grid | str]:
 
 def _missing(places: Sequence[Mapping[str, Any]]) -> list[str]:
     """Where heat is missing, and how much at most."""
-    found = [h for h in places if h["evidence_nats"] > EVIDENT]
-    lines = [f"Heat missing at {h['place']} ({h['evidence_nats']:.0f} nats): {_pulses(h)}." for h in found[:3]]
+    evident = [h for h in places if h["evidence_nats"] > EVIDENT]
+    lines = [f"Heat missing at {h['place']} ({h['evidence_nats']:.0f} nats): {_pulses(h)}." for h in evident[:3]]
     return lines or ["No place where heat is clearly missing (beyond what calibration mends)."]
 
 

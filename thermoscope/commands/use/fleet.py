@@ -40,10 +40,10 @@ def fleet(case: str, names: Sequence[Path], like: str | None, cluster: str | Non
         with dask_cluster(cluster) if cluster else nullcontext() as executor:
             units = histories(files, reader, tell, executor)
         tell("the motors together")
-        found = population(units)
+        spread = population(units)
     fits = {u.name: float(np.sqrt(np.mean([s.rmse_K**2 for s in u.parts]))) for u in units}
     document = {"case": folder.case.name, "revision": folder.case.model.revision, "recordings": len(files),
-                **_document(found, fits)}  # fmt: skip
+                **_document(spread, fits)}  # fmt: skip
     give(document, target, lambda: answer(document))
     return 0
 

@@ -60,11 +60,11 @@ def assemblies(test: Test, predicted: Array, resolution_K: float = 0.5, window_m
         columns = [j for j, c in enumerate(test.channels) if c.place == place and np.isfinite(c.y).any()]
         if columns:
             y = np.nanmean([test.channels[j].y for j in columns], axis=0)
-            found = equilibrium(test.time / 60.0, y, resolution_K, window_min)
+            end = equilibrium(test.time / 60.0, y, resolution_K, window_min)
             late = test.time >= test.time[-1] - 60.0 * window_min
             calculated = float(np.mean(predicted[late][:, columns]))
             u = max(test.channels[j].sigma_K for j in columns)
-            out.append(assembly(place, (float(np.nanmean(y[late])), found.reached), calculated, ambient, u))
+            out.append(assembly(place, (float(np.nanmean(y[late])), end.reached), calculated, ambient, u))
     return out
 
 

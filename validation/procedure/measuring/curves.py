@@ -54,7 +54,7 @@ class Curves:
     def agrees(self) -> bool:
         """Whether every assembly is within 4 % and equal tests repeat."""
         calibrated = all(worst(rows)["calibrated"] for rows in self.rules.values() if rows)
-        return calibrated and all(found.repeat for found in self.pooled.values())
+        return calibrated and all(repeats_of.repeat for repeats_of in self.pooled.values())
 
     def document(self) -> dict[str, Any]:
         tests = [
@@ -63,8 +63,8 @@ class Curves:
              "rule": worst(self.rules[name]) if self.rules[name] else None}
             for name, rows in self.curves.items()
         ]  # fmt: skip
-        equal = [{"tests": list(names), "place": place, **found.document()}
-                 for (names, place), found in self.pooled.items()]  # fmt: skip
+        equal = [{"tests": list(names), "place": place, **pooled.document()}
+                 for (names, place), pooled in self.pooled.items()]  # fmt: skip
         return {"case": self.case.name, "revision": self.case.model.revision, "agrees": self.agrees, "tests": tests,
                 "repeats": equal}  # fmt: skip
 
@@ -111,8 +111,8 @@ def constant(test: Test) -> bool:
 
 def _rules(test: Test, predicted: Array, resolution_K: float) -> tuple[Assembly, ...]:
     window = max((window_min(test, c) for c in test.channels), default=10.0)
-    found, _ = _result_or_reason(lambda: assemblies(test, predicted, resolution_K, window))
-    return tuple(found or ())
+    rules, _ = _result_or_reason(lambda: assemblies(test, predicted, resolution_K, window))
+    return tuple(rules or ())
 
 
 def _pooled(tests: Sequence[Test], air: str) -> Iterator[tuple[tuple[tuple[str, ...], str], Repeats]]:
@@ -146,9 +146,9 @@ def _same(a: Test, b: Test) -> bool:
 def _end(test: Test, place: str, boundary: str) -> tuple[float, float] | None:
     """Rise over ambient (K) of a place in the last quarter, and the sensor's uncertainty (K)."""
     late, air = test.time >= LATE * test.time[-1], np.broadcast_to(test.boundaries[boundary], test.time.shape)
-    found = []
+    ends = []
     for c in (c for c in test.channels if c.place == place):
         seen = late & np.isfinite(c.y)
         if seen.any():
-            found.append((float(np.mean(c.y[seen] - air[seen])), c.sigma_K))
-    return (float(np.mean([r for r, _ in found])), max(u for _, u in found)) if found else None
+            ends.append((float(np.mean(c.y[seen] - air[seen])), c.sigma_K))
+    return (float(np.mean([r for r, _ in ends])), max(u for _, u in ends)) if ends else None

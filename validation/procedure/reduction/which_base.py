@@ -51,8 +51,8 @@ class Hypothesis:
 def switches(network: Network) -> dict[str, str]:
     """Base -> the input that couples it."""
     laws = [link.law for link in network.links]
-    found = {law.switch: None for law in laws if isinstance(law, Switched) and law.closed}
-    return {name.removeprefix("on_"): name for name in found}
+    names = {law.switch: None for law in laws if isinstance(law, Switched) and law.closed}
+    return {name.removeprefix("on_"): name for name in names}
 
 
 def declared_base(test: Test, bases: Mapping[str, str]) -> str:
@@ -83,17 +83,17 @@ def which_base(case: Case, names: Sequence[str] = (), progress: Progress = no_pr
 def _of_test(
     case: Case, tests: Sequence[Test], test: Test, bases: Mapping[str, str], declared_fit: Fit, progress: Progress
 ) -> list[Hypothesis]:
-    declared, found = declared_base(test, bases), {}
+    declared, fits = declared_base(test, bases), {}
     for base in (NONE, *bases):
         progress(f"{test.name} on {base}")
         moved = [on_base(t, base, bases) if t is test else t for t in tests]
-        found[base] = declared_fit if base == declared else _fitted(case, moved, declared_fit)
-    cost = {base: deviance(fit) for base, fit in found.items()}
+        fits[base] = declared_fit if base == declared else _fitted(case, moved, declared_fit)
+    cost = {base: deviance(fit) for base, fit in fits.items()}
     least = min(cost.values())
     rows = [
         Hypothesis(test.name, base, base == declared, cost[base] - least,
                    base_heat(fit.network, on_base(test, base, bases), fit.values))
-        for base, fit in found.items()
+        for base, fit in fits.items()
     ]  # fmt: skip
     return sorted(rows, key=lambda h: h.deviance)
 
