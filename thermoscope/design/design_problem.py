@@ -164,5 +164,6 @@ def _refuse_hot_at_no_load(problem: Problem, loads: tuple[str, ...]) -> None:
         if performance.places[s.name] >= s.limit:
             raise InputError(
                 f"the limit of '{s.name}', {s.limit:g} degC, is exceeded without any load "
-                f"({performance.places[s.name]:.1f} degC)", "--limit", "a higher limit, cooler surroundings or a lower speed",
+                f"({performance.places[s.name]:.1f} degC)",
+                "--limit", "a higher limit, cooler surroundings or a lower speed",
             )  # fmt: skip

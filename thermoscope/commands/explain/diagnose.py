@@ -61,8 +61,8 @@ def answer(document: Mapping[str, Any], called: str) -> Answer:
     hidden_words = f"{len(hidden)} effects could be there unseen: {', '.join(hidden[:2])}, ..." if hidden else ""
     remaining = " ".join(row["words"] for row in document.get("remainder", []))
     candidates = document["candidates"]
-    parts = [_odds(document), _candidates(candidates), *_leader(candidates), *_lost(candidates, named), remaining, *events(document),
-             *contradiction(document.get("contradiction")), next_tests(document),
+    parts = [_odds(document), _candidates(candidates), *_leader(candidates), *_lost(candidates, named), remaining,
+             *events(document), *contradiction(document.get("contradiction")), next_tests(document),
              in_short(document.get("error_budget", {}), steps), hidden_words, question(document, case)]  # fmt: skip
     rest = [*events(document, likely=False), *budget(document.get("error_budget", {}), steps), *hidden]
     return Answer(sentence, parts, f"{step}; --json FILE; thermoscope show report {case}", rest)
