@@ -4,7 +4,7 @@
     python benchmarks/condensation.py --offline [--json FILE]      what condensing the motor on 150,000 nodes costs
 
 For every machine of the library, or those named: the network that `thermoscope model build --accuracy` keeps, at
-coefficients and load cases not seen before (`condensation_points.py`). Errors are in percent of a part's own rise, at
+coefficients and load cases not seen before (`condensed/points.py`). Errors are in percent of a part's own rise, at
 least a tenth of the machine's largest; after a step of loss, hot spots and points in percent of the largest rise then.
 "wanted" is what the network is built for. Shapes are found anew: the cache of earlier builds is not used.
 """
@@ -25,14 +25,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from condensation_cost import Row, offline_rows, row
-from condensation_points import Pair, Point
+from condensed.cost import Row, offline_rows, row
+from condensed.points import Pair, Point
 
 from fem.solvers.solve import Fluids, steady
 from geom import library, load_machine
 from lumped.condensation.reduction_error import Errors, errors, merged
 from lumped.model.network import Network
-from thermoscope.verification.network_size import SizedNetwork, smallest_network
+from thermoscope.verification.network_size import NetworkSize, smallest_network
 
 WANTED = {"mean": 1.0, "hot": 2.0, "point": 2.0}
 AT_RANDOM = {**WANTED, "hot": 3.0}
@@ -120,7 +120,7 @@ def energy(pair: Pair) -> float:
     return steady(r.solver, r.films, r.contacts, pair.field_loads[:, 0], fluids).energy_balance
 
 
-def recovery_rows(found: SizedNetwork, z: np.ndarray) -> Iterator[Row]:
+def recovery_rows(found: NetworkSize, z: np.ndarray) -> Iterator[Row]:
     """Milliseconds for the whole field, the hot spot of every part, and one more sensor."""
     network, field = found.built.network, found.built.field
     shapes, x = network.recovery, z[: len(network.states)]

@@ -29,7 +29,7 @@ TOLERANCE_MM = 0.2
 
 def helical(machine: Machine) -> bool:
     """Whether a channel winds round the axis."""
-    return any(isinstance(piece, Helix) for part in machine.parts if part.made for piece in part.made.cuts)
+    return any(isinstance(piece, Helix) for part in machine.parts if part.cad_shape for piece in part.cad_shape.cuts)
 
 
 def checked(family: Family, seed: int) -> dict[str, Any]:

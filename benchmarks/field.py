@@ -2,7 +2,7 @@
 
     python benchmarks/field.py [--large] [--stack] [--json FILE]
 
-A laminated hollow cylinder with films (`field_contenders.py`): 50,000 and 300,000 unknowns, with --large a million too.
+A laminated hollow cylinder with films (`peers/field.py`): 50,000 and 300,000 unknowns, with --large a million too.
 "total" is assembly, boundary terms and solve; ngsolve's Cholesky runs at 50,000 only, where it is already the slowest.
 A peer that has not finished after 150 CPU seconds is stopped: its row then holds that time, and says so.
 Before, the series-wound motor on 150,000 nodes (188,000 unknowns, nodes split at contacts): 15 loads, and an hour in
@@ -59,7 +59,7 @@ def raced(name: str, file: Path, times: int) -> dict[str, Any] | None:
     """What one contender printed in its quickest of some runs; None: it was stopped."""
     print(f"{name} ...", file=sys.stderr)
     tiny = file.with_name("tiny.npz")
-    command = [sys.executable, Path(__file__).with_name("field_contenders.py"), name, file, tiny]
+    command = [sys.executable, Path(__file__).with_name("peers") / "field.py", name, file, tiny]
     limit = lambda: resource.setrlimit(resource.RLIMIT_CPU, (STOPPED, STOPPED))  # noqa: E731
     runs = [subprocess.run(command, stdout=subprocess.PIPE, text=True, preexec_fn=limit) for _ in range(times)]
     if any(run.returncode < 0 for run in runs):

@@ -24,7 +24,7 @@ from pathlib import Path
 from typing import Any, TextIO
 
 import numpy as np
-from network_peers import peers, reference, timed
+from peers.network import peers, reference, timed
 
 from lumped.integration.ensemble import dask_cluster, ensemble
 from lumped.integration.simulate import Record, simulate

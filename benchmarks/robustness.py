@@ -32,7 +32,7 @@ from pathlib import Path
 from typing import Any
 
 ROOT = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "thermoscope")]
+sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "shared")]
 
 from aiohttp import web  # noqa: E402
 from small_case import small_case  # noqa: E402

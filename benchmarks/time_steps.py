@@ -21,7 +21,7 @@ from lumped.integration.record import Record
 from lumped.integration.simulate import simulate
 from lumped.model.network import Network, Row
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "shared"))
 from random_networks import Machine, admissible, built, machine, reference
 
 WRONG_K, WRONG_SHARE, OUTSIDE_K = 0.1, 1e-3, 0.01

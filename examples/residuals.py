@@ -13,16 +13,16 @@ from pathlib import Path
 import numpy as np
 
 import thermoscope as ts
-from thermoscope.case_folder.runs import held
+from thermoscope.case_folder.runs import comparison_of
 from viz import measured_and_model, residuals
-from viz.live import against_input, parity, saved
+from viz.live import against_input, parity, save
 
 out = Path(sys.argv[1] if len(sys.argv) > 1 else "out/examples")
 
 # %% The case and one of its held-out profiles.
 case = ts.open("hust-ipmsm")
 test = next(t for t in case.tests.values() if t.role == "hold-out")
-comparison = held(case.folder, test)
+comparison = comparison_of(case.folder, test)
 
 # %% On paper.
 measured_and_model(comparison, png=out / "residuals-1.png")
@@ -31,8 +31,8 @@ residuals(comparison, png=out / "residuals-2.png")
 # %% To move about in.
 rotor = next(c.name for c in comparison.channels if c.place == "rotor")
 speed = next(name for name in test.inputs if "speed" in name)
-saved(against_input(comparison, rotor, speed), out / "against-speed.html")
-saved(parity(comparison), out / "parity.html")
+save(against_input(comparison, rotor, speed), out / "against-speed.html")
+save(parity(comparison), out / "parity.html")
 
 # %% The error as the tool computes it, and from the curves that were drawn.
 computed = next(t for t in case.compare().tests if t.name == test.name).rmse_K

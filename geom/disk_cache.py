@@ -20,7 +20,7 @@ def cache_file(part: Part, folder: Path | str | None, kind: str, suffix: str) ->
     """Where a result of the part's shape lies; neither its name nor its material matter. None without a folder."""
     if folder is None:
         return None
-    content = hashlib.sha256(repr((part.prisms, part.made)).encode()).hexdigest()[:20]
+    content = hashlib.sha256(repr((part.prisms, part.cad_shape)).encode()).hexdigest()[:20]
     return Path(folder) / f"{kind}-{content}.{suffix}"
 
 

@@ -70,6 +70,7 @@ def machine_from(sections: Mapping[str, Any], where: str = "machine") -> Machine
         source=header.get("source", ""),
         assumed=header.get("assumed", ""),
         ports=family.ports(values),
+        features=family.features(values),
     )
     _refuse_outside_envelope(machine, where)
     return based(machine, load_machine, where)

@@ -16,11 +16,13 @@ import numpy as np
 import tomlkit
 from numpy.typing import NDArray
 
-from simulated import pm_files, pm_meters, pm_plant
-from simulated.draws import Draws
-from simulated.plant import State
-from simulated.pm_plant import PmLosses, PmPlant
-from simulated.surfaces import Conditions
+from simulated.physics.draws import Draws
+from simulated.physics.plant import State
+from simulated.physics.surfaces import Conditions
+from simulated.pm import files as pm_files
+from simulated.pm import meters as pm_meters
+from simulated.pm import plant as pm_plant
+from simulated.pm.plant import PmLosses, PmPlant
 
 Array = NDArray[np.float64]
 SEED = 31

@@ -13,10 +13,11 @@ from pathlib import Path
 import numpy as np
 
 from geom import load_machine
-from simulated import air, conduct, drive, files, halves, losses, materials, sensors, surfaces
-from simulated.draws import Draws
-from simulated.plant import Plant
-from simulated.run import Result, run
+from simulated.physics import air, conduction, losses, materials, surfaces
+from simulated.physics.draws import Draws
+from simulated.physics.plant import Plant
+from simulated.road import drive, files, halves, sensors
+from simulated.road.run import Result, run
 
 SEED = 20251
 FULL = {"stator_m": 0.02, "rotor_m": 0.005}
@@ -38,7 +39,7 @@ def motor(draws: Draws, mesh: dict[str, float], hidden: bool = True) -> Plant:
     built = halves.build(machine, **mesh)  # type: ignore[arg-type]
     solids = materials.solids(machine, draws)
     joints = materials.contacts([*built.mesh.contacts, *built.joints], draws)
-    body = conduct.build(built.mesh, solids, joints, built.copies, built.joints)
+    body = conduction.build(built.mesh, solids, joints, built.copies, built.joints)
     gap_share = draws.around("fan.gap_share", 0.13, 0.15)
     films = surfaces.draw(draws)
     return Plant(body, losses.draw(draws), films if hidden else replace(films, shelter=0.0), air.path(body, gap_share))

@@ -33,9 +33,9 @@ JUMP_S = 1e-6  # far below any step, far above the rounding of a day in seconds
 LAYOUT = 2  # of a kept file: a change here makes old ones be left alone
 
 
-def wanted(network: Network, asked: bool | None) -> bool:
+def wanted(network: Network, requested: bool | None) -> bool:
     """Whether bands are made: as asked, else where they cost little."""
-    return len(network.states) <= SMALL if asked is None else asked
+    return len(network.states) <= SMALL if requested is None else requested
 
 
 def posterior_of(folder: Folder, progress: Progress) -> ParameterPosterior:
@@ -44,14 +44,17 @@ def posterior_of(folder: Folder, progress: Progress) -> ParameterPosterior:
     cached = recalled(file, lambda path: _from_cache(folder, path))
     if cached is not None:
         return cached
-    found = parameter_posterior(folder.case, progress)
-    if found.fitted:
+    posterior = parameter_posterior(folder.case, progress)
+    if posterior.fitted:
         out = io.BytesIO()
         np.savez_compressed(
-            out, covariance=found.covariance, offset=found.offset, said=json.dumps([found.names, found.fitted])
+            out,
+            covariance=posterior.covariance,
+            offset=posterior.offset,
+            said=json.dumps([posterior.names, posterior.fitted]),
         )
         write_whole(file, out.getvalue())
-    return found
+    return posterior
 
 
 def _from_cache(folder: Folder, file: Path) -> ParameterPosterior:
@@ -92,7 +95,10 @@ def along(of: ParameterPosterior, name: str, record: Record, rows: Mapping[str, 
     inputs = {n: np.broadcast_to(np.asarray(u, float), nt) for n, u in record.inputs.items()}
     inputs = {n: u for n, u in inputs.items() if n not in (CLOCK, f"{RUNNING}{name}")}
     air = {n: np.broadcast_to(np.asarray(u, float), nt) for n, u in record.boundaries.items()}
-    time, source = apart(record.time), record.inputs.source if isinstance(record.inputs, Signals) else None
+    time, source = (
+        strictly_increasing(record.time),
+        record.inputs.source if isinstance(record.inputs, Signals) else None,
+    )
     fine = Recorded(source.time, {n: source.signals[n] for n in inputs}, time, inputs) if source else None
     test = Test(name, "hold-out", time, inputs, air, (), record.initial, recorded=fine)
     return bands(of, test, [Place(n, row) for n, row in rows.items()])
@@ -106,24 +112,23 @@ def field_half95(folder: Folder, test: Test, parts: Sequence[str], progress: Pro
     of = posterior_of(folder, progress)
     progress(f"uncertainty at the end of {test.name}")
     first, last, R = at_end(of, test)
-    recovery: Any = of.network.recovery
-    there, rise = (np.concatenate([recovery.of_part(p, x) for p in parts]) for x in (R, last - first))
+    there, rise = (of.network.on_parts(parts, x) for x in (R, last - first))
     return NORMAL_95 * np.sqrt(np.sum(there**2, axis=1) + (of.doubt["slow"] * rise) ** 2)
 
 
-def apart(time: Array) -> Array:
+def strictly_increasing(time: Array) -> Array:
     """The times, where one is given twice (a jump) a microsecond apart: rates of change are taken of them."""
     return time + JUMP_S * np.cumsum(np.diff(time, prepend=-np.inf) == 0.0)
 
 
-def documents(found: Bands) -> dict[str, dict[str, Any]]:
+def documents(bands: Bands) -> dict[str, dict[str, Any]]:
     """Place -> the fields of its band: at its largest temperature, at the end, and where it is widest."""
     out = {}
-    for k, name in enumerate(found.names):
-        hottest = int(np.argmax(found.y[:, k]))
+    for k, name in enumerate(bands.names):
+        hottest = int(np.argmax(bands.y[:, k]))
         out[name] = {
-            "max_ci95": interval(found, hottest, k), "end_ci95": interval(found, -1, k),
-            "widest_ci95_K": float(2.0 * found.half95[:, k].max()),
+            "max_ci95": interval(bands, hottest, k), "end_ci95": interval(bands, -1, k),
+            "widest_ci95_K": float(2.0 * bands.half95[:, k].max()),
         }  # fmt: skip
     return out
 
@@ -139,19 +144,19 @@ def of_tests(folder: Folder, progress: Progress) -> list[dict[str, Any]]:
     of, rows = posterior_of(folder, progress), named_rows(model_of(folder)[0], folder)
     out = []
     for test in folder.case.tests:
-        found = along(of, test.name, record(test, {}), rows)
+        bands = along(of, test.name, record(test, {}), rows)
         read = {f"sensor {c.name}": c for c in test.channels}
-        for k, name in enumerate(found.names):
-            row = {"test": test.name, "place": name, "mean_ci95_K": float(2.0 * found.half95[:, k].mean())}
-            row["widest_ci95_K"] = float(2.0 * found.half95[:, k].max())
+        for k, name in enumerate(bands.names):
+            row = {"test": test.name, "place": name, "mean_ci95_K": float(2.0 * bands.half95[:, k].mean())}
+            row["widest_ci95_K"] = float(2.0 * bands.half95[:, k].max())
             if c := read.get(name):
-                close = np.abs(c.y - found.y[:, k]) <= np.hypot(found.half95[:, k], NORMAL_95 * c.sigma_K)
+                close = np.abs(c.y - bands.y[:, k]) <= np.hypot(bands.half95[:, k], NORMAL_95 * c.sigma_K)
                 row["inside"] = float(np.mean(close[np.isfinite(c.y)]))
             out.append(row)
     return out
 
 
-def interval(found: Bands, at: int, k: int) -> list[float]:
+def interval(bands: Bands, at: int, k: int) -> list[float]:
     """Central 95 % (degC)."""
-    half = float(found.half95[at, k])
-    return [float(found.y[at, k]) - half, float(found.y[at, k]) + half]
+    half = float(bands.half95[at, k])
+    return [float(bands.y[at, k]) - half, float(bands.y[at, k]) + half]

@@ -6,7 +6,7 @@ import os
 import shutil
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
 
@@ -34,8 +34,8 @@ class Finding:
     fix: str = ""
 
 
-def findings() -> list[Finding]:
-    """Everything that is looked for, in the order of importance."""
+def findings(browsers: Sequence[str] = BROWSERS) -> list[Finding]:
+    """Everything that is looked for, in the order of importance.  browsers : commands, any of which will do"""
     return [
         *(
             _finding(f"[{e.name}]", partial(_installed, e.name), e.needed_for, False, e.install)
@@ -44,13 +44,13 @@ def findings() -> list[Finding]:
         _finding("off-screen OpenGL", _gl, "pictures (render, report, demo)", True, _gl_fix()),
         _finding("rerun viewer", _rerun, "opening .rrd recordings", False, "uv pip install rerun-sdk"),
         _finding("Vulkan driver", _vulkan, "screenshots from the rerun viewer without a display", False, VULKAN),
-        _finding("Chromium", _browser, "screenshots of the HTML report", False, CHROMIUM),
+        _finding("Chromium", partial(_browser, browsers), "screenshots of the HTML report", False, CHROMIUM),
     ]
 
 
 def _finding(name: str, there: Callable[[], bool], needed_for: str, needed: bool, fix: str) -> Finding:
-    found = there()
-    return Finding(name, found, needed_for, needed, "" if found else as_root(fix))
+    present = there()
+    return Finding(name, present, needed_for, needed, "" if present else as_root(fix))
 
 
 def as_root(command: str) -> str:
@@ -84,8 +84,8 @@ def _vulkan() -> bool:
     return done.returncode == 0
 
 
-def _browser() -> bool:
-    return any(shutil.which(name) for name in BROWSERS)
+def _browser(browsers: Sequence[str]) -> bool:
+    return any(shutil.which(name) for name in browsers)
 
 
 _INSTANCE = """
@@ -97,20 +97,20 @@ assert vk.vkEnumeratePhysicalDevices(instance, ctypes.byref(count), None) == 0 a
 """
 
 
-def check(target: str | None) -> int:
+def check(target: str | None, browsers: Sequence[str] = BROWSERS) -> int:
     """Exit code 1 when something is missing that pictures need."""
     with progress() as tell:
         tell("looking for graphics")
-        found = findings()
-    document = {"ready": all(f.found for f in found if f.needed), "checks": [asdict(f) for f in found]}
-    give(document, target, lambda: answer(found))
+        parts = findings(browsers)
+    document = {"ready": all(f.found for f in parts if f.needed), "checks": [asdict(f) for f in parts]}
+    give(document, target, lambda: answer(parts))
     return 0 if document["ready"] else 1
 
 
-def answer(found: list[Finding]) -> Answer:
+def answer(parts: list[Finding]) -> Answer:
     """What is missing, and the command that fixes it."""
-    missing = [f.name for f in found if f.needed and not f.found]
-    lines = [_line(f) for f in found]
+    missing = [f.name for f in parts if f.needed and not f.found]
+    lines = [_line(f) for f in parts]
     sentence = f"This computer lacks {', '.join(missing)}." if missing else "This computer has all that is needed."
     return Answer(sentence, lines)
 

@@ -293,7 +293,7 @@ def plan(
         list[str] | None,
         typer.Option(metavar="EFFECT@PLACE", help="A hypothesis; several are possible. Else the last diagnosis's."),
     ] = None,
-    test: Annotated[str | None, typer.Option(metavar="NAME", help="Of the menu; else the one that tells most.")] = None,
+    test: Annotated[str | None, typer.Option(metavar="NAME", help="Candidate test; else the best.")] = None,
     out: Annotated[Path | None, typer.Option("--out", metavar="FILE", help="An HTML file.")] = None,
     json: Json = None,
 ) -> None:

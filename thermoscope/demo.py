@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from geom.errors import InputError, MissingDependency
 from thermoscope.case_folder.folder import find_case
-from thermoscope.case_folder.runs import by_interest, fields, held
+from thermoscope.case_folder.runs import by_interest, comparison_of, fields
 from thermoscope.commands.explain.diagnose import answer as diagnosis_answer
 from thermoscope.commands.explain.diagnose import diagnosed
 from thermoscope.commands.model.build import build
@@ -54,7 +54,7 @@ def demo(out: Path, target: str | None) -> int:
         picture(machine_picture(case, out), "the parts and their names")
         headline("2  Calibrated on the brake stand")
         calibrate(str(case), True, None)
-    folder = opened(case)
+    folder = open_demo(case)
     headline("3  Held against the road")
     with within(SHORT):
         stages = [Stage("calibrated on the stand", print_comparison(folder))]
@@ -64,49 +64,49 @@ def demo(out: Path, target: str | None) -> int:
     stages.append(Stage(f"{KNOB} x {turned.factor:.2f} instead", turned.comparison.document()))
     headline("5  What is missing?")
     with within(LONGER):
-        found = print_diagnosis(folder, out)
-    picture(odds(found, out), "what the readings say")
-    done, named = False, found["named"]
+        diagnosis = print_diagnosis(folder, out)
+    picture(odds(diagnosis, out), "what the readings say")
+    done, named = False, diagnosis["named"]
     if named:
         headline(f"6  Add {named[0]}")
         with within(SHORT):
             done = add(str(case), named[0], False, str(out / "add.json")) == 0
-        folder = opened(case)
+        folder = open_demo(case)
         stages.append(Stage(f"with {named[0]}", folder.compared.document()))
     headline("7  What is left, and where to look")
-    say(left_over(found, stages[-1].errors))
+    say(remaining_error(diagnosis, stages[-1].errors))
     pages(folder, case, out)
     picture(out / "error.png", "the error, step by step")
     picture(out / "field-before-after.png", "the field before and after")
     return closing(stages, done, out, target, time.monotonic() - begun)
 
 
-def left_over(found: Mapping[str, Any], errors: Mapping[str, Any]) -> str:
+def remaining_error(diagnosis: Mapping[str, Any], errors: Mapping[str, Any]) -> str:
     """What the worst sensor still misses, and what that is: as the diagnosis says it, or that it cannot be told."""
     rows = [(c, t["name"]) for t in errors["tests"] for c in t["channels"] if c["verdict"] == "over"]
     if not rows:
         return "Every sensor is within its limit in every test."
     worst, test = max(rows, key=lambda row: row[0]["rmse_K"] / row[0]["limit_K"])
-    said = [r["words"] for r in found.get("remainder", []) if r["channel"] == worst["channel"]]
-    if said:
-        return str(said[0])
+    sentences = [r["words"] for r in diagnosis.get("remainder", []) if r["channel"] == worst["channel"]]
+    if sentences:
+        return str(sentences[0])
     return (
         f"{worst['channel']} is still {worst['rmse_K']:.1f} K off in {test} (limit {worst['limit_K']:.1f} K): within "
-        f"the doubts of the model, these data cannot tell why{next_likely(found)}."
+        f"the doubts of the model, these data cannot tell why{next_likely(diagnosis)}."
     )
 
 
-def next_likely(found: Mapping[str, Any]) -> str:
+def next_likely(diagnosis: Mapping[str, Any]) -> str:
     """The most probable second effect and the test that would tell."""
-    tests = {c["effect"]: c["isolating_test"] for c in found["candidates"] if c["isolating_test"]}
-    for row in found["odds"]:
-        more = [e for e in row["effects"] if e not in found["named"]]
-        if len(row["effects"]) == len(found["named"]) + 1 and more[0] in tests and not row.get("tests"):
+    tests = {c["effect"]: c["isolating_test"] for c in diagnosis["candidates"] if c["isolating_test"]}
+    for row in diagnosis["odds"]:
+        more = [e for e in row["effects"] if e not in diagnosis["named"]]
+        if len(row["effects"]) == len(diagnosis["named"]) + 1 and more[0] in tests and not row.get("tests"):
             return f"; likeliest {more[0]} ({100 * row['probability']:.0f} %): {tests[more[0]]}"
     return ""
 
 
-def opened(case: Path) -> Folder:
+def open_demo(case: Path) -> Folder:
     """The case with its model as it stands; it serves all that is said and drawn of that model."""
     with progress() as tell:
         return open_case(str(case), tell)
@@ -145,9 +145,9 @@ def machine_picture(case: Path, out: Path) -> Path | None:
     """The parts, each with its name."""
     from viz import regions, split
 
-    built = opened(case).built
+    built = open_demo(case).built
     assert built is not None, "the demo's case is built from geometry"
-    return _drawn(out / "1-machine.png", lambda png: regions(split(built.mesh), png=png).close())
+    return _picture(out / "1-machine.png", lambda png: regions(split(built.mesh), png=png).close())
 
 
 def misses(folder: Folder, out: Path) -> Path | None:
@@ -160,12 +160,12 @@ def misses(folder: Folder, out: Path) -> Path | None:
     def draw(png: Path) -> None:
         nodes = split(built.mesh)
         now = fields(folder.case, test, nodes, 1)[1][-1]
-        cutaway(nodes, now, sensors=sensors(held(folder, test), folder.positions), title=test.name, png=png)
+        cutaway(nodes, now, sensors=sensors(comparison_of(folder, test), folder.positions), title=test.name, png=png)
 
-    return _drawn(out / "2-misses.png", draw)
+    return _picture(out / "2-misses.png", draw)
 
 
-def _drawn(png: Path, draw: Callable[[Path], Any]) -> Path | None:
+def _picture(png: Path, draw: Callable[[Path], Any]) -> Path | None:
     """The picture, None where graphics are missing (`thermoscope check` says how to get them)."""
     from viz import require_gl
 
@@ -178,13 +178,13 @@ def _drawn(png: Path, draw: Callable[[Path], Any]) -> Path | None:
     return png
 
 
-def odds(found: Mapping[str, Any], out: Path) -> Path | None:
+def odds(diagnosis: Mapping[str, Any], out: Path) -> Path | None:
     """The probability of every hypothesis."""
     from viz import posterior
 
-    if not found:
+    if not diagnosis:
         return None
-    posterior(found["odds"], png=out / "3-odds.png")
+    posterior(diagnosis["odds"], png=out / "3-odds.png")
     return out / "3-odds.png"
 
 

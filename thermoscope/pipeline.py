@@ -7,15 +7,12 @@ import pickle
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-import numpy as np
-
 from fem.matrices.assembly import FieldModel, HasTensor, assemble
 from fem.matrices.material import Conductivity, LoopWound
 from fem.matrices.streams import cut
 from fem.matrices.winding import homogenised
 from geom import Machine, NamedMesh, build_mesh
 from geom.description.materials import Material
-from geom.description.shapes import evenly
 from lumped.condensation.reduction import Recipe, Reduction, reduce
 from lumped.condensation.zone import Zone
 from lumped.machine.motor import boundaries, fluids, motor_network, nominal_coefficients
@@ -71,12 +68,15 @@ class Built:
 
 def field_of(machine: Machine, mesh: NamedMesh) -> FieldModel:
     """Conduction of the machine on its mesh, with the materials of its file; windings on quadratic elements."""
-    found = {part.name: machine.material_of(part.name) for part in machine.parts}
-    conductivity: dict[str, HasTensor] = {name: conductivity_of(m) for name, m in found.items()}
-    if "winding.field" in found and machine.geometry is not None:  # else its coils' places are not known
-        conductivity["winding.field"] = _around_poles(machine, conductivity_of(found["winding.field"]))
-    wires = [name for name in found if wound(machine, name)]
-    return assemble(mesh, conductivity, {name: m.rho * m.cp for name, m in found.items()}, wires)
+    materials = {part.name: machine.material_of(part.name) for part in machine.parts}
+    conductivity: dict[str, HasTensor] = {name: conductivity_of(m) for name, m in materials.items()}
+    for name, coil in machine.features.coils.items():
+        copper = conductivity_of(materials[name])
+        conductivity[name] = LoopWound(
+            copper.k_z, copper.k_r, coil.axes, coil.half_length, coil.half_width, coil.z_centre
+        )
+    wires = [name for name in materials if wound(machine, name)]
+    return assemble(mesh, conductivity, {name: m.rho * m.cp for name, m in materials.items()}, wires)
 
 
 def conductivity_of(material: Material) -> Conductivity:
@@ -84,16 +84,6 @@ def conductivity_of(material: Material) -> Conductivity:
     if material.mixture is not None:
         return homogenised(material.mixture)
     return Conductivity(material.k_plane, material.k_plane, material.k_axial)
-
-
-def _around_poles(machine: Machine, copper: Conductivity) -> LoopWound:
-    """Field coils: the wire runs along the axis beside a pole and across it at the ends."""
-    g = machine.geometry
-    axes = tuple(float(a) for a in evenly(g.stator.poles, np.pi / 2))
-    start, end = machine.part("poles").span
-    half = (end - start) / 2 + g.field.insulation
-    width = g.stator.body_width / 2 + g.field.insulation
-    return LoopWound(copper.k_z, copper.k_r, axes, half, width, (start + end) / 2)
 
 
 @dataclass(frozen=True)
@@ -120,8 +110,8 @@ def prepared(
 def meshed(machine: Machine, how: Meshing, progress: Progress = silent) -> Prepared:
     """Mesh and conduction on a mesh of given fineness."""
     progress("mesh")
-    found = build_mesh(machine, how.size_m, how.segments, how.across, how.axial_m, cache_folder())
-    mesh = with_cells(machine, found)
+    plain = build_mesh(machine, how.size_m, how.segments, how.across, how.axial_m, cache_folder())
+    mesh = with_cells(machine, plain)
     progress(f"conduction on {len(mesh.points)} points")
     return Prepared(machine, mesh, field_of(machine, mesh), *coefficients_on(machine, mesh), how)
 

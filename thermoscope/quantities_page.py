@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from thermoscope.recordings.units import HELD, QUANTITIES
+from thermoscope.recordings.units import MEMORY_UNIT, QUANTITIES
 from validation.effects.registry import kinds
 
 PAGE = Path(__file__).parents[1] / "docs" / "reference" / "quantities.md"
@@ -31,7 +31,11 @@ EFFECTS = """
 
 def page() -> str:
     """The page as Markdown."""
-    rows = [f"| `{n}` | {', '.join(q.units)} | {HELD[n]} | {q.feeds} |" for n, q in QUANTITIES.items() if n in HELD]
+    rows = [
+        f"| `{n}` | {', '.join(q.units)} | {MEMORY_UNIT[n]} | {q.feeds} |"
+        for n, q in QUANTITIES.items()
+        if n in MEMORY_UNIT
+    ]
     own = {name: kind for name, kind in kinds().items() if kind.__module__.startswith("validation.")}
     effects = [f"| `{n}` | {k.title} | {k.sits} | {', '.join(k.needs)} |" for n, k in own.items()]
     return HEAD + "\n".join(rows) + "\n" + EFFECTS + "\n".join(effects) + "\n"

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from geom.description.identity import Identity
+from geom.description.machine import Machine
 from geom.errors import InputError
 from lumped.model.network import Network, Row
 from lumped.model.quantities import USUAL
-from lumped.schemas.reader import known
+from lumped.schemas.reader import suggestion
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.runs import named_rows
 from thermoscope.recordings.csv_file import read_csv
@@ -27,7 +27,7 @@ INLET_C = 20.0  # what [cooling] takes where it does not say
 
 
 @dataclass(frozen=True)
-class Asked:
+class RatingRequest:
     """limits : place -> degC;  at : input or boundary -> value;  loads : inputs that carry the load, if not the usual
 
     losses : a map, at a voltage;  overload : of S1;  cycle : a file or a name;  mapped : whether a map is wanted
@@ -53,19 +53,19 @@ class Rated:
     limits: Mapping[str, float]
 
 
-def rated_model(folder: Folder, asked: Asked) -> Rated:
+def rated_model(folder: Folder, request: RatingRequest) -> Rated:
     """Of a case as it stands, or of a machine at its rated point."""
     network, values = model_of(folder)
     rows = named_rows(network, folder)
-    limits = places(asked.limits, rows, network.identities)
+    limits = places(request.limits, rows, network.identities)
     tests, usual = folder.case.tests, rated_point(folder, network)
-    if asked.losses is not None:
-        grid = loss_grid(columns_of(asked.losses), str(asked.losses), asked.voltage)
-        network = with_losses(network, grid, str(asked.losses))
+    if request.losses is not None:
+        grid = loss_grid(columns_of(request.losses), str(request.losses), request.voltage)
+        network = with_losses(network, grid, str(request.losses))
         network = replace(network, quantities={TORQUE: USUAL[TORQUE], SPEED: USUAL[SPEED], **network.quantities})
         usual = {**usual, TORQUE: float(grid.torque.max()), SPEED: float(np.median(grid.speed)), **_air(folder)}
         tests = ()
-    op = operation(network, tests, asked.at, asked.loads, usual)
+    op = operation(network, tests, request.at, request.loads, usual)
     mine = {p.name for p in network.parameters}
     model = Model(network, {k: v for k, v in values.items() if k in mine}, [rows[p] for p in limits])
     return Rated(model, op, limits)
@@ -83,7 +83,7 @@ def places(
         roles = {n: i.role.value for n, i in what.items() if i.role is not None}
         mine = [name] if name in rows else [n for n in rows if roles.get(n) == name]
         if not mine:
-            raise InputError(f"no temperature '{name}' to limit", "--limit", known(name, rows))
+            raise InputError(f"no temperature '{name}' to limit", "--limit", suggestion(name, rows))
         out |= dict.fromkeys(mine, T)
     return out
 
@@ -94,7 +94,7 @@ def rated_point(folder: Folder, network: Network) -> dict[str, float]:
         return {}
     from lumped.machine.motor import rated_inputs
 
-    machine: Any = folder.built.machine
+    machine: Machine = folder.built.machine
     cooling = machine.sections.get("cooling", {})
     wet = dict.fromkeys(coolant_boundaries(network), float(cooling.get("inlet_C", INLET_C)))
     return {**rated_inputs(machine), **dict.fromkeys(air_boundaries(network), AMBIENT_C), **wet}

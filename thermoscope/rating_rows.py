@@ -20,7 +20,7 @@ from validation.rating.derating import deratings
 from validation.rating.envelope import TIMES, Rating, rated
 from validation.rating.operation import Operation
 
-SETTLED = 20.0  # time constants
+STEADY_TIME_CONSTANTS = 20.0  # time constants
 
 
 def load_of(old: Rated, form: str, speed: float | None) -> float:
@@ -32,8 +32,8 @@ def point(
     folder: Folder, op: Operation, r: Rating, old: Rated | None, of: ParameterPosterior | None
 ) -> dict[str, Any]:  # fmt: skip
     """A point of the envelope as a rating has it."""
-    found = row(folder, op, r, None if old is None else load_of(old, r.form, r.speed), of)
-    return {"form": r.form, "speed_rpm": r.speed, **{k: v for k, v in found.items() if k != "form"}}
+    rated_row = row(folder, op, r, None if old is None else load_of(old, r.form, r.speed), of)
+    return {"form": r.form, "speed_rpm": r.speed, **{k: v for k, v in rated_row.items() if k != "form"}}
 
 
 def derated(
@@ -86,11 +86,11 @@ def _half95(folder: Folder, op: Operation, r: Rating, of: ParameterPosterior) ->
         values = {p.name: of.values.get(p.name, p.value) for p in bare.parameters}
         at = {n: float(u) for n, u in op.at(r.load, r.speed).items()}
         return NORMAL_95 * AtRest(of, bare).sd(values, at, op.boundaries, seen) / r.slope
-    span = TIMES.get(r.form, SETTLED * network.settles_s)
+    span = TIMES.get(r.form, STEADY_TIME_CONSTANTS * network.settles_s)
     time = np.concatenate([[0.0], span * np.geomspace(1e-3, 1.0, 40)])
     load = r.load if r.form == "S1" or r.form in TIMES else r.load * 0.4**0.5
     inputs = {n: np.full(time.size, u) for n, u in op.at(load, r.speed).items()}
     air = {b: np.full(time.size, T) for b, T in op.boundaries.items()}
-    found = along(of, "rating", Record(time, inputs, air, float(np.mean(list(op.boundaries.values())))),
+    bands = along(of, "rating", Record(time, inputs, air, float(np.mean(list(op.boundaries.values())))),
                   {r.at: seen})  # fmt: skip
-    return float(found.half95[-1, 0] / r.slope)
+    return float(bands.half95[-1, 0] / r.slope)

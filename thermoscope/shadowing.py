@@ -24,9 +24,9 @@ def hidden_by(room: str) -> str | None:
 def checked_rooms() -> None:
     """Raises ImportError, one message, where a package of the house is hidden."""
     for room in ROOMS:
-        found = hidden_by(room)
-        if found is not None:
+        file = hidden_by(room)
+        if file is not None:
             raise ImportError(
-                f"'{room}' is found at {found}, which hides the package of that name that comes with thermoscope: "
+                f"'{room}' is found at {file}, which hides the package of that name that comes with thermoscope: "
                 "give the file or folder another name, or run from another folder"
             )

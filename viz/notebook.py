@@ -17,7 +17,7 @@ from viz.figures import candidates, curves
 from viz.pages import html, words
 from viz.pages.report import Report, render
 
-SHOWN = 10  # rows of a cell
+MOST_ROWS = 10  # rows of a cell
 
 
 def compared(c: Compared) -> str:
@@ -31,7 +31,7 @@ def diagnosed(d: Diagnosis) -> str:
     """The verdict, and the candidates by score."""
     document = d.document()
     _, sentence = words.verdict(document, None)
-    found = document["candidates"][:SHOWN]
+    found = document["candidates"][:MOST_ROWS]
     rows = [(c["effect"], c["score"], candidates.amplitude(c), c["decision"]) for c in found]
     return titled(sentence) + html.table(["effect", "score", "size", "decision"], rows)
 
@@ -44,7 +44,7 @@ def revised(r: Revision) -> str:
     return titled(head) + html.table(["test", "role", "before (K)", "after (K)"], rows)
 
 
-def held(c: Comparison) -> str:
+def comparison_html(c: Comparison) -> str:
     """Measured and modelled, sensor by sensor."""
     return html.plot(curves.measured_and_model(c), f"held-{c.test.name}", f"{c.test.name} ({c.test.role})")
 
@@ -57,7 +57,7 @@ def machine(m: Machine) -> str:
 
 def network(n: Network) -> str:
     """How large, and what may be calibrated."""
-    rows = [(p.name, p.value, p.unit, p.prior_sd) for p in n.parameters[:SHOWN]]
+    rows = [(p.name, p.value, p.unit, p.prior_sd) for p in n.parameters[:MOST_ROWS]]
     head = f"{n.name}: {len(n.states)} states, {len(n.links)} links, {len(n.sources)} sources"
     return titled(head) + html.table(["parameter", "value", "unit", "prior sd"], rows)
 
@@ -73,8 +73,8 @@ def titled(text: str) -> str:
 
 
 SHOWS = {
-    Compared: compared, Diagnosis: diagnosed, Revision: revised, Comparison: held, Machine: machine, Network: network,
-    Report: report,
+    Compared: compared, Diagnosis: diagnosed, Revision: revised, Comparison: comparison_html,
+    Machine: machine, Network: network, Report: report,
 }  # fmt: skip
 for _kind, _show in SHOWS.items():
     _kind._repr_html_ = _show  # type: ignore[attr-defined]

@@ -10,7 +10,7 @@ from hidden.cases import Label, hidden_in
 from hidden.kinds import KINDS
 from hidden.odds import unordered
 from hidden.truth.archetype import measured
-from hidden.truth.menu import MENU, carried_out
+from hidden.truth.candidate_tests import CANDIDATE_TESTS, carried_out
 from hidden.user import test_of
 from validation import Case, Revision, add, calibrate
 from validation.inference.evidence import candidates
@@ -52,7 +52,7 @@ def held_out(done: Revision) -> float:
 def followed(case: Case, label: Label, found: Answer) -> Answer | None:
     """The best test that is said to decide, carried out on the true machine, and what the diagnosis says then."""
     kind = KINDS[label.machine]
-    said = [name for name, gain, _ in found["next"] if gain >= DECISIVE and name in MENU]
+    said = [name for name, gain, _ in found["next"] if gain >= DECISIVE and name in CANDIDATE_TESTS]
     if found["verdict"] != "group" or not said:
         return None
     name = said[0]

@@ -1,6 +1,9 @@
 """Cases of another generator: folders as the product reads them, beside a truth.json that is only read to judge.
 
-    NAME/case.toml ...    truth.json: {NAME: {"kind", "effects": [{"effect": "kind@place", "size", "group"}], "rival"}}
+    NAME/case.toml ...    truth.json: {NAME: {"kind", "effects": [{"effect": "kind@place", "size", "group"}], "rival",
+                                                  "test", "span_s": [begin, end]}}
+
+Only "kind" and "effects" must be there; a condition may say in which test it held and from when to when (s).
 
 Its words are translated by WORDS; another generator brings a table of its own (`--words FILE`, TOML, the same form).
 """
@@ -63,12 +66,13 @@ def label_of(name: str, machine: str, truth: Mapping[str, Any], words: Mapping[s
 
     hidden, group = truth["effects"], CLASSES.get(truth["kind"], truth["kind"])
     near = [[*e.get("group", ()), *truth.get("rival", ())] for e in hidden]
-    place = hidden[0]["effect"].partition("@")[2] if group == "foreign" else ""
+    place = hidden[0]["effect"].partition("@")[2] if hidden and group == "foreign" else ""
     return Label(
         f"{machine}-{group}-{name}", machine, group, 0, tuple(e["effect"] for e in hidden),
         tuple(all_names([e["effect"]]) for e in hidden), tuple(all_names(n) for n in near),
         max((SIZES.get(e.get("size", ""), 0.0) for e in hidden), default=0.0),
-        (), place,  # its amplitudes are in units of its own
+        place=place,  # its amplitudes are in units of its own
+        test=truth.get("test", ""), span=tuple(truth.get("span_s", ())),
     )  # fmt: skip
 
 

@@ -149,13 +149,16 @@ def surely_nothing(label: Answer, answer: Answer) -> bool | None:
 
 
 def when_right(label: Answer, answer: Answer) -> bool | None:
-    """A condition, rightly named first: is its test told, and of one for a while begin and end within two samples?"""
+    """A condition, rightly named first: is its test right, and of one for a while begin and end within two samples?
+
+    None where the label does not say in which test it held; a label without begin and end means the whole test.
+    """
     best = said(answer)[0]
-    if label["group"] != "condition" or not is_right(label, best):
+    if label["group"] != "condition" or not label["test"] or not is_right(label, best):
         return None
-    told = best.tests == (label["test"],)
-    if label["span"][0] == 0.0 or not told:
-        return told
+    right_test = best.tests == (label["test"],)
+    if not label["span"] or label["span"][0] == 0.0 or not right_test:
+        return right_test
     most = 2.0 * label.get("step_s", 60.0)
     return len(best.span) == 2 and max(abs(a - b) for a, b in zip(best.span, label["span"], strict=True)) <= most + 1e-6
 

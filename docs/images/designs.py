@@ -4,7 +4,7 @@ import csv
 from pathlib import Path
 
 from viz.live.designs import WORDS, parallel_coordinates
-from viz.live.style import saved
+from viz.live.style import save
 
 HERE = Path(__file__).parent
 DESIGNS = HERE.parents[1] / "out/designs/jacket-one/pareto.csv"
@@ -14,4 +14,4 @@ if __name__ == "__main__":
     variables = {name: name.rpartition(".")[2] for name in rows[0] if "." in name}
     figure = parallel_coordinates(rows, [o for o in WORDS if o in rows[0]], variables)
     figure.update_layout(width=1100, height=480)
-    saved(figure, HERE / "designs.png")
+    save(figure, HERE / "designs.png")

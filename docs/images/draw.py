@@ -32,7 +32,7 @@ def draw(built: Built) -> None:
     assert network.recovery is not None
     z = flows.z[-1]
     x = z[: len(network.states)]
-    T = np.concatenate([network.recovery.of_part(part, x) for part in nodes.parts])
+    T = network.on_parts(nodes.parts, x)
     viz.cutaway(nodes, T, title="100 kW traction motor after an hour at 130 A", png=HERE / "field.png").close()
     exploded(nodes, title="The motor pulled apart", png=HERE / "exploded.png").close()
     regions(nodes, title="The parts and their names", png=HERE / "parts.png").close()

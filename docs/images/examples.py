@@ -46,7 +46,7 @@ def drawn(left: Mapping[str, Any], png: Path | None = None) -> Figure:
         bars(ax, computed.ravel(), expected.ravel())
     else:
         over(ax, "number", np.arange(computed.size), computed.reshape(-1, 1), expected.reshape(-1, 1))
-    paper.saved(figure, png)
+    paper.save(figure, png)
     if png is not None:
         Image.open(png).convert("RGB").quantize(64, dither=Image.Dither.NONE).save(png, optimize=True)
     return figure

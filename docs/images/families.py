@@ -26,7 +26,7 @@ def gallery(png: Path) -> None:
     draw = ImageDraw.Draw(page)
     font = ImageFont.truetype(str(Path(get_data_path()) / "fonts" / "ttf" / "DejaVuSans.ttf"), 20)
     for k, (name, words) in enumerate(SHOWN.items()):
-        p = portrait(load_machine(name), size=(2 * SIZE[0], 2 * SIZE[1]), said="")
+        p = portrait(load_machine(name), size=(2 * SIZE[0], 2 * SIZE[1]), caption="")
         x, y = k % COLUMNS * SIZE[0], k // COLUMNS * (SIZE[1] + CAPTION)
         page.paste(Image.fromarray(p.screenshot(return_img=True)).resize(SIZE, Image.Resampling.LANCZOS), (x, y))
         p.close()

@@ -10,7 +10,7 @@ from pathlib import Path
 from PIL import Image
 
 from thermoscope.case_folder.folder import load_case
-from thermoscope.case_folder.runs import before_last, by_interest, fields, held, temperature_range
+from thermoscope.case_folder.runs import before_last, by_interest, comparison_of, fields, temperature_range
 from viz import Comparison, cutaway, sensors, split
 from viz.colours import LIGHT
 from viz.rendering import scene
@@ -20,7 +20,7 @@ def draw(case: Path, png: Path) -> None:
     folder = load_case(case)
     test, earlier, last = by_interest(folder)[0], before_last(folder), folder.history.last
     assert earlier is not None, "a case whose model has had a step"
-    now = held(folder, test)
+    now = comparison_of(folder, test)
     wrong = sensors(Comparison(test, now.before, now.limits), folder.positions)  # type: ignore[arg-type]
     nodes = split(folder.built.mesh)  # type: ignore[union-attr]
     before, after = last.rmse_K[test.name]

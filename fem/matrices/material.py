@@ -60,8 +60,8 @@ class LoopWound:
         axis = np.array(self.axes)[nearest]
         side = np.stack([-np.sin(axis), np.cos(axis), np.zeros(len(x))], -1)
         beside = np.abs((x * side).sum(1)) / self.half_width
-        beyond = np.abs(x[:, 2] - self.z_centre) / self.half_length
-        wire = np.where((beyond > beside)[:, None], side, np.array([0.0, 0.0, 1.0]))
+        distance = np.abs(x[:, 2] - self.z_centre) / self.half_length
+        wire = np.where((distance > beside)[:, None], side, np.array([0.0, 0.0, 1.0]))
         return self.across * np.eye(3) + (self.along - self.across) * wire[:, :, None] * wire[:, None, :]
 
 

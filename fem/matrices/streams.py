@@ -88,10 +88,10 @@ def flowing(
 
 
 def _cells(field: FieldModel, stream: Stream) -> list[str]:
-    found = [f for f in field.fluids if f.rpartition("@")[0] == stream.fluid]
-    if not found:
+    cells = [f for f in field.fluids if f.rpartition("@")[0] == stream.fluid]
+    if not cells:
         raise InputError(f"no cells of stream '{stream.fluid}'", "flowing", "cut the mesh along the stream first")
-    return sorted(found, key=lambda f: int(f.rpartition("@")[2]))
+    return sorted(cells, key=lambda f: int(f.rpartition("@")[2]))
 
 
 def _fluids(mesh: NamedMesh) -> list[str]:

@@ -28,8 +28,8 @@ def local_solutions(
     loads (n, n_zone) : 1 W in every zone; those of the part join, and 1 W through each of its faces
     points : matrices (n, n) of the machine at other coefficients
     """
-    found = {part: [np.zeros((block.n, 0))] for part, block in field.blocks.items()}
-    own = {part: _own(field, loads, part) for part in field.blocks}
+    solutions = {part: [np.zeros((block.n, 0))] for part, block in field.blocks.items()}
+    own = {part: _unit_loads(field, loads, part) for part in field.blocks}
     order: dict[str, Symbolic] = {}
     for K in points:
         state = S @ (rng.standard_normal((S.shape[1], width)) / np.sqrt(S.shape[1]))
@@ -38,11 +38,11 @@ def local_solutions(
             A = sp.csr_array(rows[:, block.dofs])
             order[part] = order.get(part) or analyse(A, block.xyz)
             inverse = factorise(A, order[part])
-            found[part] += [inverse(A @ state[block.dofs] - rows @ state), of_unit_energy(inverse(own[part]), A)]
-    return {part: np.hstack(fields) for part, fields in found.items()}
+            solutions[part] += [inverse(A @ state[block.dofs] - rows @ state), of_unit_energy(inverse(own[part]), A)]
+    return {part: np.hstack(fields) for part, fields in solutions.items()}
 
 
-def _own(field: FieldModel, loads: Floats, part: str) -> Floats:
+def _unit_loads(field: FieldModel, loads: Floats, part: str) -> Floats:
     """(n_part, k) the zones' and the faces' unit loads that are in the part."""
     rows = field.block(part).dofs
     fluxes = [field.flux(face)[rows] for face, film in field.films.items() if film.trace.part == part]

@@ -67,8 +67,8 @@ def analyse(A: sp.csr_array, xyz: Floats) -> Symbolic:
     for i, below in enumerate(tree.children):
         lo, hi = tree.start[i], tree.start[i + 1]
         seen = [upper.indices[upper.indptr[lo] : upper.indptr[hi]], *(reach[c] for c in below)]
-        found = np.unique(np.concatenate(seen))
-        reach.append(found[found >= hi].astype(np.int64))
+        rows = np.unique(np.concatenate(seen))
+        reach.append(rows[rows >= hi].astype(np.int64))
     return Symbolic(tree, tuple(reach))
 
 

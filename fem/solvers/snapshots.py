@@ -55,7 +55,7 @@ class Recipe:
     def other_films(self, films: Mapping[str, float], rng: np.random.Generator) -> dict[str, float]:
         """Those of a random point."""
         if self.film_factors is None:
-            return drawn(films, self.spread, rng)
+            return random_coefficients(films, self.spread, rng)
         low, high = np.log(self.film_factors)
         return {name: value * float(np.exp(rng.uniform(low, high))) for name, value in films.items()}
 
@@ -97,7 +97,7 @@ def snapshots(
     out += [solver.factor(nominal, shift)(fluxes) for shift in recipe.flux_shifts]
     rng = np.random.default_rng(recipe.seed)
     for _ in range(recipe.random_points):
-        h, g = recipe.other_films(films, rng), drawn(contacts, recipe.spread, rng)
+        h, g = recipe.other_films(films, rng), random_coefficients(contacts, recipe.spread, rng)
         out.append(
             solver.factor(field.stiffness(h, g))(np.column_stack([loads, fluxes]) if recipe.flux_points else loads)
         )
@@ -107,7 +107,7 @@ def snapshots(
     return of_unit_energy(np.column_stack(out), nominal)
 
 
-def drawn(coefficients: Mapping[str, float], spread: float, rng: np.random.Generator) -> dict[str, float]:
+def random_coefficients(coefficients: Mapping[str, float], spread: float, rng: np.random.Generator) -> dict[str, float]:
     """Every coefficient times spread ** U(-1, 1)."""
     return {name: value * spread ** rng.uniform(-1, 1) for name, value in coefficients.items()}
 
@@ -140,7 +140,9 @@ def isolated_part(
     """part -> (n_part, k) fields of the part by itself at the recipe's local points; none: (n_part, 0)."""
     rng = np.random.default_rng([recipe.seed, 2])
     points = (
-        field.stiffness(drawn(films, recipe.spread, rng), drawn(contacts, recipe.spread, rng))
+        field.stiffness(
+            random_coefficients(films, recipe.spread, rng), random_coefficients(contacts, recipe.spread, rng)
+        )
         for _ in range(recipe.local_points)
     )
     return local_solutions(field, S, loads, points, recipe.local_states, rng)
@@ -166,16 +168,16 @@ def _principal(block: Block, S: Floats, A: sp.csr_array) -> Principal:
 
 def bases(
     field: FieldModel,
-    found: Mapping[str, Principal],
+    principal: Mapping[str, Principal],
     energy: Mapping[str, sp.csr_array],
     recipe: Recipe,
     weights: Mapping[str, float] | None = None,
 ) -> dict[str, Basis]:
     """Shapes of every part, as many as the recipe allows; weights above 1 favour a part (on the root of energy)."""
-    favour = {name: (weights or {}).get(name, 1.0) ** 2 for name in found}
-    least = _least(np.concatenate([p.strength * favour[n] for n, p in found.items()]), len(found), recipe)
+    favour = {name: (weights or {}).get(name, 1.0) ** 2 for name in principal}
+    least = _least(np.concatenate([p.strength * favour[n] for n, p in principal.items()]), len(principal), recipe)
     return {
-        name: _shaped(block, found[name].fields[:, found[name].strength * favour[name] > least], energy[name])
+        name: _shaped(block, principal[name].fields[:, principal[name].strength * favour[name] > least], energy[name])
         for name, block in field.blocks.items()
     }
 
@@ -202,7 +204,7 @@ def _shaped(block: Block, Phi: NDArray[np.floating], A: sp.csr_array) -> Basis:
 
 def enriched(
     field: FieldModel,
-    found: Mapping[str, Principal],
+    principal: Mapping[str, Principal],
     S: Floats,
     films: Mapping[str, float],
     contacts: Mapping[str, float],
@@ -212,6 +214,6 @@ def enriched(
     S = of_unit_energy(S, field.stiffness(films, contacts))
     out = {}
     for name, block in field.blocks.items():
-        own = np.asarray(found[name].fields, float) * np.sqrt(found[name].strength)
+        own = np.asarray(principal[name].fields, float) * np.sqrt(principal[name].strength)
         out[name] = _principal(block, np.column_stack([own, S[block.dofs]]), energy[name])
     return out

@@ -53,8 +53,10 @@ class Iterative:
 
         def solve(b: Floats) -> Floats:
             columns = b.reshape(len(b), -1).T
-            found = [levels.solve(c, tol=self.tolerance, accel="cg", maxiter=1000) if c.any() else c for c in columns]
-            return np.array(found).reshape(len(columns), len(b)).T.reshape(b.shape)
+            solutions = [
+                levels.solve(c, tol=self.tolerance, accel="cg", maxiter=1000) if c.any() else c for c in columns
+            ]
+            return np.array(solutions).reshape(len(columns), len(b)).T.reshape(b.shape)
 
         return solve
 

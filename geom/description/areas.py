@@ -57,11 +57,11 @@ def part_table(machine: Machine, segments: int = 180) -> tuple[PartRow, ...]:
 def common_areas(cut: Partition) -> dict[tuple[str, str], float]:
     """Area (m2) between every two of the parts, fluids and "ambient" that touch, each pair once."""
     names = [*(part.name for part in cut.parts), "ambient"]
-    found: Floats = np.zeros((len(names), len(names)))
+    areas: Floats = np.zeros((len(names), len(names)))
     for low, high, area in (*_floors(cut), *_walls(cut)):
-        np.add.at(found, (low, high), area)
-    found = np.triu(found + found.T, 1)
-    return {(names[i], names[j]): float(found[i, j]) for i, j in np.argwhere(found > 0.0)}
+        np.add.at(areas, (low, high), area)
+    areas = np.triu(areas + areas.T, 1)
+    return {(names[i], names[j]): float(areas[i, j]) for i, j in np.argwhere(areas > 0.0)}
 
 
 def _floors(cut: Partition) -> Iterator[tuple[Ints, Ints, Floats]]:

@@ -15,22 +15,23 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
+from geom.description.geometry import Geometry
 from geom.description.machine import Machine
 from geom.description.part import Part
 from geom.errors import InputError
 
-OWN = "own"
+OWN_BASE = "own"
 PIECES = ("foot", "base")
 
 
 def based(machine: Machine, load: Callable[[str], Machine], where: str) -> Machine:
     """The machine with the bases that its section [bases] names; itself if there is none."""
-    said = machine.sections.get("bases", {})
-    others = {name: other for name, other in said.items() if other != OWN}
+    table = machine.sections.get("bases", {})
+    others = {name: other for name, other in table.items() if other != OWN_BASE}
     place, have = f"{where} [bases]", [part.name for part in machine.parts]
-    if said and (len(others) > 1 or len(said) - len(others) != 1 or "base" not in have):
+    if table and (len(others) > 1 or len(table) - len(others) != 1 or "base" not in have):
         raise InputError(
-            f"{dict(said)!r} is not possible", place, f"one base {OWN!r} of this file and one other machine"
+            f"{dict(table)!r} is not possible", place, f"one base {OWN_BASE!r} of this file and one other machine"
         )
     for name, other in others.items():
         machine = _with_base(machine, name, load(str(other)), place)
@@ -38,7 +39,7 @@ def based(machine: Machine, load: Callable[[str], Machine], where: str) -> Machi
 
 
 def _with_base(machine: Machine, name: str, other: Machine, where: str) -> Machine:
-    if _body(machine.geometry) != _body(other.geometry) or "base" not in [part.name for part in other.parts]:
+    if _body(machine.dimensions) != _body(other.dimensions) or "base" not in [part.name for part in other.parts]:
         raise InputError(f"{other.name} is another machine", where, "one that differs in [geometry.base] alone")
     renamed = {piece: f"{piece}.{name}" for piece in PIECES}
     more = tuple(_turned(other.part(piece), renamed[piece]) for piece in PIECES)
@@ -53,7 +54,7 @@ def _with_base(machine: Machine, name: str, other: Machine, where: str) -> Machi
     return replace(machine, parts=(*machine.parts, *more), sections=sections)
 
 
-def _body(geometry: Any) -> dict[str, Any]:
+def _body(geometry: Geometry) -> dict[str, Any]:
     """All of the geometry but the base."""
     return {name: group for name, group in vars(geometry).items() if name != "base"}
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from geom.description.geometry import NO_FEATURES, Features, Geometry
 from geom.description.materials import Material, filled, material
 from geom.description.part import Part, Port
 from geom.description.profile import ArcGrid
@@ -34,11 +35,19 @@ class Machine:
     parts: tuple[Part, ...]
     fluids: tuple[Part, ...]
     sections: Mapping[str, Any]
-    geometry: Any
+    geometry: Geometry | None
     face_names: Mapping[tuple[str, str], str]
     source: str = ""
     assumed: str = ""
     ports: tuple[Port, ...] = ()
+    features: Features = NO_FEATURES
+
+    @property
+    def dimensions(self) -> Geometry:
+        """The family's parameters; InputError for an imported machine, which has none."""
+        if self.geometry is None:
+            raise InputError("was imported: it has no parameters of a family", self.name, "a machine of a family")
+        return self.geometry
 
     def part(self, name: str) -> Part:
         """The solid or fluid of this name; InputError if there is none."""
@@ -54,8 +63,8 @@ class Machine:
 
     def conductivity(self, name: str) -> tuple[float, float]:
         """Conductivity of the part across and along the axis (W/m/K)."""
-        found = self.material_of(name)
-        return found.k_plane, found.k_axial
+        material = self.material_of(name)
+        return material.k_plane, material.k_axial
 
     def face_name(self, part: str, fluid: str) -> str:
         """Name of the face where a part meets a fluid, e.g. "flange.right.outer"."""

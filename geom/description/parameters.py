@@ -11,6 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from geom.description.geometry import Geometry
 from geom.errors import InputError
 
 UNITS = {"mm": 1e-3, "deg": math.pi / 180}
@@ -26,11 +27,11 @@ class Scale:
     name: str
     low: float
     high: float
-    span: Callable[[Any], float]
-    start: Callable[[Any], float] = lambda g: 0.0
+    span: Callable[[Geometry], float]
+    start: Callable[[Geometry], float] = lambda g: 0.0
 
 
-def scale(name: str, *of: Callable[[Any], float]) -> Callable[[float, float], Scale]:
+def scale(name: str, *of: Callable[[Geometry], float]) -> Callable[[float, float], Scale]:
     """scale(name, span, start)(low, high): one length that several parameters are measured in, each in its bounds."""
     return lambda low, high: Scale(name, low, high, *of)
 

@@ -55,7 +55,7 @@ class Rod:
 
 
 @dataclass(frozen=True)
-class Made:
+class CadShape:
     """A part as it is made, where its prisms simplify it: what it starts from, and what is cut out."""
 
     start: tuple[Prism | Rod, ...]
@@ -69,7 +69,7 @@ class Part:
     name, material : names as in the mesh and in materials.toml
     prisms : (profile, z0 (m), z1 (m)); prisms of one part touch but do not overlap
     filling : of a winding, share of conductor in its cross-section and share of the rest filled with resin
-    made : what CAD files show instead of the prisms: round ports, helical channels
+    cad_shape : what CAD files show instead of the prisms: round ports, helical channels
     role : what it is;  turns : whether it turns with the shaft, None as its role does
     Fluids may be drawn loosely: a solid wins where they overlap, and so does the fluid declared first.
     """
@@ -79,7 +79,7 @@ class Part:
     prisms: tuple[Prism, ...]
     filling: tuple[float, float] | None = None
     solid: bool = True
-    made: Made | None = None
+    cad_shape: CadShape | None = None
     role: Role | None = None
     turns: bool | None = None
 

@@ -115,9 +115,9 @@ class ArcGrid:
                     partners[radius] |= {other for other in own if other != radius and abs(other / radius - 1) < _THIN}
         self._cuts: dict[int, list[float]] = {}
         for radius in sorted(ends, key=lambda r: (-len(ends[r]), r)):
-            borrowed = [cut for other in partners[radius] for cut in self._cuts.get(other, ())]
+            neighbours = [cut for other in partners[radius] for cut in self._cuts.get(other, ())]
             step = min([self.step, *(_fine_step(radius, other) for other in partners[radius])])
-            self._cuts[radius] = _divided(self._merged(ends[radius], borrowed), step)
+            self._cuts[radius] = _divided(self._merged(ends[radius], neighbours), step)
 
     def _merged(self, own: Iterable[float], others: Iterable[float]) -> list[float]:
         """All own breaks, and those of others that do not nearly coincide with one already there."""

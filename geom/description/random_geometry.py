@@ -16,12 +16,12 @@ def random_geometry(family: Family, rng: np.random.Generator) -> dict[str, dict[
     """A [geometry] table: sizes evenly in their logarithm, all else evenly."""
     table: dict[str, dict[str, Any]] = {}
     for parameter in family.parameters:
-        name, value = _drawn(parameter, rng)
+        name, value = _random_value(parameter, rng)
         table.setdefault(parameter.group, {})[name] = value
     return table
 
 
-def _drawn(p: Parameter, rng: np.random.Generator) -> tuple[str, Any]:
+def _random_value(p: Parameter, rng: np.random.Generator) -> tuple[str, Any]:
     if p.choices:
         return p.name, str(rng.choice(p.choices))
     if p.off and rng.random() < NONE:

@@ -5,14 +5,14 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable, Mapping
 from functools import cache
-from types import SimpleNamespace
 from typing import Any
 
+from geom.description.geometry import Geometry, Group
 from geom.description.parameters import Parameter
 from geom.errors import InputError
 
 
-def read_geometry(parameters: Iterable[Parameter], table: Mapping[str, Any], where: str) -> Any:
+def read_geometry(parameters: Iterable[Parameter], table: Mapping[str, Any], where: str) -> Geometry:
     """Values in SI as `groups.attribute` (e.g. g.rotor.radius), with what is not given from what is.
 
     Raises InputError for an unknown group or key, a missing unit, a length given twice, or a value out of range.
@@ -23,13 +23,13 @@ def read_geometry(parameters: Iterable[Parameter], table: Mapping[str, Any], whe
 
 
 @cache
-def usual_geometry(parameters: tuple[Parameter, ...]) -> Any:
+def usual_geometry(parameters: tuple[Parameter, ...]) -> Geometry:
     """The family's default machine, whose proportions hold where nothing is given."""
-    groups: dict[str, SimpleNamespace] = {}
+    groups: dict[str, Group] = {}
     for p in parameters:
         value = p.default if p.choices or not p.unit else p.usual
-        setattr(groups.setdefault(p.group, SimpleNamespace()), p.attribute, value)
-    return SimpleNamespace(**groups)
+        setattr(groups.setdefault(p.group, Group()), p.attribute, value)
+    return Geometry(**groups)
 
 
 class _Reading:
@@ -38,14 +38,14 @@ class _Reading:
     def __init__(self, parameters: tuple[Parameter, ...], table: Mapping[str, Any], where: str) -> None:
         self.parameters, self.table, self.where = parameters, table, where
         self.known = {(p.group, p.attribute): p for p in parameters}
-        self.so_far = SimpleNamespace(**{p.group: _Group(self, p.group) for p in parameters})
+        self.so_far = Geometry(**{p.group: _Group(self, p.group) for p in parameters})
 
-    def geometry(self) -> Any:
-        groups: dict[str, SimpleNamespace] = {}
+    def geometry(self) -> Geometry:
+        groups: dict[str, Group] = {}
         for p in self.parameters:
             value = getattr(getattr(self.so_far, p.group), p.attribute)
-            setattr(groups.setdefault(p.group, SimpleNamespace()), p.attribute, value)
-        return SimpleNamespace(**groups)
+            setattr(groups.setdefault(p.group, Group()), p.attribute, value)
+        return Geometry(**groups)
 
     def value(self, p: Parameter) -> float | int | str:
         given = self.table.get(p.group, {})
@@ -91,7 +91,7 @@ def _refuse_unknown(declared: Mapping[str, Parameter], table: Mapping[str, Any],
     groups = {parameter.group for parameter in declared.values()}
     for group, keys in table.items():
         if group not in groups or not isinstance(keys, Mapping):
-            raise InputError(f"unknown section [geometry.{group}]", where, _known(group, groups))
+            raise InputError(f"unknown section [geometry.{group}]", where, _suggestion(group, groups))
         ratios = {p.ratio_name for p in declared.values() if p.group == group and p.of is not None}
         for name in keys:
             if f"{group}.{name}" not in declared and name not in ratios:
@@ -107,10 +107,10 @@ def _refuse_key(declared: Mapping[str, Parameter], group: str, name: str, where:
     ]
     if with_unit:
         raise InputError(f"{name!r} lacks its unit", place, f"write {with_unit[0]}")
-    raise InputError(f"unknown key {name!r}", place, _known(name, [*siblings, *ratios]))
+    raise InputError(f"unknown key {name!r}", place, _suggestion(name, [*siblings, *ratios]))
 
 
-def _known(word: str, words: Iterable[str]) -> str:
+def _suggestion(word: str, words: Iterable[str]) -> str:
     near = difflib.get_close_matches(word, sorted(words), n=1)
     hint = f"did you mean {near[0]!r}? " if near else ""
     return f"{hint}known: {', '.join(sorted(words))}"

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from geom.description.geometry import Geometry
 from geom.description.part import Part
 from geom.description.roles import Role
 
@@ -21,10 +22,10 @@ def diameters(machine: Machine) -> list[Diameter]:
     known = {part.name: part for part in machine.parts}
     named = {"shaft": "shaft", "bearing.left": "bearing", "rotor.core": "rotor", "yoke": "yoke",
              "stator.core": "laminations"}  # fmt: skip
-    found = {word: 2 * _radius(known[name]) for name, word in named.items() if name in known}
-    if "rotor" in found and hasattr(machine.geometry, "stator"):
-        found["bore"] = found["rotor"] + 2 * machine.geometry.stator.air_gap
-    return sorted(found.items(), key=lambda d: d[1])
+    by_word = {word: 2 * _radius(known[name]) for name, word in named.items() if name in known}
+    if "rotor" in by_word and (stator := getattr(machine.geometry, "stator", None)):
+        by_word["bore"] = by_word["rotor"] + 2 * stator.air_gap
+    return sorted(by_word.items(), key=lambda d: d[1])
 
 
 def lengths(machine: Machine) -> list[Length]:
@@ -32,8 +33,8 @@ def lengths(machine: Machine) -> list[Length]:
     words = {"stack": Role.ROTOR, "end windings": Role.WINDING, "end-caps": Role.END_SHIELD}
     spans = {word: _span([p for p in machine.parts if p.role is role]) for word, role in words.items()}
     spans["overall"] = _span(list(machine.parts))
-    found = [(word, *span) for word, span in spans.items() if span is not None]
-    return sorted(found, key=lambda length: length[2] - length[1])
+    measures = [(word, *span) for word, span in spans.items() if span is not None]
+    return sorted(measures, key=lambda length: length[2] - length[1])
 
 
 def counts(machine: Machine) -> str:
@@ -41,7 +42,9 @@ def counts(machine: Machine) -> str:
     return ", ".join(_counted(machine.geometry))
 
 
-def _counted(g: Any) -> Iterator[str]:
+def _counted(g: Geometry | None) -> Iterator[str]:
+    if g is None:
+        return
     for group in ("stator", "rotor", "commutator", "housing"):
         for key in ("slots", "poles", "bars", "ducts", "fins"):
             number = getattr(getattr(g, group, None), key, 0)

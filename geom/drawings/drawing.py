@@ -99,10 +99,13 @@ def _along(machine: Machine, views: Views, pen: Pen) -> Iterator[str]:
 
 def _legend(machine: Machine, views: Views, pen: Pen, x: float, y: float) -> Iterator[str]:
     """What is counted, then every material with its parts."""
-    made: dict[str, list[str]] = {}
+    by_material: dict[str, list[str]] = {}
     for part in views.parts:
-        made.setdefault(part.material, []).append(part.name)
-    rows = [("", counts(machine)), *((material, f"{material}: {', '.join(names)}") for material, names in made.items())]
+        by_material.setdefault(part.material, []).append(part.name)
+    rows = [
+        ("", counts(machine)),
+        *((material, f"{material}: {', '.join(names)}") for material, names in by_material.items()),
+    ]
     for i, (material, text) in enumerate(row for row in rows if row[1]):
         at = y + 1.6 * pen.unit * i
         box = f'<rect x="{x:.1f}" y="{at:.1f}" width="{1.6 * pen.unit:.1f}" height="{pen.unit:.1f}" stroke="#333" '

@@ -40,10 +40,10 @@ def entry_of(machine: Machine) -> Entry:
 
 def cooling_of(machine: Machine) -> str:
     """How the machine loses its heat, in words."""
-    said, ways = machine.sections.get("cooling", {}), []
+    table, ways = machine.sections.get("cooling", {}), []
     jackets = [fluid for fluid in machine.fluids if fluid.material != "air"]
     if jackets:
-        flow = f", {said['flow_L_per_min']:g} L/min" if "flow_L_per_min" in said else ""
+        flow = f", {table['flow_L_per_min']:g} L/min" if "flow_L_per_min" in table else ""
         ways.append(f"{' and '.join(jacket.name for jacket in jackets)} with {jackets[0].material}{flow}")
     flow = machine.sections.get("fans", {}).get("flow_m3_h")
     ways += [f"fan, {flow:g} m3/h through the machine"] if flow else []

@@ -5,7 +5,7 @@ from __future__ import annotations
 import colorsys
 import hashlib
 
-_KNOWN = {
+_COLOURS = {
     "field-winding": (0.78, 0.38, 0.16),
     "end-winding": (0.91, 0.58, 0.34),
     "winding": (0.85, 0.45, 0.20),
@@ -29,7 +29,7 @@ _KNOWN = {
 
 def colour(material: str) -> tuple[float, float, float]:
     """Red, green, blue (0 to 1): copper is copper, what is not listed gets a pale hue from its name."""
-    for word, rgb in _KNOWN.items():
+    for word, rgb in _COLOURS.items():
         if word in material:
             return rgb
     hue = int(hashlib.sha256(material.encode()).hexdigest()[:4], 16) / 65535

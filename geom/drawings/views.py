@@ -106,7 +106,7 @@ class Views:
 
         knife = shapely.LineString([(_ASIDE, -10.0), (_ASIDE, 10.0)])
         cuts = {p: shapely.get_parts(polygon.intersection(knife)) for p, polygon in self._polygons.items()}
-        return {p: [(c.bounds[1], c.bounds[3]) for c in found if c.length] for p, found in cuts.items()}
+        return {p: [(c.bounds[1], c.bounds[3]) for c in pieces if c.length] for p, pieces in cuts.items()}
 
 
 def path(loop: Loop) -> str:

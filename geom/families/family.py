@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
 
+from geom.description.geometry import Features, Geometry
 from geom.description.parameters import Parameter
 from geom.description.part import Part, Port
 
@@ -16,12 +16,13 @@ class Family:
 
     build : values in SI (see parameters.read_geometry) -> solids and fluids, or InputError if they do not fit
     face_names : (part, fluid) -> name, where it differs from the rule of `Machine.face_name`
-    ports : values in SI -> where liquids enter and leave
+    ports : values in SI -> where liquids enter and leave;  features : what formulas ask beside the solids
     """
 
     name: str
     doc: str
     parameters: tuple[Parameter, ...]
-    build: Callable[[Any], tuple[Part, ...]]
+    build: Callable[[Geometry], tuple[Part, ...]]
     face_names: Mapping[tuple[str, str], str] = field(default_factory=dict)
-    ports: Callable[[Any], tuple[Port, ...]] = lambda g: ()
+    ports: Callable[[Geometry], tuple[Port, ...]] = lambda g: ()
+    features: Callable[[Geometry], Features] = lambda g: Features()

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from geom.description import shapes
-from geom.description.part import Made, Part, Port, Prism, Rod
+from geom.description.part import CadShape, Part, Port, Prism, Rod
 from geom.description.profile import Loop, Profile, Vertex
 from geom.description.roles import Role
 
@@ -71,14 +71,14 @@ class Nozzle:
         sides = [Profile(shapes.strip_loop(self.wall, self.tip, *y)).rotated(self.angle)
                  for y in ((-out, -half), (half, out))]  # fmt: skip
         prisms = ((whole, self.z - out, low), *((side, low, high) for side in sides), (whole, high, self.z + out))
-        return Part(f"{self.name}.tube", material, prisms, made=self._tube(), role=Role.HOUSING)
+        return Part(f"{self.name}.tube", material, prisms, cad_shape=self._tube(), role=Role.HOUSING)
 
-    def _tube(self) -> Made:
+    def _tube(self) -> CadShape:
         inside = (shapes.disc(self.wall), self.z - self.bore, self.z + self.bore)
-        return Made((Rod(self.angle, self.z, 0.9 * self.wall, self.tip, TUBE * self.bore),), (self.drill, inside))
+        return CadShape((Rod(self.angle, self.z, 0.9 * self.wall, self.tip, TUBE * self.bore),), (self.drill, inside))
 
 
-def opened_ring(inner: float, outer: float, bored: Sequence[Nozzle]) -> list[Profile]:
+def bored_ring(inner: float, outer: float, bored: Sequence[Nozzle]) -> list[Profile]:
     """What gaps as wide as the bores leave of a ring."""
     if not bored:
         return [shapes.ring(inner, outer)]
@@ -98,7 +98,7 @@ def _between(inner: float, outer: float, here: Nozzle, following: Nozzle) -> Pro
     ))  # fmt: skip
 
 
-def opened_circle(
+def bored_circle(
     outer: float, sectors: Sequence[tuple[float, float]], radii: tuple[float, float], bored: Sequence[Nozzle]
 ) -> Loop:
     """The circle `outer` with a way in to each channel: sectors (rad) between two radii, the one under each nozzle."""

@@ -42,15 +42,15 @@ class Turns:
         return min(self.width, math.sqrt((2 * _END - 1) * self.rib * self.width))
 
     @property
-    def beyond(self) -> float:
+    def overhang(self) -> float:
         """What the helix takes of the wall at either end (m): with the blunt ends, what gives it the rings' volume."""
         return self.rib / 2 + self.blunt**2 / 2 / self.width
 
     def places(self, bore: float) -> tuple[tuple[float, float], tuple[float, float]]:
         """Angle (rad) and z (m) of inlet and outlet: near the helix' ends, symmetric about the top."""
         (low, _), (_, high) = self.rings[0], self.rings[-1]
-        apart = math.pi * self._short(bore)
-        return (math.pi / 2 + apart, low + CLEAR * bore), (math.pi / 2 - apart, high - CLEAR * bore)
+        spacing = math.pi * self._short(bore)
+        return (math.pi / 2 + spacing, low + CLEAR * bore), (math.pi / 2 - spacing, high - CLEAR * bore)
 
     def _short(self, bore: float) -> float:
         """What the way from inlet to outlet lacks of the rings' turns."""
@@ -58,9 +58,9 @@ class Turns:
 
     def _inward(self, bore: float) -> float:
         """Turns from the blunt end to where the first ring's first edge has room for the bore."""
-        return max(0.0, (2 * CLEAR * bore + self.beyond - self.blunt) / self.pitch)
+        return max(0.0, (2 * CLEAR * bore + self.overhang - self.blunt) / self.pitch)
 
     def helix(self, bore: float) -> Helix:
         start = self.places(bore)[0][0] - 2 * math.pi * self._inward(bore)
-        bottom, top = self.first - self.beyond, self.rings[-1][1] + self.beyond
+        bottom, top = self.first - self.overhang, self.rings[-1][1] + self.overhang
         return Helix(self.inner, self.top, bottom, top, self.pitch, self.width, self.blunt, start)

@@ -103,9 +103,9 @@ def _force_edge(points: Floats, triangles: Ints, a: int, b: int) -> Ints:
     start, end = points[a], points[b]
     sides = triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
     u, v = points[sides[:, 0]], points[sides[:, 1]]
-    apart = _cross(end - start, u - start) * _cross(end - start, v - start) < 0
+    opposite = _cross(end - start, u - start) * _cross(end - start, v - start) < 0
     across = _cross(v - u, start - u) * _cross(v - u, end - u) < 0
-    crossing = apart & across & ~np.isin(sides, [a, b]).any(axis=1)
+    crossing = opposite & across & ~np.isin(sides, [a, b]).any(axis=1)
     crossed = np.unique(np.flatnonzero(crossing) // 3)
     if not len(crossed):
         return triangles

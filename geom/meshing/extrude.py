@@ -50,9 +50,9 @@ def _heights(z0: float, z1: float, axial_size: float) -> Floats:
 
 def _base(index: int, columns: Sequence[Column], flat: Triangulation) -> tuple[Ints, Ints]:
     """Triangles under one block, corners sorted, and their labels."""
-    found = [(c.labels[c.blocks.index(index)], t) for c, t in zip(columns, flat.triangles) if index in c.blocks]
-    labels = np.concatenate([np.full(len(triangles), label) for label, triangles in found])
-    return np.sort(np.concatenate([triangles for _, triangles in found]), axis=1), labels
+    columns_of = [(c.labels[c.blocks.index(index)], t) for c, t in zip(columns, flat.triangles) if index in c.blocks]
+    labels = np.concatenate([np.full(len(triangles), label) for label, triangles in columns_of])
+    return np.sort(np.concatenate([triangles for _, triangles in columns_of]), axis=1), labels
 
 
 def _tets(base: Ints, rank: Ints) -> Ints:

@@ -43,9 +43,9 @@ def build_mesh(
     """
     axial = 1.5 * size_m if axial_m is None else axial_m
     file = _cache_file(machine, (size_m, segments, across, axial), cache)
-    known = {part.name: said for part in machine.parts if (said := part.identity) is not None}
-    if file is not None and (found := recalled(file, read_npz)) is not None:
-        return replace(found, identities=known)
+    known = {part.name: identity for part in machine.parts if (identity := part.identity) is not None}
+    if file is not None and (cached := recalled(file, read_npz)) is not None:
+        return replace(cached, identities=known)
     plan = _planned((*machine.parts, *machine.fluids), segments)
     flat = triangulate(plan.columns, size_m, across)
     mesh = extrude(plan.cut, plan.blocks, plan.columns, flat, axial, machine.face_name)

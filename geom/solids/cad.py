@@ -36,17 +36,17 @@ def solids(part: Part, cache: Path | str | None = None) -> list[cq.Solid]:
     solid = recalled(file, lambda path: [cq.Solid(s.wrapped) for s in cq.Shape.importBin(str(path)).Solids()])
     if solid:
         return solid
-    found = _built(part)
+    exact = _built(part)
     with atomic_write(file) as partial:
-        cq.Compound.makeCompound(found).exportBin(str(partial))
-    return found
+        cq.Compound.makeCompound(exact).exportBin(str(partial))
+    return exact
 
 
 def _built(part: Part) -> list[cq.Solid]:
     import cadquery as cq
 
-    if part.made is not None:
-        return carved(part.made)
+    if part.cad_shape is not None:
+        return carved(part.cad_shape)
     prisms = [prism(profile, z0, z1) for profile, z0, z1 in part.prisms]
     if len(_stacked(part)) == len(prisms):
         return prisms
@@ -78,7 +78,7 @@ def export_cad(
     """Write the machine as a STEP assembly (mm), a GLB scene (m) and one STL per part (mm); returns what was written.
 
     Keys are "step", "glb" and "stl:<part>". Beside the STEP file its materials are written, as `import_step` reads
-    them. It reads prisms: of a machine with parts made otherwise (`Part.made`) they are in "step:prisms".
+    them. It reads prisms: of a machine with parts made otherwise (`Part.cad_shape`) they are in "step:prisms".
     Raises InputError for an unknown format.
     """
     for name in formats:
@@ -87,25 +87,25 @@ def export_cad(
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     whole = assembly(machine, cache)
-    written: dict[str, Path] = {}
+    paths: dict[str, Path] = {}
     if "step" in formats:
-        written |= _steps(machine, whole, folder, cache)
+        paths |= _steps(machine, whole, folder, cache)
     if "glb" in formats:
-        written["glb"] = folder / f"{machine.name}.glb"
-        write_glb(whole, written["glb"])
+        paths["glb"] = folder / f"{machine.name}.glb"
+        write_glb(whole, paths["glb"])
     if "stl" in formats:
         for child in whole.children:
-            path = written[f"stl:{child.name}"] = folder / f"{child.name}.stl"
+            path = paths[f"stl:{child.name}"] = folder / f"{child.name}.stl"
             shape: Any = child.obj
             shape.exportStl(str(path), tolerance=0.05, angularTolerance=0.1)
-    return written
+    return paths
 
 
 def _steps(machine: Machine, whole: cq.Assembly, folder: Path, cache: Path | str | None) -> dict[str, Path]:
     """STEP files with their sidecars: as made, and where that differs, as prisms."""
     files = {"step": (folder / f"{machine.name}.step", whole)}
-    if any(part.made is not None for part in machine.parts):
-        plain = replace(machine, parts=tuple(replace(part, made=None) for part in machine.parts))
+    if any(part.cad_shape is not None for part in machine.parts):
+        plain = replace(machine, parts=tuple(replace(part, cad_shape=None) for part in machine.parts))
         files["step:prisms"] = (folder / f"{machine.name}-prisms.step", assembly(plain, cache))
     for path, what in files.values():
         what.export(str(path))
@@ -117,10 +117,10 @@ def _materials(machine: Machine) -> str:
     """What a STEP file cannot say, as TOML."""
     lines = [f"{json.dumps(part.name)} = {json.dumps(part.material)}" for part in machine.parts]
     head = ["[machine]", f"name = {json.dumps(machine.name)}", f"description = {json.dumps(machine.description)}"]
-    said = [f"{json.dumps(part.name)} = {_role(i)}" for part in machine.parts if (i := part.identity) is not None]
-    return "\n".join([*head, "", "[materials]", *lines, "", *(["[roles]", *said, ""] if said else [])])
+    entries = [f"{json.dumps(part.name)} = {_role(i)}" for part in machine.parts if (i := part.identity) is not None]
+    return "\n".join([*head, "", "[materials]", *lines, "", *(["[roles]", *entries, ""] if entries else [])])
 
 
-def _role(known: Identity) -> str:
-    words = [f"role = {json.dumps(known.role)}"] if known.role is not None else []
-    return f"{{ {', '.join([*words, f'turns = {json.dumps(bool(known.turns))}'])} }}"
+def _role(identity: Identity) -> str:
+    words = [f"role = {json.dumps(identity.role)}"] if identity.role is not None else []
+    return f"{{ {', '.join([*words, f'turns = {json.dumps(bool(identity.turns))}'])} }}"

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from geom.description.part import Helix, Made, Rod
+from geom.description.part import CadShape, Helix, Rod
+from geom.description.profile import Profile
 from geom.errors import InputError
 
 if TYPE_CHECKING:
@@ -14,20 +15,20 @@ if TYPE_CHECKING:
 mm = 1e3
 _SEAMS = (0.0, 77.0, 163.0, 241.0)  # deg
 _VOLUME = 1e-3  # relative error of a helix that is not lost
-_BEYOND = 1.0  # mm; how far a helix is swept beyond its radii before they cut it
+_OVERRUN = 1.0  # mm; how far a helix is swept beyond its radii before they cut it
 
 
-def carved(made: Made) -> list[cq.Solid]:
+def carved(shape: CadShape) -> list[cq.Solid]:
     """The solids (mm) that are left of the start."""
     import cadquery as cq
 
-    whole, *more = (_shape(piece) for piece in made.start)
+    whole, *more = (_shape(piece) for piece in shape.start)
     body: Any = whole.fuse(*more) if more else whole
-    body = body.cut(*(_shape(piece) for piece in made.cuts))
+    body = body.cut(*(_shape(piece) for piece in shape.cuts))
     return [cq.Solid(solid.wrapped) for solid in body.Solids()]
 
 
-def prism(profile: Any, z0: float, z1: float) -> cq.Solid:
+def prism(profile: Profile, z0: float, z1: float) -> cq.Solid:
     """A profile from z0 to z1 (m)."""
     import cadquery as cq
 
@@ -56,9 +57,9 @@ def channel(helix: Helix) -> Any:
     """
     swept = _swept(helix)
     for seam in _SEAMS:  # the kernel loses solids whose edges run through a seam
-        found = _room(helix, seam).intersect(swept)
-        if abs(found.Volume() * 1e-9 / helix.volume - 1) < _VOLUME:
-            return found
+        body = _room(helix, seam).intersect(swept)
+        if abs(body.Volume() * 1e-9 / helix.volume - 1) < _VOLUME:
+            return body
     raise InputError(f"the CAD kernel fails at a helix of {helix.turns:.2f} turns", "jacket", "another rib or height")
 
 
@@ -68,7 +69,7 @@ def _swept(helix: Helix) -> Any:
 
     r0, r1, width, pitch = (mm * x for x in (helix.inner, helix.outer, helix.width, helix.pitch))
     below = mm * (helix.bottom + helix.blunt) - width  # lower edge where it begins
-    near, far = r0 - _BEYOND, r1 + _BEYOND
+    near, far = r0 - _OVERRUN, r1 + _OVERRUN
     corners = [(near, 0), (far, 0), (far, width), (near, width)]
     section = cq.Wire.makePolygon([cq.Vector(r, 0, z) for r, z in corners], close=True)
     path = cq.Wire.makeHelix(pitch, helix.turns * pitch, (r0 + r1) / 2)

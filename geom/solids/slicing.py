@@ -37,19 +37,19 @@ def sliced(solid: cq.Solid, name: str) -> tuple[Prism, ...]:
         for z0, z1 in pairwise(levels)
         for profile in _section(solid, (z0 + z1) / 2, name)
     ]
-    found, exact = sum(profile.area * (z1 - z0) for profile, z0, z1 in prisms), solid.Volume() * 1e-9
-    if abs(found / exact - 1) > _VOLUME:
-        raise InputError(f"its prisms have {found / exact:.4f} of its volume", name, "a valid, closed solid")
+    volume, exact = sum(profile.area * (z1 - z0) for profile, z0, z1 in prisms), solid.Volume() * 1e-9
+    if abs(volume / exact - 1) > _VOLUME:
+        raise InputError(f"its prisms have {volume / exact:.4f} of its volume", name, "a valid, closed solid")
     return tuple(prisms)
 
 
 def _levels(solid: cq.Solid, name: str) -> list[float]:
     """Axial positions (mm) of all caps; InputError for a face that is neither cap nor wall."""
-    found: list[float] = []
+    levels: list[float] = []
     for face in solid.Faces():
         cosines = np.abs(_normals_z(face))
         if np.sqrt(1 - cosines.min() ** 2) < _TILT:
-            found.append(face.Center().z)
+            levels.append(face.Center().z)
         elif cosines.max() > _TILT:
             box = face.BoundingBox()
             raise InputError(
@@ -58,8 +58,8 @@ def _levels(solid: cq.Solid, name: str) -> list[float]:
                 name,
                 "faces must lie along z or normal to it: simplify the solid or leave it out",
             )
-    found.sort()
-    return [z for i, z in enumerate(found) if i == 0 or z - found[i - 1] > _LEVEL]
+    levels.sort()
+    return [z for i, z in enumerate(levels) if i == 0 or z - levels[i - 1] > _LEVEL]
 
 
 def _normals_z(face: cq.Face) -> np.ndarray:
@@ -69,13 +69,13 @@ def _normals_z(face: cq.Face) -> np.ndarray:
 
     adaptor = BRepAdaptor_Surface(face.wrapped)
     u0, u1, v0, v1 = face._uvBounds()
-    found = []
+    normals = []
     for i, j in product(_SHARES, _SHARES):
         point, du, dv = gp_Pnt(), gp_Vec(), gp_Vec()
         adaptor.D1(u0 + i * (u1 - u0), v0 + j * (v1 - v0), point, du, dv)
         normal = du.Crossed(dv)
-        found.append(normal.Z() / max(normal.Magnitude(), 1e-300))
-    return np.clip(found, -1.0, 1.0)
+        normals.append(normal.Z() / max(normal.Magnitude(), 1e-300))
+    return np.clip(normals, -1.0, 1.0)
 
 
 def _section(solid: cq.Solid, z: float, name: str) -> list[Profile]:
@@ -131,10 +131,10 @@ def _chained(pieces: list[Piece]) -> list[Loop] | None:
         start, end, bulge = left.pop()
         first, loop = start, [_vertex(start, bulge)]
         while np.hypot(*(end - first)) > _JOIN:
-            found = _next(left, end)
-            if found is None:
+            following = _next(left, end)
+            if following is None:
                 return None
-            index, turned = found
+            index, turned = following
             start, other, bulge = left.pop(index)
             here, end = (other, start) if turned else (start, other)
             loop.append(_vertex(here, -bulge if turned else bulge))
@@ -142,11 +142,11 @@ def _chained(pieces: list[Piece]) -> list[Loop] | None:
     return loops
 
 
-def _next(left: list[Piece], end: np.ndarray) -> tuple[int, bool] | None:
+def _next(pieces: list[Piece], end: np.ndarray) -> tuple[int, bool] | None:
     """Which edge goes on from here, and whether it runs the other way."""
-    ends = np.array([[piece[0], piece[1]] for piece in left]).reshape(-1, 2) - end
+    ends = np.array([[piece[0], piece[1]] for piece in pieces]).reshape(-1, 2) - end
     distance = np.hypot(*ends.T)
-    if not len(left) or distance.min() > _JOIN:
+    if not len(pieces) or distance.min() > _JOIN:
         return None
     index, turned = divmod(int(distance.argmin()), 2)
     return index, bool(turned)

@@ -58,14 +58,16 @@ def import_step(path: str | Path) -> Machine:
     if not path.is_file():
         raise InputError("no such file", str(path), "a STEP file with named solids")
     beside = step_sidecar(path)
-    said = _read_sidecar(beside)
-    solids = _left_in(_solids(path, said.get("import", {}), str(beside)), said, str(beside))
+    sidecar = _read_sidecar(beside)
+    solids = _without_excluded(_solids(path, sidecar.get("import", {}), str(beside)), sidecar, str(beside))
     prisms = _all_sliced(solids, path)
-    fluids = said.get("fluids", {})
-    _refuse_unused({**said.get("materials", {}), **fluids, **said.get("roles", {})}, prisms, str(beside))
-    what = _said(said.get("roles", {}), prisms, f"{beside} [roles]")
-    made_of = {name: _material(name, said.get("materials", {}), str(beside)) for name in prisms if name not in fluids}
-    header = said.get("machine", {})
+    fluids = sidecar.get("fluids", {})
+    _refuse_unused({**sidecar.get("materials", {}), **fluids, **sidecar.get("roles", {})}, prisms, str(beside))
+    what = _declared_roles(sidecar.get("roles", {}), prisms, f"{beside} [roles]")
+    made_of = {
+        name: _material(name, sidecar.get("materials", {}), str(beside)) for name in prisms if name not in fluids
+    }
+    header = sidecar.get("machine", {})
     return Machine(
         name=checked_name(header["name"], f"{beside} [machine] name") if "name" in header else path.stem,
         family="step",
@@ -88,7 +90,7 @@ def import_step(path: str | Path) -> Machine:
             ),
             Part(INSIDE, "air", (), solid=False, role=Role.INNER_AIR),
         ),
-        sections={name: table for name, table in said.items() if name in SECTIONS and name != "machine"},
+        sections={name: table for name, table in sidecar.items() if name in SECTIONS and name != "machine"},
         geometry=None,
         face_names={},
     )
@@ -99,7 +101,7 @@ def _space(material_: str) -> Role:
     return Role.INNER_AIR if material_ == "air" else Role.COOLANT
 
 
-def _said(patterns: Mapping[str, Any], names: Iterable[str], where: str) -> dict[str, Identity]:
+def _declared_roles(patterns: Mapping[str, Any], names: Iterable[str], where: str) -> dict[str, Identity]:
     """Solid -> what [roles] says it is; a full name goes before a pattern."""
     out = {}
     for name in names:
@@ -128,9 +130,9 @@ def step_sidecar(path: Path | str) -> Path:
 def _read_sidecar(path: Path) -> dict[str, Any]:
     if not path.is_file():
         return {}
-    said = read_toml(path, "what a STEP file does not say: [materials], [fluids], [losses.NAME] ...")
+    sidecar = read_toml(path, "what a STEP file does not say: [materials], [fluids], [losses.NAME] ...")
     known = ("import", "fluids", "roles", *(section for section in SECTIONS if section != "geometry"))
-    for section, table in said.items():
+    for section, table in sidecar.items():
         if section not in known or not isinstance(table, Mapping):
             raise InputError(f"unknown section [{section}]", str(path), f"known: {', '.join(known)}")
         for key in table:
@@ -138,28 +140,28 @@ def _read_sidecar(path: Path) -> dict[str, Any]:
                 raise InputError(
                     f"unknown key {key!r}", f"{path} [{section}]", f"known: {', '.join(_ALLOWED[section])}"
                 )
-    return said
+    return sidecar
 
 
-def _solids(path: Path, said: Mapping[str, Any], where: str) -> dict[str, list[cq.Solid]]:
+def _solids(path: Path, sidecar: Mapping[str, Any], where: str) -> dict[str, list[cq.Solid]]:
     """Solids (mm) by name, turned and moved so that the machine's axis is z."""
     import cadquery as cq
 
-    axis, origin = said.get("axis", "z"), said.get("origin_mm", [0.0, 0.0, 0.0])
+    axis, origin = sidecar.get("axis", "z"), sidecar.get("origin_mm", [0.0, 0.0, 0.0])
     if axis not in _ROTATIONS:
         raise InputError(f"{axis!r} is no axis", f"{where} [import] axis", f"one of {', '.join(_ROTATIONS)}")
     if not (isinstance(origin, list) and len(origin) == 3 and all(isinstance(x, (int, float)) for x in origin)):
         raise InputError(f"{origin!r} is no point", f"{where} [import] origin_mm", "write [x, y, z]")
     turned = cq.Location(cq.Vector(), cq.Vector(*_ROTATIONS[axis][0]), _ROTATIONS[axis][1])
     moved = cq.Location(cq.Vector(*(-float(x) for x in origin)))
-    found: dict[str, list[cq.Solid]] = {}
+    by_name: dict[str, list[cq.Solid]] = {}
     for shape, name, place, _ in _assembly(path):
         placed = shape.moved(turned * moved * place)
         if placed.Solids():
-            found.setdefault(name.split("/")[-1].replace("|", "_"), []).extend(placed.Solids())
-    if not found:
+            by_name.setdefault(name.split("/")[-1].replace("|", "_"), []).extend(placed.Solids())
+    if not by_name:
         raise InputError("no solids", str(path), "a STEP assembly of named solids")
-    return found
+    return by_name
 
 
 def _assembly(path: Path) -> Any:
@@ -174,20 +176,22 @@ def _assembly(path: Path) -> Any:
         raise InputError(f"not readable: {error}", str(path), "a STEP assembly of named solids") from error
 
 
-def _left_in(solids: dict[str, list[cq.Solid]], said: Mapping[str, Any], where: str) -> dict[str, list[cq.Solid]]:
-    patterns = said.get("import", {}).get("leave_out", [])
+def _without_excluded(
+    solids: dict[str, list[cq.Solid]], sidecar: Mapping[str, Any], where: str
+) -> dict[str, list[cq.Solid]]:
+    patterns = sidecar.get("import", {}).get("leave_out", [])
     for pattern in patterns:
         if not any(fnmatchcase(name, pattern) for name in solids):
             raise _no_solid(pattern, solids, f"{where} [import] leave_out")
-    return {name: found for name, found in solids.items() if not any(fnmatchcase(name, p) for p in patterns)}
+    return {name: pieces for name, pieces in solids.items() if not any(fnmatchcase(name, p) for p in patterns)}
 
 
 def _all_sliced(solids: Mapping[str, list[cq.Solid]], path: Path) -> dict[str, tuple[Prism, ...]]:
     """Prisms by name; one error that names every solid that cannot be sliced."""
     prisms, faults = {}, []
-    for name, found in solids.items():
+    for name, pieces in solids.items():
         try:
-            prisms[name] = tuple(prism for solid in found for prism in sliced(solid, name))
+            prisms[name] = tuple(prism for solid in pieces for prism in sliced(solid, name))
         except InputError as fault:
             faults.append(fault)
     if faults:

@@ -39,14 +39,14 @@ def _checked(part: Part, tolerance_mm: float, cache: Path | str | None) -> CadCh
     known = file and recalled(file, lambda path: CadCheck(**{**json.loads(path.read_text()), "part": part.name}))
     if known:
         return known
-    found = solids(part, cache)
-    surfaces = [surface(solid, tolerance_mm) for solid in found]
+    exact = solids(part, cache)
+    surfaces = [surface(solid, tolerance_mm) for solid in exact]
     check = CadCheck(
         part=part.name,
         volume=part.volume,
-        solid_volume=sum(solid.Volume() for solid in found) * 1e-9,
+        solid_volume=sum(solid.Volume() for solid in exact) * 1e-9,
         surface_volume=sum(float(mesh.volume) for mesh in surfaces) * 1e-9,
-        pieces=len(found),
+        pieces=len(exact),
         watertight=all(bool(mesh.is_watertight) for mesh in surfaces),
     )
     if file is not None:

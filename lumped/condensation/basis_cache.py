@@ -45,9 +45,9 @@ class BasisCache:
         near = sorted((file for file, d in far.items() if d <= np.log(spread) + 1e-9), key=lambda file: far[file])
         return recalled(near[0], _pairs) if near else None
 
-    def keep(self, centre: Centre, found: Mapping[str, Any], least: float = WEAKEST) -> Pairs:
+    def keep(self, centre: Centre, bases: Mapping[str, Any], least: float = WEAKEST) -> Pairs:
         """What is worth keeping of principal fields, in single precision, written if there is a folder."""
-        pairs = {part: _worth(p.strength, p.fields, min(least, WEAKEST)) for part, p in found.items()}
+        pairs = {part: _worth(p.strength, p.fields, min(least, WEAKEST)) for part, p in bases.items()}
         if self.folder is None:
             return pairs
         out: dict[str, Any] = {"centre": centre.values}
@@ -69,14 +69,14 @@ class BasisCache:
 
 def _distance(file: Path, centre: Centre) -> float:
     """Largest logarithm of a coefficient's ratio to that of a kept centre."""
-    with np.load(file) as saved:
-        return float(np.abs(saved["centre"] - centre.values).max())
+    with np.load(file) as archive:
+        return float(np.abs(archive["centre"] - centre.values).max())
 
 
 def _pairs(file: Path) -> Pairs:
-    with np.load(file) as saved:
-        parts = [name.removesuffix("/strength") for name in saved.files if name.endswith("/strength")]
-        return {part: (saved[f"{part}/strength"], saved[f"{part}/fields"]) for part in parts}
+    with np.load(file) as archive:
+        parts = [name.removesuffix("/strength") for name in archive.files if name.endswith("/strength")]
+        return {part: (archive[f"{part}/strength"], archive[f"{part}/fields"]) for part in parts}
 
 
 def _worth(strength: Floats, fields: Floats, least: float) -> tuple[Floats, Floats]:

@@ -7,7 +7,7 @@ c_k da_k/dt = -k_k a_k + heat in weighted by shape k    a_k amplitude of a shape
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy.sparse as sp
@@ -16,10 +16,15 @@ from lumped.condensation.recovery import PartShape, Shapes
 from lumped.model.network import Array, Link, Network, Place, Row
 from lumped.transfer.laws import Fixed
 
+if TYPE_CHECKING:
+    from fem.matrices.assembly import FieldModel
+    from fem.matrices.surface import Touch, Trace
+    from fem.solvers.snapshots import Basis
+
 
 def network_in(
-    field: Any,
-    found: Mapping[str, Any],
+    field: FieldModel,
+    bases: Mapping[str, Basis],
     contacts: Mapping[str, float],
     loads: Mapping[str, Array],
     whole: frozenset[str],
@@ -29,7 +34,7 @@ def network_in(
 ) -> Network:
     """The network of a field in given bases: conduction and contacts as links, faces, parts and zones as places.
 
-    field : fem.matrices.assembly.FieldModel;  found : part -> its shapes;  contacts : W/m2/K
+    field : fem.matrices.assembly.FieldModel;  bases : part -> its shapes;  contacts : W/m2/K
     loads : zone -> (n,) unit loss;  whole : the zones that are a whole part, uniformly heated
     """
     states: list[str] = []
@@ -37,7 +42,7 @@ def network_in(
     groups: list[str] = []
     shapes: dict[str, PartShape] = {}
     for part, block in field.blocks.items():
-        basis = found[part]
+        basis = bases[part]
         own = np.arange(len(states), len(states) + 1 + len(basis.capacity))
         states += [part, *(f"{part}#{k + 1}" for k in range(len(basis.capacity)))]
         C += [block.capacity, *basis.capacity]
@@ -45,7 +50,7 @@ def network_in(
         V = np.column_stack([np.ones(block.n), basis.Phi])
         shapes[part] = PartShape(block.points, block.elements, V, block.w / block.volume, own)
     states, C, groups = [*states, *fluids], [*C, *fluids.values()], [*groups, *fluids]
-    links = [_conduction(part, shape, found[part]) for part, shape in shapes.items() if len(shape.states) > 1]
+    links = [_conduction(part, shape, bases[part]) for part, shape in shapes.items() if len(shape.states) > 1]
     links += [_contact(field, shapes, key, touch, contacts[key]) for key, touch in field.contacts.items()]
     places = {key: _surface(field, shapes, key) for key in field.films}
     places |= {key: _loss(field, shapes, key, load, key in whole) for key, load in loads.items()}
@@ -55,7 +60,7 @@ def network_in(
     )
 
 
-def _conduction(part: str, shape: PartShape, basis: Any) -> Link:
+def _conduction(part: str, shape: PartShape, basis: Basis) -> Link:
     inner, mean = shape.states[1:], Row(shape.states[:1], np.ones(1))
     return Link(
         f"conduction:{part}", "conduction", (part, part), inner, inner, basis.conduction, Fixed(1.0), mean, mean
@@ -66,7 +71,7 @@ def _fluid(name: str, state: int) -> Place:
     return Place(name, "fluid", name, np.array([state]), np.ones((1, 1)), np.ones(1))
 
 
-def _loss(field: Any, shapes: Mapping[str, PartShape], key: str, load: Array, whole: bool) -> Place:
+def _loss(field: FieldModel, shapes: Mapping[str, PartShape], key: str, load: Array, whole: bool) -> Place:
     """A unit loss spreads over the part's states just as the zone's mean temperature reads them."""
     if whole:
         return Place(key, "part", key, shapes[key].states[:1], np.ones((1, 1)), np.ones(1))
@@ -75,12 +80,12 @@ def _loss(field: Any, shapes: Mapping[str, PartShape], key: str, load: Array, wh
     return Place(key, "part", part, shapes[part].states, np.outer(b, b), b)
 
 
-def _restricted(field: Any, shape: PartShape, trace: Any) -> Array:
+def _restricted(field: FieldModel, shape: PartShape, trace: Trace) -> Array:
     """The part's states seen on one side of a surface, (m, k)."""
     return shape.V[trace.dofs - field.blocks[trace.part].dofs.start]
 
 
-def _surface(field: Any, shapes: Mapping[str, PartShape], key: str) -> Place:
+def _surface(field: FieldModel, shapes: Mapping[str, PartShape], key: str) -> Place:
     trace = field.films[key].trace
     shape = shapes[trace.part]
     X = _restricted(field, shape, trace)
@@ -96,7 +101,7 @@ def _surface(field: Any, shapes: Mapping[str, PartShape], key: str) -> Place:
     )
 
 
-def _contact(field: Any, shapes: Mapping[str, PartShape], key: str, touch: Any, g: float) -> Link:
+def _contact(field: FieldModel, shapes: Mapping[str, PartShape], key: str, touch: Touch, g: float) -> Link:
     a, b = shapes[touch.a.part], shapes[touch.b.part]
     Xa, Xb = _restricted(field, a, touch.a), _restricted(field, b, touch.b)
     both, across = np.concatenate([a.states, b.states]), Xa.T @ (touch.cross @ Xb)

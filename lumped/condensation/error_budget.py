@@ -43,11 +43,11 @@ class ErrorBudget:
     @classmethod
     def worst(cls, budgets: Iterable[ErrorBudget]) -> ErrorBudget:
         """Place by place the run in which most is left."""
-        found: dict[str, PlaceError] = {}
+        largest: dict[str, PlaceError] = {}
         for place in (p for budget in budgets for p in budget.places):
-            if place.place not in found or place.total_K > found[place.place].total_K:
-                found[place.place] = place
-        return cls(tuple(found.values()))
+            if place.place not in largest or place.total_K > largest[place.place].total_K:
+                largest[place.place] = place
+        return cls(tuple(largest.values()))
 
     def document(self) -> list[dict[str, Any]]:
         return [p.document() for p in self.places]

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from lumped.condensation.reduction_error import Accuracy, Errors, LoadCases, merged, point_errors
 from lumped.model.network import Network
+
+if TYPE_CHECKING:
+    from lumped.condensation.reduction import FullPoint, Reduction
 
 Tell = Callable[[str], None]
 FAVOURS = 6  # times the shapes are dealt out anew before new solutions are asked for
@@ -33,7 +36,7 @@ class Round:
 class Enrichment:
     """reduction : with the points it learned from;  weights : favour of each part;  rounds : of checks, in order"""
 
-    reduction: Any
+    reduction: Reduction
     network: Network
     weights: Mapping[str, float]
     rounds: tuple[Round, ...] = field(default=())
@@ -47,33 +50,37 @@ class Enrichment:
 class Size:
     """A network of a given size: errors at the nominal coefficients, and the worst of several random ones.
 
-    asked : largest number of states, 0: the means only;  met : with a reserve for points that were not looked at
+    requested : largest number of states, 0: the means only;  met : with a reserve for points that were not looked at
     """
 
-    asked: int
+    requested: int
     network: Network
     nominal: Errors
     random: Errors
     met: bool
 
     @classmethod
-    def of(cls, reduction: Any, asked: int, points: Sequence[Any], cases: LoadCases, allowed: Accuracy) -> Size:
+    def of(
+        cls, reduction: Reduction, requested: int, points: Sequence[FullPoint], cases: LoadCases, allowed: Accuracy
+    ) -> Size:
         """points : the nominal one first, then random ones, all solved in full"""
-        network = reduction.network(tolerance=0.0, max_states=max(asked, len(reduction.field.blocks)))
-        nominal, *drawn = (seen(network, point, cases) for point in points)
+        network = reduction.network(tolerance=0.0, max_states=max(requested, len(reduction.field.blocks)))
+        nominal, *drawn = (point_error(network, point, cases) for point in points)
         random = merged(drawn)
-        return cls(asked, network, nominal, random, max(excess(nominal, allowed), excess(random, allowed)) <= RESERVE)
+        return cls(
+            requested, network, nominal, random, max(excess(nominal, allowed), excess(random, allowed)) <= RESERVE
+        )
 
     def document(self) -> dict[str, Any]:
         return {
-            "asked": self.asked, "states": len(self.network.states), "met": self.met,
+            "asked": self.requested, "states": len(self.network.states), "met": self.met,
             "nominal": self.nominal.document(), "random": self.random.document(),
         }  # fmt: skip
 
 
 def enrich(
-    reduction: Any, cases: LoadCases, allowed: Accuracy, rounds: int = 3, points: Sequence[Any] = (),
-    guides: Sequence[Any] = (), fresh: int = 3, tell: Tell = lambda message: None,
+    reduction: Reduction, cases: LoadCases, allowed: Accuracy, rounds: int = 3, points: Sequence[FullPoint] = (),
+    guides: Sequence[FullPoint] = (), fresh: int = 3, tell: Tell = lambda message: None,
 ) -> Enrichment:  # fmt: skip
     """A network that meets the wish at random points it has not seen, or the one the last of `rounds` looked at.
 
@@ -88,9 +95,9 @@ def enrich(
     for k in range(rounds):
         network = allotted_shapes(reduction, [*learned, *guides], cases, allowed, weights)
         new = [reduction.random_point(begun + fresh * k + j) for j in range(fresh)]
-        found = merged([seen(network, point, cases) for point in new])
-        done.append(Round(len(network.states), tuple(p.name for p in new), found, excess(found, allowed) <= 1.0))
-        tell(f"{len(network.states)} states: {found}")
+        errors = merged([point_error(network, point, cases) for point in new])
+        done.append(Round(len(network.states), tuple(p.name for p in new), errors, excess(errors, allowed) <= 1.0))
+        tell(f"{len(network.states)} states: {errors}")
         if done[-1].met or k == rounds - 1:
             break
         fuller = [*guides, reduction.extreme_point(begun + k)]
@@ -98,19 +105,19 @@ def enrich(
     return Enrichment(reduction, network, dict(weights), tuple(done))
 
 
-def excess(found: Errors, allowed: Accuracy) -> float:
+def excess(errors: Errors, allowed: Accuracy) -> float:
     """1 where the worst part is just good enough."""
-    return max(map(allowed.excess, found.parts.values()))
+    return max(map(allowed.excess, errors.parts.values()))
 
 
 def allotted_shapes(
-    reduction: Any, learned: Sequence[Any], cases: LoadCases, allowed: Accuracy, weights: dict[str, float]
+    reduction: Reduction, learned: Sequence[FullPoint], cases: LoadCases, allowed: Accuracy, weights: dict[str, float]
 ) -> Network:
     """Deal out shapes until the points already solved are met: parts that miss get more."""
     network = reduction.network(weights=weights)
     for _ in range(FAVOURS):
-        found = merged([seen(network, point, cases) for point in learned])
-        missing = {part: allowed.excess(e) for part, e in found.parts.items() if allowed.excess(e) > MARGIN}
+        errors = merged([point_error(network, point, cases) for point in learned])
+        missing = {part: allowed.excess(e) for part, e in errors.parts.items() if allowed.excess(e) > MARGIN}
         if not missing:
             break
         for part, excess in missing.items():
@@ -119,5 +126,5 @@ def allotted_shapes(
     return network
 
 
-def seen(network: Network, point: Any, cases: LoadCases) -> Errors:
+def point_error(network: Network, point: FullPoint, cases: LoadCases) -> Errors:
     return point_errors(network, point.films, point.contacts, point.X, cases)

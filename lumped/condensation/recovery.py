@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,8 @@ from lumped.model.network import Array, Row
 
 if TYPE_CHECKING:
     from scipy.spatial import cKDTree
+
+    from fem.matrices.elements import Elements
 
 Ints = NDArray[np.int64]
 SNAP_M = 3e-3  # a thermocouple this far outside its part is taken to sit on the surface
@@ -28,7 +30,7 @@ class PartShape:
     """
 
     points: Ints
-    elements: Any
+    elements: Elements
     V: Array
     weights: Array
     states: Ints
@@ -109,7 +111,7 @@ def _anywhere(shape: PartShape, xyz: Array, part: str, distance: float, nearest:
         p = corners[tet]
         inner = np.linalg.solve((p[1:] - p[0]).T, xyz - p[0])
         if min(inner.min(), 1 - inner.sum()) > -1e-6:
-            return shape.elements.row(tet, np.array([1 - inner.sum(), *inner]))
+            return shape.elements.row(int(tet), np.array([1 - inner.sum(), *inner]))
     spot, mm = np.round(1e3 * xyz, 1), np.round(1e3 * nearest, 1)
     raise InputError(
         f"the point {spot.tolist()} mm is not in part '{part}'",

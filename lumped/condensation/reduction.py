@@ -21,11 +21,11 @@ from fem.solvers.snapshots import (
     Principal,
     Recipe,
     bases,
-    drawn,
     energies,
     enriched,
     isolated_part,
     principals,
+    random_coefficients,
     snapshots,
 )
 from fem.solvers.solve import Solve, Solver, film_columns
@@ -106,7 +106,11 @@ class Reduction:
     def random_point(self, seed: int) -> FullPoint:
         """Every film and contact times spread ** U(-1, 1)."""
         rng, spread = np.random.default_rng([self.recipe.seed, seed]), self.recipe.spread
-        return self.at(f"random {seed}", drawn(self.films, spread, rng), drawn(self.contacts, spread, rng))
+        return self.at(
+            f"random {seed}",
+            random_coefficients(self.films, spread, rng),
+            random_coefficients(self.contacts, spread, rng),
+        )
 
     def joined_point(self, factor: float) -> FullPoint:
         """All contacts times a factor."""
@@ -150,13 +154,13 @@ def reduce(
     loads = unit_loads(field, places)
     stored = BasisCache(cache, _geometry(field, loads, recipe))
     centre = Centre({**films}, {**contacts}, {p: float(b.K.diagonal().sum()) for p, b in field.blocks.items()})
-    taken = stored.find(centre, recipe.spread)
-    if taken is None:
+    cached = stored.find(centre, recipe.spread)
+    if cached is None:
         unit = np.column_stack([*loads.values()])
         S = snapshots(field, films, contacts, unit, recipe, solver)
         local = isolated_part(field, films, contacts, S, unit, recipe)
-        taken = stored.keep(centre, principals(field, S, energies(field, films, contacts), local), recipe.tolerance**2)
-    principal = {part: Principal(*pair) for part, pair in taken.items()}
+        cached = stored.keep(centre, principals(field, S, energies(field, films, contacts), local), recipe.tolerance**2)
+    principal = {part: Principal(*pair) for part, pair in cached.items()}
     return Reduction(field, films, contacts, places, fluids, boundaries, name, recipe, principal)
 
 

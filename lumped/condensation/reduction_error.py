@@ -69,10 +69,10 @@ def worst(parts: Mapping[str, PartError]) -> Errors:
     return Errors(parts[mean].mean, parts[hot].hot, parts[point].point, mean, hot, point, parts)
 
 
-def merged(found: Sequence[Errors]) -> Errors:
+def merged(errors: Sequence[Errors]) -> Errors:
     """Part by part the worst of several comparisons."""
-    return worst({part: PartError(*(max(getattr(e.parts[part], k) for e in found) for k in ("mean", "hot", "point")))
-                  for part in found[0].parts})  # fmt: skip
+    return worst({part: PartError(*(max(getattr(e.parts[part], k) for e in errors) for k in ("mean", "hot", "point")))
+                  for part in errors[0].parts})  # fmt: skip
 
 
 def errors(network: Network, full: Array, x: Array, largest: float | None = None, floor: float = FLOOR) -> Errors:
@@ -93,14 +93,14 @@ def errors(network: Network, full: Array, x: Array, largest: float | None = None
     return worst(parts)
 
 
-def _part(T: Array, seen: Array, shape: PartShape, floor: float, rng: np.random.Generator) -> PartError:
+def _part(T: Array, sampled: Array, shape: PartShape, floor: float, rng: np.random.Generator) -> PartError:
     w = shape.weights
-    mean, off = w @ T, T - seen
+    mean, off = w @ T, T - sampled
     at = rng.choice(len(T), min(POINTS, len(T)), replace=False)
     own = max(abs(float(mean)), floor)
     return PartError(
         100 * abs(float(w @ off)) / own,
-        100 * abs(float(T.max() - seen.max())) / max(float(T.max()), floor),
+        100 * abs(float(T.max() - sampled.max())) / max(float(T.max()), floor),
         100 * float(np.abs(off[at]).max()) / own,
     )
 

@@ -106,8 +106,8 @@ def heiles_decaying(
     Staton and Cavagnino 2008 describe; Motor-CAD starts from 1 at the cowl to 0.2 at the far end.
     """
     at = [(k + 0.5) / pieces for k in range(pieces)]
-    found = [heiles(speed * decay(x), diameter, length, turbulence, fluid) for x in at]
-    return math.fsum(h for h, _ in found) / pieces, found[0][1]
+    films = [heiles(speed * decay(x), diameter, length, turbulence, fluid) for x in at]
+    return math.fsum(h for h, _ in films) / pieces, films[0][1]
 
 
 def straight_fin_efficiency(h: float, k: float, thickness: float, depth: float) -> float:

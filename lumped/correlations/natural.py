@@ -37,7 +37,7 @@ def churchill_chu_plate(height: float, surface: float, ambient: float, of: Of = 
     """Vertical plate or end shield in still fluid, h (W/m2/K).
 
     Nu = (0.825 + 0.387 Ra^(1/6) / (1 + (0.492/Pr)^(9/16))^(8/27))^2, properties at film temperature.
-    height (m); surface, ambient (degC).  Worked value: test_natural.py.
+    height (m); surface, ambient (degC).  Worked value: tests/lumped/correlations.
     Range: Ra < 1e12. Source: Churchill and Chu 1975, Int. J. Heat Mass Transfer 18, 1323 (ht).
     """
     import ht

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from lumped.declarations.coolant import read_coolant
-from lumped.schemas.reader import Table, known
+from lumped.schemas.reader import Table, suggestion
 from lumped.transfer.circuit import PER_M3S, Circuit, Cooler, Pass
 from lumped.transfer.exchanger import ARRANGEMENTS, Flow
 from lumped.transfer.hydraulics import Duct
@@ -57,7 +57,7 @@ def _pass(table: Table, nodes: list[str]) -> Pass:
     walls = table.shares("wall")
     for wall in walls:
         if wall not in nodes:
-            raise table.error(f"unknown wall '{wall}'", known(wall, nodes))
+            raise table.error(f"unknown wall '{wall}'", suggestion(wall, nodes))
     if not 0.0 < sum(walls.values()) <= 1.0 + 1e-9 or min(walls.values()) <= 0.0:
         raise table.error(f"shares of 'wall' sum to {sum(walls.values()):g}", "positive shares, 1 at most together")
     duct = Duct(

@@ -39,10 +39,10 @@ def _needs_area(table: Table, has_area: bool) -> None:
 
 
 def _fixed(table: Table, has_area: bool) -> tuple[Law, bool] | None:
-    found, of = _coefficient(table, has_area, needed=False), powers(table)
-    if found is None:
+    coefficient, of = _coefficient(table, has_area, needed=False), powers(table)
+    if coefficient is None:
         return None
-    return (InputPower(found[0], of) if of else Fixed(found[0])), found[1]
+    return (InputPower(coefficient[0], of) if of else Fixed(coefficient[0])), coefficient[1]
 
 
 def _radiation(table: Table, has_area: bool) -> tuple[Law, bool]:
@@ -74,12 +74,12 @@ def _forced(table: Table, has_area: bool) -> Read:
     if "surface" in table:
         _needs_area(table, has_area)
         return over(table), True
-    found, of = _coefficient(table, has_area), powers(table)
+    coefficient, of = _coefficient(table, has_area), powers(table)
     if not of:
         right = 'surface = ... with speed = "INPUT", or of = { input = "speed_rpm", at = 1000, exponent = 0.8 }'
         raise table.error("forced without an input", right)
-    assert found is not None
-    return InputPower(found[0], of), found[1]
+    assert coefficient is not None
+    return InputPower(coefficient[0], of), coefficient[1]
 
 
 def _fan(table: Table, has_area: bool) -> tuple[Law, bool]:
@@ -88,9 +88,9 @@ def _fan(table: Table, has_area: bool) -> tuple[Law, bool]:
 
 
 def _power(table: Table, has_area: bool) -> tuple[Law, bool]:
-    found, law = _coefficient(table, has_area), Power(table.number("exponent", 0.25, of="power.exponent"))
-    assert found is not None
-    return InputPower(found[0], powers(table), law), found[1]
+    coefficient, law = _coefficient(table, has_area), Power(table.number("exponent", 0.25, of="power.exponent"))
+    assert coefficient is not None
+    return InputPower(coefficient[0], powers(table), law), coefficient[1]
 
 
 def _tabled(table: Table, has_area: bool) -> tuple[Law, bool]:

@@ -19,9 +19,8 @@ from lumped.declarations.separated import Share
 from lumped.model.build import bare_network, node_link, node_source, stream, surface_place
 from lumped.model.network import Link, Network, Place, Row, Source
 from lumped.model.soundness import checked_names, checked_network, checked_path
-from lumped.schemas.reader import Table, known
-from lumped.sources.loss_measured import Negative
-from lumped.transfer.laws import Law
+from lumped.schemas.reader import Table, suggestion
+from lumped.transfer.laws import Law, Scaled
 from lumped.transfer.reversal import Direction, OneWay
 
 if TYPE_CHECKING:
@@ -135,7 +134,7 @@ def _mean(network: Network, name: str, table: Table) -> Place:
 def _end(network: Network, table: Table, name: str) -> str:
     names = [*network.states, *network.boundaries]
     if name not in names:
-        raise table.error(f"unknown node '{name}'", known(name, names))
+        raise table.error(f"unknown node '{name}'", suggestion(name, names))
     return name
 
 
@@ -191,14 +190,14 @@ def _sources(network: Network, top: Table) -> list[Source]:
     tables = top.tables("losses")
     kinds, laws = loss_kinds(tables), loss_laws(tables, network.quantities)
     out = {name: _source(network, name, table, laws[name]) for name, table in tables.items()}
-    taken = [
-        _taken_off(out[name], out[other])
+    differences = [
+        _difference(out[name], out[other])
         for name, kind in kinds.items() if kind == "measured" for other in deducted(tables[name], kinds)
     ]  # fmt: skip
     for table in tables.values():
         table.raw("prior_sd")
         table.close()
-    return [*out.values(), *taken]
+    return [*out.values(), *differences]
 
 
 def _source(network: Network, name: str, table: Table, law: Law) -> Source:
@@ -209,10 +208,10 @@ def _source(network: Network, name: str, table: Table, law: Law) -> Source:
     return node_source(network, f"loss:{name}", table.word("kind"), shares, law, probe)
 
 
-def _taken_off(measured: Source, other: Source) -> Source:
+def _difference(measured: Source, other: Source) -> Source:
     """What the model injects elsewhere leaves the measured total, at its own temperature, watt for watt."""
     name = f"{measured.name}:less:{other.name.removeprefix('loss:')}"
-    return replace(measured, name=name, law=Negative(other.law), probe=other.probe)
+    return replace(measured, name=name, law=Scaled(other.law, -1.0), probe=other.probe)
 
 
 def _checked(network: Network, where: str) -> Network:
@@ -222,5 +221,7 @@ def _checked(network: Network, where: str) -> Network:
     for p in network.parameters:
         for target, _ in p.targets:
             if target not in names and not target.startswith(("bias:", "gain:", "lag:")):
-                raise InputError(f"acts on unknown '{target}'", f"{where} [parameters.{p.name}]", known(target, names))
+                raise InputError(
+                    f"acts on unknown '{target}'", f"{where} [parameters.{p.name}]", suggestion(target, names)
+                )
     return checked_network(network, where)

@@ -90,14 +90,14 @@ def _parameter(name: str, table: Table) -> Parameter:
     targets = dict.fromkeys(table.members("acts_on"), 1.0) if listed else table.shares("acts_on", of="acts_on")
     if not targets:
         raise table.error("acts_on = {} names nothing", 'acts_on = ["link:NAME", ...]')
-    found = Parameter(
+    parameter = Parameter(
         name, tuple(targets.items()), table.number("value", neutral), table.word("unit", "1"),
         table.number("low", low), table.number("high", high), table.number("prior_sd", 0.3, of="parameters.prior_sd"),
         mapping, neutral, int(table.number("sign", 0)), table.word("source", ""),  # type: ignore[arg-type]
         table.flag("flow", False),
     )  # fmt: skip
     table.close()
-    return _checked(found, table)
+    return _checked(parameter, table)
 
 
 def _checked(p: Parameter, table: Table) -> Parameter:

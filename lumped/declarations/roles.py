@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from geom.description.identity import Identity, identity
 from geom.description.roles import Role
 from lumped.model.quantities import INPUTS
-from lumped.schemas.reader import Table, known
+from lumped.schemas.reader import Table, suggestion
 
 
 def read_identities(
@@ -17,14 +17,18 @@ def read_identities(
     around = top.tables("boundaries")
     for name, table in around.items():
         if name not in boundaries:
-            raise table.error(f"'{name}' is no boundary", known(name, boundaries))
-    out = {name: said for name, table in {**nodes, **around}.items() if (said := _said(table)) is not None}
+            raise table.error(f"'{name}' is no boundary", suggestion(name, boundaries))
+    out = {
+        name: declared
+        for name, table in {**nodes, **around}.items()
+        if (declared := _declared_identity(table)) is not None
+    }
     for table in around.values():
         table.close()
     return {**out, **{cell: identity(Role.COOLANT, False) for cell in cells}}
 
 
-def _said(table: Table) -> Identity | None:
+def _declared_identity(table: Table) -> Identity | None:
     role = Role(table.word("role", None, list(Role))) if "role" in table else None
     turns = table.flag("turns") if "turns" in table else None
     return None if role is None and turns is None else identity(role, turns)

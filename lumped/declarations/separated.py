@@ -24,7 +24,7 @@ from lumped.transfer.properties import Fluid
 POINTS = 97  # of a table, closer near rest, where a film changes most
 TOLERANCE, SMALL = 3e-3, 1.0  # relative, of a film of at least SMALL (W/m2/K)
 MOST = 6  # products: where regimes change the speed of that turns with temperature, and no few products follow
-USUAL, BEYOND = (0.0, 120.0), 0.25  # degC, film temperatures of machines; weight of errors beyond
+USUAL, OUTSIDE_WEIGHT = (0.0, 120.0), 0.25  # degC, film temperatures of machines; weight of errors beyond
 Film = Callable[[float], tuple[float, Info]]
 Indices = NDArray[np.int64]
 
@@ -54,8 +54,8 @@ class FilmOver(Law):
         largest = float(x.max(initial=0.0))
         self.film(min(largest, self.top))
         if largest > self.top:
-            said = f"film over {self.of}: {self.of} = {largest:.4g} outside 0 to {self.top:g}"
-            warnings.warn(said, RangeWarning, stacklevel=2)
+            note = f"film over {self.of}: {self.of} = {largest:.4g} outside 0 to {self.top:g}"
+            warnings.warn(note, RangeWarning, stacklevel=2)
         return np.interp(x, self.at, over_grid(self.film, self.at))
 
 
@@ -98,16 +98,16 @@ def following(of: str, film: Callable[[Fluid], Film], fluid: Callable[[float], F
     film : over the input, for a fluid;  fluid : of degC;  usual_degC : at which ranges are checked
     """
     over = FilmOver(of, film(fluid(usual_degC)), top)
-    degC = _known(fluid) if liquid else film_degC()
+    degC = _liquid_range(fluid) if liquid else film_degC()
     h = np.stack([over_grid(film(fluid(T)), over.at) for T in degC], axis=1)
     law = TableLaw(tuple(degC), ()) if liquid else FilmTable((0.0, 1.0), ())
-    found = enumerate(products(h, weights(np.array(degC))))
-    return [Share(over, tuple(over.at), tuple(u), _profile(law, w), k == 0, liquid) for k, (u, w) in found]
+    shares = enumerate(products(h, weights(np.array(degC))))
+    return [Share(over, tuple(over.at), tuple(u), _profile(law, w), k == 0, liquid) for k, (u, w) in shares]
 
 
 def weights(degC: Array) -> Array:
     """Of errors at film temperatures."""
-    return np.where((degC >= USUAL[0]) & (degC <= USUAL[1]), 1.0, BEYOND)
+    return np.where((degC >= USUAL[0]) & (degC <= USUAL[1]), 1.0, OUTSIDE_WEIGHT)
 
 
 def film_degC() -> list[float]:
@@ -115,7 +115,7 @@ def film_degC() -> list[float]:
     return [FIRST_C + STEP_K * k for k in range(FILMS)]
 
 
-def _known(fluid: Callable[[float], Fluid]) -> list[float]:
+def _liquid_range(fluid: Callable[[float], Fluid]) -> list[float]:
     """Where a liquid is one."""
     out = []
     for T in WARMTH:
@@ -146,8 +146,8 @@ def products(h: Array, weight: Array | None = None) -> list[tuple[Array, Array]]
     few = np.arange(0, len(h), 4), np.arange(0, h.shape[1], max(1, h.shape[1] // 30))
     chosen: list[int] = []
     while True:
-        tried = {k: _missed(h, scale, profile, [*chosen, k], *few) for k in few[0].tolist() if k not in chosen}
-        chosen.append(min(tried, key=lambda k: tried[k]))
+        errors = {k: _missed(h, scale, profile, [*chosen, k], *few) for k in few[0].tolist() if k not in chosen}
+        chosen.append(min(errors, key=lambda k: errors[k]))
         share = _shares(h, scale, profile[chosen])
         if np.all(np.abs(h - share @ profile[chosen]) <= TOLERANCE * scale) or len(chosen) == MOST:
             return list(zip(share.T, profile[chosen], strict=True))

@@ -57,9 +57,9 @@ def coupled(
         T = new
         if residuals[-1] < tolerance:
             return Coupled(_without(run, len(looks)), inputs, tuple(residuals))
-    shown = ", ".join(f"{r:.3g}" for r in residuals[-4:])
+    last_residuals = ", ".join(f"{r:.3g}" for r in residuals[-4:])
     raise ThermoscopeError(
-        f"drive and {network.title} do not agree after {most} rounds (last changes {shown} K): thermal "
+        f"drive and {network.title} do not agree after {most} rounds (last changes {last_residuals} K): thermal "
         "runaway, or a drive at its limit that jumps with temperature"
     )
 

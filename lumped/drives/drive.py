@@ -161,9 +161,9 @@ def _march(time, wanted, load, resistance, plant, control, step, out):
             share = (s + 0.5) / count
             target = (wanted[t - 1] + share * (wanted[t] - wanted[t - 1])) / wheel
             resist = load[t - 1] + share * (load[t] - load[t - 1])
-            asked = Kp * (target - w) + integral
-            i_ref = min(max(asked, 0.0), i_max)
-            if asked == i_ref:
+            demand = Kp * (target - w) + integral
+            i_ref = min(max(demand, 0.0), i_max)
+            if demand == i_ref:
                 integral += Ki * (target - w) * h
             V = min(max((R + L_af * w) * i_ref + L / lag * (i_ref - i), 0.0), v_max)
             drop = R + L_af * w

@@ -111,19 +111,19 @@ def integral(c: Curve, time: Array) -> Array:
 def _between(time: Array, chosen: Ints, curves: Sequence[Curve]) -> tuple[Array, Array]:
     """(nk, n) values at some of the knots, and how far between them parabolas bulge that keep every integral."""
     value, bulge = np.zeros((2, chosen.size, len(curves)))
-    apart = 1 + np.flatnonzero(np.diff(chosen) > 1)
-    left, right = chosen[apart - 1], chosen[apart]
+    starts = 1 + np.flatnonzero(np.diff(chosen) > 1)
+    left, right = chosen[starts - 1], chosen[starts]
     for e, c in enumerate(curves):
         value[:, e] = c.value if c.value.ndim == 0 else c.value[chosen]
         if c.value.ndim == 0 or not _varies(c):
             continue
         bulge[:, e] = c.bulge if c.bulge.ndim == 0 else c.bulge[chosen]
-        if apart.size:
+        if starts.size:
             whole = integral(c, time)
             mean = (whole[right] - whole[left]) / (time[right] - time[left])
             off = 1.5 * (mean - 0.5 * (c.value[left] + c.value[right]))
             off[np.abs(off) <= ROUNDING * np.abs(c.value).max()] = 0.0
-            bulge[apart, e] = off
+            bulge[starts, e] = off
     return value, bulge
 
 

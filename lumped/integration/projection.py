@@ -36,7 +36,7 @@ def projected(near: Curve, time: Array, fine: Curve, fine_time: Array) -> Curve:
     inner = (cell >= 0) & (cell < time.size - 1)
     inner[inner] = (fine_time[inner] > time[cell[inner]]) & full[cell[inner] + 1]
     value, bulge = _equal_integrals(near, time, full, full, fine, fine_time)
-    largest, off = _apart(value, bulge, time, cell[inner], fine_time[inner], fine.value[inner])
+    largest, off = _deviation_from_parabola(value, bulge, time, cell[inner], fine_time[inner], fine.value[inner])
     cut = off > SWITCH * largest
     value, bulge = _equal_integrals(near, time, full, full & ~cut, fine, fine_time)
     edges = _edges(fine.value, cell, inner, largest, cut)
@@ -71,7 +71,9 @@ def integral(fine: Curve, fine_time: Array, at: Array) -> Array:
     return np.asarray(upto[k] + h[k] * part)
 
 
-def _apart(value: Array, bulge: Array, time: Array, cell: NDArray[np.int64], t: Array, f: Array) -> tuple[Array, Array]:
+def _deviation_from_parabola(
+    value: Array, bulge: Array, time: Array, cell: NDArray[np.int64], t: Array, f: Array
+) -> tuple[Array, Array]:
     """(nt,) of the interval that ends at a knot: its largest factor, and how far its samples are from its parabola."""
     s = (t - time[cell]) / (time[cell + 1] - time[cell])
     line = value[cell] + s * (value[cell + 1] - value[cell]) + 4.0 * s * (1.0 - s) * bulge[cell + 1]

@@ -98,9 +98,9 @@ class Signals(dict[str, Array]):
         """The same, and how it runs between the samples."""
         if type(law) is Fixed and isfinite(law.value):
             return straight(np.asarray(law.value))
-        found = self._known.get(id(law))
-        if found is not None and found[0]() is law:
-            return found[1]
+        curve = self._known.get(id(law))
+        if curve is not None and curve[0]() is law:
+            return curve[1]
         made = self._made(name, law)
         if self.nt <= LONG:
             self._known[id(law)] = ref(law, _forgetting(self, id(law))), made

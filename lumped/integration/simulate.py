@@ -132,10 +132,13 @@ def simulate(
 
 def march(
     network: Network, record: Record, core: Compiled, keep_states: bool = False, begin: Stand | None = None,
-    steps: Steps | None = None, keep_path: bool = False,
+    steps: Steps | None = None, keep_path: bool = False, portion: int = PORTION,
 ) -> Run:  # fmt: skip
-    """Run the kernel, from rest of the states without capacity: at the start and wherever a time is given twice."""
-    course = _Course(network, record, core, keep_states, begin, steps)
+    """Run the kernel, from rest of the states without capacity: at the start and wherever a time is given twice.
+
+    portion : steps whose states are in memory at once for their tangents
+    """
+    course = _Course(network, record, core, keep_states, begin, steps, portion)
     course.path = [] if keep_path else None
     for part in _parts(core.forcing.time, core.C):
         course.over(part, part.start > 0 or begin is None)
@@ -150,9 +153,9 @@ class _Course:
 
     def __init__(
         self, network: Network, record: Record, core: Compiled, keep_states: bool, begin: Stand | None,
-        steps: Steps | None,
+        steps: Steps | None, portion: int,
     ) -> None:  # fmt: skip
-        self.network, self.named, self.given, self.taken = network, core, steps, 0
+        self.network, self.named, self.given, self.steps_done = network, core, steps, 0
         self.core = core = reordered(core)
         self.time = np.asarray(record.time, float)
         nt, n, nb, nr = self.time.size, core.C.size, core.forcing.u.shape[1], core.rows.start.size - 1
@@ -165,7 +168,7 @@ class _Course:
         x0, u0 = (begin.x if begin else initial_state(network, record.initial))[core.order], core.forcing.u[0]
         self.both, self.scratch = stages(x0, u0, core.terms), work(n, nb, core.terms, 0)
         self.moved = (stages(x0, u0, core.terms), work(n, nb, core.terms, p)) if p else (self.both, self.scratch)
-        most = min(core.forcing.time.size * 2 if steps is None else steps.knot.size, PORTION)
+        most = min(core.forcing.time.size * 2 if steps is None else steps.knot.size, portion)
         self.trace = _trace(min(most, max(FACTORS // n**2, 1)) if p else most, core, nb, bool(p))
         self.position = Position(np.zeros(6, np.int64), np.array([0.0, -1.0, 1e300, 1e300]))
         self.position.clock[LOW] = np.append(x0[core.control.node == 1], u0).min()
@@ -212,7 +215,7 @@ class _Course:
         if at[STATUS] not in (0, FULL):
             raise self._failed(forcing)
         done, X = int(at[DONE]), self.trace
-        self.taken += done
+        self.steps_done += done
         self.steps.append(Steps(X.knot[:done] + first, X.share[:done].copy(), X.kind[:done].copy()))
         if self.path is not None:
             self.path.append(ends(X, done)[:, self.place[: core.C.size]])
@@ -224,7 +227,7 @@ class _Course:
     def _follow(self, first: int) -> Control:
         """The next of the given steps into the trace."""
         assert self.given is not None
-        some = slice(self.taken, self.taken + self.trace.h.size)
+        some = slice(self.steps_done, self.steps_done + self.trace.h.size)
         for name, values in self.given._asdict().items():
             part = values[some] - (first if name == "knot" else 0)
             getattr(self.trace, name)[: part.size] = part

@@ -10,17 +10,17 @@ pressure of its turning, as it comes in relative to the duct, is taken as lost a
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
+from geom.description.geometry import Duct, Features
+from geom.description.machine import Machine
 from lumped.correlations.air_gap import taylor_film
 from lumped.correlations.ducts import duct_film
 from lumped.correlations.end_space import end_space
 from lumped.machine.laws import Interpolated, film_over
 from lumped.machine.settings import Fan, Films
-from lumped.machine.shapes import Gap
+from lumped.machine.shapes import Gap, gap_fluid
 from lumped.model.network import Link, Network, Row
 from lumped.transfer.hydraulics import parallel_shares
 from lumped.transfer.laws import InputPower, Law
@@ -28,57 +28,18 @@ from lumped.transfer.properties import air
 from lumped.transfer.reversal import OneWay
 
 AIR_HEAT = 1.205 * 1006.0  # rho cp of the air the fan takes in at 20 degC, J/m3/K
-BETWEEN_POLES, IN_ROTOR, AT_FAN = "air.interpolar", "air.ducts", "air.fan"
 STEPS = 121  # of speed in a table of films
 GAP_C, DUCT_C = 80.0, 40.0  # film temperatures at which tables over speed and flow are made
 
 
-@dataclass(frozen=True)
-class Duct:
-    """Equal straight passages along the axis: section and perimeter of all together (m2, m), length (m)."""
-
-    section: float
-    perimeter: float
-    length: float
-    bends: int = 0
-    coil: float = 0.0
-
-    @property
-    def diameter(self) -> float:
-        """Hydraulic diameter of each (m)."""
-        return 4 * self.section / self.perimeter
-
-
-def ducts_of(machine: Any) -> dict[str, Duct]:
-    """The ways along the axis beside the air gap, by the fluid's name; none where the geometry is not known."""
-    makers = {BETWEEN_POLES: _between_poles, IN_ROTOR: _in_rotor} if machine.geometry is not None else {}
-    there = {part.name for part in machine.fluids}
-    return {name: make(machine.geometry) for name, make in makers.items() if name in there}
-
-
-def _between_poles(g: Any) -> Duct:
-    bore = g.rotor.outer_diameter / 2 + g.stator.air_gap
-    poles, body = g.stator.poles, g.stator.body_width
-    depth = g.stator.yoke_inner_diameter / 2 - bore
-    coils = 2 * poles * g.field.coil_width * g.field.coil_height
-    area = np.pi * (bore + depth) ** 2 - np.pi * bore**2 - poles * body * depth - coils
-    perimeter = 2 * np.pi * (2 * bore + depth) + 2 * poles * (depth - body)
-    return Duct(area, perimeter, g.rotor.stack_length)
-
-
-def _in_rotor(g: Any) -> Duct:
-    number, d = g.rotor.ducts, g.rotor.duct_diameter
-    return Duct(number * np.pi * d**2 / 4, number * np.pi * d, g.rotor.stack_length)
-
-
-def fan_shares(machine: Any, fan: Fan) -> dict[str, float]:
+def fan_shares(machine: Machine, fan: Fan) -> dict[str, float]:
     """What each way along the axis takes of the fan's air at its rated flow; together 1."""
-    ducts = ducts_of(machine)
+    ducts, gap = machine.features.ducts, gap_fluid(machine)
     if not ducts:
-        return {"airgap": 1.0}
+        return {gap: 1.0}
     beside = 1.0 - fan.gap_share
     split = parallel_shares([[duct] for duct in ducts.values()], beside * fan.flow_m3_h / 3600.0, air(fan.air_C))
-    shares = {"airgap": fan.gap_share, **{name: beside * share for name, share in zip(ducts, split, strict=True)}}
+    shares = {gap: fan.gap_share, **{name: beside * share for name, share in zip(ducts, split, strict=True)}}
     return {name: share for name, share in shares.items() if share > 0.0}
 
 
@@ -111,17 +72,17 @@ def channel_film(duct: Duct, share: float, usual: float) -> Law:
     return film_over("fan_flow_m3h", np.linspace(0.0, 600.0, 61).tolist(), film, usual, DUCT_C)
 
 
-def fan_streams(network: Network, shares: Mapping[str, float], usual: float) -> list[Link]:
+def fan_streams(network: Network, features: Features, shares: Mapping[str, float], usual: float) -> list[Link]:
     """The fan's air, cell by cell; shares : way along the axis -> its part of the flow;  usual : flow (m3/h)."""
-    inlet = {AT_FAN: {"ambient": 1.0}} if AT_FAN in network.states else {}
+    (left, right), inlet = features.ends, {features.fan_space: {"ambient": 1.0}} if features.fan_space else {}
     feeds = {
         **inlet,
-        "air.left": dict.fromkeys(inlet or ("ambient",), 1.0),
-        **{way: {"air.left": share} for way, share in shares.items()},
-        "air.right": dict(shares),
+        left: dict.fromkeys(inlet or ("ambient",), 1.0),
+        **{way: {left: share} for way, share in shares.items()},
+        right: dict(shares),
     }
-    right = "a flow from left to right: what comes in at the right is not known"
-    law = OneWay(InputPower(AIR_HEAT / 3600.0, (("fan_flow_m3h", 1.0, 1.0),)), "fan_flow_m3h", "[fans]", right, usual)
+    way = "a flow from left to right: what comes in at the right is not known"
+    law = OneWay(InputPower(AIR_HEAT / 3600.0, (("fan_flow_m3h", 1.0, 1.0),)), "fan_flow_m3h", "[fans]", way, usual)
     return [_cell(network, cell, upstream, law) for cell, upstream in feeds.items()]
 
 

@@ -8,28 +8,23 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
+from geom.description.machine import Machine
 from geom.description.roles import Role
 from lumped.model.network import Link, Network, Parameter, Place
-from lumped.transfer.laws import Array, Inputs, Law, TemperatureLaw
+from lumped.transfer.laws import Array, Inputs, Wrapped
 
-OWN = "own"
+OWN_BASE = "own"
 
 
 @dataclass(frozen=True)
-class Switched(Law):
+class Switched(Wrapped):
     """Another law, in force while an input is 1 (closed) or while it is 0 (not closed)."""
 
-    base: Law
     switch: str
     closed: bool
-
-    @property
-    def temperature(self) -> TemperatureLaw:  # type: ignore[override]
-        return self.base.temperature
 
     @property
     def reads(self) -> tuple[str, ...]:  # type: ignore[override]
@@ -40,7 +35,7 @@ class Switched(Law):
         return np.asarray(self.base.factor(inputs) * (on if self.closed else 1.0 - on))
 
 
-def on_all(machine: Any) -> Any:
+def on_all(machine: Machine) -> Machine:
     """The machine standing on all its bases at once, as its mesh has it: what its field is compared with."""
     return replace(machine, sections={k: v for k, v in machine.sections.items() if k != "bases"})
 
@@ -56,13 +51,13 @@ def on_every_base(network: Network) -> Network:
     return replace(network, links=tuple(joined), places=places, parameters=())
 
 
-def switches(machine: Any) -> dict[str, str]:
+def switches(machine: Machine) -> dict[str, str]:
     """Input -> the foot it couples."""
-    said = machine.sections.get("bases", {})
-    return {f"on_{name}": "foot" if machine_ == OWN else f"foot.{name}" for name, machine_ in said.items()}
+    table = machine.sections.get("bases", {})
+    return {f"on_{name}": "foot" if machine_ == OWN_BASE else f"foot.{name}" for name, machine_ in table.items()}
 
 
-def switched(machine: Any, network: Network) -> Network:
+def switched(machine: Machine, network: Network) -> Network:
     """The network with every base coupled by its input."""
     for switch, foot in switches(machine).items():
         network = _coupled(network, switch, foot)

@@ -11,10 +11,10 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
-from typing import Any
 
 import numpy as np
 
+from geom.description.machine import Machine
 from geom.description.profile import loop_length
 from lumped.correlations.ducts import duct_film, schmidt_helical
 from lumped.machine.laws import Interpolated
@@ -66,7 +66,7 @@ def liquid(name: str, T: float) -> Fluid:
     return ethylene_glycol(T, 0.5) if name == "glycol-50" else propylene_glycol(T, 0.5)
 
 
-def cooling_of(machine: Any) -> Cooling | None:
+def cooling_of(machine: Machine) -> Cooling | None:
     """[cooling], if the machine has jackets."""
     jackets = [part.name for part in machine.fluids if part.material != "air"]
     if not jackets:
@@ -75,18 +75,18 @@ def cooling_of(machine: Any) -> Cooling | None:
     ports = {name: Table(t.raw(name, {}), f"{t.where} {name}") for name in jackets}
     outlets = {port.word("outlet", f"{name}.outlet"): name for name, port in ports.items()}
     inlet = t.number("inlet_C", 20.0)
-    found = Cooling(
+    cooling = Cooling(
         t.word("coolant", "glycol-50", LIQUIDS), t.number("flow_L_per_min"),
         t.number("property_C", inlet + 20.0),
         {name: outlets.get(port.word("inlet", f"{name}.inlet"), INLET) for name, port in ports.items()},
     )  # fmt: skip
     t.number("pressure_bar", 1.0)
     for jacket in jackets:
-        if INLET not in found.before(jacket):
+        if INLET not in cooling.before(jacket):
             raise t.error(f"{jacket} is fed by itself", "an inlet that no jacket feeds")
     for table in (*ports.values(), t):
         table.close()
-    return found
+    return cooling
 
 
 @dataclass(frozen=True)
@@ -106,7 +106,7 @@ class Channel:
         return duct_film(speed, self.diameter, self.length, fluid)[0]
 
 
-def channel_of(machine: Any, jacket: str) -> Channel:
+def channel_of(machine: Machine, jacket: str) -> Channel:
     """Rings are the turns of a helix, other profiles axial channels one after the other."""
     profile, z0, z1 = machine.part(jacket).prisms[0]
     if profile.holes:
@@ -121,13 +121,13 @@ def _flows(cooling: Cooling) -> tuple[float, ...]:
     return tuple(cooling.flow_l_min * np.concatenate([[0.0], np.geomspace(0.02, RANGE, 80)]))
 
 
-def jacket_film(machine: Any, jacket: str, cooling: Cooling) -> Law:
+def jacket_film(machine: Machine, jacket: str, cooling: Cooling) -> Law:
     """W/m2/K over the inlet's flow (l/min)."""
     channel, share, fluid, at = channel_of(machine, jacket), cooling.share(jacket), cooling.liquid, _flows(cooling)
     return Interpolated(FLOW, at, tuple(channel.film(share * q, fluid) for q in at))
 
 
-def outlet_film(machine: Any, network: Network, cell: str, cooling: Cooling) -> Law:
+def outlet_film(machine: Machine, network: Network, cell: str, cooling: Cooling) -> Law:
     """W/m2/K over the inlet's flow, onto the temperature at which the coolant leaves a cell."""
     at = np.array(_flows(cooling))
     film, rate = np.array(jacket_film(machine, stem(cell), cooling).factor({FLOW: at})), _rate(stem(cell), cooling)
@@ -141,7 +141,7 @@ def grown(units: np.ndarray) -> np.ndarray:
     return np.where(units > 0, np.expm1(units) / np.where(units > 0, units, 1.0), 1.0)
 
 
-def coolant_streams(machine: Any, network: Network, cooling: Cooling) -> list[Link]:
+def coolant_streams(machine: Machine, network: Network, cooling: Cooling) -> list[Link]:
     """Every cell takes up m cp (T - T of the cell before); before a jacket's first is the inlet or another jacket."""
     cells = {jacket: cells_of(machine, jacket) for jacket in cooling.feeds}
     last = {jacket: own[-1] for jacket, own in cells.items()} | {INLET: INLET}
@@ -152,7 +152,7 @@ def coolant_streams(machine: Any, network: Network, cooling: Cooling) -> list[Li
     ]
 
 
-def _rate_law(machine: Any, jacket: str, cooling: Cooling) -> Law:
+def _rate_law(machine: Machine, jacket: str, cooling: Cooling) -> Law:
     rate = Interpolated(FLOW, _flows(cooling), tuple(_rate(jacket, cooling)))
     right = "a flow from inlet to outlet: what comes in at the outlet is not known"
     return OneWay(rate, FLOW, f"{machine.name} [cooling]", right, cooling.flow_l_min)
@@ -166,7 +166,7 @@ def _stream(network: Network, feed: str, cell: str, law: Law) -> Link:
     )  # fmt: skip
 
 
-def outlets(machine: Any, network: Network, cooling: Cooling) -> dict[str, Place]:
+def outlets(machine: Machine, network: Network, cooling: Cooling) -> dict[str, Place]:
     """ "JACKET.outlet": where a thermocouple reads the coolant that leaves."""
     last = {jacket: network.column(cells_of(machine, jacket)[-1]) for jacket in cooling.feeds}
     return {

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
+from geom.description.machine import Machine
 from geom.description.roles import Role
-from lumped.machine.air import BETWEEN_POLES, IN_ROTOR, Duct, channel_film, ducts_of, fan_shares, gap_film, stirred
+from lumped.machine.air import channel_film, fan_shares, gap_film, stirred
 from lumped.machine.coolant import Cooling, cooling_of, jacket_film
 from lumped.machine.outer import outer_films
 from lumped.machine.path import stem
@@ -27,7 +27,7 @@ TOP_RPM = 3000.0  # films of speed are tabulated at least this far
 class Surroundings:
     """What the films of one machine depend on. contacts : names "a|b", which tell what turns."""
 
-    machine: Any
+    machine: Machine
     contacts: tuple[str, ...]
 
     @cached_property
@@ -51,10 +51,6 @@ class Surroundings:
     def gaps(self) -> frozenset[str]:
         """Fluids that are the air gap."""
         return frozenset(part.name for part in self.machine.fluids if part.role is Role.AIR_GAP)
-
-    @cached_property
-    def ducts(self) -> dict[str, Duct]:
-        return ducts_of(self.machine)
 
     @cached_property
     def shares(self) -> dict[str, float]:
@@ -82,7 +78,7 @@ class Surroundings:
         return max(TOP_RPM, 2.0 * float(self.machine.sections.get("ratings", {}).get("speed_rpm", 0.0)))
 
 
-def surroundings(machine: Any, contacts: Iterable[str]) -> Surroundings:
+def surroundings(machine: Machine, contacts: Iterable[str]) -> Surroundings:
     return Surroundings(machine, tuple(contacts))
 
 
@@ -95,11 +91,12 @@ def face_films(part: str, fluid: str, around: Surroundings) -> dict[str, Law]:
         return {"": jacket_film(around.machine, stem(fluid), around.cooling)}
     if gap is not None and fluid in around.gaps:
         return {"": gap_film(gap, around.top_rpm)}
-    if fluid == IN_ROTOR and fluid in around.shares:
-        return {"axial": channel_film(around.ducts[fluid], around.shares[fluid], around.usual_flow)}
-    if fluid == BETWEEN_POLES and fluid in around.ducts:
-        past = 1.0 - around.shares.get(IN_ROTOR, 0.0)  # the gap's air mixes with that between the poles
-        axial = {} if around.fan is None else {"axial": channel_film(around.ducts[fluid], past, around.usual_flow)}
+    ducts = around.machine.features.ducts
+    if fluid in ducts and ducts[fluid].turns and fluid in around.shares:
+        return {"axial": channel_film(ducts[fluid], around.shares[fluid], around.usual_flow)}
+    if fluid in ducts and not ducts[fluid].turns:
+        past = 1.0 - sum(share for way, share in around.shares.items() if way in ducts and ducts[way].turns)
+        axial = {} if around.fan is None else {"axial": channel_film(ducts[fluid], past, around.usual_flow)}
         return {**axial, "stirred": stirred(films.channel_wall_share, films, around.tip_radius, around.top_rpm)}
     share = films.moving_wall_share if part in around.turning else films.still_wall_share
     return {"": stirred(share, films, around.tip_radius, around.top_rpm)}

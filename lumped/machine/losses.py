@@ -8,34 +8,33 @@ resolve stands for its part. Series-wound machines may give plain numbers instea
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
+from geom.description.machine import Machine
 from geom.errors import InputError
 from lumped.declarations.losses import loss_laws
 from lumped.machine.settings import Losses, read
-from lumped.machine.shapes import wound
+from lumped.machine.shapes import gap_fluid, wound
 from lumped.model.network import Network, Place, Row, Source
-from lumped.schemas.reader import Table, known
+from lumped.schemas.reader import Table, suggestion
 from lumped.sources.losses import PowerLoss
 from lumped.transfer.laws import InputPower, Law, Linear
 
-ARMATURE = ("winding.armature", "winding.armature.left", "winding.armature.right")
 Shares = Mapping[str, float]
 
 
-def sources(machine: Any, network: Network) -> list[Source]:
+def sources(machine: Machine, network: Network) -> list[Source]:
     """Every loss of the machine as a source; the weights of each sum to 1 over the mean nodes."""
     return [_source(network, name, kind, parts, law, probe) for name, kind, parts, law, probe in _declared(machine)]
 
 
-def checked_losses(machine: Any) -> None:
+def checked_losses(machine: Machine) -> None:
     """InputError for a table of losses that cannot be; to be asked before minutes are spent on a mesh."""
     _declared(machine)
 
 
-def loss_shares(machine: Any, network: Network) -> dict[str, dict[str, float]]:
+def loss_shares(machine: Machine, network: Network) -> dict[str, dict[str, float]]:
     """Source -> share of its watts per part, zone or fluid of the network."""
     out: dict[str, dict[str, float]] = {}
     for name, _, parts, _, _ in _declared(machine):
@@ -45,7 +44,7 @@ def loss_shares(machine: Any, network: Network) -> dict[str, dict[str, float]]:
     return out
 
 
-def loss_watts(machine: Any, network: Network, inputs: Mapping[str, float]) -> dict[str, float]:
+def loss_watts(machine: Machine, network: Network, inputs: Mapping[str, float]) -> dict[str, float]:
     """Watts per part, zone or fluid at constant inputs, resistances at their reference temperature."""
     signals = {name: np.array([float(value)]) for name, value in inputs.items()}
     out: dict[str, float] = {}
@@ -61,14 +60,13 @@ ASSUMED = "loss:assumed"
 ASSUMED_W = 100.0  # of a machine that declares no losses, so that it can be looked at
 
 
-def _declared(machine: Any) -> list[Declared]:
+def _declared(machine: Machine) -> list[Declared]:
     section = machine.sections.get("losses", {})
     plain = not any(isinstance(value, Mapping) for value in section.values())
-    if plain and machine.family == "series-dc":
+    if plain and machine.features.series is not None:
         losses = read(Losses, section, f"{machine.name} [losses]")
         rated = Table(machine.sections.get("ratings", {}), f"{machine.name} [ratings]")
-        meshed = any(part.name == "brushes" for part in machine.parts)
-        return _series(losses, {key: rated.number(key) for key in ("current_A", "speed_rpm")}, meshed)
+        return _series(machine, losses, {key: rated.number(key) for key in ("current_A", "speed_rpm")})
     if not section:
         return [(ASSUMED.partition(":")[2], "constant", _everywhere(machine), PowerLoss(((ASSUMED_W, ()),)), "")]
     where = f"{machine.name} [losses"
@@ -77,7 +75,7 @@ def _declared(machine: Any) -> list[Declared]:
     return [_read(name, table, laws[name]) for name, table in tables.items()]
 
 
-def _everywhere(machine: Any) -> Shares:
+def _everywhere(machine: Machine) -> Shares:
     """Windings by volume, or, where nothing is wound, all parts."""
     heated = [part for part in machine.parts if wound(machine, part.name)] or list(machine.parts)
     total = sum(part.volume for part in heated)
@@ -122,13 +120,15 @@ def place_of(network: Network, name: str) -> Place:
     stem = name
     while stem not in network.places:
         if "." not in stem:
-            raise InputError(f"no place '{name}'", f"{network.name} [losses]", known(name, network.places))
+            raise InputError(f"no place '{name}'", f"{network.name} [losses]", suggestion(name, network.places))
         stem = stem.rpartition(".")[0]
     return network.places[stem]
 
 
-def _series(losses: Losses, rated: Mapping[str, float], brushes: bool) -> list[Declared]:
-    """The plain numbers of a series-wound machine. rated : "current_A", "speed_rpm";  brushes : are they meshed?"""
+def _series(machine: Machine, losses: Losses, rated: Mapping[str, float]) -> list[Declared]:
+    """The plain numbers of a series-wound machine. rated : "current_A", "speed_rpm" """
+    assert machine.features.series is not None
+    has = machine.features.series
     copper = Linear(losses.temperature_coefficient_per_K, losses.reference_C)
     current = ("current_A", 1.0, 2.0)
     amps, turns = rated["current_A"], rated["speed_rpm"]
@@ -138,17 +138,16 @@ def _series(losses: Losses, rated: Mapping[str, float], brushes: bool) -> list[D
     armature = InputPower(losses.armature_resistance_mOhm * 1e-3, (current,), copper)
     winding = InputPower(losses.field_resistance_mOhm * 1e-3, (current,), copper)
     share, ends, gap = losses.iron_in_poles, losses.armature_in_end_windings, losses.windage_in_gap
-    conductors = dict(zip(ARMATURE, (1 - ends, ends / 2, ends / 2), strict=True))
-    air = {"airgap": gap, "air.left": (1 - gap) / 2, "air.right": (1 - gap) / 2}
+    conductors = dict(zip(has.armature, (1 - ends, ends / 2, ends / 2), strict=True))
+    air = {gap_fluid(machine): gap, **dict.fromkeys(machine.features.ends, (1 - gap) / 2)}
     drop, friction = InputPower(losses.brush_drop_V, (("current_A", 1.0, 1.0),)), losses.brush_friction_W
-    sliding = {"commutator": 0.5, "brushes": 0.5} if brushes else {"commutator": 1.0}  # half to each side: assumed
+    sliding = dict.fromkeys(has.sliding, 1.0 / len(has.sliding))  # half to each side: assumed
     return [
         ("copper.armature", "copper", conductors, armature, ""),
-        ("copper.field", "copper", {"winding.field": 1.0}, winding, ""),
-        ("iron", "iron", {"rotor.core": 1 - share, "poles": share}, InputPower(losses.iron_W, iron_terms), ""),
+        ("copper.field", "copper", {has.field: 1.0}, winding, ""),
+        ("iron", "iron", {has.core: 1 - share, has.poles: share}, InputPower(losses.iron_W, iron_terms), ""),
         ("brush.drop", "brush", sliding, drop, ""),
         ("brush.friction", "friction", sliding, InputPower(friction, (spin,)), ""),
-        ("bearing.left", "friction", {"bearing.left": 1.0}, bearing, ""),
-        ("bearing.right", "friction", {"bearing.right": 1.0}, bearing, ""),
+        *((name, "friction", {name: 1.0}, bearing, "") for name in has.bearings),
         ("windage", "windage", air, InputPower(losses.windage_W, (("speed_rpm", turns, 3.0),)), ""),
     ]

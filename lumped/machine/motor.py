@@ -26,6 +26,7 @@ from typing import Any
 
 import numpy as np
 
+from geom.description.machine import Machine
 from lumped.machine.air import fan_streams
 from lumped.machine.bases import switched
 from lumped.machine.coolant import FLOW, INLET, coolant_streams, outlet_film, outlets
@@ -41,7 +42,7 @@ from lumped.model.network import Link, Network, Place
 AIR_IN_SPACE = 60.0  # J/K, a few tens of litres of air with a part of its walls' skin
 
 
-def fluids(machine: Any) -> dict[str, float]:
+def fluids(machine: Machine) -> dict[str, float]:
     """Fluid nodes and their heat capacities (J/K)."""
     out: dict[str, float] = {}
     for part in machine.fluids:
@@ -49,18 +50,18 @@ def fluids(machine: Any) -> dict[str, float]:
     return out
 
 
-def _cells(machine: Any, jacket: Any) -> dict[str, float]:
+def _cells(machine: Machine, jacket: Any) -> dict[str, float]:
     liquid = surroundings(machine, ()).cooling.liquid  # type: ignore[union-attr]
     names = cells_of(machine, jacket.name)
     return dict.fromkeys(names, liquid.rho * liquid.cp * jacket.volume / len(names))
 
 
-def boundaries(machine: Any) -> tuple[str, ...]:
+def boundaries(machine: Machine) -> tuple[str, ...]:
     """Temperatures given from outside."""
     return ("ambient", INLET) if surroundings(machine, ()).cooling is not None else ("ambient",)
 
 
-def operating_point(machine: Any) -> dict[str, np.ndarray]:
+def operating_point(machine: Machine) -> dict[str, np.ndarray]:
     """The rated point as inputs of the laws; a rating that the file does not give is 0."""
     around, ratings = surroundings(machine, ()), machine.sections.get("ratings", {})
     values = {name: ratings.get(name, 0.0) for name in ("current_A", "speed_rpm")}
@@ -71,13 +72,13 @@ def operating_point(machine: Any) -> dict[str, np.ndarray]:
     return {name: np.array([float(value)]) for name, value in values.items()}
 
 
-def rated_inputs(machine: Any) -> dict[str, float]:
+def rated_inputs(machine: Machine) -> dict[str, float]:
     """The same, a number each."""
     return {name: float(value[0]) for name, value in operating_point(machine).items()}
 
 
 def nominal_coefficients(
-    machine: Any, faces: Mapping[str, tuple[str, str]], contacts: Iterable[str]
+    machine: Machine, faces: Mapping[str, tuple[str, str]], contacts: Iterable[str]
 ) -> tuple[dict[str, float], dict[str, float]]:
     """Film coefficient per face and contact coefficient per contact (W/m2/K), at the rated point.
 
@@ -90,7 +91,7 @@ def nominal_coefficients(
     return h, g
 
 
-def motor_network(machine: Any, condensed: Network) -> Network:
+def motor_network(machine: Machine, condensed: Network) -> Network:
     """The condensed network of a motor, completed to a model that can run a test."""
     around = surroundings(machine, (_contact(link) for link in condensed.links if link.kind == "contact"))
     ports = {} if around.cooling is None else outlets(machine, condensed, around.cooling)
@@ -98,7 +99,7 @@ def motor_network(machine: Any, condensed: Network) -> Network:
     network = replace(with_channels(network), declared=declared(machine, network, around.contacts))
     faces = [place for place in network.places.values() if place.kind == "surface" and place.fluid]
     films = [link for face in faces for link in _film_links(network, face, around)]
-    streams = [] if around.fan is None else fan_streams(network, around.shares, around.fan.flow_m3_h)
+    streams = [] if around.fan is None else fan_streams(network, machine.features, around.shares, around.fan.flow_m3_h)
     if around.cooling is not None:
         streams += coolant_streams(machine, network, around.cooling)
     losses = sources(machine, network)

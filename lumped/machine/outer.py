@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 
+from geom.description.machine import Machine
 from geom.description.roles import Role
 from lumped.correlations.fins import elenbaas, heiles, mean_of_decay
 from lumped.correlations.forced import flat_plate
@@ -68,22 +68,22 @@ class Cowl:
     rear: str
 
 
-def cowl_of(machine: Any) -> Cowl | None:
+def cowl_of(machine: Machine) -> Cowl | None:
     """[fans.cowl], if the machine has one."""
     data = machine.sections.get("fans", {}).get("cowl")
     if data is None:
         return None
     t = Table(data, f"{machine.name} [fans.cowl]")
-    found = Cowl(
+    cowl = Cowl(
         t.number("air_speed_m_s"), t.number("at_rpm"), t.number("end_share", 0.2),
         t.number("rear_share", 0.774), t.number("front_share", 0.205),
         t.number("turbulence", 1.7), t.word("rear", "left", ("left", "right")),
     )  # fmt: skip
     t.close()
-    return found
+    return cowl
 
 
-def outer_films(machine: Any, part: str, films: Films) -> dict[str, Law]:
+def outer_films(machine: Machine, part: str, films: Films) -> dict[str, Law]:
     """Mechanism -> law (W/m2/K) of a part's outer face; they act in parallel."""
     outer, cowl = outer_of(machine, part, films), cowl_of(machine)
     laws: dict[str, Law] = {
@@ -94,24 +94,24 @@ def outer_films(machine: Any, part: str, films: Films) -> dict[str, Law]:
     return laws if blown is None else {**laws, "blown": blown}
 
 
-def outer_of(machine: Any, part: str, films: Films) -> Outer:
+def outer_of(machine: Machine, part: str, films: Films) -> Outer:
     """What the machine file says of a part's outer face, and for the rest what its shape suggests."""
     usual = _usual(machine, part, films)
-    said = machine.sections.get("films", {}).get("outer", {})
-    if part not in said and "default" not in said:
+    table = machine.sections.get("films", {}).get("outer", {})
+    if part not in table and "default" not in table:
         return usual
-    t = Table(said.get(part, said.get("default")), f"{machine.name} [films.outer] {part}")
+    t = Table(table.get(part, table.get("default")), f"{machine.name} [films.outer] {part}")
     surface = t.word("surface", usual.surface, SURFACES)
     size = t.number("size_mm") / 1e3 if "size_mm" in t or surface != usual.surface else usual.size
-    found = Outer(
+    outer = Outer(
         surface, size, t.number("emissivity", usual.emissivity), t.number("view", usual.view),
-        t.number("factor", usual.factor), usual.spacing, _own_fan(t),
+        t.number("factor", usual.factor), usual.spacing, _fan_law(t),
     )  # fmt: skip
     t.close()
-    return found
+    return outer
 
 
-def _own_fan(table: Table) -> Law | None:
+def _fan_law(table: Table) -> Law | None:
     if "fan" not in table:
         return None
     inner = Table(table.raw("fan"), f"{table.where} fan")
@@ -120,7 +120,7 @@ def _own_fan(table: Table) -> Law | None:
     return law
 
 
-def _usual(machine: Any, part: str, films: Films) -> Outer:
+def _usual(machine: Machine, part: str, films: Films) -> Outer:
     emissivity = machine.material_of(part).emissivity if films.emissivity is None else films.emissivity
     fins = fins_of(machine) if part == "housing" else None
     surface, size = _stands(extent(machine.part(part)))
@@ -162,7 +162,7 @@ def still_air(outer: Outer) -> FilmTable:
     return replace(law, value=tuple(each.ravel()))
 
 
-def _blown(machine: Any, part: str, cowl: Cowl) -> Law | None:
+def _blown(machine: Machine, part: str, cowl: Cowl) -> Law | None:
     """Films of the fan's air: fin channels by Heiles, end shields and a meshed fan's blades as flat plates."""
     e, fins = extent(machine.part(part)), fins_of(machine)
     if part == "housing" and fins is not None:
@@ -177,7 +177,7 @@ def _blown(machine: Any, part: str, cowl: Cowl) -> Law | None:
     return None
 
 
-def _on_left(machine: Any, e: Extent) -> bool:
+def _on_left(machine: Machine, e: Extent) -> bool:
     """Does it lie before the middle of the machine's body along the axis?"""
     spans = [part.span for part in machine.parts if part.role in (Role.END_SHIELD, Role.HOUSING)] or [(e.z0, e.z1)]
     return e.z0 + e.z1 < min(a for a, _ in spans) + max(b for _, b in spans)

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
 
+from geom.description.machine import Machine
 from geom.errors import InputError
-from lumped.machine.air import BETWEEN_POLES
 from lumped.machine.path import stem
 from lumped.model.network import Link, Network, Parameter, Place, Source
-from lumped.schemas.reader import known
+from lumped.schemas.reader import suggestion
 
 LOSS_SPREAD = {
     "copper": 0.05, "iron": 0.25, "friction": 0.25, "bearing": 0.25, "brush": 0.15, "windage": 0.3, "magnet": 0.5,
@@ -19,7 +18,7 @@ FLOW_EXPONENT = 0.8  # of films in turbulent flow
 
 
 def parameters(
-    machine: Any, network: Network, faces: Sequence[Place], films: Sequence[Link], streams: Sequence[Link],
+    machine: Machine, network: Network, faces: Sequence[Place], films: Sequence[Link], streams: Sequence[Link],
     losses: Sequence[Source],
 ) -> list[Parameter]:  # fmt: skip
     """Films 0.3, contacts 0.3, losses by kind, capacity 0.05, flows 0.04 (log-sd), conductivities as declared."""
@@ -28,7 +27,7 @@ def parameters(
         *_contacts(network),
         *_losses(losses),
         _capacity(network),
-        *_flows(films, streams),
+        *_flows(machine, films, streams),
         *_conductivities(machine, network),
     ]
 
@@ -67,12 +66,13 @@ def _capacity(network: Network) -> Parameter:
     return Parameter("capacity.machine", acts, prior_sd=0.05, low=0.5, high=2.0, source="alloys and fill factors")
 
 
-def _flows(films: Sequence[Link], streams: Sequence[Link]) -> list[Parameter]:
+def _flows(machine: Machine, films: Sequence[Link], streams: Sequence[Link]) -> list[Parameter]:
     """A flow moves its streams, and the films of the channels it fills."""
+    beside = {name for name, duct in machine.features.ducts.items() if not duct.turns}
     out = []
     for name, own in (("fan.flow", True), ("coolant.flow", False)):
         moved = [s for s in streams if s.name.startswith("stream:fan:") == own]
-        cells = {BETWEEN_POLES} if own else {s.places[1] for s in moved}
+        cells = beside if own else {s.places[1] for s in moved}
         washed = [(f.name, FLOW_EXPONENT) for f in films if f.places[1] in cells]
         acts = (*((s.name, 1.0) for s in moved), *washed)
         if moved:
@@ -80,7 +80,7 @@ def _flows(films: Sequence[Link], streams: Sequence[Link]) -> list[Parameter]:
     return out
 
 
-def _conductivities(machine: Any, network: Network) -> list[Parameter]:
+def _conductivities(machine: Machine, network: Network) -> list[Parameter]:
     """[calibration] conductivity = { GROUP = [parts] }: impregnation, liners; prior from the materials' spread."""
     section = machine.sections.get("calibration", {})
     groups = section.get("conductivity", {})
@@ -92,7 +92,7 @@ def _conductivities(machine: Any, network: Network) -> list[Parameter]:
     for group, parts in groups.items():
         for part in parts:
             if part not in network.places:
-                raise InputError(f"no part '{part}'", where, known(part, [p.name for p in machine.parts]))
+                raise InputError(f"no part '{part}'", where, suggestion(part, [p.name for p in machine.parts]))
         spread = max(machine.material_of(part).spread for part in parts)
         acts = tuple((inner[part], 1.0) for part in parts if part in inner)
         if acts:

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from geom.description.machine import Machine
 from lumped.model.network import Array
 
 CELLS = 6  # at most; a jacket of fewer turns has one per turn
@@ -25,7 +26,7 @@ class Path:
     cells: int
 
 
-def path_of(machine: Any, jacket: str) -> Path:
+def path_of(machine: Machine, jacket: str) -> Path:
     """From the inlet's port: turn by turn, channel by channel around the axis, or along a single channel."""
     prisms = machine.part(jacket).prisms
     start = _start(machine, jacket)
@@ -45,12 +46,12 @@ def stem(fluid: str) -> str:
     return fluid.rpartition("@")[0] or fluid
 
 
-def cells_of(machine: Any, jacket: str) -> tuple[str, ...]:
+def cells_of(machine: Machine, jacket: str) -> tuple[str, ...]:
     """Names of the cells, in the order of the flow."""
     return tuple(f"{jacket}@{k}" for k in range(path_of(machine, jacket).cells))
 
 
-def _start(machine: Any, jacket: str) -> tuple[float, float, float] | None:
+def _start(machine: Machine, jacket: str) -> tuple[float, float, float] | None:
     return next((port.position for port in machine.ports if port.name == f"{jacket}.inlet"), None)
 
 

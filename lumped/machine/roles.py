@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
-from typing import Any
 
 from geom.description.identity import Identity, identity
+from geom.description.machine import Machine
+from geom.description.part import Part
 from geom.description.profile import ArcGrid
 from geom.description.roles import Role
 from lumped.machine.path import stem
@@ -20,7 +21,7 @@ OF_MATERIAL = {
 }  # fmt: skip
 
 
-def declared(machine: Any, network: Network, contacts: Iterable[str]) -> dict[str, Identity]:
+def declared(machine: Machine, network: Network, contacts: Iterable[str]) -> dict[str, Identity]:
     """By name.  contacts : "a|b", which tell what hangs on the shaft"""
     spaces = {part.name: part.role for part in machine.fluids if part.role is not None}
     fluids = {state: identity(spaces[stem(state)], False) for state in network.states if stem(state) in spaces}
@@ -28,7 +29,7 @@ def declared(machine: Any, network: Network, contacts: Iterable[str]) -> dict[st
     return {**part_identities(machine, contacts), **fluids, **around}
 
 
-def part_identities(machine: Any, contacts: Iterable[str]) -> dict[str, Identity]:
+def part_identities(machine: Machine, contacts: Iterable[str]) -> dict[str, Identity]:
     """Part -> what it is; imported parts by their material, the shaft by the axis inside it, if nothing is said."""
     known = {part.name: part.identity or _by_material(machine, part) for part in machine.parts}
     hung = _hung(known, contacts)
@@ -37,12 +38,14 @@ def part_identities(machine: Any, contacts: Iterable[str]) -> dict[str, Identity
     }
 
 
-def _turned(known: Identity, turns: bool) -> Identity:
-    role = Role.ROTOR if known.role is Role.IRON and turns else known.role
-    return replace(known, role=role, turns=turns, why=f"{known.why}, {'hangs on the shaft' if turns else 'stands'}")
+def _turned(identity: Identity, turns: bool) -> Identity:
+    role = Role.ROTOR if identity.role is Role.IRON and turns else identity.role
+    return replace(
+        identity, role=role, turns=turns, why=f"{identity.why}, {'hangs on the shaft' if turns else 'stands'}"
+    )
 
 
-def _by_material(machine: Any, part: Any) -> Identity:
+def _by_material(machine: Machine, part: Part) -> Identity:
     role = OF_MATERIAL.get(part.material)
     if role is not None:
         stands = None if role in (Role.IRON, Role.INSULATION) else role.turns
@@ -54,7 +57,7 @@ def _by_material(machine: Any, part: Any) -> Identity:
     return Identity(None, None, "nothing tells")
 
 
-def _on_axis(part: Any) -> bool:
+def _on_axis(part: Part) -> bool:
     """Is the machine's axis inside all of its prisms?"""
     import shapely
 
@@ -62,18 +65,18 @@ def _on_axis(part: Any) -> bool:
     return all(profile.to_polygon(grid).contains(shapely.Point(0.0, 0.0)) for profile, _, _ in part.prisms)
 
 
-def _hung(known: dict[str, Identity], contacts: Iterable[str]) -> frozenset[str]:
+def _hung(identities: dict[str, Identity], contacts: Iterable[str]) -> frozenset[str]:
     """All that hangs on what turns through contacts, without a bearing or a standing part between."""
     pairs = [tuple(name.split("|")) for name in contacts]
-    held = [pair for pair in pairs if all(p in known and known[p].turns is not False for p in pair)]
-    found, reached = {name for name, i in known.items() if i.turns}, -1
-    while len(found) > reached:
-        reached = len(found)
-        found |= {part for pair in held if found & set(pair) for part in pair}
-    return frozenset(found)
+    held = [pair for pair in pairs if all(p in identities and identities[p].turns is not False for p in pair)]
+    turning_parts, reached = {name for name, i in identities.items() if i.turns}, -1
+    while len(turning_parts) > reached:
+        reached = len(turning_parts)
+        turning_parts |= {part for pair in held if turning_parts & set(pair) for part in pair}
+    return frozenset(turning_parts)
 
 
-def turning(machine: Any, contacts: Iterable[str]) -> frozenset[str]:
+def turning(machine: Machine, contacts: Iterable[str]) -> frozenset[str]:
     """Parts that turn."""
     return frozenset(name for name, i in part_identities(machine, contacts).items() if i.turns)
 

@@ -7,9 +7,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any, TypeVar
 
+from geom.description.machine import Machine
 from geom.errors import InputError
 from lumped.schemas.bounds import bounds
-from lumped.schemas.reader import Table, shown
+from lumped.schemas.reader import Table, excerpt
 
 K_AIR = 0.026  # W/m/K, still air in a contact gap near 30 degC
 
@@ -68,13 +69,13 @@ class Fan:
     air_C: float = 40.0
 
 
-def read_fan(machine: Any) -> Fan | None:
+def read_fan(machine: Machine) -> Fan | None:
     """The through-flow of [fans], if the machine is open to it."""
     table = {key: value for key, value in machine.sections.get("fans", {}).items() if key != "cowl"}
     return read(Fan, table, f"{machine.name} [fans]") if table else None
 
 
-def read_films(machine: Any) -> Films:
+def read_films(machine: Machine) -> Films:
     table = {key: value for key, value in machine.sections.get("films", {}).items() if key != "outer"}
     return read(Films, table, f"{machine.name} [films]")
 
@@ -83,9 +84,9 @@ def read(kind: type[S], table: Mapping[str, Any], where: str) -> S:
     """A settings object from a table of the machine file; unknown keys and numbers out of bounds are refused."""
     names = [f.name for f in fields(kind)]  # type: ignore[arg-type]
     source = Table(table, where)
-    found = {key: source.number(key) for key in names if key in source}
+    values = {key: source.number(key) for key in names if key in source}
     source.close()
-    return kind(**found)
+    return kind(**values)
 
 
 def contact_coefficients(table: Mapping[str, Any], names: list[str], where: str) -> dict[str, float]:
@@ -108,4 +109,4 @@ def _coefficient(entry: Any, where: str) -> float:
         if key in ("gap_mm", "h_W_m2K") and value != 0 and bounds(key).hold(value):
             return K_AIR / (value * 1e-3) if key == "gap_mm" else float(value)
     right = "{gap_mm = 0.03} or {h_W_m2K = 900}, a positive number"
-    raise InputError(f"{shown(entry)} is no contact", where, right)
+    raise InputError(f"{excerpt(entry)} is no contact", where, right)

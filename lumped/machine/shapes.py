@@ -7,6 +7,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
+from geom.description.machine import Machine
+from geom.description.part import Part
 from geom.description.roles import Role
 
 DIRECTED = 3.0  # a conductivity this many times the other one has a direction
@@ -36,18 +38,18 @@ class Extent:
         return off < ROUND * max(wide, high)
 
 
-def extent(part: Any) -> Extent:
+def extent(part: Part) -> Extent:
     x0, y0, x1, y1 = zip(*(profile.bounds for profile, _, _ in part.prisms))
     return Extent(min(x0), max(x1), min(y0), max(y1), *part.span)
 
 
-def wound(machine: Any, part: str) -> bool:
+def wound(machine: Machine, part: str) -> bool:
     """Wires along the axis: heat runs along them much more easily."""
     k_plane, k_axial = machine.conductivity(part)
     return bool(k_axial > DIRECTED * k_plane)
 
 
-def laminated(machine: Any, part: str) -> bool:
+def laminated(machine: Machine, part: str) -> bool:
     """Sheets across the axis: heat runs in them much more easily."""
     k_plane, k_axial = machine.conductivity(part)
     return bool(k_plane > DIRECTED * k_axial)
@@ -61,17 +63,21 @@ class Gap:
     width: float
 
 
-def gap_of(machine: Any) -> Gap | None:
+def gap_of(machine: Machine) -> Gap | None:
     """From the fluid that is the gap; its width is the family's where the space reaches into the slots."""
-    rings = [part for part in machine.fluids if part.role is Role.AIR_GAP]
-    if not rings:
+    if not any(part.role is Role.AIR_GAP for part in machine.fluids):
         return None
-    (profile, _, _), *_ = rings[0].prisms
+    (profile, _, _), *_ = machine.part(gap_fluid(machine)).prisms
     if not profile.holes:
         return None
     outer, inner = radius(profile.outer), radius(profile.holes[0])
-    declared = getattr(getattr(machine.geometry, "stator", None), "air_gap", None)
-    return Gap(inner, outer - inner if declared is None else float(declared))
+    declared = machine.features.air_gap
+    return Gap(inner, outer - inner if declared is None else declared)
+
+
+def gap_fluid(machine: Machine) -> str:
+    """The fluid that is the air gap."""
+    return next(part.name for part in machine.fluids if part.role is Role.AIR_GAP)
 
 
 def radius(loop: Iterable[tuple[float, float, float]]) -> float:
@@ -112,7 +118,7 @@ class Fins:
         return 2.0 * self.spacing * self.height / (self.spacing + self.height)
 
 
-def fins_of(machine: Any) -> Fins | None:
+def fins_of(machine: Machine) -> Fins | None:
     """The housing's fins, where the family has them."""
     housing: Any = getattr(machine.geometry, "housing", None)
     number = int(getattr(housing, "fins", 0))

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 
-from geom.description.shapes import evenly
+from geom.description.machine import Machine
+from geom.description.part import Part
 from lumped.condensation.zone import Zone
 from lumped.machine.shapes import laminated, radius, wound
 from lumped.model.network import Array
@@ -15,12 +15,12 @@ from lumped.model.network import Array
 MANY = 6  # prisms: a winding with this many bars lies in slots
 
 
-def motor_zones(machine: Any) -> dict[str, Zone]:
+def motor_zones(machine: Machine) -> dict[str, Zone]:
     """Zone -> where; "PART.WORD", as [losses] of a machine file may name them."""
     return {**_slots(machine), **_poles(machine), **_coils(machine)}
 
 
-def _slots(machine: Any) -> dict[str, Zone]:
+def _slots(machine: Machine) -> dict[str, Zone]:
     out: dict[str, Zone] = {}
     for winding in machine.parts:
         if not wound(machine, winding.name) or not _in_slots(winding):
@@ -36,24 +36,26 @@ def _slots(machine: Any) -> dict[str, Zone]:
     return out
 
 
-def _in_slots(winding: Any) -> bool:
+def _in_slots(winding: Part) -> bool:
     """Many bars of one and the same length."""
     return len(winding.prisms) >= MANY and len({(z0, z1) for _, z0, z1 in winding.prisms}) == 1
 
 
-def _poles(machine: Any) -> dict[str, Zone]:
+def _poles(machine: Machine) -> dict[str, Zone]:
     """Salient poles: the shoe lies at the air gap."""
-    shoe = getattr(getattr(machine.geometry, "stator", None), "shoe", None)
-    poles = [part for part in machine.parts if part.name == "poles"]
-    return _split("poles", _reach(poles[0])[0] + shoe, "shoe", "body") if poles and shoe is not None else {}
+    out: dict[str, Zone] = {}
+    for name, shoe in machine.features.shoes.items():
+        out |= _split(name, _reach(machine.part(name))[0] + shoe, "shoe", "body")
+    return out
 
 
-def _coils(machine: Any) -> dict[str, Zone]:
-    """One field coil per pole."""
-    if machine.geometry is None or "winding.field" not in [part.name for part in machine.parts]:
-        return {}
-    axes = np.array(evenly(machine.geometry.stator.poles, np.pi / 2))
-    return {f"winding.field.{k + 1}": Zone("winding.field", _nearest(axes, k)) for k in range(len(axes))}
+def _coils(machine: Machine) -> dict[str, Zone]:
+    """One coil per pole."""
+    return {
+        f"{name}.{k + 1}": Zone(name, _nearest(np.array(coils.axes), k))
+        for name, coils in machine.features.coils.items()
+        for k in range(len(coils.axes))
+    }
 
 
 def _nearest(axes: Array, k: int) -> Callable[[Array], Array]:
@@ -72,7 +74,7 @@ def _split(part: str, at: float, inner: str, outer: str) -> dict[str, Zone]:
     }
 
 
-def _reach(part: Any) -> tuple[float, float]:
+def _reach(part: Part) -> tuple[float, float]:
     """Least and largest distance of a part's corners from the axis (m)."""
     corners = [np.hypot(x, y) for profile, _, _ in part.prisms for loop in profile.loops for x, y, _ in loop]
     return float(min(corners)), max(radius(profile.outer) for profile, _, _ in part.prisms)

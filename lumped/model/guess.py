@@ -28,35 +28,35 @@ def identities(network: Network) -> Mapping[str, Identity]:
 
 
 def _guessed(top: Topology, names: tuple[str, ...]) -> dict[str, Identity]:
-    said = top.network.declared
-    turns = turning(top, {n: bool(i.turns) for n, i in said.items() if i.turns is not None and n in top.bodies})
-    roles = {n: i.role for n, i in said.items() if i.role is not None}
-    found = _boundaries(top, roles)
-    found |= _fluids(top, {**roles, **{b: role for b, (role, _) in found.items()}})
-    found |= _bodies(top, {b: t for b, (t, _) in turns.items()}, roles)
-    return {n: _one(n, said.get(n), found.get(n), turns.get(n)) for n in names} | {
-        n: i for n, i in said.items() if n not in names
+    declared = top.network.declared
+    turns = turning(top, {n: bool(i.turns) for n, i in declared.items() if i.turns is not None and n in top.bodies})
+    roles = {n: i.role for n, i in declared.items() if i.role is not None}
+    guesses = _boundaries(top, roles)
+    guesses |= _fluids(top, {**roles, **{b: role for b, (role, _) in guesses.items()}})
+    guesses |= _bodies(top, {b: t for b, (t, _) in turns.items()}, roles)
+    return {n: _one(n, declared.get(n), guesses.get(n), turns.get(n)) for n in names} | {
+        n: i for n, i in declared.items() if n not in names
     }
 
 
-def _one(name: str, said: Identity | None, found: Evidence | None, turns: tuple[bool, str] | None) -> Identity:
-    if said is not None and said.role is not None:
-        return said
-    whys = [why for why in (found and found[1], turns and turns[1]) if why and why != "declared"]
-    role = found[0] if found else None
+def _one(name: str, declared: Identity | None, guess: Evidence | None, turns: tuple[bool, str] | None) -> Identity:
+    if declared is not None and declared.role is not None:
+        return declared
+    whys = [why for why in (guess and guess[1], turns and turns[1]) if why and why != "declared"]
+    role = guess[0] if guess else None
     return Identity(role, turns[0] if turns else None, ", ".join(dict.fromkeys(whys)) or "nothing tells")
 
 
-def _boundaries(top: Topology, said: Mapping[str, Role]) -> dict[str, Evidence]:
+def _boundaries(top: Topology, declared: Mapping[str, Role]) -> dict[str, Evidence]:
     """The surroundings are what free convection and most faces meet; an inlet or a strong sink is a coolant."""
-    free = [b for b in top.network.boundaries if b not in said]
+    free = [b for b in top.network.boundaries if b not in declared]
     out: dict[str, Evidence] = {}
-    if Role.AMBIENT not in said.values() and free:
+    if Role.AMBIENT not in declared.values() and free:
         air = _ambient(top, free)
         if air is not None:
             out[air[0]] = (Role.AMBIENT, air[1])
-    taken = [b for b in top.network.boundaries if said.get(b) == Role.AMBIENT or b in out]
-    usual = max((_sink(top, b) for b in taken), default=0.0)
+    assigned = [b for b in top.network.boundaries if declared.get(b) == Role.AMBIENT or b in out]
+    usual = max((_sink(top, b) for b in assigned), default=0.0)
     inlets = {x.places[0] for x in top.links if x.kind == "stream"}
     for boundary in free:
         if boundary in out:
@@ -109,13 +109,13 @@ def _fluids(top: Topology, roles: Mapping[str, Role]) -> dict[str, Evidence]:
     return out
 
 
-def _bodies(top: Topology, turns: Mapping[str, bool], said: Mapping[str, Role]) -> dict[str, Evidence]:
-    found = {b: role for b in top.bodies if b not in said and (role := _by_heat(top, b, turns)) is not None}
+def _bodies(top: Topology, turns: Mapping[str, bool], declared: Mapping[str, Role]) -> dict[str, Evidence]:
+    by_heat = {b: role for b in top.bodies if b not in declared and (role := _by_heat(top, b, turns)) is not None}
     for _ in range(2):  # the housing first, then what hangs on it
-        known = {**said, **{b: role for b, (role, _) in found.items()}}
-        left = {b: _by_place(top, b, turns.get(b), known) for b in top.bodies if b not in known}
-        found |= {b: role for b, role in left.items() if role is not None}
-    return found
+        roles = {**declared, **{b: role for b, (role, _) in by_heat.items()}}
+        remaining = {b: _by_place(top, b, turns.get(b), roles) for b in top.bodies if b not in roles}
+        by_heat |= {b: role for b, role in remaining.items() if role is not None}
+    return by_heat
 
 
 def _by_heat(top: Topology, body: str, turns: Mapping[str, bool]) -> Evidence | None:
@@ -126,7 +126,7 @@ def _by_heat(top: Topology, body: str, turns: Mapping[str, bool]) -> Evidence | 
     if "magnet" in kinds:
         return Role.MAGNET, "carries a loss of magnets"
     if kinds & {"copper", "ripple"}:
-        return (Role.CAGE, "copper loss of its own current, and turns") if turning_ and _own_current(
+        return (Role.CAGE, "copper loss of its own current, and turns") if turning_ and _has_separate_current(
             top, body, turns) else (Role.WINDING, "carries a copper loss")  # fmt: skip
     if body in top.bearings:
         washed = [b for b in top.network.boundaries if b in top.neighbours.get(body, frozenset())]
@@ -138,7 +138,7 @@ def _by_heat(top: Topology, body: str, turns: Mapping[str, bool]) -> Evidence | 
     return None
 
 
-def _own_current(top: Topology, body: str, turns: Mapping[str, bool]) -> bool:
+def _has_separate_current(top: Topology, body: str, turns: Mapping[str, bool]) -> bool:
     """Does its copper loss follow none of the inputs that a standing one follows, while there is a standing one?"""
     others = [
         top.reads[b, "copper"] for b in top.bodies if b != body and not turns.get(b) and (b, "copper") in top.reads
@@ -147,10 +147,10 @@ def _own_current(top: Topology, body: str, turns: Mapping[str, bool]) -> bool:
     return bool(others) and not any(mine & other for other in others)
 
 
-def _by_place(top: Topology, body: str, turns: bool | None, known: Mapping[str, Role]) -> Evidence | None:
+def _by_place(top: Topology, body: str, turns: bool | None, roles: Mapping[str, Role]) -> Evidence | None:
     """What carries no loss: by what it is joined to."""
     near = top.neighbours.get(body, frozenset())
-    beside = {known[b] for b in near if b in known}
+    beside = {roles[b] for b in near if b in roles}
     outside = any(b in near for b in top.network.boundaries)
     if turns:
         return (Role.SHAFT, "turns beside a bearing") if Role.BEARING in beside else (Role.ROTOR, "turns")

@@ -30,19 +30,19 @@ def values_of(network: Network, values: Mapping[str, float] | None) -> dict[str,
     return {**declared, **{k: float(v) for k, v in (values or {}).items()}}
 
 
-def _known_targets(network: Network) -> set[str]:
+def _valid_targets(network: Network) -> set[str]:
     groups = {f"capacity:{g}" for g in network.capacity_group}
     return {link.name for link in network.links} | {source.name for source in network.sources} | groups
 
 
-def _targets(network: Network, parameter: Parameter, known: set[str]) -> list[tuple[str, float]]:
+def _targets(network: Network, parameter: Parameter, valid: set[str]) -> list[tuple[str, float]]:
     thermal = [(t, e) for t, e in parameter.targets if not t.startswith(CHANNEL_OPERATORS)]
     for target, _ in thermal:
-        if target not in known:
+        if target not in valid:
             raise InputError(
                 f"target '{target}' is no link, source or capacity group",
                 f"parameter '{parameter.name}' of {network.title}",
-                f"known: {', '.join(sorted(known))}",
+                f"known: {', '.join(sorted(valid))}",
             )
     return thermal
 
@@ -50,7 +50,7 @@ def _targets(network: Network, parameter: Parameter, known: set[str]) -> list[tu
 @once
 def _acting(network: Network) -> dict[str, list[tuple[str, float]]]:
     """Target -> what acts on it: (parameter, exponent)."""
-    known = _known_targets(network)
+    known = _valid_targets(network)
     out: dict[str, list[tuple[str, float]]] = {}
     for p in network.parameters:
         for target, exponent in _targets(network, p, known):

@@ -156,6 +156,10 @@ class Recovery(Protocol):
         """Temperature (degC) at every point of every part's own nodes, parts one after the other."""
         ...
 
+    def of_part(self, part: str, x: Array) -> Array:
+        """The same at the points in the mesh of one part."""
+        ...
+
 
 @dataclass(frozen=True)
 class Network:
@@ -197,6 +201,15 @@ class Network:
         from lumped.model.guess import identities
 
         return identities(self)
+
+    def on_parts(self, parts: Iterable[str], x: Array) -> Array:
+        """(n_nodes, ...) temperature (degC) on the parts' own nodes, of states x (n_states, ...) or of changes of them.
+
+        InputError for a network that was declared by hand: it has no field behind it.
+        """
+        if self.recovery is None:
+            raise InputError("has no field behind it", self.title, "a network that was condensed from a machine")
+        return np.concatenate([self.recovery.of_part(part, x) for part in parts])
 
     def measures(self, name: str) -> str:
         """What an input measures; "" where nothing says."""

@@ -20,9 +20,9 @@ def once(work: Callable[[T], R]) -> Callable[[T], R]:
 
     @wraps(work)
     def remembered(of: T) -> R:
-        found = known.get(id(of))
-        if found is not None and found[0]() is of:
-            return found[1]
+        entry = known.get(id(of))
+        if entry is not None and entry[0]() is of:
+            return entry[1]
         made, key = work(of), id(of)
         known[key] = ref(of, lambda _: known.pop(key, None)), made
         return made

@@ -13,18 +13,18 @@ LOOSE = 0.2  # of the strongest joint: what hangs on the rest by less may turn i
 FINEST = 1e6  # the strongest conductance in units of the smallest that the cut tells apart
 
 
-def turning(top: Topology, said: Mapping[str, bool]) -> dict[str, tuple[bool, str]]:
+def turning(top: Topology, declared: Mapping[str, bool]) -> dict[str, tuple[bool, str]]:
     """Body -> whether it turns, and what shows it; bodies of which nothing is known are left out.
 
-    said : what is declared
+    declared : what is declared
     """
-    stand = {b: "declared" for b, turns in said.items() if not turns} | {
-        b: why for b, why in standing(top).items() if not said.get(b)
+    stand = {b: "declared" for b, turns in declared.items() if not turns} | {
+        b: why for b, why in standing(top).items() if not declared.get(b)
     }
-    turn = {b: "declared" for b, turns in said.items() if turns} | {
-        b: why for b, why in seeds(top, stand).items() if said.get(b) is not False
+    turn = {b: "declared" for b, turns in declared.items() if turns} | {
+        b: why for b, why in seeds(top, stand).items() if declared.get(b) is not False
     }
-    turn = turn or {b: why for b, why in loose(top).items() if b not in said}
+    turn = turn or {b: why for b, why in loose(top).items() if b not in declared}
     stand = {b: why for b, why in stand.items() if b not in turn}
     out = {b: (False, why) for b, why in stand.items()} | {b: (True, why) for b, why in turn.items()}
     if turn and stand:
@@ -78,7 +78,7 @@ def loose(top: Topology) -> dict[str, str]:
     strongest, anchor = max(top.joints.values(), default=0.0), standing(top)
     best: tuple[float, dict[str, str]] = (LOOSE * strongest, {})
     for (a, b), G in top.joints.items():
-        side = _beyond(top, a, b)
+        side = _far_side(top, a, b)
         kinds = frozenset().union(*(top.heat.get(x, frozenset()) for x in side))
         driven = any(top.reads.get((x, kind)) for x in side for kind in kinds)
         if a not in side and not side & set(anchor) and driven and "copper" not in kinds and best[0] > G:
@@ -86,7 +86,7 @@ def loose(top: Topology) -> dict[str, str]:
     return best[1]
 
 
-def _beyond(top: Topology, a: str, b: str) -> set[str]:
+def _far_side(top: Topology, a: str, b: str) -> set[str]:
     """All that is reached from b without the joint to a."""
     out, edge = {b}, [b]
     while edge:

@@ -8,7 +8,7 @@ import numpy as np
 
 from geom.errors import InputError
 from lumped.model.network import Network
-from lumped.schemas.reader import shown
+from lumped.schemas.reader import excerpt
 
 RESERVED = set("@#")  # of effects at places, and of shapes inside parts
 
@@ -29,7 +29,7 @@ def checked_names(names: Iterable[str], where: str) -> None:
     """InputError for a name that messages, tables and effects (KIND@PLACE) could not tell apart."""
     for name in names:
         if not name.strip() or not name.isprintable() or name.strip() != name or set(name) & RESERVED:
-            raise InputError(f"{shown(name)} cannot be a name", where, "letters that can be printed, none of "
+            raise InputError(f"{excerpt(name)} cannot be a name", where, "letters that can be printed, none of "
                              f"{' '.join(sorted(RESERVED))}, no space at either end")  # fmt: skip
 
 

@@ -42,8 +42,8 @@ class Topology:
         return tuple(dict.fromkeys((*declared, *(p for p in passed if p in self.network.states))))
 
     def part(self, place: str) -> str:
-        found = self.network.places.get(place)
-        return place if found is None or found.kind == "fluid" else found.part
+        known_place = self.network.places.get(place)
+        return place if known_place is None or known_place.kind == "fluid" else known_place.part
 
     @cached_property
     def pairs(self) -> tuple[tuple[str, str, Link], ...]:

@@ -98,7 +98,7 @@ def bounds(key: str, table: str = "") -> Bounds:
     for name in (f"{table}.{key}", key):
         if name in KEYS:
             return KEYS[name]
-    for unit, found in UNITS.items():
+    for unit, limits in UNITS.items():
         if key == unit or key.endswith(f"_{unit}"):
-            return found
+            return limits
     return ANY

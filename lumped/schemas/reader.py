@@ -13,7 +13,7 @@ from lumped.schemas.schema import meaning
 SHORT = 60  # characters of a wrong value that a message repeats
 
 
-def known(word: str, words: Iterable[str]) -> str:
+def suggestion(word: str, words: Iterable[str]) -> str:
     """'did you mean ...? known: ...' for an error message; a stem without its unit finds the full key."""
     names = sorted(set(words))
     with_unit = [n for n in names if n.lower().startswith(f"{word}_".lower())]
@@ -22,7 +22,7 @@ def known(word: str, words: Iterable[str]) -> str:
     return f"{hint}known: {', '.join(names)}"
 
 
-def shown(value: Any) -> str:
+def excerpt(value: Any) -> str:
     """A value as a message repeats it: one line, not longer than SHORT."""
     text = repr(value)
     return text if len(text) <= SHORT else f"{text[: SHORT - 4]} ..."
@@ -33,25 +33,25 @@ class Table:
 
     def __init__(self, data: Any, where: str) -> None:
         if not isinstance(data, Mapping):
-            raise InputError(f"{shown(data)} is no table", where, "key = value pairs")
+            raise InputError(f"{excerpt(data)} is no table", where, "key = value pairs")
         self.data, self.where = data, where
-        self.asked: set[str] = set()
+        self.requested: set[str] = set()
 
     def __contains__(self, key: str) -> bool:
-        self.asked.add(key)
+        self.requested.add(key)
         return key in self.data
 
     def close(self) -> None:
         """Refuse keys nobody asked for."""
         for key in self.data:
-            if key not in self.asked:
-                raise InputError(f"unknown key '{key}'", self.where, known(key, self.asked))
+            if key not in self.requested:
+                raise InputError(f"unknown key '{key}'", self.where, suggestion(key, self.requested))
 
     def error(self, what: str, right: str) -> InputError:
         return InputError(what, self.where, right)
 
     def raw(self, key: str, default: Any = None) -> Any:
-        self.asked.add(key)
+        self.requested.add(key)
         return self.data.get(key, default)
 
     def _needed(self, key: str, default: Any, right: str) -> Any:
@@ -78,21 +78,21 @@ class Table:
         allowed = Bounds(table.low if low is None else max(low, table.low),
                          table.high if high is None else min(high, table.high), table.whole)  # fmt: skip
         if not allowed.hold(value):
-            raise self.error(f"{key} = {shown(value)} is not possible", f"{allowed.words}{meaning(key)}")
+            raise self.error(f"{key} = {excerpt(value)} is not possible", f"{allowed.words}{meaning(key)}")
         return float(value)
 
     def numbers(self, key: str, default: list[float] | None = None, of: str = "") -> tuple[float, ...]:
         """A list of numbers, each within the bounds of the key."""
         value = self._needed(key, default, "[numbers]")
         if not isinstance(value, list):
-            raise self.error(f"{key} = {shown(value)} is not possible", "a list of numbers")
+            raise self.error(f"{key} = {excerpt(value)} is not possible", "a list of numbers")
         return tuple(self._bounded(f"{key}[{i}]", v, of or key) for i, v in enumerate(value))
 
     def rows(self, key: str, of: str = "") -> list[tuple[float, ...]]:
         """A list of lists of numbers."""
         value = self._needed(key, None, "[[numbers], ...]")
         if not isinstance(value, list) or not all(isinstance(row, list) for row in value):
-            raise self.error(f"{key} = {shown(value)} is not possible", "a list of lists of numbers")
+            raise self.error(f"{key} = {excerpt(value)} is not possible", "a list of lists of numbers")
         return [
             tuple(self._bounded(f"{key}[{i}][{j}]", v, of or key) for j, v in enumerate(row))
             for i, row in enumerate(value)
@@ -102,10 +102,10 @@ class Table:
         value = self._needed(key, default, "a word")
         choices = None if allowed is None else list(allowed)
         if not isinstance(value, str) or (choices is not None and value not in choices):
-            right = "a word" if choices is None else known(str(value), choices)
-            raise self.error(f"{key} = {shown(value)} is not possible", f"{right}{meaning(key)}")
+            right = "a word" if choices is None else suggestion(str(value), choices)
+            raise self.error(f"{key} = {excerpt(value)} is not possible", f"{right}{meaning(key)}")
         if not value.replace("\n", "").replace("\t", "").isprintable():
-            raise self.error(f"{key} = {shown(value)} is not possible", f"letters that can be printed{meaning(key)}")
+            raise self.error(f"{key} = {excerpt(value)} is not possible", f"letters that can be printed{meaning(key)}")
         return value
 
     def kind(self, key: str, default: str | None, allowed: Iterable[str]) -> str:
@@ -118,7 +118,7 @@ class Table:
     def words(self, key: str, default: list[str] | None = None) -> tuple[str, ...]:
         value = self._needed(key, default, "[words]")
         if not isinstance(value, list) or not all(isinstance(v, str) and v.isprintable() for v in value):
-            raise self.error(f"{key} = {shown(value)} is not possible", "a list of words")
+            raise self.error(f"{key} = {excerpt(value)} is not possible", "a list of words")
         return tuple(value)
 
     def members(self, key: str) -> tuple[str, ...]:
@@ -126,8 +126,8 @@ class Table:
         words = self.words(key)
         again = next((w for i, w in enumerate(words) if w in words[:i] or not w.strip()), None)
         if not words or again is not None:
-            what = f"names {shown(again)} twice" if words and again and again.strip() else "names nothing"
-            raise self.error(f"{key} = {shown(list(words))} {what}", f"{key} = [one name or more, each once]")
+            what = f"names {excerpt(again)} twice" if words and again and again.strip() else "names nothing"
+            raise self.error(f"{key} = {excerpt(list(words))} {what}", f"{key} = [one name or more, each once]")
         return words
 
     def shares(self, key: str, of: str = "shares") -> dict[str, float]:
@@ -142,7 +142,9 @@ class Table:
         """true or false; a word that says so is none."""
         value = self._needed(key, default, "true or false")
         if not isinstance(value, bool):
-            raise self.error(f"{key} = {shown(value)} is not possible", f"true or false, without quotes{meaning(key)}")
+            raise self.error(
+                f"{key} = {excerpt(value)} is not possible", f"true or false, without quotes{meaning(key)}"
+            )
         return value
 
     def constants(self, of: str) -> dict[str, float]:
@@ -164,7 +166,7 @@ class Table:
         value = self.raw(key, [])
         items = [value] if isinstance(value, Mapping) else value
         if not isinstance(items, list):
-            raise self.error(f"{key} = {shown(value)} is not possible", f"{key} = [{{ ... }}, ...]")
+            raise self.error(f"{key} = {excerpt(value)} is not possible", f"{key} = [{{ ... }}, ...]")
         return [Table(item, f"{self.where} {key}[{i}]") for i, item in enumerate(items)]
 
 

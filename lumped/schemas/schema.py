@@ -10,9 +10,12 @@ import json
 from collections.abc import Iterator, Mapping
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from lumped.schemas.bounds import bounds
+
+if TYPE_CHECKING:
+    from geom.description.parameters import Parameter
 
 FOLDER = Path(__file__).parent
 FILES = ("network", "case", "sheet", "model", "cycle", "machine")
@@ -28,11 +31,11 @@ def schema(name: str) -> Schema:
 @cache
 def meanings() -> dict[str, str]:
     """Key -> what it is, for keys that mean the same wherever they stand."""
-    found: dict[str, set[str]] = {}
+    words: dict[str, set[str]] = {}
     for name in FILES:
         for key, text in _described(schema(name)):
-            found.setdefault(key, set()).add(text)
-    return {key: next(iter(texts)) for key, texts in found.items() if len(texts) == 1}
+            words.setdefault(key, set()).add(text)
+    return {key: next(iter(texts)) for key, texts in words.items() if len(texts) == 1}
 
 
 def _described(node: Any) -> Iterator[tuple[str, str]]:
@@ -76,7 +79,7 @@ def machine_schema() -> Schema:
     }  # fmt: skip
 
 
-def _parameter(p: Any) -> Schema:
+def _parameter(p: Parameter) -> Schema:
     unit = f" ({p.unit})" if p.unit else ""
     if p.choices:
         return {"description": p.doc, "enum": list(p.choices)}
@@ -84,7 +87,7 @@ def _parameter(p: Any) -> Schema:
     return {"description": f"{p.doc}{unit}", "type": kind, "minimum": 0 if p.off else p.low, "maximum": p.high}
 
 
-def _keys(p: Any) -> dict[str, Schema]:
+def _keys(p: Parameter) -> dict[str, Schema]:
     """Of a length also its ratio."""
     if p.of is None:
         return {p.name: _parameter(p)}

@@ -42,11 +42,11 @@ class MapLoss(Law):
         from lumped.correlations.info import RangeWarning
 
         x = np.abs(np.asarray(inputs[name], float))
-        beyond = [v for v, out in ((x.min(), x.min() < at[0]), (x.max(), x.max() > at[-1])) if out] if x.size else []
-        if beyond:
-            values = " and ".join(f"{v:.4g}" for v in beyond)
-            said = f"loss map: {name} = {values} outside {at[0]:g} to {at[-1]:g}"
-            warnings.warn(said, RangeWarning, stacklevel=4)
+        outside = [v for v, out in ((x.min(), x.min() < at[0]), (x.max(), x.max() > at[-1])) if out] if x.size else []
+        if outside:
+            values = " and ".join(f"{v:.4g}" for v in outside)
+            note = f"loss map: {name} = {values} outside {at[0]:g} to {at[-1]:g}"
+            warnings.warn(note, RangeWarning, stacklevel=4)
         return np.clip(x, at[0], at[-1])
 
 

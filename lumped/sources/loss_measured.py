@@ -6,25 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lumped.transfer.laws import Array, Inputs, Law, TemperatureLaw
-
-
-@dataclass(frozen=True)
-class Negative(Law):
-    """Minus another law, with its temperature: what a measured total has to leave out."""
-
-    of: Law
-
-    @property
-    def temperature(self) -> TemperatureLaw:  # type: ignore[override]
-        return self.of.temperature
-
-    @property
-    def reads(self) -> tuple[str, ...]:  # type: ignore[override]
-        return self.of.reads
-
-    def factor(self, inputs: Inputs) -> Array | float:
-        return -np.asarray(self.of.factor(inputs), float)
+from lumped.transfer.laws import Array, Inputs, Law
 
 
 @dataclass(frozen=True)
@@ -33,7 +15,7 @@ class MeasuredLoss(Law):
 
     powers : (factor, inputs): factor * product of the inputs, e.g. (1, ("electrical_W",)) and
         (-pi/30, ("torque_Nm", "speed_rpm"))
-    What the model separates out of it is taken off by sources of the law `Negative`, at the temperature of the moment.
+    What the model separates out of it is taken off by sources of law `Scaled` by -1, at the moment's temperature.
     The difference may be negative in transients (energy stored in the rotor and the field) and is not clipped.
     """
 

@@ -111,15 +111,15 @@ def parallel_shares(branches: Sequence[Sequence[Passage]], flow: float, fluid: F
     def drop(branch: Sequence[Passage], q: float) -> float:
         return sum(pressure_drop(duct, q, fluid) for duct in branch)
 
-    def taken(branch: Sequence[Passage], p: float) -> float:
+    def flow_at(branch: Sequence[Passage], p: float) -> float:
         return 0.0 if p <= 0.0 else float(brentq(lambda q: drop(branch, q) - p, 0.0, flow, xtol=1e-14, rtol=1e-12))
 
     top = min(drop(branch, flow) for branch in branches)
     if len(branches) == 1 or flow == 0.0:
         return (1.0 / len(branches),) * len(branches)
-    p = float(brentq(lambda p: sum(taken(b, p) for b in branches) - flow, 0.0, top, rtol=1e-12))
-    total = sum(taken(b, p) for b in branches)
-    return tuple(taken(b, p) / total for b in branches)
+    p = float(brentq(lambda p: sum(flow_at(b, p) for b in branches) - flow, 0.0, top, rtol=1e-12))
+    total = sum(flow_at(b, p) for b in branches)
+    return tuple(flow_at(b, p) / total for b in branches)
 
 
 def pumping_power(pressure: float, flow: float, efficiency: float = 0.5) -> float:

@@ -110,6 +110,41 @@ class Fixed(Law):
 
 
 @dataclass(frozen=True)
+class Wrapped(Law):
+    """Another law, changed: it reads what that one reads and has its temperature, where nothing else is said."""
+
+    base: Law
+
+    @property
+    def temperature(self) -> TemperatureLaw:  # type: ignore[override]
+        return self.base.temperature
+
+    @property
+    def reads(self) -> tuple[str, ...]:  # type: ignore[override]
+        return self.base.reads
+
+
+@dataclass(frozen=True)
+class Scaled(Wrapped):
+    """Another law times a number; -1 is what a measured total has to leave out."""
+
+    by: float
+
+    def factor(self, inputs: Inputs) -> Array | float:
+        return self.by * np.asarray(self.base.factor(inputs), float)
+
+
+@dataclass(frozen=True)
+class WithTemperature(Wrapped):
+    """Another law's input factor with a temperature law of its own."""
+
+    temperature: TemperatureLaw = CONSTANT
+
+    def factor(self, inputs: Inputs) -> Array | float:
+        return self.base.factor(inputs)
+
+
+@dataclass(frozen=True)
 class InputPower(Law):
     """value * prod(|input / scale| ** exponent): forced films, friction, copper, iron.
 

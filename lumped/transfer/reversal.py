@@ -2,33 +2,28 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
 from geom.errors import InputError
-from lumped.transfer.laws import CLOCK, Array, Inputs, Law
+from lumped.transfer.laws import CLOCK, Array, Inputs, Wrapped
 
 SLACK = 0.02  # of the largest flow: a meter's zero, read as such
 
 
 @dataclass(frozen=True)
-class OneWay(Law):
+class OneWay(Wrapped):
     """Another law of a flow whose column must not turn negative: its stream has one direction.
 
     column : the input that carries the flow;  where, right : what is declared one-way, and what to do about it
     usual : size of the flow in the column's unit, besides the largest of the record
     """
 
-    base: Law
     column: str
     where: str
     right: str
     usual: float = 0.0
-    reads: tuple[str, ...] = field(init=False, default=())
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "reads", self.base.reads)
 
     def factor(self, inputs: Inputs) -> Array | float:
         flow = np.ravel(np.asarray(inputs[self.column], float))
@@ -44,16 +39,11 @@ class OneWay(Law):
 
 
 @dataclass(frozen=True)
-class Direction(Law):
+class Direction(Wrapped):
     """Another law of a flow, in one of its two directions only: `way` +1 as declared, -1 backwards."""
 
-    base: Law
     column: str
     way: int
-    reads: tuple[str, ...] = field(init=False, default=())
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "reads", self.base.reads)
 
     def factor(self, inputs: Inputs) -> Array | float:
         flow = np.asarray(inputs[self.column], float)

@@ -20,9 +20,9 @@ from validation.calibration.unknowns import working
 from validation.case import Case, Test
 from validation.procedure.measuring.repeats import Repeats, normalised_error, pooled_curves, repeats
 from validation.procedure.reduction.base_heat import BaseHeat, base_heat
-from validation.procedure.reduction.transfer import Transfer, settled, transferred
+from validation.procedure.reduction.transfer import Transfer, end_errors, transferred
 from validation.procedure.reduction.two_paths import TwoPaths, of_test
-from validation.procedure.reduction.which_base import Hypothesis, bases_tried
+from validation.procedure.reduction.which_base import Hypothesis, base_hypotheses
 
 CASES = Path(__file__).resolve().parents[2] / "cases"
 BASE_TESTS = ("wood", "plate", "bench")
@@ -109,7 +109,7 @@ def circuits() -> Section:
 
 def _settled(case: Case) -> list[tuple[Any, ...]]:
     out = []
-    for r in settled(case):
+    for r in end_errors(case):
         verdict = "within" if r.within else "over"
         numbers = (
             f"{r.measured_C:.1f}",
@@ -174,7 +174,7 @@ def interval(test: str, way: str) -> tuple[float, float, float]:
 @cache
 def tried() -> list[Hypothesis]:
     """Every base held against every test of M1."""
-    return bases_tried(m1().case)
+    return base_hypotheses(m1().case)
 
 
 @cache

@@ -51,7 +51,7 @@ def warming() -> Section:
         *(Row(name, f"{p:g}", f"{v:.4g}", f"with 0.5 K of scatter {_ci(noisy.ci95[name])}")
           for name, p, v in zip("abc", PUBLISHED, (fit.a, fit.b, fit.c))),
         Row("T(0)", "ambient, 20 degC", f"{fit.start:.1f} degC", fit.warnings[0]),
-        Row("tau_95, time to 95 % of T_e", "-", f"{fit.settled_min():.1f} min",
+        Row("tau_95, time to 95 % of T_e", "-", f"{fit.time_to_share_min():.1f} min",
             f"95 % of the rise {fit.rise_min():.1f} min"),
     )  # fmt: skip
     words = "T = a exp(b exp(c t)), t in minutes, fitted to the published curve every half minute."
@@ -127,7 +127,7 @@ def pictures() -> dict[str, object]:
     axes = two.subplots()
     axes.plot(MINUTES, eq8(MINUTES, *PUBLISHED), label="eq. 8 as published")
     axes.plot(0, 20, "o", label="stated start, 20 °C")
-    axes.axvline(fit_eq8(MINUTES, eq8(MINUTES, *PUBLISHED)).settled_min(), ls=":", color="grey", label="tau_95")
+    axes.axvline(fit_eq8(MINUTES, eq8(MINUTES, *PUBLISHED)).time_to_share_min(), ls=":", color="grey", label="tau_95")
     axes.set(xlabel="time (min)", ylabel="left flange (°C)", ylim=(0, 90))
     axes.legend()
     return {"torque-current.png": one, "eq8.png": two}

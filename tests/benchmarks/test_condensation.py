@@ -7,7 +7,7 @@ import condensation
 import numpy as np
 import pytest
 from condensation import after_step, energy, over_loads, put, unbalanced
-from condensation_points import Pair
+from condensed.points import Pair
 
 from geom import load_machine
 from lumped.condensation.reduction_error import Errors

@@ -1,9 +1,11 @@
 """The proper scores: what an answer's odds are worth, by hand."""
 
 from math import log
+from types import SimpleNamespace
 
 import pytest
 from hidden import odds
+from hidden.folders import label_of
 from hidden.page import diagram
 
 ONE = {"group": "one", "truth": ["draught@b"], "right": [["a@b"]], "twins": [["c@b"]], "size": 4.0, "machine": "x"}
@@ -67,6 +69,15 @@ def test_when_a_condition_held():
     assert odds.when_right(label, told)
     assert not odds.when_right(label, {**told, "odds": [{**row, "begin_s": 0.0, "end_s": 930.0}]})
     assert odds.when_right({**label, "span": [0.0, 3600.0]}, {**told, "odds": [row]})
+    assert odds.when_right({**label, "span": []}, {**told, "odds": [row]}), "no begin and end: the whole test"
+    assert odds.when_right({**label, "span": [], "test": ""}, told) is None, "nobody said in which test it held"
+
+
+def test_a_folder_may_say_when_its_condition_held():
+    truth = {"kind": "condition", "effects": [{"effect": "a@b", "size": "small"}], "test": "run"}
+    network = SimpleNamespace(links=(), sources=())
+    assert label_of("x", "y", truth, {}, network).span == ()
+    assert label_of("x", "y", {**truth, "span_s": [540.0, 930.0]}, {}, network).span == (540.0, 930.0)
 
 
 def test_a_verdict_without_odds_gives_its_group_nine_tenths():

@@ -9,11 +9,11 @@ import pytest
 from hidden.kinds import KINDS
 from hidden.truth.archetype import measured, truly
 from hidden.truth.body import Body, Joint, skeleton
+from hidden.truth.candidate_tests import CANDIDATE_TESTS, carried_out
 from hidden.truth.change import NOTHING
 from hidden.truth.draw import Draw
 from hidden.truth.films import air, cylinder_still, gap, plate_still
 from hidden.truth.machine import Film, Loss, Machine
-from hidden.truth.menu import MENU, carried_out
 from hidden.truth.profile import between, fine_times
 from hidden.truth.readings import lagged
 from hidden.user import network_of
@@ -37,7 +37,7 @@ def imports(file):
             yield node.module
 
 
-@pytest.mark.parametrize("file", sorted(TRUTH.glob("*.py")), ids=lambda f: f.stem)
+@pytest.mark.parametrize("file", sorted(TRUTH.rglob("*.py")), ids=lambda f: f.stem)
 def test_truth_shares_no_code_with_the_rooms(file):
     for name in imports(file):
         assert name.split(".")[0] in ALLOWED
@@ -148,7 +148,7 @@ def test_same_seed_same_readings():
 
 
 @pytest.mark.parametrize("kind", DRIVEN, ids=lambda k: k.name)
-@pytest.mark.parametrize("name", MENU)
+@pytest.mark.parametrize("name", CANDIDATE_TESTS)
 def test_asked_for_tests_are_what_they_say(kind, name):
     """Standing means no speed and no rotor current; an even current keeps its heat; nothing else is made up."""
     plan, at, rng = carried_out(name, kind.plans[3]), np.arange(0.0, 4500.0, 30.0), np.random.default_rng
@@ -172,7 +172,7 @@ def test_what_is_carried_out_is_what_was_planned(kind):
     at = np.arange(0.0, 60.0 * kind.plans[3].minutes, 30.0)
     base = Test("driven", "validate", at, kind.plans[3].inputs(rng(0), at), {}, (), 20.0)
     for experiment, test in candidate_tests(base, network_of(kind.name)):
-        if experiment.name in MENU:
+        if experiment.name in CANDIDATE_TESTS:
             asked = carried_out(experiment.name, kind.plans[3]).inputs(rng(0), four_hours)
             for key, planned in test.inputs.items():
                 np.testing.assert_allclose(asked[key], planned, err_msg=f"{experiment.name}: {key}")

@@ -13,7 +13,7 @@ from scripts.papers import machines
 from scripts.pmsm_cases import TESTS, folder_of, text
 from thermoscope.case_folder.folder import load_case
 from validation.procedure.measuring.repeats import repeats
-from validation.procedure.reduction.transfer import settled
+from validation.procedure.reduction.transfer import end_errors
 from validation.procedure.reduction.which_base import declared_base, on_base, which_base, wrong_bases
 
 pytestmark = pytest.mark.heavy
@@ -94,7 +94,7 @@ def test_calibration_is_that_of_the_data(bases):
 
 
 def test_simulation_agrees_on_the_bases(bases):
-    rows = settled(bases.case)
+    rows = end_errors(bases.case)
     assert {r.test for r in rows} == {t.name for t in bases.case.tests}
     assert all(r.within for r in rows), [r.document() for r in rows if not r.within]
 
@@ -105,7 +105,7 @@ def test_machines_that_were_not_used_are_predicted(name):
 
     Of four, one may lie outside the 95 %: that of m3's winding is just there.
     """
-    found, plain = machines.others()[name], settled(load_case(machines.CASES / "pmsm-machines" / name).case)
+    found, plain = machines.others()[name], end_errors(load_case(machines.CASES / "pmsm-machines" / name).case)
     assert "h.stator.core" in found.parameters
     assert not any(name.startswith("loss.") for name in found.parameters)
     assert found.agrees

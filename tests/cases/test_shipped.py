@@ -65,9 +65,9 @@ TAKEN = {
         "rate --limit winding=155 --no-bands",
     ),
 }
-# Below, and in tests/geom, tests/thermoscope/test_build_command.py, test_optimise_command.py.
+# Below, and in tests/geom, tests/thermoscope/commands (build, optimise).
 MACHINE_COMMANDS = {"build", "crosscheck", "screen", "machines", "optimise"}
-# Of recordings that are not shipped, of what went before; tests/fleet, tests/thermoscope/test_plan_command.py.
+# Of recordings that are not shipped, of what went before; tests/fleet, tests/thermoscope/commands (plan).
 NO_FILE = {"new", "quantities", "protocol", "answer", "remove", "undo", "serve", "plan", "fleet", "watch"}
 
 

@@ -7,7 +7,7 @@ from fem.matrices.assembly import assemble
 from fem.matrices.grids import ring
 from fem.matrices.material import isotropic, laminated
 from fem.solvers.local import local_solutions, of_unit_energy
-from fem.solvers.snapshots import Recipe, bases, drawn, energies, isolated_part, principals, snapshots
+from fem.solvers.snapshots import Recipe, bases, energies, isolated_part, principals, random_coefficients, snapshots
 from fem.solvers.solve import Solver
 
 CONTACTS = {"core|yoke": 500.0}
@@ -58,7 +58,7 @@ def missed(field, films, recipe):
     shapes = bases(field, found, energy, Recipe(tolerance=0.0, max_states=40))
     rng, worst = np.random.default_rng(5), 0.0
     for _ in range(4):
-        K = field.stiffness(drawn(films, 5.0, rng), drawn(CONTACTS, 5.0, rng))
+        K = field.stiffness(random_coefficients(films, 5.0, rng), random_coefficients(CONTACTS, 5.0, rng))
         X = Solver(field).factor(K)(loads)
         for name, block in field.blocks.items():
             V = np.column_stack([np.ones(len(block.points)), shapes[name].Phi])

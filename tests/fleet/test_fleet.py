@@ -92,11 +92,10 @@ def reader_of(case):
     return Reader(replace(folder.case, tests=()), test, load_sheet(folder.settings.tests[0].sheet), 20.0)
 
 
-def test_memory_does_not_grow_with_the_recording(made, tmp_path, monkeypatch):
+def test_memory_does_not_grow_with_the_recording(made, tmp_path):
     """Four times the rows, in pieces of a fixed size."""
     case, fleet = made
-    monkeypatch.setattr("thermoscope.monitoring.fleet.PIECE", 1000)
-    reader, short = reader_of(case), fleet / "motor-001@2025-01.csv"
+    reader, short = replace(reader_of(case), piece=1000), fleet / "motor-001@2025-01.csv"
     head, *rows = short.read_text().splitlines()
     long, rows = tmp_path / "long.csv", rows[:2000]
     short = tmp_path / "short.csv"

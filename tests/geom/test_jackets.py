@@ -102,7 +102,7 @@ def test_every_port_is_a_tube_with_a_wet_bore(name):
 
 
 def helices(machine):
-    return [cut for cut in machine.part("housing").made.cuts if isinstance(cut, Helix)]
+    return [cut for cut in machine.part("housing").cad_shape.cuts if isinstance(cut, Helix)]
 
 
 @pytest.mark.parametrize("name", HELICAL)
@@ -137,7 +137,7 @@ def test_bores_of_the_made_housing_lead_into_its_channel(name):
     machine = load_machine(name)
     g = machine.geometry
     depth = 1e3 * (g.jacket.wall + g.jacket.height if hasattr(g, "jacket") else g.housing.wall + g.housing.channel)
-    (housing,) = carved(machine.part("housing").made)
+    (housing,) = carved(machine.part("housing").cad_shape)
     for port in machine.ports:
         x, y, z = (1e3 * value for value in port.position)
         out = cq.Vector(x, y, 0).normalized()
@@ -148,7 +148,7 @@ def test_bores_of_the_made_housing_lead_into_its_channel(name):
 def test_step_of_prisms_reads_back_where_the_made_one_is_refused(tmp_path):
     """Of the housing and its ports: the other parts have nothing to add."""
     whole = jacketed(layout="helical", turns=2)
-    parts = tuple(part for part in whole.parts if part.made)
+    parts = tuple(part for part in whole.parts if part.cad_shape)
     assert len(parts) == 3
     machine = replace(whole, parts=parts)
     written = export_cad(machine, tmp_path, ("step",))

@@ -66,7 +66,7 @@ ALLOWED = {  # file -> what its strings are, none of them a user's name for a pa
     "thermoscope/commands/test/new.py": "options, NAME=VALUE",
     "thermoscope/case_folder/folder.py": "effects by their own name, KIND@PLACE",
     "thermoscope/recordings/formats.py": "endings of files",
-    "thermoscope/verification/hand_formulas.py": "contacts, A|B",
+    "thermoscope/verification/analytical_checks.py": "contacts, A|B",
     "thermoscope/case_folder/runs.py": "effects by their own name, KIND@PLACE",
     "thermoscope/design/machine_keys.py": "keys of a machine file, geometry.GROUP.NAME",
     "thermoscope/workbench/access_control.py": "hosts of requests",
@@ -119,6 +119,29 @@ def test_no_name_is_taken_apart_but_where_the_tool_made_it(root):
 def test_every_exception_is_needed(root):
     unused = [f for f in ALLOWED if not list(guesses(ast.parse(Path(root, f).read_text())))]
     assert unused == []
+
+
+FAMILY = {"series-dc", "pmsm", "tefc", "poles", "airgap", "yoke", "rotor.core", "rotor.cage", "stator.core",
+          "air.left", "air.right", "air.interpolar", "air.ducts", "air.fan", "winding.field", "winding.armature",
+          "slot.liner", "field.insulation"}  # fmt: skip
+PUBLISHED = {  # a thermal test of one kind of machine, by its parts' names
+    "validation/procedure/factors/screening.py",
+    "validation/procedure/reduction/pm_network.py",
+    "validation/procedure/reduction/base_heat.py",
+    "thermoscope/importing/words.py",  # words of headers in other people's files
+}
+
+
+def words_of_families(tree):
+    return {n.value for n in ast.walk(tree) if isinstance(n, ast.Constant) and n.value in FAMILY}
+
+
+def test_what_a_family_calls_its_parts_stays_in_its_room(root):
+    """The other rooms read roles and `Machine.features`."""
+    others = [f for f in files(root) if f.relative_to(root).parts[0] != "geom"]
+    named = {str(f.relative_to(root)): words_of_families(ast.parse(f.read_text())) for f in others}
+    assert {f: names for f, names in named.items() if names and f not in PUBLISHED} == {}
+    assert all(named[f] for f in PUBLISHED)
 
 
 @pytest.mark.parametrize(

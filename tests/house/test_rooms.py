@@ -1,12 +1,21 @@
-"""Folders are short enough to be read at a glance, and no modules import each other in a circle."""
+"""Folders are short enough to be read at a glance, no modules import each other in a circle, and the pages say so."""
 
 import ast
+import re
 from graphlib import CycleError, TopologicalSorter
 
 import pytest
 
 ROOMS = ("geom", "fem", "lumped", "validation", "viz", "thermoscope")
+BESIDE = (
+    "simulated",
+    "benchmarks",
+    "scripts",
+    "docs",
+    "tests",
+)  # examples/ is a gallery, side by side
 MOST = 15  # files of a folder beside its __init__: more do not fit on a screen
+SENTENCES = 6  # of the page of the architecture, which has one picture
 
 
 def modules(root):
@@ -15,9 +24,29 @@ def modules(root):
 
 
 def test_no_folder_is_long(root):
-    folders = {f.parent for f in modules(root).values()}
-    files = {str(d.relative_to(root)): len([*d.glob("*.py")]) - 1 for d in folders}
+    folders = {f.parent for room in (*ROOMS, *BESIDE) for f in (root / room).rglob("*.py")}
+    files = {str(d.relative_to(root)): len([f for f in d.glob("*.py") if f.stem != "__init__"]) for d in folders}
     assert {name: n for name, n in files.items() if n > MOST} == {}
+
+
+def test_the_architecture_is_one_picture_and_six_sentences(root):
+    title, picture, text = re.split("```text|```\n", (root / "docs/architecture.md").read_text(encoding="utf-8"))
+    assert title.strip() == "# Architecture"
+    assert [line for line in picture.splitlines() if line.strip().startswith(ROOMS)] != []
+    assert not re.search(r"^[#|-]", text, re.MULTILINE), "no table, no list and no further heading"
+    assert len(re.findall(r"\.(?:\s|$)", text)) == SENTENCES
+
+
+def test_the_page_of_rooms_names_every_room(root):
+    page = (root / "docs/rooms.md").read_text(encoding="utf-8").partition("## What passes")[0]
+    rows = {name: row for name, row in re.findall(r"^\| `(\w+)` \| (.*) \|$", page, re.MULTILINE) if name in ROOMS}
+    missing = {
+        f"{room}/{d.name}"
+        for room in ROOMS
+        for d in (root / room).iterdir()
+        if d.is_dir() and any(d.glob("*.py")) and f"`{d.name}`" not in rows[room]
+    }
+    assert missing == set()
 
 
 def test_modules_import_each_other_one_way(root):

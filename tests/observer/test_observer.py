@@ -16,7 +16,7 @@ from thermoscope.verification.error_budget import model_of
 from validation.bands import parameter_posterior
 from validation.case import Channel
 from validation.observer import ProcessNoise, observer
-from validation.observer.observer import HELD_S
+from validation.observer.observer import CORRELATION_S
 from validation.observer.process import Process, bodies_of
 from validation.observer.process_noise import most_doubtful, of_doubt
 from validation.observer.sensor_faults import FROZEN_S, LOST_S
@@ -68,7 +68,7 @@ def test_it_is_the_kalman_filter_of_the_textbook():
         if not first:
             mean = np.concatenate([(exact @ [*mean, 1.0])[:2], keeps * mean[2:]])
             P = Phi @ P @ Phi.T + Q
-        R = sigma**2 * (HELD_S if first else HELD_S / h)
+        R = sigma**2 * (CORRELATION_S if first else CORRELATION_S / h)
         K = P @ H / (H @ P @ H + R)
         mean, P, first = mean + K * (y[k] - mean[0]), P - np.outer(K, H @ P), False
         assert_allclose([*got[k].x, *got[k].heat], mean, atol=2e-3)

@@ -76,7 +76,7 @@ def test_c_estimates_what_python_does(made, code, precise, kind):
     truth, y = readings_of(kind)
     T, codes, one = in_python(made, truth, y)
     u = np.column_stack(
-        [{"current_A": truth.current, "ambient": np.full(truth.time.size, 20.0)}[n] for n in made.given]
+        [{"current_A": truth.current, "ambient": np.full(truth.time.size, 20.0)}[n] for n in made.input_names]
     )
     for compiled, T_K, q_W in ((precise, SAME_K, 1e-6), (code, WITHIN_K, 0.02 * np.abs(one.filter.q).max() + 1.0)):
         got, heat, dropped = compiled.run(truth.time, u, y)

@@ -3,10 +3,12 @@
 import numpy as np
 import pytest
 
-from simulated import pm_files, pm_films, pm_meters
-from simulated.draws import Draws
-from simulated.pm_plant import contacts, nominal_contact
-from simulated.surfaces import Conditions
+from simulated.physics.draws import Draws
+from simulated.physics.surfaces import Conditions
+from simulated.pm import files as pm_files
+from simulated.pm import films as pm_films
+from simulated.pm import meters as pm_meters
+from simulated.pm.plant import contacts, nominal_contact
 
 AT_REST = Conditions(8.0, 64.0, 0.0, 0.0, 0.0, 20.0)
 

@@ -6,8 +6,8 @@ from scipy.sparse import diags
 from scipy.sparse.linalg import spsolve
 
 from geom.meshing.mesh import Contact, NamedMesh, Patch
-from simulated import conduct
-from simulated.conduct import Solid
+from simulated.physics import conduction
+from simulated.physics.conduction import Solid
 
 CUBE = np.array([[0, 1, 3, 7], [0, 1, 7, 5], [0, 5, 7, 4], [0, 3, 2, 7], [0, 6, 4, 7], [0, 2, 6, 7]])
 
@@ -54,7 +54,7 @@ def wall():
     }
     contact = Contact("a", "b", facets_at(points, tets, np.isclose(points[:, 0], 0.02)))
     mesh = NamedMesh(points, tets, region, parts, patches, {"a|b": contact})
-    return conduct.build(mesh, {"a": Solid((50, 50), 3.7e6), "b": Solid((0.25, 0.25), 2e6)}, {"a|b": 500.0})
+    return conduction.build(mesh, {"a": Solid((50, 50), 3.7e6), "b": Solid((0.25, 0.25), 2e6)}, {"a|b": 500.0})
 
 
 def test_composite_wall_with_contact(wall):
@@ -87,7 +87,7 @@ def quarter_cylinder(n):
     }
     r, angle, z = points.T
     bent = np.column_stack([r * np.cos(angle), r * np.sin(angle), z])
-    return conduct.build(
+    return conduction.build(
         NamedMesh(bent, tets, region, parts, patches), {"tube": Solid((2.0, 9.0), 1e6)}, {}, {"tube": 4}
     )
 
@@ -117,7 +117,9 @@ def test_joint_passes_heat_between_the_means():
     bottom = facets_at(points, tets, points[:, 0] == 0.0) + len(points)
     mesh = NamedMesh(both, np.concatenate([tets, tets + len(points)]), np.repeat([0, 1], 6), ("a", "b"))
     solids = {"a": Solid((1, 1), 1e6), "b": Solid((1, 1), 1e6)}
-    body = conduct.build(mesh, solids, {"a|b": 300.0}, joints={"a|b": (Patch("a", "b", top), Patch("b", "a", bottom))})
+    body = conduction.build(
+        mesh, solids, {"a|b": 300.0}, joints={"a|b": (Patch("a", "b", top), Patch("b", "a", bottom))}
+    )
     T = np.where(body.part == 0, 50.0, 20.0)
     heat = body.coupling @ T
     assert heat[body.part == 0].sum() == pytest.approx(300.0 * 1e-4 * 30.0)

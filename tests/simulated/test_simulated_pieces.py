@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from geom import load_machine
-from simulated import drive, films, halves, losses, materials, sensors
-from simulated.draws import Draws
+from simulated.physics import films, losses, materials
+from simulated.physics.draws import Draws
+from simulated.road import drive, halves, sensors
 
 
 def test_lag_follows_a_ramp_late_by_its_time_constant():
@@ -126,12 +127,12 @@ def test_no_heat_crosses_the_cuts(built):
 
 
 def test_sensor_weights_reproduce_a_linear_field(built):
-    from simulated import conduct
+    from simulated.physics import conduction
 
     machine = load_machine("series-dc-100kw")
     draws = Draws(1)
     joints = materials.contacts([*built.mesh.contacts, *built.joints], draws)
-    body = conduct.build(built.mesh, materials.solids(machine, draws), joints, built.copies, built.joints)
+    body = conduction.build(built.mesh, materials.solids(machine, draws), joints, built.copies, built.joints)
     field = body.points @ np.array([3.0, -2.0, 5.0]) + 7.0
     nodes, weights, where = sensors.locate(body, "yoke", np.array([0.155, 0.155, 0.195]))
     assert weights @ field[nodes] == pytest.approx(where @ np.array([3.0, -2.0, 5.0]) + 7.0)

@@ -7,9 +7,11 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
-from simulated import air, drive, files, road_test, sensors
-from simulated.draws import Draws
-from simulated.run import run
+from simulated import road_test
+from simulated.physics import air
+from simulated.physics.draws import Draws
+from simulated.road import drive, files, sensors
+from simulated.road.run import run
 
 
 @pytest.fixture(scope="module")

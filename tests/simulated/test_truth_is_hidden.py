@@ -34,7 +34,7 @@ def test_room_does_not_know_the_generator(root, room):
 
 
 def test_generator_shares_no_physics(root):
-    files = list((root / "simulated").glob("*.py"))
+    files = list((root / "simulated").rglob("*.py"))
     assert files
     for path in files:
         assert not imported(path) & FORBIDDEN, path
@@ -50,7 +50,7 @@ def test_generator_takes_only_the_machine_from_geom(root):
         "geom.description.part",
         "geom.description.profile",
     }
-    for path in (root / "simulated").glob("*.py"):
+    for path in (root / "simulated").rglob("*.py"):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == "geom":
                 assert node.module in allowed, path

@@ -95,7 +95,7 @@ def test_a_step_gives_a_new_case(case, better):
 def test_saved_and_opened_again(better, tmp_path):
     """The model that is read back is the one that was saved, to the eight digits of the file."""
     copy = ts.open(small_case(tmp_path))
-    fresh = type(better)(copy.folder, copy.saved)
+    fresh = type(better)(copy.folder, copy.on_disk)
     with pytest.raises(ts.InputError, match="sit"):
         fresh.add("convection@nowhere")
     file = better.save().folder.settings.model_file

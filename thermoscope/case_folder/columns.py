@@ -24,22 +24,24 @@ TIME = "time_s"
 
 def write_columns(folder: Folder, effects: Sequence[str]) -> list[Path]:
     """A column of 0 to 1 for each event of some effects, beside each test it held in."""
-    held = [one.gate for name in effects if isinstance(one := effect(name), During) and one.event]
-    tests, written = {t.name: t for t in folder.case.tests}, []
+    held = [one.condition for name in effects if isinstance(one := effect(name), During) and one.event]
+    tests, paths = {t.name: t for t in folder.case.tests}, []
     for entry in folder.settings.tests:
         file, test = _file(entry), tests[entry.name]
-        own = [gate for gate in dict.fromkeys(held) if (found := event(gate)) and test.name in found.spans]
+        own = [
+            condition for condition in dict.fromkeys(held) if (found := event(condition)) and test.name in found.spans
+        ]
         ours(file)
         if own:
             text = io.StringIO()
             rows = csv.writer(text, lineterminator="\n")
             rows.writerow([TIME, *own])
-            columns = [test.time, *(holds(gate, test) for gate in own)]
+            columns = [test.time, *(holds(condition, test) for condition in own)]
             rows.writerows([f"{x:.10g}" for x in row] for row in zip(*columns, strict=True))
-            written.append(write_whole(file, text.getvalue()))
+            paths.append(write_whole(file, text.getvalue()))
         elif file.exists():
             file.unlink()
-    return written
+    return paths
 
 
 def checked_columns(folder: Folder) -> None:

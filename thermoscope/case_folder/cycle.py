@@ -20,7 +20,7 @@ from lumped.drives.permanent_magnet import PMMachine
 from lumped.integration.signals import Signals
 from lumped.integration.simulate import Record
 from lumped.model.network import Network
-from lumped.schemas.reader import Table, known
+from lumped.schemas.reader import Table, suggestion
 from thermoscope.recordings.consistency import is_amount
 from thermoscope.recordings.grid import LEAST, MOST, bridged
 from thermoscope.recordings.sheet import read_sheet
@@ -64,7 +64,7 @@ def find_cycle(case: Path, name: str) -> Path:
         return Path(name)
     here = {p.stem: p for p in sorted((case / "cycles").glob("*.toml"))}
     if name not in here:
-        raise InputError("no such cycle", name, known(name, here or ["a file, or cycles/NAME.toml in the case"]))
+        raise InputError("no such cycle", name, suggestion(name, here or ["a file, or cycles/NAME.toml in the case"]))
     return here[name]
 
 
@@ -80,7 +80,7 @@ def load_cycle(path: Path, network: Network, ratings: Mapping[str, float]) -> Cy
     boundaries |= _constants(top, "boundaries", time, boundaries)
     for name in boundaries:
         if name not in network.boundaries:
-            raise top.error(f"no boundary is called '{name}'", known(name, network.boundaries))
+            raise top.error(f"no boundary is called '{name}'", suggestion(name, network.boundaries))
     start = head.number("initial_degC", _usual(network, boundaries, str(path)))
     drive, watched, series = _drive(top, network, ratings, time, inputs)
     head.close()
@@ -93,13 +93,13 @@ def load_cycle(path: Path, network: Network, ratings: Mapping[str, float]) -> Cy
     return cycle
 
 
-def _constants(top: Table, key: str, time: Array, given: Mapping[str, Array]) -> dict[str, Array]:
+def _constants(top: Table, key: str, time: Array, columns: Mapping[str, Array]) -> dict[str, Array]:
     """What stays as it is; InputError for what the columns or the duty give already."""
-    found = top.table(key).constants(key)
-    for name in found:
-        if name in given:
+    constants = top.table(key).constants(key)
+    for name in constants:
+        if name in columns:
             raise top.error(f"'{name}' is given twice", f"[{key}] {name}, or a column or [load] of that name")
-    return {name: np.full(time.size, value) for name, value in found.items()}
+    return {name: np.full(time.size, value) for name, value in constants.items()}
 
 
 def _unread(network: Network, inputs: Mapping[str, Array], drive: Drive | None, where: str) -> Iterator[str]:
@@ -254,7 +254,7 @@ def _places(table: Table, network: Network, key: str, usual: str) -> dict[str, f
     shares = table.shares(key) if key in table else {usual: 1.0}
     for place in shares:
         if place not in network.places:
-            raise table.error(f"{key} at unknown place '{place}'", known(place, network.places))
+            raise table.error(f"{key} at unknown place '{place}'", suggestion(place, network.places))
     if abs(sum(shares.values()) - 1.0) > 1e-9:
         raise table.error(f"shares of {key} sum to {sum(shares.values()):g}", "shares that sum to 1")
     return shares

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from lumped.model.network import Link, Network, Source
 from lumped.transfer.laws import InputPower
 from thermoscope.case_folder.recording_checks import (
-    APART_K,
+    OFFSET_K,
     RECORDING_CHECKS,
     WARM_K,
     Finding,
@@ -46,7 +46,7 @@ def _reversed(p: Patient, network: Network) -> Iterator[Finding]:
     for name, move in moves.items():
         rise = float(np.median([m for n, m in moves.items() if n != name] or [0.0]))
         if rise > WARM_K and move < -max(WARM_K, SWAPPED * rise):
-            yield p.found(name, f"falls by {-move:.0f} K while the others rise: are its wires swapped?",
+            yield p.finding(name, f"falls by {-move:.0f} K while the others rise: are its wires swapped?",
                           "use = false, or the wires the right way round")  # fmt: skip
 
 
@@ -61,20 +61,20 @@ def _declared(p: Patient, network: Network) -> Iterator[Finding]:
     given = p.sheet.initial
     for c in (c for c in _within(p, network) if c.name in starts):
         first = given if isinstance(given, float) else given.get(c.place) if not isinstance(given, str) else None
-        if first is not None and abs(first - starts[c.name]) > APART_K:
-            yield p.found(c.name, f"starts at {starts[c.name]:.0f} degC, the sheet says initial = {first:g}",
+        if first is not None and abs(first - starts[c.name]) > OFFSET_K:
+            yield p.finding(c.name, f"starts at {starts[c.name]:.0f} degC, the sheet says initial = {first:g}",
                           'initial = "first-readings"')  # fmt: skip
         values, lag = p.samples.values[c.name], c.lag_s
         move = float(np.nanmax(values) - np.nanmin(values))
         if c.sigma_K > max(move, WIDE_K):
-            yield p.found(c.name, f"its sigma_K = {c.sigma_K:g} is more than it moves ({move:.3g} K): no error of the "
-                          "model could show", "the 1-sigma of the sensor's data sheet")  # fmt: skip
+            yield p.finding(c.name, f"its sigma_K = {c.sigma_K:g} is more than it moves ({move:.3g} K): no error of "
+                          "the model could show", "the 1-sigma of the sensor's data sheet")  # fmt: skip
         if lag > span:
-            yield p.found(c.name, f"its lag of {lag:g} s is longer than the test ({span:g} s)",
+            yield p.finding(c.name, f"its lag of {lag:g} s is longer than the test ({span:g} s)",
                           "lag_s and filter_s in seconds")  # fmt: skip
     for name, events in p.sheet.events.items():
         if events.at_s[-1] > p.samples.start_s + span:
-            yield p.found(name, f"switches at {events.at_s[-1]:g} s, after the test has ended",
+            yield p.finding(name, f"switches at {events.at_s[-1]:g} s, after the test has ended",
                           "at_s in seconds from the first row")  # fmt: skip
 
 
@@ -87,8 +87,8 @@ def _power(p: Patient, network: Network) -> Iterator[Finding]:
     came = sum(float(np.nanmean(np.abs(p.samples.values[c.name]))) for c in columns) * span
     if columns and rise > WARM_K and 0.0 < STORED * came < stored:
         names = ", ".join(c.name for c in columns)
-        yield p.found(names, f"{came:.3g} J came in, {stored:.3g} J would be needed for the rise of {rise:.0f} K: kW?",
-                      'unit = "kW", or check [nodes] C_J_K')  # fmt: skip
+        yield p.finding(names, f"{came:.3g} J came in, {stored:.3g} J would be needed for the rise "
+                      f"of {rise:.0f} K: kW?", 'unit = "kW", or check [nodes] C_J_K')  # fmt: skip
 
 
 INSIDE = (_power, _reversed, _declared)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,10 +26,10 @@ Array = NDArray[np.float64]
 
 def error_field(folder: Folder, test: Test, nodes: SplitMesh) -> Interpolated:
     """Measured minus modelled on the parts' own nodes (K), told by the mean residuals of a test's last fifth."""
-    channels, found = error_gain(folder, test, nodes)
+    channels, gain = error_gain(folder, test, nodes)
     model, late = readings(folder.case, test), last_fifth(test)
     residual_K = [float(np.nanmean((np.asarray(c.y, float) - model[c.name])[late])) for c in channels]
-    return Interpolated(found.mean @ np.array(residual_K), found.explained)
+    return Interpolated(gain.mean @ np.array(residual_K), gain.explained)
 
 
 def error_gain(folder: Folder, test: Test, nodes: SplitMesh) -> tuple[tuple[Channel, ...], Interpolated]:
@@ -44,8 +44,7 @@ def error_gain(folder: Folder, test: Test, nodes: SplitMesh) -> tuple[tuple[Chan
     doubted = [p for p in grown.parameters if p.prior_sd > 0]
     end = simulate(grown, record(test, {}), values, tangents=doubted).end
     D = end.D[: len(grown.states)] * np.array([deviation(p, intervals.get(p.name)) for p in doubted])
-    recovery: Any = grown.recovery
-    there = np.concatenate([recovery.of_part(part, D) for part in nodes.parts])
+    there = grown.on_parts(nodes.parts, D)
     late, width = last_fifth(test), len(grown.states) + len(grown.boundaries)
     seen = tuple(c for c in test.channels if np.isfinite(np.asarray(c.y, float)[late]).any())
     here = np.array([c.row.dense(width)[: len(grown.states)] @ D for c in seen])

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from geom.errors import InputError
 from lumped.machine.losses import ASSUMED, ASSUMED_W, checked_losses
 from lumped.model.network import Network, Parameter
-from lumped.schemas.reader import known
+from lumped.schemas.reader import suggestion
 from thermoscope.case_folder.doctor import examined
 from thermoscope.case_folder.history import History, checked_values, load_history
 from thermoscope.case_folder.recording_checks import Finding, Patient
@@ -85,8 +85,8 @@ class Folder:
 
         case = self.case
         budget = self.numeric_K[test.name]
-        found = judged_error(working(case)[0], test, physical(case), case.doubt, budget)
-        return {c.channel: c.limit_K for c in found.channels if c.limit_K is not None}
+        judged = judged_error(working(case)[0], test, physical(case), case.doubt, budget)
+        return {c.channel: c.limit_K for c in judged.channels if c.limit_K is not None}
 
 
 def _once(settings: Settings, files: Mapping[str, Path]) -> None:
@@ -159,8 +159,8 @@ def _low_fidelity(network: Network, small: Network, patients: Iterable[Patient])
 
 def _stamp(file: Path) -> tuple[str, int, int, int]:
     """What changes when a file is written: name, number on the disk, length, instant (ns)."""
-    found = file.stat()
-    return str(file.resolve()), found.st_ino, found.st_size, found.st_mtime_ns
+    status = file.stat()
+    return str(file.resolve()), status.st_ino, status.st_size, status.st_mtime_ns
 
 
 def _assumed(network: Network, settings: Settings) -> list[str]:
@@ -194,7 +194,7 @@ def find_case(name: str | Path) -> Path:
         return shipped[str(name)]
     if path.exists():
         raise InputError("is a file", str(path), "a folder with a case.toml")
-    raise InputError("no such case folder", str(path), known(str(name), shipped or ["no case came along"]))
+    raise InputError("no such case folder", str(path), suggestion(str(name), shipped or ["no case came along"]))
 
 
 def _homes() -> list[Path]:
@@ -207,7 +207,7 @@ def _free(network: Network, settings: Settings) -> tuple[Parameter, ...]:
     """The parameters that calibration may move; a pattern that matches nothing is an error."""
     for pattern in settings.free:
         if not matching(network, [pattern]):
-            right = known(pattern, [p.name for p in network.parameters])
+            right = suggestion(pattern, [p.name for p in network.parameters])
             raise InputError(
                 f"'{pattern}' matches no parameter", f"{settings.path / 'case.toml'} [calibration] free", right
             )

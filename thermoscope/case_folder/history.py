@@ -12,7 +12,7 @@ import tomlkit
 from geom.description.toml_file import read_toml
 from geom.errors import InputError
 from lumped.model.network import Parameter
-from lumped.schemas.reader import Table, known
+from lumped.schemas.reader import Table, suggestion
 from thermoscope.case_folder.files import locked, write_whole
 
 ACTIONS = ("calibrate", "add", "remove", "answer", "step back")
@@ -74,10 +74,10 @@ class History:
 
     def back_to(self, number: int) -> History:
         """One more revision, equal to an earlier one."""
-        found = {0: Revision(0, "step back"), **{r.number: r for r in self.revisions}}
-        if number not in found:
+        by_number = {0: Revision(0, "step back"), **{r.number: r for r in self.revisions}}
+        if number not in by_number:
             raise InputError(f"no revision {number}", "model.toml", f"0 to {self.last.number}")
-        again, now = found[number], {test: after for test, (_, after) in self.last.rmse_K.items()}
+        again, now = by_number[number], {test: after for test, (_, after) in self.last.rmse_K.items()}
         rmse = {t: (now.get(t, after), after) for t, (_, after) in again.rmse_K.items()}
         return self._longer(replace(again, action="step back", effect="", rmse_K=rmse, why=f"as in revision {number}"))
 
@@ -94,16 +94,16 @@ def load_history(path: Path) -> History:
     return History(revisions)
 
 
-def save_history(path: Path, history: History, known: History) -> History:
-    """Write `history` over `known`, and return it as the file has it.
+def save_history(path: Path, history: History, before: History) -> History:
+    """Write `history` over `before`, and return it as the file has it.
 
     Raises InputError when the file holds something else by now: another command or tab was quicker.
     """
     with locked(path.parent):
         standing = load_history(path)
-        if standing != known:
+        if standing != before:
             what = f"the model was changed by another tab or command: it is at revision {standing.last.number}, this "
-            raise InputError(f"{what}step began at {known.last.number}", str(path),
+            raise InputError(f"{what}step began at {before.last.number}", str(path),
                              "the step again (in the workbench 'take over' first)")  # fmt: skip
         write_whole(path, _text(history))
         return load_history(path)
@@ -126,10 +126,10 @@ def checked_values(revision: Revision, parameters: Iterable[Parameter], where: s
         raise InputError(f"effect '{again}' is in the model twice", place, "each effect once")
     for name in revision.intervals:
         if name not in revision.values:
-            raise InputError(f"intervals: '{name}' has no value", place, known(name, revision.values))
+            raise InputError(f"intervals: '{name}' has no value", place, suggestion(name, revision.values))
     for name, value in revision.values.items():
         if name not in have:
-            raise InputError(f"unknown parameter '{name}'", place, known(name, have))
+            raise InputError(f"unknown parameter '{name}'", place, suggestion(name, have))
         low, high = have[name].low, have[name].high
         slack = ROUNDED * max(abs(low), abs(high))
         if not low - slack <= value <= high + slack:

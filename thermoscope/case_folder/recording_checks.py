@@ -15,7 +15,7 @@ from thermoscope.recordings.tables import Samples
 Array = NDArray[np.float64]
 FIRST = 5  # readings that say where a column starts
 KELVIN, OFF_K = 273.15, 15.0  # how near a start has to be to that of the others in another unit
-APART_K = 12.0  # how far it has to be as it stands
+OFFSET_K = 12.0  # how far it has to be as it stands
 SPIKE_K, SPIKE_TIMES = 8.0, 20.0  # a reading that leaps and comes back, in K and in usual steps of its column
 UNEVEN = 0.5  # of a long step of a clock, between nine in ten and one in ten of all
 WARM_K = 3.0  # a test in which nothing warms by more shows nothing
@@ -56,7 +56,7 @@ class Patient:
         """Input -> its readings, of all columns that feed one."""
         return {c.feeds: self.samples.values[c.name] for c in self.sheet.columns if c.feeds}
 
-    def found(self, where: str, what: str, cure: str) -> Finding:
+    def finding(self, where: str, what: str, cure: str) -> Finding:
         return Finding(self.name, where, what, cure)
 
 
@@ -72,12 +72,14 @@ def _units(p: Patient) -> Iterator[Finding]:
     for name, start in starts.items():
         others = [s for n, s in starts.items() if n != name]
         usual = float(np.median(others)) if others else 20.0
-        if abs(start - usual) < APART_K:
+        if abs(start - usual) < OFFSET_K:
             continue
         if abs(start - KELVIN - usual) < OFF_K:
-            yield p.found(name, f"starts at {start:.0f} degC, the others at {usual:.0f}: kelvin?", 'unit = "K"')
+            yield p.finding(name, f"starts at {start:.0f} degC, the others at {usual:.0f}: kelvin?", 'unit = "K"')
         elif abs((start - 32.0) / 1.8 - usual) < OFF_K / 3:
-            yield p.found(name, f"starts at {start:.0f} degC, the others at {usual:.0f}: Fahrenheit?", 'unit = "degF"')
+            yield p.finding(
+                name, f"starts at {start:.0f} degC, the others at {usual:.0f}: Fahrenheit?", 'unit = "degF"'
+            )
 
 
 def _scale(p: Patient) -> Iterator[Finding]:
@@ -86,8 +88,10 @@ def _scale(p: Patient) -> Iterator[Finding]:
     for name, start in starts.items():
         usual = float(np.median([s for n, s in starts.items() if n != name] or [start]))
         for factor, cure in ((10.0, "divide the column by 10"), (0.1, "multiply the column by 10")):
-            if abs(start - factor * usual) < 0.1 * abs(factor * usual) and abs(start - usual) > APART_K:
-                yield p.found(name, f"starts at {start:.4g} degC, the others at {usual:.4g}: tenths of a degree?", cure)
+            if abs(start - factor * usual) < 0.1 * abs(factor * usual) and abs(start - usual) > OFFSET_K:
+                yield p.finding(
+                    name, f"starts at {start:.4g} degC, the others at {usual:.4g}: tenths of a degree?", cure
+                )
 
 
 def _sparse(p: Patient) -> Iterator[Finding]:
@@ -96,17 +100,17 @@ def _sparse(p: Patient) -> Iterator[Finding]:
     for name, values in p.temperatures.items():
         count = int(np.isfinite(values).sum())
         if count < LEAST_READINGS and name not in after:
-            yield p.found(name, f"was read {count} {'time' if count == 1 else 'times'} in the whole test: that "
+            yield p.finding(name, f"was read {count} {'time' if count == 1 else 'times'} in the whole test: that "
                           "says next to nothing of the model", "readings over the test, or use = false")  # fmt: skip
 
 
 def _clock(p: Patient) -> Iterator[Finding]:
     low, high = np.percentile(np.diff(p.samples.time), [10.0, 90.0])
     if high - low > UNEVEN * high:
-        yield p.found("clock", f"rows come unevenly, {low:g} to {high:g} s apart",
+        yield p.finding("clock", f"rows come unevenly, {low:g} to {high:g} s apart",
                       "check the recorder's clock; readings are averaged onto the grid as they stand")  # fmt: skip
     for a, b in p.samples.gaps:
-        yield p.found("clock", f"no rows from {a:g} to {b:g} s", "split the test there if the machine ran on")
+        yield p.finding("clock", f"no rows from {a:g} to {b:g} s", "split the test there if the machine ran on")
 
 
 def _spikes(p: Patient) -> Iterator[Finding]:
@@ -121,8 +125,8 @@ def _spikes(p: Patient) -> Iterator[Finding]:
         out = np.flatnonzero(back & (leap > max(SPIKE_K, SPIKE_TIMES * float(np.median(np.abs(np.diff(y)))))))
         if out.size:
             at = p.samples.time[seen[out[0] + 1]]
-            yield p.found(name, f"{out.size} readings leap by {leap[out].max():.0f} K and come back, first at {at:g} s",
-                          "empty those cells; look for a loose contact")  # fmt: skip
+            yield p.finding(name, f"{out.size} readings leap by {leap[out].max():.0f} K and come back, first at "
+                          f"{at:g} s", "empty those cells; look for a loose contact")  # fmt: skip
 
 
 def _frozen(p: Patient) -> Iterator[Finding]:
@@ -131,7 +135,7 @@ def _frozen(p: Patient) -> Iterator[Finding]:
     if max(moves.values(), default=0.0) > WARM_K:
         for name, move in moves.items():
             if move == 0.0 and np.isfinite(p.temperatures[name]).sum() >= LEAST_READINGS:
-                yield p.found(name, "never moves while others do: frozen?", "use = false, or another sensor")
+                yield p.finding(name, "never moves while others do: frozen?", "use = false, or another sensor")
 
 
 def _twins(p: Patient) -> Iterator[Finding]:
@@ -140,7 +144,7 @@ def _twins(p: Patient) -> Iterator[Finding]:
     for a, b in combinations(values, 2):
         x, y = values[a], values[b]
         if np.array_equal(x, y, equal_nan=True) and np.unique(x[np.isfinite(x)]).size > 2:
-            yield p.found(f"{a}, {b}", "are the same readings throughout", "one of them; check the logger's channels")
+            yield p.finding(f"{a}, {b}", "are the same readings throughout", "one of them; check the logger's channels")
 
 
 def _noted(p: Patient) -> Iterator[Finding]:
@@ -148,7 +152,7 @@ def _noted(p: Patient) -> Iterator[Finding]:
     still = [f"column '{f.where}': stands at" for f in _frozen(p)]
     for note in p.samples.notes:
         if "no rows from" not in note and not any(words in note for words in still):
-            yield p.found("", note, "look at it; use = false leaves a column out")
+            yield p.finding("", note, "look at it; use = false leaves a column out")
 
 
 RECORDING_CHECKS = (_noted, _units, _scale, _sparse, _clock, _spikes, _frozen, _twins)

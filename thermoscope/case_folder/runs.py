@@ -77,7 +77,7 @@ def ends(case: Case, test: Test, names: Sequence[str]) -> list[float]:
     return simulate(network, record(test, {}), values, [rows[n] for n in names]).y[-1].tolist()
 
 
-def held(folder: Folder, test: Test) -> Comparison:
+def comparison_of(folder: Folder, test: Test) -> Comparison:
     """A test against the model, and against the model before its last step."""
     from viz.data import Comparison
 
@@ -95,11 +95,9 @@ def accepted(case: Case, test: Test) -> tuple[tuple[float, float], ...]:
 def fields(case: Case, test: Test, nodes: SplitMesh, frames: int) -> tuple[Array, Array]:
     """Times (n,) s and temperatures (n, n_nodes) degC on the parts' own nodes; the network needs a recovery."""
     network, run = _run(case, test)
-    recovery: Any = network.recovery
     chosen = np.unique(np.linspace(run.time.size - 1, 0, frames).astype(int))
     states = np.asarray(run.z)[chosen, : len(network.states)]
-    T = [np.concatenate([recovery.of_part(part, x) for part in nodes.parts]) for x in states]
-    return run.time[chosen], np.array(T)
+    return run.time[chosen], np.ascontiguousarray(network.on_parts(nodes.parts, states.T).T)
 
 
 def temperature_range(folder: Folder, nodes: SplitMesh) -> tuple[float, float]:

@@ -9,7 +9,7 @@ from pathlib import Path
 from geom.description.names import LONGEST, checked_name
 from geom.description.toml_file import read_toml
 from geom.errors import InputError
-from lumped.schemas.reader import Table, known, shown
+from lumped.schemas.reader import Table, excerpt, suggestion
 from thermoscope.recordings.formats import stem_of
 from validation.case import Role
 from validation.doubt import USUAL, Doubt, widened
@@ -100,7 +100,7 @@ def _title(head: Table, usual: str) -> str:
     """The name of the case: one short line."""
     name = head.word("name", usual)
     if not 0 < len(name.strip()) <= LONGEST or not name.isprintable():
-        raise head.error(f"name = {shown(name)} is not possible", f"one line of 1 to {LONGEST} letters")
+        raise head.error(f"name = {excerpt(name)} is not possible", f"one line of 1 to {LONGEST} letters")
     return name
 
 
@@ -119,7 +119,7 @@ def _kinds(table: Table) -> tuple[str, ...] | None:
     for glob in table.members("catalogue"):
         matched = [kind for kind in kinds() if fnmatchcase(kind, glob)]
         if not matched:
-            raise table.error(f"catalogue: '{glob}' is no kind of effect", known(glob, kinds()))
+            raise table.error(f"catalogue: '{glob}' is no kind of effect", suggestion(glob, kinds()))
         found |= dict.fromkeys(matched)
     return tuple(found)
 

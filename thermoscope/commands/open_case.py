@@ -22,17 +22,17 @@ def open_case(name: str, progress: Progress, untested: bool = False) -> Folder:
 
 def in_short(folder: Folder, name: str) -> list[str]:
     """The first things that look wrong in the files, what no law reads, and what says more."""
-    said = [f for f in folder.findings if not any(f.what in note for note in folder.notes)]
-    wrong = sorted(said, key=lambda f: f.remark)
+    unmentioned = [f for f in folder.findings if not any(f.what in note for note in folder.notes)]
+    wrong = sorted(unmentioned, key=lambda f: f.remark)
     lines = [f"{', '.join(filter(None, (f.test, f.where)))}: {f.what}; {f.cure}" for f in wrong[:LOUD]]
     more = len(wrong) - LOUD
     return [*lines, *([f"{more} more such things: thermoscope test doctor {name}"] if more > 0 else [])]
 
 
-def open_case_for_writing(name: str, progress: Progress) -> Folder:
-    """The case for writing: one that lies inside the installed package is copied to the working folder first."""
+def open_case_for_writing(name: str, progress: Progress, package: Path = PACKAGE) -> Folder:
+    """The case for writing: one that lies inside the installed `package` is copied to the working folder first."""
     path = find_case(name)
-    if PACKAGE in path.resolve().parents:
+    if package in path.resolve().parents:
         copy = Path(path.name)
         if copy.exists():
             raise InputError("is in the way of a copy of the shipped case", str(copy), "another working folder")

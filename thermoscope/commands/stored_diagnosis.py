@@ -55,15 +55,15 @@ def stored(path: Path) -> dict[str, Any] | None:
     if not checked_result(path).is_file():
         return None
     try:
-        found = json.loads(path.read_text(encoding="utf-8"))
-        seal = found.pop(SEAL)
-        whole = bool(seal == _sealed(found))
+        document = json.loads(path.read_text(encoding="utf-8"))
+        seal = document.pop(SEAL)
+        whole = bool(seal == _sealed(document))
     except (OSError, ValueError, RecursionError, AttributeError, KeyError, TypeError):
         whole = False
     if not whole:
         notes([f"{path} is damaged and is not used; the next result replaces it"])
         return None
-    return dict(found)
+    return dict(document)
 
 
 def _sealed(content: Mapping[str, Any]) -> str:
@@ -83,11 +83,11 @@ def save_diagnosis(folder: Folder, document: Mapping[str, Any]) -> None:
     store(folder.settings.out / NAME, {**document, "model": model_of(folder), "plan": plan_of(path)})
 
 
-def saved_diagnosis(folder: Folder) -> dict[str, Any] | None:
+def current_diagnosis(folder: Folder) -> dict[str, Any] | None:
     """The kept diagnosis, if it is of these tests and this model: also after a step that was undone."""
-    saved = last_diagnosis(folder)
-    same = saved and saved.get("model") == model_of(folder) and saved.get("plan") == plan_of(folder.settings.path)
-    return saved if same else None
+    last = last_diagnosis(folder)
+    same = last and last.get("model") == model_of(folder) and last.get("plan") == plan_of(folder.settings.path)
+    return last if same else None
 
 
 def last_diagnosis(folder: Folder) -> dict[str, Any] | None:

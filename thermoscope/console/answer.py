@@ -128,16 +128,16 @@ def grid(table: Grid, rows: Sequence[Sequence[Any]], width: int) -> list[tuple[s
     whole = [[cell(value) for value in row] for row in table.rows]
     right = [any(isinstance(row[j], int | float) for row in table.rows) for j in range(len(table.headers))]
     widths = [max(map(len, (h, *(row[j] for row in whole)))) for j, h in enumerate(table.headers)]
-    shown = _fitting(table, whole, widths, width)
-    words = [j for j in shown if not right[j] and not _numbers(whole, j)]
-    while words and _total(widths, shown) > width:
+    columns = _fitting(table, whole, widths, width)
+    words = [j for j in columns if not right[j] and not _numbers(whole, j)]
+    while words and _total(widths, columns) > width:
         j = max(words, key=lambda j: widths[j])
         if widths[j] <= LEAST:
             break
-        widths[j] -= min(widths[j] - LEAST, _total(widths, shown) - width)
+        widths[j] -= min(widths[j] - LEAST, _total(widths, columns) - width)
 
     def line(cells: Sequence[str]) -> str:
-        return GAP.join(_padded(cells[j], widths[j], right[j]) for j in shown).rstrip()
+        return GAP.join(_padded(cells[j], widths[j], right[j]) for j in columns).rstrip()
 
     marked = ["bold" if any(c in table.marked for c in row) else "" for row in body]
     head = [*([(folded(table.title, width)[0], "bold")] if table.title else []), (line(list(table.headers)), "dim")]
@@ -146,15 +146,15 @@ def grid(table: Grid, rows: Sequence[Sequence[Any]], width: int) -> list[tuple[s
 
 def _fitting(table: Grid, body: list[list[str]], widths: list[int], width: int) -> list[int]:
     """The columns that are shown: those that say something, less the least important until the rest fits."""
-    shown = [j for j in range(len(table.headers)) if j == 0 or any(row[j] not in ("", "-") for row in body)]
-    ranked = [j for j in shown if table.headers[j] in table.keep]
-    order = [*reversed([j for j in shown[1:] if j not in ranked]), *reversed([j for j in ranked if j != 0])]
+    columns = [j for j in range(len(table.headers)) if j == 0 or any(row[j] not in ("", "-") for row in body)]
+    ranked = [j for j in columns if table.headers[j] in table.keep]
+    order = [*reversed([j for j in columns[1:] if j not in ranked]), *reversed([j for j in ranked if j != 0])]
     floor = [w if _numbers(body, j) else min(w, 3 * LEAST) for j, w in enumerate(widths)]
     for j in order:
-        if _total(floor, shown) <= width:
+        if _total(floor, columns) <= width:
             break
-        shown.remove(j)
-    return shown
+        columns.remove(j)
+    return columns
 
 
 def _numbers(body: list[list[str]], j: int) -> bool:
@@ -162,8 +162,8 @@ def _numbers(body: list[list[str]], j: int) -> bool:
     return any(row[j][:1].isdigit() or (row[j][:1] in "+-" and row[j][1:2].isdigit()) for row in body)
 
 
-def _total(widths: Sequence[int], shown: Sequence[int]) -> int:
-    return sum(widths[j] for j in shown) + len(GAP) * (len(shown) - 1)
+def _total(widths: Sequence[int], columns: Sequence[int]) -> int:
+    return sum(widths[j] for j in columns) + len(GAP) * (len(columns) - 1)
 
 
 def _padded(text: str, width: int, right: bool) -> str:

@@ -30,6 +30,7 @@ class ProgressBar:
     """The stages of one piece of work: how long each took so far, and the last time.
 
     last : stage -> s of the last time, in their order;  clock : s, rising
+    shortest_s : work that took less the last time has no share and no time left (s)
     block : which of several pieces of work that have one bar, 0 of a single one; the same word in two of them is two
     stages
     """
@@ -40,6 +41,7 @@ class ProgressBar:
     now: str = ""
     since: float = 0.0
     block: int = 0
+    shortest_s: float = WORTH_S
 
     def enter(self, message: str) -> bool:
         """Whether another stage begins; messages that begin with the same word are of one stage."""
@@ -64,20 +66,24 @@ class ProgressBar:
         A stage that takes longer than the last time counts as done when it ends, so the share never falls.
         """
         total = sum(self.last.values())
-        if total < WORTH_S:
+        if total < self.shortest_s:
             return None
         here = self.clock() - self.since if self.now else 0.0
         running = min(here, self.last.get(self.now, 0.0))
         done = running + sum(min(self.took.get(s, 0.0), t) if s == self.now else t
                              for s, t in self.last.items() if s in self.took)  # fmt: skip
         spent = here + sum(self.took.values())
-        pace = spent / done if done > WORTH_S else 1.0
+        pace = spent / done if done > self.shortest_s else 1.0
         return min(done / total, 0.99), max(total - done, 0.0) * pace
 
     def words(self, message: str) -> str:
         """The message with share and time left."""
-        found = self.left()
-        return message if found is None else f"{message} ({100 * found[0]:.0f} %, about {_span(found[1])} left)"
+        remaining = self.left()
+        return (
+            message
+            if remaining is None
+            else f"{message} ({100 * remaining[0]:.0f} %, about {_span(remaining[1])} left)"
+        )
 
 
 def _span(seconds: float) -> str:
@@ -90,18 +96,21 @@ def progress() -> Iterator[Progress]:
     whole = _whole.get()
     if whole is not None:
         whole.block += 1
-        with _shown(whole) as tell:
+        with _display(whole) as tell:
             yield tell
         whole.leave()
         return
-    with _remembering(f"{_command()} {next(_blocks)}") as stages, _shown(stages) as tell:
+    with _remembering(f"{_command()} {next(_blocks)}") as stages, _display(stages) as tell:
         yield tell
 
 
 @contextmanager
-def one_bar() -> Iterator[None]:
-    """Several pieces of work, each with its `progress`, have one bar: share and time left are of all of them."""
-    with _remembering(_command()) as stages:
+def one_bar(shortest_s: float = WORTH_S) -> Iterator[None]:
+    """Several pieces of work, each with its `progress`, have one bar: share and time left are of all of them.
+
+    shortest_s : what takes less has neither (s)
+    """
+    with _remembering(_command(), shortest_s) as stages:
         token = _whole.set(stages)
         try:
             yield
@@ -110,14 +119,14 @@ def one_bar() -> Iterator[None]:
 
 
 @contextmanager
-def _remembering(key: str) -> Iterator[ProgressBar]:
+def _remembering(key: str, shortest_s: float = WORTH_S) -> Iterator[ProgressBar]:
     """Stages that know how long they took the last time; what they take now is kept for the next."""
     known = _remembered()
-    stages = ProgressBar(known.get(key) or _usual().get(key, {}))
+    stages = ProgressBar(known.get(key) or _usual().get(key, {}), shortest_s=shortest_s)
     try:
         yield stages
         stages.leave()
-        if sum(stages.took.values()) > WORTH_S:
+        if sum(stages.took.values()) > shortest_s:
             _remember({**{k: v for k, v in known.items() if k != key}, key: stages.took})
     finally:
         stages.leave()
@@ -129,7 +138,7 @@ def _command() -> str:
 
 
 @contextmanager
-def _shown(stages: ProgressBar) -> Iterator[Progress]:
+def _display(stages: ProgressBar) -> Iterator[Progress]:
     from rich.console import Console
 
     console = Console(stderr=True)
@@ -146,9 +155,12 @@ def _shown(stages: ProgressBar) -> Iterator[Progress]:
 
         def tell(message: str) -> None:
             stages.enter(message)
-            found = stages.left()
+            remaining = stages.left()
             bar.update(
-                task, description=stages.words(message), total=found and 1.0, completed=found[0] if found else 0.0
+                task,
+                description=stages.words(message),
+                total=remaining and 1.0,
+                completed=remaining[0] if remaining else 0.0,
             )
 
         yield tell
@@ -175,16 +187,16 @@ def _usual() -> dict[str, dict[str, float]]:
 
 def _stages_in(file: Path) -> dict[str, dict[str, float]]:
     with suppress(OSError, ValueError, TypeError, AttributeError):
-        found = json.loads(file.read_text(encoding="utf-8"))
-        return {str(k): {str(s): float(t) for s, t in v.items()} for k, v in found.items()}
+        document = json.loads(file.read_text(encoding="utf-8"))
+        return {str(k): {str(s): float(t) for s, t in v.items()} for k, v in document.items()}
     return {}
 
 
-def _remember(known: dict[str, dict[str, float]]) -> None:
+def _remember(stages: dict[str, dict[str, float]]) -> None:
     with suppress(OSError):
         file = _file()
         file.parent.mkdir(parents=True, exist_ok=True)
-        newest = dict(list(known.items())[-MOST:])
+        newest = dict(list(stages.items())[-MOST:])
         partial = file.with_name(f".{file.name}.{time.time_ns()}")
         partial.write_text(json.dumps(newest), encoding="utf-8")
         partial.replace(file)

@@ -16,34 +16,34 @@ from thermoscope.console.answer import Answer, Grid, printed
 from thermoscope.console.progress_bar import Progress, progress
 
 STDOUT = "-"
-__all__ = ["Progress", "give", "notes", "notes_once", "plain", "progress", "say", "sized", "table"]
+__all__ = ["Progress", "give", "notes", "notes_once", "plain", "progress", "say", "value_with_interval", "table"]
 
 
 def _line(message: str) -> None:
     print(message, file=sys.stderr, flush=True)
 
 
-SAID: ContextVar[set[str] | None] = ContextVar("said", default=None)  # notes so far, where each is to be said once
+NOTES_SO_FAR: ContextVar[set[str] | None] = ContextVar("said", default=None)  # where each is said once
 
 
 @contextmanager
 def notes_once() -> Iterator[None]:
     """Several commands in a row say each note once."""
-    token = SAID.set(set())
+    token = NOTES_SO_FAR.set(set())
     try:
         yield
     finally:
-        SAID.reset(token)
+        NOTES_SO_FAR.reset(token)
 
 
 def notes(messages: Iterable[str]) -> None:
     """Doubts about the data."""
-    said = SAID.get()
+    so_far = NOTES_SO_FAR.get()
     for message in messages:
-        if said is None or message not in said:
+        if so_far is None or message not in so_far:
             _line(f"note: {message}")
-        if said is not None:
-            said.add(message)
+        if so_far is not None:
+            so_far.add(message)
 
 
 def plain(value: Any) -> Any:
@@ -82,7 +82,7 @@ def say(message: str) -> None:
     printed(Answer(message))
 
 
-def sized(value: float | None, low: float | None, high: float | None) -> str:
+def value_with_interval(value: float | None, low: float | None, high: float | None) -> str:
     """A value with its interval: three digits tell what an interval leaves sure."""
     one, *two = (f"{x:.3g}" if x is not None and math.isfinite(x) else "-" for x in (value, low, high))
     return f"{one} ({' ... '.join(two)})"

@@ -8,10 +8,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
+from geom.description.machine import Machine
 from geom.errors import InputError
 from lumped.condensation.reduction import Recipe
 from lumped.model.network import Network
@@ -28,7 +28,7 @@ SIZE_M, ACROSS = 0.12, 0.5  # elements twice as large as those of a case; temper
 COARSE = Recipe(tolerance=0.03, max_states=110, shifts=(1 / 20, 1 / 700), random_points=1)
 
 
-def coarse_network(machine: Any, progress: Progress) -> Network:
+def coarse_network(machine: Machine, progress: Progress) -> Network:
     """Seconds; from the cache where it was made before."""
     from lumped.machine.motor import motor_network
     from thermoscope.pipeline import prepared, reduced
@@ -58,10 +58,11 @@ class Condensations:
         rows = {n: p.mean for n, p in grown.places.items()}
         spots = hot_spots(grown, rows, {s.name: s.limit for s in self.problem.spots})
         inputs = {n: u for n, u in self.problem.inputs.items() if n in _reads(grown)}
-        taken = tuple(n for n in self.problem.taken if n in inputs)
+        from_machine = tuple(n for n in self.problem.from_machine if n in inputs)
         return replace(
-            self.problem, network=grown, values={}, inputs=inputs, spots=spots, scaling=None, sure=None, taken=taken
-        )
+            self.problem, network=grown, values={}, inputs=inputs, spots=spots, scaling=None, sure=None,
+            from_machine=from_machine,
+        )  # fmt: skip
 
     def ratios(self, named: Mapping[str, float]) -> dict[str, float]:
         """Quantity -> condensed over scaled, at values of the variables."""
@@ -74,7 +75,7 @@ class Condensations:
         out = {n: (T - around) / (scaled.places[n] - around) for n, T in condensed.places.items()}
         return out | {q: condensed.objectives[q] / scaled.objectives[q] for q in (COPPER, SETTLING)}
 
-    def _machine(self, named: Mapping[str, float]) -> Any:
+    def _machine(self, named: Mapping[str, float]) -> Machine:
         """Of the geometry alone: films and streams follow the inputs, so that the cache serves every flow."""
         assert self.problem.machine_at is not None
         return self.problem.machine_at({**self.usual, **dict(self._geometry(named))})

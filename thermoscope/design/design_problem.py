@@ -9,9 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from geom.description.machine import Machine
 from geom.errors import InputError
 from lumped.model.network import Network
-from lumped.schemas.reader import known
+from lumped.schemas.reader import suggestion
 from thermoscope.bands import posterior_of
 from thermoscope.case_folder.folder import Folder, Progress
 from thermoscope.case_folder.runs import named_rows
@@ -34,7 +35,7 @@ INPUT_RANGE = (0.5, 2.0)  # of an input's value at the operating point, where no
 
 
 @dataclass(frozen=True)
-class Asked:
+class DesignRequest:
     """limits : place -> degC, the first is what peaks;  torque (N m);  at : input or boundary -> value
 
     vary : variable -> its bounds, or None for the usual ones; empty for all usual variables
@@ -50,25 +51,24 @@ class Asked:
     cycle: str | None = None
 
 
-def design_problem(folder: Folder, asked: Asked, progress: Progress) -> tuple[Problem, MachineFile | None]:
+def design_problem(folder: Folder, request: DesignRequest, progress: Progress) -> tuple[Problem, MachineFile | None]:
     """The problem with what its reduced model gets wrong about other geometries learned, and the file of its machine.
 
     Raises InputError for what is not known, and where a limit is exceeded without any load.
     """
     network, values = model_of(folder)
     file = None if folder.settings.machine is None else MachineFile.read(folder.settings.machine)
-    op = operation(network, folder.case.tests, asked.at or {}, (), rated_point(folder, network))
+    op = operation(network, folder.case.tests, request.at or {}, (), rated_point(folder, network))
     sections = {} if file is None else file.sections
-    electrics = electrics_of(
-        "" if file is None else file.machine.family, sections.get("ratings", {}), sections.get("losses", {})
-    )
-    inputs = wanted_inputs(op.inputs, asked.torque, electrics)
-    grown, sure = _grown(folder, network, asked.robust, progress)
+    series = file is not None and file.machine.features.series is not None
+    electrics = electrics_of(series, sections.get("ratings", {}), sections.get("losses", {}))
+    inputs = wanted_inputs(op.inputs, request.torque, electrics)
+    grown, sure = _grown(folder, network, request.robust, progress)
     rows = named_rows(network, folder)
-    limits = places(asked.limits, rows, network.identities)
-    first = len(places(dict(list(asked.limits.items())[:1]), rows, network.identities))
-    driven = None if asked.cycle is None else _driven(folder, network, asked, sections.get("ratings", {}))
-    space = Space(tuple(_variables(grown, inputs, file, asked.vary or {}, driven)))
+    limits = places(request.limits, rows, network.identities)
+    first = len(places(dict(list(request.limits.items())[:1]), rows, network.identities))
+    driven = None if request.cycle is None else _driven(folder, network, request, sections.get("ratings", {}))
+    space = Space(tuple(_variables(grown, inputs, file, request.vary or {}, driven)))
     machine = {} if file is None else _of_machine(grown, file, space, inputs)
     aimed = (PEAK, SETTLING, COPPER) if file is None else OBJECTIVES
     problem = Problem(
@@ -115,7 +115,7 @@ def _variables(
                 *(GAINS if driven is not None else ()),
                 *([v.name for v in file.usual()] if file is not None else []),
             ]
-            raise InputError(f"'{name}' is nothing that a design could change", "--vary", known(name, here))
+            raise InputError(f"'{name}' is nothing that a design could change", "--vary", suggestion(name, here))
     return out
 
 
@@ -129,25 +129,29 @@ def _gain(key: str, driven: Driven, bounds: tuple[float, float] | None) -> Varia
     return Variable(key, low, high, driven.usual(key))
 
 
-def _driven(folder: Folder, network: Network, asked: Asked, ratings: Mapping[str, float]) -> Driven:
+def _driven(folder: Folder, network: Network, request: DesignRequest, ratings: Mapping[str, float]) -> Driven:
     """The vehicle of a cycle, its windings at the first limit."""
     from thermoscope.case_folder.cycle import find_cycle, load_cycle
 
-    cycle = load_cycle(find_cycle(folder.settings.path, str(asked.cycle)), network, ratings)
+    cycle = load_cycle(find_cycle(folder.settings.path, str(request.cycle)), network, ratings)
     s = cycle.series
     if s is None:
-        raise InputError("the cycle has no controller", f"--cycle {asked.cycle}", "a cycle with [vehicle]")
-    found = Driven(s.machine, s.vehicle, s.controller, np.asarray(cycle.record.time, float), s.wanted, s.slope)
-    return found.at(next(iter(asked.limits.values())), s.reference_degC)
+        raise InputError("the cycle has no controller", f"--cycle {request.cycle}", "a cycle with [vehicle]")
+    driven = Driven(s.machine, s.vehicle, s.controller, np.asarray(cycle.record.time, float), s.wanted, s.slope)
+    return driven.at(next(iter(request.limits.values())), s.reference_degC)
 
 
 def _of_machine(network: Network, file: MachineFile, space: Space, inputs: Mapping[str, float]) -> dict[str, Any]:
     names = {v.name for v in space.variables}
-    taken = tuple(n for key, n in FLOWS.items() if key in names and n in inputs)
-    return {"machine_at": partial(_machine_at, file), "scaling": Scaling(network, file.machine), "taken": taken}
+    from_machine = tuple(n for key, n in FLOWS.items() if key in names and n in inputs)
+    return {
+        "machine_at": partial(_machine_at, file),
+        "scaling": Scaling(network, file.machine),
+        "from_machine": from_machine,
+    }
 
 
-def _machine_at(file: MachineFile, values: Mapping[str, float]) -> Any:
+def _machine_at(file: MachineFile, values: Mapping[str, float]) -> Machine:
     return file.at(values)
 
 
@@ -155,10 +159,11 @@ def _refuse_hot_at_no_load(problem: Problem, loads: tuple[str, ...]) -> None:
     """A limit that the reference exceeds without any load no design can keep."""
     idle = replace(problem, inputs={**problem.inputs, **dict.fromkeys(loads, 0.0)}, sure=None)
     usual = {v.name: v.usual for v in problem.space.variables if v.name not in loads}
-    found = idle.judged(usual, None if problem.machine_at is None else problem.machine_at(usual))
+    performance = idle.judged(usual, None if problem.machine_at is None else problem.machine_at(usual))
     for s in problem.spots:
-        if found.places[s.name] >= s.limit:
+        if performance.places[s.name] >= s.limit:
             raise InputError(
                 f"the limit of '{s.name}', {s.limit:g} degC, is exceeded without any load "
-                f"({found.places[s.name]:.1f} degC)", "--limit", "a higher limit, cooler surroundings or a lower speed",
+                f"({performance.places[s.name]:.1f} degC)",
+                "--limit", "a higher limit, cooler surroundings or a lower speed",
             )  # fmt: skip

@@ -16,7 +16,7 @@ from geom.errors import InputError
 from geom.families import families
 from geom.machine_file import library, machine_from
 from lumped.machine.coolant import FLOW
-from lumped.schemas.reader import known
+from lumped.schemas.reader import suggestion
 from validation.optimisation.auxiliaries import FAN
 from validation.optimisation.space import Variable
 
@@ -89,7 +89,7 @@ class MachineFile:
         """Between bounds (of the key's unit), or around its value as usual."""
         usual = self.value(key)
         if usual == 0.0 or not self.knows(key):
-            raise InputError(f"'{key}' is no number of {self.where}", "--vary", known(key, self._keys()))
+            raise InputError(f"'{key}' is no number of {self.where}", "--vary", suggestion(key, self._keys()))
         low, high = bounds or tuple(share * usual for share in USUAL.get(key, (0.5, 2.0)))
         p = self.parameters.get(key)
         if p is not None and bounds is None:
@@ -121,14 +121,14 @@ def short_key(key: str) -> str:
     return key.rpartition(".")[2]
 
 
-def written(file: MachineFile, values: Mapping[str, float], name: str, said: Iterable[str]) -> str:
-    """A machine file of a design; `said` are its comments. Lengths that the file left to proportions are left so."""
+def machine_file_text(file: MachineFile, values: Mapping[str, float], name: str, comments: Iterable[str]) -> str:
+    """A machine file of a design; with `comments`. Lengths that the file left to proportions are left so."""
     import tomlkit
 
     tables = file.tables({k: float(f"{v:.6g}") for k, v in values.items() if file.knows(k)})
     tables["machine"] = {**tables.get("machine", {}), "name": name}
     out = tomlkit.document()
-    for line in said:
+    for line in comments:
         out.add(tomlkit.comment(line))
     for section, table in tables.items():
         out[section] = table

@@ -13,12 +13,11 @@ from lumped.declarations.separated import FilmOver, Share, over_grid
 from lumped.machine.bases import Switched
 from lumped.machine.laws import Interpolated
 from lumped.sources.loss_map import MapLoss
-from lumped.sources.loss_measured import MeasuredLoss, Negative
+from lumped.sources.loss_measured import MeasuredLoss
 from lumped.sources.losses import BrushLoss, CopperLoss, IronLoss, PowerLoss
-from lumped.transfer.laws import Fixed, InputPower, Law
+from lumped.transfer.laws import Fixed, InputPower, Law, Scaled, WithTemperature
 from lumped.transfer.reversal import Direction, OneWay
 from thermoscope.export.products import Mapped, Positive, Powered, Product, Straight, Sum, Tabulated
-from validation.calibration.model_form import DifferenceExponentError, TemperatureSlopeError
 
 
 @dataclass(frozen=True)
@@ -104,12 +103,12 @@ def _each(base: Law, change: Callable[[Product], Product]) -> Sum | Unknown:
 
 
 @expanded.register
-def _(law: Negative) -> Sum | Unknown:
-    return _each(law.of, lambda p: replace(p, coefficient=-p.coefficient))
+def _(law: Scaled) -> Sum | Unknown:
+    return _each(law.base, lambda p: replace(p, coefficient=law.by * p.coefficient))
 
 
 @expanded.register
-def _(law: OneWay) -> Sum | Unknown:
+def _(law: OneWay | WithTemperature) -> Sum | Unknown:
     return expanded(law.base)
 
 
@@ -122,9 +121,3 @@ def _(law: Direction) -> Sum | Unknown:
 def _(law: Switched) -> Sum | Unknown:
     on = Straight(law.switch, 0.0, 1.0) if law.closed else Straight(law.switch, 1.0, -1.0)
     return _each(law.base, lambda p: p.times(on))
-
-
-@expanded.register(TemperatureSlopeError)
-@expanded.register(DifferenceExponentError)
-def _(law: TemperatureSlopeError | DifferenceExponentError) -> Sum | Unknown:
-    return expanded(law.base)

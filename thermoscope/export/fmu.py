@@ -152,15 +152,15 @@ def description(model: Model, version: int) -> bytes:
     SubElement(root, "DefaultExperiment", startTime="0", stopTime="3600", stepSize=f"{STEP_S:g}")
     _variables(root, own if version == 3 else own[:-1], version)
     structure, outputs = SubElement(root, "ModelStructure"), range(len(own))
-    found = [i for i in outputs if own[i].causality == "output"]
+    results = [i for i in outputs if own[i].causality == "output"]
     if version == 2:
         for group in ("Outputs", "InitialUnknowns"):
             listed = SubElement(structure, group)
-            for i in found:
+            for i in results:
                 SubElement(listed, "Unknown", index=str(i + 1))
     else:
         for group in ("Output", "InitialUnknown"):
-            for i in found:
+            for i in results:
                 SubElement(structure, group, valueReference=str(i))
     return _text(root)
 
@@ -182,19 +182,19 @@ def _co_simulation(root: Element, model: Model, version: int) -> None:
                 SubElement(listed, "File", name=file)
 
 
-def _variables(root: Element, own: Sequence[Variable], version: int) -> None:
+def _variables(root: Element, variables: Sequence[Variable], version: int) -> None:
     listed = SubElement(root, "ModelVariables")
-    for reference, v in enumerate(own):
-        said: Attributes = {"name": v.name, "valueReference": str(reference), "causality": v.causality}
-        said["variability"] = "fixed" if v.causality == "parameter" else "continuous"
+    for reference, v in enumerate(variables):
+        attributes: Attributes = {"name": v.name, "valueReference": str(reference), "causality": v.causality}
+        attributes["variability"] = "fixed" if v.causality == "parameter" else "continuous"
         if v.about:
-            said["description"] = v.about
+            attributes["description"] = v.about
         if v.causality == "output":
-            said["initial"] = "calculated"
+            attributes["initial"] = "calculated"
         if v.causality == "parameter":
-            said["initial"] = "exact"
+            attributes["initial"] = "exact"
         value: Attributes = {"unit": v.unit} | ({} if v.start is None else {"start": f"{v.start:.17g}"})
         if version == 2:
-            SubElement(SubElement(listed, "ScalarVariable", **said), "Real", **value)
+            SubElement(SubElement(listed, "ScalarVariable", **attributes), "Real", **value)
         else:
-            SubElement(listed, "Float64", **said, **value)
+            SubElement(listed, "Float64", **attributes, **value)

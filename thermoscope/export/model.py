@@ -14,7 +14,7 @@ from lumped.integration.compiled import RUN, capacity_multipliers, state_units
 from lumped.model.multipliers import multipliers
 from lumped.model.network import Network, Row
 from lumped.numerics.terms import Terms
-from lumped.schemas.reader import known
+from lumped.schemas.reader import suggestion
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.runs import named_rows
 from thermoscope.export.products import Product, Sum
@@ -161,7 +161,7 @@ def outputs(network: Network, folder: Folder, limits: Mapping[str, float]) -> tu
     rows, errors = named_rows(network, folder), _errors(folder)
     for place in limits:
         if place not in rows:
-            raise InputError(f"no temperature '{place}' to limit", "--limit", known(place, rows))
+            raise InputError(f"no temperature '{place}' to limit", "--limit", suggestion(place, rows))
     return tuple(Output(n, row, limits.get(n), *errors.get(n, (None, ""))) for n, row in rows.items())
 
 

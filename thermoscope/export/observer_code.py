@@ -24,7 +24,7 @@ from validation.effects.build import heat
 from validation.observer import hypotheses as tests_of
 from validation.observer import sensor_faults as faults
 from validation.observer.hypotheses import hypotheses
-from validation.observer.observer import HELD_S
+from validation.observer.observer import CORRELATION_S
 from validation.observer.process import LONGEST_S, Process
 from validation.observer.process_noise import ProcessNoise
 
@@ -52,7 +52,7 @@ class ObserverModel:
     bias: Array
 
     @property
-    def given(self) -> tuple[str, ...]:
+    def input_names(self) -> tuple[str, ...]:
         return tuple(s.name for s in self.model.signals if s.name not in self.heats)
 
     @property
@@ -97,16 +97,16 @@ def observer_files(of: ObserverModel) -> dict[str, str]:
 
 def _sizes(of: ObserverModel) -> str:
     counts = {"SLOW": of.process.slow.size, "BODIES": len(of.process.bodies), "SENSORS": len(of.sensors),
-              "GIVEN": len(of.given)}  # fmt: skip
-    said = [
+              "GIVEN": len(of.input_names)}  # fmt: skip
+    comments = [
         f"Observer of '{of.model.name}': {of.bytes} bytes from step to step; single precision but for temperatures.",
-        f"Inputs u, in this order: {', '.join(of.given)}.",
+        f"Inputs u, in this order: {', '.join(of.input_names)}.",
         f"Sensors y (degC, NAN where nothing was read), in this order: {', '.join(c.name for c in of.sensors)}.",
         f"Missing heat q (W), in this order: {', '.join(of.process.bodies)}.",
     ]
     lines = [f"#define THERMAL_{name} {n}" for name, n in counts.items()]
     macro = "THERMAL_OBSERVER_SIZES_H"
-    about = "\n   ".join(said).replace("*/", "* /")
+    about = "\n   ".join(comments).replace("*/", "* /")
     return "\n".join([f"/* {about} */", f"#ifndef {macro}", f"#define {macro}", *lines, "#endif", ""])
 
 
@@ -117,7 +117,7 @@ def _data(of: ObserverModel) -> str:
     names = tuple(c.name for c in of.sensors)
     odds = hypotheses(names, sigma, np.hypot(sigma, USUAL["gain"] * of.rise_K), of.process.bodies, of.table_sd)
     numbers: Mapping[str, float] = {
-        "NOISE_S": of.noise.time_s, "LONGEST_S": LONGEST_S, "HELD_FOR_S": HELD_S, "START_K": USUAL["start"],
+        "NOISE_S": of.noise.time_s, "LONGEST_S": LONGEST_S, "HELD_FOR_S": CORRELATION_S, "START_K": USUAL["start"],
         "COLDEST_C": COLDEST, "HOTTEST_C": HOTTEST, "OUTLIER_SD": faults.OUTLIER, "LOST_AFTER_S": faults.LOST_S,
         "BACK_AFTER_S": faults.BACK_S, "FROZEN_AFTER_S": faults.FROZEN_S, "LONGER_RUN": faults.LONGER,
         "MOVED_SD": faults.MOVED, "FORGETS_AFTER_S": tests_of.FORGETS_S, "SURE_FROM": tests_of.SURE,
@@ -131,7 +131,7 @@ def _data(of: ObserverModel) -> str:
         *(f"#define {name} {value:.17g}" for name, value in numbers.items()),
         ints("SLOW", of.process.slow), ints("BODY_STATE", [network.column(b) for b in of.process.bodies]),
         ints("HEAT_SIGNAL", [signals.index(n) for n in of.heats]),
-        ints("GIVEN_SIGNAL", [signals.index(n) for n in of.given]),
+        ints("GIVEN_SIGNAL", [signals.index(n) for n in of.input_names]),
         f"static const double NOISE_ROOT[][{max(m, 1)}] = {{{{{root or '0'}}}}};",
         ints("SENSOR_START", np.concatenate([[0], np.cumsum([r.index.size for r in rows])])),
         ints("SENSOR_AT", joined(r.index for r in rows)), reals("SENSOR_WEIGHT", joined(r.weights for r in rows)),
@@ -147,11 +147,11 @@ class CompiledObserver:
 
     def __init__(self, of: ObserverModel, extra: Sequence[str] = ()) -> None:
         self.of = of
-        taken_in = {**observer_files(of)}
-        network = taken_in.pop("thermal_network.c")
-        main = taken_in.pop("thermal_observer.c").replace('#include "thermal_network.c"', network)
+        sources = {**observer_files(of)}
+        network = sources.pop("thermal_network.c")
+        main = sources.pop("thermal_observer.c").replace('#include "thermal_network.c"', network)
         run = (RUNTIME / "thermal_observer_run.c").read_text(encoding="utf-8")
-        files = {**taken_in, "run.c": run.replace('#include "thermal_observer.c"', main)}
+        files = {**sources, "run.c": run.replace('#include "thermal_observer.c"', main)}
         with tempfile.TemporaryDirectory() as folder:
             file = Path(folder) / f"observer{here().ending}"
             file.write_bytes(library(files, here(), extra))

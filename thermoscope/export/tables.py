@@ -36,7 +36,7 @@ def factors(name: str, law: Law, ranges: Ranges) -> Sum:
         if one not in ranges:
             raise _refused(f"'{name}' follows '{one}', which belongs to one test and not to the machine")
     if isinstance(law, ExponentError):
-        turn = _line(name, Turn(law), law.input, ranges)
+        turn = _line(name, ExponentRatio(law), law.input, ranges)
         return tuple(p.times(turn) for p in factors(name, law.base, ranges))
     known = expanded(law)
     return _table(name, law, ranges) if isinstance(known, Unknown) else known
@@ -47,20 +47,20 @@ def _refused(what: str) -> InputError:
 
 
 @dataclass(frozen=True)
-class Turn(Law):
+class ExponentRatio(Law):
     """By what an exponent of one input moves a law, over the law itself; it depends on that input alone."""
 
-    bend: ExponentError
+    error: ExponentError
 
     @property
     def reads(self) -> tuple[str, ...]:  # type: ignore[override]
-        return (self.bend.input,)
+        return (self.error.input,)
 
     def factor(self, inputs: Inputs) -> Array | float:
-        now = np.abs(np.asarray(inputs[self.bend.input], float))
-        level = {k: np.full_like(now, v) for k, v in self.bend.reference.items()}
+        now = np.abs(np.asarray(inputs[self.error.input], float))
+        level = {k: np.full_like(now, v) for k, v in self.error.reference.items()}
         at, right = (
-            np.abs(np.asarray(self.bend.base.factor(u), float)) for u in ({**level, self.bend.input: now}, level)
+            np.abs(np.asarray(self.error.base.factor(u), float)) for u in ({**level, self.error.input: now}, level)
         )
         return np.asarray(np.clip(np.log(np.maximum(at, 1e-12 * right) / right), -FARTHEST, FARTHEST))
 

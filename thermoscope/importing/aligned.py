@@ -84,15 +84,15 @@ def _overlapping(first: Recording, other: Recording, moved: float) -> None:
 
 def onset(record: Recording) -> tuple[float, str]:
     """The instant (s) at which the first of its columns begins to change, and which."""
-    found = {
+    onsets = {
         g.column: at for g in record.guesses
         if g.quantity and (at := column_onset(record.clock.seconds, record.source.numbers(g.column))) is not None
     }  # fmt: skip
-    if not found:
+    if not onsets:
         raise InputError("nothing in it begins to change, so it cannot be set beside the other recording",
                          str(record.source.file), "a clock with dates in both, or a rise that both saw")  # fmt: skip
-    column = min(found, key=lambda c: found[c])
-    return found[column], column
+    column = min(onsets, key=lambda c: onsets[c])
+    return onsets[column], column
 
 
 def column_onset(time: Array, values: Array) -> float | None:

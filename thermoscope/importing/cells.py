@@ -96,8 +96,8 @@ def number(cell: object) -> float:
 
 def _ungrouped(text: str) -> str:
     """1.234,5 and 1 234,5 and 1,234.5 -> 1234.5"""
-    found = re.search(r"[.,](\d+)$", text)
-    last = "" if found is None or text.count(found[0][0]) > 1 else found[0]
+    match = re.search(r"[.,](\d+)$", text)
+    last = "" if match is None or text.count(match[0][0]) > 1 else match[0]
     return re.sub(r"[^\d+-]", "", text.removesuffix(last)) + last.replace(",", ".")
 
 
@@ -160,10 +160,10 @@ TRAILING = re.compile(r"^(.*?)(?:_|\s*/\s*|\s+in\s+|,\s*|\s+)([^\s_/]+(?:/[a-z0-
 
 def split_unit(header: str) -> tuple[str, str]:
     """A header without its unit, and the unit: "T1 [°C]", "Speed (1/min)", "T_yoke / °C", "t in s", "speed_rpm"."""
-    if (found := BRACKETED.match(header)) and is_unit(found[2]):
-        return f"{found[1]} {found[3]}".strip(), unit_of(found[2])
-    if (found := TRAILING.match(header)) and found[1] and _surely(found[2]):
-        return found[1].strip(), unit_of(found[2])
+    if (match := BRACKETED.match(header)) and is_unit(match[2]):
+        return f"{match[1]} {match[3]}".strip(), unit_of(match[2])
+    if (match := TRAILING.match(header)) and match[1] and _surely(match[2]):
+        return match[1].strip(), unit_of(match[2])
     return header.strip(), ""
 
 

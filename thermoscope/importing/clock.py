@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from datetime import date, datetime, time
 from typing import Any
@@ -47,12 +47,12 @@ class Clock:
 
 def clock_of(source: Source, period_s: float | None = None) -> Clock:
     """period_s : time between rows, where the file has no clock. InputError for times that run back."""
-    found = _found(source)
-    if found is None or period_s is not None:
+    clock = _guessed_clock(source)
+    if clock is None or period_s is not None:
         step = 1.0 if period_s is None else period_s
         seconds = step * np.arange(source.rows, dtype=np.float64)
         return Clock(seconds, source.start, (), f"no time column: rows {step:g} s apart", period_s is not None)
-    return checked(found, source)
+    return checked(clock, source)
 
 
 def checked(clock: Clock, source: Source) -> Clock:
@@ -73,7 +73,7 @@ def checked(clock: Clock, source: Source) -> Clock:
     return Clock(t - first, start, clock.columns, clock.words, clock.sure)
 
 
-def _found(source: Source) -> Clock | None:
+def _guessed_clock(source: Source) -> Clock | None:
     """A date with a time of day beside it, an instant, a clock, or numbers under a name for time."""
     dates = [c for c in source.cells if _mostly(source.cells[c], is_date)]
     clocks = [c for c in source.cells if _mostly(source.cells[c], is_clock)]
@@ -87,7 +87,7 @@ def _found(source: Source) -> Clock | None:
     return _numeric(source)
 
 
-def _mostly(cells: Sequence[Any], test: Any) -> bool:
+def _mostly(cells: Sequence[Any], test: Callable[[Any], bool]) -> bool:
     if isinstance(cells, np.ndarray) and cells.dtype.kind == "M":
         return bool(test is is_date)
     seen = [c for c in cells[:LOOKED_AT] if c is not None and str(c).strip()]
@@ -149,12 +149,12 @@ def _parts(cell: Any) -> list[float]:
     late = 12.0 if text.endswith("pm") else 0.0
     digits = re.sub(r"\s?[ap]m$", "", text)
     try:
-        found = [float(x) for x in digits.split(":")] if ":" in digits else []
+        parts = [float(x) for x in digits.split(":")] if ":" in digits else []
     except ValueError:
         return []
-    if found and text.endswith(("am", "pm")):
-        found[0] = found[0] % 12 + late
-    return found
+    if parts and text.endswith(("am", "pm")):
+        parts[0] = parts[0] % 12 + late
+    return parts
 
 
 def _total(parts: list[float], two: bool) -> float:

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 
 from geom.errors import InputError
-from lumped.schemas.reader import known
+from lumped.schemas.reader import suggestion
 from thermoscope.importing.cells import number, unit_of
 from thermoscope.importing.draft import Draft, coldest_start, missing_boundaries, missing_inputs, squares_of
 from thermoscope.importing.guess import Guess
@@ -33,19 +33,19 @@ class Dialogue:
         names = [*self.target.inputs, *self.target.boundaries]
         for name in self.constants:
             if name not in names:
-                raise InputError(f"the model reads no '{name}'", "--set", known(name, names))
+                raise InputError(f"the model reads no '{name}'", "--set", suggestion(name, names))
 
-    def settled(self, source: Source, found: list[Guess]) -> list[Guess]:
+    def answered(self, source: Source, guesses: list[Guess]) -> list[Guess]:
         """The guesses of one file after the questions about them; what --set gives is not read from a column."""
-        asked = [self._asked(g, source.labels[g.column]) if self.asks else g for g in found]
+        completed = [self._completed(g, source.labels[g.column]) if self.asks else g for g in guesses]
         given = self.constants
-        out = [g.without("--set gives it") if (g.feeds or g.place) in given else g for g in asked]
+        out = [g.without("--set gives it") if (g.feeds or g.place) in given else g for g in completed]
         if not any(g.place in self.target.places or g.feeds or g.place for g in out):
             raise InputError("no column of it fits the model", str(source.file),
                              f"columns for {', '.join([*self.target.places, *self.target.inputs][:8])}")  # fmt: skip
         return out
 
-    def _asked(self, g: Guess, label: str) -> Guess:
+    def _completed(self, g: Guess, label: str) -> Guess:
         if g.quantity == "temperature" and not g.place and not WANTED & set(tokens(label)):
             places = [*self.target.places, *self.target.boundaries]
             return replace(g, place=self._choice(f"Where is '{g.column}'? (a place; Enter leaves it out)", "", places))
@@ -62,7 +62,7 @@ class Dialogue:
                 if unit_of(word) in words:
                     word = unit_of(word)
                     break
-                print(known(word, words), file=sys.stderr)
+                print(suggestion(word, words), file=sys.stderr)
             self.answers[question] = word
         return self.answers[question]
 

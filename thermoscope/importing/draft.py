@@ -92,11 +92,11 @@ def sample_of(drafts: Sequence[Draft]) -> float:
     return float(f"{next(s for s in steps if s >= needed * (1 - 1e-6)):.6g}")
 
 
-def test_name(file: Path, taken: Sequence[str]) -> str:
+def test_name(file: Path, names: Sequence[str]) -> str:
     """The file's name without endings and odd characters, numbered where it is taken."""
     stem = file.name.partition(".")[0] or "test"
     name = "".join(c if c.isalnum() or c in "-_" else "-" for c in stem).strip("-") or "test"
-    return name if name not in taken else next(f"{name}-{i}" for i in range(2, 10**6) if f"{name}-{i}" not in taken)
+    return name if name not in names else next(f"{name}-{i}" for i in range(2, 10**6) if f"{name}-{i}" not in names)
 
 
 test_name.__test__ = False  # type: ignore[attr-defined]

@@ -48,8 +48,8 @@ class Guess:
 
 def guesses(source: Source, clock: Sequence[str], target: Target) -> list[Guess]:
     """One per column that is no clock."""
-    found = [guess(source, c, target) for c in source.cells if c not in clock]
-    return single(found, target)
+    every = [guess(source, c, target) for c in source.cells if c not in clock]
+    return single(every, target)
 
 
 def guess(source: Source, column: str, target: Target) -> Guess:
@@ -57,17 +57,17 @@ def guess(source: Source, column: str, target: Target) -> Guess:
     if not source.is_numeric(column):
         return Guess(column, "", doubt="words, not numbers")
     label, unit = source.labels[column], unit_of(source.units[column])
-    written = source.units[column]
-    if written and not unit:
-        return Guess(column, "", doubt=f"its unit '{written}' is of nothing a model reads")
+    unit_text = source.units[column]
+    if unit_text and not unit:
+        return Guess(column, "", doubt=f"its unit '{unit_text}' is of nothing a model reads")
     quantity, why = _quantity(label, unit, target)
     if not quantity:
         quantity, why = _by_values(source, column)
     if not quantity:
         return Guess(column, "", doubt="a clock? say so: time [s]" if _counts_on(source, column) else UNTOLD)
     unit, doubt = _unit(source, column, quantity, unit)
-    if not written and (found := FOREIGN.search(label)):
-        doubt = f"unit '{found[1]}' unknown: {unit} assumed"
+    if not unit_text and (match := FOREIGN.search(label)):
+        doubt = f"unit '{match[1]}' unknown: {unit} assumed"
     base = Guess(column, quantity, unit, why=why, doubt=doubt)
     return _placed(base, label, target) if quantity == "temperature" else _fed(base, label, target)
 
@@ -137,24 +137,24 @@ def _fed(base: Guess, label: str, target: Target) -> Guess:
     return replace(base, feeds=named or QUANTITIES[base.quantity].feeds)
 
 
-def single(found: list[Guess], target: Target) -> list[Guess]:
+def single(guesses: list[Guess], target: Target) -> list[Guess]:
     """One column per boundary and per input; of several readings go before set points, the first before the rest."""
-    taken: dict[str, str] = {}
-    out = {g.column: g for g in found}
-    for g in sorted(found, key=lambda g: (bool(WANTED & set(tokens(g.column))), not READ & set(tokens(g.column)))):
+    used: dict[str, str] = {}
+    out = {g.column: g for g in guesses}
+    for g in sorted(guesses, key=lambda g: (bool(WANTED & set(tokens(g.column))), not READ & set(tokens(g.column)))):
         key = g.feeds or (g.place if g.place in target.boundaries else "")
         if not key:
             continue
-        if key not in taken:
-            taken[key] = g.column
+        if key not in used:
+            used[key] = g.column
         elif g.feeds and g.feeds not in target.inputs and not WANTED & set(tokens(g.column)):
-            out[g.column] = replace(g, feeds=own_input(g))
+            out[g.column] = replace(g, feeds=input_name(g))
         else:
-            out[g.column] = g.without(f"{taken[key]} gives {key} already")
-    return [out[g.column] for g in found]
+            out[g.column] = g.without(f"{used[key]} gives {key} already")
+    return [out[g.column] for g in guesses]
 
 
-def own_input(g: Guess) -> str:
+def input_name(g: Guess) -> str:
     """An input called after the column, with the unit that memory holds."""
     held = QUANTITIES[g.quantity].feeds.rpartition("_")[2]
     words = [w for w in tokens(g.column) if w.isascii()]

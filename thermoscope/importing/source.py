@@ -15,7 +15,7 @@ from geom.errors import InputError
 from thermoscope.importing.cells import EMPTY, SWITCH, in_thousands, number, split_unit
 from thermoscope.importing.rows import layout
 from thermoscope.importing.text import text_rows
-from thermoscope.recordings.formats import READERS, TIME, opened, read_frame
+from thermoscope.recordings.formats import READERS, TIME, guarded, read_frame
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -55,9 +55,9 @@ class Source:
 
     def is_numeric(self, column: str) -> bool:
         """Does it hold numbers, but for a few words such as "overload"?"""
-        found = np.isfinite(self.numbers(column))
-        words = [c for c, good in zip(self.cells[column], found, strict=True) if not good and not _empty(c)]
-        return bool(found.any()) and len(words) <= TEXT * (len(words) + found.sum())
+        finite = np.isfinite(self.numbers(column))
+        words = [c for c, good in zip(self.cells[column], finite, strict=True) if not good and not _empty(c)]
+        return bool(finite.any()) and len(words) <= TEXT * (len(words) + finite.sum())
 
 
 def _empty(cell: Any) -> bool:
@@ -103,7 +103,7 @@ def _book(file: Path) -> list[list[Any]]:
         largest = max(sheets, key=lambda sheet: sheet.size)
         return [[None if pd.isna(c) else c for c in row] for row in largest.to_numpy(object).tolist()]
 
-    rows: list[list[Any]] = opened(file, "an Excel workbook", "openpyxl", read)
+    rows: list[list[Any]] = guarded(file, "an Excel workbook", "openpyxl", read)
     return rows
 
 
@@ -119,8 +119,8 @@ def _of_rows(file: Path, rows: list[Any]) -> Source:
     if plan.preamble:
         notes.append(f"{file.name}: {plan.preamble} lines before the header are left out")
     notes += [f"{file.name}: the sign in the numbers of '{_once(names)[j]}' stands between thousands" for j in whole]
-    found = _source(file, _once(names), columns, dict(zip(_once(names), plan.units, strict=True)), notes)
-    return replace(found, unnamed=unnamed)
+    source = _source(file, _once(names), columns, dict(zip(_once(names), plan.units, strict=True)), notes)
+    return replace(source, unnamed=unnamed)
 
 
 def _of_frame(file: Path) -> Source:
@@ -142,9 +142,9 @@ def _source(
     if len(cells) < 2:
         raise InputError("the file has one column only", str(file), "a time or an input, and at least one temperature")
     split = {n: split_unit(n) for n in cells}
-    found = {n: units.get(n, "") or split[n][1] for n in cells}
+    unit_of = {n: units.get(n, "") or split[n][1] for n in cells}
     labels = {n: n if units.get(n, "") else split[n][0] or n for n in cells}
-    return Source(file, cells, found, labels, tuple(notes), start)
+    return Source(file, cells, unit_of, labels, tuple(notes), start)
 
 
 def _any(cells: Sequence[Any]) -> bool:
@@ -187,8 +187,8 @@ def _seconds(instant: Any) -> float | None:
     import pandas as pd
 
     stamp = pd.Timestamp(instant)
-    found = float(stamp.timestamp())
-    return found if np.isfinite(found) and found > 0 else None
+    seconds = float(stamp.timestamp())
+    return seconds if np.isfinite(seconds) and seconds > 0 else None
 
 
 def signature(source: Source) -> frozenset[str]:

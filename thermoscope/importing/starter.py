@@ -20,7 +20,7 @@ from thermoscope.importing.words import QUANTITY, WANTED, roles_of, tokens
 
 NOISE = 0.02  # of the largest: as far below zero a power meter may read when nothing flows
 ASSUMED_W = 100.0  # heat of a machine of which nobody recorded any
-SETTLES = 0.3  # of the record: most tests last three time constants
+TIME_CONSTANT = 0.3  # of the record: most tests last three time constants
 POWERS = {"power": 1.0, "current": 2.0, "share": 1.0}  # of a loss that follows it
 HEATS = tuple(POWERS)  # in the order in which a record tells the heat
 PLATINUM = re.compile(r"(?i)pt[ -]?10{2,3}(?!\d)")  # the number is part of the sensor's name
@@ -43,7 +43,7 @@ def starter(columns: Columns, name: str, span_s: float) -> str:
     rises = {place: rise(source, g) for source, g, place in hot}
     heat, watts = _heat(columns, max(rises, key=lambda place: rises[place]))
     G = watts / max(*rises.values(), 1.0)
-    return _toml(name, nodes, boundaries, G * SETTLES * span_s / len(nodes), G, heat)
+    return _toml(name, nodes, boundaries, G * TIME_CONSTANT * span_s / len(nodes), G, heat)
 
 
 BOUNDARIES = {Role.AMBIENT: "ambient", Role.COOLANT: "coolant"}

@@ -78,5 +78,5 @@ def roles_of(name: str) -> list[Role]:
     return sorted(hits, key=lambda role: hits[role])
 
 
-def _inside(word: str, known: frozenset[str]) -> bool:
-    return any(len(k) >= SHORTEST and k in word for k in known)
+def _inside(word: str, words: frozenset[str]) -> bool:
+    return any(len(k) >= SHORTEST and k in word for k in words)

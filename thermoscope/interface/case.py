@@ -33,12 +33,12 @@ def silent(message: str) -> None:
 class Case:
     """Measurements and the model held against them.
 
-    folder : what the files hold, with the model as it stands here;  saved : the history that model.toml holds
+    folder : what the files hold, with the model as it stands here;  on_disk : the history that model.toml holds
     steps : what was done since, oldest first;  progress : is told what is going on
     """
 
     folder: Folder
-    saved: History
+    on_disk: History
     steps: tuple[Revision, ...] = ()
     progress: Progress = silent
 
@@ -129,9 +129,9 @@ class Case:
         path = self.folder.settings.path
         if PACKAGE in path.resolve().parents:
             raise InputError("came with the tool and is not changed", str(path), "a copy of the folder, opened instead")
-        history = save_history(self.folder.settings.model_file, self.folder.history, self.saved)
+        history = save_history(self.folder.settings.model_file, self.folder.history, self.on_disk)
         write_columns(self.folder, history.last.effects)
-        return replace(self, folder=replace(self.folder, history=history), saved=history, steps=())
+        return replace(self, folder=replace(self.folder, history=history), on_disk=history, steps=())
 
     @explained()
     def plot(self, test: str | None = None, png: str | Path | None = None) -> Figure:
@@ -139,13 +139,13 @@ class Case:
 
         test : its name; else the first that was never used to fit. Raises InputError for an unknown one.
         """
-        from thermoscope.case_folder.runs import by_interest, held
+        from thermoscope.case_folder.runs import by_interest, comparison_of
         from viz import measured_and_model
 
         if test is not None and test not in self.tests:
             raise InputError(f"no test '{test}'", f"case '{self.name}'", f"one of {', '.join(self.tests)}")
         chosen = by_interest(self.folder)[0] if test is None else self.tests[test]
-        return measured_and_model(held(self.folder, chosen), png=png)
+        return measured_and_model(comparison_of(self.folder, chosen), png=png)
 
     def _after(self, step: Revision) -> Case:
         from thermoscope.commands.model.revise import evidence, recorded

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -66,8 +66,7 @@ class Field:
         require_gl()
         nodes = split(self.built.mesh)
         x = self.check.state[: len(self.built.network.states)]
-        recovery: Any = self.built.network.recovery
-        return cutaway(nodes, np.concatenate([recovery.of_part(part, x) for part in nodes.parts]), png=png)
+        return cutaway(nodes, self.built.network.on_parts(nodes.parts, x), png=png)
 
 
 @dataclass(frozen=True)

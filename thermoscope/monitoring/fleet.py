@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from geom.errors import InputError
 from lumped.model.network import Network
 from thermoscope.case_folder.folder import Progress
-from thermoscope.monitoring.live_rows import Rows, opened, table_of, together
+from thermoscope.monitoring.live_rows import Rows, open_stream, table_of, together
 from thermoscope.recordings.formats import stem_of
 from thermoscope.recordings.sheet import Sheet
 from validation.case import RUNNING, Case, Channel, Test
@@ -43,6 +43,7 @@ class Reader:
     """What a recording is read with.  test : of the case, whose sheet the columns have;  case : without its tests
 
     tests : their names, of which none is running here
+    piece : rows that are in memory at once
     """
 
     case: Case
@@ -50,14 +51,15 @@ class Reader:
     sheet: Sheet
     step_s: float
     tests: tuple[str, ...] = ()
+    piece: int = PIECE
 
     def statistics(self, recording: Recording) -> Statistics:
         """All pieces of a recording together."""
         total: Statistics | None = None
         network = self.case.model.network
-        with opened(str(recording.file)) as stream:
+        with open_stream(str(recording.file)) as stream:
             _, table, lines = table_of(stream, str(recording.file), {self.test.name: self.sheet}, network, None)
-            for part in together(lines, PIECE):
+            for part in together(lines, self.piece):
                 if total is None or len(part) >= LEAST:
                     one = statistics(self.case, self._test(table.rows(part), recording, network))
                     total = one if total is None else total + one
@@ -121,27 +123,27 @@ def _inside(folder: Path) -> list[Path]:
 def _recording(file: Path) -> Recording:
     if not file.is_file():
         raise InputError("no such file", str(file), "CSV files or folders of them")
-    found = DATED.fullmatch(stem_of(file))
-    if found is None:
+    match = DATED.fullmatch(stem_of(file))
+    if match is None:
         return Recording(file, stem_of(file), 0.0)
     try:
-        day = date(int(found["year"]), int(found["month"]), int(found["day"] or 15))
+        day = date(int(match["year"]), int(match["month"]), int(match["day"] or 15))
     except ValueError:
         raise InputError("the name holds no date that exists", str(file), "UNIT@YEAR-MONTH[-DAY].csv") from None
-    return Recording(file, found["unit"], day.year + (day.timetuple().tm_yday - 0.5) / 365.25)
+    return Recording(file, match["unit"], day.year + (day.timetuple().tm_yday - 0.5) / 365.25)
 
 
 def histories(
     files: Sequence[Recording], reader: Reader, tell: Progress, executor: Executor | None = None
 ) -> list[UnitHistory]:
     """Motor by motor, in the order of their names."""
-    found: dict[str, list[tuple[float, Statistics]]] = {}
+    by_unit: dict[str, list[tuple[float, Statistics]]] = {}
     for i, (one, numbers) in enumerate(zip(files, _each(files, reader, executor), strict=True)):
         tell(f"motors: {one.unit}, {i + 1} of {len(files)}")
-        found.setdefault(one.unit, []).append((one.year, numbers))
+        by_unit.setdefault(one.unit, []).append((one.year, numbers))
     return [
         UnitHistory(unit, tuple(y for y, _ in parts), tuple(s for _, s in parts))
-        for unit, parts in sorted(found.items())
+        for unit, parts in sorted(by_unit.items())
     ]
 
 

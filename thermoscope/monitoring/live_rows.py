@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError
 from lumped.model.network import Network
-from lumped.schemas.reader import known
+from lumped.schemas.reader import suggestion
 from thermoscope.recordings.sheet import Column, Sheet
 from thermoscope.recordings.units import converted
 
@@ -35,7 +35,7 @@ class Rows:
 
 
 @contextmanager
-def opened(name: str) -> Iterator[TextIO]:
+def open_stream(name: str) -> Iterator[TextIO]:
     """A file, or stdin for "-"."""
     if name == PIPE:
         yield sys.stdin
@@ -164,14 +164,16 @@ def table_of(
     if not header:
         raise InputError("holds no row", where, "a header line and rows of numbers")
     if like is not None and like not in sheets:
-        raise InputError(f"no test '{like}'", "--like", known(like, sheets))
+        raise InputError(f"no test '{like}'", "--like", suggestion(like, sheets))
     tables = {n: LiveTable(s, network, header, where) for n, s in sheets.items() if like in (None, n)}
     for name, one in tables.items():
         if not one.missing():
             return name, one, lines
     name = next(iter(tables))
     lacks = tables[name].missing()[0]
-    raise InputError(f"column '{lacks}' is not in the header", f"{where} (read as test '{name}')", known(lacks, header))
+    raise InputError(
+        f"column '{lacks}' is not in the header", f"{where} (read as test '{name}')", suggestion(lacks, header)
+    )
 
 
 def together(lines: Iterator[list[str]], most: int) -> Iterator[list[list[str]]]:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from geom.disk_cache import recalled
 from geom.errors import InputError
 from lumped.integration.record import Record
-from lumped.schemas.reader import known
+from lumped.schemas.reader import suggestion
 from lumped.transfer.laws import CLOCK
 from thermoscope.bands import case_key
 from thermoscope.caches import cache_folder
@@ -66,15 +66,15 @@ def started(design: Design, sensors: Sequence[Channel], first: Rows) -> Observer
     return design.started(sensors, readings, {n: float(u[0]) for n, u in first.boundaries.items()})
 
 
-def chosen(here: Sequence[Channel], given: Sequence[str], where: str) -> list[Channel]:
+def chosen(here: Sequence[Channel], wanted: Sequence[str], where: str) -> list[Channel]:
     """The sensors that are asked for, by default all that are there."""
     names = [c.name for c in here]
-    for name in given:
+    for name in wanted:
         if name not in names:
-            raise InputError(f"no sensor '{name}'", "--sensor", known(name, names or ["no sensor in the rows"]))
+            raise InputError(f"no sensor '{name}'", "--sensor", suggestion(name, names or ["no sensor in the rows"]))
     if not here:
         raise InputError("no sensor of the machine", where, "a temperature column that the test's sheet knows")
-    return [c for c in here if c.name in given or not given]
+    return [c for c in here if c.name in wanted or not wanted]
 
 
 def record_of(rows: Rows, folder: Folder) -> Record:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError
 from lumped.model.network import Network
-from lumped.schemas.reader import known
+from lumped.schemas.reader import suggestion
 from thermoscope.recordings.duplicates import twice
 from thermoscope.recordings.formats import cell
 from thermoscope.recordings.sheet import Column, Sheet
@@ -33,7 +33,7 @@ def _boundaries(sheet: Sheet, network: Network) -> None:
     """Every boundary is given by one column or one constant, and every constant is of a boundary."""
     for name in sheet.boundaries:
         if name not in network.boundaries:
-            right = known(name, network.boundaries)
+            right = suggestion(name, network.boundaries)
             raise InputError(f"no boundary is called '{name}'", f"{sheet.where} [boundaries]", right)
     places = [c.place for c in sheet.columns if c.is_temperature and c.place in network.boundaries]
     for name in twice([*places, *sheet.boundaries]):
@@ -50,7 +50,7 @@ def _unread(sheet: Sheet, network: Network) -> Iterator[str]:
     for name in set(sheet.inputs) - read - usual:
         near = difflib.get_close_matches(name, sorted(read - fed - set(sheet.inputs)), n=1, cutoff=NEAR)
         if near:
-            raise InputError(f"no law reads the input '{name}'", f"{sheet.where} [inputs]", known(name, read))
+            raise InputError(f"no law reads the input '{name}'", f"{sheet.where} [inputs]", suggestion(name, read))
         yield f"{sheet.where} [inputs]: no law of the model reads '{name}'"
 
 

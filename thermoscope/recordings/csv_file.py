@@ -96,12 +96,12 @@ def _complete(file: Path, content: bytes, header: list[str]) -> None:
         return  # commas and line breaks within quotes are no ends
     least = max((i for i, name in enumerate(header, 1) if name.strip()), default=0)
     for number, line in enumerate(io.BytesIO(content), 1):
-        found = line.count(b",") + 1
-        if found < least and line.strip():
-            raise InputError(f"{found} values under {least} names: the row was cut off", f"{file} line {number}",
+        columns = line.count(b",") + 1
+        if columns < least and line.strip():
+            raise InputError(f"{columns} values under {least} names: the row was cut off", f"{file} line {number}",
                              "a whole row (commas where nothing was read), or none: delete it")  # fmt: skip
-        if found > len(header) and any(cell.strip() for cell in line.split(b",")[len(header) :]):
-            raise InputError(f"{found} values under {len(header)} names", f"{file} line {number}",
+        if columns > len(header) and any(cell.strip() for cell in line.split(b",")[len(header) :]):
+            raise InputError(f"{columns} values under {len(header)} names", f"{file} line {number}",
                              "as many as names: decimal commas become points")  # fmt: skip
 
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError
 from lumped.schemas.bounds import bounds
-from lumped.schemas.reader import Table, known, shown
+from lumped.schemas.reader import Table, excerpt, suggestion
 
 Array = NDArray[np.float64]
 WORDS = {"on": 1.0, "off": 0.0}
@@ -48,16 +48,16 @@ def read_events(name: str, table: Table, folder: Path) -> Events:
     at, values = table.numbers("at_s"), table.raw("value")
     table.close()
     if not isinstance(values, list) or len(values) != len(at):
-        raise table.error(f"at_s has {len(at)} instants, value is {shown(values)}",
+        raise table.error(f"at_s has {len(at)} instants, value is {excerpt(values)}",
                           'value = ["off", "on", ...] or numbers, one for each instant')  # fmt: skip
     return _checked(list(at), [_value(v, table.where) for v in values], table.where)
 
 
 def _value(word: Any, where: str) -> float:
-    found = WORDS.get(word.strip().lower()) if isinstance(word, str) else word
-    if found is None or not bounds("inputs").hold(found):
-        raise InputError(f"{shown(word)} is no state of an input", where, f'"on", "off", or {bounds("inputs").words}')
-    return float(found)
+    number = WORDS.get(word.strip().lower()) if isinstance(word, str) else word
+    if number is None or not bounds("inputs").hold(number):
+        raise InputError(f"{excerpt(word)} is no state of an input", where, f'"on", "off", or {bounds("inputs").words}')
+    return float(number)
 
 
 def _of_file(path: Path, name: str) -> tuple[list[float], list[float]]:
@@ -67,7 +67,9 @@ def _of_file(path: Path, name: str) -> tuple[list[float], list[float]]:
     table = read_frame(recording(path), least=1)
     for column in ("time_s", name):
         if column not in table.columns:
-            raise InputError(f"column '{column}' is not in the file", str(path), known(column, map(str, table.columns)))
+            raise InputError(
+                f"column '{column}' is not in the file", str(path), suggestion(column, map(str, table.columns))
+            )
     rows = [
         (t, v) for t, v in zip(numbers(table, "time_s", path), table[name], strict=True) if v == v and v is not None
     ]

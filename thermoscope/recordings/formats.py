@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError, MissingDependency
 from geom.plugins import plugins
-from lumped.schemas.reader import known
+from lumped.schemas.reader import suggestion
 from thermoscope.recordings.csv_file import NumberTable, read_csv
 
 if TYPE_CHECKING:
@@ -52,10 +52,10 @@ def recording(path: Path) -> Path:
     if twins:
         return twins[0]
     beside = [p.name for p in here if _suffix(p) or (p.stem == stem and p.suffix != ".toml")]
-    asked = path if _suffix(path) else path.with_name(f"{path.name}.csv")
+    named = path if _suffix(path) else path.with_name(f"{path.name}.csv")
     raise InputError(
         "no such file",
-        str(asked),
+        str(named),
         f"one of {', '.join(SUFFIXES)}; found there: {', '.join(beside) or 'no recording at all'}",
     )
 
@@ -81,7 +81,7 @@ def read_frame(file: Path, worksheet: str = "", least: int = 3) -> pd.DataFrame:
         ".tdms": lambda: _tdms(file, worksheet), ".mf4": lambda: _mf4(file), ".parquet": lambda: _parquet(file),
     }  # fmt: skip
     for name, read in READERS.items():
-        readers[f".{name}"] = partial(opened, file, f"a .{name} file", name, partial(read, file))
+        readers[f".{name}"] = partial(guarded, file, f"a .{name} file", name, partial(read, file))
     if suffix not in readers:
         raise InputError(f"files ending in '{file.suffix}' are not read", str(file), f"one of {', '.join(SUFFIXES)}")
     if worksheet and suffix not in SHEETS:
@@ -97,7 +97,7 @@ def read_frame(file: Path, worksheet: str = "", least: int = 3) -> pd.DataFrame:
     return table
 
 
-def opened(file: Path, kind: str, package: str, read: Callable[[], Any]) -> Any:
+def guarded(file: Path, kind: str, package: str, read: Callable[[], Any]) -> Any:
     """What a reader returns; whatever it trips over becomes one message."""
     try:
         return read()
@@ -117,17 +117,17 @@ def _xlsx(file: Path, worksheet: str) -> pd.DataFrame:
     def read() -> pd.DataFrame:
         with pd.ExcelFile(file, engine="openpyxl") as book:
             if worksheet and worksheet not in book.sheet_names:
-                right = known(worksheet, [str(n) for n in book.sheet_names])
+                right = suggestion(worksheet, [str(n) for n in book.sheet_names])
                 raise InputError(f"no worksheet '{worksheet}'", str(file), right)
             return book.parse(worksheet or 0)
 
-    return opened(file, "an Excel workbook", "openpyxl", read)
+    return guarded(file, "an Excel workbook", "openpyxl", read)
 
 
 def _parquet(file: Path) -> pd.DataFrame:
     import pandas as pd
 
-    table: pd.DataFrame = opened(file, "Parquet", "pyarrow", lambda: pd.read_parquet(file))
+    table: pd.DataFrame = guarded(file, "Parquet", "pyarrow", lambda: pd.read_parquet(file))
     return table.reset_index() if table.index.name else table
 
 
@@ -138,7 +138,7 @@ def _tdms(file: Path, group: str) -> pd.DataFrame:
         with TdmsFile.read(file) as tdms:
             groups = [g for g in tdms.groups() if not group or g.name == group]
             if not groups and group:
-                raise InputError(f"no group '{group}'", str(file), known(group, [g.name for g in tdms.groups()]))
+                raise InputError(f"no group '{group}'", str(file), suggestion(group, [g.name for g in tdms.groups()]))
             if not groups:
                 raise InputError("holds no channels", str(file), "a TDMS file with readings")
             channels = [(g.name, c) for g in groups for c in g.channels() if len(c)]
@@ -147,13 +147,13 @@ def _tdms(file: Path, group: str) -> pd.DataFrame:
                 (c.name if names.count(c.name) == 1 else f"{g}/{c.name}", *_tdms_signal(c)) for g, c in channels
             )
 
-    return opened(file, "TDMS", "nptdms", read)
+    return guarded(file, "TDMS", "nptdms", read)
 
 
-def _tdms_signal(channel: Any) -> tuple[Array, Array]:
+def _tdms_signal(signal: Any) -> tuple[Array, Array]:
     """Times (s) by the waveform's increment where it has one, else by rows."""
-    values = np.asarray(channel[:])
-    step, offset = channel.properties.get("wf_increment"), channel.properties.get("wf_start_offset", 0.0)
+    values = np.asarray(signal[:])
+    step, offset = signal.properties.get("wf_increment"), signal.properties.get("wf_start_offset", 0.0)
     time = np.arange(len(values), dtype=float)
     return (offset + step * time if step else time), values
 
@@ -166,7 +166,7 @@ def _mf4(file: Path) -> pd.DataFrame:
             signals = [s for s in mdf.iter_channels(skip_master=True) if len(s.samples) and s.samples.ndim == 1]
             return joined((s.name, np.asarray(s.timestamps, float), np.asarray(s.samples)) for s in signals)
 
-    return opened(file, "MF4", "asammdf", read)
+    return guarded(file, "MF4", "asammdf", read)
 
 
 def joined(signals: Iterable[Signal]) -> pd.DataFrame:
@@ -209,11 +209,11 @@ def merged(
 def numbers(table: pd.DataFrame | NumberTable, name: str, file: Path) -> Array:
     """A column as numbers, NaN where nothing was read; InputError with the line of what is no finite number."""
     column = table[name]
-    found = column if isinstance(column, np.ndarray) else _numbers(column, name, file)
-    endless = np.flatnonzero(np.isinf(found))
+    values = column if isinstance(column, np.ndarray) else _numbers(column, name, file)
+    endless = np.flatnonzero(np.isinf(values))
     if endless.size:
         raise InputError("the value is infinite", cell(file, name, int(endless[0])), "a finite number")
-    return found
+    return values
 
 
 def _numbers(column: pd.Series[Any], name: str, file: Path) -> Array:
@@ -222,12 +222,12 @@ def _numbers(column: pd.Series[Any], name: str, file: Path) -> Array:
 
     if column.dtype.kind in "mM":
         raise InputError("holds instants, no numbers", f"{file} column '{name}'", "numbers, or another column")
-    found = np.array(pd.to_numeric(column, errors="coerce"), float)
-    bad = np.flatnonzero(np.isnan(found) & column.notna().to_numpy())
+    values = np.array(pd.to_numeric(column, errors="coerce"), float)
+    bad = np.flatnonzero(np.isnan(values) & column.notna().to_numpy())
     if bad.size:
         raise InputError(f"'{column.iloc[bad[0]]}' is no number", cell(file, name, int(bad[0])),
                          "a number with a decimal point, or nothing where nothing was read")  # fmt: skip
-    return found
+    return values
 
 
 def cell(file: Path, column: str, row: int) -> str:

@@ -12,6 +12,7 @@ Array = NDArray[np.float64]
 LEAST, MOST = 3, 2_000_000  # instants; more would not fit into memory with their tangents
 LONGEST_S = 3.2e7  # a year
 COARSE = 10.0  # times sample_s
+ROUNDING = 1e-6  # of a time: minutes with twelve digits are off by less, and no instant at an edge may come or go
 
 
 def grid_of(samples: Samples, step: float, where: str) -> tuple[Array, list[str]]:
@@ -28,7 +29,7 @@ def grid_of(samples: Samples, step: float, where: str) -> tuple[Array, list[str]
                          "right, and sample_s of case.toml?")  # fmt: skip
     coarse = usual > COARSE * step
     note = f"{samples.file.name}: rows are {usual:g} s apart, sample_s is {step:g} s; is time_unit in {where} right?"
-    return np.arange(0.0, span + 1e-9, used), [note] if coarse else []
+    return np.arange(0.0, span + ROUNDING * used, used), [note] if coarse else []
 
 
 def averaged(time: Array, values: Array, grid: Array) -> Array:

@@ -32,9 +32,9 @@ def coded(values: Array) -> NDArray[np.bool_]:
     return exact & (np.abs(values - middle) > far)
 
 
-def code_note(column: str, values: Array, found: NDArray[np.bool_], first_line: int) -> str:
+def code_note(column: str, values: Array, invalid: NDArray[np.bool_], first_line: int) -> str:
     """What was left out of a column, and where it begins."""
-    which = ", ".join(f"{v:g}" for v in np.unique(values[found]))
-    line = int(np.flatnonzero(found)[0]) + first_line
+    which = ", ".join(f"{v:g}" for v in np.unique(values[invalid]))
+    line = int(np.flatnonzero(invalid)[0]) + first_line
     code = "are a logger's code for no reading and are left out"
-    return f"{column}: {int(found.sum())} readings of {which} {code}, first in line {line}"
+    return f"{column}: {int(invalid.sum())} readings of {which} {code}, first in line {line}"

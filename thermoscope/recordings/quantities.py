@@ -15,24 +15,24 @@ from validation.case import Test
 
 def with_quantities(network: Network, sheets: Iterable[Sheet], tests: Sequence[Test]) -> Network:
     """The network with what its sheets say of the inputs; what network.toml says of them stands."""
-    said: dict[str, str] = {}
+    declared: dict[str, str] = {}
     for sheet in sheets:
         columns = {c.name: c.quantity for c in sheet.columns}
-        said |= {c.feeds: c.quantity for c in sheet.columns if c.feeds}
-        said |= {name: columns[of[0]] for name, of in sheet.squares.items() if of}
-    network = replace(network, quantities={**said, **network.quantities})
+        declared |= {c.feeds: c.quantity for c in sheet.columns if c.feeds}
+        declared |= {name: columns[of[0]] for name, of in sheet.squares.items() if of}
+    network = replace(network, quantities={**declared, **network.quantities})
     fitted = [t for t in tests if t.role != "hold-out"] or list(tests)
-    return replace(network, signals={q: own for q in INPUTS if (own := _own(network, fitted, q)) is not None})
+    return replace(network, signals={q: own for q in INPUTS if (own := _largest_of(network, fitted, q)) is not None})
 
 
-def _own(network: Network, tests: Sequence[Test], quantity: str) -> str | None:
+def _largest_of(network: Network, tests: Sequence[Test], quantity: str) -> str | None:
     """Of the inputs of a quantity those that a loss follows, else all; of these the largest by root mean square.
 
     The machine's current is never smaller than its components, and a film may follow the speed of another fan.
     """
-    found = [n for t in tests for n in t.inputs if network.measures(n) == quantity]
+    names = [n for t in tests for n in t.inputs if network.measures(n) == quantity]
     lossy = {name for source in network.sources for name in source.law.reads}
-    level = {n: _level(tests, n) for n in found if n in lossy} or {n: _level(tests, n) for n in found}
+    level = {n: _level(tests, n) for n in names if n in lossy} or {n: _level(tests, n) for n in names}
     return max(level, key=lambda n: level[n]) if level else None
 
 

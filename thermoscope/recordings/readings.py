@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError
 from lumped.model.network import Link, Network, Row, Source
-from lumped.schemas.reader import known
+from lumped.schemas.reader import suggestion
 from lumped.transfer.laws import CLOCK
 from thermoscope.recordings.consistency import checked_heat, checked_sheet
-from thermoscope.recordings.grid import averaged, bridged, grid_of, read, rms
+from thermoscope.recordings.grid import ROUNDING, averaged, bridged, grid_of, read, rms
 from thermoscope.recordings.sheet import Column, Sheet
 from thermoscope.recordings.tables import Samples
 from validation.case import Channel, Recorded, Role, Test
@@ -53,7 +53,7 @@ def read_test(
     step = _step(network, samples, fine, sheet.boundaries, air, sensors, wished)
     grid, _ = grid_of(samples, step.step_s, sheet.where)
     inputs, boundaries, doubts = _on_grid(sheet, samples, network, grid, fine)
-    channels = tuple(replace(s.channel, y=_seen(s, samples, grid)) for s in sensors)
+    channels = tuple(replace(s.channel, y=_sensor_readings(s, samples, grid)) for s in sensors)
     start = _initial(sheet, channels, samples, network)
     test = Test(name, role, grid, inputs, boundaries, channels, start, (), _finer(sheet, samples, grid, fine, inputs))
     return Reading(test, [*notes, *doubts], step)
@@ -80,11 +80,11 @@ def _recorded(sheet: Sheet, samples: Samples) -> dict[str, Array]:
 
 
 def _step(
-    network: Network, samples: Samples, fine: Mapping[str, Array], given: Mapping[str, float], air: Mapping[str, str],
+    network: Network, samples: Samples, fine: Mapping[str, Array], start: Mapping[str, float], air: Mapping[str, str],
     sensors: Sequence[Sensor], wished: float | None,
 ) -> SampleStep:  # fmt: skip
     """The step that the sensors do not feel."""
-    around = {**given, **{place: float(np.nanmean(samples.values[column])) for place, column in air.items()}}
+    around = {**start, **{place: float(np.nanmean(samples.values[column])) for place, column in air.items()}}
     level = max(float(np.nanmax(samples.values[c])) for s in sensors for c in s.columns)
     seen = [(s.channel.name, s.channel.row, s.channel.sigma_K, s.channel.lag_s) for s in sensors]
     return sample_step(network, samples.time, {**fine, CLOCK: samples.time}, around, seen, level, wished)
@@ -129,7 +129,7 @@ def _root_sum_square(name: str, of: tuple[str, ...], sheet: Sheet, inputs: Mappi
     for column in of:
         if column not in feeds:
             raise InputError(
-                f"unknown column '{column}'", f"{sheet.where} [root_sum_square] {name}", known(column, feeds)
+                f"unknown column '{column}'", f"{sheet.where} [root_sum_square] {name}", suggestion(column, feeds)
             )
     return np.asarray(np.sqrt(np.sum([inputs[feeds[column]] ** 2 for column in of], axis=0)))
 
@@ -154,7 +154,7 @@ def row_of(network: Network, place: str, position_mm: tuple[float, ...], where: 
     if place in network.boundaries:
         raise InputError(f"'{place}' is a boundary", where, f"a place of the machine: {', '.join(network.places)}")
     if place not in network.places:
-        raise InputError(f"unknown place '{place}'", where, known(place, [*network.places, *network.boundaries]))
+        raise InputError(f"unknown place '{place}'", where, suggestion(place, [*network.places, *network.boundaries]))
     if not position_mm or network.recovery is None:
         return network.places[place].mean
     try:
@@ -191,14 +191,14 @@ def _means(sheet: Sheet, network: Network) -> list[Sensor]:
         for name in mean.of:
             if name not in named:
                 what = f"averages '{name}', which is no temperature column of the machine"
-                raise InputError(what, mean.where, known(name, named))
+                raise InputError(what, mean.where, suggestion(name, named))
     return [
         Sensor(Channel(m.name, m.place, row_of(network, m.place, (), m.where), NONE, m.sigma_K, m.lag_s), m.of)
         for m in sheet.means
     ]
 
 
-def _seen(sensor: Sensor, samples: Samples, grid: Array) -> Array:
+def _sensor_readings(sensor: Sensor, samples: Samples, grid: Array) -> Array:
     """Readings on the grid; a value carried back to the instant of switching off stands at its end."""
     y = np.mean([read(samples.time, samples.values[name], grid) for name in sensor.columns], axis=0)
     if sensor.at_switch_off:
@@ -213,7 +213,7 @@ def _initial(
     if not isinstance(sheet.initial, str):
         return sheet.initial
     first: dict[str, list[float]] = {}
-    early = samples.time <= START_S
+    early = samples.time <= START_S * (1.0 + ROUNDING)
     for c in channels:
         of = next((m.of for m in sheet.means if m.name == c.name), (c.name,))
         raw = np.concatenate([samples.values[name][early] for name in of])

@@ -19,7 +19,14 @@ from thermoscope.recordings.duplicates import declared_once
 from thermoscope.recordings.electrical import QUANTITIES as ELECTRICAL
 from thermoscope.recordings.electrical import Electrical, read_electrical
 from thermoscope.recordings.events import Events, read_events
-from thermoscope.recordings.units import QUANTITIES, checked_input, checked_unit, converted, held_as, usual_sigma
+from thermoscope.recordings.units import (
+    QUANTITIES,
+    checked_input,
+    checked_unit,
+    converted,
+    memory_quantity,
+    usual_sigma,
+)
 
 Array = NDArray[np.float64]
 
@@ -193,21 +200,21 @@ def _column(name: str, table: Table, filtered: float, folder: Path) -> Column | 
     electrical = read_electrical(of, name, table, folder) if of in ELECTRICAL else None
     kind = table.kind("sensor", "resistance" if electrical else "thermocouple", SENSORS)
     place, feeds = table.word("place", None if hot else ""), "" if hot else table.word("input", QUANTITIES[of].feeds)
-    of = of if hot else held_as(of, checked_input(of, feeds, table.where))
-    sigma, settings = _of_its_own(of, unit, table)
+    of = of if hot else memory_quantity(of, checked_input(of, feeds, table.where))
+    sigma, settings = _kind_settings(of, unit, table)
     usual = 0.0 if electrical or sigma else SENSORS[kind]
     sigma_K = table.number("sigma_K") if "sigma_K" in table else usual
-    lag, written = table.number("lag_s", 0.0) + filtered, table.word("column", name)
+    lag, header = table.number("lag_s", 0.0) + filtered, table.word("column", name)
     position = table.numbers("position_mm", [])
     if len(position) not in (0, 3):
         raise table.error(f"position_mm has {len(position)} numbers", "position_mm = [x, y, z]")
     table.close()
     return Column(
-        name, of, unit, place, feeds, sigma_K, lag, position, table.where, written, electrical, sigma, settings
+        name, of, unit, place, feeds, sigma_K, lag, position, table.where, header, electrical, sigma, settings
     )
 
 
-def _of_its_own(of: str, unit: str, table: Table) -> tuple[float, dict[str, float]]:
+def _kind_settings(of: str, unit: str, table: Table) -> tuple[float, dict[str, float]]:
     """Standard deviation in the unit of the column, 0 where it is said in kelvin, and settings; of a sensor's kind."""
     quantity = QUANTITIES[of]
     settings = {name: table.number(name, usual) for name, usual in quantity.settings.items()}

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError
 from lumped.schemas.bounds import COLDEST, HOTTEST
-from lumped.schemas.reader import known
+from lumped.schemas.reader import suggestion
 from thermoscope.recordings.alignment import clock_shift
 from thermoscope.recordings.csv_file import NumberTable, read_numbers
 from thermoscope.recordings.formats import HEADER, cell, merged, numbers, read_frame, recording
@@ -56,7 +56,7 @@ def load_table(path: Path, sheet: Sheet) -> Samples:
         if name not in table.columns:
             here = [str(c) for c in table.columns]
             raise InputError(
-                f"column '{name}' is not in the file", f"{file} (asked for by {sheet.where})", known(name, here)
+                f"column '{name}' is not in the file", f"{file} (asked for by {sheet.where})", suggestion(name, here)
             )
     time = _times(table, replace(sheet, time_unit="s") if sheet.recorders else sheet, file)
     rows = _window(time, sheet, file)
@@ -121,7 +121,7 @@ def _beside(main: pd.DataFrame, time: str, recorder: Recorder) -> tuple[pd.DataF
 def _has(table: pd.DataFrame, names: Sequence[str], where: str) -> None:
     for name in names:
         if name not in table.columns:
-            right = known(name, [str(c) for c in table.columns])
+            right = suggestion(name, [str(c) for c in table.columns])
             raise InputError(f"column '{name}' is not in the file", where, right)
 
 
@@ -135,10 +135,10 @@ def _times(table: pd.DataFrame | NumberTable, sheet: Sheet, file: Path) -> Array
     wrong = np.flatnonzero(np.diff(t) <= 0)
     if wrong.size:
         row = int(wrong[0]) + 1
-        written = [f"{w:.15g}" if isinstance(w, float) else w for w in table[sheet.time]]
-        what = "is given twice" if t[row] == t[row - 1] else f"comes after {written[row - 1]}"
+        texts = [f"{w:.15g}" if isinstance(w, float) else w for w in table[sheet.time]]
+        what = "is given twice" if t[row] == t[row - 1] else f"comes after {texts[row - 1]}"
         count = f" ({wrong.size} such rows)" if wrong.size > 1 else ""
-        raise InputError(f"time {written[row]} {what}{count}", cell(file, sheet.time, row),
+        raise InputError(f"time {texts[row]} {what}{count}", cell(file, sheet.time, row),
                          "times that rise from row to row: sort the file by time and delete repeated rows")  # fmt: skip
     return np.asarray(t - t[0], float)
 

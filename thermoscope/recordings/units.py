@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError
 from geom.plugins import plugins
-from lumped.schemas.reader import known, shown
+from lumped.schemas.reader import excerpt, suggestion
 from thermoscope.recordings.quantity import Quantity
 
 Array = NDArray[np.float64]
@@ -41,7 +41,9 @@ QUANTITIES: dict[str, Quantity] = {
     **plugins("quantities"),
 }
 
-HELD = {name: next((unit for unit, how in q.units.items() if how == (1, 0)), "") for name, q in QUANTITIES.items()} | {
+MEMORY_UNIT = {
+    name: next((unit for unit, how in q.units.items() if how == (1, 0)), "") for name, q in QUANTITIES.items()
+} | {
     "share": "% where the input's name ends in _percent, else 0 to 1",
 }  # what memory holds
 
@@ -61,9 +63,11 @@ def checked_unit(of: str, unit: Any, where: str) -> str:
     if unit is None or unit == "":
         raise InputError("the unit is missing", where, f"write {_choices(units)}")
     if not isinstance(unit, str):
-        raise InputError(f"unit = {shown(unit)} is no unit", where, f"one of {', '.join(units)}, in quotes")
+        raise InputError(f"unit = {excerpt(unit)} is no unit", where, f"one of {', '.join(units)}, in quotes")
     if unit not in units and _by_pint(of, unit) is None:
-        raise InputError(f"unknown unit {shown(unit)} of a {of}", where, f"{_belongs(of, unit)}{known(unit, units)}")
+        raise InputError(
+            f"unknown unit {excerpt(unit)} of a {of}", where, f"{_belongs(of, unit)}{suggestion(unit, units)}"
+        )
     return unit
 
 
@@ -89,7 +93,7 @@ def checked_input(of: str, name: str, where: str) -> str:
     return name
 
 
-def held_as(of: str, name: str) -> str:
+def memory_quantity(of: str, name: str) -> str:
     """The quantity as memory holds it: a share is percent where its input's name says so, else 0 to 1."""
     return "fraction" if of == "share" and not name.endswith("_percent") else of
 

@@ -41,16 +41,16 @@ class MonitoredPlaces:
 
 def error_budgets(folder: Folder, records: Mapping[str, Record], progress: Progress) -> dict[str, ErrorBudget]:
     """Run -> what its temperatures may be wrong by, for the model as it stands."""
-    looks, found = MonitoredPlaces.of(folder), None
+    looks, rated = MonitoredPlaces.of(folder), None
     network, values = model_of(folder)
     rows = dict(looks.rows)
     if folder.built is not None and isinstance(network.recovery, Shapes):  # only then the field's packages are loaded
         from thermoscope.verification.rated_errors import cached_errors, hot_rows
 
         progress("estimating the error of mesh and condensation")
-        found = cached_errors(folder.built, looks)
-        rows |= hot_rows(network, found)
-    return {name: _of_run(network, values, run, rows, found) for name, run in records.items()}
+        rated = cached_errors(folder.built, looks)
+        rows |= hot_rows(network, rated)
+    return {name: _of_run(network, values, run, rows, rated) for name, run in records.items()}
 
 
 def budgets_of_tests(folder: Folder, progress: Progress = lambda message: None) -> dict[str, ErrorBudget]:
@@ -68,17 +68,17 @@ def model_of(folder: Folder) -> tuple[Network, dict[str, float]]:
 
 
 def _of_run(
-    network: Network, values: Mapping[str, float], run: Record, rows: Mapping[str, Row], found: Rated | None
+    network: Network, values: Mapping[str, float], run: Record, rows: Mapping[str, Row], rated: Rated | None
 ) -> ErrorBudget:
     done = simulate(network, run, values, list(rows.values()))
     time_K = getattr(done, "time_error_K", None)
     late = dict.fromkeys(rows) if time_K is None else dict(zip(rows, np.asarray(time_K, float).tolist(), strict=True))
-    if found is None:
+    if rated is None:
         return ErrorBudget(tuple(PlaceError(name, None, None, late[name]) for name in rows))
     around = np.min([np.broadcast_to(u, run.time.shape) for u in run.boundaries.values()], axis=0)
-    warm = float(np.abs(done.y - around[:, None]).max()) / found.rise_K
+    warm = float(np.abs(done.y - around[:, None]).max()) / rated.rise_K
     return ErrorBudget(tuple(
-        PlaceError(name, warm * found.mesh_K[name], warm * found.condensation_K[name], late[name]) for name in rows
+        PlaceError(name, warm * rated.mesh_K[name], warm * rated.condensation_K[name], late[name]) for name in rows
     ))  # fmt: skip
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fem.matrices.assembly import FieldModel
-from fem.solvers.snapshots import drawn
+from fem.solvers.snapshots import random_coefficients
 from fem.solvers.solve import Solver, coupled, film_columns
 from geom import Machine
 from lumped.condensation.linear import linear, unit_load
@@ -39,7 +39,11 @@ class FixedCoefficients:
     def moved(self, spread: float, seed: int = 0) -> FixedCoefficients:
         """The same with every film and contact times spread ** U(-1, 1)."""
         rng = np.random.default_rng(seed)
-        return replace(self, films=drawn(self.films, spread, rng), contacts=drawn(self.contacts, spread, rng))
+        return replace(
+            self,
+            films=random_coefficients(self.films, spread, rng),
+            contacts=random_coefficients(self.contacts, spread, rng),
+        )
 
     def of_field(self, field: FieldModel) -> Array:
         """(n + n_fluid,) steady."""

@@ -52,24 +52,26 @@ class MeshChoice:
         return {**asdict(self), "worst": self.worst, "worst_part": part}
 
 
-def chosen_mesh(machine: Machine, accuracy: float, first: Meshing, progress: Progress) -> MeshChoice:
+def chosen_mesh(
+    machine: Machine, accuracy: float, first: Meshing, progress: Progress, most_points: int = MOST_POINTS
+) -> MeshChoice:
     """The coarsest of the first mesh and its refinements whose error uses up no more than SHARE of the wish.
 
     accuracy : percent of a part's own rise, as the wish has it, of mesh and condensation together
-    It is kept by content. Where the mesh would exceed MOST_POINTS, the finest below it is taken and `met` is False.
+    It is kept by content. Where the mesh would exceed `most_points`, the finest below it is taken and `met` is False.
     """
-    file = cache_folder() / f"mesh-choice-{_key(machine, accuracy, first)}.json"
+    file = cache_folder() / f"mesh-choice-{_key(machine, accuracy, first, most_points)}.json"
     cached = recalled(file, lambda path: _read(path.read_text(encoding="utf-8")))
     if cached is None:
-        cached = _looked_for(machine, SHARE * accuracy, first, progress)
+        cached = _looked_for(machine, SHARE * accuracy, first, progress, most_points)
         write_whole(file, json.dumps(asdict(cached)))
     return cached
 
 
-def _key(machine: Machine, accuracy: float, first: Meshing) -> str:
+def _key(machine: Machine, accuracy: float, first: Meshing, most_points: int) -> str:
     shapes = [(p.name, p.prisms, p.solid, machine.material_of(p.name)) for p in machine.parts]
     fluids = [(p.name, p.prisms) for p in machine.fluids]
-    content = repr((shapes, fluids, sorted(machine.sections.items()), first, accuracy, SHARE, SAFETY, MOST_POINTS))
+    content = repr((shapes, fluids, sorted(machine.sections.items()), first, accuracy, SHARE, SAFETY, most_points))
     return hashlib.sha256(content.encode()).hexdigest()[:20]
 
 
@@ -78,22 +80,22 @@ def _read(text: str) -> MeshChoice:
     return MeshChoice(**{**data, "meshing": Meshing(**data["meshing"])})
 
 
-def _looked_for(machine: Machine, share: float, first: Meshing, progress: Progress) -> MeshChoice:
-    own = meshed(machine, first, progress)
-    asked = _at_rated_point(own)
-    hot = _hot_spots(asked, own)
+def _looked_for(machine: Machine, share: float, first: Meshing, progress: Progress, most_points: int) -> MeshChoice:
+    mesh = meshed(machine, first, progress)
+    point = _at_rated_point(mesh)
+    hot = _hot_spots(point, mesh)
     while True:
-        fine = meshed(machine, own.meshing.finer, partial(_said, progress))
-        there = _hot_spots(asked, fine)
+        fine = meshed(machine, mesh.meshing.finer, partial(_report, progress))
+        there = _hot_spots(point, fine)
         floor = FLOOR * max(there.values())
         percent = {p: SAFETY * _left(hot[p], there[p]) / max(there[p], floor) for p in hot}
-        found = MeshChoice(own.meshing, percent, own.field.n, max(percent.values()) <= share)
-        if found.met or len(fine.mesh.points) > MOST_POINTS:
-            return found
-        own, hot = fine, there
+        choice = MeshChoice(mesh.meshing, percent, mesh.field.n, max(percent.values()) <= share)
+        if choice.met or len(fine.mesh.points) > most_points:
+            return choice
+        mesh, hot = fine, there
 
 
-def _said(progress: Progress, message: str) -> None:
+def _report(progress: Progress, message: str) -> None:
     progress(f"estimating the error of the mesh: {message}")
 
 
@@ -109,7 +111,7 @@ def _at_rated_point(ready: Prepared) -> FixedCoefficients:
     return rated(machine, network, ready.films, ready.contacts)
 
 
-def _hot_spots(asked: FixedCoefficients, ready: Prepared) -> dict[str, float]:
+def _hot_spots(point: FixedCoefficients, ready: Prepared) -> dict[str, float]:
     """Heated part -> its largest rise (K)."""
-    T = asked.of_field(ready.field)
-    return {part: float(np.max(T[ready.field.blocks[part].dofs])) for part in asked.watts}
+    T = point.of_field(ready.field)
+    return {part: float(np.max(T[ready.field.blocks[part].dofs])) for part in point.watts}

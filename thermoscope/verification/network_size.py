@@ -25,7 +25,7 @@ LEAST = 0.25  # of the wish, asked of the condensation even where the mesh has u
 
 
 @dataclass(frozen=True)
-class SizedNetwork:
+class NetworkSize:
     """built : with the network that was kept;  reduction : with the points it learned from;  sizes : the table
 
     mesh : how it was chosen, and its error; None where it was given
@@ -62,20 +62,20 @@ def accuracy_of(accuracy: float) -> Accuracy:
 
 def accurate_network(
     machine: Machine, accuracy: float, size_m: float = 0.06, progress: Progress = silent
-) -> SizedNetwork:
+) -> NetworkSize:
     """Mesh and condensation together within `accuracy` percent of a part's own rise: what the mesh leaves of it, the
     condensation may use.  size_m : of the triangles of the first mesh that is looked at (m)"""
     mesh = chosen_mesh(on_all(machine), accuracy, Meshing(size_m, SEGMENTS, ACROSS, AXIAL * size_m), progress)
     how, left = mesh.meshing, max(accuracy - mesh.worst, LEAST * accuracy)
-    found = smallest_network(machine, left, how.size_m, how.segments, progress=progress, across=how.across,
+    size = smallest_network(machine, left, how.size_m, how.segments, progress=progress, across=how.across,
                              axial_m=how.axial_m)  # fmt: skip
-    return replace(found, mesh=mesh)
+    return replace(size, mesh=mesh)
 
 
 def smallest_network(
     machine: Machine, accuracy: float, size_m: float = 0.06, segments: int = 48, recipe: Recipe = FINE,
     progress: Progress = silent, rounds: int = ROUNDS, across: float = ACROSS, axial_m: float | None = None,
-) -> SizedNetwork:  # fmt: skip
+) -> NetworkSize:  # fmt: skip
     """Build at several sizes and keep the smallest that meets the wish; if none does, learn from where it fails."""
     machine = on_all(machine)
     ready = prepared(machine, size_m, segments, progress, axial_m, across)
@@ -86,13 +86,13 @@ def smallest_network(
     guides = [reduction.random_point(k) for k in range(LOOKS)]
     points = [reduction.nominal_point(), *(reduction.extreme_point(k) for k in range(LOOKS))]
     points += [reduction.joined_point(factor) for factor in JOINTS]
-    table = tuple(Size.of(reduction, asked, [*points, *guides], cases, allowed) for asked in SIZES)
+    table = tuple(Size.of(reduction, requested, [*points, *guides], cases, allowed) for requested in SIZES)
     good = [size for size in table if size.met]
-    found = None if good else enrich(reduction, cases, allowed, rounds, points, guides, tell=progress)
-    condensed = good[0].network if good else found.network  # type: ignore[union-attr]
-    last = reduction if found is None else found.reduction
+    enrichment = None if good else enrich(reduction, cases, allowed, rounds, points, guides, tell=progress)
+    condensed = good[0].network if good else enrichment.network  # type: ignore[union-attr]
+    last = reduction if enrichment is None else enrichment.reduction
     built = Built(machine, ready.mesh, ready.field, motor_network(machine, condensed), ready.meshing)
-    return SizedNetwork(built, last, allowed, table, found)
+    return NetworkSize(built, last, allowed, table, enrichment)
 
 
 SIZES = (0, 50, 100, 200, 400)  # 0: the means only

@@ -38,11 +38,11 @@ class Rated:
     nodes: Mapping[str, int]
 
 
-def hot_rows(network: Network, found: Rated) -> dict[str, Row]:
+def hot_rows(network: Network, rated: Rated) -> dict[str, Row]:
     """The hot spots as rows over the network's z."""
     shapes = network.recovery
     assert isinstance(shapes, Shapes)
-    return {name: _at_node(shapes.parts[name.removeprefix(HOT)], node) for name, node in found.nodes.items()}
+    return {name: _at_node(shapes.parts[name.removeprefix(HOT)], node) for name, node in rated.nodes.items()}
 
 
 def _at_node(shape: PartShape, node: int) -> Row:
@@ -55,9 +55,9 @@ def cached_errors(built: Built, looks: MonitoredPlaces) -> Rated:
     cached = recalled(file, lambda path: Rated(**json.loads(path.read_text(encoding="utf-8"))))
     if cached is not None:
         return cached
-    found = at_rated_point(built, looks)
-    write_whole(file, json.dumps(vars(found)))
-    return found
+    errors = at_rated_point(built, looks)
+    write_whole(file, json.dumps(vars(errors)))
+    return errors
 
 
 def _key(built: Built, looks: MonitoredPlaces) -> str:
@@ -81,23 +81,23 @@ def at_rated_point(built: Built, looks: MonitoredPlaces) -> Rated:
     """
     field, network = built.field, on_every_base(built.network)
     films, contacts = coefficients_on(built.machine, built.mesh)
-    asked = rated(built.machine, network, films, contacts)
+    point = rated(built.machine, network, films, contacts)
     coarse = meshed(built.machine, built.meshing.coarser).field
-    reader, rough = (Reader(f, network, asked, looks) for f in (field, coarse))
-    T = asked.of_field(field)
-    fine, other = reader.read(T), rough.read(asked.of_field(coarse))
+    reader, rough = (Reader(f, network, point, looks) for f in (field, coarse))
+    T = point.of_field(field)
+    fine, other = reader.read(T), rough.read(point.of_field(coarse))
     left = {name: 0.0 for name in fine}
-    for exact, own in chain([(T, asked.of_network(network, field))], _elsewhere(asked, field, network)):
-        for name, off in reader.apart(exact, own).items():
+    for exact, own in chain([(T, point.of_network(network, field))], _elsewhere(point, field, network)):
+        for name, off in reader.differences(exact, own).items():
             left[name] = max(left[name], off)
-    nodes = {f"{HOT}{p}": int(np.argmax(T[field.blocks[p].dofs])) for p in asked.watts}
+    nodes = {f"{HOT}{p}": int(np.argmax(T[field.blocks[p].dofs])) for p in point.watts}
     return Rated({n: abs(fine[n] - other[n]) for n in fine}, left, max(map(abs, fine.values())), nodes)
 
 
-def _elsewhere(asked: FixedCoefficients, field: FieldModel, network: Network) -> Iterator[tuple[Array, Array]]:
+def _elsewhere(point: FixedCoefficients, field: FieldModel, network: Network) -> Iterator[tuple[Array, Array]]:
     """The step of loss, and a steady state at other coefficients; field and network."""
-    yield from zip(asked.steps_of_field(field), asked.steps_of_network(network, field), strict=True)
-    moved = asked.moved(SPREAD)
+    yield from zip(point.steps_of_field(field), point.steps_of_network(network, field), strict=True)
+    moved = point.moved(SPREAD)
     yield moved.of_field(field), moved.of_network(network, field)
 
 
@@ -107,15 +107,15 @@ class Reader:
 
     field: FieldModel
     network: Network
-    asked: FixedCoefficients
+    point: FixedCoefficients
     looks: MonitoredPlaces
 
     def read(self, T: Array) -> dict[str, float]:
         """name -> K"""
         sensors = {name: float(row @ T) for name, row in self.rows.items()}
-        return sensors | {f"{HOT}{p}": float(T[self.field.blocks[p].dofs].max()) for p in self.asked.watts}
+        return sensors | {f"{HOT}{p}": float(T[self.field.blocks[p].dofs].max()) for p in self.point.watts}
 
-    def apart(self, one: Array, other: Array) -> dict[str, float]:
+    def differences(self, one: Array, other: Array) -> dict[str, float]:
         """name -> K between two answers on the same mesh"""
         a, b = self.read(one), self.read(other)
         return {name: abs(a[name] - b[name]) for name in a}
@@ -125,7 +125,7 @@ class Reader:
         return {name: self._row(name, place) for name, place in self.looks.places.items()}
 
     def _row(self, name: str, place: str) -> Array:
-        out, p = np.zeros(self.field.n + len(self.asked.fluids)), self.network.places[place]
+        out, p = np.zeros(self.field.n + len(self.point.fluids)), self.network.places[place]
         if name in self.looks.points and p.part in self.field.blocks:
             block = self.field.blocks[p.part]
             shape = PartShape(block.points, block.elements, np.zeros((block.n, 0)), block.w, np.zeros(0, np.int64))
@@ -143,5 +143,5 @@ class Reader:
             name = self.network.states[i]
             if name in self.field.blocks:
                 out[: self.field.n] += weight * self.field.mean(name)
-            elif name in self.asked.fluids:
-                out[self.field.n + self.asked.fluids.index(name)] += weight
+            elif name in self.point.fluids:
+                out[self.field.n + self.point.fluids.index(name)] += weight

@@ -60,16 +60,16 @@ class AccessControl:
         origin = request.headers.get("Origin")
         if origin is not None and _split(origin).netloc != request.host:
             raise web.HTTPForbidden(text="requests from other pages are refused")
-        shown = request.query.get("token") or request.cookies.get(cookie_of(request), "")
-        if self.token and not hmac.compare_digest(shown.encode("utf-8", "surrogateescape"), self.token.encode()):
+        token = request.query.get("token") or request.cookies.get(cookie_of(request), "")
+        if self.token and not hmac.compare_digest(token.encode("utf-8", "surrogateescape"), self.token.encode()):
             raise web.HTTPUnauthorized(text="open the address that thermoscope show serve printed, with its token")
 
     def _let_in(self, request: web.Request) -> web.HTTPFound:
         """The same address without the token, which a cookie carries from now on."""
-        found = web.HTTPFound(request.path)
+        redirect = web.HTTPFound(request.path)
         if self.token:
-            found.set_cookie(cookie_of(request), self.token, httponly=True, samesite="Strict", secure=request.secure)
-        return found
+            redirect.set_cookie(cookie_of(request), self.token, httponly=True, samesite="Strict", secure=request.secure)
+        return redirect
 
 
 def cookie_of(request: web.Request) -> str:

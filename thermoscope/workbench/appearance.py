@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermoscope.case_folder.folder import Folder
-from thermoscope.case_folder.runs import fields, held
+from thermoscope.case_folder.runs import comparison_of, fields
 
 if TYPE_CHECKING:
     from viz.data import Comparison
@@ -39,7 +39,7 @@ class Appearance:
 def appearance_of(folder: Folder, surface: Surface | None) -> Appearance:
     """Run the model on every test."""
     errors = folder.compared.document()  # first: what it finds serves the curves
-    curves = {test.name: held(folder, test) for test in folder.case.tests}
+    curves = {test.name: comparison_of(folder, test) for test in folder.case.tests}
     frames: dict[str, Frames] = {}
     if surface is not None:
         for test in folder.case.tests:

@@ -120,9 +120,9 @@ class Display:
         if self.stage is not None:
             self.stage.paper(dark)
         self.select(self.state.sensor)
-        self.found(diagnosis)
+        self.show_candidates(diagnosis)
 
-    def found(self, diagnosis: dict[str, Any] | None) -> None:
+    def show_candidates(self, diagnosis: dict[str, Any] | None) -> None:
         """The candidates of a diagnosis, or none."""
         if diagnosis is None:
             self.state.update({"verdict": None, "candidates": [], "has_confusion": False})

@@ -11,7 +11,7 @@ from uuid import uuid4
 from aiohttp import BodyPartReader, MultipartReader, web
 
 from geom.errors import InputError
-from thermoscope.commands.test.new import drafts_of, model_of_case, read_recording, written
+from thermoscope.commands.test.new import drafts_of, model_of_case, read_recording, save_case
 from thermoscope.console.terminal import Progress
 from thermoscope.importing.aligned import Recording
 from thermoscope.importing.cells import number
@@ -100,8 +100,8 @@ class Dropped:
 def read(files: Sequence[Path], network: Network, tell: Progress) -> Dropped:
     """Recordings with the guesses of `thermoscope test new`. Raises InputError for a file that is no record."""
     target = target_of(network)
-    found = [read_recording(file, None, tell) for file in files]
-    return Dropped(tuple(Recording(s, c, guesses(s, c.columns, target)) for s, c in found), target)
+    recordings = [read_recording(file, None, tell) for file in files]
+    return Dropped(tuple(Recording(s, c, guesses(s, c.columns, target)) for s, c in recordings), target)
 
 
 def dragged(g: Guess, record: Recording, to: str, target: Target) -> Guess:
@@ -125,15 +125,15 @@ def dragged(g: Guess, record: Recording, to: str, target: Target) -> Guess:
 
 def write(dropped: Dropped, settings: Settings, network: Network, tell: Progress) -> Path:
     """A new case beside the open one, with its machine or network; the folder."""
-    taken = [p.name for p in settings.path.resolve().parent.iterdir()]
-    folder = settings.path.resolve().parent / test_name(dropped.records[0].source.file, taken)
+    names = [p.name for p in settings.path.resolve().parent.iterdir()]
+    folder = settings.path.resolve().parent / test_name(dropped.records[0].source.file, names)
     dialogue = Dialogue(dropped.target, False, dict(dropped.constants))
-    written(folder, model_of_case(settings, network), drafts_of(dropped.records, dialogue), tell)
+    save_case(folder, model_of_case(settings, network), drafts_of(dropped.records, dialogue), tell)
     return folder
 
 
-async def stored(parts: MultipartReader, folder: Path) -> list[Path]:
-    """The files of an upload, under their own names but nowhere else. HTTP 413 for more than LARGEST bytes."""
+async def stored(parts: MultipartReader, folder: Path, largest: int) -> list[Path]:
+    """The files of an upload, under their own names but nowhere else. HTTP 413 for more than `largest` bytes."""
     files, size = [], 0
     async for part in parts:
         if not isinstance(part, BodyPartReader) or not part.filename:
@@ -145,8 +145,8 @@ async def stored(parts: MultipartReader, folder: Path) -> list[Path]:
         with files[-1].open("wb") as out:
             while chunk := await part.read_chunk(CHUNK):
                 size += len(chunk)
-                if size > LARGEST:
-                    raise web.HTTPRequestEntityTooLarge(LARGEST, size)
+                if size > largest:
+                    raise web.HTTPRequestEntityTooLarge(largest, size)
                 out.write(chunk)
     return files
 

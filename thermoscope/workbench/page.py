@@ -101,8 +101,8 @@ def _bar(session: Session) -> None:
 
 
 def _button(text: str, name: str, icon: str, act: Any, disabled: str) -> None:
-    said = aria("aria-label", text)  # narrow pages show the icon alone
-    v3.VBtn(text, id=name, prepend_icon=icon, click=act, disabled=(disabled,), variant="text", **said)
+    label = aria("aria-label", text)  # narrow pages show the icon alone
+    v3.VBtn(text, id=name, prepend_icon=icon, click=act, disabled=(disabled,), variant="text", **label)
 
 
 def _machine(session: Session) -> None:
@@ -130,8 +130,8 @@ def _machine(session: Session) -> None:
         if session.shown.stage is None:
             html.P("{{ why_flat }}", classes="flat")
             return
-        said = "'the machine cut open, coloured by temperature: ' + test + ' at ' + minute"
-        with html.Div(v_show=("!viewer",), classes="view", id="machine", **pictured(said)):
+        label = "'the machine cut open, coloured by temperature: ' + test + ' at ' + minute"
+        with html.Div(v_show=("!viewer",), classes="view", id="machine", **pictured(label)):
             view = vtk_widgets.VtkRemoteView(
                 session.shown.stage.window, ref="machine", interactive_ratio=0.6, interactive_quality=60,
                 still_quality=92,
@@ -154,8 +154,8 @@ def _turning(session: Session, name: str) -> Any:
 
 
 def _curve() -> None:
-    said = "'readings and model of ' + sensor + ' in ' + test + ', and their difference'"
-    with html.Div(classes="card curve", id="curve", **pictured(said)):
+    label = "'readings and model of ' + sensor + ' in ' + test + ', and their difference'"
+    with html.Div(classes="card curve", id="curve", **pictured(label)):
         plotly.Figure(
             state_variable_name="curve", display_mode_bar=("false",), responsive=("true",), display_logo=("false",),
             style="width: 100%; height: 100%",
@@ -222,8 +222,8 @@ def _missing(session: Session) -> None:
             html.P("{{ verdict.sentence }}", classes=("'verdict ' + verdict.tone",), id="verdict")
             html.P("{{ verdict.words }}", classes="faint")
             _candidates(session)
-            said = "'which of the candidates look alike: a matrix of their likeness'"
-            with html.Div(v_if=("has_confusion",), classes="confusion", id="confusion", **pictured(said)):
+            label = "'which of the candidates look alike: a matrix of their likeness'"
+            with html.Div(v_if=("has_confusion",), classes="confusion", id="confusion", **pictured(label)):
                 plotly.Figure(
                     state_variable_name="confusion", display_mode_bar=("false",), responsive=("true",),
                     style="width: 100%; height: 100%",

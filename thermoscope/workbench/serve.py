@@ -15,6 +15,7 @@ from thermoscope.case_folder.folder import Folder
 from thermoscope.console.terminal import Progress
 from thermoscope.workbench.access_control import AccessControl
 from thermoscope.workbench.application import bench
+from thermoscope.workbench.dropped import LARGEST
 from thermoscope.workbench.jobs import prepare
 from thermoscope.workbench.tabs import Tabs
 
@@ -22,19 +23,19 @@ SWEEP_S = 30.0  # between looks for idle tabs
 SHORTEST = 16  # characters: 64 bits where they are hexadecimal
 
 
-def token_for(given: str | None) -> str:
+def token_for(token: str | None) -> str:
     """What a browser must show: the given token or a new one. Other users and programs share this computer's ports."""
-    if given is not None and len(given) < SHORTEST:
-        raise InputError(f"the token has {len(given)} characters", "THERMOSCOPE_TOKEN", f"at least {SHORTEST}")
-    return given or secrets.token_urlsafe(24)
+    if token is not None and len(token) < SHORTEST:
+        raise InputError(f"the token has {len(token)} characters", "THERMOSCOPE_TOKEN", f"at least {SHORTEST}")
+    return token or secrets.token_urlsafe(24)
 
 
-def application(folder: Folder, gate: AccessControl, tell: Progress) -> web.Application:
-    """The pages of a case, behind a gate."""
+def application(folder: Folder, access: AccessControl, tell: Progress, largest_drop: int = LARGEST) -> web.Application:
+    """The pages of a case, for those who have access.  largest_drop : of files dropped on a page (bytes)"""
     os.environ["TRAME_ARGS"] = "--server"  # trame would read our command line as its own
-    tabs = Tabs(bench(folder, tell))
+    tabs = Tabs(bench(folder, tell), largest_drop)
     prepare()
-    app = web.Application(middlewares=[gate.middleware])
+    app = web.Application(middlewares=[access.middleware])
     app.router.add_get("/", tabs.new)
     app.router.add_get("/tab/{tab}/{name:.+}", tabs.fetch)
     app.router.add_post("/tab/{tab}/paraview/", tabs.address)
@@ -55,19 +56,19 @@ def application(folder: Folder, gate: AccessControl, tell: Progress) -> web.Appl
     return app
 
 
-def serve(app: web.Application, gate: AccessControl, port: int, ready: Callable[[str], None]) -> None:
+def serve(app: web.Application, access: AccessControl, port: int, ready: Callable[[str], None]) -> None:
     """Serve until interrupted; `ready` gets the address to open once it can be opened."""
-    asyncio.run(_serve(app, gate, port, ready))
+    asyncio.run(_serve(app, access, port, ready))
 
 
-async def _serve(app: web.Application, gate: AccessControl, port: int, ready: Callable[[str], None]) -> None:
+async def _serve(app: web.Application, access: AccessControl, port: int, ready: Callable[[str], None]) -> None:
     end, runner = asyncio.Event(), web.AppRunner(app, shutdown_timeout=2.0)
     for number in (signal.SIGINT, signal.SIGTERM):
         asyncio.get_running_loop().add_signal_handler(number, end.set)
     await runner.setup()
     try:
-        await _listening(runner, gate.host, port)
-        ready(_address(gate, runner.addresses[0][1]))
+        await _listening(runner, access.host, port)
+        ready(_address(access, runner.addresses[0][1]))
         await end.wait()
     finally:
         await runner.cleanup()
@@ -84,6 +85,6 @@ async def _listening(runner: web.AppRunner, host: str, port: int) -> None:
         ) from None
 
 
-def _address(gate: AccessControl, port: int) -> str:
-    name = f"[{gate.host}]" if ":" in gate.host else gate.host
-    return f"http://{name}:{port}/" + (f"?token={gate.token}" if gate.token else "")
+def _address(access: AccessControl, port: int) -> str:
+    name = f"[{access.host}]" if ":" in access.host else access.host
+    return f"http://{name}:{port}/" + (f"?token={access.token}" if access.token else "")

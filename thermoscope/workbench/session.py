@@ -12,7 +12,7 @@ from typing import Any
 from geom.errors import InputError, ThermoscopeError
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import History, Revision, load_history, save_history
-from thermoscope.commands.stored_diagnosis import save_diagnosis, saved_diagnosis
+from thermoscope.commands.stored_diagnosis import current_diagnosis, save_diagnosis
 from thermoscope.workbench import revisions as ledger
 from thermoscope.workbench import steps
 from thermoscope.workbench.appearance import Appearance
@@ -52,19 +52,19 @@ class Session:
     def open(self) -> None:
         """Show the model, and the last diagnosis if it is of this model; then what others have made of it since."""
         self.shown.model(self.history, self.bench.first)
-        self.diagnosis = saved_diagnosis(self.folder)
-        self.shown.found(self.diagnosis)
+        self.diagnosis = current_diagnosis(self.folder)
+        self.shown.show_candidates(self.diagnosis)
         started(self.take_over())
 
     async def diagnose(self) -> None:
         """Look for what is missing."""
-        found = await self._calculate("Looking for what is missing", steps.searched, self.folder)
-        if found is not None:
+        result = await self._calculate("Looking for what is missing", steps.searched, self.folder)
+        if result is not None:
             if load_history(self.file) == self.history:
-                save_diagnosis(self.folder, found)
+                save_diagnosis(self.folder, result)
             with self.state:
-                self.diagnosis = dict(found)
-                self.shown.found(self.diagnosis)
+                self.diagnosis = dict(result)
+                self.shown.show_candidates(self.diagnosis)
 
     async def step(self, action: str, effect: str = "") -> None:
         """Add or remove an effect, or calibrate; what is not accepted waits for `keep_anyway`."""
@@ -115,15 +115,17 @@ class Session:
 
     async def take_in(self, files: Sequence[Path]) -> None:
         """Show what the columns of dropped files are taken for."""
-        found = await self._calculate("Reading the recordings", steps.recordings, files, self.folder.case.model.network)
-        if found is not None:
-            self.show_dropped(found)
+        dropped = await self._calculate(
+            "Reading the recordings", steps.recordings, files, self.folder.case.model.network
+        )
+        if dropped is not None:
+            self.show_dropped(dropped)
 
-    def show_dropped(self, found: Dropped | None) -> None:
+    def show_dropped(self, dropped: Dropped | None) -> None:
         """The columns on the page, None for none any more."""
-        self.dropped = found
+        self.dropped = dropped
         with self.state:
-            self.state.drop, self.state.error = found and found.document, ""
+            self.state.drop, self.state.error = dropped and dropped.document, ""
 
     def edit_dropped(self, change: str, key: str, value: str) -> None:
         """A column dragged to a part ("move"), or what was not recorded ("constant")."""
@@ -139,7 +141,7 @@ class Session:
         """A new case of the dropped files beside this one; new tabs open it."""
         case, bench = self.folder, self.bench
         made = await self._calculate(
-            "Writing the case", steps.made, self.dropped, case.settings, case.case.model.network, bench.surface
+            "Writing the case", steps.new_case, self.dropped, case.settings, case.case.model.network, bench.surface
         )
         if made is not None:
             folder, look = made
@@ -191,7 +193,7 @@ class Session:
         look = next((look for r, look in self._known if ledger.same(r, history.last)), None)
         if look is None:
             folder = at(self.bench.folder, history)
-            look = await self._calculate("Running the model", steps.seen, folder, self.bench.surface)
+            look = await self._calculate("Running the model", steps.appearance, folder, self.bench.surface)
         if look is not None:
             with self.state:
                 self.state.error, self.history = "", history
@@ -201,8 +203,8 @@ class Session:
         last = self.history.last
         self._known = [*((r, x) for r, x in self._known if not ledger.same(r, last)), (last, look)][-REMEMBERED:]
         self.shown.model(self.history, look)
-        self.diagnosis = saved_diagnosis(self.folder)
-        self.shown.found(self.diagnosis)
+        self.diagnosis = current_diagnosis(self.folder)
+        self.shown.show_candidates(self.diagnosis)
 
     async def _calculate(self, title: str, work: Callable[..., Any], *arguments: Any) -> Any:
         """The result of a process of its own; None when it failed, was stopped, or another one is running."""
@@ -233,8 +235,8 @@ class Session:
 
 def share(message: str) -> float | None:
     """'test 12/40' -> 30.0; None where the message counts nothing."""
-    found = re.search(r"(\d+)/(\d+)", message)
-    return round(100.0 * int(found[1]) / int(found[2]), 1) if found and int(found[2]) else None
+    match = re.search(r"(\d+)/(\d+)", message)
+    return round(100.0 * int(match[1]) / int(match[2]), 1) if match and int(match[2]) else None
 
 
 _running: set[asyncio.Task] = set()

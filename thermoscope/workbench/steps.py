@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from viz.rendering.cut import Surface
 
 
-def seen(folder: Folder, surface: Surface | None, tell: Progress) -> Appearance:
+def appearance(folder: Folder, surface: Surface | None, tell: Progress) -> Appearance:
     """The model as it stands."""
     tell("running the model on every test")
     return appearance_of(folder, surface)
@@ -29,8 +29,8 @@ def searched(folder: Folder, tell: Progress) -> Mapping[str, Any]:
     """A `diagnose` document."""
     from validation import diagnose
 
-    found = diagnose(folder.case, folder.settings.kinds, tell)
-    return {"case": folder.case.name, "revision": folder.case.model.revision, **found.document()}
+    diagnosis = diagnose(folder.case, folder.settings.kinds, tell)
+    return {"case": folder.case.name, "revision": folder.case.model.revision, **diagnosis.document()}
 
 
 def stepped(
@@ -46,7 +46,7 @@ def stepped(
         result = {"add": revise.add, "remove": revise.remove}[action](folder.case, effect, progress=tell)
     revision = recorded(result, evidence(folder, result))
     after = at(folder, folder.history.and_then(revision))
-    return revision, result.document(), seen(after, surface, tell)
+    return revision, result.document(), appearance(after, surface, tell)
 
 
 def recordings(files: Sequence[Path], network: Network, tell: Progress) -> Dropped:
@@ -56,7 +56,7 @@ def recordings(files: Sequence[Path], network: Network, tell: Progress) -> Dropp
     return read(files, network, tell)
 
 
-def made(
+def new_case(
     dropped: Dropped, settings: Settings, network: Network, surface: Surface | None, tell: Progress
 ) -> tuple[Folder, Appearance]:
     """A new case of dropped files, opened, and its first comparison."""
@@ -64,7 +64,7 @@ def made(
     from thermoscope.workbench.dropped import write
 
     folder = load_case(write(dropped, settings, network, tell), tell)
-    return folder, seen(folder, None if folder.built is None else surface, tell)
+    return folder, appearance(folder, None if folder.built is None else surface, tell)
 
 
 def viewed(folder: Folder, tell: Progress) -> str:

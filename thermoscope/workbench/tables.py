@@ -13,7 +13,7 @@ from viz.pages.next_tests import deciding
 from viz.pages.words import verdict
 
 Row = dict[str, Any]
-SHOWN = 12  # candidates of a tab
+MOST_ROWS = 12  # candidates of a tab
 
 
 def tests(look: Appearance, scale: float, before: Mapping[str, float]) -> list[Row]:
@@ -80,7 +80,7 @@ def candidates(diagnosis: Mapping[str, Any], effects: tuple[str, ...]) -> list[R
             "alike": ", ".join(c["confused_with"][:3]), "decision": c["decision"],
             "test": c.get("isolating_test", ""), "inside": c["effect"] in effects,
         }
-        for c in diagnosis["candidates"][:SHOWN]
+        for c in diagnosis["candidates"][:MOST_ROWS]
     ]  # fmt: skip
 
 
@@ -89,8 +89,14 @@ def conclusion(diagnosis: Mapping[str, Any]) -> Row:
     tone, sentence = verdict(diagnosis, None)
     hidden = [h["effect"] for h in diagnosis["cannot_see"]]
     further_tests = [f"{o.kind} {o.what}: separates {', '.join(o.separates)}" for o in deciding(diagnosis)[:3]]
-    unseen = f"{len(hidden)} effects could be there unseen, e.g. {', '.join(hidden[:4])}." if hidden else ""
-    return {"tone": tone, "sentence": sentence, "words": diagnosis["words"], "unseen": unseen, "ahead": further_tests}
+    hidden_words = f"{len(hidden)} effects could be there unseen, e.g. {', '.join(hidden[:4])}." if hidden else ""
+    return {
+        "tone": tone,
+        "sentence": sentence,
+        "words": diagnosis["words"],
+        "unseen": hidden_words,
+        "ahead": further_tests,
+    }
 
 
 def percent(value: float, whole: float) -> float:

@@ -79,10 +79,10 @@ class Tab:
 
 
 class Tabs:
-    """All tabs of one server."""
+    """All tabs of one server.  largest_drop : of files dropped on a page (bytes)"""
 
-    def __init__(self, bench: Bench) -> None:
-        self.bench = bench
+    def __init__(self, bench: Bench, largest_drop: int) -> None:
+        self.bench, self.largest_drop = bench, largest_drop
         self.open: dict[str, Tab] = {}
 
     async def new(self, request: web.Request) -> web.StreamResponse:
@@ -139,7 +139,7 @@ class Tabs:
             raise web.HTTPNotFound()
         folder = Path(tempfile.mkdtemp(prefix="thermoscope-drop-"))
         try:
-            files = await stored(await request.multipart(), folder)
+            files = await stored(await request.multipart(), folder, self.largest_drop)
             if files:
                 await tab.session.take_in(files)
         finally:

@@ -127,9 +127,9 @@ class Stage:
     def _release(self, style: Any, _event: str) -> None:
         self._hollow()
         now = np.array(style.GetInteractor().GetEventPosition(), float)
-        found = self.at(*now) if np.linalg.norm(now - self._pressed) <= STILL else None
-        if found is not None:
-            self._on_pick(found)
+        sensor = self.at(*now) if np.linalg.norm(now - self._pressed) <= STILL else None
+        if sensor is not None:
+            self._on_pick(sensor)
 
     def close(self) -> None:
         self.plotter.close()

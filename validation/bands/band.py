@@ -61,20 +61,20 @@ class Deviations:
 
 def deviations(of: ParameterPosterior, test: Test, places: Sequence[Place]) -> Deviations:
     """test : the record: time, inputs, boundaries, start; its channels do not matter"""
-    asked = replace(test, channels=tuple(_asked(p, test) for p in places))
-    network, free, size = acting(of, asked)
+    virtual = replace(test, channels=tuple(_virtual_channel(p, test) for p in places))
+    network, free, size = acting(of, virtual)
     now = {**values_of(network, None), **of.values}
-    plain = predict(network, asked, now).y
-    moved = {name: predict(network, other, now).y - plain for name, other in moved_inputs(network, asked, of.doubt)}
+    plain = predict(network, virtual, now).y
+    moved = {name: predict(network, other, now).y - plain for name, other in moved_inputs(network, virtual, of.doubt)}
     known = {p.targets[0][0] for p in free if head(p) == "boundary"}
-    for name, other in moved_boundaries(asked, of.doubt):
+    for name, other in moved_boundaries(virtual, of.doubt):
         if name not in known:
             moved[name] = predict(network, other, now).y - plain
     sd = np.array([p.prior_sd for p in free]) / size
     names = [*(p.name for p in free), *moved]
     Sigma, offset = of.of(names, np.concatenate([sd, np.ones(len(moved))])), of.offsets(names)
     beside = np.stack([*moved.values()], axis=2) if moved else np.zeros((*plain.shape, 0))
-    return Deviations(plain, Watch(network, asked, now, free), size, beside, np.column_stack([_root(Sigma), offset]))
+    return Deviations(plain, Watch(network, virtual, now, free), size, beside, np.column_stack([_root(Sigma), offset]))
 
 
 def bands(of: ParameterPosterior, test: Test, places: Sequence[Place]) -> Bands:
@@ -116,5 +116,5 @@ def _variance(by: Deviations) -> Array:
     return np.concatenate([np.sum((columns @ by.root) ** 2, axis=2) for columns in _columns(by)])
 
 
-def _asked(place: Place, test: Test) -> Channel:
+def _virtual_channel(place: Place, test: Test) -> Channel:
     return Channel(f"at {place.name}", place.name, place.row, np.zeros(test.time.size))

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.model.network import Network, Parameter, Row
-from validation.calibration.calibrate import Fit, KnownSegments, minimise, with_model_error
+from validation.calibration.calibrate import CachedSegments, Fit, minimise, with_model_error
 from validation.calibration.unknowns import working
 from validation.case import Case, Test
 from validation.comparison.linearisation import Segment, segments
@@ -100,7 +100,7 @@ def parameter_posterior(case: Case, progress: Progress = silent) -> ParameterPos
     progress("uncertainty of the calibrated model")
     parts = segments(network, tests, values, unknowns.parameters)
     start = unknowns.coordinates(values)
-    plain = minimise(network, tests, unknowns, start, None, values, 0, KnownSegments(parts, nearby=False))
+    plain = minimise(network, tests, unknowns, start, None, values, 0, CachedSegments(parts, nearby=False))
     fit = with_model_error(plain, tests, values, case.doubt)
     inputs = input_columns(network, tests, values, case.doubt, parts)
     names = (*unknowns.names, *uncertain_names(grown, doubts, tests[0], values, fit, case.doubt), *inputs)

@@ -26,7 +26,7 @@ STATIONARY = 0.1  # of a posterior standard deviation
 WORTH = 0.1  # nats: the error of time steps moves an objective by about as much, so that no fit can settle closer
 ROUGH = 1.0  # nats: a fit under a noise that is only guessed
 SHORTER, MORE, LESS = 0.01, 30.0, 10.0  # damping of the first shorter step; growth where that fails, fall where not
-SHORTEST, BORROWED = 1e6, 1e3  # damping beyond which no step gains; a borrowed Jacobian is given up before
+SHORTEST, STALE = 1e6, 1e3  # damping beyond which no step gains; a stale Jacobian is given up before
 GAIN_RATIO = 0.5  # of the predicted gain: a Jacobian that delivers less is made anew
 
 
@@ -79,7 +79,7 @@ class Fit:
 
 
 @dataclass(frozen=True)
-class KnownSegments:
+class CachedSegments:
     """Segments from before a fit, whose Jacobian serves as its first.
 
     parts : of the very state where the fit begins, or else (`nearby`) of one close by, whose residuals are made anew
@@ -93,7 +93,7 @@ class KnownSegments:
     stale: bool = False
 
     @property
-    def borrowed(self) -> bool:
+    def outdated(self) -> bool:
         return self.nearby and not self.renewed
 
 
@@ -132,7 +132,7 @@ def minimise(
     noise: Noise | None = None,
     fixed: Mapping[str, float] | None = None,
     iterations: int = 12,
-    known: KnownSegments | None = None,
+    cache: CachedSegments | None = None,
     draft: bool = False,
     centre: Array | None = None,
     worth: float = WORTH,
@@ -145,12 +145,12 @@ def minimise(
     iterations : steps that gain
 
     The Jacobian costs ten times a run, so it is held as long as steps do what it predicts, and made anew before the
-    end (unless `draft`); `known`: one to begin with; `centre`: prior mean (p,), 0 by default; `worth`: gain (nats) for
+    end (unless `draft`); `cache`: one to begin with; `centre`: prior mean (p,), 0 by default; `worth`: gain (nats) for
     which one more step is made; `keep` is told the values after every step, so that an interrupted fit can go on;
     `error`: the covariance of the model error, added to that of the noise.
     """
     fixed = dict(fixed or {})
-    iterate = Iterate(network, tests, unknowns, fixed, theta, noise, known, draft, centre, worth, error)
+    iterate = Iterate(network, tests, unknowns, fixed, theta, noise, cache, draft, centre, worth, error)
     for iteration in range(iterations):
         progress(f"calibration step {iteration + 1}, objective {iterate.objective:.4g}")
         done = iterate.step()
@@ -165,32 +165,32 @@ class Iterate:
 
     def __init__(
         self, network: Network, tests: Sequence[Test], unknowns: Unknowns, fixed: dict[str, float], theta: Array,
-        noise: Noise | None, known: KnownSegments | None, draft: bool, centre: Array | None, worth: float,
+        noise: Noise | None, cache: CachedSegments | None, draft: bool, centre: Array | None, worth: float,
         error: ModelError | None,
     ) -> None:  # fmt: skip
-        near = known is not None and known.nearby
+        near = cache is not None and cache.nearby
         self.network, self.tests, self.unknowns, self.fixed = network, tests, unknowns, fixed
-        self.draft, self.borrowed, self.worth = draft or near, known is not None and known.borrowed, worth
+        self.draft, self.outdated, self.worth = draft or near, cache is not None and cache.outdated, worth
         self.centre = np.zeros_like(theta) if centre is None else centre
         self.low, self.high = unknowns.bounds
         self.weight, self.damping, self.fresh, self.done = (
             unknowns.sd**-2.0,
             0.0,
-            not (near or (known is not None and known.stale)),
+            not (near or (cache is not None and cache.stale)),
             False,
         )
         self.gain_ratio = 1.0
         self.theta = np.clip(theta, self.low, self.high)
-        self.parts = self.begun(known)
+        self.parts = self.begun(cache)
         self.noise = noise or first_noise(self.parts)
         self.error, self.measure = error, InnerProduct(self.parts, self.noise, error)
         self.weigh()
 
-    def begun(self, known: KnownSegments | None) -> list[Segment]:
+    def begun(self, cache: CachedSegments | None) -> list[Segment]:
         """Residuals and Jacobian where the fit begins."""
-        if known is None:
+        if cache is None:
             return self.tangents(self.theta)
-        return self.residuals(self.theta, known.parts) if known.nearby else list(known.parts)
+        return self.residuals(self.theta, cache.parts) if cache.nearby else list(cache.parts)
 
     def tangents(self, x: Array) -> list[Segment]:
         now = {**self.fixed, **self.unknowns.values(x)}
@@ -239,15 +239,15 @@ class Iterate:
             predicted = float(g @ (new - self.theta) - 0.5 * (new - self.theta) @ H @ (new - self.theta))
             if predicted < self.enough:
                 return self.stop()
-            gained, trial = self.tried(new)
+            gained, trial = self.evaluated(new)
             if predicted > ROUGH and trial:
                 self.gain_ratio = min(self.gain_ratio, gained / predicted)
             if gained > 0.0:
-                return self.taken(new, trial, gained, predicted)
+                return self.accept(new, trial, gained, predicted)
             if self.back():
                 return True
 
-    def tried(self, new: Array) -> tuple[float, list[Segment]]:
+    def evaluated(self, new: Array) -> tuple[float, list[Segment]]:
         """What a step would gain, and the residuals at its end; none where the machine runs away there."""
         try:
             trial = self.residuals(new, self.parts)
@@ -255,11 +255,11 @@ class Iterate:
             return -np.inf, []
         return self.objective - 0.5 * (self.measure.square(trial) + self.strain(new)), trial
 
-    def taken(self, new: Array, trial: list[Segment], gained: float, predicted: float) -> bool:
+    def accept(self, new: Array, trial: list[Segment], gained: float, predicted: float) -> bool:
         """Go there; a Jacobian that promised too much is made anew."""
         self.theta, self.parts, self.fresh = new, trial, False
         self.damping = self.damping / LESS if self.damping > SHORTER else 0.0
-        if gained < GAIN_RATIO * predicted and not self.borrowed:
+        if gained < GAIN_RATIO * predicted and not self.outdated:
             self.renew()
         else:
             self.read()
@@ -276,13 +276,13 @@ class Iterate:
     def back(self) -> bool:
         """A step that made things worse: a true Jacobian first, then a shorter step; True when it can be no shorter.
 
-        A borrowed Jacobian that fails at a short step points elsewhere: another fit goes on with one of its own.
+        A stale Jacobian that fails at a short step points elsewhere: another fit goes on with one of its own.
         """
-        if not (self.fresh or self.borrowed):
+        if not (self.fresh or self.outdated):
             self.renew()
         else:
             self.damping = max(MORE * self.damping, SHORTER)
-        return self.damping > (BORROWED if self.borrowed else SHORTEST)
+        return self.damping > (STALE if self.outdated else SHORTEST)
 
     def fit(self) -> Fit:
         if not (self.fresh or self.draft):
@@ -388,7 +388,7 @@ def calibrated(
     for i in range(rounds):
         fit = minimise(
             network, tests, unknowns, fit.theta, fit_noise(fit.parts), held, 10,
-            KnownSegments(fit.parts, nearby=False, stale=True), draft=rough or i + 1 < rounds,
+            CachedSegments(fit.parts, nearby=False, stale=True), draft=rough or i + 1 < rounds,
             progress=progress, keep=keep,
         )  # fmt: skip
     return fit
@@ -407,4 +407,4 @@ def with_model_error(
     error = model_error(fit.network, tests, held, doubt)
     noise = fit_noise(InnerProduct(fit.parts, fit.noise, error).explained(fit.parts, error))
     return minimise(fit.network, tests, fit.unknowns, fit.theta, noise, held, iterations,
-                    KnownSegments(fit.parts, nearby=False, stale=iterations > 0), draft, error=error)  # fmt: skip
+                    CachedSegments(fit.parts, nearby=False, stale=iterations > 0), draft, error=error)  # fmt: skip

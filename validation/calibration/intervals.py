@@ -14,7 +14,7 @@ from validation.calibration.unknowns import to_value
 from validation.measurement.operators import of_measurement
 
 Array = NDArray[np.float64]
-UNSEEN = 0.9  # of its prior sd: a parameter that data narrow by less than a tenth was not seen
+UNINFORMED = 0.9  # of its prior sd: a parameter that data narrow by less than a tenth was not seen
 TRADES = 0.7  # correlation: half of the one's variance is the other's
 NORMAL_95 = 1.96
 
@@ -66,7 +66,7 @@ def estimates(fit: Fit, profiles: Mapping[str, Profile] | None = None) -> tuple[
         out.append(
             Estimate(
                 p.name, to_value(p, float(fit.theta[i])), p.unit, interval(fit, i), prior_of(p),
-                bool(fit.sd[i] <= UNSEEN * p.prior_sd), fit.unknowns.names[partner[i]] if trades else None,
+                bool(fit.sd[i] <= UNINFORMED * p.prior_sd), fit.unknowns.names[partner[i]] if trades else None,
                 bool(fit.at_bound[i]), known.get(p.name), of_measurement(p),
             )
         )  # fmt: skip

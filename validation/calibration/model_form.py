@@ -9,84 +9,59 @@ They are neutral at zero (shares at one). An effect that was added brings its ex
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lumped.model.network import Link, Network, Parameter, Source
-from lumped.transfer.laws import CONSTANT, FilmTable, Inputs, Law, Linear, Power, Table, TemperatureLaw
+from lumped.transfer.laws import (
+    CONSTANT,
+    FilmTable,
+    Inputs,
+    Linear,
+    Power,
+    Table,
+    TemperatureLaw,
+    WithTemperature,
+    Wrapped,
+)
 from validation.case import Test
 from validation.doubt import USUAL, Doubt
 from validation.effects.build import copy_link, copy_source
 
 Array = NDArray[np.float64]
-SETTLE_K = 40.0  # a usual rise: there an exponent moves no coefficient
-SETTLE_C = 40.0  # a usual temperature of a bearing
+REFERENCE_RISE_K = 40.0  # a usual rise: there an exponent moves no coefficient
+REFERENCE_DEGC = 40.0  # a usual temperature of a bearing
 KNOTS = (0.0, 1.0, 2.0, 5.0, 10.0, 20.0, 40.0, 80.0, 160.0, 320.0)
 FARTHEST = np.log(10.0)
-KNOWN = ("copper", "measured")  # losses whose law is not in doubt
+EXACT_LOSSES = ("copper", "measured")  # losses whose law is not in doubt
+
+
+GREASE = Linear(1.0, REFERENCE_DEGC + 1.0)  # T - REFERENCE_DEGC: friction falls as the grease warms
 
 
 @dataclass(frozen=True)
-class ExponentError(Law):
+class ExponentError(Wrapped):
     """d law / d exponent of one input: law * ln(law(u) / law(reference)) with the other inputs at their reference.
 
     reference : level of each input at which the law is right
     """
 
-    base: Law
     input: str
     reference: Mapping[str, float]
-    reads: tuple[str, ...] = field(init=False, default=())
-    temperature: TemperatureLaw = field(init=False, default=TemperatureLaw())
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "reads", self.base.reads)
-        object.__setattr__(self, "temperature", self.base.temperature)
 
     def factor(self, inputs: Inputs) -> Array | float:
         now = np.abs(np.asarray(inputs[self.input], float))
         level = {k: np.full_like(now, v) for k, v in self.reference.items()}
         at = np.abs(np.asarray(self.base.factor({**level, self.input: now}), float))
         right = np.abs(np.asarray(self.base.factor(level), float))
-        bend = np.log(np.maximum(at, 1e-12 * right) / right)
-        return np.asarray(self.base.factor(inputs) * np.clip(bend, -FARTHEST, FARTHEST))
-
-
-@dataclass(frozen=True)
-class TemperatureSlopeError(Law):
-    """d law / d slope with temperature (1/K), zero at SETTLE_C: friction falls as the grease warms."""
-
-    base: Law
-    reads: tuple[str, ...] = field(init=False, default=())
-    temperature: TemperatureLaw = field(init=False, default=Linear(1.0, SETTLE_C + 1.0))
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "reads", self.base.reads)
-
-    def factor(self, inputs: Inputs) -> Array | float:
-        return self.base.factor(inputs)
-
-
-@dataclass(frozen=True)
-class DifferenceExponentError(Law):
-    """d law / d exponent of the temperature difference, zero at SETTLE_K."""
-
-    base: Law
-    reads: tuple[str, ...] = field(init=False, default=())
-    temperature: TemperatureLaw = field(init=False, default=TemperatureLaw())
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "reads", self.base.reads)
-        object.__setattr__(self, "temperature", exponent_derivative(self.base.temperature))
-
-    def factor(self, inputs: Inputs) -> Array | float:
-        return self.base.factor(inputs)
+        log_ratio = np.log(np.maximum(at, 1e-12 * right) / right)
+        return np.asarray(self.base.factor(inputs) * np.clip(log_ratio, -FARTHEST, FARTHEST))
 
 
 def exponent_derivative(law: TemperatureLaw) -> Table | FilmTable:
-    """law(dT) ln(dT / SETTLE_K) as a table."""
+    """law(dT) ln(dT / REFERENCE_RISE_K) as a table."""
     if isinstance(law, FilmTable):
         films = np.reshape(law.value, (-1, len(law.difference)))
         return replace(law, value=tuple((films * _turn(np.array(law.difference))).ravel()))
@@ -100,7 +75,7 @@ def exponent_derivative(law: TemperatureLaw) -> Table | FilmTable:
 
 
 def _turn(difference: Array) -> Array:
-    return np.log(np.clip(difference / SETTLE_K, 0.1, 10.0))
+    return np.log(np.clip(difference / REFERENCE_RISE_K, 0.1, 10.0))
 
 
 def levels(tests: Sequence[Test]) -> dict[str, float]:
@@ -131,7 +106,7 @@ def with_model_form(
         if p.mapping == "log" or p.name in added:
             own = [x for x in network.links if first.get(x.name) == p.name]
             films = [x for x in own if p.name in added or is_film(network, x)]
-            losses = [x for x in network.sources if first.get(x.name) == p.name and x.kind not in KNOWN]
+            losses = [x for x in network.sources if first.get(x.name) == p.name and x.kind not in EXACT_LOSSES]
             laws = [x.law for x in films] + [x.law for x in losses]
             for name in dict.fromkeys(r for law in laws for r in law.reads if r in moving):
                 network = _with_input(network, p.name, name, films, losses, level, doubt)
@@ -167,16 +142,16 @@ def _with_input(
     """The exponent of one input in all laws of a parameter that follow it."""
     new = []
 
-    def bend(x: Link | Source) -> ExponentError | None:
+    def exponent_error(x: Link | Source) -> ExponentError | None:
         fit = name in x.law.reads and set(x.law.reads) <= set(level)
         return ExponentError(x.law, name, {k: level[k] for k in x.law.reads}) if fit else None
 
     for film in films:
-        if law := bend(film):
+        if law := exponent_error(film):
             new.append(f"{film.name}^{name}")
             network = copy_link(network, film, new[-1], law)
     for loss in losses:
-        if law := bend(loss):
+        if law := exponent_error(loss):
             new.append(f"{loss.name}^{name}")
             network = copy_source(network, loss, new[-1], law)
     return _with_parameter(network, f"{parent}^{name}", new, doubt["input exponent"])
@@ -186,7 +161,7 @@ def _with_difference(network: Network, parent: str, films: Sequence[Link], doubt
     """The exponent of the temperature difference in the films of free convection."""
     free = [x for x in films if isinstance(x.law.temperature, (Power, Table, FilmTable))]
     for x in free:
-        network = copy_link(network, x, f"{x.name}^dT", DifferenceExponentError(x.law))
+        network = copy_link(network, x, f"{x.name}^dT", WithTemperature(x.law, exponent_derivative(x.law.temperature)))
     return _with_parameter(network, f"{parent}^dT", [f"{x.name}^dT" for x in free], doubt["difference exponent"])
 
 
@@ -194,7 +169,7 @@ def _with_warming(network: Network, parent: str, losses: Sequence[Source], doubt
     """The slope with temperature of friction."""
     greased = [x for x in losses if x.kind == "friction" and x.law.temperature == CONSTANT]
     for x in greased:
-        network = copy_source(network, x, f"{x.name}^T", TemperatureSlopeError(x.law))
+        network = copy_source(network, x, f"{x.name}^T", WithTemperature(x.law, GREASE))
     return _with_parameter(network, f"{parent}^T", [f"{x.name}^T" for x in greased], doubt["warming"], "1/K")
 
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from validation.calibration.calibrate import Fit, KnownSegments, Progress, minimise, no_progress
+from validation.calibration.calibrate import CachedSegments, Fit, Progress, minimise, no_progress
 from validation.calibration.intervals import NORMAL_95, Profile
 from validation.calibration.unknowns import Unknowns, to_value
 from validation.case import Test
@@ -24,19 +24,19 @@ LOOKS = 8  # at a curve that is near a parabola; each is a fit
 
 
 def profiles(
-    fit: Fit, tests: Sequence[Test], held: Mapping[str, float], names: Sequence[str],
+    fit: Fit, tests: Sequence[Test], fixed: Mapping[str, float], names: Sequence[str],
     progress: Progress = no_progress,
 ) -> dict[str, Profile]:  # fmt: skip
-    """Name -> profile interval at 95 %; `held` are the values of what is not free."""
+    """Name -> profile interval at 95 %; `fixed` are the values of what is not free."""
     out = {}
     for name in names:
         progress(f"profile of {name}")
-        out[name] = _profile(fit, tests, held, fit.unknowns.names.index(name))
+        out[name] = _profile(fit, tests, fixed, fit.unknowns.names.index(name))
     return out
 
 
-def _profile(fit: Fit, tests: Sequence[Test], held: Mapping[str, float], i: int) -> Profile:
-    p, line = fit.unknowns.parameters[i], Line(fit, tests, held, i)
+def _profile(fit: Fit, tests: Sequence[Test], fixed: Mapping[str, float], i: int) -> Profile:
+    p, line = fit.unknowns.parameters[i], Line(fit, tests, fixed, i)
     low, high = (end(line, side) for side in (-1.0, 1.0))
     return Profile(to_value(p, low[0]), to_value(p, high[0]), (low[1], high[1]))
 
@@ -64,7 +64,7 @@ class Line:
         values = {**self.held, **fit.values, p.name: to_value(p, at)}
         free = Unknowns(tuple(fit.unknowns.parameters[j] for j in rest))
         best = minimise(
-            fit.network, self.tests, free, start, fit.noise, values, known=KnownSegments(near), error=fit.error
+            fit.network, self.tests, free, start, fit.noise, values, cache=CachedSegments(near), error=fit.error
         )
         objective = best.objective + 0.5 * (at / p.prior_sd) ** 2
         return float(np.sqrt(max(2.0 * (objective - fit.objective), 0.0)))

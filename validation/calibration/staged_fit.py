@@ -45,17 +45,17 @@ def fit_stages(case: Case, tests: Sequence[Test], unknowns: Unknowns) -> list[St
     left, out = {p.name for p in unknowns.parameters if not of_measurement(p)}, []
     for test in tests:
         if test.frees:
-            own = {n for n in left if any(belongs(n, g) for g in _known(case, test, left))}
+            own = {n for n in left if any(belongs(n, g) for g in _freed_groups(case, test, left))}
             out.append(Stage((test,), frozenset(own)))
             left -= own
     together = tuple(t for t in tests if not t.frees)
     return [*out, Stage(together, frozenset(left))] if together else out
 
 
-def _known(case: Case, test: Test, left: set[str]) -> tuple[str, ...]:
+def _freed_groups(case: Case, test: Test, remaining: set[str]) -> tuple[str, ...]:
     for pattern in test.frees:
-        if not any(belongs(n, pattern) for n in left):
-            right = f"free and not freed by an earlier test: {', '.join(sorted(left))}"
+        if not any(belongs(n, pattern) for n in remaining):
+            right = f"free and not freed by an earlier test: {', '.join(sorted(remaining))}"
             raise InputError(f"'{pattern}' frees nothing", f"case '{case.name}' test '{test.name}'", right)
     return test.frees
 

@@ -51,14 +51,16 @@ def segments(
     values: Mapping[str, float],
     tangents: Sequence[Parameter] = (),
     instants: int = INSTANTS,
+    numbers: int = NUMBERS,
 ) -> list[Segment]:
     """Every channel of every test with residual and derivatives, as precise as a fit needs them.
 
+    numbers : of a Jacobian in memory at once
     Tests run side by side, the longest first (the kernel frees the GIL).
     """
 
     def look(test: Test) -> list[Segment]:
-        return _of_test(network, test, values, tangents, instants)
+        return _of_test(network, test, values, tangents, instants, numbers)
 
     if len(tests) < 2 or len(tests[0].time) * network.size < WORTH_A_THREAD:
         return [s for test in tests for s in look(test)]
@@ -68,9 +70,14 @@ def segments(
 
 
 def _of_test(
-    network: Network, test: Test, values: Mapping[str, float], tangents: Sequence[Parameter], instants: int
+    network: Network,
+    test: Test,
+    values: Mapping[str, float],
+    tangents: Sequence[Parameter],
+    instants: int,
+    numbers: int,
 ) -> list[Segment]:
-    n, length = len(test.time), stretch(len(test.channels), len(tangents))
+    n, length = len(test.time), stretch(len(test.channels), len(tangents), numbers)
     watch, start = Watch(network, test, values, tangents, FIT), groups(n, instants)
     means = [Blocks(start, 2 + len(tangents)) for _ in test.channels]
     for first in range(0, n, length):
@@ -84,9 +91,9 @@ def _of_test(
     return [Segment(test.name, c.name, m[:, 0], m[:, 1], m[:, 2:], c.sigma_K, allowed(c)) for c, m in read]
 
 
-def stretch(channels: int, tangents: int) -> int:
+def stretch(channels: int, tangents: int, numbers: int = NUMBERS) -> int:
     """Samples looked at together, so that a long test needs no more memory than a short one."""
-    return int(max(NUMBERS // (max(channels, 1) * (tangents + 1)), SHORTEST))
+    return int(max(numbers // (max(channels, 1) * (tangents + 1)), SHORTEST))
 
 
 @once

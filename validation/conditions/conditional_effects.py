@@ -29,7 +29,7 @@ from validation.effects.sites import neighbours
 from validation.effects.time_window import Event, event
 from validation.inference.evidence import Evidence, extended_prior, projected, weighed
 from validation.inference.posterior import log_bayes_of
-from validation.inference.score import Score, apart, score, total
+from validation.inference.score import Score, per_test, score, total
 
 Array = NDArray[np.float64]
 TESTS, EVENTS, EACH = 16, 4, 6  # conditions of whole tests, events, and explanations of each that join the others
@@ -61,11 +61,11 @@ def conditions(
     whole = [e for e in single_test_effects(scene) if only is None or e.kind in only]
     chosen, events = best(single_test_conditions(evidence, whole, known), TESTS), []
     for s in likely_intervals(evidence, looked, heat, known, len(bases)):
-        found, own = explained(evidence, bases, s, looked, known)
-        events.append(found)
+        explanations, own = explained(evidence, bases, s, looked, known)
+        events.append(explanations)
         chosen += best(own, EACH)
-    for gate, share in declared_conditions(case, evidence, events):
-        effects = [During.of(base, gate, share / len(bases)) for base in bases]
+    for name, share in declared_conditions(case, evidence, events):
+        effects = [During.of(base, name, share / len(bases)) for base in bases]
         chosen += best(scored_in(evidence, effects, known, odds_against_nothing(share / len(bases))), EACH)
     ordered = sorted(chosen, key=lambda c: -c.worth)
     once = {c.effect.name: c.effect for c in reversed(ordered)}  # two stretches may come to the same ends
@@ -80,8 +80,8 @@ def declared_conditions(case: Case, evidence: Evidence, events: Sequence[Event])
     inputs = {n: np.concatenate([t.inputs[n] for t in evidence.tests if n in t.inputs]) for t in evidence.tests
               for n in t.inputs}  # fmt: skip
     switches = [n for n, u in inputs.items() if n not in read and set(np.unique(u)) == {0.0, 1.0}]
-    said = [e for name, yes in case.answers.items() if yes and (e := event(name))]
-    new = [e.name for e in said if all(e.overlap(x) < ALIKE for x in events)]
+    events_confirmed = [e for name, yes in case.answers.items() if yes and (e := event(name))]
+    new = [e.name for e in events_confirmed if all(e.overlap(x) < ALIKE for x in events)]
     return [(n, 0.5 / len(switches)) for n in switches] + [(n, 0.5 / len(evidence.tests)) for n in new]
 
 
@@ -95,26 +95,26 @@ def odds_against_nothing(share: float) -> float:
     return float(np.log(PRIOR["condition"].share * share / PRIOR["nothing"].share))
 
 
-def single_test_conditions(evidence: Evidence, bases: Sequence[Effect], known: Mapping[str, float]) -> list[Condition]:
+def single_test_conditions(evidence: Evidence, bases: Sequence[Effect], values: Mapping[str, float]) -> list[Condition]:
     """Everything that may have held in one test alone, or in some of them; none where there is only one test."""
     names = [t.name for t in evidence.tests]
     if len(names) < 2 or not bases:
         return []
-    parts = columns(evidence, bases, known)
+    parts = columns(evidence, bases, values)
     parameters = extended(evidence.fit.network, bases).parameters[-len(bases) :]
     theta, sd = extended_prior(evidence.fit)
     sign = np.tile([q.sign for q in parameters], len(names)).astype(int)
-    found = score(apart(projected(evidence.fit, parts)), theta, sd, sign)
+    scores = score(per_test(projected(evidence.fit, parts)), theta, sd, sign)
     usual = np.array([q.prior_sd for q in parameters])
     every, out = sets_of(len(names)), []
     for chosen in every:
-        own, seen = together(found, len(bases), chosen)
+        own, seen = together(scores, len(bases), chosen)
         one = len(chosen) == 1
         held = FORM["one whole test" if one else "several whole tests"]
         share = held / (len(bases) * (len(names) if one else len(every) - len(names)))
-        gate = gate_of([evidence.tests[t] for t in chosen])
+        name = condition_of([evidence.tests[t] for t in chosen])
         out += [
-            Condition(During.of(base, gate, share), float(b) + odds_against_nothing(share))
+            Condition(During.of(base, name, share), float(b) + odds_against_nothing(share))
             for base, b, visible in zip(bases, log_bayes_of(own, usual), seen, strict=True) if visible
         ]  # fmt: skip
     return out
@@ -126,20 +126,20 @@ def sets_of(tests: int) -> list[tuple[int, ...]]:
     return [c for n in range(1, most + 1) for c in combinations(range(tests), n)]
 
 
-def together(found: Score, bases: int, chosen: Sequence[int]) -> tuple[Score, NDArray[np.bool_]]:
+def together(scores: Score, bases: int, chosen: Sequence[int]) -> tuple[Score, NDArray[np.bool_]]:
     """The score of every effect with one amplitude in some tests, and whether it is felt in each of them.
 
-    found : of every effect in every test, test by test
+    scores : of every effect in every test, test by test
     """
     rows = np.array([[t * bases + k for t in chosen] for k in range(bases)])
-    u = found.u[rows].sum(axis=1)
-    V = found.V[rows[:, :, None], rows[:, None, :]].sum(axis=(1, 2))
-    raw = found.raw[rows].sum(axis=1)
-    own = Score(u, np.diag(np.maximum(V, 0.0)), raw, found.sign[:bases], np.zeros(bases, int))
-    return own, found.visible[rows].all(axis=1)
+    u = scores.u[rows].sum(axis=1)
+    V = scores.V[rows[:, :, None], rows[:, None, :]].sum(axis=(1, 2))
+    raw = scores.raw[rows].sum(axis=1)
+    own = Score(u, np.diag(np.maximum(V, 0.0)), raw, scores.sign[:bases], np.zeros(bases, int))
+    return own, scores.visible[rows].all(axis=1)
 
 
-def gate_of(tests: Sequence[Test]) -> str:
+def condition_of(tests: Sequence[Test]) -> str:
     """A test by its name, several as an event that lasts all of each."""
     if len(tests) == 1:
         return tests[0].name
@@ -147,28 +147,28 @@ def gate_of(tests: Sequence[Test]) -> str:
 
 
 def likely_intervals(
-    evidence: Evidence, looked: Scan, heat: Sequence[MissingHeat], known: Mapping[str, float], laws: int
+    evidence: Evidence, looked: Scan, heat: Sequence[MissingHeat], values: Mapping[str, float], laws: int
 ) -> list[Interval]:
     """The stretches that could carry weight once the price of when, what and where is paid."""
-    found = hat_scores(evidence, looked, known)
+    scores = hat_scores(evidence, looked, values)
     limit = -HOPELESS - odds_against_nothing(0.5 / (laws * len(evidence.tests)))
-    ordered = stretches(found, heat, neighbours(evidence.fit.network))
-    return [s for s in distinct(ordered, EVENTS) if worth(found, s) > limit]
+    ordered = stretches(scores, heat, neighbours(evidence.fit.network))
+    return [s for s in distinct(ordered, EVENTS) if worth(scores, s) > limit]
 
 
 def explained(
-    evidence: Evidence, bases: Sequence[Effect], s: Interval, looked: Scan, known: Mapping[str, float]
+    evidence: Evidence, bases: Sequence[Effect], s: Interval, looked: Scan, values: Mapping[str, float]
 ) -> tuple[Event, list[Condition]]:
     """An event with its ends at the samples, and all that it may have been, exactly run; the most probable ones with
     ends of their own."""
     far = reach(looked)
     price = 0.5 / (len(bases) * len(evidence.tests))
-    like = likeness(evidence, bases, s, known)
-    timed = refined(evidence, like, repeats(evidence, like, s.event, known), far, known)
-    every = best(timed_by(evidence, bases, timed, price, known), EACH)
+    like = likeness(evidence, bases, s, values)
+    timed = refined(evidence, like, repeats(evidence, like, s.event, values), far, values)
+    every = best(timed_by(evidence, bases, timed, price, values), EACH)
     few = TIMED if len(timed.event.every) <= SPANS else 0
-    own = [refined(evidence, c.effect.base, timed.event, far, known) for c in every[:few]]
-    again = [timed_by(evidence, [c.effect.base], t, price, known) for c, t in zip(every, own)]
+    own = [refined(evidence, c.effect.base, timed.event, far, values) for c in every[:few]]
+    again = [timed_by(evidence, [c.effect.base], t, price, values) for c, t in zip(every, own)]
     again += [[]] * (len(every) - len(again))
     return timed.event, [max([c, *new], key=lambda x: x.worth) for c, new in zip(every, again, strict=True)]
 
@@ -179,42 +179,42 @@ def reach(looked: Scan) -> dict[str, float]:
 
 
 def timed_by(
-    evidence: Evidence, bases: Sequence[Effect], timed: TimedEvent, price: float, known: Mapping[str, float]
+    evidence: Evidence, bases: Sequence[Effect], timed: TimedEvent, price: float, values: Mapping[str, float]
 ) -> list[Condition]:
     """All that an event may have been.  price : share of what and in which test"""
     share = price * float(np.exp(max(timed.log_share, -600.0)))
     effects = [During.of(base, timed.event.name, share) for base in bases]
-    return scored_in(evidence, effects, known, odds_against_nothing(share))
+    return scored_in(evidence, effects, values, odds_against_nothing(share))
 
 
-def likeness(evidence: Evidence, bases: Sequence[Effect], s: Interval, known: Mapping[str, float]) -> Effect:
+def likeness(evidence: Evidence, bases: Sequence[Effect], s: Interval, values: Mapping[str, float]) -> Effect:
     """Of all that can hold for a while what explains a stretch best as it stands."""
     effects = [During.of(base, s.event.name) for base in bases]
-    rows = scored_in(evidence, effects, known, 0.0)
+    rows = scored_in(evidence, effects, values, 0.0)
     return max(rows, key=lambda c: c.worth).effect.base if rows else bases[0]
 
 
 def scored_in(
-    evidence: Evidence, effects: Sequence[During], known: Mapping[str, float], prior: float
+    evidence: Evidence, effects: Sequence[During], values: Mapping[str, float], prior: float
 ) -> list[Condition]:
     """Conditions at their linear amplitude, without those that move no reading further than chance does."""
     parameters = extended(evidence.fit.network, effects).parameters[-len(effects) :]
     theta, sd = extended_prior(evidence.fit)
-    parts = columns(evidence, effects, known)
-    found = score(total(projected(evidence.fit, parts)), theta, sd, np.array([q.sign for q in parameters], int))
-    bayes = log_bayes_of(found, np.array([q.prior_sd for q in parameters]))
+    parts = columns(evidence, effects, values)
+    scores = score(total(projected(evidence.fit, parts)), theta, sd, np.array([q.sign for q in parameters], int))
+    bayes = log_bayes_of(scores, np.array([q.prior_sd for q in parameters]))
     moved = np.max([np.max(np.abs(s.J[:, evidence.p :]), axis=0) / s.weight for s in parts], axis=0)
-    clear = found.visible & (moved * np.abs(found.amplitude) > USUAL["excursion"])
+    clear = scores.visible & (moved * np.abs(scores.amplitude) > USUAL["excursion"])
     return [Condition(e, float(b) + prior) for e, b, seen in zip(effects, bayes, clear, strict=True) if seen]
 
 
-def joined(evidence: Evidence, effects: Sequence[Effect], known: Mapping[str, float]) -> Evidence:
+def joined(evidence: Evidence, effects: Sequence[Effect], values: Mapping[str, float]) -> Evidence:
     """The evidence with further effects behind its own."""
     if not effects:
         return evidence
     e, fit, p = evidence, evidence.fit, evidence.p
     network = extended(e.network, effects)
     parameters = (*e.parameters, *network.parameters[-len(effects) :])
-    new = columns(evidence, effects, known)
+    new = columns(evidence, effects, values)
     parts = tuple(replace(s, J=np.column_stack([s.J, n.J[:, p:]])) for s, n in zip(e.parts, new, strict=True))
     return weighed(e.tests, fit, network, (*e.effects, *effects), parameters, parts, e.jumps, e.large)

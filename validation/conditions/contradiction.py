@@ -19,7 +19,7 @@ from validation.calibration.calibrate import Fit
 from validation.calibration.unknowns import to_value
 from validation.case import Test
 from validation.inference.evidence import extended_prior, projected
-from validation.inference.score import apart, score
+from validation.inference.score import per_test, score
 from validation.measurement.operators import head
 
 Array = NDArray[np.float64]
@@ -82,9 +82,9 @@ def differences(fit: Fit) -> list[Difference]:
     parts = [replace(s, J=np.column_stack([s.J, s.J])) for s in fit.parts]  # once for all tests, once for this one
     grams = projected(fit, parts)
     theta, sd = extended_prior(fit)
-    found = score(apart(grams), theta, sd, np.zeros(p * len(grams), int))
+    scores = score(per_test(grams), theta, sd, np.zeros(p * len(grams), int))
     each = [(q, test) for test in grams for q in parameters]
-    rows = zip(each, fit.theta.tolist() * len(grams), found.amplitude, found.sd, found.visible, strict=True)
+    rows = zip(each, fit.theta.tolist() * len(grams), scores.amplitude, scores.sd, scores.visible, strict=True)
     return [_row(fit.network, q, test, x, float(a), float(s)) for (q, test), x, a, s, seen in rows
             if seen and felt_elsewhere(q)]  # fmt: skip
 

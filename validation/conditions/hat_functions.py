@@ -20,7 +20,7 @@ from validation.effects.time_window import Event, Span
 from validation.inference.evidence import Evidence, extended_prior, projected
 from validation.inference.model_error import nodes
 from validation.inference.posterior import one_size
-from validation.inference.score import Score, apart, score
+from validation.inference.score import Score, per_test, score
 
 Array = NDArray[np.float64]
 
@@ -109,9 +109,9 @@ def hat_scores(evidence: Evidence, looked: Scan, values: Mapping[str, float]) ->
     for name, g in grams.items():
         start[name], count = count, count + g.Zr.size
     theta, sd = extended_prior(fit)
-    found = score(apart(grams), theta, sd, np.zeros(count, int))
+    scores = score(per_test(grams), theta, sd, np.zeros(count, int))
     T = {t.name: temperatures(evidence, t, looked.knots[t.name], values) for t in evidence.tests}
-    return HatScores(looked.places, looked.knots, start, T, found, power_scale(network), conductance_scale(network))
+    return HatScores(looked.places, looked.knots, start, T, scores, power_scale(network), conductance_scale(network))
 
 
 def temperatures(evidence: Evidence, test: Test, at: Array, values: Mapping[str, float]) -> dict[str, Array]:

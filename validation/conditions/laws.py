@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from validation.calibration.model_form import KNOWN, is_film
+from validation.calibration.model_form import EXACT_LOSSES, is_film
 from validation.conditions.refine import columns
 from validation.doubt import PRIOR, RARE
 from validation.effects import extended
@@ -22,7 +22,7 @@ MOST, HOPELESS = 4, 5.0  # laws that join the other effects; nats below nothing 
 VARIED = 0.2  # of its largest value: an input that moves less shows no law
 
 
-def laws(evidence: Evidence, known: Mapping[str, float]) -> list[Above]:
+def laws(evidence: Evidence, values: Mapping[str, float]) -> list[Above]:
     """Corrections that could carry weight."""
     turns = levels(evidence)
     effects = [Above(f"{x}|{name}>{level:g}") for x, names in targets(evidence, list(turns)).items()
@@ -32,17 +32,17 @@ def laws(evidence: Evidence, known: Mapping[str, float]) -> list[Above]:
     share = 1.0 / len(effects)
     prior = np.log(PRIOR["effect"].share * RARE[KIND].share * share / PRIOR["nothing"].share)
     sd = np.array([q.prior_sd for q in extended(evidence.fit.network, effects).parameters[-len(effects) :]])
-    found = score(total(projected(evidence.fit, columns(evidence, effects, known))), *extended_prior(evidence.fit),
+    scores = score(total(projected(evidence.fit, columns(evidence, effects, values))), *extended_prior(evidence.fit),
                   np.zeros(len(effects), int))  # fmt: skip
-    worth = log_bayes_of(found, sd) + prior
-    order = [int(k) for k in np.argsort(-worth) if found.visible[k] and worth[k] > -HOPELESS]
+    worth = log_bayes_of(scores, sd) + prior
+    order = [int(k) for k in np.argsort(-worth) if scores.visible[k] and worth[k] > -HOPELESS]
     return [Above(effects[k].place, share) for k in order[:MOST]]
 
 
 def targets(evidence: Evidence, inputs: Sequence[str]) -> dict[str, list[str]]:
     """Declared losses with every input, but for those whose law is not in doubt; films with those they follow."""
     network = evidence.fit.network
-    losses = {s.name: list(inputs) for s in network.sources if not s.origin and s.kind not in KNOWN}
+    losses = {s.name: list(inputs) for s in network.sources if not s.origin and s.kind not in EXACT_LOSSES}
     films = [x for x in network.links if not x.origin and is_film(network, x)]
     return losses | {x.name: [r for r in x.law.reads if r in inputs] for x in films}
 

@@ -36,9 +36,9 @@ def answered(evidence: Evidence, hypotheses: Sequence[Hypothesis], answers: Mapp
     """The hypotheses with what the user said as evidence."""
     wrong = USUAL["answer"]
     out = list(hypotheses)
-    for about, said in answers.items():
+    for about, answer in answers.items():
         yes = [concerns(e, about) for e in evidence.effects]
-        agrees = [any(yes[k] for k in h.members) == said for h in out]
+        agrees = [any(yes[k] for k in h.members) == answer for h in out]
         out = [replace(h, log_prior=h.log_prior + float(np.log(1.0 - wrong if a else wrong)))
                for h, a in zip(out, agrees, strict=True)]  # fmt: skip
     return out
@@ -48,12 +48,12 @@ def concerns(effect: Effect, about: str) -> bool:
     """Would the answer be yes if this effect were there?"""
     if not isinstance(effect, During):
         return effect.name == about
-    asked = event(about)
-    if asked is None:
-        return about in effect.tests or about == effect.gate
+    named_event = event(about)
+    if named_event is None:
+        return about in effect.tests or about == effect.condition
     if effect.event is None:
-        return effect.gate in asked.tests
-    return effect.event.overlap(asked) > LIKE
+        return effect.condition in named_event.tests
+    return effect.event.overlap(named_event) > LIKE
 
 
 def best_question(posterior: Posterior) -> Question | None:
@@ -61,9 +61,9 @@ def best_question(posterior: Posterior) -> Question | None:
     P, e = probabilities(posterior.hypotheses), posterior.evidence
     if P.max() >= SURE:
         return None
-    asked = dict.fromkeys(x.gate if isinstance(x, During) else x.name for x in e.effects
+    subjects = dict.fromkeys(x.condition if isinstance(x, During) else x.name for x in e.effects
                           if isinstance(x, During) or x.fault)  # fmt: skip
-    rows = [(about, yes_of(posterior, P, about)) for about in asked]
+    rows = [(about, yes_of(posterior, P, about)) for about in subjects]
     about, yes = max(rows, key=lambda row: information(row[1]), default=("", 0.0))
     if information(yes) < WORTH:
         return None

@@ -21,9 +21,9 @@ from validation.inference.posterior import one_size
 from validation.inference.score import Score, score, total
 
 Array = NDArray[np.float64]
-Known = Mapping[str, float]
+Values = Mapping[str, float]
 Spans = Mapping[str, Sequence[Span]]
-TRIED = 15  # instants around each end
+GRID_POINTS = 15  # instants around each end
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class TimedEvent:
     ends: tuple[tuple[Span, Span], ...]
 
 
-def refined(evidence: Evidence, base: Effect, event: Event, reach_s: Mapping[str, float], known: Known) -> TimedEvent:
+def refined(evidence: Evidence, base: Effect, event: Event, reach_s: Mapping[str, float], values: Values) -> TimedEvent:
     """Ends of every span in turn, the others where they are.  reach_s : test -> how far an end may move"""
     spans, log_share = {t: list(own) for t, own in event.spans.items()}, 0.0
     ends: list[tuple[Span, Span]] = []
@@ -48,7 +48,7 @@ def refined(evidence: Evidence, base: Effect, event: Event, reach_s: Mapping[str
     for test, own in event.spans.items():
         for i in range(len(own)):
             others = {t: [s for k, s in enumerate(all_) if (t, k) != (test, i)] for t, all_ in spans.items()}
-            one = moved(evidence, base, tests[test], own[i], others, reach_s[test], known, usual if ends else None)
+            one = moved(evidence, base, tests[test], own[i], others, reach_s[test], values, usual if ends else None)
             spans[test][i] = one.event.spans[test][0]
             log_share += one.log_share
             ends += one.ends
@@ -56,7 +56,7 @@ def refined(evidence: Evidence, base: Effect, event: Event, reach_s: Mapping[str
 
 
 def moved(
-    evidence: Evidence, base: Effect, test: Test, span: Span, others: Spans, reach_s: float, known: Known,
+    evidence: Evidence, base: Effect, test: Test, span: Span, others: Spans, reach_s: float, values: Values,
     usual_s: float | None = None,
 ) -> TimedEvent:  # fmt: skip
     """Begin and end of one span: every two instants around them, each pair a difference of two steps.
@@ -65,7 +65,7 @@ def moved(
     """
     begins, ends = around(test, span[0], reach_s), around(test, span[1], reach_s)
     at = np.concatenate([begins, ends])
-    u, V = steps(evidence, base, test, at, others, known)
+    u, V = steps(evidence, base, test, at, others, values)
     a, b = (x.ravel() for x in np.meshgrid(np.arange(begins.size), np.arange(begins.size, at.size), indexing="ij"))
     a, b = a[at[a] < at[b]], b[at[a] < at[b]]
     bayes = log_bayes(*pulse(u, V, a, b), evidence, base)
@@ -84,7 +84,7 @@ def pulse(u: Array, V: Array, a: NDArray[np.int64], b: NDArray[np.int64]) -> tup
     return u[a] - u[b] + u[rest], own + V[rest, rest] + 2.0 * (V[a, rest] - V[b, rest])
 
 
-def repeats(evidence: Evidence, base: Effect, event: Event, known: Known) -> Event:
+def repeats(evidence: Evidence, base: Effect, event: Event, values: Values) -> Event:
     """The event without the repeats that the others do not predict; of one that does not repeat nothing is left out.
 
     Each is left out in turn: at the amplitude of the others it must fit better than without. The worst goes first.
@@ -94,10 +94,10 @@ def repeats(evidence: Evidence, base: Effect, event: Event, known: Known) -> Eve
         return event
     effects = [During.of(base, Event.of({t: [span]}).name) for t, span in every]
     theta, sd = extended_prior(evidence.fit)
-    parts = columns(evidence, effects, known)
-    found = score(total(projected(evidence.fit, parts)), theta, sd, np.zeros(len(every), int))
+    parts = columns(evidence, effects, values)
+    scores = score(total(projected(evidence.fit, parts)), theta, sd, np.zeros(len(every), int))
     stays = list(range(len(every)))
-    while len(stays) > 1 and min(gain := [gained(found, i, stays) for i in stays]) <= 0.0:
+    while len(stays) > 1 and min(gain := [gained(scores, i, stays) for i in stays]) <= 0.0:
         stays.remove(stays[int(np.argmin(gain))])
     spans: dict[str, list[Span]] = {}
     for i in stays:
@@ -105,14 +105,14 @@ def repeats(evidence: Evidence, base: Effect, event: Event, known: Known) -> Eve
     return Event.of(spans)
 
 
-def gained(found: Score, i: int, every: Sequence[int]) -> float:
+def gained(scores: Score, i: int, every: Sequence[int]) -> float:
     """Log likelihood that a repeat gains at the amplitude of the others."""
     others = [j for j in every if j != i]
-    felt = float(np.sum(found.V[np.ix_(others, others)]))
+    felt = float(np.sum(scores.V[np.ix_(others, others)]))
     if felt <= 0.0:  # the others move no reading: they predict nothing
         return 0.0
-    a = float(np.sum(found.u[others])) / felt
-    return a * (float(found.u[i]) - a * float(np.sum(found.V[i, others]))) - 0.5 * a**2 * float(found.V[i, i])
+    a = float(np.sum(scores.u[others])) / felt
+    return a * (float(scores.u[i]) - a * float(np.sum(scores.V[i, others]))) - 0.5 * a**2 * float(scores.V[i, i])
 
 
 def log_bayes(u: Array, V: Array, evidence: Evidence, base: Effect) -> Array:
@@ -127,7 +127,7 @@ def around(test: Test, at: float, reach_s: float) -> Array:
     """Samples near an instant, inside the record."""
     t, step = test.time, float(np.median(np.diff(test.time)))
     low, high = max(at - reach_s, t[0]), min(at + reach_s, t[-1])
-    count = int(min(TRIED, round((high - low) / step) + 1))
+    count = int(min(GRID_POINTS, round((high - low) / step) + 1))
     return np.unique(t[0] + step * np.round((np.linspace(low, high, max(count, 1)) - t[0]) / step))
 
 
@@ -138,25 +138,27 @@ def between(at: Array, weight: Array) -> Span:
     return float(at[order[low]]), float(at[order[min(high, at.size - 1)]])
 
 
-def steps(evidence: Evidence, base: Effect, test: Test, at: Array, others: Spans, known: Known) -> tuple[Array, Array]:
+def steps(
+    evidence: Evidence, base: Effect, test: Test, at: Array, others: Spans, values: Values
+) -> tuple[Array, Array]:
     """Efficient score of an effect that begins at each of some instants of a test, and last that of the other spans."""
     last = float(test.time[-1]) + 1.0
     events = [Event.of({test.name: [(t, last)]}) for t in at]
     rest = Event.of({t: own for t, own in others.items() if own})
     effects = [During.of(base, e.name) for e in (*events, *([rest] if rest.spans else []))]
-    parts = columns(evidence, effects, known)
+    parts = columns(evidence, effects, values)
     theta, sd = extended_prior(evidence.fit)
-    found = score(total(projected(evidence.fit, parts)), theta, sd, np.zeros(len(effects), int))
+    scores = score(total(projected(evidence.fit, parts)), theta, sd, np.zeros(len(effects), int))
     missing = 0 if rest.spans else 1
-    return np.pad(found.u, (0, missing)), np.pad(found.V, (0, missing))
+    return np.pad(scores.u, (0, missing)), np.pad(scores.V, (0, missing))
 
 
-def columns(evidence: Evidence, effects: Sequence[Effect], known: Known) -> list[Segment]:
+def columns(evidence: Evidence, effects: Sequence[Effect], base_values: Values) -> list[Segment]:
     """The segments with the columns of calibration and of some effects; only tests are run in which one acts."""
     fit, p = evidence.fit, evidence.p
     network = extended(fit.network, effects)
     own = network.parameters[-len(effects) :]
-    values = {**{q.name: known.get(q.name, q.value) for q in network.parameters}, **fit.values}
+    values = {**{q.name: base_values.get(q.name, q.value) for q in network.parameters}, **fit.values}
     parts = segments(network, [t for t in evidence.tests if any(acts_in(e, t) for e in effects)], values, own)
     new = {(s.test, s.channel): s.J for s in parts}
     return [
@@ -167,4 +169,4 @@ def columns(evidence: Evidence, effects: Sequence[Effect], known: Known) -> list
 
 def acts_in(effect: Effect, test: Test) -> bool:
     """Can the effect act in the test?  What an input says may be in any."""
-    return not isinstance(effect, During) or test.name in effect.tests or effect.gate in test.inputs
+    return not isinstance(effect, During) or test.name in effect.tests or effect.condition in test.inputs

@@ -16,7 +16,7 @@ from validation.calibration.calibrate import Fit
 from validation.case import Test
 from validation.comparison.linearisation import segments
 from validation.conditions.conditional_effects import joined
-from validation.conditions.refine import TRIED, around
+from validation.conditions.refine import GRID_POINTS, around
 from validation.effects import Effect, extended
 from validation.effects.during import During
 from validation.effects.time_window import Event, Span
@@ -47,16 +47,21 @@ def retimed(evidence: Evidence, hypotheses: Sequence[Hypothesis], reach_s: Mappi
 
 def moved(evidence: Evidence, hypotheses: Sequence[Hypothesis], reach_s: Mapping[str, float]) -> dict[int, During]:
     """Events whose refits want other ends, with these."""
-    found: dict[int, During] = {}
+    by_index: dict[int, During] = {}
     for h in hypotheses:
         for k in h.members:
             effect = evidence.effects[k]
-            if k in found or not isinstance(effect, During) or not effect.event or throughout(evidence, effect.event):
+            if (
+                k in by_index
+                or not isinstance(effect, During)
+                or not effect.event
+                or throughout(evidence, effect.event)
+            ):
                 continue
             if h.fit is not None and effect.name in h.fit.values:  # else the machine ran away with the new ends
-                found[k] = with_ends(effect, ends_of(evidence, h.fit, effect, effect.event, reach_s))
-    names = {e.name for i, e in enumerate(evidence.effects) if i not in found}
-    new = {k: e for k, e in found.items() if e.name != evidence.names[k] and e.name not in names}
+                by_index[k] = with_ends(effect, ends_of(evidence, h.fit, effect, effect.event, reach_s))
+    names = {e.name for i, e in enumerate(evidence.effects) if i not in by_index}
+    new = {k: e for k, e in by_index.items() if e.name != evidence.names[k] and e.name not in names}
     return {k: e for k, e in new.items() if [x.name for x in new.values()].count(e.name) == 1}
 
 
@@ -80,7 +85,7 @@ def ends_of(evidence: Evidence, fit: Fit, effect: During, event: Event, reach_s:
 def span_of(evidence: Evidence, fit: Fit, effect: During, test: Test, span: Span, reach_s: float) -> Span:
     """Begin and end that fit best: first some instants around them, then every sample around the best of these."""
     best = span
-    for reach in (reach_s, 2.0 * reach_s / TRIED):
+    for reach in (reach_s, 2.0 * reach_s / GRID_POINTS):
         begins, ends = around(test, best[0], reach), around(test, best[1], reach)
         u, V = steps(fit, effect.base, test, np.concatenate([span, begins, ends]))
         a = size(fit, effect)
@@ -121,5 +126,5 @@ def steps(fit: Fit, base: Effect, test: Test, at: Array) -> tuple[Array, Array]:
     parts = [replace(s, J=np.column_stack([s.J, new.get((s.test, s.channel), np.zeros((s.r.size, len(own))))]))
              for s in fit.parts]  # fmt: skip
     theta, sd = extended_prior(fit)
-    found = score(total(projected(fit, parts)), theta, sd, np.zeros(len(own), int))
-    return found.u[where], found.V[np.ix_(where, where)]
+    scores = score(total(projected(fit, parts)), theta, sd, np.zeros(len(own), int))
+    return scores.u[where], scores.V[np.ix_(where, where)]

@@ -8,14 +8,14 @@ from dataclasses import replace
 from validation.calibration.calibrate import Fit
 from validation.case import Test
 from validation.doubt import USUAL
-from validation.inference.evidence import Evidence, gone_on, under
+from validation.inference.evidence import Evidence, continuation, under
 from validation.measurement.noise import START, Level, Noise
 
 
 def quiet_fit(fit: Fit, tests: Sequence[Test]) -> Fit:
     """A calibration under a noise no larger than is usual; the same where it is no larger."""
     noise = usual_noise(fit.noise)
-    return fit if noise == fit.noise else gone_on(fit, tests, noise, fit.parts)
+    return fit if noise == fit.noise else continuation(fit, tests, noise, fit.parts)
 
 
 def quiet(evidence: Evidence) -> Evidence:

@@ -26,48 +26,50 @@ LENGTHS = 0.5  # of its length, within which repeats of one event differ: a lid 
 ALIKE = 0.5  # of the time in either of two events is in both: such are one
 
 
-def stretches(found: HatScores, heat: Sequence[MissingHeat], near: Mapping[str, set[str]]) -> list[Interval]:
+def stretches(scores: HatScores, heat: Sequence[MissingHeat], near: Mapping[str, set[str]]) -> list[Interval]:
     """Candidate events, the most evident first; each keeps the path that explains it best."""
-    paths = found.paths(near)
-    singles = sorted((best_stretch(found, p, test) for p in paths for test in found.knots), key=lambda s: -s.log_bayes)
-    first = singles[: PLACES * len(found.knots)]
-    repeats = [repeated(found, s).event for s in first if s.log_bayes > 0.0]
+    paths = scores.paths(near)
+    singles = sorted(
+        (best_stretch(scores, p, test) for p in paths for test in scores.knots), key=lambda s: -s.log_bayes
+    )
+    first = singles[: PLACES * len(scores.knots)]
+    repeats = [repeated(scores, s).event for s in first if s.log_bayes > 0.0]
     events = [*(s.event for s in first), *repeats, *(e for h in heat[:PLACES] for e in turns(h))]
-    unique = {e.name: e for e in events if not throughout(found, e)}.values()
-    best = [max((found.weigh(e, p) for p in paths), key=lambda s: s.log_bayes) for e in unique]
-    return sorted(best, key=lambda s: -worth(found, s))
+    unique = {e.name: e for e in events if not throughout(scores, e)}.values()
+    best = [max((scores.weigh(e, p) for p in paths), key=lambda s: s.log_bayes) for e in unique]
+    return sorted(best, key=lambda s: -worth(scores, s))
 
 
-def best_stretch(found: HatScores, path: Path, test: str, beside: Event | None = None) -> Interval:
+def best_stretch(scores: HatScores, path: Path, test: str, beside: Event | None = None) -> Interval:
     """The stretch of knots with most evidence; all are tried, each a difference of cumulated sums.
 
     beside : stretches that are there already, with the same amplitude; log_bayes is then that of all
     """
-    (u, V), knots = found.at_knots(path, test), found.knots[test]
+    (u, V), knots = scores.at_knots(path, test), scores.knots[test]
     U, P = np.concatenate([[0.0], np.cumsum(u)]), np.zeros((u.size + 1, u.size + 1))
     P[1:, 1:] = np.cumsum(np.cumsum(V, axis=0), axis=1)
     i, j = np.triu_indices(u.size + 1, 1)
     U, P = U[j] - U[i], P[j, j] - P[i, j] - P[j, i] + P[i, i]
     if beside:
-        own, square, cross = found.sums(beside, path, test)
+        own, square, cross = scores.sums(beside, path, test)
         cross = np.concatenate([[0.0], np.cumsum(cross)])
         U, P = U + own, P + square + 2.0 * (cross[j] - cross[i])
-    bayes = log_bayes(U, P, found.usual(path))
+    bayes = log_bayes(U, P, scores.usual(path))
     if beside:
-        taken = np.concatenate([[0.0], np.cumsum(overlap(knots, beside.spans.get(test, ())) > 0)])
-        bayes = np.where(taken[j] > taken[i], -np.inf, bayes)
+        covered = np.concatenate([[0.0], np.cumsum(overlap(knots, beside.spans.get(test, ())) > 0)])
+        bayes = np.where(covered[j] > covered[i], -np.inf, bayes)
     k = int(np.argmax(bayes))
     return Interval(Event.of({test: [span_of(knots, int(i[k]), int(j[k]))]}), path, float(bayes[k]))
 
 
-def repeated(found: HatScores, first: Interval) -> Interval:
+def repeated(scores: HatScores, first: Interval) -> Interval:
     """A stretch and its repeats of one amplitude, one after another as long as each is worth saying when."""
     best = first
     for _ in range(REPEATS):
-        more = max((best_stretch(found, first.path, t, best.event) for t in found.knots), key=lambda s: s.log_bayes)
-        spans = {t: [*best.event.spans.get(t, ()), *more.event.spans.get(t, ())] for t in found.knots}
+        more = max((best_stretch(scores, first.path, t, best.event) for t in scores.knots), key=lambda s: s.log_bayes)
+        spans = {t: [*best.event.spans.get(t, ()), *more.event.spans.get(t, ())] for t in scores.knots}
         both = Interval(Event.of({t: own for t, own in spans.items() if own}), first.path, more.log_bayes)
-        if not np.isfinite(more.log_bayes) or worth(found, both) <= worth(found, best):
+        if not np.isfinite(more.log_bayes) or worth(scores, both) <= worth(scores, best):
             break
         best = both
     return best
@@ -106,10 +108,10 @@ def pulses(knots: Array, q: Array, sd: Array) -> list[Pulse]:
     return joined((span_of(knots, a, b), x) for (a, b), x in clear)
 
 
-def joined(found: Iterable[Pulse]) -> list[Pulse]:
+def joined(pulses: Iterable[Pulse]) -> list[Pulse]:
     """Neighbouring pulses of one sign as one."""
     out: list[Pulse] = []
-    for (a, b), x in found:
+    for (a, b), x in pulses:
         if out and out[-1][0][1] >= a - 1e-6 and out[-1][1] * x > 0:
             (c, d), y = out[-1]
             out[-1] = ((c, b), (y * (d - c) + x * (b - a)) / (b - c))
@@ -118,18 +120,18 @@ def joined(found: Iterable[Pulse]) -> list[Pulse]:
     return out
 
 
-def throughout(found: HatScores, event: Event) -> bool:
+def throughout(scores: HatScores, event: Event) -> bool:
     """Does it last nearly all of its only test?"""
     test, *others = event.tests
-    return not others and sum(b - a for a, b in event.every) > WHOLE * float(np.ptp(found.knots[test]))
+    return not others and sum(b - a for a, b in event.every) > WHOLE * float(np.ptp(scores.knots[test]))
 
 
-def worth(found: HatScores, s: Interval) -> float:
+def worth(scores: HatScores, s: Interval) -> float:
     """Evidence less the price of when: the log of how many stretches there are among the knots."""
     first, price = True, 0.0
     usual = float(np.mean([b - a for a, b in s.event.every]))
     for test, own in s.event.spans.items():
-        knots = found.knots[test]
+        knots = scores.knots[test]
         for _ in own:
             price += float(np.log(ways(knots.size, None if first else usual / float(knots[1] - knots[0]))))
             first = False

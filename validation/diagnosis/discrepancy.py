@@ -54,8 +54,8 @@ def discrepancies(case: Case, progress: Callable[[str], None] = no_progress) -> 
 
 def steps(heat: MissingHeat) -> list[dict]:
     """Every stretch in which a missing-heat curve stands on another level: test, begin and end (s), W."""
-    found = {test: pulses(*curve) for test, curve in heat.heat_W.items()}
+    by_test = {test: pulses(*curve) for test, curve in heat.heat_W.items()}
     return [
         {"test": test, "begin_s": a, "end_s": b, "heat_W": level}
-        for test, own in found.items() for (a, b), level in own
+        for test, own in by_test.items() for (a, b), level in own
     ]  # fmt: skip

@@ -103,8 +103,8 @@ class Scan:
         H = sum(g.JJ for g in grams.values()) + np.diag(weight)
         Jr = sum(g.Jr for g in grams.values()) - weight * theta
         cov = np.asarray(np.linalg.inv(H), float)
-        found = [self._at(i, grams, cov, Jr) for i in range(len(self.places))]
-        return sorted(found, key=lambda x: -x.evidence_nats)
+        heats = [self._at(i, grams, cov, Jr) for i in range(len(self.places))]
+        return sorted(heats, key=lambda x: -x.evidence_nats)
 
     @cached_property
     def roots(self) -> list[Array]:
@@ -128,9 +128,9 @@ class Scan:
             A[block, block], u[block], JZ[:, block] = g.ZZ[own, own], g.Zr[own], g.JZ[:, own]
         A, u = A - JZ.T @ cov @ JZ, u - JZ.T @ cov @ Jr
         sizes = self.scale * 10.0 ** np.arange(-3.0, 1.5, 0.5)
-        tried = [_evidence(A, u, sizes, root) for root in (*self.roots, self.following(i))]
-        nats, q, sd = max(tried, key=lambda x: x[0].max())
-        best, mean = nats.max(), logsumexp([x[0] for x in tried]) - np.log(len(tried) * sizes.size)
+        evidences = [_evidence(A, u, sizes, root) for root in (*self.roots, self.following(i))]
+        nats, q, sd = max(evidences, key=lambda x: x[0].max())
+        best, mean = nats.max(), logsumexp([x[0] for x in evidences]) - np.log(len(evidences) * sizes.size)
         cut = [slice(a, b) for a, b in pairwise(start)]
         heat_W = {name: (k, q[c], sd[c]) for (name, k), c in zip(self.knots.items(), cut, strict=True)}
         return MissingHeat(self.places[i], float(best), float(mean), heat_W, self._moves(i, heat_W, -cov @ JZ @ q))

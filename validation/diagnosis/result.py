@@ -78,7 +78,7 @@ class DetectionLimit:
 
 @dataclass(frozen=True)
 class NextTest:
-    """A test of the engineer's menu: the pairs it would separate and the deviance by which (20 is decisive)."""
+    """A candidate test: the pairs it would separate and the deviance by which (20 is decisive)."""
 
     test: str
     separates: tuple[str, ...]
@@ -180,13 +180,13 @@ class Remainder:
 
     @property
     def words(self) -> str:
-        said = f"{self.channel} is still {self.error_K:.1f} K off in {self.record}"
+        text = f"{self.channel} is still {self.error_K:.1f} K off in {self.record}"
         if self.model_K > 0.5 * self.error_K:
-            said += f"; {self.model_K:.1f} K of it is within the doubts of the model, most of all {self.doubt}"
+            text += f"; {self.model_K:.1f} K of it is within the doubts of the model, most of all {self.doubt}"
         if not self.effect:
-            return f"{said}; no second effect explains it."
+            return f"{text}; no second effect explains it."
         return (
-            f"{said}; {self.effect} would bring it to {self.brought_K:.1f} K (probability {self.probability:.2f}). "
+            f"{text}; {self.effect} would bring it to {self.brought_K:.1f} K (probability {self.probability:.2f}). "
             f"To tell: {self.test}."
         )
 

@@ -63,10 +63,10 @@ class Above(Effect):
 
     def parts(self) -> tuple[str, str, float]:
         """Loss or link, input, level."""
-        found = PLACE.fullmatch(self.place)
-        if found is None or float(found[3]) <= 0.0:
+        match = PLACE.fullmatch(self.place)
+        if match is None or float(match[3]) <= 0.0:
             raise InputError(f"'{self.place}' is no law above a level", f"effect '{self.name}'", "LOSS|INPUT>LEVEL")
-        return found[1], found[2], float(found[3])
+        return match[1], match[2], float(match[3])
 
     def words(self, a: float) -> str:
         """ "the declared loss:stator is 40 % too high above current_A 150"."""
@@ -78,13 +78,13 @@ class Above(Effect):
     def extend(self, network: Network) -> Network:
         target, name, level = self.parts()
         known: list[Link | Source] = [*network.links, *network.sources]
-        found = [x for x in known if x.name == target and not x.origin]
-        if not found:
+        followed = [x for x in known if x.name == target and not x.origin]
+        if not followed:
             names = ", ".join(x.name for x in known if not x.origin)
             raise InputError(f"no loss or link '{target}'", f"effect '{self.name}'", f"one of {names}")
-        law = Shaped(found[0].law, Ramp(name, level), found[0].law.temperature, (name,))
-        if isinstance(found[0], Link):
-            network = copy_link(network, found[0], self.name, law)
+        law = Shaped(followed[0].law, Ramp(name, level), followed[0].law.temperature, (name,))
+        if isinstance(followed[0], Link):
+            network = copy_link(network, followed[0], self.name, law)
         else:
-            network = copy_source(network, found[0], self.name, law)
+            network = copy_source(network, followed[0], self.name, law)
         return with_parameter(network, self.parameter(self.name))

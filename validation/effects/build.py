@@ -3,29 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from lumped.model.network import Link, Network, Parameter, Place, Row, Source
-from lumped.transfer.laws import CONSTANT, Array, Inputs, Law, TemperatureLaw
+from lumped.transfer.laws import CONSTANT, Array, Inputs, Law, TemperatureLaw, Wrapped
 from validation.effects.sites import faces
 
 HOUR = 3600.0
 
 
 @dataclass(frozen=True)
-class Shaped(Law):
+class Shaped(Wrapped):
     """Another law's input factor times `shape(inputs)`, with a temperature law of its own."""
 
-    base: Law
     shape: Callable[[Inputs], Array | float]
     temperature: TemperatureLaw = CONSTANT
     also_reads: tuple[str, ...] = ()
-    reads: tuple[str, ...] = field(init=False, default=())
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "reads", (*self.base.reads, *self.also_reads))
+    @property
+    def reads(self) -> tuple[str, ...]:  # type: ignore[override]
+        return (*self.base.reads, *self.also_reads)
 
     def factor(self, inputs: Inputs) -> Array | float:
         return self.base.factor(inputs) * self.shape(inputs)

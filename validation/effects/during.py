@@ -20,13 +20,13 @@ SAME = ("kind", "title", "unit", "at", "source", "isolating_test", "typical", "s
 
 @dataclass(frozen=True)
 class During(Effect):
-    """Another effect while a gate is open: "kind@place in GATE", GATE a test, an event or an input of 0 to 1.
+    """An effect while a condition holds: "kind@place in CONDITION", that is a test, an event or an input of 0 to 1.
 
     share : prior probability of this one among all conditions, when it held included
     """
 
     base: Effect
-    gate: str
+    condition: str
     share: float = field(default=1.0, compare=False)
 
     def __post_init__(self) -> None:
@@ -37,22 +37,22 @@ class During(Effect):
         object.__setattr__(self, "mapping", mapping)
 
     @classmethod
-    def of(cls, base: Effect, gate: str, share: float = 1.0) -> During:
-        return cls(f"{base.place}{IN}{gate}", base, gate, share)
+    def of(cls, base: Effect, condition: str, share: float = 1.0) -> During:
+        return cls(f"{base.place}{IN}{condition}", base, condition, share)
 
     @property
     def event(self) -> Event | None:
         """When it held, where that is not all of a test or what an input says."""
-        return event(self.gate)
+        return event(self.condition)
 
     @property
     def tests(self) -> tuple[str, ...]:
-        return self.event.tests if self.event else (self.gate,)
+        return self.event.tests if self.event else (self.condition,)
 
     @property
     def words(self) -> str:
         """Where and when."""
-        return f"at {self.base.place} {self.event.words if self.event else f'in {self.gate}'}"
+        return f"at {self.base.place} {self.event.words if self.event else f'in {self.condition}'}"
 
     @classmethod
     def candidate_places(cls, scene: Scene) -> Iterable[str]:
@@ -63,26 +63,26 @@ class During(Effect):
         grown = self.base.extend(network)
         own = replace(grown.parameters[-1], prior_sd=USUAL["switched"] * grown.parameters[-1].prior_sd)
         if own.mapping == "amplitude":
-            return self._gated(network, grown, own)
+            return self._conditional(network, grown, own)
         if own.mapping == "offset":
             return with_parameter(network, replace(own, name=self.name, targets=self._in_test(own)))
         return self._copied(network, own)
 
-    def _in_test(self, own: Parameter) -> tuple[tuple[str, float], ...]:
-        return tuple((f"{target}{IN}{self.gate}", factor) for target, factor in own.targets)
+    def _in_test(self, parameter: Parameter) -> tuple[tuple[str, float], ...]:
+        return tuple((f"{target}{IN}{self.condition}", factor) for target, factor in parameter.targets)
 
     def _law(self, law: Law, factor: float = 1.0) -> Law:
-        return Shaped(law, TimeWindow(self.gate, factor), law.temperature, (CLOCK,))
+        return Shaped(law, TimeWindow(self.condition, factor), law.temperature, (CLOCK,))
 
-    def _gated(self, network: Network, grown: Network, own: Parameter) -> Network:
-        """What the other effect adds, times the gate."""
+    def _conditional(self, network: Network, grown: Network, parameter: Parameter) -> Network:
+        """What the other effect adds, times the condition."""
         links, sources = grown.links[len(network.links) :], grown.sources[len(network.sources) :]
         items: list[Link | Source] = [*links, *sources]
-        new = {x.name: f"{x.name}{IN}{self.gate}" for x in items}
+        new = {x.name: f"{x.name}{IN}{self.condition}" for x in items}
         parameters = tuple(
             replace(p, targets=tuple((new.get(t, t), e) for t, e in p.targets))
             if any(t in new for t, _ in p.targets) else p
-            for p in (*grown.parameters[:-1], replace(own, name=self.name))
+            for p in (*grown.parameters[:-1], replace(parameter, name=self.name))
         )  # fmt: skip
         return replace(
             network, parameters=parameters,
@@ -90,15 +90,15 @@ class During(Effect):
             sources=(*network.sources, *(replace(x, name=new[x.name], law=self._law(x.law)) for x in sources)),
         )  # fmt: skip
 
-    def _copied(self, network: Network, own: Parameter) -> Network:
-        """A share of what is there, more or less while the gate is open.
+    def _copied(self, network: Network, parameter: Parameter) -> Network:
+        """A share of what is there, more or less while the condition holds.
 
         Copies that others of its kind have brought in are not copied again: with n of them there would be 2^n, for the
         product of two changes of one flow in one test.
         """
         links, sources = {x.name: x for x in network.links}, {x.name: x for x in network.sources}
         names = []
-        for target, exponent in own.targets:
+        for target, exponent in parameter.targets:
             if target not in links and target not in sources:
                 raise InputError(f"'{self.base.name}' cannot hold for a while", self.name, "a film, a flow or a loss")
             if gated((links if target in links else sources)[target].law):
@@ -108,7 +108,7 @@ class During(Effect):
                 network = copy_link(network, links[target], names[-1], self._law(links[target].law, exponent))
             else:
                 network = copy_source(network, sources[target], names[-1], self._law(sources[target].law, exponent))
-        amplitude = replace(own, name=self.name, targets=tuple((n, 1.0) for n in names), mapping="amplitude")
+        amplitude = replace(parameter, name=self.name, targets=tuple((n, 1.0) for n in names), mapping="amplitude")
         return with_parameter(network, replace(amplitude, value=0.0, neutral=0.0))
 
 

@@ -32,8 +32,8 @@ def kinds() -> dict[str, type[Effect]]:
     for module in walk_packages([str(HERE)], "validation.effects."):
         import_module(module.name)
     root: Any = Effect
-    found = [c for c in _concrete(root) if hasattr(c, "kind")]  # one that holds for a while has that of another
-    own = {c.kind: c for c in found if c.__module__.startswith("validation.effects.")}
+    classes = [c for c in _concrete(root) if hasattr(c, "kind")]  # one that holds for a while has that of another
+    own = {c.kind: c for c in classes if c.__module__.startswith("validation.effects.")}
     return dict(sorted(own.items())) | {c.kind: c for c in plugins("effects").values()}
 
 
@@ -44,10 +44,10 @@ def catalogue(scene: Scene, only: Iterable[str] | None = None) -> tuple[Effect, 
     return tuple(cls(place) for cls in chosen for place in cls.places(scene))
 
 
-def _of(kind: str, known: Mapping[str, type[Effect]], where: str) -> type[Effect]:
-    if kind not in known:
-        raise InputError(f"unknown effect '{kind}'", where, f"known: {', '.join(known)}")
-    return known[kind]
+def _of(kind: str, classes: Mapping[str, type[Effect]], where: str) -> type[Effect]:
+    if kind not in classes:
+        raise InputError(f"unknown effect '{kind}'", where, f"known: {', '.join(classes)}")
+    return classes[kind]
 
 
 def effect(name: str, scene: Scene | None = None) -> Effect:
@@ -55,30 +55,30 @@ def effect(name: str, scene: Scene | None = None) -> Effect:
     kind, _, place = name.partition("@")
     if kind == KIND:
         return Above(place)
-    found = _of(kind, kinds(), f"effect '{name}'")
-    base, held, gate = place.rpartition(IN)
+    cls = _of(kind, kinds(), f"effect '{name}'")
+    base, held, condition = place.rpartition(IN)
     if held:
-        return During.of(found(base), _known(gate, scene, name))
-    if scene is not None and place not in (places := found.places(scene)):
-        needs = ", ".join(found.needs)
+        return During.of(cls(base), _checked_condition(condition, scene, name))
+    if scene is not None and place not in (places := cls.places(scene)):
+        needs = ", ".join(cls.needs)
         right = (
             f"it can sit at: {', '.join(places)}"
             if places
             else f"it can sit nowhere here; it needs: {needs or 'a place'}"
         )
         raise InputError(f"'{kind}' cannot sit at '{place}'", f"effect '{name}'", right)
-    return found(place)
+    return cls(place)
 
 
-def _known(gate: str, scene: Scene | None, name: str) -> str:
-    """The gate, if the scene has what it speaks of."""
-    if scene is not None and gate not in scene.inputs:
-        found = event(gate)
-        for test in found.tests if found else (gate,):
+def _checked_condition(condition: str, scene: Scene | None, name: str) -> str:
+    """The condition, if the scene has what it speaks of."""
+    if scene is not None and condition not in scene.inputs:
+        timed_event = event(condition)
+        for test in timed_event.tests if timed_event else (condition,):
             if test not in scene.tests:
                 raise InputError(f"unknown test or event '{test}'", f"effect '{name}'",
                                  f"one of {', '.join(scene.tests)}, or an event as `diagnose` names it")  # fmt: skip
-    return gate
+    return condition
 
 
 def extended(network: Network, effects: Iterable[Effect]) -> Network:

@@ -103,9 +103,9 @@ def windings(network: Network) -> list[str]:
 
 def bearings(network: Network) -> list[str]:
     """Bearings; without any, what joins turning to standing parts, or the end shields, or all but the field's parts."""
-    found = with_role(network, Role.BEARING)
-    if found:
-        return found
+    parts = with_role(network, Role.BEARING)
+    if parts:
+        return parts
     names, near = [p.name for p in solids(network)], neighbours(network)
     still = [n for n in names if stands(network, n)]
     between = [n for n in still if any(turns(network, b) for b in near.get(n, set()) if b in names)]
@@ -115,9 +115,9 @@ def bearings(network: Network) -> list[str]:
 
 def commutators(network: Network) -> list[str]:
     """The commutator; without one, turning parts that a winding turns with, for only those can have brushes."""
-    found = with_role(network, Role.COMMUTATOR)
+    parts = with_role(network, Role.COMMUTATOR)
     wound = any(turns(network, n) for n in with_role(network, Role.WINDING))
-    return found or ([n for n in turning(network) if role(network, n) not in AXLE] if wound else [])
+    return parts or ([n for n in turning(network) if role(network, n) not in AXLE] if wound else [])
 
 
 def heated(network: Network, kind: str, others: Collection[str]) -> list[str]:
@@ -141,7 +141,7 @@ def part_of(network: Network, place: str) -> str:
     return network.places[place].part if place in network.places else place
 
 
-def own_links(network: Network) -> list[Link]:
+def model_links(network: Network) -> list[Link]:
     """Links that no effect has added."""
     return [link for link in network.links if not link.origin]
 

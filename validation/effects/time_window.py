@@ -71,13 +71,13 @@ class Event:
 def event(name: str) -> Event | None:
     """The event that a name describes; None where it is a test's or an input's."""
     pieces = [PIECE.fullmatch(piece) for piece in name.split(AND)]
-    found = [(p[1], [tuple(map(float, s.split("-"))) for s in p[2].split(",")]) for p in pieces if p]
-    return Event.of(dict(found)) if len(found) == len(pieces) else None  # type: ignore[arg-type]
+    spans = [(p[1], [tuple(map(float, s.split("-"))) for s in p[2].split(",")]) for p in pieces if p]
+    return Event.of(dict(spans)) if len(spans) == len(pieces) else None  # type: ignore[arg-type]
 
 
-def checked(found: Event, test: str, first: float, last: float, where: str) -> None:
+def checked(timed: Event, test: str, first: float, last: float, where: str) -> None:
     """Spans run forwards, lie inside the record and do not overlap."""
-    for begin, end in found.spans[test]:
+    for begin, end in timed.spans[test]:
         if not begin < end:
             raise InputError(
                 f"an event ends at {end:g} s, not after it begins at {begin:g} s", where, "begin, then end"
@@ -85,7 +85,7 @@ def checked(found: Event, test: str, first: float, last: float, where: str) -> N
         if begin < first or end > last:
             raise InputError(f"an event from {begin:g} to {end:g} s is outside the record", where,
                              f"{first:g} to {last:g} s")  # fmt: skip
-    for (a, b), (c, d) in pairwise(found.spans[test]):
+    for (a, b), (c, d) in pairwise(timed.spans[test]):
         if c < b:
             raise InputError(f"an event overlaps itself: {a:g} to {b:g} s and {c:g} to {d:g} s", where,
                              "spans that follow one another, or two events")  # fmt: skip
@@ -107,12 +107,12 @@ class TimeWindow:
     factor: float = 1.0
 
     def __call__(self, inputs: Inputs) -> Array:
-        time, found = np.asarray(inputs[CLOCK], float), event(self.name)
+        time, timed = np.asarray(inputs[CLOCK], float), event(self.name)
         if self.name in inputs:
             return self.factor * np.asarray(inputs[self.name], float)
-        if found is None:
+        if timed is None:
             return self.factor * np.asarray(inputs.get(f"{RUNNING}{self.name}", np.zeros_like(time)), float)
-        here = [own for test, own in found.spans.items() if f"{RUNNING}{test}" in inputs]
+        here = [own for test, own in timed.spans.items() if f"{RUNNING}{test}" in inputs]
         return self.factor * share(time, here[0]) if here else np.zeros_like(time)
 
 

@@ -22,7 +22,7 @@ from validation.fleet.unit import UnitHistory
 
 Array = NDArray[np.float64]
 FREEDOM = 4.0  # of Student's t: a motor at four deviations counts half
-ROUNDS, SETTLED = 300, 1e-4
+ROUNDS, TOLERANCE = 300, 1e-4
 NARROW = 1e-3  # smallest spread (of the logarithm): a per mille is no difference
 OUTLIER = 0.01  # probability that a fleet without one has a motor that far off: over all motors and parameters
 DIFFERS = 0.01  # probability of as much spread where all motors are equal
@@ -129,19 +129,19 @@ def population(units: Sequence[UnitHistory]) -> Population:
     H, eta = zip(*(_of_unit(u, middle, drifts) for u in units), strict=True)
     first = units[0].parts[0]
     prior = np.concatenate([first.sd, first.drift_sd]) if drifts else first.sd
-    found, weights = _settled(np.array(H), np.array(eta), prior)
-    p, (m, P) = len(names), found.posterior()
+    moments, weights = _converged_moments(np.array(H), np.array(eta), prior)
+    p, (m, P) = len(names), moments.posterior()
     sd = np.sqrt(np.einsum("uii->ui", P))
-    own = _mean_sd(found, weights)
-    own[p:] = _mean_sd(found, weights / weights.sum())[p:]
+    own = _mean_sd(moments, weights)
+    own[p:] = _mean_sd(moments, weights / weights.sum())[p:]
     later = {} if not drifts else {
-        "drift": found.mean[p:], "drift_sd": own[p:], "drift_spread": np.sqrt(found.variance[p:]),
+        "drift": moments.mean[p:], "drift_sd": own[p:], "drift_spread": np.sqrt(moments.variance[p:]),
         "unit_drift": m[:, p:], "unit_drift_sd": sd[:, p:],
     }  # fmt: skip
     labels = tuple(u.name for u in units)
     return Population(
-        names, found.mean[:p], own[:p], np.sqrt(found.variance[:p]), _equal(found, weights, p), labels, m[:, :p],
-        sd[:, :p], tuple(_outliers(found, labels, names)), middle, **later,
+        names, moments.mean[:p], own[:p], np.sqrt(moments.variance[:p]), _equal(moments, weights, p), labels, m[:, :p],
+        sd[:, :p], tuple(_outliers(moments, labels, names)), middle, **later,
     )  # fmt: skip
 
 
@@ -157,7 +157,7 @@ def _of_unit(unit: UnitHistory, middle: float, drifts: bool) -> tuple[Array, Arr
     return H, eta
 
 
-def _settled(H: Array, eta: Array, prior_sd: Array) -> tuple[_Moments, Array]:
+def _converged_moments(H: Array, eta: Array, prior_sd: Array) -> tuple[_Moments, Array]:
     """Mean and variance that no longer move, and the weights of the motors."""
     k, weights = eta.shape[1], np.ones(len(H))
     now = _Moments(H, eta, prior_sd, np.zeros(k), np.full(k, FIRST**2)).with_mean(weights)
@@ -168,7 +168,7 @@ def _settled(H: Array, eta: Array, prior_sd: Array) -> tuple[_Moments, Array]:
         moved = float(np.max(np.abs(np.log(variance / now.variance))))
         now = replace(now, variance=variance).with_mean(weights)
         weights = now.weights()
-        if moved < SETTLED:
+        if moved < TOLERANCE:
             break
     return now, weights
 

@@ -25,10 +25,10 @@ from validation.inference.evidence import (
     Evidence,
     calibrated_case,
     candidates,
+    converged,
     log_evidence,
     noise_beside,
     scored,
-    settled,
     under,
     with_noise,
 )
@@ -49,7 +49,7 @@ from validation.inference.steadiness import steady
 from validation.inference.tables import tabulate
 from validation.measurement.faults import PlainFaults, broken_channels, without
 from validation.measurement.noise import Noise
-from validation.procedure.reduction.which_base import bases_tried, wrong_bases
+from validation.procedure.reduction.which_base import base_hypotheses, wrong_bases
 from validation.threads import one_blas_thread
 
 Progress = Callable[[str], None]
@@ -76,24 +76,24 @@ def diagnose(
     whole, case = case, at_low_fidelity(case, progress)
     training = case.training()
     training = replace(training, tests=without(training.tests, broken))
-    stood = bases_tried(training, progress)
+    base_rows = base_hypotheses(training, progress)
     posterior = infer(training, kinds, progress)
-    wrong, small = wrong_bases(stood), fidelity_error(whole, case, posterior)
+    wrong, small = wrong_bases(base_rows), fidelity_error(whole, case, posterior)
     budget = {c: budget.get(c, 0.0) + small.get(c, 0.0) for c in {**budget, **small}}
     choice = steady(posterior, lambda p: above(p, decide(p.evidence, p.hypotheses), budget))
     if wrong:  # nothing else is accused of what the base does
         choice = Decision("data", (), choice.sure)
     progress("writing the tables")
-    return tabulate(case, posterior, choice, PlainFaults(tuple(broken), tuple(wrong)), tuple(stood), plan)
+    return tabulate(case, posterior, choice, PlainFaults(tuple(broken), tuple(wrong)), tuple(base_rows), plan)
 
 
 def above(posterior: Posterior, choice: Decision, budget: Mapping[str, float]) -> Decision:
     """The decision without what the error of the model's own numbers could pass for."""
     e, single = posterior.evidence, posterior.single
-    kept = tuple(g for g in choice.groups if signal_to_error(moved(e, single[g[0]]), budget).above_budget)
-    if len(kept) == len(choice.groups):
+    clear = tuple(g for g in choice.groups if signal_to_error(moved(e, single[g[0]]), budget).above_budget)
+    if len(clear) == len(choice.groups):
         return choice
-    return Decision(choice.verdict if kept else "adequate", kept, choice.sure)
+    return Decision(choice.verdict if clear else "adequate", clear, choice.sure)
 
 
 def moved(evidence: Evidence, h: Hypothesis) -> dict[str, float]:
@@ -118,16 +118,16 @@ def infer(case: Case, kinds: Sequence[str] | None = None, progress: Progress = n
     heat = looked.read(evidence.fit.parts, evidence.fit.noise, evidence.fit.theta, evidence.fit.error)
     chosen = conditions(calm, case, looked, heat, kinds, progress)
     known = {**case.model.values, **evidence.fit.values}
-    bent = laws(evidence, known) if kinds is None or KIND in kinds else []
+    law_errors = laws(evidence, known) if kinds is None or KIND in kinds else []
     first = len(evidence.effects)
-    evidence = settled(sharpened(joined(evidence, [*chosen, *bent], known), range(first, first + len(chosen))))
-    found, heat = weighed(case, evidence, looked, fit.noise, progress)
-    timed, noise = retimed(evidence, found, reach(looked)), noise_of_refits(found)
+    evidence = converged(sharpened(joined(evidence, [*chosen, *law_errors], known), range(first, first + len(chosen))))
+    hypotheses, heat = weighed(case, evidence, looked, fit.noise, progress)
+    timed, noise = retimed(evidence, hypotheses, reach(looked)), noise_of_refits(hypotheses)
     if noise is not None or timed is not evidence:
-        evidence = settled(under(timed, noise or timed.fit.noise))
-        begun = {h.members: h.fit for h in found if h.fit and h.members}
-        found, heat = weighed(case, evidence, looked, fit.noise, progress, begun)
-    every = further(case, evidence, finely(evidence, found), progress)
+        evidence = converged(under(timed, noise or timed.fit.noise))
+        begun = {h.members: h.fit for h in hypotheses if h.fit and h.members}
+        hypotheses, heat = weighed(case, evidence, looked, fit.noise, progress, begun)
+    every = further(case, evidence, finely(evidence, hypotheses), progress)
     return Posterior(evidence, tuple(against_nothing(every)), tuple(heat), against)
 
 
@@ -166,7 +166,7 @@ def noise_of_leader(evidence: Evidence, also: Sequence[int] = ()) -> Noise | Non
     best, worth = None, log_evidence(e) + ones[0].log_prior
     for h in few:
         noise = noise_beside(e, h.members)
-        found = with_noise(e, h.members, noise) + h.log_prior
-        if found > worth:
-            best, worth = noise, found
+        gain = with_noise(e, h.members, noise) + h.log_prior
+        if gain > worth:
+            best, worth = noise, gain
     return best

@@ -16,9 +16,9 @@ from geom.errors import InputError, NoSolution
 from lumped.model.multipliers import values_of
 from lumped.model.network import Network, Parameter
 from validation.calibration.calibrate import (
+    CachedSegments,
     Fit,
     InnerProduct,
-    KnownSegments,
     calibrated,
     minimise,
     no_progress,
@@ -106,11 +106,11 @@ def diagnosing(case: Case) -> tuple[Test, ...]:
 def candidates(case: Case, kinds: Sequence[str] | None = None) -> tuple[Effect, ...]:
     """The catalogue on this case, less what the model has already."""
     inside = {e.name for e in case.model.effects}
-    found = tuple(e for e in catalogue(scene_of(case), kinds) if e.name not in inside)
-    if not found:
+    effects = tuple(e for e in catalogue(scene_of(case), kinds) if e.name not in inside)
+    if not effects:
         where = f"case '{case.name}', kinds {', '.join(kinds or ['of the catalogue'])}"
         raise InputError("no effect can sit anywhere in this network", where, "other kinds, or inputs that they need")
-    return found
+    return effects
 
 
 def calibrated_case(
@@ -135,7 +135,7 @@ def scored(case: Case, effects: Sequence[Effect], fit: Fit) -> Evidence:
     exchange(parts, effects, p)
     own = [replace(s, J=s.J[:, :p]) for s in parts]
     fit = minimise(fit.network, tests, fit.unknowns, fit.theta, fit.noise, values_of(fit.network, fit.values), 0,
-                   KnownSegments(own, nearby=False), error=fit.error)  # fmt: skip
+                   CachedSegments(own, nearby=False), error=fit.error)  # fmt: skip
     evidence = weighed(tests, fit, network, tuple(effects), parameters, parts, {}, {})
     there = {}
     for k, a in likely(evidence):
@@ -171,10 +171,10 @@ def weighed(
     sign = np.array([q.sign for q in parameters], int)
     grams = projected(fit, parts)
     theta, sd = extended_prior(fit)
-    found = score(total(grams), theta, sd, sign)
-    whole = np.where([e.whole for e in effects], found.u - 0.5 * np.diag(found.V), -np.inf)
+    scores = score(total(grams), theta, sd, sign)
+    whole = np.where([e.whole for e in effects], scores.u - 0.5 * np.diag(scores.V), -np.inf)
     whole[list(jumps)] = finite(fit, parts, jumps)
-    return Evidence(tests, fit, network, effects, parameters, parts, grams, found, jumps, large, whole)
+    return Evidence(tests, fit, network, effects, parameters, parts, grams, scores, jumps, large, whole)
 
 
 def replaced(evidence: Evidence, by_last: Sequence[int]) -> Evidence:
@@ -212,8 +212,8 @@ def finite(fit: Fit, parts: Sequence[Segment], jumps: Mapping[Any, Sequence[Arra
     p = len(fit.unknowns.parameters)
     own = [replace(s, J=np.column_stack([s.J[:, :p], *(c[i] for c in jumps.values())])) for i, s in enumerate(parts)]
     theta, sd = extended_prior(fit)
-    found = score(total(projected(fit, own)), theta, sd, np.zeros(len(jumps), int))
-    return np.asarray(found.u - 0.5 * np.diag(found.V))
+    scores = score(total(projected(fit, own)), theta, sd, np.zeros(len(jumps), int))
+    return np.asarray(scores.u - 0.5 * np.diag(scores.V))
 
 
 def exchange(parts: Sequence[Segment], effects: Sequence[Effect], p: int) -> None:
@@ -280,27 +280,29 @@ def with_noise(evidence: Evidence, members: Sequence[int], noise: Noise) -> floa
     fit, parts = replace(e.fit, noise=noise), e.parts_of(members)
     theta, sd = extended_prior(fit)
     G = total(projected(fit, parts))
-    found = score(G, theta, sd, e.score.sign[list(members)])
+    scores = score(G, theta, sd, e.score.sign[list(members)])
     usual = np.array([e.parameters[k].prior_sd for k in members])
-    H = found.V + np.diag(usual**-2.0)
-    gain = 0.5 * found.u @ np.linalg.solve(H, found.u) - 0.5 * np.linalg.slogdet(np.diag(usual) @ H @ np.diag(usual))[1]
+    H = scores.V + np.diag(usual**-2.0)
+    gain = (
+        0.5 * scores.u @ np.linalg.solve(H, scores.u) - 0.5 * np.linalg.slogdet(np.diag(usual) @ H @ np.diag(usual))[1]
+    )
     return without_effects(fit, parts, G) + float(gain)
 
 
 def under(evidence: Evidence, noise: Noise) -> Evidence:
     """The evidence under another noise, the calibration gone on under it."""
     e = evidence
-    return _calibrated_to(e, gone_on(e.fit, e.tests, noise, e.parts_of([])))
+    return _calibrated_to(e, continuation(e.fit, e.tests, noise, e.parts_of([])))
 
 
-def settled(evidence: Evidence) -> Evidence:
+def converged(evidence: Evidence) -> Evidence:
     """The evidence with nothing fitted to its end under its noise, by tangents of its own there.
 
     What nothing falls short of its end, every effect gains.
     """
     e, fit = evidence, evidence.fit
     new = minimise(fit.network, e.tests, fit.unknowns, fit.theta, fit.noise, values_of(fit.network, fit.values), ROUNDS,
-                   KnownSegments(fit.parts, nearby=False, stale=True), worth=ENOUGH, error=fit.error)  # fmt: skip
+                   CachedSegments(fit.parts, nearby=False, stale=True), worth=ENOUGH, error=fit.error)  # fmt: skip
     return _calibrated_to(e, new)
 
 
@@ -312,10 +314,10 @@ def _calibrated_to(evidence: Evidence, fit: Fit) -> Evidence:
     return weighed(e.tests, fit, e.network, e.effects, e.parameters, parts, e.jumps, e.large)
 
 
-def gone_on(fit: Fit, tests: Sequence[Test], noise: Noise, parts: Sequence[Segment]) -> Fit:
+def continuation(fit: Fit, tests: Sequence[Test], noise: Noise, parts: Sequence[Segment]) -> Fit:
     """A calibration that goes on under another noise, with the tangents of where it stands."""
     return minimise(fit.network, tests, fit.unknowns, fit.theta, noise, values_of(fit.network, fit.values), FURTHER,
-                    KnownSegments(parts, nearby=True), worth=ENOUGH, error=fit.error)  # fmt: skip
+                    CachedSegments(parts, nearby=True), worth=ENOUGH, error=fit.error)  # fmt: skip
 
 
 def noise_beside(evidence: Evidence, members: Sequence[int]) -> Noise:
@@ -348,7 +350,7 @@ def refit(
     free, fit = free_of(evidence, members), evidence.fit
     before = fit.objective if begun is None else begun
     rough = minimise(network, evidence.tests, unknowns, theta, fit.noise, held, 8,
-                     KnownSegments(tangents or evidence.parts_of(free)), worth=ENOUGH, error=fit.error)  # fmt: skip
+                     CachedSegments(tangents or evidence.parts_of(free)), worth=ENOUGH, error=fit.error)  # fmt: skip
     far = any(evidence.effects[k].whole for k in members)  # exchanged plugs begin where the calibration is wrong
     straight = rough.gain_ratio > STRAIGHT and before - rough.objective < BENDS
     if straight or (rough.objective > fit.objective + HOPELESS and not far):
@@ -362,7 +364,7 @@ def tangents_beside(evidence: Evidence, one: int, alone: Fit, others: Sequence[i
     e, free = evidence, [k for k in others if not evidence.effects[k].whole]
     whole = [one, *free]
     network = extended(e.fit.network, [e.effects[k] for k in whole])
-    values = values_of(network, {**e.fit.values, **alone.unknowns.values(alone.theta), **held_at_one(e, [one])})
+    values = values_of(network, {**e.fit.values, **alone.unknowns.values(alone.theta), **fixed_multipliers(e, [one])})
     parts = segments(network, e.tests, values, [e.parameters[k] for k in free])
     return {k: [s.J[:, i] for s in parts] for i, k in enumerate(free)}
 
@@ -387,7 +389,7 @@ def refit_onwards(evidence: Evidence, members: Sequence[int], before: Fit, finel
     """
     network, unknowns, held = with_members(evidence, members)
     moved, fit = before.unknowns.names != unknowns.names, evidence.fit
-    known = KnownSegments(before.parts, nearby=moved, renewed=True, stale=True)
+    known = CachedSegments(before.parts, nearby=moved, renewed=True, stale=True)
     steps, worth = (ROUNDS, FINE) if finely else (SECOND, ENOUGH)
     return minimise(network, evidence.tests, unknowns, before.theta, fit.noise, held, steps, known, draft=not finely,
                     worth=worth, error=fit.error)  # fmt: skip
@@ -403,10 +405,10 @@ def with_members(evidence: Evidence, members: Sequence[int]) -> tuple[Network, U
     network = extended(fit.network, [evidence.effects[k] for k in members])
     free = [evidence.parameters[k] for k in free_of(evidence, members)]
     unknowns = Unknowns((*fit.unknowns.parameters, *(widened(p) for p in free)))
-    return network, unknowns, values_of(network, {**fit.values, **held_at_one(evidence, members)})
+    return network, unknowns, values_of(network, {**fit.values, **fixed_multipliers(evidence, members)})
 
 
-def held_at_one(evidence: Evidence, members: Sequence[int]) -> dict[str, float]:
+def fixed_multipliers(evidence: Evidence, members: Sequence[int]) -> dict[str, float]:
     """Those that happen whole or not at all."""
     return {evidence.names[k]: 1.0 for k in members if evidence.effects[k].whole}
 

@@ -8,7 +8,7 @@ sensors and tests included, without a draw: Bayesian approximation error (Kaipio
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
@@ -18,8 +18,8 @@ from lumped.integration.simulate import simulate
 from lumped.model.network import Link, Network, Parameter, Place, Row, Source
 from lumped.model.quantities import AIR, LIQUID
 from lumped.model.topology import FRICTION
-from lumped.transfer.laws import CONSTANT, Constant, Fixed, Inputs, Law, TemperatureLaw
-from validation.calibration.model_form import KNOTS, KNOWN, SETTLE_K, Table, is_film
+from lumped.transfer.laws import CONSTANT, Constant, Fixed, Inputs, WithTemperature
+from validation.calibration.model_form import EXACT_LOSSES, KNOTS, REFERENCE_RISE_K, Table, is_film
 from validation.case import Channel, Test
 from validation.comparison.linearisation import Segment, segments
 from validation.comparison.predict import heat_model, record
@@ -32,22 +32,7 @@ SQUARED = ("current", "torque")  # quantities whose square makes heat
 SMOOTH = 1e-3  # of its mean square: an input that jumps by less is as good as straight
 
 
-LOGARITHM = Table(KNOTS, tuple(np.log(np.clip(np.array(KNOTS) / SETTLE_K, 0.1, 10.0))))
-
-
-@dataclass(frozen=True)
-class Bent(Law):
-    """d law / d exponent of the temperature difference of a law without one, zero at SETTLE_K."""
-
-    base: Law
-    reads: tuple[str, ...] = field(init=False, default=())
-    temperature: TemperatureLaw = LOGARITHM
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "reads", self.base.reads)
-
-    def factor(self, inputs: Inputs) -> Array | float:
-        return self.base.factor(inputs)
+LOGARITHM = Table(KNOTS, tuple(np.log(np.clip(np.array(KNOTS) / REFERENCE_RISE_K, 0.1, 10.0))))
 
 
 @dataclass(frozen=True)
@@ -86,9 +71,9 @@ def with_doubts(network: Network, doubt: Doubt, tests: Sequence[Test] = ()) -> t
         new.append(_amplitude(f"doubt:{name}", name, doubt["load"], "1"))
     for link in [x for x in network.links if _constant_film(network, x)]:
         name = f"{link.name}^dT?"
-        network = copy_link(network, link, name, Bent(link.law))
+        network = copy_link(network, link, name, WithTemperature(link.law, LOGARITHM))
         new.append(_amplitude(f"doubt:{name}", name, doubt["film exponent"], "1"))
-    for a, b, G in bridges(network, doubt["bridge"]):
+    for a, b, G in lumping_errors(network, doubt["bridge"]):
         name = f"beside:{a}|{b}"
         network = network.extended(links=[exchange(network, name, a, b, Fixed(1.0))])
         new.append(_amplitude(f"doubt:{name}", name, G, "W/K"))
@@ -138,7 +123,7 @@ def _under_load(network: Network, tests: Sequence[Test]) -> Iterator[tuple[Sourc
     """Losses that may follow the load although their laws do not say so, with the load; copper's follow it anyway."""
     load = SquareOf.of(network, tests, ("current", "torque"))
     for s in network.sources:
-        known = s.origin or s.kind in KNOWN or s.law.looks_at_all
+        known = s.origin or s.kind in EXACT_LOSSES or s.law.looks_at_all
         if load is not None and not known and not set(load.inputs) & set(s.law.reads):
             yield s, load
 
@@ -172,7 +157,7 @@ def _each_capacity(network: Network, doubt: Doubt) -> Iterator[Parameter]:
             yield _log(f"capacity:{g}", doubt["capacity"])
 
 
-def bridges(network: Network, share: float) -> list[tuple[str, str, float]]:
+def lumping_errors(network: Network, share: float) -> list[tuple[str, str, float]]:
     """Pairs of nodes and the conductance (W/K) that passes between them beside the nodes that join them, one sigma.
 
     A part that is not of one temperature joins its neighbours a little more, or less, than the star through its mean.
@@ -237,10 +222,10 @@ def solid(network: Network) -> list[Place]:
     return [p for p in network.places.values() if p.kind == "node" and network.C[p.states[0]] > 0]
 
 
-def nodes(network: Network, test: Test, values: Mapping[str, float], own: Sequence[Place]) -> Array:
+def nodes(network: Network, test: Test, values: Mapping[str, float], places: Sequence[Place]) -> Array:
     """Temperatures (n_time, n) of some nodes in a test."""
     bare, now = heat_model(network, values)
-    return simulate(bare, record(test, setting(network.parameters, values)), now, [p.mean for p in own]).y
+    return simulate(bare, record(test, setting(network.parameters, values)), now, [p.mean for p in places]).y
 
 
 @dataclass(frozen=True)

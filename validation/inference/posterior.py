@@ -131,7 +131,7 @@ def log_bayes_of(s: Score, sd: Array) -> Array:
 def one_size(u: Array, V: Array, sd: Array, sign: NDArray[np.int64]) -> Array:
     """Log Bayes factors of single effects with amplitudes of one usual size."""
     q = V + sd**-2.0
-    return np.asarray(0.5 * u**2 / q - 0.5 * np.log(sd**2 * q) + told(u / np.sqrt(q), sign))
+    return np.asarray(0.5 * u**2 / q - 0.5 * np.log(sd**2 * q) + log_sign_gain(u / np.sqrt(q), sign))
 
 
 def pairs(evidence: Evidence, ones: Sequence[Hypothesis]) -> list[Hypothesis]:
@@ -161,11 +161,13 @@ def two(evidence: Evidence, a: NDArray[np.int64], b: NDArray[np.int64]) -> Array
         X, det = s.V[a, b], np.maximum(A * B - s.V[a, b] ** 2, 1e-300)
         ma, mb = (B * s.u[a] - X * s.u[b]) / det, (A * s.u[b] - X * s.u[a]) / det
         gain = 0.5 * (s.u[a] * ma + s.u[b] * mb) - 0.5 * np.log((f * sd[a]) ** 2 * (f * sd[b]) ** 2 * det)
-        out.append(gain + told(ma / np.sqrt(B / det), s.sign[a]) + told(mb / np.sqrt(A / det), s.sign[b]))
+        out.append(
+            gain + log_sign_gain(ma / np.sqrt(B / det), s.sign[a]) + log_sign_gain(mb / np.sqrt(A / det), s.sign[b])
+        )
     return np.asarray(logsumexp(out, axis=0) - np.log(len(SIZES)))
 
 
-def told(z: Array, sign: NDArray[np.int64]) -> Array:
+def log_sign_gain(z: Array, sign: NDArray[np.int64]) -> Array:
     """log P(sign | readings) - log P(sign) of amplitudes z deviations from zero."""
     return np.where(sign == 0, 0.0, np.log(2.0) + log_ndtr(np.where(sign == 0, 1, sign) * z))
 

@@ -27,7 +27,7 @@ from validation.inference.evidence import (
     starts,
     tangents_beside,
 )
-from validation.inference.posterior import Hypothesis, probabilities, told, weights
+from validation.inference.posterior import Hypothesis, log_sign_gain, probabilities, weights
 from validation.measurement.noise import Noise
 
 Array = NDArray[np.float64]
@@ -42,7 +42,7 @@ GREAT, NEAR = 10.0, 0.5  # nats beyond which tangents mislead, and the share of 
 IMPOSSIBLE = -1e3  # nats: as good as excluded, and a number that a document can hold
 STRAIN = 1.5  # prior deviations of a parameter, from which an effect that does the same is refitted
 GAINED = 3.0  # nats of log evidence from which another noise is worth weighing all anew
-NEARLY, TRIED = 0.4, 3  # linear amplitude, and how many, of effects that happen whole or not at all
+NEARLY, MOST_LINEAR = 0.4, 3  # linear amplitude, and how many, of effects that happen whole or not at all
 
 
 def refitted(
@@ -63,7 +63,7 @@ def refitted(
             break
         for size in (1, 2):  # two begin where one of them was fitted alone
             together(evidence, out, [i for i in due if len(out[i].members) == size], progress, begun)
-    return lowered(hypotheses, out)
+    return with_smaller_shortfall(hypotheses, out)
 
 
 def together(
@@ -74,21 +74,21 @@ def together(
         progress(f"refitting {out[i].name(evidence)}")
     near = all_beside(evidence, out, due)
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        found = list(pool.map(lambda i: laplace(evidence, out[i], near.get(i), begun), due))
-    for i, h in zip(due, found, strict=True):
+        refitted = list(pool.map(lambda i: laplace(evidence, out[i], near.get(i), begun), due))
+    for i, h in zip(due, refitted, strict=True):
         out[i] = h
 
 
 def all_beside(evidence: Evidence, hypotheses: Sequence[Hypothesis], due: Sequence[int]) -> dict[int, Beside]:
     """For pairs of which one effect was fitted by itself: that fit, and the tangents of all the other effects there,
     in one run."""
-    found = {i: a for i in due if (a := fitted_alone(hypotheses, hypotheses[i].members))}
-    fits = {one: fit for one, fit in found.values()}
+    alone = {i: a for i in due if (a := fitted_alone(hypotheses, hypotheses[i].members))}
+    fits = {one: fit for one, fit in alone.values()}
     others: dict[int, list[int]] = {one: [] for one in fits}
-    for i, (one, _) in found.items():
+    for i, (one, _) in alone.items():
         others[one] += [k for k in hypotheses[i].members if k != one]
     columns = {one: tangents_beside(evidence, one, fit, others[one]) for one, fit in fits.items()}
-    return {i: (one, fit, columns[one]) for i, (one, fit) in found.items()}
+    return {i: (one, fit, columns[one]) for i, (one, fit) in alone.items()}
 
 
 def promised(before: Sequence[Hypothesis], after: Sequence[Hypothesis]) -> list[Hypothesis]:
@@ -96,7 +96,7 @@ def promised(before: Sequence[Hypothesis], after: Sequence[Hypothesis]) -> list[
     return _corrected(before, after, lambda each: max(0.0, *each))
 
 
-def lowered(before: Sequence[Hypothesis], after: Sequence[Hypothesis]) -> list[Hypothesis]:
+def with_smaller_shortfall(before: Sequence[Hypothesis], after: Sequence[Hypothesis]) -> list[Hypothesis]:
     """Two effects that were not refitted, for there were too many, lose what the refit of either fell short of its
     tangent."""
     return _corrected(before, after, lambda each: min(0.0, *each))
@@ -120,8 +120,8 @@ def shares(hypotheses: Sequence[Hypothesis]) -> Array:
 
 def fitted_alone(hypotheses: Sequence[Hypothesis], members: Sequence[int]) -> tuple[int, Fit] | None:
     """The better fitted of two effects that were fitted each by itself, as far as they were."""
-    found = [(h.members[0], h.fit) for h in hypotheses if h.fit and len(h.members) == 1 and h.members[0] in members]
-    return min(found, key=lambda x: x[1].objective) if found and len(members) > 1 else None
+    fits = [(h.members[0], h.fit) for h in hypotheses if h.fit and len(h.members) == 1 and h.members[0] in members]
+    return min(fits, key=lambda x: x[1].objective) if fits and len(members) > 1 else None
 
 
 def rivals(hypotheses: Sequence[Hypothesis]) -> list[int]:
@@ -142,8 +142,8 @@ def exchanged(evidence: Evidence, hypotheses: Sequence[Hypothesis]) -> list[int]
         (i, h.members[0]) for i, h in enumerate(hypotheses)
         if len(h.members) == 1 and evidence.effects[h.members[0]].whole
     ]  # fmt: skip
-    near = sorted((x for x in whole if a[x[1]] > NEARLY), key=lambda x: -hypotheses[x[0]].log_bayes)[:TRIED]
-    before = sorted((x for x in whole if x[1] in mended), key=lambda x: -mended[x[1]])[:TRIED]
+    near = sorted((x for x in whole if a[x[1]] > NEARLY), key=lambda x: -hypotheses[x[0]].log_bayes)[:MOST_LINEAR]
+    before = sorted((x for x in whole if x[1] in mended), key=lambda x: -mended[x[1]])[:MOST_LINEAR]
     return [i for i, _ in dict.fromkeys([*near, *before])]
 
 
@@ -153,8 +153,8 @@ def far_from_prior(evidence: Evidence, hypotheses: Sequence[Hypothesis]) -> list
     fit = evidence.fit
     pull = dict(zip(fit.unknowns.names, np.abs(fit.theta / fit.unknowns.sd), strict=True))
     alone = [(i, evidence.twins[h.members[0]]) for i, h in enumerate(hypotheses) if len(h.members) == 1 and not h.fit]
-    found = sorted((-pull[twin], i) for i, twin in alone if twin and pull[twin] > STRAIN)
-    return [i for _, i in found[:TRIED]]
+    ranked = sorted((-pull[twin], i) for i, twin in alone if twin and pull[twin] > STRAIN)
+    return [i for _, i in ranked[:MOST_LINEAR]]
 
 
 def laplace(evidence: Evidence, h: Hypothesis, near: Beside | None = None, begun: Begun = NOWHERE,
@@ -202,7 +202,7 @@ def noise_of_refits(hypotheses: Sequence[Hypothesis]) -> Noise | None:
     """
     order = [i for i in np.argsort(-weights(hypotheses), kind="stable") if hypotheses[i].fit and hypotheses[i].members]
     best, most, gained = None, -np.inf, 0.0
-    for h in (hypotheses[i] for i in order[:TRIED]):
+    for h in (hypotheses[i] for i in order[:MOST_LINEAR]):
         assert h.fit is not None
         noise = residual_noise(h.fit)
         more = evidence_of(h.fit, noise) - evidence_of(h.fit, h.fit.noise)
@@ -228,7 +228,7 @@ def log_bayes(evidence: Evidence, fit: Fit, members: Sequence[int]) -> float:
     sign = np.array([evidence.parameters[k].sign for k in free], int)
     if np.all(np.abs(a) < ABSENT * sd):  # what moved is the calibration, which may go on without them as well
         gain = min(gain, 0.0)
-    return gain + float(logsumexp([_seen(a, v, f * sd, sign) for f in SIZES]) - np.log(len(SIZES)))
+    return gain + float(logsumexp([_log_prior_mass(a, v, f * sd, sign) for f in SIZES]) - np.log(len(SIZES)))
 
 
 def spread(fit: Fit, p: int, wide: Array) -> Array:
@@ -239,10 +239,10 @@ def spread(fit: Fit, p: int, wide: Array) -> Array:
     return np.asarray((vectors / np.maximum(values, 1.0)) @ vectors.T * np.outer(wide, wide))
 
 
-def _seen(a: Array, v: Array, sd: Array, sign: NDArray[np.int64]) -> float:
+def _log_prior_mass(a: Array, v: Array, sd: Array, sign: NDArray[np.int64]) -> float:
     """log of the integral of exp(-1/2 (x - a)' v^-1 (x - a)) over the prior of x, signs in account."""
     wide = v + np.diag(sd**2)
     posterior = np.linalg.inv(np.linalg.inv(v) + np.diag(sd**-2.0))
     mean = posterior @ np.linalg.solve(v, a)
     log = -0.5 * a @ np.linalg.solve(wide, a) + 0.5 * (np.linalg.slogdet(v)[1] - np.linalg.slogdet(wide)[1])
-    return float(log + np.sum(told(mean / np.sqrt(np.diag(posterior)), sign)))
+    return float(log + np.sum(log_sign_gain(mean / np.sqrt(np.diag(posterior)), sign)))

@@ -125,7 +125,7 @@ def score(G: Gram, theta: Array, prior_sd: Array, sign: NDArray[np.int64]) -> Sc
     return Score(u, 0.5 * (V + V.T), np.diag(G.ZZ).copy(), sign, np.argmax(size, axis=0))
 
 
-def apart(grams: Mapping[str, Gram]) -> Gram:
+def per_test(grams: Mapping[str, Gram]) -> Gram:
     """Every effect in every test as an effect of its own: test by test, in the order of the tests."""
     each = list(grams.values())
     return Gram(

@@ -68,9 +68,11 @@ def with_one_more(
     out = []
     for one in most_probable(singles(now)):
         progress(f"refitting {best.name(evidence)} + {one.name(now)}")
-        found, k = laplace(now, one), others[one.members[0]]
+        refitted, k = laplace(now, one), others[one.members[0]]
         prior = best.log_prior + AGAIN + float(np.log(prior_shares(evidence)[k]))
-        out.append(Hypothesis((*best.members, k), "", prior, best.log_bayes + found.log_bayes, best.loud, found.fit))
+        out.append(
+            Hypothesis((*best.members, k), "", prior, best.log_bayes + refitted.log_bayes, best.loud, refitted.fit)
+        )
     return [out[i] for i in np.argsort(-weights(out))]
 
 

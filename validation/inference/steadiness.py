@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from lumped.model.multipliers import values_of
-from validation.calibration.calibrate import Fit, KnownSegments, minimise
+from validation.calibration.calibrate import CachedSegments, Fit, minimise
 from validation.comparison.linearisation import Segment
 from validation.inference.decision import Decision
 from validation.inference.evidence import Evidence
@@ -74,7 +74,7 @@ def thinned(e: Evidence, fit: Fit, error: ModelError | None, first: int) -> Fit:
     parts = [every_second(s, first) for s in fit.parts]
     held = values_of(fit.network, fit.values)
     return minimise(fit.network, e.tests, fit.unknowns, fit.theta, e.fit.noise, held, 0,
-                    KnownSegments(parts, nearby=False), error=error)  # fmt: skip
+                    CachedSegments(parts, nearby=False), error=error)  # fmt: skip
 
 
 def every_second(s: Segment, first: int) -> Segment:

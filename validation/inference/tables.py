@@ -31,9 +31,9 @@ from validation.planning.sensors import next_sensors
 from validation.procedure.reduction.which_base import Hypothesis as Base
 
 Array = NDArray[np.float64]
-ROWS, SHOWN = 20, 1e-4  # candidates in the table; odds below one in ten thousand are not listed
+ROWS, LEAST_ODDS = 20, 1e-4  # candidates in the table; odds below one in ten thousand are not listed
 NORMAL_95 = 1.96
-SAID = 0.02  # probability below which a member of a group is in the table, and not in the sentence
+LEAST_MEMBER = 0.02  # probability below which a member of a group is in the table, and not in the sentence
 RIVALS = 4  # of a group are compared with each other where a plan is wanted
 
 
@@ -46,7 +46,7 @@ def tabulate(
     for k in [k for g in choice.groups for k in g][:ROWS]:
         if single[k].fit is None:
             single[k] = laplace(e, single[k])
-    pulls = strained(e.fit)
+    pulls = at_prior_edge(e.fit)
     verdict = final(choice.verdict, posterior, choice, pulls, broken)
     rows = candidates(case, posterior, choice, verdict, single)
     rivals = contenders(e, choice, single) if plan and verdict in ("group", "several") else None
@@ -54,11 +54,11 @@ def tabulate(
     tests, sensors = (next_tests(e, rivals), next_sensors(e, rivals)) if rivals else ((), ())
     return Diagnosis(
         verdict=verdict, words=sentence(verdict, posterior, choice, rows, pulls, broken) + unsteady(posterior, choice),
-        named=tuple(g[0] for g in groups), groups=groups, candidates=rows, cannot_see=unseen(e), where=posterior.heat,
-        next_tests=tuple(tests), next_sensors=tuple(sensors), rmse_K=rmse(e.fit.parts), floor_K=floor(e),
-        threshold=float(np.min(thresholds(e))), pulls=pulls, cosine=confusion(e, [c.effect for c in rows[:12]]),
-        bases=bases, odds=odds(posterior, broken.names), p_nothing=0.0 if broken.names else 1.0 - choice.sure,
-        events=possible_events(posterior),
+        named=tuple(g[0] for g in groups), groups=groups, candidates=rows, cannot_see=hidden_effects(e),
+        where=posterior.heat, next_tests=tuple(tests), next_sensors=tuple(sensors), rmse_K=rmse(e.fit.parts),
+        floor_K=floor(e), threshold=float(np.min(thresholds(e))), pulls=pulls,
+        cosine=confusion(e, [c.effect for c in rows[:12]]), bases=bases, odds=odds(posterior, broken.names),
+        p_nothing=0.0 if broken.names else 1.0 - choice.sure, events=possible_events(posterior),
         remainder=remainder(posterior, choice, single),
         contradiction=posterior.against, question=best_question(posterior),
     )  # fmt: skip
@@ -70,13 +70,13 @@ def final(verdict: Verdict, posterior: Posterior, choice: Decision, pulls: Seque
         return "data"
     e = posterior.evidence
     if verdict == "adequate":
-        return "outside" if beyond(e) else "absorbed" if pulls else "adequate"
+        return "outside" if over_model_error(e) else "absorbed" if pulls else "adequate"
     if verdict == "named" and e.twins[choice.groups[0][0]] is not None:
         return "absorbed"
     return verdict
 
 
-def strained(fit: Fit) -> tuple[tuple[str, float, float], ...]:
+def at_prior_edge(fit: Fit) -> tuple[tuple[str, float, float], ...]:
     """Parameters that calibration pulls further from their prior than one in twenty fits does any: name, value,
     deviations; and those at a physical bound beyond two deviations."""
     pull = fit.theta / fit.unknowns.sd
@@ -86,7 +86,7 @@ def strained(fit: Fit) -> tuple[tuple[str, float, float], ...]:
     return tuple((fit.unknowns.names[j], fit.values[fit.unknowns.names[j]], float(pull[j])) for j in order)
 
 
-def beyond(evidence: Evidence) -> bool:
+def over_model_error(evidence: Evidence) -> bool:
     """Is more left than noise and model error allow: most records out of twice what a model may be wrong by?"""
     left = InnerProduct(evidence.fit.parts, evidence.fit.noise, evidence.fit.error).explained(
         evidence.fit.parts, evidence.fit.error
@@ -109,7 +109,7 @@ def odds(posterior: Posterior, sure: tuple[str, ...] = ()) -> tuple[Odds, ...]:
     e = posterior.evidence
     rows = [
         _odds(e, h, float(p), sure)
-        for h, p in zip(posterior.hypotheses, P, strict=True) if p > SHOWN
+        for h, p in zip(posterior.hypotheses, P, strict=True) if p > LEAST_ODDS
     ]  # fmt: skip
     rows.sort(key=lambda o: -o.probability)
     rest = 1.0 - sum(o.probability for o in rows)
@@ -179,7 +179,7 @@ class Beside:
     def of(cls, case: Case, posterior: Posterior, lead: Fit | None) -> Beside:
         tests = tuple(t for t in case.tests if t.role == "hold-out")
         e, share = posterior.evidence, tempered_by(posterior.hypotheses)
-        return cls(deviance(e, lead) if lead else {}, share, tests, left_on(tests, e.fit))
+        return cls(deviance(e, lead) if lead else {}, share, tests, held_out_residuals(tests, e.fit))
 
 
 def _row(
@@ -202,7 +202,7 @@ def _row(
         j = within.unknowns.names.index(e.names[k])
         a = float(within.theta[j])
         row = replace(row, value=a, ci95=interval(a, wide * float(within.sd[j]), scatter(e, k)))
-    new = left_on(beside.tests, h.fit)
+    new = held_out_residuals(beside.tests, h.fit)
     held = (rmse(beside.held), rmse(new)) if beside.tests else None
     tests = (*by_test(e.fit.parts, h.fit.parts, False), *by_test(beside.held, new, True))
     return replace(
@@ -234,7 +234,7 @@ def against(e: Evidence, fit: Fit, beside: Beside) -> str:
     return f"fits {channel} in {test} worse by {nats:.1f} nats" if nats > 1.0 else ""
 
 
-def left_on(tests: Sequence[Test], fit: Fit) -> tuple[Segment, ...]:
+def held_out_residuals(tests: Sequence[Test], fit: Fit) -> tuple[Segment, ...]:
     """What a fit leaves on tests that nothing was fitted to."""
     return tuple(segments(fit.network, tests, fit.values)) if tests else ()
 
@@ -248,7 +248,7 @@ def by_test(
     return tuple((name, rmse(old), rmse(new), held_out) for name, (old, new) in zip(names, own, strict=True))
 
 
-def unseen(e: Evidence) -> tuple[DetectionLimit, ...]:
+def hidden_effects(e: Evidence) -> tuple[DetectionLimit, ...]:
     """Effects that would have to be unusually large to show, most hidden first."""
     size = smallest(e)
     unusual = size / np.array([p.prior_sd for p in e.parameters])
@@ -327,7 +327,7 @@ def _group(posterior: Posterior, group: tuple[int, ...], rows: Sequence[Candidat
         size = "" if effect.whole else f", {best.value:.3g}{unit}"
         return f"{'fault' if effect.fault else 'missing'}: {best.title} {place}{size} ({percent(best.probability)})"
     known = {k: by_name[e.names[k]].probability for k in group if e.names[k] in by_name}
-    likely = [f"{e.names[k]} {percent(p)}" for k, p in known.items() if p >= SAID or k in group[:2]]
+    likely = [f"{e.names[k]} {percent(p)}" for k, p in known.items() if p >= LEAST_MEMBER or k in group[:2]]
     others = f" or {len(group) - len(likely)} less likely ones" if len(group) > len(likely) else ""
     return f"one of {', '.join(likely)}{others}; these tests and sensors cannot tell them apart"
 

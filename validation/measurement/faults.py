@@ -105,8 +105,8 @@ def jumps_after(y: NDArray[np.float64], first: int, last: int) -> bool:
 
 def broken_channels(tests: Iterable[Test]) -> list[Fault]:
     """All plain faults."""
-    found = [fault(test, channel) for test in tests for channel in test.channels]
-    return [f for f in found if f]
+    faults = [fault(test, channel) for test in tests for channel in test.channels]
+    return [f for f in faults if f]
 
 
 def without(tests: Sequence[Test], faults: Sequence[Fault]) -> tuple[Test, ...]:

@@ -54,12 +54,14 @@ def sampled(steps: Mapping[str, SampleStep]) -> str:
     tests: dict[float, list[str]] = {}
     for name, s in steps.items():
         tests.setdefault(s.step_s, []).append(name)
-    said = "; ".join(f"every {h:.3g} s in {', '.join(names)}" for h, names in sorted(tests.items()))
+    sentence = "; ".join(f"every {h:.3g} s in {', '.join(names)}" for h, names in sorted(tests.items()))
     worst = max(steps.values(), key=lambda s: s.error_K)
     if worst.sensor is None:
-        return f"readings and model are compared {said}, as recorded"
+        return f"readings and model are compared {sentence}, as recorded"
     fast = f", where {worst.node} follows in {worst.time_constant_s:.3g} s" if worst.node else ""
-    return f"readings and model are compared {said}; that leaves {worst.error_K:.2g} K (rms) at {worst.sensor}{fast}"
+    return (
+        f"readings and model are compared {sentence}; that leaves {worst.error_K:.2g} K (rms) at {worst.sensor}{fast}"
+    )
 
 
 @dataclass(frozen=True)
@@ -89,7 +91,7 @@ class Modes:
         )  # fmt: skip
 
 
-def apart(x: Array) -> Array:
+def interpolation_error(x: Array) -> Array:
     """g(x) above."""
     full = np.maximum(x, SMALL)
     return np.abs(np.where(x < SMALL, x / 24.0, 0.5 + np.expm1(-0.5 * full) / full + np.expm1(-full) / 12.0))
@@ -97,11 +99,11 @@ def apart(x: Array) -> Array:
 
 def sample_step(
     network: Network, time: Array, inputs: Mapping[str, Array], around: Mapping[str, float],
-    seen: Sequence[Sensor], level: float, wished: float | None = None,
+    sensors: Sequence[Sensor], level: float, wished: float | None = None,
 ) -> SampleStep:  # fmt: skip
     """The step for one record: no finer than its own, no coarser than `wished` (s) or the instants of a fit.
 
-    time (n,) s, inputs (n,): as recorded;  around : boundary -> degC;  seen : sensors
+    time (n,) s, inputs (n,): as recorded;  around : boundary -> degC;  sensors : sensors
     level : degC of a warm machine
     """
     usual = float(np.median(np.diff(time)))
@@ -109,10 +111,10 @@ def sample_step(
     steps = sorted({usual, *(h for h in (*STEPS, *([wished] if wished else [])) if usual < h <= most)})
     felt, chosen = _Felt.of(network, time, inputs, around, level), SampleStep(steps[0], 0.0, None, None, None)
     for h in steps[1:]:
-        found = felt.worst(h, seen)
-        if found.error_K > ALLOWED * min(sigma for _, _, sigma, _ in seen):
+        worst = felt.worst(h, sensors)
+        if worst.error_K > ALLOWED * min(sigma for _, _, sigma, _ in sensors):
             break
-        chosen = found
+        chosen = worst
     return chosen
 
 
@@ -148,18 +150,18 @@ class _Felt:
         table = np.stack([factors[e] for e in moving], axis=1) if moving else np.zeros((time.size, 0))
         return cls(network.states, Modes.of(G, C), time, table, heat)
 
-    def worst(self, h: float, seen: Sequence[Sensor]) -> SampleStep:
+    def worst(self, h: float, sensors: Sequence[Sensor]) -> SampleStep:
         """With steps of h (s)."""
         at = self.time[:: max(1, self.time.size // MOST)]
         rows = np.minimum(np.searchsorted(self.time, [at, at + h]), self.time.size - 1)
         change = self.factor[rows[1]] - self.factor[rows[0]]
         change = change[np.argsort(-np.abs(change) @ np.abs(self.heat).sum(axis=0))[:MOMENTS]]
         push, best = self.modes.weight @ self.heat, SampleStep(h, 0.0, None, None, None)
-        for name, row, _, lag in seen:
+        for name, row, _, lag in sensors:
             inside = row.index < len(self.states)
             own = row.weights[inside] @ self.modes.shape[row.index[inside]]
             parts = np.abs(change @ (own[:, None] * push).T)
-            late = parts @ apart(h / np.maximum(1.0 / self.modes.rate + lag, 1e-9))
+            late = parts @ interpolation_error(h / np.maximum(1.0 / self.modes.rate + lag, 1e-9))
             if (error := float(np.sqrt(np.sum(late**2) / at.size))) > best.error_K:
                 best = SampleStep(h, error, name, *self._fastest(parts[int(late.argmax())]))
         return best

@@ -126,7 +126,7 @@ class Constants:
             return float(np.clip(usual * np.exp(np.clip(x, -FARTHEST, FARTHEST)), p.low, p.high))
         return float(np.clip(usual + to_value(p, x) - p.neutral, p.low, p.high))
 
-    def seen(self, j: int, w: Array) -> Row:
+    def sensor_row(self, j: int, w: Array) -> Row:
         """The row that sensor j reads, over z = [x; u]."""
         i, c, near = self.first(j), self.channels[j], self.beside[j]
         shares, slope = w[i : i + len(near)], w[i + len(near)]
@@ -147,7 +147,9 @@ class Constants:
 
     def sensors(self, w: Array) -> dict[str, Sensor]:
         """Name -> the sensor as it was learned."""
-        return {c.name: Sensor(replace(c, row=self.seen(j, w)), self.bias(j, w)) for j, c in enumerate(self.channels)}
+        return {
+            c.name: Sensor(replace(c, row=self.sensor_row(j, w)), self.bias(j, w)) for j, c in enumerate(self.channels)
+        }
 
 
 def _at(row: Row, z: Array) -> float:

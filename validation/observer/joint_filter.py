@@ -100,8 +100,8 @@ class _Run:
             self._step(f, self.u[k - 1] + share * (self.u[k] - self.u[k - 1]), h)
         z = np.concatenate([self.x, self.u[k]])
         keeps = [np.exp(-seconds / c.lag_s) if k and c.lag_s > 0.0 else 0.0 for c in self.test.channels]
-        shown = np.array([self._shown(c, z) for c in self.test.channels])
-        self.lagged = shown + np.array(keeps) * (self.lagged - shown)
+        readings = np.array([self._reading_of(c, z) for c in self.test.channels])
+        self.lagged = readings + np.array(keeps) * (self.lagged - readings)
         change = np.zeros(len(self.P))
         for i, c in enumerate(self.test.channels):
             if np.isfinite(c.y[k]):
@@ -136,15 +136,15 @@ class _Run:
         P[s:, :s], P[self.n :, s : self.n] = P[:s, s:].T, P[s : self.n, self.n :].T
         self.q = keeps * self.q
 
-    def _shown(self, c: Channel, z: Array) -> float:
+    def _reading_of(self, c: Channel, z: Array) -> float:
         j = self.at[c.name]
-        row = self.of.constants.seen(j, self.w)
+        row = self.of.constants.sensor_row(j, self.w)
         return float(row.weights @ z[row.index]) + self.of.constants.bias(j, self.w)
 
     def _slope(self, c: Channel, z: Array) -> Array:
         """(N,) what a reading sees of everything."""
         j, h = self.at[c.name], np.zeros(len(self.P))
-        h[: self.process.slow.size] = self.process.seen(self.of.constants.seen(j, self.w), self.along)
+        h[: self.process.slow.size] = self.process.sensed(self.of.constants.sensor_row(j, self.w), self.along)
         for k, slope in self.of.constants.by_sensor(j, z):
             h[self.n + k] = slope
         return h
@@ -171,10 +171,10 @@ class _Terms:
         self._bent = [(e, p.law.temperature, p.hot, p.cold) for e, p in enumerate(patterns) if p.bends]
         self._known, self._close = np.full(constants.sd.size, np.inf), close * constants.sd
 
-    def factors(self, given: Record) -> Array:
+    def factors(self, record: Record) -> Array:
         """(nt, ne) of a record."""
-        u, nt = given.inputs, given.time.shape
-        signals = u if isinstance(u, Signals) else Signals(u, given.time.size)
+        u, nt = record.inputs, record.time.shape
+        signals = u if isinstance(u, Signals) else Signals(u, record.time.size)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", RangeWarning)  # a comparison says so
             every = [signals.factor(p.name, p.law) for p in self.every.patterns]

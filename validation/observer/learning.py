@@ -64,8 +64,8 @@ def narrowed(network: Network, values: Mapping[str, float], case: Case) -> Netwo
     added = {e.name for e in case.model.effects}
 
     def prior(p: Parameter) -> Parameter:
-        found = abs(values.get(p.name, p.value) - p.neutral)
-        return replace(p, prior_sd=min(p.prior_sd, HALF * found)) if p.name in added else p
+        deviation = abs(values.get(p.name, p.value) - p.neutral)
+        return replace(p, prior_sd=min(p.prior_sd, HALF * deviation)) if p.name in added else p
 
     return replace(network, parameters=tuple(prior(p) for p in network.parameters))
 
@@ -110,10 +110,10 @@ def constants_of(network: Network, values: Mapping[str, float], tests: Sequence[
     return Constants(with_motion(bare, tests), start, tuple(channels.values()), doubt)
 
 
-def over(design: Design, test: Test, at_hand: Sequence[str]) -> tuple[Observer, list[Sample]]:
+def over(design: Design, test: Test, measured: Sequence[str]) -> tuple[Observer, list[Sample]]:
     """An observer after a test, and its samples."""
     test = thinned(test)
-    given, sensors = record(test, {}), [c for c in test.channels if c.name in at_hand]
+    given, sensors = record(test, {}), [c for c in test.channels if c.name in measured]
     y = np.column_stack([c.y for c in sensors]) if sensors else np.empty((test.time.size, 0))
     around = {b: float(np.asarray(u, float).flat[0]) for b, u in given.boundaries.items()}
     one = design.started(sensors, y[0], around)

@@ -21,7 +21,7 @@ from validation.observer.process_noise import ProcessNoise
 from validation.observer.sensor_faults import SensorState
 
 Array = NDArray[np.float64]
-HELD_S = 60.0  # a reading's error lasts about a minute: more readings within it are no more evidence
+CORRELATION_S = 60.0  # a reading's error lasts about a minute: more readings within it are no more evidence
 
 
 @dataclass(frozen=True)
@@ -102,25 +102,25 @@ class Observer:
 
     def _update(self, by: Driven, k: int, readings: Array, seconds: float) -> None:
         z = np.concatenate([self.filter.x, by.u[k]])
-        shown = np.array([c.row.weights @ z[c.row.index] for c in self.sensors])
+        expected = np.array([c.row.weights @ z[c.row.index] for c in self.sensors])
         lag = np.array([c.lag_s for c in self.sensors])
         keeps = np.exp(-seconds / np.maximum(lag, 1e-9)) if self.started else np.zeros(lag.size)
-        self.lagged = shown + keeps * (self.lagged - shown)
+        self.lagged = expected + keeps * (self.lagged - expected)
         change = np.zeros(len(self.filter.S))
         for j in range(len(self.sensors)):
             self._reading(j, float(readings[j]), change, float(by.time[k]), seconds or 1.0)
         self.filter.correct(change)
         n = self.filter.process.slow.size
         for j, c in enumerate(self.sensors):
-            self.lagged[j] += self.filter.process.seen(c.row, self.filter.along) @ change[:n]
+            self.lagged[j] += self.filter.process.sensed(c.row, self.filter.along) @ change[:n]
         self._judge(float(by.time[k]))
 
     def _reading(self, j: int, reading: float, change: Array, time: float, seconds: float) -> None:
         """One reading into the filter; change (N,) grows by what it moves."""
         c, state, f = self.sensors[j], self.states[j], self.filter
         h = np.zeros(len(f.S))
-        h[: f.process.slow.size] = f.process.seen(c.row, f.along)
-        variance, expected = c.sigma_K**2 * max(HELD_S / seconds, 1.0), float(self.lagged[j] + h @ change)
+        h[: f.process.slow.size] = f.process.sensed(c.row, f.along)
+        variance, expected = c.sigma_K**2 * max(CORRELATION_S / seconds, 1.0), float(self.lagged[j] + h @ change)
         sd, was = float(np.sqrt(np.sum((f.S.T @ h) ** 2) + variance)), state.dropped
         sigma = np.array([one.sigma_K for one in self.sensors])
         used = state.take(reading, expected, sd, self.lagged.copy(), sigma, time, seconds)
@@ -155,7 +155,7 @@ class Observer:
     def _judge(self, time: float) -> None:
         """Say what has become sure, withdraw what no longer is."""
         count = len(self.sensors)
-        for i, chance in enumerate(self.beyond_doubt, count):
+        for i, chance in enumerate(self.missing_heat_probability, count):
             size = float(self.filter.q[i - count])
             if i not in self.open:
                 if chance > SURE:
@@ -170,7 +170,7 @@ class Observer:
             self._drop_drifting(int(drifts.argmax()), time, float(drifts.max()))
 
     @property
-    def beyond_doubt(self) -> Array:
+    def missing_heat_probability(self) -> Array:
         """(m,) probability that the missing heat of a body is more than the table of doubt allows."""
         sd = np.linalg.norm(self.filter.S[self.filter.process.slow.size :], axis=1)
         return np.asarray(ndtr((np.abs(self.filter.q) - ALLOWED * self.table_sd) / np.maximum(sd, 1e-9)))

@@ -66,8 +66,8 @@ class Process:
     @cached_property
     def slow(self) -> NDArray[np.int64]:
         """The states of the reduced model."""
-        shown = np.array(["#" not in s for s in self.network.states], bool)
-        return np.flatnonzero(shown & (self.network.C > 0.0))
+        visible = np.array(["#" not in s for s in self.network.states], bool)
+        return np.flatnonzero(visible & (self.network.C > 0.0))
 
     @cached_property
     def fast(self) -> NDArray[np.int64]:
@@ -151,7 +151,7 @@ class Process:
             out[self.fast] = -np.linalg.solve(G[np.ix_(self.fast, self.fast)], G[np.ix_(self.fast, self.slow)])
         return out
 
-    def seen(self, row: Row, along: Array) -> Array:
+    def sensed(self, row: Row, along: Array) -> Array:
         """(n_slow,) what a sensor sees of the slow states."""
         own = row.index < along.shape[0]
         return np.asarray(row.weights[own] @ along[row.index[own]])

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
+from geom.description.machine import Machine
 from lumped.machine.coolant import FLOW, INLET, Cooling, channel_of
 from lumped.machine.films import surroundings
 from lumped.transfer.hydraulics import pressure_drop, pumping_power
@@ -26,21 +26,22 @@ class Way:
     coil: float
 
 
-def auxiliary_power(machine: Any, inputs: Mapping[str, float]) -> float:
+def auxiliary_power(machine: Machine, inputs: Mapping[str, float]) -> float:
     """Electrical power (W) of the coolant's pump and of the fan at an operating point.
 
     A fan on the shaft ([fans.cowl]) takes its power as windage, which is among the losses.
     """
     around = surroundings(machine, ())
     out = 0.0 if around.cooling is None else _pump(machine, around.cooling, inputs[FLOW] / 60000.0)
-    if around.fan is not None and around.ducts and inputs[FAN] > 0.0:
-        flow, (way, duct) = inputs[FAN] / 3600.0, next(iter(around.ducts.items()))  # all ways drop the same pressure
+    ducts = machine.features.ducts
+    if around.fan is not None and ducts and inputs[FAN] > 0.0:
+        flow, (way, duct) = inputs[FAN] / 3600.0, next(iter(ducts.items()))  # all ways drop the same pressure
         drop = pressure_drop(duct, around.shares[way] * flow, air(around.fan.air_C))
         out += pumping_power(drop, flow, EFFICIENCY)
     return out
 
 
-def _pump(machine: Any, cooling: Cooling, flow: float) -> float:
+def _pump(machine: Machine, cooling: Cooling, flow: float) -> float:
     """flow (m3/s): jackets that the inlet feeds lie side by side, those that another feeds one after the other."""
     ends = [j for j in cooling.feeds if j not in cooling.feeds.values()]
     drops = [
@@ -50,11 +51,11 @@ def _pump(machine: Any, cooling: Cooling, flow: float) -> float:
     return pumping_power(max(drops, default=0.0), flow, EFFICIENCY)
 
 
-def _drop(machine: Any, jacket: str, flow: float, cooling: Cooling) -> float:
+def _drop(machine: Machine, jacket: str, flow: float, cooling: Cooling) -> float:
     return pressure_drop(way_of(machine, jacket), flow, cooling.liquid) if flow > 0.0 else 0.0
 
 
-def way_of(machine: Any, jacket: str) -> Way:
+def way_of(machine: Machine, jacket: str) -> Way:
     """Axial channels joined by two bends of 90 degrees each, or the turns of a helix."""
     channel, prisms = channel_of(machine, jacket), machine.part(jacket).prisms
     if prisms[0][0].holes:

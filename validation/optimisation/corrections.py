@@ -41,9 +41,11 @@ def learned(shares: Sequence[Array], ratios: Sequence[Mapping[str, float]]) -> C
     return Corrections({q: np.asarray(np.linalg.lstsq(X, y, rcond=None)[0], float) for q, y in logs.items()})
 
 
-def errors(known: Corrections, shares: Sequence[Array], ratios: Sequence[Mapping[str, float]]) -> dict[str, float]:
+def errors(
+    corrections: Corrections, shares: Sequence[Array], ratios: Sequence[Mapping[str, float]]
+) -> dict[str, float]:
     """Quantity -> the largest relative error at geometries that were not learned from."""
     return {
-        q: max(abs(known.ratio(q, s) / r[q] - 1.0) for s, r in zip(shares, ratios, strict=True))
+        q: max(abs(corrections.ratio(q, s) / r[q] - 1.0) for s, r in zip(shares, ratios, strict=True))
         for q in (ratios[0] if ratios else {})
     }

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from geom.errors import InputError
 from lumped.drives.drive import RPM, SeriesMachine
-from lumped.schemas.reader import known
+from lumped.schemas.reader import suggestion
 
 CURRENT, SPEED = "current_A", "speed_rpm"
 
@@ -58,11 +58,11 @@ class Electrics:
         return out
 
 
-def electrics_of(family: str, ratings: Mapping[str, float], losses: Mapping[str, float]) -> Electrics:
-    """From the sections of a machine file, as far as they say it."""
+def electrics_of(series: bool, ratings: Mapping[str, float], losses: Mapping[str, float]) -> Electrics:
+    """From the sections of a machine file, as far as they say it.  series : does the field carry the current?"""
     limits, brush = (ratings.get(CURRENT), ratings.get("voltage_V")), float(losses.get("brush_drop_V", 0.0))
     needed = ("power_W", SPEED, "voltage_V", CURRENT)
-    if family == "series-dc" and all(k in ratings for k in needed):
+    if series and all(k in ratings for k in needed):
         return Electrics(*limits, brush, SeriesMachine.from_ratings(*(float(ratings[k]) for k in needed)))
     rated = (ratings["torque_Nm"], ratings[CURRENT]) if "torque_Nm" in ratings and CURRENT in ratings else None
     return Electrics(limits[0], None, 0.0, None, rated)
@@ -73,5 +73,5 @@ def wanted_inputs(inputs: Mapping[str, float], torque: float | None, electrics: 
     if torque is None:
         return dict(inputs)
     if CURRENT not in inputs:
-        raise InputError("no law reads the current", "--torque", known(CURRENT, tuple(inputs)))
+        raise InputError("no law reads the current", "--torque", suggestion(CURRENT, tuple(inputs)))
     return {**inputs, CURRENT: electrics.current(torque)}

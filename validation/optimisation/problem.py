@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.description.machine import Machine
 from geom.errors import InputError
 from lumped.model.network import Network, Row
 from validation.optimisation.auxiliaries import auxiliary_power
@@ -60,7 +61,7 @@ class Problem:
     network : with `design_parameters`, at `values`;  inputs, boundaries : the operating point
     peak : how many of the limited places, from the first, make up the peak temperature that is minimised
     machine_at : values of variables -> machine;  scaling : of the network's own machine; both None for a network alone
-    taken : inputs that a design's machine decides, such as flows;  aimed : OBJECTIVES that are minimised
+    from_machine : inputs that a design's machine decides, such as flows;  aimed : OBJECTIVES that are minimised
     driven : the cycle that is the load, instead of the inputs' current and speed
     sure : widens temperatures to the upper end of their 95 % band
     """
@@ -73,9 +74,9 @@ class Problem:
     spots: tuple[HotSpots, ...]
     peak: int
     electrics: Electrics = field(default_factory=Electrics)
-    machine_at: Callable[[Mapping[str, float]], Any] | None = None
+    machine_at: Callable[[Mapping[str, float]], Machine] | None = None
     scaling: Scaling | None = None
-    taken: tuple[str, ...] = ()
+    from_machine: tuple[str, ...] = ()
     corrections: Corrections = NONE
     sure: Uncertainty | None = None
     driven: Driven | None = None
@@ -94,14 +95,17 @@ class Problem:
         except InputError as error:
             return self._impossible(str(error))
 
-    def judged(self, named: Mapping[str, float], machine: Any) -> Performance:
+    def judged(self, named: Mapping[str, float], machine: Machine | None) -> Performance:
         """A design whose machine is there already."""
         inputs, lag = self._inputs(named, machine)
-        values = {**self.values, **({} if self.scaling is None else self.scaling.of(machine, inputs))}
-        found, runaway = self._rest(values, inputs)
+        values = {
+            **self.values,
+            **({} if self.scaling is None or machine is None else self.scaling.of(machine, inputs)),
+        }
+        rest, runaway = self._rest(values, inputs)
         share = self.space.share(named)
-        copper = losses(self.network, values, inputs, found.z, ("copper",)) * self.corrections.ratio(COPPER, share)
-        places, slowest = self._temperatures(found, values, inputs, share)
+        copper = losses(self.network, values, inputs, rest.z, ("copper",)) * self.corrections.ratio(COPPER, share)
+        places, slowest = self._temperatures(rest, values, inputs, share)
         hottest = max(list(places.values())[: self.peak])
         objectives = {
             PEAK: hottest, SETTLING: slowest * self.corrections.ratio(SETTLING, share), COPPER: copper,
@@ -111,14 +115,14 @@ class Problem:
         limits = self.electrics.excess(inputs, copper) if self.driven is None else lag
         return Performance(objectives, {**excess, **limits}, places, inputs, "runaway" * runaway)
 
-    def _inputs(self, named: Mapping[str, float], machine: Any) -> tuple[dict[str, float], dict[str, float]]:
+    def _inputs(self, named: Mapping[str, float], machine: Machine | None) -> tuple[dict[str, float], dict[str, float]]:
         """Of the network; and what the drive misses of its cycle."""
         out = {**self.inputs, **{n: u for n, u in named.items() if n in self.inputs}}
         if machine is not None:
             from lumped.machine.motor import rated_inputs
 
             given = rated_inputs(machine)
-            out |= {n: given[n] for n in self.taken}
+            out |= {n: given[n] for n in self.from_machine}
         if self.driven is None:
             return out, {}
         load, lag = self.driven.inputs(named)
@@ -126,27 +130,27 @@ class Problem:
 
     def _rest(self, values: Mapping[str, float], inputs: Mapping[str, float]) -> tuple[Rest, bool]:
         """The rest; where the machine would run away, with losses as at the limit: above it then."""
-        found = rest(self.network, values, inputs, self.boundaries)
-        if found is not None and found.stable:
-            return found, False
+        at_rest = rest(self.network, values, inputs, self.boundaries)
+        if at_rest is not None and at_rest.stable:
+            return at_rest, False
         again = rest(self._without_feedback, values, inputs, self.boundaries)
         if again is None:
             raise InputError("the machine does not come to rest", self.network.title, "a way for heat to leave it")
         return again, True
 
     def _temperatures(
-        self, found: Rest, values: Mapping[str, float], inputs: Mapping[str, float], share: Array
+        self, rest: Rest, values: Mapping[str, float], inputs: Mapping[str, float], share: Array
     ) -> tuple[dict[str, float], float]:
         """Place -> degC, of the hottest point; the settling time (s) of the hottest of the first `peak` places."""
         around = float(np.mean(list(self.boundaries.values())))
         rows, out = {}, {}
         for s in self.spots:
-            T, rows[s.name] = s.hottest(found.z)
+            T, rows[s.name] = s.hottest(rest.z)
             out[s.name] = around + (T - around) * self.corrections.ratio(s.name, share)
             if self.sure is not None:
                 out[s.name] += 1.96 * self.sure.sd(values, inputs, self.boundaries, rows[s.name])
         hottest = max([s.name for s in self.spots][: self.peak], key=lambda name: out[name])
-        return out, found.settling(rows[hottest])
+        return out, rest.settling(rows[hottest])
 
     def _impossible(self, why: str) -> Performance:
         limits = [f"{s.name} <= {s.limit:g} degC" for s in self.spots]

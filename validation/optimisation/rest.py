@@ -22,13 +22,13 @@ from lumped.model.multipliers import multipliers
 from lumped.model.network import Network, Row
 from lumped.numerics.stages import stages, work
 from lumped.numerics.steady_start import settle
-from lumped.transfer.laws import Law, Linear, TemperatureLaw
+from lumped.transfer.laws import Law, Linear, Scaled, WithTemperature
 from lumped.transfer.terms_value import temperature_value
 
 Array = NDArray[np.float64]
 ABOVE_K = 30.0  # of the first guess: still air takes nothing without a difference
 SMALLEST = 1e-6  # of the largest heat capacity: what stands for none
-SETTLED = 0.05  # of the rise that is left at the settling time
+REMAINING = 0.05  # of the rise that is left at the settling time
 GRID = np.geomspace(1e-4, 10.0, 400)  # of the slowest time constant
 
 
@@ -54,11 +54,11 @@ class Rest:
         away = np.linalg.solve(shapes, self.start - self.z[:n]) * (row.dense(n) @ shapes)
         time = GRID / rate.real.min()
         left = np.abs((np.exp(-np.outer(time, rate)) @ away).real)
-        late = np.flatnonzero(left > SETTLED * abs(away.sum().real))
+        late = np.flatnonzero(left > REMAINING * abs(away.sum().real))
         if not late.size or late[-1] == time.size - 1:
             return float(time[0 if not late.size else -1])
         k = int(late[-1])
-        return float(np.interp(SETTLED * abs(away.sum().real), [left[k + 1], left[k]], [time[k + 1], time[k]]))
+        return float(np.interp(REMAINING * abs(away.sum().real), [left[k + 1], left[k]], [time[k + 1], time[k]]))
 
 
 def rest(
@@ -111,32 +111,18 @@ def _T(row: Row, z: Array) -> float:
     return float(row.weights @ z[row.index])
 
 
-@dataclass(frozen=True)
-class AtOneTemperature(Law):
-    """Another law at a temperature of its own (degC)."""
-
-    base: Law
-    T: float
-
-    @property
-    def temperature(self) -> TemperatureLaw:  # type: ignore[override]
-        return Linear(0.0, self.T)
-
-    @property
-    def reads(self) -> tuple[str, ...]:  # type: ignore[override]
-        return self.base.reads
-
-    def factor(self, inputs: Mapping[str, Array]) -> Array | float:
-        return temperature_value(self.base.temperature, self.T, self.T) * np.asarray(self.base.factor(inputs))
-
-
 def without_feedback(network: Network, T: float) -> Network:
     """Losses that grow with temperature at those of T (degC): such a network always rests where a film holds it.
 
     It is above T where the true one is above T or runs away, and below where that one is: which one, a limit can ask.
     """
-    hot = (replace(s, law=AtOneTemperature(s.law, T)) if _grows(s.law) else s for s in network.sources)
+    hot = (replace(s, law=_at(s.law, T)) if _grows(s.law) else s for s in network.sources)
     return replace(network, sources=tuple(hot))
+
+
+def _at(law: Law, T: float) -> Law:
+    """Another law at a temperature of its own (degC)."""
+    return WithTemperature(Scaled(law, temperature_value(law.temperature, T, T)), Linear(0.0, T))
 
 
 def _grows(law: Law) -> bool:

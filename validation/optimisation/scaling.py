@@ -6,10 +6,11 @@ Conduction stays that of the reference; what its change does is learned apart (c
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
+from geom.description.machine import Machine
+from geom.description.part import Part
 from geom.description.profile import loop_length
 from lumped.machine.coolant import FLOW, MOST_UNITS, channel_of, grown
 from lumped.machine.films import Surroundings, face_films, surroundings
@@ -31,14 +32,14 @@ def design_parameters(network: Network) -> list[Parameter]:
 class Scaling:
     """Of the network of one machine; what the machine itself is needs to be looked at once."""
 
-    def __init__(self, network: Network, machine: Any) -> None:
+    def __init__(self, network: Network, machine: Machine) -> None:
         self.machine, self.places = machine, [p for p in network.places.values() if p.kind == "surface" and p.fluid]
         self.volumes = {p.name: p.volume for p in machine.parts}
         self.liquids = {p.name for p in machine.fluids if p.material != "air"}
         self.here = Films(surroundings(machine, ()))
         self.known = {f"design {link.name}" for link in network.links}
 
-    def of(self, machine: Any, inputs: Mapping[str, float]) -> dict[str, float]:
+    def of(self, machine: Machine, inputs: Mapping[str, float]) -> dict[str, float]:
         """Values of `design_parameters` that make the network one of another machine, at an operating point.
 
         Only faces are looked at whose part or fluid has another shape.
@@ -93,7 +94,7 @@ class Films:
         return self._walls[part]
 
 
-def changed(old: Any, new: Any) -> set[str]:
+def changed(old: Machine, new: Machine) -> set[str]:
     """Parts and fluids with other prisms."""
     before = {p.name: p.prisms for p in (*old.parts, *old.fluids)}
     return {p.name for p in (*new.parts, *new.fluids) if before.get(p.name) != p.prisms}
@@ -114,7 +115,7 @@ def _value(law: Law, inputs: Mapping[str, float]) -> float:
     return float(np.mean(law.factor(at))) * temperature_value(law.temperature, 20.0 + DIFFERENCE_K, 20.0)
 
 
-def _walls(part: Any) -> float:
+def _walls(part: Part) -> float:
     """Area (m2) of all walls along the axis, and of the ends of rings."""
     sides = sum(loop_length(loop) * (z1 - z0) for profile, z0, z1 in part.prisms for loop in profile.loops)
     return float(sides + sum(2.0 * profile.area for profile, _, _ in part.prisms if profile.holes))

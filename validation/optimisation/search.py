@@ -100,10 +100,10 @@ def _posed(problem: Problem, archive: list[Design], executor: Executor | None) -
             )  # fmt: skip
 
         def _evaluate(self, X: Array, out: dict[str, Array], *args: Any, **others: Any) -> None:
-            found = judged(problem, X, executor)
-            archive.extend(Design(x, p) for x, p in zip(X, found, strict=True))
-            out["F"] = np.array([[p.objectives[o] for o in problem.aimed] for p in found])
-            out["G"] = np.array([[p.excess.get(n, 0.0) for n in limits] for p in found])
+            designs = judged(problem, X, executor)
+            archive.extend(Design(x, p) for x, p in zip(X, designs, strict=True))
+            out["F"] = np.array([[p.objectives[o] for o in problem.aimed] for p in designs])
+            out["G"] = np.array([[p.excess.get(n, 0.0) for n in limits] for p in designs])
 
     return Judged()
 
@@ -138,8 +138,8 @@ def infeasible(designs: Sequence[Design]) -> InputError:
         return InputError(f"no design is possible: {designs[0].performance.why}", "--vary", "other bounds")
     nearest = min(fits, key=lambda d: sum(max(e, 0.0) for e in d.performance.excess.values()))
     missed = {n: e for n, e in nearest.performance.excess.items() if e > 0.0}
-    said = ", ".join(f"'{n}' by {100.0 * e:.3g} %" for n, e in sorted(missed.items(), key=lambda p: -p[1]))
+    worst = ", ".join(f"'{n}' by {100.0 * e:.3g} %" for n, e in sorted(missed.items(), key=lambda p: -p[1]))
     return InputError(
-        f"no design of {len(designs)} meets all limits: the nearest one exceeds {said}", "--limit",
+        f"no design of {len(designs)} meets all limits: the nearest one exceeds {worst}", "--limit",
         "less torque, a higher limit, or wider bounds (--vary NAME=LOW:HIGH)",
     )  # fmt: skip

@@ -1,4 +1,4 @@
-"""The engineer's menu of tests, each made from a test at hand."""
+"""Candidate tests: those an engineer can be asked for, each made from a test at hand."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Experiment:
     needs: tuple[str, ...] = ()
     hours: float = 4.0
 
-    def made_from(self, test: Test, network: Network) -> Test:
+    def modified(self, test: Test, network: Network) -> Test:
         """The planned test; its channels have no readings yet."""
         base = repeated(test, self.hours)
         inputs, boundaries = self.change(base.time, dict(base.inputs), dict(base.boundaries), network)
@@ -135,7 +135,7 @@ COOLING = _then(STILL, _set(vehicle_speed=_on_off(12.0)))
 BLOWN = _then(STILL, _set(vehicle_speed=_on_off(8.0)))
 TWO_SPEEDS = _set(speed=_on_off(1500.0, 2))
 EVEN, HEAVY = _even(1.0), _even(OVERLOAD)
-MENU = (
+CANDIDATE_TESTS = (
     Experiment("DC heating at standstill", _then(EVEN, STANDING), ("current",)),
     Experiment("spin without current", SPINNING, ("speed",)),
     Experiment("heating at standstill, then cooling down", _then(HEAVY, STANDING, _half_time), ("current",)),
@@ -153,7 +153,7 @@ MENU = (
 def candidate_tests(test: Test, network: Network) -> list[tuple[Experiment, Test]]:
     """Experiments that change something on this machine, and the tests made from the one at hand."""
     measured = {network.measures(name) for name in test.inputs}
-    made = [(e, e.made_from(test, network)) for e in MENU if set(e.needs) <= measured]
+    made = [(e, e.modified(test, network)) for e in CANDIDATE_TESTS if set(e.needs) <= measured]
     return [(e, new) for e, new in made if _differ(new, repeated(test, e.hours))]
 
 

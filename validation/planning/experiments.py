@@ -1,4 +1,4 @@
-"""How far the tests of the menu would set rivals apart."""
+"""How far the candidate tests would set rivals apart."""
 
 from __future__ import annotations
 
@@ -20,24 +20,24 @@ from validation.planning.separability import separable_pairs, separation
 Array = NDArray[np.float64]
 
 
-def next_tests(evidence: Evidence, found: CompetingModels) -> list[NextTest]:
+def next_tests(evidence: Evidence, models: CompetingModels) -> list[NextTest]:
     """Tests that separate the group, best gain per hour first.
 
     Gain: the smallest deviance, over all pairs, by which the wrong one would fit worse with the new test added.
     """
-    left = refitted_gains(evidence, found, _planned(evidence, found))
+    left = refitted_gains(evidence, models, _planned(evidence, models))
     return [NextTest(p.what, separable_pairs(evidence, p.gaps), p.gain, p.hours) for p in left]
 
 
-def _planned(evidence: Evidence, found: CompetingModels) -> Iterator[Plan]:
+def _planned(evidence: Evidence, models: CompetingModels) -> Iterator[Plan]:
     fit = evidence.fit
-    p, columns = fit.theta.size, (*fit.unknowns.parameters, *(evidence.parameters[k] for k in found.group))
+    p, columns = fit.theta.size, (*fit.unknowns.parameters, *(evidence.parameters[k] for k in models.group))
     for experiment, plan in candidate_tests(evidence.tests[-1], evidence.network):
         try:
-            test = predicted_readings(found.best, plan)
+            test = predicted_readings(models.best, plan)
             parts, error = segments(evidence.network, [test], fit.values, columns), widened_error(evidence, [test])
         except ThermoscopeError:  # a model that lacks what cools it runs away in a test that is longer than its own
             continue
         wide = [error.beside(s, p) for s in parts] if error else parts
         (more,) = gram(wide, fit.noise, p + (error.size if error else 0)).values()
-        yield Plan(experiment.name, experiment.hours, [test], separation(evidence, found, more))
+        yield Plan(experiment.name, experiment.hours, [test], separation(evidence, models, more))

@@ -60,10 +60,10 @@ def predicted_curves(case: Case, models: Mapping[str, Model], experiment: str | 
     names = [e.name for e, _ in planned]
     if experiment is not None and experiment not in names:
         raise InputError(f"unknown test '{experiment}'", case.name, f"one of: {'; '.join(names)}")
-    tried = [p for e, test in planned if experiment in (None, e.name) if (p := _predicted(case, models, e, test))]
-    if not tried:
+    predictions = [p for e, test in planned if experiment in (None, e.name) if (p := _predicted(case, models, e, test))]
+    if not predictions:
         raise InputError("has no test that every hypothesis survives", case.name, "fewer hypotheses, or another test")
-    return max(tried, key=lambda p: p.closest() / p.experiment.hours)
+    return max(predictions, key=lambda p: p.closest() / p.experiment.hours)
 
 
 def _predicted(case: Case, models: Mapping[str, Model], experiment: Experiment, test: Test) -> PredictedCurves | None:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.model.multipliers import values_of
-from validation.calibration.calibrate import Fit, KnownSegments, minimise
+from validation.calibration.calibrate import CachedSegments, Fit, minimise
 from validation.calibration.unknowns import Unknowns, nuisances
 from validation.case import Test
 from validation.comparison.linearisation import segments
@@ -51,7 +51,7 @@ def predicted_readings(fit: Fit, test: Test) -> Test:
     return replace(test, channels=tuple(replace(c, y=y[:, j]) for j, c in enumerate(test.channels)))
 
 
-def refitted_gains(evidence: Evidence, found: CompetingModels, promised: Iterable[Plan]) -> list[Plan]:
+def refitted_gains(evidence: Evidence, models: CompetingModels, promised: Iterable[Plan]) -> list[Plan]:
     """The plans with what is left of the gaps that tangents promise, best gain per hour first.
 
     Tangents promise too much: they do not know how far the rivals can bend. Refits show how much for the first CHECKED
@@ -60,7 +60,7 @@ def refitted_gains(evidence: Evidence, found: CompetingModels, promised: Iterabl
     """
     plans = sorted(promised, key=lambda p: -p.worth)
     separations: list[Gaps] = [
-        {pair: predicted_deviance(evidence, found, p.tests, pair) for pair in closest_pair(p.gaps)}
+        {pair: predicted_deviance(evidence, models, p.tests, pair) for pair in closest_pair(p.gaps)}
         for p in plans[:CHECKED]
     ]
     separations += [{}] * (len(plans) - len(separations))
@@ -78,18 +78,20 @@ def closest_pair(gaps: Gaps) -> list[tuple[int, int]]:
     return sorted((pair for pair, gap in gaps.items() if gap >= GAP), key=lambda pair: gaps[pair])[:1]
 
 
-def predicted_deviance(evidence: Evidence, found: CompetingModels, new: Sequence[Test], pair: tuple[int, int]) -> float:
+def predicted_deviance(
+    evidence: Evidence, models: CompetingModels, new: Sequence[Test], pair: tuple[int, int]
+) -> float:
     """Deviance by which the wrong one of a pair would be behind with further readings, the smaller way.
 
     Unlike a gap in the tangents it counts what the tests at hand say already, and all that the wrong one may still
     bend: its own refit, with start and clock of a new test or bias and lag of a new sensor, meets noiseless readings of
     the right one.
     """
-    return min(_difference(evidence, found, new, right, wrong) for right, wrong in (pair, pair[::-1]))
+    return min(_difference(evidence, models, new, right, wrong) for right, wrong in (pair, pair[::-1]))
 
 
-def _difference(evidence: Evidence, found: CompetingModels, new: Sequence[Test], right: int, wrong: int) -> float:
-    read, rival = [predicted_readings(found.fit(right), t) for t in new], found.fit(wrong)
+def _difference(evidence: Evidence, models: CompetingModels, new: Sequence[Test], right: int, wrong: int) -> float:
+    read, rival = [predicted_readings(models.fit(right), t) for t in new], models.fit(wrong)
     network, unknowns, held = with_members(evidence, [wrong])
     known = {p.name for p in network.parameters}
     own = tuple(p for p in nuisances(network, read) if p.name not in known)
@@ -99,9 +101,9 @@ def _difference(evidence: Evidence, found: CompetingModels, new: Sequence[Test],
     near += segments(network, read, here, free)
     theta, tests = np.concatenate([rival.theta, np.zeros(len(own))]), (*evidence.tests, *read)
     error = widened_error(evidence, read)
-    fit = minimise(network, tests, Unknowns(free), theta, found.noise, held, STEPS, KnownSegments(near),
+    fit = minimise(network, tests, Unknowns(free), theta, models.noise, held, STEPS, CachedSegments(near),
                    worth=ENOUGH, error=error)  # fmt: skip
-    return deviance_difference(fit, found.fit(right))
+    return deviance_difference(fit, models.fit(right))
 
 
 def widened_error(evidence: Evidence, more: Sequence[Test]) -> ModelError | None:

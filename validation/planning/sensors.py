@@ -30,28 +30,28 @@ WHY = {
 }  # fmt: skip
 
 
-def next_sensors(evidence: Evidence, found: CompetingModels) -> list[NextSensor]:
+def next_sensors(evidence: Evidence, models: CompetingModels) -> list[NextSensor]:
     """Places without a sensor, by the deviance gap of the pair that stays closest, per hour of mounting."""
     network = evidence.fit.network
     places = {p.name: p for p in free_places(network, evidence.tests)}
     plans = [
         Plan(
             place.name, HOURS[access(network, place)], [with_thermocouples(t, [place]) for t in evidence.tests],
-            separation(evidence, found, more),
+            separation(evidence, models, more),
         )
-        for place, more in with_sensors(evidence, tuple(places.values()), found.group)
+        for place, more in with_sensors(evidence, tuple(places.values()), models.group)
     ]  # fmt: skip
     return [
         NextSensor(p.what, separable_pairs(evidence, p.gaps), p.gain, p.hours, WHY[access(network, places[p.what])])
-        for p in refitted_gains(evidence, found, plans)
+        for p in refitted_gains(evidence, models, plans)
     ]
 
 
 def free_places(network: Network, tests: Sequence[Test]) -> list[Place]:
     """Where no channel sits: parts, nodes and fluids, and the faces of parts that have several."""
-    taken = {c.place for t in tests for c in t.channels}
+    occupied = {c.place for t in tests for c in t.channels}
     kinds = ("part", "node", "surface", "fluid")
-    return [p for p in network.places.values() if p.kind in kinds and p.name not in taken]
+    return [p for p in network.places.values() if p.kind in kinds and p.name not in occupied]
 
 
 def access(network: Network, place: Place) -> str:

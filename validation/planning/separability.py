@@ -16,13 +16,13 @@ Gaps = dict[tuple[int, int], float]
 GAP, DECISIVE = 10.0, 20.0  # deviance from which two begin to come apart, and from which a test decides
 
 
-def separation(evidence: Evidence, found: CompetingModels, more: Gram) -> Gaps:
+def separation(evidence: Evidence, models: CompetingModels, more: Gram) -> Gaps:
     """For every pair of a group the gap with more readings than the evidence has, the smaller way."""
-    chosen = found.group
+    chosen = models.group
     sign = evidence.score.sign[list(chosen)]
     s = score(total(evidence.grams).of(chosen) + more, *extended_prior(evidence.fit), sign)
     V, c = np.diag(s.V), s.cosine
-    size = [found.fit(k).values[evidence.names[k]] for k in chosen]
+    size = [models.fit(k).values[evidence.names[k]] for k in chosen]
     strength = [a**2 * v for a, v in zip(size, V, strict=True)]
     return {
         (chosen[i], chosen[j]): float(min(strength[i], strength[j]) * (1.0 - c[i, j] ** 2))

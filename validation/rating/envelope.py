@@ -20,7 +20,7 @@ from validation.rating.points import RUNAWAY_C, S3, S6, Model
 Array = NDArray[np.float64]
 LARGEST = 50.0  # of the reference load; beyond, no temperature limits
 CLOSE = 1e-3  # of a load: a tenth of what inputs are known to
-FORMS = ("S1", "S2 60 min", "S2 60 s", "S2 10 s", "S3 40 %", "S6 40 %")
+DUTIES = ("S1", "S2 60 min", "S2 60 s", "S2 10 s", "S3 40 %", "S6 40 %")
 TIMES = {"S2 60 min": 3600.0, "S2 60 s": 60.0, "S2 10 s": 10.0}
 
 
@@ -77,9 +77,9 @@ def reached(over: Callable[[float], Array], limits: Mapping[str, float], form: s
             return Rating(form, speed, float("inf"), "", 0.0)
     # copper's heat goes with the square of the load: over it the excess is nearly straight, and found in few runs
     load = float(brentq(lambda square: worst(square**0.5), 0.0, high**2, xtol=2.0 * CLOSE * high**2)) ** 0.5
-    here, beyond = over(load), over(load * 1.01)
+    here, above = over(load), over(load * 1.01)
     k = int(np.argmax(here - most))
-    return Rating(form, speed, load, names[k], float((beyond[k] - here[k]) / (0.01 * load)))
+    return Rating(form, speed, load, names[k], float((above[k] - here[k]) / (0.01 * load)))
 
 
 def excess(model: Model, op: Operation, form: str, speed: float | None) -> Callable[[float], Array]:

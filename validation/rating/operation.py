@@ -12,8 +12,8 @@ from geom.description.roles import Role
 from geom.errors import InputError
 from lumped.model.network import Link, Network
 from lumped.model.quantities import AIR, LIQUID
-from lumped.schemas.reader import known
-from lumped.transfer.laws import CLOCK, Law, Radiation, TemperatureLaw
+from lumped.schemas.reader import suggestion
+from lumped.transfer.laws import CLOCK, Radiation, Scaled
 from validation.case import Test
 
 Array = NDArray[np.float64]
@@ -55,10 +55,10 @@ class Operation:
 
 
 def operation(
-    network: Network, tests: Sequence[Test], given: Mapping[str, float], carry: Sequence[str] = (),
+    network: Network, tests: Sequence[Test], fixed: Mapping[str, float], carry: Sequence[str] = (),
     usual: Mapping[str, float] | None = None,
 ) -> Operation:  # fmt: skip
-    """From what the tests recorded: the sample of the largest load, boundaries at their means; `given` goes before.
+    """From what the tests recorded: the sample of the largest load, boundaries at their means; `fixed` goes before.
 
     usual : what an input or boundary is where neither says;
     carry : inputs that the load multiplies; without any, those that measure one of LOADS
@@ -67,15 +67,17 @@ def operation(
     """
     laws = [*(x.law for x in network.links), *(x.law for x in network.sources)]
     reads = dict.fromkeys(n for law in laws for n in law.reads if n != CLOCK)
-    for name in given:
+    for name in fixed:
         if name not in (*reads, *network.boundaries):
             raise InputError(
-                f"'{name}' is no input or boundary of the model", "--at", known(name, (*reads, *network.boundaries))
+                f"'{name}' is no input or boundary of the model",
+                "--at",
+                suggestion(name, (*reads, *network.boundaries)),
             )
-    seen = [t for t in tests if all(n in t.inputs for n in reads)]
+    loaded = [t for t in tests if all(n in t.inputs for n in reads)]
     for name in carry:
         if name not in reads:
-            raise InputError(f"'{name}' is no input of the model", "--load", known(name, tuple(reads)))
+            raise InputError(f"'{name}' is no input of the model", "--load", suggestion(name, tuple(reads)))
     loads = tuple(carry) or tuple(n for n in reads if network.measures(n) in LOADS)
     if not loads:
         raise InputError(
@@ -83,14 +85,14 @@ def operation(
             f"network '{network.name}'",
             f"an input that measures {' or '.join(LOADS)}, or --load INPUT, one of {', '.join(reads)}",
         )
-    said = {**(usual or {}), **_largest(seen, reads, loads), **given}
-    inputs = {n: v for n, v in said.items() if n in reads}
+    point = {**(usual or {}), **_largest(loaded, reads, loads), **fixed}
+    inputs = {n: v for n, v in point.items() if n in reads}
     for name in reads:
         if name not in inputs:
             raise InputError(f"nothing says what '{name}' is", "--at", f"--at {name}=VALUE")
     if not any(inputs[n] for n in loads):
         raise InputError("the load is zero", "--at", f"--at {loads[0]}=VALUE")
-    around = {b: given.get(b, _mean(tests, b, (usual or {}).get(b))) for b in network.boundaries}
+    around = {b: fixed.get(b, _mean(tests, b, (usual or {}).get(b))) for b in network.boundaries}
     for name, T in around.items():
         if T is None:
             raise InputError(f"nothing says how warm '{name}' is", "--at", f"--at {name}=DEGC")
@@ -133,25 +135,6 @@ def density(altitude_m: float) -> float:
     """Of air over that at sea level."""
     a, b = ISA
     return float((1.0 - a * altitude_m) ** b)
-
-
-@dataclass(frozen=True)
-class Scaled(Law):
-    """Another law times a number."""
-
-    base: Law
-    by: float
-
-    @property
-    def temperature(self) -> TemperatureLaw:  # type: ignore[override]
-        return self.base.temperature
-
-    @property
-    def reads(self) -> tuple[str, ...]:  # type: ignore[override]
-        return self.base.reads
-
-    def factor(self, inputs: Mapping[str, Array]) -> Array | float:
-        return self.by * np.asarray(self.base.factor(inputs))
 
 
 def at_altitude(network: Network, altitude_m: float) -> Network:

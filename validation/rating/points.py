@@ -89,9 +89,9 @@ class Model:
             return np.full(len(self.rows), RUNAWAY_C)
 
 
-def mixed(seen: Sequence[tuple[Array, Array]]) -> Array:
+def mixed(history: Sequence[tuple[Array, Array]]) -> Array:
     """Where x = g(x) is, from pairs (x, g(x)): Anderson 1965, without damping."""
-    x, g = (np.array(side).T for side in zip(*seen, strict=True))
+    x, g = (np.array(side).T for side in zip(*history, strict=True))
     if x.shape[1] == 1:
         return np.asarray(g[:, -1])
     f = g - x

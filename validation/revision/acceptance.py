@@ -107,11 +107,11 @@ def _step(A: Array, b: Array, theta: Array, weight: Array, without: int | None) 
     return step
 
 
-def _deviance(own: tuple[Array, Array, float], step: Array) -> float:
-    A, b, square = own
+def _deviance(gram: tuple[Array, Array, float], step: Array) -> float:
+    A, b, square = gram
     return float(square - 2.0 * b @ step + step @ A @ step)
 
 
-def failures(made: Sequence[Check]) -> str:
+def failures(checks: Sequence[Check]) -> str:
     """The checks that failed, in words."""
-    return "; ".join(c.words for c in made if not c.passed)
+    return "; ".join(c.words for c in checks if not c.passed)

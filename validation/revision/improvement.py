@@ -93,7 +93,7 @@ def best(diagnosis: Diagnosis, choice: Sequence[Candidate]) -> str:
 
 
 def improve(
-    case: Case, guide: Supervisor, most: int = MOST, progress: Progress = no_progress,
+    case: Case, supervisor: Supervisor, most: int = MOST, progress: Progress = no_progress,
     kinds: Sequence[str] | None = None,
 ) -> Improvement:  # fmt: skip
     """Diagnose and add until the model is adequate, the guide says no, or an addition is not accepted.
@@ -103,63 +103,63 @@ def improve(
     stairs = [Step(errors(case), {})]
     if not case.model.values:
         progress("calibrating")
-        case = _with_step(case, calibrate(case, progress=progress), guide, {}, stairs)
+        case = _with_step(case, calibrate(case, progress=progress), supervisor, {}, stairs)
     while True:
-        found = diagnose(case, kinds=kinds, progress=progress)
-        progress(f"{found.verdict}: {found.words}")
-        if guide.offer(found) and len(stairs) > most:
-            return Improvement(case, tuple(stairs), found, f"{most} steps are enough for one run")
-        step, said, why = _added(case, guide, found, progress)
+        diagnosis = diagnose(case, kinds=kinds, progress=progress)
+        progress(f"{diagnosis.verdict}: {diagnosis.words}")
+        if supervisor.offer(diagnosis) and len(stairs) > most:
+            return Improvement(case, tuple(stairs), diagnosis, f"{most} steps are enough for one run")
+        step, document, why = _added(case, supervisor, diagnosis, progress)
         if step is None:
-            return Improvement(case, tuple(stairs), found, why)
-        case = _with_step(case, step, guide, said, stairs)
+            return Improvement(case, tuple(stairs), diagnosis, why)
+        case = _with_step(case, step, supervisor, document, stairs)
 
 
 def _added(
-    case: Case, guide: Supervisor, found: Diagnosis, progress: Progress
+    case: Case, supervisor: Supervisor, diagnosis: Diagnosis, progress: Progress
 ) -> tuple[Revision | None, Mapping[str, float | str], str]:
     """The first of what is missing that is chosen and accepted, and its evidence; or None, and why."""
     why = []
-    for i in range(max(len(found.groups), 1)):
-        choice = guide.offer(replace(found, groups=found.groups[i:], named=found.named[i:]))
+    for i in range(max(len(diagnosis.groups), 1)):
+        choice = supervisor.offer(replace(diagnosis, groups=diagnosis.groups[i:], named=diagnosis.named[i:]))
         if not choice:
             break
-        name = guide.choose(found, choice)
+        name = supervisor.choose(diagnosis, choice)
         if name is None:
             why.append(f"{' or '.join(c.effect for c in choice)}: not added")
             break
         step = add(case, name, progress)
         if step.accepted:
-            return step, evidence(found, next(c for c in choice if c.effect == name)), ""
+            return step, evidence(diagnosis, next(c for c in choice if c.effect == name)), ""
         why.append(f"{name} was not accepted: {step.why}")
-    return None, {}, "; ".join(why) or found.words
+    return None, {}, "; ".join(why) or diagnosis.words
 
 
 def _with_step(
-    case: Case, step: Revision, guide: Supervisor, evidence: Mapping[str, float | str], stairs: list[Step]
+    case: Case, step: Revision, supervisor: Supervisor, evidence: Mapping[str, float | str], stairs: list[Step]
 ) -> Case:  # fmt: skip
-    guide.keep(step, evidence)
+    supervisor.keep(step, evidence)
     stairs.append(Step(step.after, evidence, step))
     return with_model(case, step.model)
 
 
-def offered(found: Diagnosis) -> tuple[Candidate, ...]:
+def offered(diagnosis: Diagnosis) -> tuple[Candidate, ...]:
     """The first group's candidates; none where the diagnosis cannot tell, or nothing is missing."""
-    first = found.groups[0] if found.groups and found.verdict != "absorbed" else ()
-    rows = [c for c in found.candidates if c.effect in first]
+    first = diagnosis.groups[0] if diagnosis.groups and diagnosis.verdict != "absorbed" else ()
+    rows = [c for c in diagnosis.candidates if c.effect in first]
     return tuple(rows) if all(c.decision in ("named", "group") for c in rows) else ()
 
 
-def leading(found: Diagnosis) -> tuple[Candidate, ...]:
+def leading(diagnosis: Diagnosis) -> tuple[Candidate, ...]:
     """The first group's candidates, also where the catalogue does not explain all: for studies, not for users."""
-    first = found.groups[0] if found.groups else ()
-    return tuple(c for c in found.candidates if c.effect in first)
+    first = diagnosis.groups[0] if diagnosis.groups else ()
+    return tuple(c for c in diagnosis.candidates if c.effect in first)
 
 
-def evidence(found: Diagnosis, chosen: Candidate) -> dict[str, float | str]:
+def evidence(diagnosis: Diagnosis, chosen: Candidate) -> dict[str, float | str]:
     """What speaks for an effect, as the history keeps it."""
-    said: dict[str, float | str] = {
+    numbers: dict[str, float | str] = {
         "probability": chosen.probability, "score": chosen.score, "threshold": chosen.threshold,
-        "decision": chosen.decision, "verdict": found.verdict,
+        "decision": chosen.decision, "verdict": diagnosis.verdict,
     }  # fmt: skip
-    return said | ({"confused_with": ", ".join(chosen.confused_with)} if chosen.confused_with else {})
+    return numbers | ({"confused_with": ", ".join(chosen.confused_with)} if chosen.confused_with else {})

@@ -197,7 +197,7 @@ def nudge(p: Parameter) -> float:
     return float(np.clip(p.neutral + 0.3 * (p.sign or 1) * p.prior_sd / FREE, p.low, p.high))
 
 
-def judge(action: str, changes: Sequence[Change], fits: Sequence[Fit], made: Sequence[Check]) -> tuple[bool, str]:
+def judge(action: str, changes: Sequence[Change], fits: Sequence[Fit], acceptance: Sequence[Check]) -> tuple[bool, str]:
     """Accept what converges, passes its checks and lowers the error of the tests it was fitted to.
 
     An effect that foretells tests left out of its fit better than the refitted model without it may leave the plain
@@ -206,16 +206,16 @@ def judge(action: str, changes: Sequence[Change], fits: Sequence[Fit], made: Seq
     seen = [c for c in changes if c.role != "hold-out"]
     was, now = mean_square(seen, "before"), mean_square(seen, "after")
     converged = all(fit.converged for fit in fits)
-    foretells = any(c.check == "left out" and c.value > c.limit for c in made)
+    foretells = any(c.check == "left out" and c.value > c.limit for c in acceptance)
     fell = now <= (GETS_WORSE * was if action == "calibrate" or foretells else was)
     reasons = [
-        failures(made), "" if converged else "not converged", f"rms over the tests used {fall(was, now)}",
-        *unseen(changes),
+        failures(acceptance), "" if converged else "not converged", f"rms over the tests used {fall(was, now)}",
+        *held_out_changes(changes),
     ]  # fmt: skip
-    return bool(fell and converged and not failures(made)), "; ".join(filter(None, reasons))
+    return bool(fell and converged and not failures(acceptance)), "; ".join(filter(None, reasons))
 
 
-def unseen(changes: Sequence[Change]) -> list[str]:
+def held_out_changes(changes: Sequence[Change]) -> list[str]:
     """What became of the tests that were not fitted, in words."""
     own = [c for c in changes if c.role == "hold-out"]
     if not own:

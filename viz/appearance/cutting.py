@@ -18,7 +18,7 @@ SMOOTH = 32.0  # degrees between facets up to which a surface is shaded as a rou
 Plane = tuple[Array, Array]  # a point (m) and the normal of the side that stays
 
 
-def opened(body: Body, wedge: Wedge | None) -> tuple[pyvista.PolyData, pyvista.PolyData | None] | None:
+def cut_body(body: Body, wedge: Wedge | None) -> tuple[pyvista.PolyData, pyvista.PolyData | None] | None:
     """Surface and caps of a body without a wedge, no caps where it is whole; None where nothing stays."""
     mesh = _mesh(body)
     if wedge is None:

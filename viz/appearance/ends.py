@@ -47,8 +47,10 @@ def shield(o: Outlines, part: Part) -> list[Body]:
 def _covered(o: Outlines, part: Part, side: int) -> float:
     """Radius (m) of what stands in front of a shield: a fan's cowl."""
     fronts = [p for p in o.machine.parts if p is not part and o.role(p) in (Role.HOUSING, Role.FAN) and o.section(p)]
-    beyond = [p for p in fronts if (p.span[0] >= part.span[1] - 1e-6 if side > 0 else p.span[1] <= part.span[0] + 1e-6)]
-    return 1.03 * max((o.reach(p) for p in beyond), default=0.0)
+    outside = [
+        p for p in fronts if (p.span[0] >= part.span[1] - 1e-6 if side > 0 else p.span[1] <= part.span[0] + 1e-6)
+    ]
+    return 1.03 * max((o.reach(p) for p in outside), default=0.0)
 
 
 def _cover(o: Outlines, part: Part, seat: float, thick: float, side: int) -> Shape:

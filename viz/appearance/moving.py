@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.description.machine import Machine
-from viz.appearance.portrait import SAID, VIEW, Warm, staged
+from viz.appearance.portrait import CAPTION, VIEW, Warm, staged
 from viz.colours import LIGHT
 from viz.data import Sensor
 from viz.machine.animation import WRITERS
@@ -19,7 +19,7 @@ from viz.rendering.cut import QUARTER, cut_away
 from viz.rendering.nodes import SplitMesh, on_nodes
 
 Array = NDArray[np.float64]
-DRAWN = (1080, 720)  # pixels; the film is a smaller copy, which smooths its letters
+RENDER_SIZE = (1080, 720)  # pixels; the film is a smaller copy, which smooths its letters
 
 
 def moving(
@@ -39,8 +39,8 @@ def moving(
 
     T = on_nodes(nodes, fields)
     warm = Warm(nodes, T[0], (float(T.min()), float(T.max())))
-    p, painted = staged(machine, warm, QUARTER, VIEW, LIGHT, DRAWN, True)
-    scene.footnote(p, SAID, LIGHT)
+    p, painted = staged(machine, warm, QUARTER, VIEW, LIGHT, RENDER_SIZE, True)
+    scene.footnote(p, CAPTION, LIGHT)
     pulses, pictures = Pulses(p, cut_away(nodes), sensors[0]), []
     for number, (words, values, row) in enumerate(zip(titles, T, sensors, strict=True), 1):
         tell(number)
@@ -49,7 +49,7 @@ def moving(
         pulses.show(row, number / frames_per_second)
         scene.headline(p, words, LIGHT)
         picture = Image.fromarray(np.asarray(p.screenshot(return_img=True)))
-        small = picture.resize((width, width * DRAWN[1] // DRAWN[0]), Image.Resampling.LANCZOS)
+        small = picture.resize((width, width * RENDER_SIZE[1] // RENDER_SIZE[0]), Image.Resampling.LANCZOS)
         pictures.append(np.asarray(small))
     p.close()
     return WRITERS[path.suffix](path, pictures, frames_per_second)

@@ -64,8 +64,8 @@ class Outlines:
         import shapely
 
         known = [(self.of(prism), *prism[1:]) for prism in part.prisms]
-        found = [_along(known, 2 * np.pi * (k + 0.37) / RAYS) for k in range(RAYS)]
-        common = Counter(found).most_common(1)[0][0]
+        sections = [_along(known, 2 * np.pi * (k + 0.37) / RAYS) for k in range(RAYS)]
+        common = Counter(sections).most_common(1)[0][0]
         volume = sum(np.pi * (r1**2 - r0**2) * (z1 - z0) for r0, r1, z0, z1 in common)
         if abs(volume / part.volume - 1) > ROUND:
             return None
@@ -91,8 +91,8 @@ def _along(prisms: list[tuple[Polygon, float, float]], angle: float) -> tuple[tu
     return tuple(sorted(out))
 
 
-def _pieces(found: Any) -> list[Any]:
-    pieces = getattr(found, "geoms", [found])
+def _pieces(shape: Any) -> list[Any]:
+    pieces = getattr(shape, "geoms", [shape])
     return [piece for piece in pieces if not piece.is_empty and piece.geom_type in ("Polygon", "LineString")]
 
 

@@ -14,7 +14,7 @@ from scipy.sparse import csr_matrix, vstack
 from geom.description.machine import Machine
 from geom.description.roles import Role
 from viz.appearance.body import Body, Finish
-from viz.appearance.cutting import opened
+from viz.appearance.cutting import cut_body
 from viz.appearance.dressed import dressed
 from viz.appearance.ground import shadow
 from viz.colours import LIGHT, Theme, heat
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 NEAREST = 4  # nodes of the meshed part whose temperatures a point of the picture mixes
-SAID = "details are for the eye only: the mesh has none of them"
+CAPTION = "details are for the eye only: the mesh has none of them"
 NEAR = 0.22  # of the machine's size: further away a base may leave the picture
 VIEW = View(direction=(-1.0, 0.45, 0.85), angle=18.0, margin=1.1)
 
@@ -45,18 +45,18 @@ def portrait(
     theme: Theme = LIGHT,
     size: tuple[int, int] = scene.SIZE,
     title: str = "",
-    said: str = SAID,
+    caption: str = CAPTION,
     png: str | Path | None = None,
 ) -> pyvista.Plotter:
     """A machine as it looks, cut open or (wedge None) whole; of its materials, or coloured by temperature.
 
     nodes, T : a mesh and temperatures (degC) per node; limits : of the colour scale (degC)
-    said : below the picture
+    caption : below the picture
     """
     warm = None if nodes is None or T is None else Warm(nodes, on_nodes(nodes, T), limits)
     p = staged(machine, warm, wedge, view, theme, size, bool(title))[0]
     scene.headline(p, title, theme)
-    scene.footnote(p, said, theme)
+    scene.footnote(p, caption, theme)
     scene.save(p, png)
     return p
 
@@ -114,8 +114,8 @@ def _gathered(bodies: Sequence[Body], wedge: Wedge | None) -> dict[tuple[Finish,
     """By finish, surfaces and sections apart: few things to draw are drawn fast."""
     out: dict[tuple[Finish, bool], Pieces] = defaultdict(list)
     for body in bodies:
-        found = opened(body, wedge)
-        for piece, section in zip(found or (), (False, True), strict=False):
+        pieces = cut_body(body, wedge)
+        for piece, section in zip(pieces or (), (False, True), strict=False):
             if piece is not None and piece.n_cells:
                 out[body.finish, section].append((body.part, piece))
     return out

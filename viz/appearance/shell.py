@@ -31,7 +31,7 @@ def housing(o: Outlines, part: Part) -> list[Body]:
 
 def _pipe(o: Outlines, part: Part) -> list[Body] | None:
     """A port's tube, with a nut, a nozzle and a piece of hose."""
-    rods = [] if part.made is None else [start for start in part.made.start if isinstance(start, Rod)]
+    rods = [] if part.cad_shape is None else [start for start in part.cad_shape.start if isinstance(start, Rod)]
     if len(rods) != 1:
         return None
     one = rods[0]

@@ -99,11 +99,11 @@ def _poles(o: Outlines, part: Part) -> list[Shape]:
     return [_frame(known, angle_of(pole)) for pole in poles]
 
 
-def _frame(known: list[tuple[Polygon, float, float]], angle: float) -> Shape:
+def _frame(sections: list[tuple[Polygon, float, float]], angle: float) -> Shape:
     from shapely import box
     from shapely.affinity import rotate
 
-    mine = [(rotate(q, np.pi / 2 - angle, origin=(0, 0), use_radians=True), z0, z1) for q, z0, z1 in known]
+    mine = [(rotate(q, np.pi / 2 - angle, origin=(0, 0), use_radians=True), z0, z1) for q, z0, z1 in sections]
     mine = [(q, z0, z1) for q, z0, z1 in mine if abs(angle_of(q) - np.pi / 2) < np.pi / 4 and q.centroid.y > 0]
     x0, y0 = min(q.bounds[0] for q, _, _ in mine), min(q.bounds[1] for q, _, _ in mine)
     x1, y1 = max(q.bounds[2] for q, _, _ in mine), max(q.bounds[3] for q, _, _ in mine)

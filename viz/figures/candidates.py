@@ -15,7 +15,7 @@ from viz.figures import paper
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-SHOWN = 0.005  # probabilities below half a per cent are not drawn
+LEAST_PROBABILITY = 0.005  # probabilities below half a per cent are not drawn
 DECISION = {"named": VERMILION, "group": ORANGE, "cannot-tell": PURPLE, "no": LIGHT.faint}
 
 
@@ -35,13 +35,13 @@ def scores(candidates: Sequence[Mapping[str, Any]], *, most: int = 12, png: str 
     ax.grid(False, axis="y")
     ax.margins(x=0.2, y=0.02)
     ax.set(xlabel="log evidence against nothing missing (nats); black mark: as probable as nothing")
-    return paper.saved(figure, png)
+    return paper.save(figure, png)
 
 
 @paper.styled
 def posterior(odds: Sequence[Mapping[str, Any]], *, most: int = 10, png: str | Path | None = None) -> Figure:
     """The probability of every hypothesis that carries weight as bars, most probable first.  odds : of a diagnosis"""
-    best = [o for o in odds if o["probability"] >= SHOWN][:most][::-1]
+    best = [o for o in odds if o["probability"] >= LEAST_PROBABILITY][:most][::-1]
     figure, (ax,) = paper.subplots(8.4, 0.3 * len(best) + 1.2)
     colours = [BLUE if o["hypothesis"] == "nothing" else VERMILION if o["effects"] else PURPLE for o in best]
     ax.barh(range(len(best)), [100.0 * o["probability"] for o in best], height=0.62, color=colours)
@@ -50,16 +50,16 @@ def posterior(odds: Sequence[Mapping[str, Any]], *, most: int = 10, png: str | P
     ax.set_yticks(range(len(best)), [o["hypothesis"] for o in best])
     ax.grid(False, axis="y")
     ax.set(xlabel="probability (%)", xlim=(0.0, 112.0))
-    return paper.saved(figure, png)
+    return paper.save(figure, png)
 
 
 @paper.styled
-def differences(found: Mapping[str, Any], *, most: int = 10, png: str | Path | None = None) -> Figure:
+def differences(contradiction: Mapping[str, Any], *, most: int = 10, png: str | Path | None = None) -> Figure:
     """What would have to differ between tests, in standard deviations; what cannot differ is red.
 
-    found : the contradiction of a diagnosis or comparison
+    contradiction : the contradiction of a diagnosis or comparison
     """
-    rows = found["differences"][:most][::-1]
+    rows = contradiction["differences"][:most][::-1]
     figure, (ax,) = paper.subplots(8.4, 0.3 * len(rows) + 1.2)
     ax.barh(range(len(rows)), [d["sd"] for d in rows], height=0.62,
             color=[BLUE if d["possible"] else VERMILION for d in rows])  # fmt: skip
@@ -67,14 +67,14 @@ def differences(found: Mapping[str, Any], *, most: int = 10, png: str | Path | N
         ax.text(
             d["sd"], y, f"\u00a0{factor(d)}\u00a0", va="center", ha="left" if d["sd"] > 0 else "right", fontsize=8.5
         )
-    for limit in (-found["limit"], found["limit"]):
+    for limit in (-contradiction["limit"], contradiction["limit"]):
         ax.axvline(limit, color=LIGHT.ink, lw=1.0, ls=":")
     ax.axvline(0.0, color=LIGHT.ink, lw=1.0)
     ax.set_yticks(range(len(rows)), [f"{d['parameter']} in {d['test']}" for d in rows])
     ax.grid(False, axis="y")
     ax.margins(x=0.25, y=0.04)
     ax.set(xlabel="standard deviations from the other tests; blue can differ, red cannot; dotted: chance")
-    return paper.saved(figure, png)
+    return paper.save(figure, png)
 
 
 def factor(d: Mapping[str, Any]) -> str:
@@ -102,7 +102,7 @@ def confusion(names: Sequence[str], cosine: NDArray[np.float64], *, png: str | P
     ax.set_yticks(range(len(names)), names)
     ax.grid(False)
     ax.set_title("Signatures in common (1: cannot be told apart)")
-    return paper.saved(figure, png)
+    return paper.save(figure, png)
 
 
 def size(candidate: Mapping[str, Any]) -> str:

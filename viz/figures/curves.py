@@ -38,7 +38,7 @@ def measured_and_model(comparison: Comparison, *, columns: int = 3, png: str | P
     _name_lines(axes[0], comparison)
     figure.supxlabel(f"time ({comparison.clock[1]})", fontsize=9.5, color=LIGHT.ink)
     figure.supylabel("temperature (°C)", fontsize=9.5, color=LIGHT.ink)
-    return paper.saved(figure, png)
+    return paper.save(figure, png)
 
 
 @paper.styled
@@ -61,7 +61,7 @@ def residuals(comparison: Comparison, *, png: str | Path | None = None) -> Figur
         xlabel=f"time ({unit})", ylabel="measured − model (K)", title=f"{comparison.test.name}: what the model misses"
     )
     ax.set_title(f"grey is {RULE}", loc="right", fontweight="normal", fontsize=8.5)
-    return paper.saved(figure, png)
+    return paper.save(figure, png)
 
 
 def _read(comparison: Comparison) -> tuple[Channel, ...]:

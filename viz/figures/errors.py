@@ -51,7 +51,7 @@ def before_after(
     ax.grid(False, axis="y")
     ax.set(xlabel="rms error (K)", title=title)
     ax.margins(x=0.12)
-    return paper.saved(figure, png)
+    return paper.save(figure, png)
 
 
 @paper.styled
@@ -89,7 +89,7 @@ def staircase(
     ax.set_xticks([0, *(i + 1 for i in range(len(history)))], ["start", *(_step_name(r) for r in history)])
     ax.grid(False, axis="x")
     ax.set(ylabel="rms error (K)")
-    return paper.saved(figure, png)
+    return paper.save(figure, png)
 
 
 def error_paths(history: Sequence[Mapping[str, Any]]) -> dict[tuple[str, str], list[float]]:

@@ -49,7 +49,7 @@ def predicted(plan: PredictedCurves, *, sensors: int = SENSORS, png: str | Path 
     )  # fmt: skip
     figure.supxlabel(f"time ({unit})", fontsize=9.5, color=LIGHT.ink)
     figure.supylabel("temperature (°C)", fontsize=9.5, color=LIGHT.ink)
-    return paper.saved(figure, png)
+    return paper.save(figure, png)
 
 
 def _largest(plan: PredictedCurves, channel: str) -> float:

@@ -44,4 +44,4 @@ def missing_heat(
     figure.suptitle(f"{best['place']}: {best['evidence_nats']:.0f} nats", fontsize=10, color=LIGHT.ink)
     figure.supxlabel("time (min)", fontsize=9.5, color=LIGHT.ink)
     figure.supylabel("missing heat (W)", fontsize=9.5, color=LIGHT.ink)
-    return paper.saved(figure, png)
+    return paper.save(figure, png)

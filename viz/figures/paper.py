@@ -50,7 +50,7 @@ def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
     return inner
 
 
-def saved(figure: Figure, path: str | Path | None) -> Figure:
+def save(figure: Figure, path: str | Path | None) -> Figure:
     """The figure, also written as .png, .svg or .pdf if a path is given."""
     if path is not None:
         Path(path).parent.mkdir(parents=True, exist_ok=True)

@@ -37,7 +37,7 @@ def sankey_of_losses(heat: Heat, *, title: str = "", png: str | Path | None = No
     ax.set(xlim=(-0.32, 1.32), ylim=(-LOW * total, HIGH * total))
     ax.axis("off")
     ax.set_title(title, loc="left")
-    return paper.saved(figure, png)
+    return paper.save(figure, png)
 
 
 def exits(heat: Heat) -> dict[str, float]:

@@ -25,23 +25,23 @@ LENTH = (("margin", "Lenth, each", "--"), ("simultaneous", "Lenth, all at once",
 
 
 @paper.styled
-def screened(found: Row, *, unit: str = "K", title: str = "", png: str | Path | None = None) -> Figure:
+def screened(effects: Row, *, unit: str = "K", title: str = "", png: str | Path | None = None) -> Figure:
     """Half-normal plot and Pareto chart of the effects on one response, with Lenth's limits.
 
-    found : {"margin", "simultaneous", "effects": [{"effect", "words", "value", "active"}]}, as `screen` gives it
+    effects : {"margin", "simultaneous", "effects": [{"effect", "words", "value", "active"}]}, as `screen` gives it
     """
-    rows = sorted(found["effects"], key=lambda e: abs(e["value"]))
+    rows = sorted(effects["effects"], key=lambda e: abs(e["value"]))
     figure, (left, right) = paper.subplots(9.6, 4.0, columns=2)
     _half_normal(left, rows)
     _bars(right, [e["words"] for e in rows[-TOP:]], [abs(e["value"]) for e in rows[-TOP:]],
           [BLUE if e["active"] else LIGHT.faint for e in rows[-TOP:]])  # fmt: skip
     for ax in (left, right):
         for key, words, line in LENTH:
-            ax.axvline(found[key], color=LIGHT.ink, lw=1.0, ls=line, label=words)
+            ax.axvline(effects[key], color=LIGHT.ink, lw=1.0, ls=line, label=words)
         ax.set_xlabel(f"|high - low| ({unit})")
     left.legend(fontsize=8, frameon=False, loc="lower right")
     left.set_title(title)
-    return paper.saved(figure, png)
+    return paper.save(figure, png)
 
 
 def _half_normal(ax: Axes, rows: Sequence[Row]) -> None:
@@ -62,7 +62,7 @@ def ranking(rows: Sequence[Row], *, measure: str, title: str = "", png: str | Pa
     _bars(ax, [r["factor"] for r in up], sizes, [BLUE] * len(up))
     ax.errorbar(sizes, range(len(up)), xerr=[r["conf95"] for r in up], fmt="none", ecolor=LIGHT.ink, lw=1.0)
     ax.set(xlabel=measure, title=title, xlim=(0, None))
-    return paper.saved(figure, png)
+    return paper.save(figure, png)
 
 
 def _bars(ax: Axes, words: Sequence[str], sizes: Sequence[float], colours: Sequence[str]) -> None:

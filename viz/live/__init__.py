@@ -1,6 +1,6 @@
-"""The same figures to move about in: plotly, for the workbench, notebooks and pages that may be 5 MB.
+"""Figures to move about in: plotly, for the workbench, notebooks and pages that may be 5 MB.
 
-Each function returns a plotly figure; viz.live.style.saved writes it as HTML, or as PNG or SVG where a Chromium is
+Each function returns a plotly figure; viz.live.style.save writes it as HTML, or as PNG or SVG where a Chromium is
 installed. The drawings on paper (viz.figures) need no browser.
 """
 
@@ -11,9 +11,7 @@ from typing import Any
 
 _HOME = {
     "sensor": "curves", "residuals": "curves", "against_input": "curves", "parity": "curves",
-    "staircase": "errors", "posterior": "candidates", "confusion": "candidates", "pareto": "candidates",
-    "sensitivity": "influence", "sankey": "heat", "saved": "style",
-    "parallel_coordinates": "designs", "objective_space": "designs",
+    "confusion": "candidates", "save": "style", "parallel_coordinates": "designs", "objective_space": "designs",
 }  # fmt: skip
 __all__ = sorted(_HOME)
 

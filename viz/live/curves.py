@@ -20,11 +20,11 @@ if TYPE_CHECKING:
 
 def channel_of(comparison: Comparison, name: str) -> Channel:
     """The channel of that name; an InputError lists the others."""
-    found = next((c for c in comparison.channels if c.name == name), None)
-    if found is None:
+    channel = next((c for c in comparison.channels if c.name == name), None)
+    if channel is None:
         right = ", ".join(c.name for c in comparison.channels)
         raise InputError(f"no channel '{name}'", f"test '{comparison.test.name}'", f"known: {right}")
-    return found
+    return channel
 
 
 def sensor(comparison: Comparison, channel: str, *, theme: Theme = LIGHT) -> go.Figure:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 SCALE = "Viridis"
 WORDS = {"peak_degC": "peak (degC)", "settling_s": "settling (min)", "copper_W": "copper (W)",
          "auxiliary_W": "pump and fan (W)"}  # fmt: skip
-SHOWN = {"settling_s": 1.0 / 60.0}  # objective -> its unit in the table over that of the rows
+DISPLAY_UNIT = {"settling_s": 1.0 / 60.0}  # objective -> its unit in the table over that of the rows
 EYE = {"x": 2.1, "y": -1.2, "z": 0.7}  # across the diagonal: cooler designs settle sooner, and would hide each other
 DECADES = 100.0  # largest over smallest value of an axis from which on it is logarithmic
 Row = Mapping[str, Any]
@@ -22,7 +22,7 @@ Row = Mapping[str, Any]
 
 def column(rows: Sequence[Row], name: str) -> list[float]:
     """Values of an objective or variable in the unit of its label."""
-    return [float(r[name]) * SHOWN.get(name, 1.0) for r in rows]
+    return [float(r[name]) * DISPLAY_UNIT.get(name, 1.0) for r in rows]
 
 
 def parallel_coordinates(

@@ -45,7 +45,7 @@ def plain(values: Any) -> list[float | None]:
     return [float(v) if np.isfinite(v) else None for v in np.asarray(values, float).ravel()]
 
 
-def saved(figure: go.Figure, path: str | Path) -> Path:
+def save(figure: go.Figure, path: str | Path) -> Path:
     """Write .html (one file that needs no network), or .png, .svg, .pdf through kaleido and an installed Chromium."""
     path = Path(path)
     if path.suffix not in (".html", *STATIC):

@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 GUESS = 0.5  # share of the variance below which the readings tell less than half
 PERIOD = 14.0  # pixels from stripe to stripe
 NEARER = 5e-4  # of the way to the eye, so that stripes lie on the surface and not in it
-SAID = "hatched: the sensors tell less than half of the model's own uncertainty there"
+CAPTION = "hatched: the sensors tell less than half of the model's own uncertainty there"
 
 
 def misses(
@@ -57,7 +57,7 @@ def misses(
     renderer.ResetCameraClippingRange()
     scene.headline(p, title, theme)
     seen.draw(p, surface, view, theme)
-    scene.footnote(p, SAID, theme)
+    scene.footnote(p, CAPTION, theme)
     scene.save(p, png)
     return p
 

@@ -63,7 +63,7 @@ def network_in_machine(
     at = {name: xyz + front for name, xyz in at.items() if xyz[1] > 0 and name in temperatures}
     low, high = surface.points.min(axis=0), surface.points.max(axis=0)
     length = float(np.ptp(nodes.points[:, 2]))
-    at = apart(at, CLOSEST * length)
+    at = spread_out(at, CLOSEST * length)
     frame = front + np.array([[0, -0.2 * high[1], low[2]], [0, high[1], high[2]]])
     widest = _lines(p, at, flow, power() if theme == LIGHT else power().reversed(), length)
     _nodes(p, at, temperatures)
@@ -102,7 +102,7 @@ def _in_plane(points: Array, weight: Array) -> Array:
     return np.array([0.0, mean[1] if off_axis else radius, mean[2]])
 
 
-def apart(at: Mapping[str, Array], least: float) -> dict[str, Array]:
+def spread_out(at: Mapping[str, Array], least: float) -> dict[str, Array]:
     """Points that lie closer than `least` (m) pushed apart along the axis, so that lines between them can be seen."""
     names, xyz = list(at), np.array(list(at.values()))
     for _ in range(100):
@@ -131,7 +131,7 @@ def _lines(p: pyvista.Plotter, at: Mapping[str, Array], flow: Heat, colours: Col
     most = max((f.watts for f in inner), default=1.0)
     drawn = sorted((f for f in inner if f.conductance > 0 and f.watts >= SMALL * most), key=lambda f: -f.watts)
     widest = max((f.conductance for f in drawn), default=0.0)
-    taken: list[Array] = []
+    occupied: list[Array] = []
     for i, f in enumerate(drawn):
         a, b = at[f.start], at[f.end]
         line = pyvista.Line(a, b)
@@ -141,14 +141,14 @@ def _lines(p: pyvista.Plotter, at: Mapping[str, Array], flow: Heat, colours: Col
             name=f"link {i}", line_width=max(2.0, 24 * np.sqrt(f.conductance / widest)),
         )  # fmt: skip
         on_top(actor, 1)
-        place = clear_place(a, b, list(at.values()), taken, length) if len(taken) < LABELLED else None
+        place = clear_place(a, b, list(at.values()), occupied, length) if len(occupied) < LABELLED else None
         if place is not None:
             p.add_actor(text(f"{f.watts:.0f} W", place, "#6B2A12", 0, 11), reset_camera=False)
-            taken.append(place)
+            occupied.append(place)
     return widest
 
 
-def clear_place(a: Array, b: Array, nodes: Sequence[Array], taken: Sequence[Array], length: float) -> Array | None:
+def clear_place(a: Array, b: Array, nodes: Sequence[Array], occupied: Sequence[Array], length: float) -> Array | None:
     """Where a label on the line from a to b (m) covers no node and no other label, near its middle; None: nowhere.
 
     length : of the machine (m), which the sizes of labels and nodes go by
@@ -156,7 +156,9 @@ def clear_place(a: Array, b: Array, nodes: Sequence[Array], taken: Sequence[Arra
     half, dot = length * np.array(LABEL), length * NODE
 
     def clear(at: Array) -> bool:
-        near = [np.abs(at - other)[1:] < half + dot for other in nodes] + [np.abs(at - o)[1:] < 2 * half for o in taken]
+        near = [np.abs(at - other)[1:] < half + dot for other in nodes] + [
+            np.abs(at - o)[1:] < 2 * half for o in occupied
+        ]
         return not any(one.all() for one in near)
 
     return next((at for at in (a + share * (b - a) for share in SHARES) if clear(at)), None)

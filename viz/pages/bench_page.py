@@ -29,7 +29,7 @@ class BenchPage:
     plan: PredictedCurves
     driven: str
     holding: list[tuple[str, float, float, float]]
-    made: str = ""
+    provenance: str = ""
 
 
 def write_bench_page(page: BenchPage, path: str | Path) -> Path:
@@ -46,9 +46,9 @@ def render(page: BenchPage) -> str:
     plan = page.plan
     head = f"<h1>{escape(page.case)}</h1>"
     head += f'<p class="verdict">Tomorrow: {escape(plan.experiment.name)}, {plan.experiment.hours:g} h</p>'
-    apart = plan.closest()
-    word = "decides" if apart >= DECISIVE else "does not decide"
-    says = f"The two closest hypotheses come apart by {apart:.1f} of the sensors' own sigma (rms): this test {word}."
+    closest = plan.closest()
+    word = "decides" if closest >= DECISIVE else "does not decide"
+    says = f"The two closest hypotheses come apart by {closest:.1f} of the sensors' own sigma (rms): this test {word}."
     rows = [(name, _clock(a), _clock(b), value) for name, a, b, value in page.holding]
     driven = html.table(["hold", "from", "to", "at"], rows)
     driven += html.text(f"All else as in the record of {page.driven}, again and again until the time is over.")
@@ -56,7 +56,7 @@ def render(page: BenchPage) -> str:
     parts = [
         head + html.text(says), html.section("Drive", driven),
         html.section("What to expect", html.plot(predicted(plan), "predicted", caption), _ends(plan)),
-        f"<footer>{escape(page.made)}</footer>" if page.made else "",
+        f"<footer>{escape(page.provenance)}</footer>" if page.provenance else "",
     ]  # fmt: skip
     return html.page(f"thermoscope: {plan.experiment.name}", parts)
 

@@ -80,8 +80,8 @@ def cards(items: Iterable[tuple[str, str]]) -> str:
     return f'<div class="cards">{inner}</div>\n'
 
 
-def more(summary: str, *body: str, opened: bool = False) -> str:
-    return f"<details{' open' if opened else ''}><summary>{escape(summary)}</summary>{''.join(body)}</details>\n"
+def more(summary: str, *body: str, expanded: bool = False) -> str:
+    return f"<details{' open' if expanded else ''}><summary>{escape(summary)}</summary>{''.join(body)}</details>\n"
 
 
 def _caption(caption: str) -> str:

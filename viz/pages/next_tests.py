@@ -29,10 +29,10 @@ def deciding(diagnosis: Document) -> list[Offer]:
 
 
 def undecided(diagnosis: Document) -> str:
-    """That no test of the menu is expected to decide, and which comes nearest; empty where no test was looked at."""
+    """That no candidate test is expected to decide, and which comes nearest; empty where no test was looked at."""
     tests = diagnosis.get("next_tests", [])
     if not tests:
         return ""
     best = max(tests, key=lambda t: t["predicted_gain"])
     gain = f"with a predicted gain of {best['predicted_gain']:.2g} where 20 decides"
-    return f"No test of the menu would tell them apart: '{best['test']}' comes nearest, {gain}."
+    return f"No candidate test would tell them apart: '{best['test']}' comes nearest, {gain}."

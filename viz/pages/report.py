@@ -49,7 +49,7 @@ class Report:
     pictures: Mapping[str, str | Path | bytes] = field(default_factory=dict)
     assumptions: Sequence[str] = ()
     commands: Sequence[str] = ()
-    made: str = ""
+    provenance: str = ""
     earlier: bool = False
     error_budget: Mapping[str, Sequence[Document]] = field(default_factory=dict)
     viewer: str = ""
@@ -122,7 +122,7 @@ def _curves(r: Report) -> str:
             f"curves{i}",
             f"{name}: readings, what counts as within, and the model.",
         )
-        parts.append(html.more(name, both, opened=i == 0))
+        parts.append(html.more(name, both, expanded=i == 0))
     return html.section("Measured and modelled", *parts)
 
 
@@ -164,17 +164,17 @@ def _events(diagnosis: Document) -> str:
 
 def _contradiction(diagnosis: Document) -> str:
     """Which test stands against the others, and what it would need."""
-    found = diagnosis.get("contradiction")
-    if not found or not found["differences"]:
+    row = diagnosis.get("contradiction")
+    if not row or not row["differences"]:
         return ""
     rows: list[list[html.Cell]] = [
         [d["test"], d["parameter"], _number(d["others"]), _number(d["here"]), "" if d["unit"] == "1" else d["unit"],
-         _number(abs(d["sd"])), "yes" if d["possible"] else "no"] for d in found["differences"][:12]
+         _number(abs(d["sd"])), "yes" if d["possible"] else "no"] for d in row["differences"][:12]
     ]  # fmt: skip
     headers = ["test", "parameter", "other tests", "this test", "unit", "standard deviations", "can it differ?"]
-    table = html.table(headers, rows, [d["possible"] is False for d in found["differences"][:12]])
-    drawn = html.plot(candidates.differences(found), "differences", "What would have to differ between tests.")
-    head = f"<h3>Tests that contradict each other</h3>{html.text(found['words'])}"
+    table = html.table(headers, rows, [d["possible"] is False for d in row["differences"][:12]])
+    drawn = html.plot(candidates.differences(row), "differences", "What would have to differ between tests.")
+    head = f"<h3>Tests that contradict each other</h3>{html.text(row['words'])}"
     return f"{head}{drawn}{html.more('In numbers', table)}"
 
 
@@ -250,7 +250,7 @@ def _sensors(r: Report) -> str:
             "verdict",
         ]
         name = f"{test['name']} ({test['role']}), rms {test['rmse_K']:.2f} K"
-        parts.append(html.more(name, html.table(headers, rows), opened=test["role"] == "hold-out"))
+        parts.append(html.more(name, html.table(headers, rows), expanded=test["role"] == "hold-out"))
     rule = f"<p>Error is measured − model; {RULE}.</p>"
     return html.section("Every sensor", rule, *parts)
 
@@ -271,7 +271,9 @@ def _assumed(r: Report) -> str:
 
 def _repeat(r: Report) -> str:
     commands = f"<pre>{escape(chr(10).join(r.commands))}</pre>" if r.commands else ""
-    return html.section("How to repeat this", commands) + (f"<footer>{escape(r.made)}</footer>" if r.made else "")
+    return html.section("How to repeat this", commands) + (
+        f"<footer>{escape(r.provenance)}</footer>" if r.provenance else ""
+    )
 
 
 def _number(value: Any) -> float | None:

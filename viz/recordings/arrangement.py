@@ -32,8 +32,8 @@ def blueprint(comparison: Comparison, first: str, points: NDArray[np.float64], w
     below: list[Any] = [_over_time("inputs", shares, end)] if comparison.test.inputs else []
     below += [rrb.TextLogView(origin="events", name="events")] if comparison.events else []
     right = rrb.Vertical(curves, _over_time("residual", "measured − model (K)", end), *below)
-    shown = rrb.Horizontal(_machine(comparison, points), _bar(), column_shares=[6, 1])
-    left = rrb.Vertical(shown, _text("legend", "legend"), row_shares=[5, 1])
+    views = rrb.Horizontal(_machine(comparison, points), _bar(), column_shares=[6, 1])
+    left = rrb.Vertical(views, _text("legend", "legend"), row_shares=[5, 1])
     layout: Any = rrb.Horizontal(left, right, column_shares=[3, 2], name="test")
     if with_history:
         error = rrb.TimeSeriesView(origin="error", name="rms error (K)")
@@ -46,15 +46,15 @@ def blueprint(comparison: Comparison, first: str, points: NDArray[np.float64], w
     return rrb.Blueprint(layout, plays, collapse_panels=True)
 
 
-def apart(places: NDArray[np.float64], points: NDArray[np.float64]) -> list[bool]:
+def non_overlapping(places: NDArray[np.float64], points: NDArray[np.float64]) -> list[bool]:
     """Which names, at places (n, 3) m in order of weight, cover none before them when the machine is first seen."""
     _, right, up = View().axes()
     size = np.linalg.norm(np.ptp(points, axis=0)) * np.array(NAME)
-    taken: list[NDArray[np.float64]] = []
+    occupied: list[NDArray[np.float64]] = []
     out = []
     for at in np.stack([places @ right, places @ up], axis=1):
-        out.append(not any((np.abs(at - other) < size).all() for other in taken))
-        taken += [at] if out[-1] else []
+        out.append(not any((np.abs(at - other) < size).all() for other in occupied))
+        occupied += [at] if out[-1] else []
     return out
 
 
@@ -64,7 +64,9 @@ def eye(points: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray((low + high) / 2 + DISTANCE * np.linalg.norm(high - low) * View().axes()[0])
 
 
-def seen(points: NDArray[np.float64], machine: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def in_view(
+    points: NDArray[np.float64], machine: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """(n, 2) right and up per metre of distance, and (n,) m of distance, of points (n, 3) m when it is first seen."""
     towards, right, up = View().axes()
     distance = (eye(machine) - points) @ towards
@@ -74,7 +76,7 @@ def seen(points: NDArray[np.float64], machine: NDArray[np.float64]) -> tuple[NDA
 def beside(places: NDArray[np.float64], machine: NDArray[np.float64]) -> NDArray[np.float64]:
     """(n, 3) m: out from places (n, 3) m, across the first line of sight, to just beyond the machine's outline."""
     _, right, up = View().axes()
-    (at, distance), outline = seen(places, machine), seen(machine, machine)[0]
+    (at, distance), outline = in_view(places, machine), in_view(machine, machine)[0]
     away = at / np.linalg.norm(at, axis=1, keepdims=True)
     far = (outline @ away.T).max(axis=0) + OUT / DISTANCE - np.einsum("ij,ij->i", at, away)
     return np.asarray(places + (far * distance)[:, None] * (away @ np.stack([right, up])))

@@ -25,7 +25,7 @@ from viz.figures.curves import wrongness
 from viz.figures.errors import PALE, error_paths
 from viz.machine.thermocouples import LABELS
 from viz.recordings import scale
-from viz.recordings.arrangement import apart, beside, blueprint, eye
+from viz.recordings.arrangement import beside, blueprint, eye, non_overlapping
 from viz.rendering.cut import QUARTER, Surface, Wedge, cut_away
 from viz.rendering.edges import outline_strips
 from viz.rendering.nodes import SplitMesh, on_nodes
@@ -163,7 +163,7 @@ def _names(
     places = np.array([positions[channel.name] for channel in ranked])
     hidden = covered(obstacle(surface), places, eye(surface.points))
     at = np.where(hidden[:, None], beside(places, surface.points), places)
-    chosen = np.flatnonzero(apart(at, surface.points))[:LABELS]
+    chosen = np.flatnonzero(non_overlapping(at, surface.points))[:LABELS]
     labels = rr.Points3D(
         at[chosen], labels=[short(ranked[i].name) for i in chosen], radii=rr.Radius.ui_points(0.0), show_labels=True,
         colors=[255, 255, 255],

@@ -23,12 +23,12 @@ if TYPE_CHECKING:
 COMMAND = "apt-get install -y libvulkan1 mesa-vulkan-drivers"
 TRIES = 4  # the viewer gives up on a picture after 15 s, which a busy computer may need to draw it
 START_S = 60.0  # a viewer that needs more does not start
-DRAWN, SETTLED_S = 3, 1.0  # a plot finds its scale, and its lines, only after it was drawn once; the last picture stays
+WARM_UPS, LOAD_S = 3, 1.0  # a plot finds its scale, and its lines, only after it was drawn once; the last picture stays
 
 
 def snapshots(recording: str | Path, pictures: Mapping[str | Path, tuple[str, float]]) -> list[Path]:
     """Write PNG pictures of the whole viewer: path -> (timeline, seconds, or the number on `revision`)."""
-    written = []
+    paths = []
     with _viewer() as viewer:
         viewer.open(str(Path(recording).resolve()))
         for png, (timeline, at) in pictures.items():
@@ -38,11 +38,11 @@ def snapshots(recording: str | Path, pictures: Mapping[str | Path, tuple[str, fl
                 viewer.set_time(timeline, sequence=int(at), play_state="paused")
             else:
                 viewer.set_time(timeline, duration=float(at), play_state="paused")
-            for _ in range(DRAWN):
+            for _ in range(WARM_UPS):
                 _patiently(lambda path=path: viewer.save_screenshot(str(path)))  # type: ignore[misc]
-                time.sleep(SETTLED_S)
-            written.append(path)
-    return written
+                time.sleep(LOAD_S)
+            paths.append(path)
+    return paths
 
 
 def _patiently(act: Callable[[], None]) -> None:

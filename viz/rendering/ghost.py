@@ -34,7 +34,7 @@ class Window:
 
     def split(self, pieces: list[Surface]) -> tuple[list[Surface], list[Surface]]:
         """What the window takes away of some surfaces, and what stays."""
-        taken, stays = list[Surface](), list[Surface]()
+        ghosts, stays = list[Surface](), list[Surface]()
         planes = [*((n, float(n @ self.eye)) for n in self.normals), (self.towards, float(self.towards @ self.bottom))]
         for piece in pieces:
             near = self._near(piece)
@@ -43,8 +43,8 @@ class Window:
             for normal, offset in planes if near.any() else ():
                 stays.append(inside.clipped(-normal, -offset))
                 inside = inside.clipped(normal, offset)
-            taken.append(inside)
-        return [t for t in taken if len(t.triangles)], [s for s in stays if len(s.triangles)]
+            ghosts.append(inside)
+        return [t for t in ghosts if len(t.triangles)], [s for s in stays if len(s.triangles)]
 
     def cropped(self, surface: Surface) -> Surface:
         """What lies within the window's sides."""
@@ -84,8 +84,8 @@ def ghosted(surface: Surface, places: Array, chosen: NDArray[np.bool_], eye: Arr
         return Ghosted(surface)
     solid, floors, ghosts = [surface], list[Surface](), list[Surface]()
     for one in windows:
-        taken, solid = one.split(solid)
-        ghosts += taken
+        faded, solid = one.split(solid)
+        ghosts += faded
         floor = one.cropped(section(surface.nodes, one.towards, float(one.towards @ one.bottom)))
         floors = [*one.split(floors)[1], floor]
     return Ghosted(joined([*solid, *floors]), joined(ghosts) if ghosts else None, tuple(windows))
@@ -110,5 +110,5 @@ def _midway(at: Array, eye: Array, others: Array) -> Array:
     """(n, 3) normals of the planes through the eye that part a line of sight from others; the same line has none."""
     away = (at - eye) / np.linalg.norm(at - eye) - (others - eye) / np.linalg.norm(others - eye, axis=1, keepdims=True)
     length = np.linalg.norm(away, axis=1)
-    apart = length > SAME
-    return np.asarray(away[apart] / length[apart, None])
+    distinct = length > SAME
+    return np.asarray(away[distinct] / length[distinct, None])

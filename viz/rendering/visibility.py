@@ -32,13 +32,13 @@ def anchors(surface: Surface, view: View, room: Room) -> dict[int, Array]:
     depth = np.abs(p.get_image_depth())
     eye = np.array(p.camera.position)
     p.close()
-    found = {}
+    places = {}
     for part in np.unique(seen[seen >= 0]):
         inside = distance_transform_edt(np.pad(seen == part, 1))[1:-1, 1:-1]
         row, column = np.unravel_index(np.argmax(inside), inside.shape)
         if inside[row, column] >= SMALLEST and np.isfinite(depth[row, column]):
-            found[int(part)] = eye + depth[row, column] * _ray(int(row), int(column), view)
-    return found
+            places[int(part)] = eye + depth[row, column] * _ray(int(row), int(column), view)
+    return places
 
 
 def obstacle(surface: Surface) -> Any:

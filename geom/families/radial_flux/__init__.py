@@ -5,9 +5,8 @@ The axis is z, the shaft extension is on the right (high z), the base lies at -y
 
 from __future__ import annotations
 
-from typing import Any
-
 from geom.description import shapes
+from geom.description.geometry import Features, Geometry
 from geom.description.part import Part, fluid
 from geom.description.roles import Role
 from geom.families.family import Family
@@ -26,7 +25,7 @@ _FACES = {
 }
 
 
-def build_pmsm(g: Any) -> tuple[Part, ...]:
+def build_pmsm(g: Geometry) -> tuple[Part, ...]:
     """Solids and fluids of a machine with interior magnets. Raises InputError for parts that do not fit."""
     at = Layout(g)
     check(g, at)
@@ -34,7 +33,7 @@ def build_pmsm(g: Any) -> tuple[Part, ...]:
     return (shaft(g, at), *magnet_rotor(g, at), *stator(g, at), *enclosure(g, at), *_fan(g, at), *_fluids(g, at))
 
 
-def build_tefc(g: Any) -> tuple[Part, ...]:
+def build_tefc(g: Geometry) -> tuple[Part, ...]:
     """Solids and fluids of a totally enclosed cage machine. Raises InputError for parts that do not fit."""
     at = Layout(g)
     check(g, at)
@@ -42,11 +41,11 @@ def build_tefc(g: Any) -> tuple[Part, ...]:
     return (shaft(g, at), *cage_rotor(g, at), *stator(g, at), *enclosure(g, at), *_fan(g, at), *_fluids(g, at))
 
 
-def _fan(g: Any, at: Layout) -> tuple[Part, ...]:
+def _fan(g: Geometry, at: Layout) -> tuple[Part, ...]:
     return shaft_fan(g.fan, g.shaft.diameter / 2, at.cowl0, 0.0)
 
 
-def _fluids(g: Any, at: Layout) -> tuple[Part, ...]:
+def _fluids(g: Geometry, at: Layout) -> tuple[Part, ...]:
     inside = shapes.disc(at.core)
     return (
         fluid("air.left", (inside, at.cap0, at.core0)),
@@ -56,6 +55,10 @@ def _fluids(g: Any, at: Layout) -> tuple[Part, ...]:
     )
 
 
+def _features(g: Geometry) -> Features:
+    return Features(air_gap=g.stator.air_gap)
+
+
 PMSM = Family(
     "pmsm",
     "Permanent-magnet machine with interior magnets; open laminations, housing or spiral jacket",
@@ -63,6 +66,7 @@ PMSM = Family(
     build_pmsm,
     _FACES,
     ports,
+    _features,
 )
 TEFC = Family(
     "tefc",
@@ -71,4 +75,5 @@ TEFC = Family(
     build_tefc,
     _FACES,
     ports,
+    _features,
 )

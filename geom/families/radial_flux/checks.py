@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
+from geom.description.geometry import Geometry, Group
 from geom.description.parameters import impossible
 from geom.families.nozzles import too_near
 from geom.families.radial_flux.housing import nozzles
@@ -15,12 +15,12 @@ from geom.families.shaft_fan import Rule, fan_rules
 mm = 1e3
 
 
-def check(g: Any, at: Layout) -> None:
+def check(g: Geometry, at: Layout) -> None:
     """Raise InputError for the first rule that does not hold."""
     refuse((*_stator_rules(g, at), *_frame_rules(g, at), *_housing_rules(g, at), *_cowl(g, at)))
 
 
-def _cowl(g: Any, at: Layout) -> tuple[Rule, ...]:
+def _cowl(g: Geometry, at: Layout) -> tuple[Rule, ...]:
     return fan_rules(g.fan, g.shaft.diameter, g.bearing.outer_diameter, 2 * at.cap_radius)
 
 
@@ -30,7 +30,7 @@ def refuse(rules: tuple[Rule, ...]) -> None:
             raise impossible(f"{value:.4g} does not fit", key, f"must be {right}")
 
 
-def _stator_rules(g: Any, at: Layout) -> tuple[Rule, ...]:
+def _stator_rules(g: Geometry, at: Layout) -> tuple[Rule, ...]:
     s = g.stator
     widest = 2 * at.slot0 * math.sin(math.pi / s.slots)
     lining = 2 * (s.liner + s.liner_gap)
@@ -51,7 +51,7 @@ def _stator_rules(g: Any, at: Layout) -> tuple[Rule, ...]:
     )  # fmt: skip
 
 
-def _parallel_slot(s: Any, widest: float, lining: float) -> tuple[Rule, ...]:
+def _parallel_slot(s: Group, widest: float, lining: float) -> tuple[Rule, ...]:
     return (
         (s.slot_width < 0.85 * widest, "stator.slot_width_mm", s.slot_width * mm,
          f"less than {0.85 * widest * mm:.4g} mm, to leave teeth"),
@@ -60,7 +60,7 @@ def _parallel_slot(s: Any, widest: float, lining: float) -> tuple[Rule, ...]:
     )  # fmt: skip
 
 
-def _frame_rules(g: Any, at: Layout) -> tuple[Rule, ...]:
+def _frame_rules(g: Geometry, at: Layout) -> tuple[Rule, ...]:
     needed = g.stator.stack_length + 2 * (
         g.winding.straight + g.winding.end + g.frame.cap + min(0.001, 0.005 * at.core)
     )
@@ -76,7 +76,7 @@ def _frame_rules(g: Any, at: Layout) -> tuple[Rule, ...]:
     return (*rules, skirt) if g.housing.kind == "none" else rules
 
 
-def _housing_rules(g: Any, at: Layout) -> tuple[Rule, ...]:
+def _housing_rules(g: Geometry, at: Layout) -> tuple[Rule, ...]:
     around, h = 2 * math.pi * at.wall, g.housing
     along = at.cap1 - at.cap0
     turn = (at.core1 - at.core0) / (h.turns + 1)
@@ -107,7 +107,7 @@ def _housing_rules(g: Any, at: Layout) -> tuple[Rule, ...]:
     return tuple(rules)
 
 
-def check_magnets(g: Any, at: Layout) -> None:
+def check_magnets(g: Geometry, at: Layout) -> None:
     """Magnets stay inside the rotor, off the shaft and apart from each other."""
     import shapely
 
@@ -120,8 +120,8 @@ def check_magnets(g: Any, at: Layout) -> None:
     limit = max(0.998 * at.rotor, at.rotor - 0.9 * r.bridge)
     inside = bool((corners**2).sum(axis=1).max() < limit**2)
     clear = shapely.distance(magnets, shapely.Point(0, 0)).min() > 1.02 * g.shaft.diameter / 2
-    apart = 0.004 * 2 * at.rotor * math.sin(math.pi / r.poles)
-    near, far = shapely.STRtree(magnets).query(magnets, predicate="dwithin", distance=min(5e-4, apart))
+    clearance = 0.004 * 2 * at.rotor * math.sin(math.pi / r.poles)
+    near, far = shapely.STRtree(magnets).query(magnets, predicate="dwithin", distance=min(5e-4, clearance))
     refuse((
         (inside, "rotor.bridge_mm", r.bridge * mm, "more, to keep the magnets under the surface"),
         (bool(clear), "rotor.magnet_thickness_mm", r.magnet_thickness * mm, "less, to clear the shaft"),
@@ -129,7 +129,7 @@ def check_magnets(g: Any, at: Layout) -> None:
     ))  # fmt: skip
 
 
-def check_cage(g: Any, at: Layout) -> None:
+def check_cage(g: Geometry, at: Layout) -> None:
     """Bars leave teeth between them and stay off the shaft."""
     r = g.rotor
     bottom = at.rotor - r.bar_depth

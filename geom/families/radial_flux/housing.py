@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 from geom.description import shapes
-from geom.description.part import Made, Part, Port, Prism, fluid
+from geom.description.geometry import Geometry
+from geom.description.part import CadShape, Part, Port, Prism, fluid
 from geom.description.profile import Profile
 from geom.description.roles import Role
-from geom.families.nozzles import Nozzle, opened_ring, slices
+from geom.families.nozzles import Nozzle, bored_ring, slices
 from geom.families.radial_flux.layout import Layout
 from geom.families.turns import Turns
 
 
-def enclosure(g: Any, at: Layout) -> tuple[Part, ...]:
+def enclosure(g: Geometry, at: Layout) -> tuple[Part, ...]:
     seat = g.bearing.outer_diameter / 2
     bearing = shapes.ring(g.shaft.diameter / 2, seat)
     cap = shapes.ring(seat, at.cap_radius)
@@ -31,7 +31,7 @@ def enclosure(g: Any, at: Layout) -> tuple[Part, ...]:
     )
 
 
-def _skirts(g: Any, at: Layout) -> tuple[Prism, ...]:
+def _skirts(g: Geometry, at: Layout) -> tuple[Prism, ...]:
     """Without a housing the end-caps reach to the laminations."""
     if g.housing.kind != "none":
         return ()
@@ -39,33 +39,33 @@ def _skirts(g: Any, at: Layout) -> tuple[Prism, ...]:
     return (skirt, at.cap0, at.core0), (skirt, at.core1, at.cap1)
 
 
-def _housing(g: Any, at: Layout) -> tuple[Part, ...]:
+def _housing(g: Geometry, at: Layout) -> tuple[Part, ...]:
     prisms = {"none": _none, "plain": _plain, "axial-fins": _axial_fins, "radial-fins": _radial_fins, "spiral": _spiral}
     walls = prisms[g.housing.kind](g, at)
-    return (Part("housing", "aluminium-cast", walls, made=_made(g, at), role=Role.HOUSING),) if walls else ()
+    return (Part("housing", "aluminium-cast", walls, cad_shape=_cad_shape(g, at), role=Role.HOUSING),) if walls else ()
 
 
-def _none(g: Any, at: Layout) -> tuple[Prism, ...]:
+def _none(g: Geometry, at: Layout) -> tuple[Prism, ...]:
     return ()
 
 
-def _plain(g: Any, at: Layout) -> tuple[Prism, ...]:
+def _plain(g: Geometry, at: Layout) -> tuple[Prism, ...]:
     return ((shapes.ring(at.core, at.wall), at.cap0, at.cap1),)
 
 
-def _axial_fins(g: Any, at: Layout) -> tuple[Prism, ...]:
+def _axial_fins(g: Geometry, at: Layout) -> tuple[Prism, ...]:
     around = shapes.spread(g.housing.fins, math.pi / 2, g.housing.fin_spacing / at.wall)
     angles = [angle for angle in around if not _over_foot(g, at, angle)]
     loop = shapes.finned_loop(at.wall, g.housing.fin_thickness, at.fins, angles)
     return ((Profile(loop, (shapes.circle_loop(at.core),)), at.cap0, at.cap1),)
 
 
-def _over_foot(g: Any, at: Layout, angle: float) -> bool:
+def _over_foot(g: Geometry, at: Layout, angle: float) -> bool:
     near = at.wall * abs(math.cos(angle)) - 0.6 * g.housing.fin_thickness
     return g.base.kind != "none" and math.sin(angle) < 0 and near < g.foot.width / 2
 
 
-def _radial_fins(g: Any, at: Layout) -> tuple[Prism, ...]:
+def _radial_fins(g: Geometry, at: Layout) -> tuple[Prism, ...]:
     """Discs around the housing, cut out where the foot stands."""
     bare, disc = shapes.ring(at.core, at.wall), shapes.ring(at.core, at.fins)
     prisms, here = [], at.cap0
@@ -77,21 +77,21 @@ def _radial_fins(g: Any, at: Layout) -> tuple[Prism, ...]:
     return (*prisms, (bare, here, at.cap1))
 
 
-def _around_foot(g: Any, at: Layout) -> Profile:
+def _around_foot(g: Geometry, at: Layout) -> Profile:
     """A disc that leaves as much as a fin's thickness free on either side of the foot."""
     free = min(g.housing.fin_thickness, 0.05 * at.wall)
     loop = shapes.slotted_loop(at.fins, g.foot.width + 2 * free, at.wall, (-math.pi / 2,))
     return Profile(loop, (shapes.circle_loop(at.core),))
 
 
-def fin_spans(g: Any, at: Layout) -> list[tuple[float, float]]:
+def fin_spans(g: Geometry, at: Layout) -> list[tuple[float, float]]:
     """Axial range of each radial fin (m)."""
     pitch = g.housing.fin_spacing or (at.cap1 - at.cap0) / g.housing.fins
     half, first = g.housing.fin_thickness / 2, at.middle - (g.housing.fins - 1) / 2 * pitch
     return [(first + i * pitch - half, first + i * pitch + half) for i in range(g.housing.fins)]
 
 
-def _spiral(g: Any, at: Layout) -> tuple[Prism, ...]:
+def _spiral(g: Geometry, at: Layout) -> tuple[Prism, ...]:
     solid, rings = shapes.ring(at.core, at.body), turns_of(g, at).rings
     ends = [at.cap0, *(z for turn in rings for z in turn), at.cap1]
     ribs = [(solid, a, b) for a, b in zip(ends[::2], ends[1::2])]
@@ -99,26 +99,28 @@ def _spiral(g: Any, at: Layout) -> tuple[Prism, ...]:
         (piece, low, high)
         for a, b in rings
         for low, high, ports in slices(a, b, nozzles(g, at))
-        for piece in opened_ring(at.channel, at.body, ports)
+        for piece in bored_ring(at.channel, at.body, ports)
     ]
     return (*ribs, *((shapes.ring(at.core, at.wall), a, b) for a, b in rings), *outer)
 
 
-def _made(g: Any, at: Layout) -> Made | None:
+def _cad_shape(g: Geometry, at: Layout) -> CadShape | None:
     """A spiral jacket as it is made: a helix for the rings, round bores."""
     if g.housing.kind != "spiral":
         return None
     drills = (nozzle.drill for nozzle in nozzles(g, at))
-    return Made(((shapes.ring(at.core, at.body), at.cap0, at.cap1),), (turns_of(g, at).helix(g.housing.port), *drills))
+    return CadShape(
+        ((shapes.ring(at.core, at.body), at.cap0, at.cap1),), (turns_of(g, at).helix(g.housing.port), *drills)
+    )
 
 
-def turns_of(g: Any, at: Layout) -> Turns:
+def turns_of(g: Geometry, at: Layout) -> Turns:
     """The turns of the spiral jacket, over the stack."""
     pitch = (at.core1 - at.core0 - g.housing.rib) / g.housing.turns
     return Turns(at.wall, at.channel, at.core0 + g.housing.rib, pitch, g.housing.rib, g.housing.turns)
 
 
-def nozzles(g: Any, at: Layout) -> tuple[Nozzle, ...]:
+def nozzles(g: Geometry, at: Layout) -> tuple[Nozzle, ...]:
     """Inlet and outlet of the spiral jacket."""
     if g.housing.kind != "spiral":
         return ()
@@ -127,7 +129,7 @@ def nozzles(g: Any, at: Layout) -> tuple[Nozzle, ...]:
     return tuple(Nozzle(f"jacket.{end}", "jacket", *place, bore, at.channel, at.body) for end, place in places)
 
 
-def coolant(g: Any, at: Layout) -> tuple[Part, ...]:
+def coolant(g: Geometry, at: Layout) -> tuple[Part, ...]:
     """What flows in the jacket, to the ends of its ports."""
     if g.housing.kind != "spiral":
         return ()
@@ -138,12 +140,12 @@ def coolant(g: Any, at: Layout) -> tuple[Part, ...]:
     )
 
 
-def ports(g: Any) -> tuple[Port, ...]:
+def ports(g: Geometry) -> tuple[Port, ...]:
     """Inlet at the first turn, outlet at the last, on the jacket's outer wall."""
     return tuple(nozzle.port for nozzle in nozzles(g, Layout(g)))
 
 
-def _base(g: Any, at: Layout) -> tuple[Part, ...]:
+def _base(g: Geometry, at: Layout) -> tuple[Part, ...]:
     if g.base.kind == "none":
         return ()
     half, sweep = g.foot.width / 2, 2 * math.asin(g.foot.width / 2 / at.body)

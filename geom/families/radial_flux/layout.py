@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
+from geom.description.geometry import Geometry
 from geom.families.shaft_fan import WHEEL
 
 
 class Layout:
     """Axial positions z... and radii r... (m)."""
 
-    def __init__(self, g: Any) -> None:
+    def __init__(self, g: Geometry) -> None:
         self.length = g.frame.length
         self.cowl0 = 0.0 - g.fan.depth  # no -0.0
         self.shaft0 = (1 - WHEEL[0]) * self.cowl0

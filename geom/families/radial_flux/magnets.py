@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 from geom.description import shapes
+from geom.description.geometry import Geometry
 
 Corners = list[tuple[float, float]]
 _STEPS = 200  # widths tried; the widest is known to half a percent of the pole
 _SHAFT, _PITCH = 1.06, 0.98  # shares of shaft radius and half a pole that stay free
 
 
-def corners(g: Any, radius: float, width: float) -> Corners:
+def corners(g: Geometry, radius: float, width: float) -> Corners:
     """Of one magnet of the pole at angle 0 (m), of a V the upper one; its outermost corner a bridge below `radius`."""
     thickness, reach = g.rotor.magnet_thickness, radius - g.rotor.bridge
     if g.rotor.magnet_shape == "flat":
@@ -26,7 +26,7 @@ def corners(g: Any, radius: float, width: float) -> Corners:
     return upper + [(px - thickness * c, py + thickness * s) for px, py in reversed(upper)]
 
 
-def widest(g: Any) -> float:
+def widest(g: Geometry) -> float:
     """The widest magnet (m) that stays under the surface, off the shaft and in its half of the pole."""
     radius = g.stator.bore_diameter / 2 - g.stator.air_gap
     most = 2 * radius * math.sin(math.pi / g.rotor.poles)
@@ -38,20 +38,20 @@ def widest(g: Any) -> float:
     return fits
 
 
-def _fits(g: Any, radius: float, width: float) -> bool:
+def _fits(g: Geometry, radius: float, width: float) -> bool:
     rise = width / 2 if g.rotor.magnet_shape == "flat" else g.rotor.bridge / 2 + width * math.cos(g.rotor.v)
     if rise >= 0.98 * (radius - g.rotor.bridge):
         return False
-    found = corners(g, radius, width)
+    points = corners(g, radius, width)
     half = math.pi / g.rotor.poles
-    inside = max(math.hypot(x, y) for x, y in found) <= radius - 0.95 * g.rotor.bridge
-    apart = all(abs(math.atan2(y, x)) <= _PITCH * half for x, y in found)
-    return inside and apart and _distance(found) >= _SHAFT * g.shaft.diameter / 2
+    inside = max(math.hypot(x, y) for x, y in points) <= radius - 0.95 * g.rotor.bridge
+    inside_pitch = all(abs(math.atan2(y, x)) <= _PITCH * half for x, y in points)
+    return inside and inside_pitch and _distance(points) >= _SHAFT * g.shaft.diameter / 2
 
 
-def _distance(found: Corners) -> float:
+def _distance(corners_xy: Corners) -> float:
     """Of a polygon's edges to the axis (m)."""
-    return min(_to_axis(a, b) for a, b in zip(found, [*found[1:], found[0]], strict=True))
+    return min(_to_axis(a, b) for a, b in zip(corners_xy, [*corners_xy[1:], corners_xy[0]], strict=True))
 
 
 def _to_axis(a: tuple[float, float], b: tuple[float, float]) -> float:

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from geom.description.parameters import Parameter
 from geom.families.radial_flux import scales
+from geom.families.shaft_fan import fan_parameters
 
 P = Parameter
 COMMON = (
@@ -82,13 +83,9 @@ CAGE = (
     P("rotor.bar_depth_mm", 18.0, 1.0, 120.0, "rotor surface to bar bottom", of=scales.iron(0.15, 0.6)),
     P("rotor.ring_mm", 14.0, 1.0, 100.0, "axial thickness of the cage's end rings", of=scales.end_space(0.1, 0.8)),
 )
-FAN = (
-    P("fan.depth_mm", 0.0, 0.0, 500.0, "cowl with a fan on the shaft, in front of the left end-cap; 0 is none",
-      off=True, of=scales.outer(0.1, 0.5)),
-    P("fan.cowl_mm", 1.5, 0.5, 20.0, "wall of the cowl", of=scales.outer(0.003, 0.02)),
-    P("fan.diameter_mm", 200.0, 20.0, 2500.0, "inside of the cowl", of=scales.fan(0.3, 0.95)),
-    P("fan.hub_diameter_mm", 70.0, 6.0, 800.0, "hub of the fan on the shaft", of=scales.fan_hub(0.05, 0.6)),
-    P("fan.blades", 7, 2, 24, "blades of the fan"),
+FAN = fan_parameters(
+    "end-cap", {"depth": scales.outer, "wall": scales.outer, "cowl": scales.fan, "hub": scales.fan_hub},
+    diameter=200.0, cowl=1.5, hub=70.0, within=0.95,
 )  # fmt: skip
 TEFC_DEFAULTS: dict[str, float | int | str] = {
     "frame.length_mm": 300.0, "frame.cap_mm": 14.0, "shaft.diameter_mm": 38.0, "shaft.extension_mm": 80.0,

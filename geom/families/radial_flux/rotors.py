@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from geom.description import shapes
+from geom.description.geometry import Geometry
 from geom.description.part import Part, extrude
 from geom.description.profile import Profile
 from geom.description.roles import Role
@@ -12,12 +11,12 @@ from geom.families.radial_flux.layout import Layout
 from geom.families.radial_flux.magnets import corners
 
 
-def shaft(g: Any, at: Layout) -> Part:
+def shaft(g: Geometry, at: Layout) -> Part:
     round_bar = shapes.disc(g.shaft.diameter / 2)
     return Part("shaft", "steel", ((round_bar, at.shaft0, at.length + g.shaft.extension),), role=Role.SHAFT)
 
 
-def magnet_rotor(g: Any, at: Layout) -> tuple[Part, ...]:
+def magnet_rotor(g: Geometry, at: Layout) -> tuple[Part, ...]:
     magnets = shapes_of_magnets(g, at)
     holes = (shapes.circle_loop(g.shaft.diameter / 2), *(magnet.outer for magnet in magnets))
     core = Profile(shapes.circle_loop(at.rotor), holes)
@@ -27,19 +26,19 @@ def magnet_rotor(g: Any, at: Layout) -> tuple[Part, ...]:
     )
 
 
-def shapes_of_magnets(g: Any, at: Layout) -> list[Profile]:
+def shapes_of_magnets(g: Geometry, at: Layout) -> list[Profile]:
     """All magnets in the plane."""
     return [magnet for angle in shapes.evenly(g.rotor.poles) for magnet in shapes.turned_list(_pole(g, at), angle)]
 
 
-def _pole(g: Any, at: Layout) -> list[Profile]:
+def _pole(g: Geometry, at: Layout) -> list[Profile]:
     """Magnets of the pole at angle 0, their outermost corners a bridge below the surface."""
-    found = corners(g, at.rotor, g.rotor.magnet_width)
-    one = Profile(tuple((x, y, 0.0) for x, y in found))
-    return [one] if g.rotor.magnet_shape == "flat" else [one, Profile(tuple((x, -y, 0.0) for x, y in reversed(found)))]
+    points = corners(g, at.rotor, g.rotor.magnet_width)
+    one = Profile(tuple((x, y, 0.0) for x, y in points))
+    return [one] if g.rotor.magnet_shape == "flat" else [one, Profile(tuple((x, -y, 0.0) for x, y in reversed(points)))]
 
 
-def cage_rotor(g: Any, at: Layout) -> tuple[Part, ...]:
+def cage_rotor(g: Geometry, at: Layout) -> tuple[Part, ...]:
     angles, bottom = shapes.evenly(g.rotor.bars), at.rotor - g.rotor.bar_depth
     core = Profile(
         shapes.slotted_loop(at.rotor, g.rotor.bar_width, bottom, angles), (shapes.circle_loop(g.shaft.diameter / 2),)

@@ -6,8 +6,8 @@ A bound is where a rule of checks.py would begin, with room to spare for what th
 from __future__ import annotations
 
 import math
-from typing import Any
 
+from geom.description.geometry import Geometry
 from geom.description.parameters import scale
 from geom.families.radial_flux.layout import Layout
 from geom.families.radial_flux.magnets import widest
@@ -20,7 +20,7 @@ build = scale("bore to outside of the laminations", lambda g: (g.stator.outer_di
 depth = scale("the slot's depth", lambda g: g.stator.slot_depth)
 
 
-def _pitch(g: Any) -> float:
+def _pitch(g: Geometry) -> float:
     return g.stator.bore_diameter * math.sin(math.pi / g.stator.slots)
 
 
@@ -28,7 +28,7 @@ pitch = scale("the slot pitch at the bore", _pitch)
 lining = scale("slot pitch or depth, the smaller", lambda g: min(_pitch(g), g.stator.slot_depth))
 
 
-def _mouth(g: Any) -> float:
+def _mouth(g: Geometry) -> float:
     return g.stator.slot_width if g.stator.slot_shape == "parallel" else _pitch(g) - g.stator.tooth
 
 
@@ -36,7 +36,7 @@ mouth = scale("the slot's width at the bore", _mouth)
 tip = scale("the tooth tip", lambda g: g.stator.tip)
 
 
-def _content(g: Any) -> float:
+def _content(g: Geometry) -> float:
     return g.stator.stack_length + 2 * (g.winding.straight + g.winding.end + g.frame.cap)
 
 
@@ -46,7 +46,7 @@ yoke = scale(
 )
 
 
-def _even_pitch(g: Any) -> float:
+def _even_pitch(g: Geometry) -> float:
     """Of fins spread evenly."""
     if g.housing.kind == "radial-fins":
         return (g.frame.length - 2 * g.frame.cap) / g.housing.fins
@@ -60,14 +60,14 @@ fin_pitch = scale(
 )
 
 
-def _turn(g: Any) -> float:
+def _turn(g: Geometry) -> float:
     return g.stator.stack_length / (g.housing.turns + 1)
 
 
 turn = scale("the stack's length over turns + 1", _turn)
 
 
-def _channel(g: Any) -> float:
+def _channel(g: Geometry) -> float:
     """Width of the jacket's channel; the two ports of a single turn share it."""
     wide = (g.stator.stack_length - g.housing.rib) / g.housing.turns - g.housing.rib
     return min(wide if g.housing.turns > 1 else 0.6 * wide, g.stator.outer_diameter / 6)
@@ -77,7 +77,7 @@ channel = scale("the channel's width (0.6 of it with one turn), or a sixth of th
 length = scale("the length over the end-caps", lambda g: g.frame.length)
 
 
-def _pole(g: Any) -> float:
+def _pole(g: Geometry) -> float:
     """Pole pitch at the rotor's surface or the iron under it, whichever is smaller."""
     radius = g.stator.bore_diameter / 2 - g.stator.air_gap
     return min(2 * radius * math.sin(math.pi / g.rotor.poles), radius - g.shaft.diameter / 2)
@@ -87,7 +87,7 @@ pole = scale("pole pitch or rotor iron, the smaller", _pole)
 magnet = scale("the widest magnet that fits", widest)
 
 
-def _rotor(g: Any) -> float:
+def _rotor(g: Geometry) -> float:
     return g.stator.bore_diameter / 2 - g.stator.air_gap
 
 

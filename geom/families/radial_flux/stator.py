@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 from geom.description import shapes
+from geom.description.geometry import Geometry
 from geom.description.part import Part, extrude
 from geom.description.profile import Loop, Profile
 from geom.description.roles import Role
 from geom.families.radial_flux.layout import Layout
 
 
-def stator(g: Any, at: Layout) -> tuple[Part, ...]:
+def stator(g: Geometry, at: Layout) -> tuple[Part, ...]:
     w, angles, gap = g.winding, shapes.evenly(g.stator.slots), g.stator.liner_gap
     whole = slot_loop(at, at.slot0, at.slot1, 0.0)
     lined = slot_loop(at, at.slot0 + gap, at.slot1 - gap, gap)
@@ -34,16 +34,16 @@ def stator(g: Any, at: Layout) -> tuple[Part, ...]:
     )
 
 
-def _ends(g: Any, at: Layout, angles: list[float]) -> list[Profile]:
+def _ends(g: Geometry, at: Layout, angles: list[float]) -> list[Profile]:
     """Overhang in the plane: a ring, or for coils around single teeth an arch from slot to slot at each tooth."""
     if g.winding.kind == "distributed":
         return [shapes.ring(at.wire0, at.wire1)]
-    apart = math.asin(g.stator.opening / 2 / at.wire0)
+    half_opening = math.asin(g.stator.opening / 2 / at.wire0)
     pitch = 2 * math.pi / g.stator.slots
-    return [shapes.sector(at.wire0, at.wire1, angle + apart, angle + pitch - apart) for angle in angles]
+    return [shapes.sector(at.wire0, at.wire1, angle + half_opening, angle + pitch - half_opening) for angle in angles]
 
 
-def _wedges(g: Any, at: Layout, angles: list[float]) -> tuple[Part, ...]:
+def _wedges(g: Geometry, at: Layout, angles: list[float]) -> tuple[Part, ...]:
     """What closes the slots, in the openings between the tooth tips."""
     if not g.stator.wedge:
         return ()
@@ -61,7 +61,7 @@ def slot_loop(at: Layout, inner: float, outer: float, lining: float) -> Loop:
             shapes.polar(inner, a, -shapes.bulge_of(2 * a)))  # fmt: skip
 
 
-def _bore(g: Any, at: Layout, angles: list[float]) -> Loop:
+def _bore(g: Geometry, at: Layout, angles: list[float]) -> Loop:
     """The bore with all slots and their openings."""
     half = g.stator.opening / 2
     mouth, throat = math.asin(half / at.bore), math.asin(half / at.slot0)

@@ -6,14 +6,14 @@ one or two liquid jackets between the feet.
 
 from __future__ import annotations
 
-from typing import Any
-
 from geom.description import shapes
+from geom.description.geometry import Geometry
 from geom.description.part import Part, fluid
 from geom.description.roles import Role
 from geom.families.family import Family
 from geom.families.series_dc.brushes import brush_gear
 from geom.families.series_dc.checks import check
+from geom.families.series_dc.features import features
 from geom.families.series_dc.housing import enclosure
 from geom.families.series_dc.jacket import coolant, ports
 from geom.families.series_dc.layout import Axial, Radii
@@ -23,7 +23,7 @@ from geom.families.series_dc.stator import stator
 from geom.families.shaft_fan import shaft_fan
 
 
-def build(g: Any) -> tuple[Part, ...]:
+def build(g: Geometry) -> tuple[Part, ...]:
     """Solids and fluids of the machine. Raises InputError for parts that do not fit."""
     z = Axial(g)
     check(g, z)
@@ -31,7 +31,7 @@ def build(g: Any) -> tuple[Part, ...]:
     return (*rotor(g, z), *stator(g, z), *enclosure(g, z), *brush_gear(g, z), *fan, *_fluids(g, z))
 
 
-def _fluids(g: Any, z: Axial) -> tuple[Part, ...]:
+def _fluids(g: Geometry, z: Axial) -> tuple[Part, ...]:
     r = Radii(g)
     hollow, core = shapes.disc(r.yoke1), shapes.disc(g.rotor.outer_diameter / 2)
     ducts = (fluid("air.ducts", (core, z.core0, z.core1)),) if g.rotor.ducts else ()
@@ -60,4 +60,5 @@ FAMILY = Family(
         **{(f"{side}.{end}.tube", side): f"{side}.{end}.bore" for side in _SIDES for end in ("inlet", "outlet")},
     },
     ports,
+    features,
 )

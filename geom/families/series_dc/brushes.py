@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 from geom.description import shapes
+from geom.description.geometry import Geometry
 from geom.description.part import Part, extrude
 from geom.description.roles import Role
 from geom.families.series_dc.layout import Axial
@@ -13,7 +13,7 @@ from geom.families.series_dc.layout import Axial
 _FREE = 0.1  # of the commutator's length: riser to brush
 
 
-def brush_gear(g: Any, z: Axial) -> tuple[Part, ...]:
+def brush_gear(g: Geometry, z: Axial) -> tuple[Part, ...]:
     """An arm per row of carbons, from the riser to the flange; nothing without arms."""
     b, surface = g.brushes, g.commutator.diameter / 2
     if not b.arms:

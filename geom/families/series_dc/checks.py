@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 from geom.description import shapes
+from geom.description.geometry import Geometry
 from geom.description.parameters import impossible
 from geom.families.nozzles import too_near
 from geom.families.series_dc.jacket import nozzles
@@ -16,7 +16,7 @@ from geom.families.shaft_fan import Rule, fan_rules
 mm = 1e3
 
 
-def check(g: Any, z: Axial) -> None:
+def check(g: Geometry, z: Axial) -> None:
     """Refuse values that are allowed one by one but do not fit together."""
     r = Radii(g)
     pitch = 2 * math.pi / g.rotor.slots
@@ -87,24 +87,24 @@ def check(g: Any, z: Axial) -> None:
             raise impossible(f"{value:.4g} does not fit", key, f"must be {right}")
 
 
-def _ducts_fit(g: Any, r: Radii) -> bool:
+def _ducts_fit(g: Geometry, r: Radii) -> bool:
     if not g.rotor.ducts:
         return True
     middle = duct_circle(g, r)
     radius = g.rotor.duct_diameter / 2
-    apart = 2 * middle * math.sin(math.pi / g.rotor.ducts) > 2.2 * radius
-    return apart and middle - 1.1 * radius > g.shaft.core_diameter / 2 and middle + 1.1 * radius < r.slot_bottom
+    clear = 2 * middle * math.sin(math.pi / g.rotor.ducts) > 2.2 * radius
+    return clear and middle - 1.1 * radius > g.shaft.core_diameter / 2 and middle + 1.1 * radius < r.slot_bottom
 
 
-def _fins_fit(g: Any, r: Radii) -> bool:
+def _fins_fit(g: Geometry, r: Radii) -> bool:
     return g.housing.fins == 0 or g.housing.fin_thickness < 0.9 * _fin_pitch(g, r)
 
 
-def _fin_pitch(g: Any, r: Radii) -> float:
+def _fin_pitch(g: Geometry, r: Radii) -> float:
     return g.housing.fin_spacing or 2 * math.pi * r.shell / max(g.housing.fins, 1)
 
 
-def _commutator_rules(g: Any) -> tuple[Rule, ...]:
+def _commutator_rules(g: Geometry) -> tuple[Rule, ...]:
     c = g.commutator
     if not c.bars:
         return ()
@@ -115,7 +115,7 @@ def _commutator_rules(g: Any) -> tuple[Rule, ...]:
              f"less than {limit * mm:.4g} mm, to leave copper"))  # fmt: skip
 
 
-def _brush_rules(g: Any, z: Axial) -> tuple[Rule, ...]:
+def _brush_rules(g: Geometry, z: Axial) -> tuple[Rule, ...]:
     b = g.brushes
     room = g.rotor.outer_diameter / 2 - g.commutator.diameter / 2
     if not b.arms:
@@ -127,7 +127,7 @@ def _brush_rules(g: Any, z: Axial) -> tuple[Rule, ...]:
     )  # fmt: skip
 
 
-def _jacket_rules(g: Any, r: Radii, z: Axial) -> tuple[Rule, ...]:
+def _jacket_rules(g: Geometry, r: Radii, z: Axial) -> tuple[Rule, ...]:
     if not z.jackets:
         return ()
     j, length = g.jacket, min(z1 - z0 for z0, z1 in z.jackets.values())

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from geom.description import shapes
+from geom.description.geometry import Geometry
 from geom.description.part import Part, Prism, extrude
 from geom.description.profile import Profile
 from geom.description.roles import Role
 from geom.families.series_dc.layout import Axial, Radii
 
 
-def commutator(g: Any, z: Axial, r: Radii) -> tuple[Part, ...]:
+def commutator(g: Geometry, z: Axial, r: Radii) -> tuple[Part, ...]:
     """Risers up to the winding, then the brush surface."""
     hub, zones = (
         g.shaft.hub_diameter / 2,
@@ -43,20 +42,22 @@ def commutator(g: Any, z: Axial, r: Radii) -> tuple[Part, ...]:
     )
 
 
-def _half_gap(g: Any) -> float:
+def _half_gap(g: Geometry) -> float:
     """Half the angle (rad) of the mica between two bars, at the brush surface."""
     return g.commutator.mica / g.commutator.diameter
 
 
-def _bars(g: Any, hub: float, top: float, z0: float, z1: float) -> tuple[Prism, ...]:
-    apart, angles = _half_gap(g), shapes.evenly(g.commutator.bars)
+def _bars(g: Geometry, hub: float, top: float, z0: float, z1: float) -> tuple[Prism, ...]:
+    half_gap, angles = _half_gap(g), shapes.evenly(g.commutator.bars)
     pitch = angles[1]
-    return extrude([shapes.sector(hub + g.commutator.mica, top, a + apart, a + pitch - apart) for a in angles], z0, z1)
+    return extrude(
+        [shapes.sector(hub + g.commutator.mica, top, a + half_gap, a + pitch - half_gap) for a in angles], z0, z1
+    )
 
 
-def _mica(g: Any, hub: float, top: float, z0: float, z1: float) -> tuple[Prism, ...]:
-    apart, inner = _half_gap(g), hub + g.commutator.mica
-    between = [shapes.sector(inner, top, a - apart, a + apart) for a in shapes.evenly(g.commutator.bars)]
-    ends = sorted(a + side for a in shapes.evenly(g.commutator.bars) for side in (-apart, apart))
+def _mica(g: Geometry, hub: float, top: float, z0: float, z1: float) -> tuple[Prism, ...]:
+    half_gap, inner = _half_gap(g), hub + g.commutator.mica
+    between = [shapes.sector(inner, top, a - half_gap, a + half_gap) for a in shapes.evenly(g.commutator.bars)]
+    ends = sorted(a + side for a in shapes.evenly(g.commutator.bars) for side in (-half_gap, half_gap))
     around = tuple(shapes.polar(inner, a, shapes.bulge_of(gap)) for a, gap in zip(ends, shapes.gaps(ends)))
     return extrude([Profile(around, (shapes.circle_loop(hub),)), *between], z0, z1)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
 from geom.description import shapes
-from geom.description.part import Made, Part, Prism
+from geom.description.geometry import Geometry
+from geom.description.part import CadShape, Part, Prism
 from geom.description.profile import Profile
 from geom.description.roles import Role
 from geom.families.nozzles import Nozzle
@@ -15,7 +15,7 @@ from geom.families.series_dc.jacket import jacket_ring, jacket_walls, nozzles, t
 from geom.families.series_dc.layout import Axial, Radii
 
 
-def enclosure(g: Any, z: Axial) -> tuple[Part, ...]:
+def enclosure(g: Geometry, z: Axial) -> tuple[Part, ...]:
     r = Radii(g)
     seat, shaft = g.bearing.outer_diameter / 2, g.shaft.bearing_diameter / 2
     flange, bearing = shapes.ring(seat, r.shell), shapes.ring(shaft, seat)
@@ -32,17 +32,17 @@ def enclosure(g: Any, z: Axial) -> tuple[Part, ...]:
     )
 
 
-def _housing(g: Any, z: Axial, r: Radii) -> Part:
+def _housing(g: Geometry, z: Axial, r: Radii) -> Part:
     """The housing; with jackets, as it is made: round bores, and a helix for the rings."""
     bored, helical = nozzles(g), g.jacket.layout == "helical"
-    made = None
+    cad_shape = None
     if bored:
         helices = [turns_of(g, r, *span).helix(g.jacket.port) for span in z.jackets.values() if helical]
-        made = Made(_walls(g, z, r, None if helical else ()), (*helices, *(nozzle.drill for nozzle in bored)))
-    return Part("housing", "aluminium-cast", _walls(g, z, r, bored), made=made, role=Role.HOUSING)
+        cad_shape = CadShape(_walls(g, z, r, None if helical else ()), (*helices, *(nozzle.drill for nozzle in bored)))
+    return Part("housing", "aluminium-cast", _walls(g, z, r, bored), cad_shape=cad_shape, role=Role.HOUSING)
 
 
-def _walls(g: Any, z: Axial, r: Radii, bored: Sequence[Nozzle] | None) -> tuple[Prism, ...]:
+def _walls(g: Geometry, z: Axial, r: Radii, bored: Sequence[Nozzle] | None) -> tuple[Prism, ...]:
     """The housing with bores, or for None without channels."""
     finned = Profile(_finned(g, r), (shapes.circle_loop(r.yoke1),))
     prisms: list[Prism] = []
@@ -55,7 +55,7 @@ def _walls(g: Any, z: Axial, r: Radii, bored: Sequence[Nozzle] | None) -> tuple[
     return (*prisms, (finned, here, z.inner1))
 
 
-def _finned(g: Any, r: Radii) -> tuple[tuple[float, float, float], ...]:
+def _finned(g: Geometry, r: Radii) -> tuple[tuple[float, float, float], ...]:
     around = shapes.spread(g.housing.fins, math.pi / 2, g.housing.fin_spacing / r.shell)
     angles = [a for a in around if not _over_foot(g, r, a)]
     if not angles:
@@ -63,14 +63,14 @@ def _finned(g: Any, r: Radii) -> tuple[tuple[float, float, float], ...]:
     return shapes.finned_loop(r.shell, g.housing.fin_thickness, r.fins, angles)
 
 
-def _over_foot(g: Any, r: Radii, angle: float) -> bool:
+def _over_foot(g: Geometry, r: Radii, angle: float) -> bool:
     """A fin here would run into a foot, which is bounded by two vertical planes under the housing."""
     margin = 0.6 * g.housing.fin_thickness
     near, far = r.shell * abs(math.cos(angle)) - margin, r.fins * abs(math.cos(angle)) + margin
     return math.sin(angle) < 0 and near < g.feet.inner + g.feet.width and far > g.feet.inner
 
 
-def _feet(g: Any, z: Axial, r: Radii) -> tuple[Prism, ...]:
+def _feet(g: Geometry, z: Axial, r: Radii) -> tuple[Prism, ...]:
     x0, x1 = g.feet.inner, g.feet.inner + g.feet.width
     y0, y1 = -shapes.on_circle(r.shell, x0), -shapes.on_circle(r.shell, x1)
     down = -g.feet.shaft_height
@@ -83,7 +83,7 @@ def _feet(g: Any, z: Axial, r: Radii) -> tuple[Prism, ...]:
     return tuple((foot, *span) for foot in (left, right) for span in spans)
 
 
-def _base(g: Any, z: Axial) -> Part:
+def _base(g: Geometry, z: Axial) -> Part:
     top, middle = -g.feet.shaft_height, (z.inner0 + z.inner1) / 2
     plate = shapes.rectangle(-g.base.width / 2, g.base.width / 2, top - g.base.thickness, top)
     return Part("base", "steel", ((plate, middle - g.base.length / 2, middle + g.base.length / 2),), role=Role.BASE)

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
 from geom.description import shapes
+from geom.description.geometry import Geometry
 from geom.description.part import Part, Port, Prism, fluid
 from geom.description.profile import Profile
 from geom.description.roles import Role
-from geom.families.nozzles import CLEAR, Nozzle, opened_circle, opened_ring, slices
+from geom.families.nozzles import CLEAR, Nozzle, bored_circle, bored_ring, slices
 from geom.families.series_dc.layout import Axial, Radii
 from geom.families.turns import Turns
 
@@ -22,7 +22,7 @@ def jacket_ring(r: Radii) -> Profile:
     return shapes.ring(r.yoke1, r.jacket)
 
 
-def jacket_walls(g: Any, r: Radii, z0: float, z1: float, bored: Sequence[Nozzle]) -> list[Prism]:
+def jacket_walls(g: Geometry, r: Radii, z0: float, z1: float, bored: Sequence[Nozzle]) -> list[Prism]:
     """The housing's wall around the channels of one jacket, with the bores of its ports."""
     solid = jacket_ring(r)
     if g.jacket.layout == "zigzag":
@@ -39,7 +39,7 @@ def jacket_walls(g: Any, r: Radii, z0: float, z1: float, bored: Sequence[Nozzle]
         (piece, low, high)
         for a, b in turns
         for low, high, ports in slices(a, b, bored)
-        for piece in opened_ring(r.channel, r.jacket, ports)
+        for piece in bored_ring(r.channel, r.jacket, ports)
     ]
     return [*ribs, *((shapes.ring(r.yoke1, r.shell), a, b) for a, b in turns), *outer]
 
@@ -48,7 +48,7 @@ def _pierced(r: Radii, sectors: list[Sector], bored: Sequence[Nozzle]) -> Profil
     """Section of a zigzag jacket; a bore opens the channel under it."""
     inside = shapes.circle_loop(r.yoke1)
     under = [next(s for s in sectors if _spans(s, nozzle.angle)) for nozzle in bored]
-    out = opened_circle(r.jacket, under, (r.shell, r.channel), bored) if bored else shapes.circle_loop(r.jacket)
+    out = bored_circle(r.jacket, under, (r.shell, r.channel), bored) if bored else shapes.circle_loop(r.jacket)
     closed = (shapes.sector(r.shell, r.channel, *s).outer for s in sectors if s not in under)
     return Profile(out, (inside, *closed))
 
@@ -58,7 +58,7 @@ def _spans(sector: Sector, angle: float) -> bool:
     return (angle - start) % (2 * math.pi) < end - start
 
 
-def _zigzag(g: Any, r: Radii, z0: float, z1: float) -> list[tuple[list[Sector], float, float]]:
+def _zigzag(g: Geometry, r: Radii, z0: float, z1: float) -> list[tuple[list[Sector], float, float]]:
     """Channels along the axis, straight first; then those joined in pairs at the left end, and at the right end."""
     first, last, n = z0 + g.jacket.rib, z1 - g.jacket.rib, g.jacket.channels
     turn = turn_length(g, z0, z1)
@@ -68,25 +68,25 @@ def _zigzag(g: Any, r: Radii, z0: float, z1: float) -> list[tuple[list[Sector], 
     return [([_sector(g, r, *pair) for pair in pairs], a, b) for pairs, a, b in zones]
 
 
-def turn_length(g: Any, z0: float, z1: float) -> float:
+def turn_length(g: Geometry, z0: float, z1: float) -> float:
     """Axial length (m) over which two channels are joined: as deep as they are high, if there is room."""
     return min(g.jacket.height, 0.3 * (z1 - z0 - 2 * g.jacket.rib))
 
 
-def _sector(g: Any, r: Radii, i: int, j: int) -> Sector:
+def _sector(g: Geometry, r: Radii, i: int, j: int) -> Sector:
     """From channel i to channel j, what lies between included."""
     half = math.pi / g.jacket.channels - g.jacket.rib / 2 / r.shell
     pitch, top = 2 * math.pi / g.jacket.channels, math.pi / 2
     return top + i * pitch - half, top + j * pitch + half
 
 
-def turns_of(g: Any, r: Radii, z0: float, z1: float) -> Turns:
+def turns_of(g: Geometry, r: Radii, z0: float, z1: float) -> Turns:
     """The turns of a helical jacket, ribs between and at both ends."""
     pitch = (z1 - z0 - g.jacket.rib) / g.jacket.turns
     return Turns(r.shell, r.channel, z0 + g.jacket.rib, pitch, g.jacket.rib, g.jacket.turns)
 
 
-def coolant(g: Any, z: Axial) -> tuple[Part, ...]:
+def coolant(g: Geometry, z: Axial) -> tuple[Part, ...]:
     """What flows in the jackets, one fluid each, to the ends of its ports."""
     r = Radii(g)
     necks = {name: [nozzle.neck for nozzle in nozzles(g) if nozzle.jacket == name] for name in z.jackets}
@@ -96,12 +96,12 @@ def coolant(g: Any, z: Axial) -> tuple[Part, ...]:
     )
 
 
-def ports(g: Any) -> tuple[Port, ...]:
+def ports(g: Geometry) -> tuple[Port, ...]:
     """Inlet and outlet of every jacket, on its outer wall: first and last channel or turn."""
     return tuple(nozzle.port for nozzle in nozzles(g))
 
 
-def nozzles(g: Any) -> tuple[Nozzle, ...]:
+def nozzles(g: Geometry) -> tuple[Nozzle, ...]:
     """Inlet and outlet of every jacket."""
     r = Radii(g)
     return tuple(
@@ -111,7 +111,7 @@ def nozzles(g: Any) -> tuple[Nozzle, ...]:
     )
 
 
-def _places(g: Any, r: Radii, z0: float, z1: float) -> tuple[tuple[float, float], tuple[float, float]]:
+def _places(g: Geometry, r: Radii, z0: float, z1: float) -> tuple[tuple[float, float], tuple[float, float]]:
     """Angle (rad) and z (m) of inlet and outlet: where the first channel begins and the last ends."""
     if g.jacket.layout == "helical":
         return turns_of(g, r, z0, z1).places(g.jacket.port)
@@ -119,7 +119,7 @@ def _places(g: Any, r: Radii, z0: float, z1: float) -> tuple[tuple[float, float]
     return (top, z1 - inset), (top - 2 * math.pi / n, z1 - inset if n % 2 == 0 else z0 + inset)
 
 
-def _channel_prisms(g: Any, r: Radii, z0: float, z1: float) -> tuple[Prism, ...]:
+def _channel_prisms(g: Geometry, r: Radii, z0: float, z1: float) -> tuple[Prism, ...]:
     if g.jacket.layout == "zigzag":
         return tuple(
             (shapes.sector(r.shell, r.channel, *sector), a, b)

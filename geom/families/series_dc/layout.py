@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
+from geom.description.geometry import Geometry
 
 
 class Axial:
     """Axial positions (m), left to right."""
 
-    def __init__(self, g: Any) -> None:
+    def __init__(self, g: Geometry) -> None:
         self.end = g.shaft.length
         self.fan0 = g.flange.shaft_end
         self.flange0 = self.fan0 + g.fan.depth
@@ -26,7 +26,7 @@ class Axial:
         self.field1 = self.core1 + g.field.insulation + g.field.coil_width
         self.jackets = self._jackets(g)
 
-    def _jackets(self, g: Any) -> dict[str, tuple[float, float]]:
+    def _jackets(self, g: Geometry) -> dict[str, tuple[float, float]]:
         """Each jacket's axial range: the housing between the feet, halved."""
         first = self.inner0 + g.feet.inset + g.feet.length
         last = self.inner1 - g.feet.inset - g.feet.length
@@ -37,7 +37,7 @@ class Axial:
 class Radii:
     """Radii and half widths (m) that several parts share."""
 
-    def __init__(self, g: Any) -> None:
+    def __init__(self, g: Geometry) -> None:
         self.rotor = g.rotor.outer_diameter / 2
         self.slot_bottom = self.rotor - g.rotor.slot_depth
         self.wire_bottom = self.slot_bottom + g.rotor.liner

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from geom.description.parameters import Parameter
 from geom.families.series_dc import scales
+from geom.families.shaft_fan import fan_parameters
 
 P = Parameter
 PARAMETERS = (
@@ -76,12 +77,10 @@ PARAMETERS = (
       of=scales.rotor(0.01, 0.3)),
     P("flange.rotor_offset_mm", 59.0, 5.0, 600.0, "inner face of the left flange to the rotor core",
       of=scales.overhang(1.05, 2.0)),
-    P("fan.depth_mm", 0.0, 0.0, 300.0, "cowl with an axial fan in front of the left flange; 0 is none",
-      off=True, of=scales.rotor(0.1, 0.4)),
-    P("fan.diameter_mm", 300.0, 30.0, 2000.0, "inside of the cowl", of=scales.fan(0.3, 0.9)),
-    P("fan.cowl_mm", 2.0, 0.5, 20.0, "wall of the cowl", of=scales.shell(0.003, 0.02)),
-    P("fan.hub_diameter_mm", 110.0, 15.0, 800.0, "hub of the fan on the shaft", of=scales.fan_hub(0.05, 0.6)),
-    P("fan.blades", 7, 2, 24, "blades of the fan"),
+    *fan_parameters(
+        "flange", {"depth": scales.rotor, "wall": scales.shell, "cowl": scales.fan, "hub": scales.fan_hub},
+        diameter=300.0, cowl=2.0, hub=110.0, within=0.9,
+    ),
     P("bearing.outer_diameter_mm", 125.0, 15.0, 700.0, "bearing seat", of=scales.seat(1.3, 2.2)),
     P("feet.shaft_height_mm", 280.0, 50.0, 2000.0, "axis above the base plate", of=scales.outermost(1.04, 1.6)),
     P("feet.inner_mm", 120.0, 0.0, 1500.0, "axis to the inner side of a foot, horizontally", of=scales.shell(0.1, 0.6)),

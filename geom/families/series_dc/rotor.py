@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from geom.description import shapes
+from geom.description.geometry import Geometry
 from geom.description.part import Part, extrude
 from geom.description.profile import Profile
 from geom.description.roles import Role
@@ -12,7 +11,7 @@ from geom.families.series_dc.commutator import commutator
 from geom.families.series_dc.layout import Axial, Radii
 
 
-def rotor(g: Any, z: Axial) -> tuple[Part, ...]:
+def rotor(g: Geometry, z: Axial) -> tuple[Part, ...]:
     r = Radii(g)
     angles = shapes.evenly(g.rotor.slots)
     wire = Profile(shapes.bar_loop(r.wire_bottom, r.wire_top, g.rotor.slot_width - 2 * g.rotor.liner))
@@ -52,13 +51,13 @@ def rotor(g: Any, z: Axial) -> tuple[Part, ...]:
     )
 
 
-def _lamination(g: Any, r: Radii, angles: list[float]) -> Profile:
+def _lamination(g: Geometry, r: Radii, angles: list[float]) -> Profile:
     ducts = shapes.turned(shapes.disc(g.rotor.duct_diameter / 2, duct_circle(g, r)), shapes.evenly(g.rotor.ducts))
     loop = shapes.slotted_loop(r.rotor, g.rotor.slot_width, r.slot_bottom, angles)
     return Profile(loop, (shapes.circle_loop(g.shaft.core_diameter / 2), *(duct.outer for duct in ducts)))
 
 
-def _shaft(g: Any, z: Axial) -> Part:
+def _shaft(g: Geometry, z: Axial) -> Part:
     steps = (
         (g.shaft.bearing_diameter, 0.0, z.inner0),
         (g.shaft.core_diameter, z.inner0, z.ring1),
@@ -68,5 +67,5 @@ def _shaft(g: Any, z: Axial) -> Part:
     return Part("shaft", "steel", tuple((shapes.disc(d / 2), z0, z1) for d, z0, z1 in steps), role=Role.SHAFT)
 
 
-def duct_circle(g: Any, r: Radii) -> float:
+def duct_circle(g: Geometry, r: Radii) -> float:
     return (g.shaft.core_diameter / 2 + r.slot_bottom) / 2

@@ -6,8 +6,8 @@ A bound is where a rule of checks.py would begin, with room to spare for what th
 from __future__ import annotations
 
 import math
-from typing import Any
 
+from geom.description.geometry import Geometry
 from geom.description.parameters import scale
 from geom.families.series_dc.layout import Radii
 
@@ -21,7 +21,7 @@ seat = scale("the shaft in the bearings", lambda g: g.shaft.bearing_diameter)
 iron = scale("rotor surface to shaft", lambda g: (g.rotor.outer_diameter - g.shaft.core_diameter) / 2)
 
 
-def _bottom(g: Any) -> float:
+def _bottom(g: Geometry) -> float:
     return g.rotor.outer_diameter / 2 - g.rotor.slot_depth
 
 
@@ -30,7 +30,7 @@ slot = scale("slot width or depth, the smaller", lambda g: min(g.rotor.slot_widt
 depth = scale("the slot's depth", lambda g: g.rotor.slot_depth)
 
 
-def _duct(g: Any) -> float:
+def _duct(g: Geometry) -> float:
     room, middle = _bottom(g) - g.shaft.core_diameter / 2, (_bottom(g) + g.shaft.core_diameter / 2) / 2
     return min(room, 2 * middle * math.sin(math.pi / g.rotor.ducts)) if g.rotor.ducts > 1 else room
 
@@ -48,7 +48,7 @@ brushes = scale(
 )
 
 
-def _bar(g: Any) -> float:
+def _bar(g: Geometry) -> float:
     around = math.pi * g.commutator.diameter / (g.commutator.bars or 100)
     return min(around, (g.commutator.diameter - g.shaft.hub_diameter) / 2)
 
@@ -57,7 +57,7 @@ bar = scale("a bar's pitch or height, the smaller", _bar)
 shoe = scale("the shoe in the middle", lambda g: g.stator.shoe)
 
 
-def _shoe_width(g: Any) -> float:
+def _shoe_width(g: Geometry) -> float:
     radius = g.rotor.outer_diameter / 2 + g.stator.air_gap + g.stator.tip
     return 2 * radius * math.sin(math.pi / g.stator.poles * g.stator.pole_arc)
 
@@ -65,7 +65,7 @@ def _shoe_width(g: Any) -> float:
 shoe_width = scale("the shoe's width", _shoe_width)
 
 
-def _between(g: Any) -> float:
+def _between(g: Geometry) -> float:
     """Pole body to the middle between two poles, at the inner side of the coil."""
     inner = g.rotor.outer_diameter / 2 + g.stator.air_gap + g.stator.shoe + g.field.clearance
     return inner * math.tan(min(math.pi / g.stator.poles, STEEPEST)) - g.stator.body_width / 2
@@ -74,7 +74,7 @@ def _between(g: Any) -> float:
 between = scale("pole body to the middle between two poles", _between)
 
 
-def _corner(g: Any) -> float:
+def _corner(g: Geometry) -> float:
     top = g.rotor.outer_diameter / 2 + g.stator.air_gap + g.stator.shoe + g.field.clearance + g.field.coil_height
     return 2 * math.hypot(top, g.stator.body_width / 2 + g.field.insulation + g.field.coil_width)
 
@@ -83,14 +83,14 @@ corner = scale("the circle around the field coils", _corner)
 yoke = scale("the yoke's bore", lambda g: g.stator.yoke_inner_diameter)
 
 
-def _overhang(g: Any) -> float:
+def _overhang(g: Geometry) -> float:
     return max(g.rotor.straight + g.rotor.end_winding, g.field.insulation + g.field.coil_width, g.stator.yoke_overhang)
 
 
 overhang = scale("end winding, field coil or yoke beyond the core, the longest", _overhang)
 
 
-def _content(g: Any) -> float:
+def _content(g: Geometry) -> float:
     """From one end of the shaft to the other, with no room to spare on the right."""
     after = g.rotor.straight + g.rotor.end_winding + g.commutator.riser + g.commutator.length
     after = max(after, _overhang(g))
@@ -101,14 +101,14 @@ def _content(g: Any) -> float:
 content = scale("all that the shaft carries", _content)
 
 
-def _shell(g: Any) -> float:
+def _shell(g: Geometry) -> float:
     return g.stator.yoke_inner_diameter / 2 + g.stator.yoke_thickness + g.housing.thickness
 
 
 shell = scale("the housing's radius", _shell)
 
 
-def _even_pitch(g: Any) -> float:
+def _even_pitch(g: Geometry) -> float:
     return 2 * math.pi * _shell(g) / max(g.housing.fins, 1)
 
 
@@ -119,7 +119,7 @@ fin_pitch = scale(
 )
 
 
-def _inside(g: Any) -> float:
+def _inside(g: Geometry) -> float:
     """Flange to flange."""
     return g.shaft.length - 2 * (g.flange.shaft_end + g.flange.thickness) - g.fan.depth
 
@@ -127,15 +127,15 @@ def _inside(g: Any) -> float:
 inside = scale("flange to flange", _inside)
 
 
-def _jacket_length(g: Any) -> float:
+def _jacket_length(g: Geometry) -> float:
     return _inside(g) / 2 - g.feet.inset - g.feet.length
 
 
-def _around(g: Any) -> float:
+def _around(g: Geometry) -> float:
     return 2 * math.pi * _shell(g) / g.jacket.channels
 
 
-def _rib(g: Any) -> float:
+def _rib(g: Geometry) -> float:
     length = _jacket_length(g)
     room = _around(g) if g.jacket.layout == "zigzag" else length / (g.jacket.turns + 1)
     return min(room, length / 2.5)
@@ -144,7 +144,7 @@ def _rib(g: Any) -> float:
 rib = scale("a channel with its rib, or 0.4 of the jacket's length, the smaller", _rib)
 
 
-def _port(g: Any) -> float:
+def _port(g: Geometry) -> float:
     length, around, turns = _jacket_length(g), _around(g), g.jacket.turns
     if g.jacket.layout == "zigzag":
         wide = min(min(around, length / 2) - g.jacket.rib, 0.8 * around)
@@ -172,7 +172,7 @@ fan_hub = scale(
 )
 
 
-def _outermost(g: Any) -> float:
+def _outermost(g: Geometry) -> float:
     r = Radii(g)
     return max(r.fins, r.jacket) if g.jacket.sides else r.fins
 

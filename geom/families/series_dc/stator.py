@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 from geom.description import shapes
+from geom.description.geometry import Geometry
 from geom.description.part import Part, Prism, extrude
 from geom.description.profile import Profile
 from geom.description.roles import Role
 from geom.families.series_dc.layout import Axial, Radii
 
 
-def stator(g: Any, z: Axial) -> tuple[Part, ...]:
+def stator(g: Geometry, z: Axial) -> tuple[Part, ...]:
     r = Radii(g)
     angles = shapes.evenly(g.stator.poles, math.pi / 2)
     sides = [shapes.rectangle(r.coil0, r.coil1, *y) for y in ((-r.coil_side, -r.insulated), (r.insulated, r.coil_side))]
@@ -42,7 +42,7 @@ def _around(prisms: tuple[Prism, ...], angles: list[float]) -> tuple[Prism, ...]
     return tuple((profile.rotated(angle), z0, z1) for angle in angles for profile, z0, z1 in prisms)
 
 
-def _pole(g: Any, r: Radii) -> Profile:
+def _pole(g: Geometry, r: Radii) -> Profile:
     tip = math.pi / g.stator.poles * g.stator.pole_arc
     root = shapes.on_circle(r.yoke0, r.body)
     return Profile((

@@ -86,14 +86,14 @@ def test_a_machine_that_runs_away_is_judged_at_the_limit():
 def test_what_a_series_machine_takes():
     """Published: 955 N m at 511 A, 220 V; R_a + R_f follows from the ratings, and so does the rated voltage."""
     ratings = {"power_W": 100e3, "speed_rpm": 1000.0, "voltage_V": 220.0, "current_A": 511.0}
-    found = electrics_of("series-dc", ratings, {})
+    found = electrics_of(True, ratings, {})
     assert_allclose(found.current(955.0), 511.0, rtol=1e-3)
     assert_allclose(found.current(955.0 / 4), 511.0 / 2, rtol=1e-3)
     excess = found.excess({"current_A": 511.0, "speed_rpm": 1000.0}, found.series.R * 511.0**2)
     assert_allclose(list(excess.values()), 0.0, atol=1e-9)
-    assert electrics_of("pm", {"torque_Nm": 10.0, "current_A": 5.0}, {}).current(4.0) == 2.0
+    assert electrics_of(False, {"torque_Nm": 10.0, "current_A": 5.0}, {}).current(4.0) == 2.0
     with pytest.raises(InputError, match="nothing says what current a torque takes"):
-        electrics_of("pm", {}, {}).current(4.0)
+        electrics_of(False, {}, {}).current(4.0)
 
 
 @pytest.mark.parametrize(("name", "length"), [("series-dc-100kw-jacket-one", 24), ("series-dc-100kw-jacket-two", 4)])

@@ -38,7 +38,7 @@ def test_published_curve_is_recovered():
     found = curve(test, test.channels[0])
     assert [found.warming.a, found.warming.b, found.warming.c] == pytest.approx([85.0, -0.652, -0.08], rel=1e-6)
     assert "the formula starts at 44.3 degC, the record at 20.0 degC" in found.warming.warnings[0]
-    assert found.settled.reached
+    assert found.equilibrium.reached
 
 
 def test_a_load_that_varies_has_no_eq8():
@@ -54,7 +54,7 @@ def test_short_record_says_what_it_lacks():
     sparse = replace(test.channels[0], y=np.where(MINUTES % 90 == 0, true(), np.nan))
     found = curve(test, sparse)
     assert found.warming is None
-    assert found.settled is None
+    assert found.equilibrium is None
     assert "eq. 8: 3 readings" in found.why
 
 

@@ -18,8 +18,8 @@ def test_published_coefficients_are_recovered():
     found = fit_eq8(MINUTES, eq8(MINUTES, *PUBLISHED))
     assert (found.a, found.b, found.c) == pytest.approx(PUBLISHED, rel=1e-6)
     assert found.start == pytest.approx(44.3, abs=0.05)
-    assert found.settled_min() == pytest.approx(31.8, abs=0.05)
-    assert found(found.settled_min()) == pytest.approx(0.95 * 85.0)
+    assert found.time_to_share_min() == pytest.approx(31.8, abs=0.05)
+    assert found(found.time_to_share_min()) == pytest.approx(0.95 * 85.0)
     assert found(found.rise_min()) == pytest.approx(found.start + 0.95 * (85.0 - found.start))
 
 

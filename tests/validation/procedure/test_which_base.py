@@ -17,7 +17,7 @@ from validation import diagnose
 from validation.case import Case, Channel, Model, Test
 from validation.procedure.reduction.base_heat import base_heat
 from validation.procedure.reduction.which_base import (
-    bases_tried,
+    base_hypotheses,
     declared_base,
     on_base,
     switches,
@@ -84,7 +84,7 @@ def test_bases_of_a_network_and_of_a_test():
 
 
 def test_right_sheets_are_believed():
-    assert wrong_bases(bases_tried(case())) == []
+    assert wrong_bases(base_hypotheses(case())) == []
     best = {h.test: h.base for h in which_base(case()) if h.deviance == 0.0}
     assert best["wood"] == "none"
 
@@ -100,7 +100,7 @@ def test_wrong_base_is_named_at_the_base(said, right):
     assert found[base].declared
     assert found[base].excluded
     assert not found[right].excluded
-    (sentence,) = [s for s in wrong_bases(bases_tried(wrong)) if s.startswith(name)]
+    (sentence,) = [s for s in wrong_bases(base_hypotheses(wrong)) if s.startswith(name)]
     assert "At the base, not in the films" in sentence
     assert "conduction" in sentence
     assert "radiation" in sentence
@@ -135,7 +135,7 @@ def test_what_cannot_be_asked():
     bare = replace(case(), model=Model(replace(NETWORK, links=NETWORK.links[:2], parameters=NETWORK.parameters[:2])))
     with pytest.raises(InputError, match="knows no bases"):
         which_base(bare)
-    assert wrong_bases(bases_tried(bare)) == []
+    assert wrong_bases(base_hypotheses(bare)) == []
 
 
 @pytest.fixture(scope="module")

@@ -16,10 +16,10 @@ def bases(case: str, target: str | None) -> int:
 
     with progress() as tell:
         folder = open_case(case, tell)
-        found = which_base(folder.case, progress=tell)
-    wrong = [h for h in found if h.declared and h.excluded]
+        hypotheses = which_base(folder.case, progress=tell)
+    wrong = [h for h in hypotheses if h.declared and h.excluded]
     document = {"case": folder.case.name, "revision": folder.case.model.revision,
-                "wrong": [h.test for h in wrong], "hypotheses": [h.document() for h in found]}  # fmt: skip
+                "wrong": [h.test for h in wrong], "hypotheses": [h.document() for h in hypotheses]}  # fmt: skip
     give(document, target, lambda: answer(document))
     return 1 if wrong else 0
 
@@ -31,10 +31,10 @@ def answer(document: Mapping[str, Any]) -> Answer:
         better = [h["base"] for h in document["hypotheses"] if h["test"] == test and not h["excluded"]]
         words.append(f"{test} did not stand on the base its sheet says; the readings allow: {', '.join(better)}")
     sentence = "; ".join(words) or "No test's readings exclude the base that its sheet says"
-    return Answer(f"{sentence}.", [bases_tried(document["hypotheses"])])
+    return Answer(f"{sentence}.", [hypotheses_table(document["hypotheses"])])
 
 
-def bases_tried(hypotheses: Sequence[Mapping[str, Any]]) -> Grid:
+def hypotheses_table(hypotheses: Sequence[Mapping[str, Any]]) -> Grid:
     """Each with its deviance over the best, all tests calibrated together for each."""
     headers = ["test", "base", "said", "deviance", "verdict", "conduction (W)", "convection (W)", "radiation (W)",
                "W/K", "body W/K"]  # fmt: skip

@@ -17,10 +17,10 @@ def curves(case: str, resolution: float, target: str | None) -> int:
     with progress() as tell:
         folder = open_case(case, tell)
         tell("fitting the warming curves")
-        found = found_in(folder.case, resolution)
-    document = found.document()
+        result = found_in(folder.case, resolution)
+    document = result.document()
     give(document, target, lambda: answer(document))
-    return 0 if found.agrees else 1
+    return 0 if result.agrees else 1
 
 
 def answer(document: Mapping[str, Any]) -> Answer:

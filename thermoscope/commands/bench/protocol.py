@@ -59,13 +59,13 @@ def protocol(file: Path | None, target: str | None) -> int:
     """Exit code 0 when all is measured, 1 when something is still to do, 2 (with the reason) when a step is refused."""
     with progress() as tell:
         tell("checking the record")
-        found = judged(Record(1.0) if file is None else read_record(file))
-    give(found.document(), target, lambda: answer(found))
-    if found.refused:
-        first = found.refused[0]
-        more = f" (and {len(found.refused) - 1} more)" if len(found.refused) > 1 else ""
+        result = judged(Record(1.0) if file is None else read_record(file))
+    give(result.document(), target, lambda: answer(result))
+    if result.refused:
+        first = result.refused[0]
+        more = f" (and {len(result.refused) - 1} more)" if len(result.refused) > 1 else ""
         raise InputError(first.words.split(";")[0], f"{file} [{first.name}]", first.words.partition("; ")[2] + more)
-    return 0 if file is None or found.complete else 1
+    return 0 if file is None or result.complete else 1
 
 
 def read_record(file: Path) -> Record:
@@ -137,27 +137,27 @@ def _range(table: Table, key: str, usual: Reading) -> Reading:
     return Reading(usual.name, (low + high) / 200.0, abs(high - low) / 200.0)
 
 
-def answer(found: Protocol) -> Answer:
+def answer(result: Protocol) -> Answer:
     """What to do next; the temperatures with their three uncertainties; then all steps."""
-    spreads = [(n, s) for n, s in (("winding", found.winding), ("magnets", found.magnets)) if s is not None]
+    spreads = [(n, s) for n, s in (("winding", result.winding), ("magnets", result.magnets)) if s is not None]
     headers = ["rise", "K", "worst case", "GUM 95 %", "Monte Carlo 95 %", "largest share"]
     rises = Grid("Rises over the cold temperature", headers, [_row(n, s) for n, s in spreads], keep=["K", "GUM 95 %"])
-    ways = [[w.method, w.at_s, w.value, w.sd, w.words] for w in found.ways]
+    ways = [[w.method, w.at_s, w.value, w.sd, w.words] for w in result.ways]
     off = Grid("Winding when switched off", ["way", "at (s)", "degC", "1 sigma (K)", "how"], ways)
-    rows: list[list[Any]] = [[s.name, s.state, s.when, s.what, s.words] for s in found.steps]
+    rows: list[list[Any]] = [[s.name, s.state, s.when, s.what, s.words] for s in result.steps]
     steps = Grid(
         "Thermal test", ["step", "state", "when", "what", "found"], rows, ["refused"], ["state", "when", "what"]
     )
-    return Answer(_in_short(found), [rises, off, steps], "--json FILE; docs/how-to/thermal-test.md")
+    return Answer(_in_short(result), [rises, off, steps], "--json FILE; docs/how-to/thermal-test.md")
 
 
-def _in_short(found: Protocol) -> str:
-    if found.refused:
-        return f"{len(found.refused)} steps are refused: no temperature is given."
+def _in_short(result: Protocol) -> str:
+    if result.refused:
+        return f"{len(result.refused)} steps are refused: no temperature is given."
     rises = [
-        f"{n} {s.value:.1f} K" for n, s in (("winding", found.winding), ("magnets", found.magnets)) if s is not None
+        f"{n} {s.value:.1f} K" for n, s in (("winding", result.winding), ("magnets", result.magnets)) if s is not None
     ]
-    return f"Rises: {', '.join(rises)}." if rises else f"A thermal test has {len(found.steps)} steps."
+    return f"Rises: {', '.join(rises)}." if rises else f"A thermal test has {len(result.steps)} steps."
 
 
 def _row(name: str, s: PropagatedUncertainty) -> list[Any]:

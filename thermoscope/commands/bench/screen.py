@@ -7,6 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from geom.description.roles import Role
 from geom.errors import InputError
 from thermoscope.case_folder.folder import load_machine_file
 from thermoscope.commands.open_case import open_case
@@ -25,8 +26,9 @@ def screen(machine: str, design: str, target: str | None, out: Path | None = Non
     if design not in DESIGNS:
         raise InputError(f"no design '{design}'", "--design", f"one of {', '.join(DESIGNS)}")
     described = load_machine_file(Path(machine))
-    if described.family != "pmsm" or described.geometry.housing.kind != "none":
-        right = "a machine of family pmsm without a housing, e.g. pmsm-m1"
+    roles = {part.role for part in described.parts}
+    if Role.MAGNET not in roles or Role.HOUSING in roles:
+        right = "a machine with magnets in open laminations, e.g. pmsm-m1"
         raise InputError(f"{described.name} has a housing or no magnets", "screening", right)
     with progress() as tell:
         tell(f"screening {described.name}")
@@ -61,24 +63,24 @@ def _by_shares(machine: Machine, design: str) -> dict[str, Any]:
 
 def answer(document: Mapping[str, Any]) -> Answer:
     """The factor that moves each response most; a table per response, largest first: the Pareto chart."""
-    tables = [_effects(name, found) for name, found in document.get("effects", {}).items()]
-    tables += [_ranking(name, found) for name, found in document.get("rankings", {}).items()]
+    tables = [_effects(name, effects) for name, effects in document.get("effects", {}).items()]
+    tables += [_ranking(name, effects) for name, effects in document.get("rankings", {}).items()]
     leading = "; ".join(f"{g.title.partition(':')[0]}: {g.rows[0][1] if document.get('effects') else g.rows[0][0]}"
                         for g in tables if g.rows)  # fmt: skip
     return Answer(f"{document['machine']}, {document['design']}: what moves most. {leading}.", tables,
                   "--out DIR for plots; --json FILE")  # fmt: skip
 
 
-def _effects(name: str, found: Mapping[str, Any]) -> Grid:
-    rows = [[e["effect"], e["words"], e["value"], "yes" if e["active"] else ""] for e in found["effects"]]
-    title = f"{name}: beyond {found['simultaneous']:.2f} is not chance (Lenth, simultaneous 95 %)"
+def _effects(name: str, effects: Mapping[str, Any]) -> Grid:
+    rows = [[e["effect"], e["words"], e["value"], "yes" if e["active"] else ""] for e in effects["effects"]]
+    title = f"{name}: beyond {effects['simultaneous']:.2f} is not chance (Lenth, simultaneous 95 %)"
     headers = ["effect", "factors", f"high - low ({unit_of(name)})", "active"]
     return Grid(title, headers, rows, ["yes"], headers[2:])
 
 
-def _ranking(name: str, found: Mapping[str, Any]) -> Grid:
-    rows = [[r["factor"], r["measure"], r["conf95"], r["spread"]] for r in found["ranking"]]
-    title = f"{name}: {found['method']}, {found['runs']} runs"
+def _ranking(name: str, indices: Mapping[str, Any]) -> Grid:
+    rows = [[r["factor"], r["measure"], r["conf95"], r["spread"]] for r in indices["ranking"]]
+    title = f"{name}: {indices['method']}, {indices['runs']} runs"
     return Grid(title, ["factor", "measure", "+- 95 %", "spread"], rows)
 
 
@@ -92,12 +94,12 @@ def plots(document: Mapping[str, Any], out: Path) -> list[Path]:
 
     title = f"{document['machine']}, {document['design']}"
     made = []
-    for name, found in document.get("effects", {}).items():
+    for name, effects in document.get("effects", {}).items():
         made.append(_png(out, name))
-        screened(found, unit=unit_of(name), title=f"{title}: {name}", png=made[-1])
-    for name, found in document.get("rankings", {}).items():
+        screened(effects, unit=unit_of(name), title=f"{title}: {name}", png=made[-1])
+    for name, effects in document.get("rankings", {}).items():
         made.append(_png(out, name))
-        ranking(found["ranking"], measure=found["method"], title=f"{title}: {name}", png=made[-1])
+        ranking(effects["ranking"], measure=effects["method"], title=f"{title}: {name}", png=made[-1])
     return made
 
 
@@ -113,19 +115,19 @@ def two_paths(case: str, winding: str, machine: str, target: str | None) -> int:
         raise InputError(f"'{winding}' is both", "--winding, --machine", "two places of the network")
     with progress() as tell:
         folder = open_case(case, tell)
-        found = {t.name: of_test(folder.case, t, winding, machine).document() for t in folder.case.tests}
-    document = {"case": folder.case.name, "tests": found}
-    give(document, target, lambda: paths(found))
+        by_test = {t.name: of_test(folder.case, t, winding, machine).document() for t in folder.case.tests}
+    document = {"case": folder.case.name, "tests": by_test}
+    give(document, target, lambda: paths(by_test))
     return 0
 
 
-def paths(found: Mapping[str, Mapping[str, Any]]) -> Answer:
+def paths(resistances: Mapping[str, Mapping[str, Any]]) -> Answer:
     """Two resistances per test."""
     headers = ["test", "R_ext (K/W)", "R_w (K/W)", "winding (K)", "machine (K)", "left at other loads (K)"]
     keys = ("R_ext", "R_w", "winding_K", "machine_K", "largest_residual_K")
-    left = max(one["largest_residual_K"] for one in found.values())
-    sentence = f"Two resistances describe {len(found)} tests to {left:.2g} K at other loads."
-    return Answer(sentence, [Grid("", headers, [[name, *(one[k] for k in keys)] for name, one in found.items()])])
+    left = max(one["largest_residual_K"] for one in resistances.values())
+    sentence = f"Two resistances describe {len(resistances)} tests to {left:.2g} K at other loads."
+    return Answer(sentence, [Grid("", headers, [[name, *(one[k] for k in keys)] for name, one in resistances.items()])])
 
 
 def carry(source: str, targets: list[str], target: str | None) -> int:
@@ -134,11 +136,11 @@ def carry(source: str, targets: list[str], target: str | None) -> int:
 
     with progress() as tell:
         calibrated = open_case(source, tell)
-        found = [transferred(calibrated.case, open_case(name, tell).case) for name in targets]
+        transfers = [transferred(calibrated.case, open_case(name, tell).case) for name in targets]
     document = {"source": calibrated.case.name, "revision": calibrated.case.model.revision,
-                "targets": [one.document() for one in found]}  # fmt: skip
+                "targets": [one.document() for one in transfers]}  # fmt: skip
     give(document, target, lambda: show_transfer(document))
-    return 0 if all(one.agrees for one in found) else 1
+    return 0 if all(one.agrees for one in transfers) else 1
 
 
 def show_transfer(document: Mapping[str, Any]) -> Answer:
@@ -149,8 +151,10 @@ def show_transfer(document: Mapping[str, Any]) -> Answer:
     rows = [[r["channel"], one["case"], *(r[key] for key in keys), "within" if r["within"] else "over"]
             for one in document["targets"] for r in sorted(one["rows"], key=lambda r: r["within"])]  # fmt: skip
     over = sum(row[-1] == "over" for row in rows)
-    taken = document["targets"][0]["parameters"] if document["targets"] else []
+    parameters = document["targets"][0]["parameters"] if document["targets"] else []
     sentence = (f"{document['source']}, revision {document['revision']}, on other machines: {over} of {len(rows)} "
                 "sensors are over.")  # fmt: skip
     keep = ["case", "difference (K)", "95 % (K)", "verdict"]
-    return Answer(sentence, [Grid("", headers, rows, ["over"], keep), f"Taken over: {', '.join(taken) or 'nothing'}."])
+    return Answer(
+        sentence, [Grid("", headers, rows, ["over"], keep), f"Taken over: {', '.join(parameters) or 'nothing'}."]
+    )

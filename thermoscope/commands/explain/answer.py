@@ -25,7 +25,7 @@ def answer(case: str, word: str, about: str | None, target: str | None) -> int:
         raise InputError(f"'{word}' is no answer", "thermoscope explain answer", "yes or no")
     with progress() as tell:
         folder = open_case_for_writing(case, tell)
-    yes, subject = WORDS[word.lower()], known(folder, about or asked(folder))
+    yes, subject = WORDS[word.lower()], checked_subject(folder, about or open_question(folder))
     why = f"{subject}: {'yes' if yes else 'no'}"
     step = replace(folder.history.last, action="answer", effect="", why=why, rmse_K={}, answers={subject: yes})
     history = folder.history.and_then(step)
@@ -36,7 +36,7 @@ def answer(case: str, word: str, about: str | None, target: str | None) -> int:
     return 0
 
 
-def asked(folder: Folder) -> str:
+def open_question(folder: Folder) -> str:
     """What the last diagnosis asked about."""
     question = (last_diagnosis(folder) or {}).get("question")
     if not question:
@@ -52,14 +52,14 @@ def _fault(about: str, tests: Mapping[str, Test]) -> bool:
     return bool(at) and (place in channels or kind in kinds())
 
 
-def known(folder: Folder, about: str) -> str:
+def checked_subject(folder: Folder, about: str) -> str:
     """A test, an event inside the tests, a fault, or an input."""
-    tests, found = {t.name: t for t in folder.case.tests}, event(about)
-    if found:
-        for test in found.tests:
+    tests, timed_event = {t.name: t for t in folder.case.tests}, event(about)
+    if timed_event:
+        for test in timed_event.tests:
             if test not in tests:
                 raise InputError(f"unknown test '{test}'", f"--about {about}", f"known: {', '.join(tests)}")
-            checked(found, test, float(tests[test].time[0]), float(tests[test].time[-1]), f"--about {about}")
+            checked(timed_event, test, float(tests[test].time[0]), float(tests[test].time[-1]), f"--about {about}")
     elif about not in tests and not _fault(about, tests) and not any(about in t.inputs for t in tests.values()):
         raise InputError(f"'{about}' is no test, event or fault", "--about", f"one of {', '.join(tests)}, or as asked")
     return about

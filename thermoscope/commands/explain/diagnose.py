@@ -6,14 +6,14 @@ from collections.abc import Mapping, Sequence
 from shlex import quote
 from typing import TYPE_CHECKING, Any
 
-from thermoscope.commands.bench.bases import bases_tried
+from thermoscope.commands.bench.bases import hypotheses_table
 from thermoscope.commands.explain.next_tests import next_tests
 from thermoscope.commands.model.error_budget import budget, in_short, sampling
 from thermoscope.commands.open_case import open_case
 from thermoscope.commands.stored_diagnosis import checked_diagnosis, save_diagnosis
 from thermoscope.commands.test.compare import contradiction
 from thermoscope.console.answer import Answer, Grid, cell
-from thermoscope.console.terminal import Progress, give, notes, progress, sized
+from thermoscope.console.terminal import Progress, give, notes, progress, value_with_interval
 
 if TYPE_CHECKING:
     from thermoscope.case_folder.folder import Folder
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 RIVALS = 3  # named in a sentence
 ODDS, ROWS = 5, 10  # shown of hypotheses and of candidates
-SHOWN = 0.005  # probabilities below half a per cent are in --json
+LEAST_PROBABILITY = 0.005  # probabilities below half a per cent are in --json
 
 
 def diagnose(case: str, target: str | None, older: bool = False) -> int:
@@ -29,9 +29,9 @@ def diagnose(case: str, target: str | None, older: bool = False) -> int:
     if older:
         notes(["--draws is no longer needed: nothing is drawn"])
     with progress() as tell:
-        found, document = diagnosed(open_case(case, tell), tell)
+        diagnosis, document = diagnosed(open_case(case, tell), tell)
     give(document, target, lambda: answer(document, case))
-    return 0 if found.verdict in ("named", "group", "several") else 1
+    return 0 if diagnosis.verdict in ("named", "group", "several") else 1
 
 
 def diagnosed(folder: Folder, tell: Progress) -> tuple[Diagnosis, dict[str, Any]]:
@@ -42,11 +42,11 @@ def diagnosed(folder: Folder, tell: Progress) -> tuple[Diagnosis, dict[str, Any]
 
     checked_diagnosis(folder)
     budgets = folder.budgets
-    found = search(folder.case, folder.settings.kinds, tell, budget=ErrorBudget.worst(budgets.values()).total_K)
+    diagnosis = search(folder.case, folder.settings.kinds, tell, budget=ErrorBudget.worst(budgets.values()).total_K)
     named = {"case": folder.case.name, "revision": folder.case.model.revision}
-    document = {**named, **found.document(), "error_budget": documents(budgets), **sampling(folder)}
+    document = {**named, **diagnosis.document(), "error_budget": documents(budgets), **sampling(folder)}
     save_diagnosis(folder, document)
-    return found, document
+    return diagnosis, document
 
 
 def answer(document: Mapping[str, Any], called: str) -> Answer:
@@ -54,47 +54,53 @@ def answer(document: Mapping[str, Any], called: str) -> Answer:
     sentence, case = f"{document['verdict']}: {document['words']}", quote(called)
     bases, steps = document.get("bases", []), document.get("sampling", {})
     if any(h["declared"] and h["excluded"] for h in bases):
-        return Answer(sentence, [bases_tried(bases)], f"--json FILE; thermoscope bench bases {case}")
+        return Answer(sentence, [hypotheses_table(bases)], f"--json FILE; thermoscope bench bases {case}")
     named = document.get("named", [])
     step = f"Next: thermoscope model add {case} {named[0]}" if named else f"Next: thermoscope explain effects {case}"
     hidden = [f"{h['effect']} below {cell(h['smallest_detectable'])} {h['unit']}" for h in document["cannot_see"]]
-    unseen = f"{len(hidden)} effects could be there unseen: {', '.join(hidden[:2])}, ..." if hidden else ""
+    hidden_words = f"{len(hidden)} effects could be there unseen: {', '.join(hidden[:2])}, ..." if hidden else ""
     remaining = " ".join(row["words"] for row in document.get("remainder", []))
-    found = document["candidates"]
-    parts = [_odds(document), _candidates(found), *_leader(found), *_lost(found, named), remaining, *events(document),
-             *contradiction(document.get("contradiction")), next_tests(document),
-             in_short(document.get("error_budget", {}), steps), unseen, question(document, case)]  # fmt: skip
+    candidates = document["candidates"]
+    parts = [_odds(document), _candidates(candidates), *_leader(candidates), *_lost(candidates, named), remaining,
+             *events(document), *contradiction(document.get("contradiction")), next_tests(document),
+             in_short(document.get("error_budget", {}), steps), hidden_words, question(document, case)]  # fmt: skip
     rest = [*events(document, likely=False), *budget(document.get("error_budget", {}), steps), *hidden]
     return Answer(sentence, parts, f"{step}; --json FILE; thermoscope show report {case}", rest)
 
 
 def question(document: Mapping[str, Any], case: str) -> str:
     """What to ask the user, if an answer would tell more than a guess."""
-    found = document.get("question")
-    if not found:
+    best = document.get("question")
+    if not best:
         return ""
-    return f"One question: {found['words']} Then: thermoscope explain answer {case} yes|no"
+    return f"One question: {best['words']} Then: thermoscope explain answer {case} yes|no"
 
 
 def _odds(document: Mapping[str, Any]) -> Grid:
     """Every hypothesis with its probability."""
-    rows = [[o["hypothesis"], f"{100 * o['probability']:.1f}"] for o in document["odds"] if o["probability"] > SHOWN]
+    rows = [
+        [o["hypothesis"], f"{100 * o['probability']:.1f}"]
+        for o in document["odds"]
+        if o["probability"] > LEAST_PROBABILITY
+    ]
     return Grid("What the readings say", ["hypothesis", "probability (%)"], rows[:ODDS])
 
 
-def _candidates(found: Sequence[Mapping[str, Any]]) -> Grid:
+def _candidates(candidates: Sequence[Mapping[str, Any]]) -> Grid:
     """Size with interval and detection limit, and what it buys."""
     headers = ["effect", "%", "size (95 %)", "detectable", "unit", "refitted (K)", "held out (K)", "decision"]
     keep = ["size (95 %)", "%", "detectable", "unit", "refitted (K)"]
-    rows = [_row(c) for c in found if c["probability"] > SHOWN or c["decision"] != "no"] or [_row(c) for c in found[:1]]
+    rows = [_row(c) for c in candidates if c["probability"] > LEAST_PROBABILITY or c["decision"] != "no"] or [
+        _row(c) for c in candidates[:1]
+    ]
     return Grid("Candidates", headers, rows[:ROWS], ["named", "group"], keep)
 
 
-def _leader(found: Sequence[Mapping[str, Any]]) -> list[str]:
+def _leader(candidates: Sequence[Mapping[str, Any]]) -> list[str]:
     """From which size the leader shows, what it buys and looks like, and the experiment that proves it."""
-    if not found or found[0]["probability"] <= SHOWN:
+    if not candidates or candidates[0]["probability"] <= LEAST_PROBABILITY:
         return []
-    first = found[0]
+    first = candidates[0]
     lines = [f"Detection limit: these tests show {first['effect']} from {limit(first)} on."]
     lines += [bought(first)] if first.get("tests") and first["decision"] != "no" else []
     lines += [f"Proof: {first['isolating_test']}."] if first["isolating_test"] else []
@@ -103,15 +109,15 @@ def _leader(found: Sequence[Mapping[str, Any]]) -> list[str]:
     return lines
 
 
-def _lost(found: Sequence[Mapping[str, Any]], named: Sequence[str]) -> list[str]:
+def _lost(candidates: Sequence[Mapping[str, Any]], named: Sequence[str]) -> list[str]:
     """Why the rivals lost: where a refit is worse, or how little evidence there is for the next ones alone."""
     if not named:
         return []
-    refitted = [f"Against {c['effect']}: it {c['note']} than {found[0]['effect']}." for c in found[1:ROWS]
-                if c["note"] and c["probability"] > SHOWN and c["effect"] not in named]  # fmt: skip
-    rivals = sorted((c for c in found if c["effect"] not in named and not c["note"]), key=lambda c: -c["score"])
+    refitted = [f"Against {c['effect']}: it {c['note']} than {candidates[0]['effect']}." for c in candidates[1:ROWS]
+                if c["note"] and c["probability"] > LEAST_PROBABILITY and c["effect"] not in named]  # fmt: skip
+    rivals = sorted((c for c in candidates if c["effect"] not in named and not c["note"]), key=lambda c: -c["score"])
     each = ", ".join(f"{c['effect']} {c['score']:.1f}" for c in rivals[:RIVALS])
-    lead = next(c["score"] for c in found if c["effect"] == named[0])
+    lead = next(c["score"] for c in candidates if c["effect"] == named[0])
     return [*refitted, f"Rivals alone have less evidence: {each}; {named[0]} {lead:.1f} nats."] if each else refitted
 
 
@@ -134,7 +140,7 @@ def events(document: Mapping[str, Any], likely: bool = True) -> list[Grid]:
     rows = [
         [f"event@{i}", e["words"], f"{100 * e['probability']:.1f}", e["effect"].split(" in ")[0], e["value"],
          "" if e["unit"] == "1" else e["unit"]] for i, e in enumerate(document.get("events", []), 1)
-        if likely == (e["probability"] > SHOWN)
+        if likely == (e["probability"] > LEAST_PROBABILITY)
     ]  # fmt: skip
     headers = ["to add", "when", "%", "most likely", "size", "unit"]
     title = "What may have differed for a while" if likely else "Stretches in which hardly anything differed"
@@ -144,7 +150,7 @@ def events(document: Mapping[str, Any], likely: bool = True) -> list[Grid]:
 def _row(c: Mapping[str, Any]) -> list[Any]:
     size, share = c["amplitude"], f"{100 * c['probability']:.1f}"
     return [
-        c["effect"], share, sized(size["value"], *size["ci95"]), cell(c["smallest_detectable"]),
+        c["effect"], share, value_with_interval(size["value"], *size["ci95"]), cell(c["smallest_detectable"]),
         "" if size["unit"] == "1" else size["unit"], _arrow(c["rmse_K"]), _arrow(c["holdout_rmse_K"]), c["decision"],
     ]  # fmt: skip
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from lumped.model.quantities import INPUTS
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import give, progress
-from thermoscope.recordings.units import HELD, QUANTITIES
+from thermoscope.recordings.units import MEMORY_UNIT, QUANTITIES
 
 if TYPE_CHECKING:
     from validation.effects.base import Effect, Scene
@@ -75,7 +75,7 @@ def named(places: list[str]) -> str:
 
 def quantities(target: str | None) -> int:
     """What a column may measure, its units, and what memory holds."""
-    rows = [{"quantity": name, "units": list(q.units), "held_as": HELD[name], "input": q.feeds}
+    rows = [{"quantity": name, "units": list(q.units), "held_as": MEMORY_UNIT[name], "input": q.feeds}
             for name, q in QUANTITIES.items()]  # fmt: skip
     document = {"quantities": rows}
     give(document, target, lambda: show_quantities(rows))

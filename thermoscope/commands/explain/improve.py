@@ -16,7 +16,7 @@ from thermoscope.commands.model.revise import recorded
 from thermoscope.commands.open_case import open_case_for_writing
 from thermoscope.commands.stored_diagnosis import save_diagnosis
 from thermoscope.console.answer import Answer, Grid
-from thermoscope.console.terminal import give, progress, sized
+from thermoscope.console.terminal import give, progress, value_with_interval
 from viz.pages.next_tests import deciding
 
 if TYPE_CHECKING:
@@ -32,10 +32,10 @@ def improve(case: str, yes: bool, most: int, target: str | None) -> int:
         folder = open_case_for_writing(case, tell)
         checked_columns(folder)
         ledger = Ledger(folder)
-        guide = Supervisor(singletons if yes else asked, ledger.keep)
-        done = improve(folder.case, guide, most, tell, folder.settings.kinds)
-    found = {"case": folder.case.name, "revision": ledger.history.last.number, **done.diagnosis.document()}
-    save_diagnosis(folder, json.loads(json.dumps(found, default=float)))
+        supervisor = Supervisor(singletons if yes else user_choice, ledger.keep)
+        done = improve(folder.case, supervisor, most, tell, folder.settings.kinds)
+    last = {"case": folder.case.name, "revision": ledger.history.last.number, **done.diagnosis.document()}
+    save_diagnosis(folder, json.loads(json.dumps(last, default=float)))
     document = {"case": folder.case.name, **done.document(), "written": ledger.written}
     give(document, target, lambda: answer(document, folder, case))
     return 0 if done.adequate else 1
@@ -54,11 +54,11 @@ class Ledger:
         write_columns(self.folder, self.history.last.effects)
 
 
-def asked(found: Diagnosis, choice: Sequence[Candidate]) -> str | None:
+def user_choice(diagnosis: Diagnosis, choice: Sequence[Candidate]) -> str | None:
     """The user's word, on stderr and stdin: a number of the list, or nothing to stop."""
     lines = [f"  {i + 1}  {offer(c)}" for i, c in enumerate(choice)]
-    print(f"{found.words}\n" + "\n".join(lines), file=sys.stderr)
-    for further in deciding(found.document())[:3]:
+    print(f"{diagnosis.words}\n" + "\n".join(lines), file=sys.stderr)
+    for further in deciding(diagnosis.document())[:3]:
         print(f"  would decide: {further.kind} {further.what} ({further.hours:.3g} h)", file=sys.stderr)
     print("add which? (number, or Enter to stop) ", end="", file=sys.stderr, flush=True)
     word = sys.stdin.readline().strip()
@@ -67,7 +67,7 @@ def asked(found: Diagnosis, choice: Sequence[Candidate]) -> str | None:
 
 def offer(c: Candidate) -> str:
     """A candidate as the question shows it."""
-    size = f"{sized(c.value, *c.ci95)} {c.unit}".removesuffix(" 1")
+    size = f"{value_with_interval(c.value, *c.ci95)} {c.unit}".removesuffix(" 1")
     fell = f", refitted {c.rmse_K[0]:.2f} -> {c.rmse_K[1]:.2f} K" if c.rmse_K else ""
     return f"{c.effect}: {c.title}, {size}, probability {100 * c.probability:.0f} %{fell}"
 
@@ -86,8 +86,8 @@ def answer(document: Mapping[str, Any], folder: Folder, called: str) -> Answer:
         for s in steps
     ]
     errors = Grid("Error, step by step (rms)", headers, rows, keep=["all (K)", "probability"])
-    written = f"{document['written']} revisions written to {folder.settings.model_file}"
-    stored = written if document["written"] else "nothing written"
+    where_written = f"{document['written']} revisions written to {folder.settings.model_file}"
+    stored = where_written if document["written"] else "nothing written"
     further = "" if document["adequate"] else next_tests(document["diagnosis"])
     more = f"thermoscope model undo {quote(called)} takes a step back; thermoscope show report {quote(called)}"
     return Answer(f"{document['verdict']}: {document['why']}; {stored}.", [errors, further], more)

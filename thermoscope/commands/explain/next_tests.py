@@ -1,4 +1,4 @@
-"""What would tell a group apart: tests of the menu and further sensors, or the word that no test is expected to."""
+"""What would tell a group apart: candidate tests and further sensors, or the word that no test is expected to."""
 
 from __future__ import annotations
 

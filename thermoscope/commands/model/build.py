@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from geom.solids.surfaces import CadCheck
     from thermoscope.console.terminal import Progress
     from thermoscope.pipeline import Built
-    from thermoscope.verification.network_size import SizedNetwork
+    from thermoscope.verification.network_size import NetworkSize
 
 ERRORS = ("mean", "hot", "point")
 
@@ -38,18 +38,18 @@ def build(machine: str, out: Path | None, target: str | None, accuracy: float | 
     if Path(machine).is_file() and folder.resolve() == Path(machine).resolve().parent:
         raise InputError("the machine file lies there: a result could take its name", f"--out {folder}", "out/NAME")
     with progress() as tell:
-        built, found = built_from(described, accuracy, tell)
-        checked = crosscheck.checked(built, found, tell)
+        built, size = built_from(described, accuracy, tell)
+        checked = crosscheck.checked(built, size, tell)
         tell("solids")
         solids = check_cad(described)
         tell(f"writing {folder}")
         export_cad(described, folder)
         write_vtu(built.mesh, folder / f"{described.name}.vtu")
-        document = {**described_as(built, solids), **checked, **({} if found is None else {"sizes": found.document()})}
+        document = {**described_as(built, solids), **checked, **({} if size is None else {"sizes": size.document()})}
         crosscheck.save(document, folder)
         document["pictures"] = [str(file) for file in pictures(built, folder, tell)]
     give(document, target, lambda: answer(document, folder))
-    return 0 if found is None or found.met else 1
+    return 0 if size is None or size.met else 1
 
 
 def pictures(built: Built, folder: Path, tell: Progress) -> list[Path]:
@@ -70,7 +70,7 @@ def pictures(built: Built, folder: Path, tell: Progress) -> list[Path]:
 
 def built_from(
     described: Machine, accuracy: float | None, tell: Progress, size_m: float = 0.06
-) -> tuple[Built, SizedNetwork | None]:
+) -> tuple[Built, NetworkSize | None]:
     """At the size a case runs, or at the smallest that is accurate enough.  size_m : of the mesh's triangles (m)"""
     from lumped.machine.bases import on_all
     from thermoscope.pipeline import build as usual
@@ -78,8 +78,8 @@ def built_from(
 
     if accuracy is None:
         return usual(on_all(described), size_m, progress=tell), None
-    found = accurate_network(described, accuracy, size_m, tell)
-    return found.built, found
+    size = accurate_network(described, accuracy, size_m, tell)
+    return size.built, size
 
 
 def described_as(built: Built, solids: list[CadCheck]) -> dict[str, Any]:
@@ -123,9 +123,9 @@ def answer(document: Mapping[str, Any], folder: Path) -> Answer:
                "watertight"]  # fmt: skip
     parts = Grid("Parts", headers, [_row(part) for part in document["parts"]], ["NO"], ["mass (kg)", "watertight"])
     sizes = _sizes(document["sizes"]) if "sizes" in document else []
-    shown = [*sizes, crosscheck.parts(document), parts]
-    rest = [crosscheck.links(document), crosscheck.hand(document)]
-    return Answer(sentence, shown, f"solids, mesh, tables and pictures in {folder}; --json FILE", rest)
+    tables = [*sizes, crosscheck.parts(document), parts]
+    rest = [crosscheck.links(document), crosscheck.analytical_table(document)]
+    return Answer(sentence, tables, f"solids, mesh, tables and pictures in {folder}; --json FILE", rest)
 
 
 def _row(part: Mapping[str, Any]) -> list[Any]:
@@ -136,12 +136,14 @@ def _row(part: Mapping[str, Any]) -> list[Any]:
 
 def _sizes(sizes: Mapping[str, Any]) -> list[Grid | str]:
     """Error against number of states, and what the guard saw at points nothing was fitted to."""
-    asked = sizes["wish_percent"]
+    requested = sizes["wish_percent"]
     rows = [["means only" if not s["asked"] else f"up to {s['asked']}", *_errors(s)] for s in sizes["sizes"]]
     rows += [
         ["learned", g["states"], "-", "-", "-", *(g["random"][k] for k in ERRORS), _word(g)] for g in sizes["guard"]
     ]
-    title = f"Error in % of a part's rise (asked: means {asked['mean']:g}, hot spots and points {asked['hot']:g})"
+    title = (
+        f"Error in % of a part's rise (asked: means {requested['mean']:g}, hot spots and points {requested['hot']:g})"
+    )
     headers = ["network", "states", "mean", "hot spot", "point", "mean, random", "hot, random", "point, random", "met"]
     notes: list[Grid | str] = []
     if mesh := sizes["mesh"]:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from geom.errors import InputError
-from lumped.schemas.reader import known
+from lumped.schemas.reader import suggestion
 from thermoscope.case_folder.folder import Folder
 from thermoscope.commands.model.revise import revised
 from thermoscope.commands.stored_diagnosis import fingerprint, store, stored
@@ -55,7 +55,7 @@ def _profilable(folder: Folder, globs: Sequence[str]) -> None:
     names = working(folder.case)[1].names
     for glob in globs:
         if not any(fnmatchcase(name, glob) for name in names):
-            raise InputError(f"'{glob}' is no free parameter", "--profile", known(glob, names))
+            raise InputError(f"'{glob}' is no free parameter", "--profile", suggestion(glob, names))
 
 
 class Unfinished:
@@ -68,11 +68,11 @@ class Unfinished:
 
     def values(self, tell: Progress) -> dict[str, float]:
         """Those of an interrupted calibration of this very case, else none."""
-        found = stored(self.path)
-        if found is None or found.get("fingerprint") != self.of:
+        document = stored(self.path)
+        if document is None or document.get("fingerprint") != self.of:
             return {}
         tell("going on with the calibration that was interrupted")
-        self.reached = found["values"]
+        self.reached = document["values"]
         return dict(self.reached)
 
     def keep(self, values: Mapping[str, float]) -> None:

@@ -19,10 +19,10 @@ from thermoscope.console.terminal import give, plain, progress
 if TYPE_CHECKING:
     from thermoscope.console.terminal import Progress
     from thermoscope.pipeline import Built
-    from thermoscope.verification.network_size import SizedNetwork
+    from thermoscope.verification.network_size import NetworkSize
 
 HOT = 200.0  # degC, what insulation bears
-SHOWN = 12  # rows of a long table on the screen; the files hold all
+MOST_ROWS = 12  # rows of a long table on the screen; the files hold all
 
 
 def crosscheck(machine: str, out: Path | None, accuracy: float, target: str | None) -> int:
@@ -32,30 +32,30 @@ def crosscheck(machine: str, out: Path | None, accuracy: float, target: str | No
     described = load_machine_file(Path(machine))
     folder = out or Path("out") / described.name
     with progress() as tell:
-        found = accurate_network(described, accuracy, progress=tell)
-        document = {"machine": described.name, **checked(found.built, found, tell)}
+        size = accurate_network(described, accuracy, progress=tell)
+        document = {"machine": described.name, **checked(size.built, size, tell)}
         save(document, folder)
     give(document, target, lambda: answer(document, folder))
-    return 0 if found.met else 1
+    return 0 if size.met else 1
 
 
-def checked(built: Built, found: SizedNetwork | None, tell: Progress) -> dict[str, Any]:
+def checked(built: Built, size: NetworkSize | None, tell: Progress) -> dict[str, Any]:
     """Part by part and link by link at a point where the machine settles, and the hand formulas there."""
     from lumped.machine.losses import loss_shares
+    from thermoscope.verification.analytical_checks import analytical_checks
     from thermoscope.verification.crosscheck import crosscheck as compare
-    from thermoscope.verification.hand_formulas import hand_formulas
     from thermoscope.verification.local_laws import with_local_laws
 
     tell("field against network")
     point = bearable(built)
-    loads = None if found is None else found.reduction.loads
-    solver = None if found is None else found.reduction.solver
+    loads = None if size is None else size.reduction.loads
+    solver = None if size is None else size.reduction.solver
     shares = loss_shares(built.machine, built.network)
     check = compare(built.field, built.network, point, solver=solver, loads=loads, shares=shares)
     tell("laws point by point")
     local = with_local_laws(built.field, built.network, point, check, shares, loads, solver).T
     tell("hand formulas")
-    hand = hand_formulas(built.machine, built.field, check)
+    formulas = analytical_checks(built.machine, built.field, check)
     responsible = {part.place: check.responsible(part.place) for part in check.parts}
     return {
         "operating_point": point,
@@ -68,7 +68,7 @@ def checked(built: Built, found: SizedNetwork | None, tell: Progress) -> dict[st
             for part, link in zip(check.parts, responsible.values(), strict=True)
         ],
         "links": [vars(link) for link in check.links],
-        "hand": [row.document() for row in hand],
+        "hand": [row.document() for row in formulas],
         "energy_balance": check.energy_balance,
     }
 
@@ -118,8 +118,8 @@ def answer(document: Mapping[str, Any], folder: Path) -> Answer:
     sentence = (f"Steady at the rated point, network and field differ by {abs(off['percent_of_rise']):.2g} % of "
                 f"the rise at most ({off['place']}); its energy balance {document['energy_balance']:.1e}.")  # fmt: skip
     point = ", ".join(f"{name} {value:.4g}" for name, value in document["operating_point"].items())
-    shown = [parts(document), links(document), hand(document)]
-    return Answer(sentence, shown, f"all rows in {folder}/crosscheck*.csv; --json FILE", [f"Operating point: {point}"])
+    tables = [parts(document), links(document), analytical_table(document)]
+    return Answer(sentence, tables, f"all rows in {folder}/crosscheck*.csv; --json FILE", [f"Operating point: {point}"])
 
 
 def worst(document: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -140,11 +140,11 @@ def parts(document: Mapping[str, Any]) -> Grid:
 def links(document: Mapping[str, Any]) -> Grid:
     """Heat through links, the largest difference first."""
     rows = [[link["link"], link["fem_W"], link["network_W"], link["percent_of_heat"]] for link in document["links"]]
-    return Grid("Heat through links (W)", ["link", "field", "network", "off (% of all heat)"], rows[:SHOWN])
+    return Grid("Heat through links (W)", ["link", "field", "network", "off (% of all heat)"], rows[:MOST_ROWS])
 
 
-def hand(document: Mapping[str, Any]) -> Grid:
+def analytical_table(document: Mapping[str, Any]) -> Grid:
     """Hand formulas, the furthest off first."""
     rows = sorted(document["hand"], key=lambda row: -abs(row["ratio"] - 1.0))
-    body = [list(row.values()) for row in rows[:SHOWN]]
+    body = [list(row.values()) for row in rows[:MOST_ROWS]]
     return Grid("Hand formulas (K/W)", ["link", "formula", "textbook", "field", "ratio"], body, keep=["ratio", "field"])

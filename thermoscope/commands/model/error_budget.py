@@ -26,8 +26,8 @@ def budget(budgets: Mapping[str, Places], steps: Steps) -> list[Grid | str]:
     rows = sorted(worst(budgets), key=_total, reverse=True)
     if not rows:
         return _sampled(steps)
-    shown = [["-" if row[key] is None else row[key] for key in KEYS] for row in rows]
-    return [Grid("Error budget: what the model's own numbers may be wrong by", HEADERS, shown, keep=["sum (K)"]),
+    cells = [["-" if row[key] is None else row[key] for key in KEYS] for row in rows]
+    return [Grid("Error budget: what the model's own numbers may be wrong by", HEADERS, cells, keep=["sum (K)"]),
             words(rows), *_sampled(steps)]  # fmt: skip
 
 
@@ -40,21 +40,23 @@ def _sampled(steps: Steps) -> list[Grid | str]:
 def in_short(budgets: Mapping[str, Places], steps: Steps) -> str:
     """The largest sum and the sample steps in a sentence."""
     rows, every = worst(budgets), sorted({step["step_s"] for step in steps.values()})
-    said = f"compared every {' to '.join(f'{h:.3g}' for h in dict.fromkeys((every[0], every[-1])))} s" if every else ""
+    sampling = (
+        f"compared every {' to '.join(f'{h:.3g}' for h in dict.fromkeys((every[0], every[-1])))} s" if every else ""
+    )
     if not rows:
-        return f"Readings and model are {said}." if said else ""
+        return f"Readings and model are {sampling}." if sampling else ""
     most = max(rows, key=_total)
     good = f"The model's own numbers are good to {_total(most):.2g} K (worst at {most['place']})"
-    return f"{good}, {said}." if said else f"{good}."
+    return f"{good}, {sampling}." if sampling else f"{good}."
 
 
 def worst(budgets: Mapping[str, Places]) -> list[Mapping[str, Any]]:
     """Of every place the run with the largest sum."""
-    found: dict[str, Mapping[str, Any]] = {}
+    largest: dict[str, Mapping[str, Any]] = {}
     for row in (row for places in budgets.values() for row in places):
-        if row["place"] not in found or _total(row) > _total(found[row["place"]]):
-            found[row["place"]] = row
-    return list(found.values())
+        if row["place"] not in largest or _total(row) > _total(largest[row["place"]]):
+            largest[row["place"]] = row
+    return list(largest.values())
 
 
 def _total(row: Mapping[str, Any]) -> float:

@@ -13,7 +13,7 @@ from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import Revision, save_history
 from thermoscope.case_folder.runs import at_revision, by_interest, ends, mean_rows
 from thermoscope.commands.open_case import open_case_for_writing
-from thermoscope.commands.stored_diagnosis import saved_diagnosis
+from thermoscope.commands.stored_diagnosis import current_diagnosis
 from thermoscope.console.answer import Answer, Grid, cell
 from thermoscope.console.terminal import give, notes, progress
 from validation.comparison.compare import errors
@@ -43,10 +43,10 @@ def meant(folder: Folder, effect: str) -> str:
     kind, _, which = effect.partition("@")
     if kind != "event":
         return effect
-    found = (saved_diagnosis(folder) or {}).get("events", [])
-    names = {name: e["effect"] for i, e in enumerate(found) for name in (str(i + 1), e["event"])}
+    events = (current_diagnosis(folder) or {}).get("events", [])
+    names = {name: e["effect"] for i, e in enumerate(events) for name in (str(i + 1), e["event"])}
     if which not in names:
-        right = f"event@1 to event@{len(found)}" if found else NO_EVENT
+        right = f"event@1 to event@{len(events)}" if events else NO_EVENT
         raise InputError(f"no event '{which}'", f"effect '{effect}'", right)
     return str(names[which])
 
@@ -91,8 +91,8 @@ def revised(case: str, step: Callable[..., revise.Revision], anyway: bool, targe
         longer = folder.history.and_then(recorded(result, evidence(folder, result)))
         save_history(folder.settings.model_file, longer, folder.history)
         write_columns(folder, longer.last.effects)
-    unseen = unmeasured(folder, result)
-    document = {**result.document(), "case": folder.case.name, "written": keep, "unmeasured": unseen}
+    places = unmeasured(folder, result)
+    document = {**result.document(), "case": folder.case.name, "written": keep, "unmeasured": places}
     give(document, target, lambda: answer(document, folder, case))
     return 0 if keep else 1
 
@@ -123,8 +123,8 @@ def recorded(result: revise.Revision, evidence: Mapping[str, float | str]) -> Re
 
 def evidence(folder: Folder, result: revise.Revision) -> dict[str, float | str]:
     """What the last diagnosis of this very model said about the effect; empty when there was none."""
-    found = saved_diagnosis(folder) if result.action == "add" else None
-    rows = [c for c in (found or {}).get("candidates", []) if c["effect"] == result.effect]
+    diagnosis = current_diagnosis(folder) if result.action == "add" else None
+    rows = [c for c in (diagnosis or {}).get("candidates", []) if c["effect"] == result.effect]
     return {key: rows[0][key] for key in ("probability", "score", "threshold", "decision")} if rows else {}
 
 
@@ -163,7 +163,7 @@ def answer(document: Mapping[str, Any], folder: Folder, called: str) -> Answer:
     passed = [f"passed  {c['check']}: {c['words']}" for c in document["checks"] if c["passed"]]
     step = "explain diagnose" if document["action"] == "calibrate" else "test compare"
     parts: list[Grid | str] = [
-        errors, *failed, _unseen(document["unmeasured"]), *passed, _fixed(document["parameters"]),
+        errors, *failed, _unmeasured_words(document["unmeasured"]), *passed, _fixed(document["parameters"]),
         _blind(document["parameters"]),
     ]  # fmt: skip
     return Answer(
@@ -180,16 +180,16 @@ def _fixed(parameters: Sequence[Mapping[str, Any]]) -> Grid:
     return Grid("What the data fixed (95 %)", headers, rows, keep=["value", "unit", "from", "to"])
 
 
-def _unseen(places: Sequence[Mapping[str, Any]]) -> str:
+def _unmeasured_words(places: Sequence[Mapping[str, Any]]) -> str:
     """Where no reading says whether the step is right: as many places as a line holds."""
     moved = [p for p in places if abs(p["after_C"] - p["before_C"]) >= MOVED_K]
-    said = ""
+    text = ""
     for each in (f"{p['place']} {p['before_C']:.1f} -> {p['after_C']:.1f}" for p in moved):
-        longer = f"{said}, {each}" if said else f"No sensor sees: {each}"
-        if said and len(longer) > LINE:
+        longer = f"{text}, {each}" if text else f"No sensor sees: {each}"
+        if text and len(longer) > LINE:
             break
-        said = longer
-    return f"{said} degC" if said else ""
+        text = longer
+    return f"{text} degC" if text else ""
 
 
 def _blind(parameters: Sequence[Mapping[str, Any]]) -> str:

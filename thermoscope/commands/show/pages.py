@@ -20,8 +20,8 @@ from thermoscope.case_folder.runs import (
     at_revision,
     before_last,
     by_interest,
+    comparison_of,
     fields,
-    held,
     parameters,
     readings,
     steps,
@@ -29,7 +29,7 @@ from thermoscope.case_folder.runs import (
 )
 from thermoscope.commands.open_case import open_case_for_writing
 from thermoscope.commands.show.viewer import viewer_page
-from thermoscope.commands.stored_diagnosis import last_diagnosis, saved_diagnosis
+from thermoscope.commands.stored_diagnosis import current_diagnosis, last_diagnosis
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import Progress, give, notes, progress
 from validation.case import Case, Test
@@ -67,13 +67,13 @@ def write_page(folder: Folder, case: str, into: Path, tell: Progress) -> Path:
 
     tell("running the model and its error budget")
     result, (diagnosis, earlier) = folder.compared, _diagnosis(folder)
-    curves = [marked(held(folder, test), diagnosis) for test in by_interest(folder)]
+    curves = [marked(comparison_of(folder, test), diagnosis) for test in by_interest(folder)]
     tell("drawing")
     viewed = "" if folder.built is None else viewer_page(folder, tell)
     page = Report(
         folder.case.name, folder.settings.description, result.document(), diagnosis, steps(folder),
         parameters(folder), curves, _pictures(folder, into, None if earlier else diagnosis), assumptions(folder),
-        commands(folder, case), made(), earlier, documents(folder.budgets), viewed,
+        commands(folder, case), provenance(), earlier, documents(folder.budgets), viewed,
     )  # fmt: skip
     return write_report(page, into / "report.html")
 
@@ -104,7 +104,7 @@ def rendered(folder: Folder, into: Path, tell: Progress) -> list[Path]:
     tell("running the model and its error budget")
     _ = folder.compared
     tell("drawing curves")
-    files = [*_plots(folder, into), *_pictures(folder, into, saved_diagnosis(folder)).values()]
+    files = [*_plots(folder, into), *_pictures(folder, into, current_diagnosis(folder)).values()]
     if folder.built is not None:
         tell("writing the recording")
         files.append(_recording(folder, into))
@@ -113,9 +113,9 @@ def rendered(folder: Folder, into: Path, tell: Progress) -> list[Path]:
 
 def _diagnosis(folder: Folder) -> tuple[Mapping[str, Any] | None, bool]:
     """What the page shows, and whether it is of the model before its last step."""
-    saved = saved_diagnosis(folder)
-    if saved is not None:
-        return saved, False
+    stored = current_diagnosis(folder)
+    if stored is not None:
+        return stored, False
     last = last_diagnosis(folder)
     return last, last is not None
 
@@ -123,16 +123,16 @@ def _diagnosis(folder: Folder) -> tuple[Mapping[str, Any] | None, bool]:
 def _plots(folder: Folder, into: Path) -> list[Path]:
     from viz.figures import curves, errors
 
-    written = []
+    paths = []
     for test in by_interest(folder):
-        comparison = marked(held(folder, test), saved_diagnosis(folder))
+        comparison = marked(comparison_of(folder, test), current_diagnosis(folder))
         for name, draw in (("curves", curves.measured_and_model), ("residuals", curves.residuals)):
-            written.append(into / f"{name}-{test.name}.png")
-            draw(comparison, png=written[-1])
+            paths.append(into / f"{name}-{test.name}.png")
+            draw(comparison, png=paths[-1])
     if folder.history.revisions:
-        written.append(into / "error.png")
-        errors.staircase(steps(folder), png=written[-1])
-    return written
+        paths.append(into / "error.png")
+        errors.staircase(steps(folder), png=paths[-1])
+    return paths
 
 
 def _pictures(folder: Folder, into: Path, diagnosis: Mapping[str, Any] | None) -> dict[str, Path]:
@@ -152,7 +152,7 @@ def _pictures(folder: Folder, into: Path, diagnosis: Mapping[str, Any] | None) -
     into.mkdir(parents=True, exist_ok=True)
     nodes, test = split(folder.built.mesh), by_interest(folder)[0]
     now, file = fields(folder.case, test, nodes, 1)[1][-1], into / "field.png"
-    seen = sensors(held(folder, test), folder.positions)
+    seen = sensors(comparison_of(folder, test), folder.positions)
     title = f"{test.name} at {test.time[-1] / 60:.0f} min: temperature of the model"
     limits = temperature_range(folder, nodes)
     cutaway(nodes, now, sensors=seen, title=title, limits=limits, png=file)
@@ -189,7 +189,7 @@ def _recording(folder: Folder, into: Path) -> Path:
     path = into / f"{test.name}.rrd"
     ends = np.array([fields(case, test, nodes, 1)[1][-1] for case in every_revision(folder)])
     return write_recording(
-        path, nodes, held(folder, test), frames, folder.positions, history=steps(folder), revision_fields=ends,
+        path, nodes, comparison_of(folder, test), frames, folder.positions, history=steps(folder), revision_fields=ends,
         revision_residuals=[residual_at_end(case, test) for case in every_revision(folder)],
         limits=temperature_range(folder, nodes),
     )  # fmt: skip
@@ -229,7 +229,7 @@ def commands(folder: Folder, case: str) -> list[str]:
     return [*done, f"thermoscope show report {case}"]
 
 
-def made() -> str:
+def provenance() -> str:
     """Date, versions, computer."""
     now = datetime.now().astimezone().strftime("%Y-%m-%d %H:%M %Z")
     parts = [f"thermoscope {version('thermoscope')}", f"Python {platform.python_version()}", f"NumPy {np.__version__}"]

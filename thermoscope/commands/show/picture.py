@@ -14,10 +14,18 @@ from numpy.typing import NDArray
 from geom.errors import InputError
 from geom.plugins import plugins
 from lumped.integration.balance import balance
-from lumped.schemas.reader import known
+from lumped.schemas.reader import suggestion
 from thermoscope.case_folder.error_field import error_field
 from thermoscope.case_folder.folder import Folder, Progress
-from thermoscope.case_folder.runs import before_last, by_interest, fields, held, named_rows, steps, temperature_range
+from thermoscope.case_folder.runs import (
+    before_last,
+    by_interest,
+    comparison_of,
+    fields,
+    named_rows,
+    steps,
+    temperature_range,
+)
 from thermoscope.commands.open_case import open_case
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import give, progress
@@ -37,7 +45,7 @@ def picture(case: str, what: str, out: Path | None, target: str | None) -> int:
     """One picture of a case, at the end of its most telling test, as a PNG file."""
     pictures = {**PICTURES, **plugins("pictures")}
     if what not in pictures:
-        raise InputError(f"unknown picture '{what}'", "show picture", known(what, pictures))
+        raise InputError(f"unknown picture '{what}'", "show picture", suggestion(what, pictures))
     if out is not None and (out.suffix != ".png" or out.is_dir()):
         raise InputError("is no name of a picture", f"--out {out}", "a file NAME.png")
     with progress() as tell:
@@ -102,7 +110,7 @@ class Subject:
 def _field(s: Subject, png: Path) -> None:
     from viz import cutaway, sensors
 
-    seen = sensors(held(s.folder, s.test), s.folder.positions)
+    seen = sensors(comparison_of(s.folder, s.test), s.folder.positions)
     title = f"{s.when}: temperature of the model"
     cutaway(s.nodes, s.field(), sensors=seen, title=title, limits=s.limits, png=png).close()
 
@@ -135,10 +143,10 @@ def _difference(s: Subject, png: Path) -> None:
 def _misses(s: Subject, png: Path) -> None:
     from viz import misses, sensors
 
-    found = error_field(s.folder, s.test, s.nodes)
-    seen = sensors(held(s.folder, s.test), s.folder.positions)
+    error = error_field(s.folder, s.test, s.nodes)
+    seen = sensors(comparison_of(s.folder, s.test), s.folder.positions)
     title = f"{s.test.name}, its last fifth: measured minus model"
-    misses(s.nodes, found.mean, found.explained, sensors=seen, title=title, png=png).close()
+    misses(s.nodes, error.mean, error.explained, sensors=seen, title=title, png=png).close()
 
 
 def _uncertainty(s: Subject, png: Path) -> None:
@@ -146,7 +154,7 @@ def _uncertainty(s: Subject, png: Path) -> None:
     from viz import sensors, uncertainty
 
     half95 = field_half95(s.folder, s.test, s.nodes.parts, s.tell)
-    seen = sensors(held(s.folder, s.test), s.folder.positions)
+    seen = sensors(comparison_of(s.folder, s.test), s.folder.positions)
     title = f"{s.when}: 95 % band of the model; dots: sensors, measured minus model"
     uncertainty(s.nodes, half95, sensors=seen, title=title, png=png).close()
 
@@ -156,15 +164,15 @@ def _bands(s: Subject, png: Path) -> None:
     from viz import Predicted, predicted
 
     network, test = working(s.folder.case)[0], s.test
-    found = along(posterior_of(s.folder, s.tell), test.name, record(test, {}), named_rows(network, s.folder))
+    bands = along(posterior_of(s.folder, s.tell), test.name, record(test, {}), named_rows(network, s.folder))
     read = {f"sensor {c.name}": c.y for c in test.channels}
     measured = {c.place for c in test.channels}
     places = [
-        Predicted(n, found.y[:, k], found.half95[:, k], read.get(n))
-        for k, n in enumerate(found.names)
+        Predicted(n, bands.y[:, k], bands.half95[:, k], read.get(n))
+        for k, n in enumerate(bands.names)
         if n not in measured
     ]
-    predicted(found.time, places, title=test.name, png=png)
+    predicted(bands.time, places, title=test.name, png=png)
 
 
 def _exploded(s: Subject, png: Path) -> None:
@@ -212,13 +220,13 @@ def _losses(s: Subject, png: Path) -> None:
 def _curves(s: Subject, png: Path) -> None:
     from viz import measured_and_model
 
-    measured_and_model(held(s.folder, s.test), png=png)
+    measured_and_model(comparison_of(s.folder, s.test), png=png)
 
 
 def _residuals(s: Subject, png: Path) -> None:
     from viz import residuals
 
-    residuals(held(s.folder, s.test), png=png)
+    residuals(comparison_of(s.folder, s.test), png=png)
 
 
 def _errors(s: Subject, png: Path) -> None:

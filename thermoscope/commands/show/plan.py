@@ -8,8 +8,8 @@ from pathlib import Path
 from geom.errors import InputError
 from thermoscope.case_folder.folder import Folder
 from thermoscope.commands.open_case import open_case
-from thermoscope.commands.show.pages import made
-from thermoscope.commands.stored_diagnosis import saved_diagnosis
+from thermoscope.commands.show.pages import provenance
+from thermoscope.commands.stored_diagnosis import current_diagnosis
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import give, progress
 
@@ -27,22 +27,24 @@ def plan(case: str, effects: Sequence[str], test: str | None, out: Path | None, 
         folder = open_case(case, tell)
         models = hypotheses(folder.case, effects or suspected(folder), tell)
         tell("predicting tests")
-        found = predicted_curves(folder.case, models, test)
+        curves = predicted_curves(folder.case, models, test)
         file = out or Path("out") / f"{folder.case.name}-plan.html"
         last = folder.case.tests[-1]
-        write_bench_page(BenchPage(folder.case.name, found, last.name, schedule(found.test, last), made()), file)
+        write_bench_page(
+            BenchPage(folder.case.name, curves, last.name, schedule(curves.test, last), provenance()), file
+        )
     document = {
-        "case": folder.case.name, "test": found.experiment.name, "hours": found.experiment.hours,
-        "hypotheses": list(found.curves), "closest_sigma": found.closest(), "page": str(file),
-        "sensors": [{"channel": c.name, "apart_K": found.spread_K(c.name)} for c in found.test.channels],
+        "case": folder.case.name, "test": curves.experiment.name, "hours": curves.experiment.hours,
+        "hypotheses": list(curves.curves), "closest_sigma": curves.closest(), "page": str(file),
+        "sensors": [{"channel": c.name, "apart_K": curves.spread_K(c.name)} for c in curves.test.channels],
     }  # fmt: skip
-    give(document, target, lambda: Answer(f"{file}: {found.experiment.name}, {found.experiment.hours:g} h"))
+    give(document, target, lambda: Answer(f"{file}: {curves.experiment.name}, {curves.experiment.hours:g} h"))
     return 0
 
 
 def suspected(folder: Folder) -> list[str]:
     """The effects that the last diagnosis of this model holds for possible, most probable first."""
-    document = saved_diagnosis(folder)
+    document = current_diagnosis(folder)
     if document is None:
         right = f"thermoscope explain diagnose {folder.case.name} first, or --effect EFFECT@PLACE"
         raise InputError("has no diagnosis of the model as it stands", folder.case.name, right)

@@ -14,8 +14,8 @@ def serve(case: str, host: str, port: int) -> int:
     from thermoscope.workbench.serve import application, token_for
     from thermoscope.workbench.serve import serve as run
 
-    gate = AccessControl(host, token_for(os.environ.get("THERMOSCOPE_TOKEN")))
+    access = AccessControl(host, token_for(os.environ.get("THERMOSCOPE_TOKEN")))
     with progress() as tell:
-        app = application(open_case_for_writing(case, tell), gate, tell)
-    run(app, gate, port, lambda url: say(f"open {url}  (Ctrl-C ends)"))
+        app = application(open_case_for_writing(case, tell), access, tell)
+    run(app, access, port, lambda url: say(f"open {url}  (Ctrl-C ends)"))
     return 0

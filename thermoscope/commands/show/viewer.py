@@ -17,8 +17,8 @@ from thermoscope.case_folder.runs import (
     at_revision,
     before_last,
     by_interest,
+    comparison_of,
     fields,
-    held,
     readings,
     temperature_range,
 )
@@ -93,4 +93,4 @@ def _recorded(folder: Folder, test: Test, nodes: SplitMesh, earlier: Case | None
     times, now = fields(folder.case, test, nodes, FRAMES)
     before = None if earlier is None else fields(earlier, test, nodes, FRAMES)[1]
     rest = tuple(Earlier(fields(case, test, nodes, FRAMES)[1], readings(case, test)) for case in others)
-    return Recorded(held(folder, test), times, now, before, rest)
+    return Recorded(comparison_of(folder, test), times, now, before, rest)

@@ -77,10 +77,10 @@ def answer(document: Mapping[str, Any], called: str) -> Answer:
     return Answer(sentence, parts, f"{RULE}; --why, --json FILE; thermoscope show report {quote(called)}", rest)
 
 
-def tests(found: Sequence[Mapping[str, Any]]) -> Grid:
+def tests(records: Sequence[Mapping[str, Any]]) -> Grid:
     """A row per test, those with most sensors over first."""
     rows = [[t["name"], t["role"], len(t["channels"]), sum(c["verdict"] == "over" for c in t["channels"]), t["rmse_K"]]
-            for t in found]  # fmt: skip
+            for t in records]  # fmt: skip
     rows.sort(key=lambda row: -row[3])
     return Grid("", ["test", "role", "sensors", "over", "rms (K)"], rows, keep=["rms (K)", "over"])
 
@@ -101,24 +101,24 @@ def bands_of(rows: Sequence[Mapping[str, Any]]) -> Grid:
     for r in rows:
         if r["place"] not in worst or r["widest_ci95_K"] > worst[r["place"]]["widest_ci95_K"]:
             worst[r["place"]] = r
-    found = sorted(worst.values(), key=lambda r: -r["widest_ci95_K"])
-    body = [[r["place"], r["widest_ci95_K"], r["test"], r.get("inside")] for r in found]
+    widest = sorted(worst.values(), key=lambda r: -r["widest_ci95_K"])
+    body = [[r["place"], r["widest_ci95_K"], r["test"], r.get("inside")] for r in widest]
     return Grid("95 % bands of the model", ["place", "widest (K)", "in", "readings inside"], body)
 
 
-def roles_in_short(found: Sequence[Mapping[str, Any]]) -> str:
+def roles_in_short(records: Sequence[Mapping[str, Any]]) -> str:
     """How many roles nobody declares; "" where all are."""
-    guessed = [r["name"] for r in found if r["known"] == "guessed"]
+    guessed = [r["name"] for r in records if r["known"] == "guessed"]
     if not guessed:
         return ""
-    unknown = sum(r["role"] is None for r in found if r["known"] == "guessed")
+    unknown = sum(r["role"] is None for r in records if r["known"] == "guessed")
     how = 'say role = "..." in network.toml'
     return f"{len(guessed)} roles are guessed, {unknown} of them unknown; effects are placed by them: {how}."
 
 
-def roles(found: Sequence[Mapping[str, Any]]) -> Grid:
+def roles(records: Sequence[Mapping[str, Any]]) -> Grid:
     """What was guessed, with its evidence."""
-    rows = [[r["name"], r["role"] or "?", TURNS[r["turns"]], r["evidence"]] for r in found if r["known"] == "guessed"]
+    rows = [[r["name"], r["role"] or "?", TURNS[r["turns"]], r["evidence"]] for r in records if r["known"] == "guessed"]
     return Grid("Roles that nobody declares", ["name", "role", "turns", "evidence"], rows)
 
 
@@ -139,23 +139,23 @@ def _why(document: Mapping[str, Any]) -> list[Grid | str]:
 
 def _missing(places: Sequence[Mapping[str, Any]]) -> list[str]:
     """Where heat is missing, and how much at most."""
-    found = [h for h in places if h["evidence_nats"] > EVIDENT]
-    lines = [f"Heat missing at {h['place']} ({h['evidence_nats']:.0f} nats): {_pulses(h)}." for h in found[:3]]
+    evident = [h for h in places if h["evidence_nats"] > EVIDENT]
+    lines = [f"Heat missing at {h['place']} ({h['evidence_nats']:.0f} nats): {_pulses(h)}." for h in evident[:3]]
     return lines or ["No place where heat is clearly missing (beyond what calibration mends)."]
 
 
-def contradiction(found: Mapping[str, Any] | None) -> list[Grid | str]:
+def contradiction(row: Mapping[str, Any] | None) -> list[Grid | str]:
     """What would have to differ between tests: in a sentence, then as a table."""
-    if not found:
+    if not row:
         return []
     rows = [
         [d["test"], d["parameter"], d["others"], d["here"], "" if d["unit"] == "1" else d["unit"], abs(d["sd"]),
-         "yes" if d["possible"] else "no"] for d in found["differences"][:DIFFERENCES]
+         "yes" if d["possible"] else "no"] for d in row["differences"][:DIFFERENCES]
     ]  # fmt: skip
     headers = ["test", "parameter", "other tests", "this test", "unit", "deviations", "can it differ?"]
     keep = ["parameter", "this test", "deviations", "can it differ?"]
     title = "What would have to differ between tests (by tangents)"
-    return [found["words"], *([Grid(title, headers, rows, ["no"], keep)] if rows else [])]
+    return [row["words"], *([Grid(title, headers, rows, ["no"], keep)] if rows else [])]
 
 
 def _pulses(h: Mapping[str, Any]) -> str:

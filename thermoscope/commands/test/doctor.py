@@ -50,10 +50,10 @@ def _fault(settings: Settings, entry: Entry, fault: InputError) -> Finding:
 
 def answer(wrong: Sequence[Finding], doubts: Sequence[Finding], case: str) -> Answer:
     """What would be refused first; a line for each finding and its cure."""
-    found = len(wrong) + len(doubts)
+    number = len(wrong) + len(doubts)
     things, look = ("thing", "looks") if len(doubts) == 1 and not wrong else ("things", "look")
     refused = f"{len(wrong)} would be refused, " if wrong else ""
-    sentence = f"{refused}{len(doubts)} {things} {look} wrong." if found else "Nothing looks wrong."
+    sentence = f"{refused}{len(doubts)} {things} {look} wrong." if number else "Nothing looks wrong."
     lines = [f"{word}{', '.join(filter(None, (f.test, f.where))) or 'all'}: {f.what.removesuffix('?')}. Cure: {f.cure}"
              for word, rows in (("REFUSED ", wrong), ("", doubts)) for f in rows]  # fmt: skip
     return Answer(sentence, lines, f"--json FILE; next: thermoscope test compare {case}")

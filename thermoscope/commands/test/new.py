@@ -74,7 +74,7 @@ def new(files: Sequence[Path], wishes: Wishes, target: str | None) -> int:
         model = _model(wishes, read, tell)
     drafts = _drafts(read, model, wishes)
     with progress() as tell:
-        document = written(folder, model, drafts, tell)
+        document = save_case(folder, model, drafts, tell)
     give(document, target, lambda: answer(document))
     return 0
 
@@ -175,7 +175,7 @@ def _drafts(read: Sequence[tuple[Source, Clock]], model: Model, wishes: Wishes) 
     """Files into tests, columns into places; what is missing is asked for once."""
     dialogue = Dialogue(model.target, not wishes.yes, dict(wishes.constants or {}))
     records = [
-        Recording(source, clock, dialogue.settled(source, guesses(source, clock.columns, model.target)))
+        Recording(source, clock, dialogue.answered(source, guesses(source, clock.columns, model.target)))
         for source, clock in read
     ]
     return drafts_of(records, dialogue, wishes.window_s)
@@ -195,7 +195,7 @@ def drafts_of(
     return out
 
 
-def written(folder: Path, model: Model, drafts: Sequence[Draft], tell: Progress) -> dict[str, Any]:
+def save_case(folder: Path, model: Model, drafts: Sequence[Draft], tell: Progress) -> dict[str, Any]:
     """Write the case, read it as compare would, draw its columns; the document of the command."""
     from thermoscope.case_folder.doctor import examined
     from thermoscope.case_folder.folder import patient_of
@@ -277,7 +277,7 @@ def answer(document: Mapping[str, Any]) -> Answer:
                 "used. All of this is guessed: change it in tests/*.toml.")  # fmt: skip
     rows = [[c["column"], _goes(c) or "left out", c["unit"], c["quantity"], c["doubt"]] for c in columns]
     guessed = Grid("", ["column", "goes to", "unit", "quantity", "doubt"], rows, keep=["goes to", "unit", "doubt"])
-    parts: list[Grid | str] = [*_moved(tests), *_said(document), guessed, _files(tests)]
+    parts: list[Grid | str] = [*_moved(tests), *_remarks(document), guessed, _files(tests)]
     return Answer(sentence, parts, f"picture: {folder}/out/{PICTURE}; next: thermoscope test compare {folder}")
 
 
@@ -304,19 +304,19 @@ def _moved(tests: Sequence[Mapping[str, Any]]) -> list[str]:
             for t in tests for f in t["files"] if f["aligned_by"]]  # fmt: skip
 
 
-def _said(document: Mapping[str, Any]) -> list[str]:
+def _remarks(document: Mapping[str, Any]) -> list[str]:
     """What was assumed, and what looks wrong."""
     tests = document["tests"]
-    said = [note for t in tests for note in (*t["notes"], *(m for f in t["files"] for m in f["notes"]))]
+    remarks = [note for t in tests for note in (*t["notes"], *(m for f in t["files"] for m in f["notes"]))]
     if document["invented_network"]:
-        said.append("no machine and no network was given: network.toml is made from the columns, its numbers are "
+        remarks.append("no machine and no network was given: network.toml is made from the columns, its numbers are "
                     "orders of magnitude")  # fmt: skip
     if document["findings"]:
         count = len(document["findings"])
         things = "thing looks" if count == 1 else "things look"
-        said.append(f"{count} {things} wrong: thermoscope test doctor {document['folder']}")
+        remarks.append(f"{count} {things} wrong: thermoscope test doctor {document['folder']}")
     alike: dict[str, list[str]] = {}
-    for note in dict.fromkeys(said):
+    for note in dict.fromkeys(remarks):
         alike.setdefault(note.partition(":")[0], []).append(note)
     more = {what: f"; {len(notes)} tests alike" if len(notes) > 1 else "" for what, notes in alike.items()}
     return [f"Note: {notes[0]}{more[what]}." for what, notes in alike.items()]

@@ -4,16 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from geom.errors import InputError, MissingDependency, ThermoscopeError
-from lumped.schemas.reader import known
+from lumped.schemas.reader import suggestion
 from thermoscope.case_folder.files import write_whole
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.workbook import tables, write_csvs, write_xlsx
 from thermoscope.commands.open_case import open_case
+from thermoscope.commands.pairs import read_pairs
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import Progress, give, plain, progress
+
+if TYPE_CHECKING:
+    from thermoscope.export.model import Model
 
 WORKBOOKS = ("xlsx", "csv")
 MODELS = ("c", "fmu", "json", "matlab", "observer")
@@ -26,7 +30,7 @@ def export(
 ) -> int:  # fmt: skip
     """A workbook, CSV files, the model as C, FMU, JSON or MAT file, or its observer.  sensors : of the observer"""
     if form not in (*WORKBOOKS, *MODELS):
-        raise InputError(f"'{form}' is no form to export", "--as", known(form, (*WORKBOOKS, *MODELS)))
+        raise InputError(f"'{form}' is no form to export", "--as", suggestion(form, (*WORKBOOKS, *MODELS)))
     if version not in VERSIONS:
         raise InputError(f"FMI {version} is not written", "--fmi", "2 or 3")
     if sensors and form != "observer":
@@ -40,26 +44,15 @@ def export(
         tell("running the model")
         content = tables(folder)
     where, name = out or folder.settings.out, folder.settings.path.resolve().name
-    written = write_csvs(where, content) if form == "csv" else [write_xlsx(where / f"{name}.xlsx", content)]
-    document = {"case": folder.case.name, "files": [str(p) for p in written], "worksheets": list(content)}
-    give(document, target, lambda: Answer(f"{len(written)} files written.", [str(p) for p in written]))
+    paths = write_csvs(where, content) if form == "csv" else [write_xlsx(where / f"{name}.xlsx", content)]
+    document = {"case": folder.case.name, "files": [str(p) for p in paths], "worksheets": list(content)}
+    give(document, target, lambda: Answer(f"{len(paths)} files written.", [str(p) for p in paths]))
     return 0
 
 
-def read_limits(said: Sequence[str]) -> dict[str, float]:
+def read_limits(words: Sequence[str]) -> dict[str, float]:
     """PLACE=DEGC, ..."""
-    out = {}
-    for one in said:
-        place, equals, value = one.rpartition("=")
-        if place in out:
-            raise InputError(f"'{place}' is given twice", "--limit", "one limit for each place")
-        try:
-            out[place] = float(value)
-        except ValueError:
-            equals = ""
-        if not (equals and place) or not -273.15 < out[place] < 3000.0:
-            raise InputError(f"'{one}' is no limit", "--limit", "PLACE=DEGC, for example winding=155")
-    return out
+    return read_pairs(words, "--limit", "limit", "PLACE=DEGC, for example winding=155", -273.15, 3000.0)
 
 
 def _model(
@@ -72,24 +65,24 @@ def _model(
         folder = open_case(case, tell, untested=True)
         tell("collecting the network")
         model = exported(folder, limits)
-        apart = _differences(folder, model, tell) if form in ("c", "fmu") else {}
+        differences = _differences(folder, model, tell) if form in ("c", "fmu") else {}
         files, platforms = _files(model, form, version, tell)
     where = out or folder.settings.out / form
-    written = [write_whole(where / name, content) for name, content in files.items()]
+    paths = [write_whole(where / name, content) for name, content in files.items()]
     document = {
-        "case": folder.case.name, "revision": model.revision, "as": form, "files": [str(p) for p in written],
+        "case": folder.case.name, "revision": model.revision, "as": form, "files": [str(p) for p in paths],
         "platforms": platforms, "states": len(model.states), "state_bytes": state_bytes(model),
         "step_multiplications": step_operations(model), "inputs": [vars(s) for s in model.signals],
         "outputs": [{"name": o.name, "limit_degC": o.limit, "error_K": o.error_K, "role": o.role}
                     for o in model.outputs],
-        "difference_K": apart,
+        "difference_K": differences,
     }  # fmt: skip
     give(document, target, lambda: answer(document))
     return 0
 
 
 def _observer(
-    case: str, out: Path | None, limits: Mapping[str, float], given: Sequence[str], target: str | None
+    case: str, out: Path | None, limits: Mapping[str, float], names: Sequence[str], target: str | None
 ) -> int:
     """The observer of a case in C99."""
     import numpy as np
@@ -102,7 +95,7 @@ def _observer(
     with progress() as tell:
         folder = open_case(case, tell).small  # a controller's memory is short
         channels = {c.name: c for t in folder.case.tests for c in t.channels}
-        sensors = chosen([*channels.values()], given, str(folder.settings.path))
+        sensors = chosen([*channels.values()], names, str(folder.settings.path))
         design = designed(folder, tell)
         tell("writing the observer")
         looks = outputs(model_of(folder)[0], folder, limits)
@@ -110,18 +103,18 @@ def _observer(
         of = observer_model(design.process, design.noise, design.noise.sd, design.rise_K, [s.channel for s in own],
                             folder.case.tests, looks, np.array([s.bias_K for s in own]))  # fmt: skip
     where = out or folder.settings.out / "observer"
-    written = [write_whole(where / name, text) for name, text in observer_files(of).items()]
+    paths = [write_whole(where / name, text) for name, text in observer_files(of).items()]
     document = {
         "case": folder.case.name, "revision": folder.case.model.revision, "as": "observer",
-        "files": [str(p) for p in written], "state_bytes": of.bytes, "inputs": of.given,
+        "files": [str(p) for p in paths], "state_bytes": of.bytes, "inputs": of.input_names,
         "sensors": [c.name for c in sensors], "missing_heat": of.process.bodies, "outputs": [o.name for o in looks],
     }  # fmt: skip
     sentence = f"An observer of {len(sensors)} sensors, {of.bytes} bytes from step to step."
-    give(document, target, lambda: Answer(sentence, [str(p) for p in written], "--json FILE"))
+    give(document, target, lambda: Answer(sentence, [str(p) for p in paths], "--json FILE"))
     return 0
 
 
-def _differences(folder: Folder, model: Any, tell: Progress) -> dict[str, float]:
+def _differences(folder: Folder, model: Model, tell: Progress) -> dict[str, float]:
     """Test -> largest difference (K) between the code and the simulation; empty where nothing can compile here.
 
     Raises ThermoscopeError where they disagree.
@@ -138,13 +131,13 @@ def _differences(folder: Folder, model: Any, tell: Progress) -> dict[str, float]
         return {}
     network, values = model_of(folder)
     out = {t.name: difference(code, network, sampled(record(t, {})), values) for t in folder.case.tests}
-    for test, apart in out.items():
-        if not apart <= AGREES_K:
-            raise ThermoscopeError(f"the exported code differs from the simulation of '{test}' by {apart:.3g} K")
+    for test, by_sensor in out.items():
+        if not by_sensor <= AGREES_K:
+            raise ThermoscopeError(f"the exported code differs from the simulation of '{test}' by {by_sensor:.3g} K")
     return out
 
 
-def _files(model: Any, form: str, version: int, tell: Progress) -> tuple[dict[str, str | bytes], list[str]]:
+def _files(model: Model, form: str, version: int, tell: Progress) -> tuple[dict[str, str | bytes], list[str]]:
     """File name -> content; the platforms that compiled code in them runs on."""
     import json
 
@@ -169,7 +162,9 @@ def answer(document: Mapping[str, Any]) -> Answer:
     """What was written and how well it agrees."""
     sentence = f"{document['states']} states, {document['state_bytes']} bytes from step to step."
     lines = [f"Compiled for {', '.join(document['platforms'])}."] if document["platforms"] else []
-    if apart := document["difference_K"]:
-        test = max(apart, key=lambda t: apart[t])
-        lines.append(f"Largest difference from simulate over {len(apart)} tests: {apart[test]:.2g} K ({test}).")
+    if differences := document["difference_K"]:
+        test = max(differences, key=lambda t: differences[t])
+        lines.append(
+            f"Largest difference from simulate over {len(differences)} tests: {differences[test]:.2g} K ({test})."
+        )
     return Answer(sentence, [*lines, *document["files"]], "--json FILE")

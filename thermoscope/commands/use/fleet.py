@@ -12,7 +12,7 @@ import numpy as np
 
 from geom.errors import InputError
 from lumped.integration.ensemble import dask_cluster
-from lumped.schemas.reader import known
+from lumped.schemas.reader import suggestion
 from thermoscope.commands.open_case import open_case
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import give, progress
@@ -33,17 +33,17 @@ def fleet(case: str, names: Sequence[Path], like: str | None, cluster: str | Non
         folder = open_case(case, tell)
         sheets = {e.name: e.sheet for e in folder.settings.tests}
         if like is not None and like not in sheets:
-            raise InputError(f"no test '{like}'", "--like", known(like, sheets))
+            raise InputError(f"no test '{like}'", "--like", suggestion(like, sheets))
         test = next(t for t in folder.case.tests if like in (None, t.name))
         reader = Reader(replace(folder.case, tests=()), test, load_sheet(sheets[test.name]),
                         folder.settings.sample_s or STEP_S, tuple(sheets))  # fmt: skip
         with dask_cluster(cluster) if cluster else nullcontext() as executor:
             units = histories(files, reader, tell, executor)
         tell("the motors together")
-        found = population(units)
+        spread = population(units)
     fits = {u.name: float(np.sqrt(np.mean([s.rmse_K**2 for s in u.parts]))) for u in units}
     document = {"case": folder.case.name, "revision": folder.case.model.revision, "recordings": len(files),
-                **_document(found, fits)}  # fmt: skip
+                **_document(spread, fits)}  # fmt: skip
     give(document, target, lambda: answer(document))
     return 0
 
@@ -95,9 +95,9 @@ def _factor(mean: float, sd: float) -> list[float]:
 def answer(document: Mapping[str, Any]) -> Answer:
     """The outliers, what differs, what drifts."""
     outliers, count = document["outliers"], len(document["units"])
-    said = "; ".join(f"{o['unit']} ({o['parameter']} x {o['factor']:.2f})" for o in outliers[:3])
+    worst = "; ".join(f"{o['unit']} ({o['parameter']} x {o['factor']:.2f})" for o in outliers[:3])
     names = dict.fromkeys(o["unit"] for o in outliers)
-    sentence = f"{count} motors; {len(names)} stand out: {said}." if outliers else f"{count} motors; none stands out."
+    sentence = f"{count} motors; {len(names)} stand out: {worst}." if outliers else f"{count} motors; none stands out."
     rows = [[o["unit"], o["parameter"], o["factor"], *o["factor_ci95"], o["instead"]] for o in outliers]
     differ = [[p["name"], p["mean"], p["spread_percent"], p["differs"], p.get("drift_percent_year"),
                *(p.get("drift_ci95") or [None, None])]

@@ -18,8 +18,8 @@ from thermoscope.commands.use.rate import case_or_machine, once, read_at
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import give, notes, progress
 from thermoscope.design.condensations import Condensations
-from thermoscope.design.design_problem import Asked, design_problem
-from thermoscope.design.machine_keys import MachineFile, short_key, written
+from thermoscope.design.design_problem import DesignRequest, design_problem
+from thermoscope.design.machine_keys import MachineFile, machine_file_text, short_key
 from validation.optimisation.problem import AUXILIARY, COPPER, PEAK, SETTLING, Problem
 from validation.optimisation.search import METHODS, Design, Effort, pareto_set
 
@@ -36,12 +36,12 @@ def optimise(
     """The Pareto set of a case or a machine file; table, plots and machine files in a folder."""
     if method not in METHODS:
         raise InputError(f"'{method}' is no method", "--method", ", ".join(METHODS))
-    asked = Asked(read_limits(limits), torque, read_at(at), read_bounds(vary), robust, cycle)
-    if not asked.limits:
+    request = DesignRequest(read_limits(limits), torque, read_at(at), read_bounds(vary), robust, cycle)
+    if not request.limits:
         raise InputError("no limit is given", "--limit", "PLACE=DEGC, for example winding=155")
-    with progress() as tell, once() as said, _executor(cluster) as executor:
+    with progress() as tell, once() as seen_notes, _executor(cluster) as executor:
         folder = case_or_machine(name, tell)
-        problem, file = design_problem(folder, asked, tell)
+        problem, file = design_problem(folder, request, tell)
         designs = pareto_set(problem, METHODS[method], effort, executor, tell)
         document = document_of(problem, designs, method, effort)
         if file is not None and any(v.conducts for v in problem.space.variables):
@@ -50,7 +50,7 @@ def optimise(
         where = out or Path("out") / f"{folder.case.name}-designs"
         tell(f"writing {where}")
         document = {"case": folder.case.name, **document, "files": _write(where, problem, designs, document, file)}
-    notes(said)
+    notes(seen_notes)
     give(document, target, lambda: answer(document, where))
     return 0
 
@@ -66,10 +66,10 @@ def _executor(cluster: str | None) -> Iterator[Executor | None]:
         yield executor
 
 
-def read_bounds(said: Sequence[str]) -> dict[str, tuple[float, float] | None]:
+def read_bounds(words: Sequence[str]) -> dict[str, tuple[float, float] | None]:
     """NAME or NAME=LOW:HIGH, ..."""
     out: dict[str, tuple[float, float] | None] = {}
-    for one in said:
+    for one in words:
         name, equals, bounds = one.partition("=")
         out[name] = None
         if equals:
@@ -128,17 +128,21 @@ def _write(
     for row, design in zip(rows, designs, strict=True) if file is not None else ():
         assert file is not None
         name, does = row["design"], design.performance.objectives
-        said = [f"A design of {file.where}: " + ", ".join(f"{o} {does[o]:.4g}" for o in problem.aimed)]
+        comments = [f"A design of {file.where}: " + ", ".join(f"{o} {does[o]:.4g}" for o in problem.aimed)]
         values = problem.space.named(design.x)
-        out.append(write_whole(folder / f"{name}.toml", written(file, values, f"{file.machine.name}-{name}", said)))
+        out.append(
+            write_whole(
+                folder / f"{name}.toml", machine_file_text(file, values, f"{file.machine.name}-{name}", comments)
+            )
+        )
     return [str(path) for path in out]
 
 
 def answer(document: Mapping[str, Any], where: Path) -> Answer:
     """How far the objectives reach, the designs, and how sure the reduced models are of them."""
     designs, reference, aimed = document["designs"], document["reference"], document["objectives"]
-    ends = ", ".join(f"{WORDS[o]} {_shown(o, min(d[o] for d in designs)):.4g} to "
-                     f"{_shown(o, max(d[o] for d in designs)):.4g}" for o in aimed)  # fmt: skip
+    ends = ", ".join(f"{WORDS[o]} {_in_display_unit(o, min(d[o] for d in designs)):.4g} to "
+                     f"{_in_display_unit(o, max(d[o] for d in designs)):.4g}" for o in aimed)  # fmt: skip
     sentence = f"{len(designs)} designs that none beats, of {document['judged']} judged: {ends}."
     names = [v["name"] for v in document["variables"]]
     headers = ["design", *(WORDS[o] for o in aimed), *(short_key(n) for n in names)]
@@ -163,9 +167,9 @@ def _rises(error: Mapping[str, float]) -> float:
     return max(e for n, e in error.items() if n not in (SETTLING, COPPER))
 
 
-def _shown(objective: str, value: float) -> float:
+def _in_display_unit(objective: str, value: float) -> float:
     return value / 60.0 if objective == SETTLING else value
 
 
 def _row(word: str, design: Mapping[str, Any], aimed: Sequence[str], names: Sequence[str]) -> list[Any]:
-    return [word, *(_shown(o, design[o]) for o in aimed), *(design["values"][n] for n in names)]
+    return [word, *(_in_display_unit(o, design[o]) for o in aimed), *(design["values"][n] for n in names)]

@@ -19,12 +19,13 @@ from thermoscope.bands import posterior_of, wanted
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.runs import before_last
 from thermoscope.commands.open_case import open_case
+from thermoscope.commands.pairs import read_pairs
 from thermoscope.commands.use.export import read_limits
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import Progress, give, notes, progress
-from thermoscope.rating import Asked, Rated, rated_model
+from thermoscope.rating import Rated, RatingRequest, rated_model
 from thermoscope.rating_rows import derated, load_of, point, row
-from validation.rating.envelope import FORMS, rated, until
+from validation.rating.envelope import DUTIES, rated, until
 from validation.rating.holding_map import holding_times
 from validation.rating.operation import Operation
 from validation.rating.repeated_cycle import Lap, share_for_ever, time_to_limit
@@ -39,37 +40,26 @@ def rate(
     top_rpm: float | None, loads: Sequence[str], cycle: str | None, mapped: bool, sure: bool | None, target: str | None,
 ) -> int:  # fmt: skip
     """Ratings of a case, or of a machine with nothing measured."""
-    given = read_limits(limits), read_at(at), tuple(loads)
-    asked = Asked(*given, losses, voltage, overload / 100.0, top_rpm, cycle, mapped)
+    options = read_limits(limits), read_at(at), tuple(loads)
+    request = RatingRequest(*options, losses, voltage, overload / 100.0, top_rpm, cycle, mapped)
     if voltage is not None and losses is None:
         raise InputError(
             "is of a loss map, and none is given", "--voltage", "--losses FILE.csv with a column voltage_V"
         )
-    if not asked.limits:
+    if not request.limits:
         raise InputError("no limit is given", "--limit", "PLACE=DEGC, for example winding=155")
-    with progress() as tell, once() as said:
+    with progress() as tell, once() as seen_notes:
         folder = case_or_machine(name, tell)
         document = {"case": folder.case.name, "revision": folder.case.model.revision,
-                    **document_of(folder, asked, sure, tell)}  # fmt: skip
-    notes(said)
+                    **document_of(folder, request, sure, tell)}  # fmt: skip
+    notes(seen_notes)
     give(document, target, lambda: answer(document))
     return 0
 
 
-def read_at(said: Sequence[str]) -> dict[str, float]:
+def read_at(words: Sequence[str]) -> dict[str, float]:
     """NAME=VALUE, ..."""
-    out = {}
-    for one in said:
-        name, _, value = one.rpartition("=")
-        if name in out:
-            raise InputError(f"'{name}' is given twice", "--at", "one value for each")
-        try:
-            out[name] = float(value)
-        except ValueError:
-            name = ""
-        if not name or not np.isfinite(out[name]):
-            raise InputError(f"'{one}' is no operating point", "--at", "NAME=VALUE, for example speed_rpm=2000")
-    return out
+    return read_pairs(words, "--at", "operating point", "NAME=VALUE, for example speed_rpm=2000")
 
 
 def case_or_machine(name: str, tell: Progress) -> Folder:
@@ -89,26 +79,26 @@ def case_or_machine(name: str, tell: Progress) -> Folder:
 @contextmanager
 def once() -> Iterator[list[str]]:
     """What correlations and maps say of their ranges: the last word of each instead of hundreds."""
-    said: list[str] = []
+    notes: list[str] = []
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("ignore")
         warnings.simplefilter("always", RangeWarning)
-        yield said
+        yield notes
     last = {str(w.message).split("=")[0]: str(w.message) for w in caught}
-    said.extend(f"{what} (a rating looks beyond what it ends at)" for what in last.values())
+    notes.extend(f"{what} (a rating looks beyond what it ends at)" for what in last.values())
 
 
-def document_of(folder: Folder, asked: Asked, sure: bool | None, tell: Progress) -> dict[str, Any]:
-    it = rated_model(folder, asked)
+def document_of(folder: Folder, request: RatingRequest, sure: bool | None, tell: Progress) -> dict[str, Any]:
+    it = rated_model(folder, request)
     model, op, limits = it.model, it.op, it.limits
     tell("ratings")
-    here = {form: rated(model, op, limits, form, None) for form in FORMS}
-    old = _before(folder, asked, tell)
-    before = {} if old is None else {form: load_of(old, form, None) for form in FORMS}
-    posterior = posterior_of(folder, tell) if asked.losses is None and wanted(model.network, sure) else None
+    here = {form: rated(model, op, limits, form, None) for form in DUTIES}
+    old = _before(folder, request, tell)
+    before = {} if old is None else {form: load_of(old, form, None) for form in DUTIES}
+    posterior = posterior_of(folder, tell) if request.losses is None and wanted(model.network, sure) else None
     tell("envelope over the speed")
-    speeds = _speeds(folder, op, asked)
-    envelope = [rated(model, op, limits, form, n) for form in FORMS for n in speeds]
+    speeds = _speeds(folder, op, request)
+    envelope = [rated(model, op, limits, form, n) for form in DUTIES for n in speeds]
     tell("derating")
     load, main = here["S1"].load, op.inputs[op.main]
     return {
@@ -117,19 +107,19 @@ def document_of(folder: Folder, asked: Asked, sure: bool | None, tell: Progress)
         "ratings": [row(folder, op, r, before.get(f), posterior) for f, r in here.items()],
         "envelope": [point(folder, op, r, old, posterior) for r in envelope],
         "derating": derated(folder, it, old, load, posterior),
-        "overload": _overload(it, asked, load),
-        "cycle": _cycle(folder, it, asked, tell),
-        "map": _map(it, (load, here["S2 10 s"].load), speeds, tell) if asked.mapped else {},
+        "overload": _overload(it, request, load),
+        "cycle": _cycle(folder, it, request, tell),
+        "map": _map(it, (load, here["S2 10 s"].load), speeds, tell) if request.mapped else {},
     }  # fmt: skip
 
 
-def _before(folder: Folder, asked: Asked, tell: Progress) -> Rated | None:
+def _before(folder: Folder, request: RatingRequest, tell: Progress) -> Rated | None:
     """The model before its last step; none without a step."""
     earlier = before_last(folder)
     if earlier is None:
         return None
     tell("ratings of the model before its last step")
-    return rated_model(replace(folder, case=earlier), asked)
+    return rated_model(replace(folder, case=earlier), request)
 
 
 def _map(it: Rated, ends: tuple[float, float], speeds: Sequence[float], tell: Progress) -> dict[str, Any]:
@@ -143,44 +133,44 @@ def _map(it: Rated, ends: tuple[float, float], speeds: Sequence[float], tell: Pr
     return {"speed_rpm": list(speeds), it.op.main: [main * x for x in loads], "seconds": seconds.tolist()}
 
 
-def _cycle(folder: Folder, it: Rated, asked: Asked, tell: Progress) -> dict[str, Any]:
+def _cycle(folder: Folder, it: Rated, request: RatingRequest, tell: Progress) -> dict[str, Any]:
     """The share of a drive cycle's load that may be repeated for ever; how long all of it from cold."""
-    if asked.cycle is None:
+    if request.cycle is None:
         return {}
     from thermoscope.case_folder.cycle import find_cycle, load_cycle
 
-    tell(f"cycle {asked.cycle}")
+    tell(f"cycle {request.cycle}")
     network, op = it.model.network, it.op
     ratings = folder.built.machine.sections.get("ratings", {}) if folder.built is not None else {}
-    cycle = load_cycle(find_cycle(folder.settings.path, asked.cycle), network, ratings)
+    cycle = load_cycle(find_cycle(folder.settings.path, request.cycle), network, ratings)
     notes(cycle.notes)
     record = cycle.record
     if cycle.drive is not None:
         from lumped.drives.coupled import coupled
 
-        found = coupled(network, record, cycle.drive, cycle.watched, it.model.values, it.model.rows)
-        record = replace(record, inputs=found.inputs)
+        driven = coupled(network, record, cycle.drive, cycle.watched, it.model.values, it.model.rows)
+        record = replace(record, inputs=driven.inputs)
     lap = Lap(record, op.loads)
     share, at = share_for_ever(it.model, op, it.limits, lap)
     return {"name": cycle.name, "share": share, "at": at, "until_s": time_to_limit(it.model, op, it.limits, lap)}
 
 
-def _speeds(folder: Folder, op: Operation, asked: Asked) -> list[float]:
+def _speeds(folder: Folder, op: Operation, request: RatingRequest) -> list[float]:
     """From rest to the largest speed that was recorded or asked for."""
     if op.speed is None:
         return []
     seen = [float(np.max(np.abs(t.inputs[op.speed]))) for t in folder.case.tests if op.speed in t.inputs]
-    top = asked.top_rpm or max([abs(op.inputs[op.speed]), *seen])
+    top = request.top_rpm or max([abs(op.inputs[op.speed]), *seen])
     return [float(n) for n in np.linspace(0.0, top, POINTS)] if top > 0.0 else []
 
 
-def _overload(it: Rated, asked: Asked, load: float) -> dict[str, Any]:
+def _overload(it: Rated, request: RatingRequest, load: float) -> dict[str, Any]:
     """How long at a multiple of the continuous rating, from cold and from rest at three quarters of it."""
     if not np.isfinite(load):
         return {}
     most = list(it.limits.values())
-    cold, warm = (until(it.model, it.op, most, asked.overload * load, None, w) for w in (None, WARM * load))
-    return {"percent": 100.0 * asked.overload, "from_cold_s": cold, "from_warm_s": warm, "warm_percent": 100.0 * WARM}
+    cold, warm = (until(it.model, it.op, most, request.overload * load, None, w) for w in (None, WARM * load))
+    return {"percent": 100.0 * request.overload, "from_cold_s": cold, "from_warm_s": warm, "warm_percent": 100.0 * WARM}
 
 
 def answer(document: Mapping[str, Any]) -> Answer:
@@ -234,8 +224,8 @@ def _of_cycle(cycle: Mapping[str, Any]) -> str:
     return f"Cycle {cycle['name']}: {share} may be repeated for ever ({cycle['at'] or 'nothing'} limits); {whole}."
 
 
-def _of_map(found: Mapping[str, Any], main: str) -> Grid:
+def _of_map(grid: Mapping[str, Any], main: str) -> Grid:
     """A row per load, the largest first; a column per speed."""
-    rows = [[u, *(s[k] if np.isfinite(s[k]) else "for ever" for s in found["seconds"])]
-            for k, u in reversed(list(enumerate(found[main])))]  # fmt: skip
-    return Grid("Seconds from cold, over the speed (1/min)", [main, *(f"{n:.0f}" for n in found["speed_rpm"])], rows)
+    rows = [[u, *(s[k] if np.isfinite(s[k]) else "for ever" for s in grid["seconds"])]
+            for k, u in reversed(list(enumerate(grid[main])))]  # fmt: skip
+    return Grid("Seconds from cold, over the speed (1/min)", [main, *(f"{n:.0f}" for n in grid["speed_rpm"])], rows)

@@ -72,14 +72,14 @@ def _cycles(folder: Folder, network: Network, cycle: str | None) -> Iterable[Cyc
     if cycle is None:
         return [Cycle(test.name, record(test, {})) for test in folder.case.tests]
     ratings = folder.built.machine.sections.get("ratings", {}) if folder.built is not None else {}
-    found = load_cycle(find_cycle(folder.settings.path, cycle), network, ratings)
-    notes(found.notes)
-    return [found]
+    loaded = load_cycle(find_cycle(folder.settings.path, cycle), network, ratings)
+    notes(loaded.notes)
+    return [loaded]
 
 
 def _ran(
     network: Network, values: Mapping[str, float], cycle: Cycle, folder: Folder, into: Path, tell: Progress,
-    known: ParameterPosterior | None,
+    posterior: ParameterPosterior | None,
 ) -> dict[str, Any]:  # fmt: skip
     tell(f"running {cycle.name}")
     from thermoscope.verification.error_budget import error_budgets
@@ -91,8 +91,8 @@ def _ran(
     if cycle.drive is None:
         run = integrated(network, record, values, list(rows.values()), keep_states=True)
     else:
-        found = coupled(network, record, cycle.drive, cycle.watched, values, list(rows.values()))
-        run, record, residuals = found.run, replace(record, inputs=found.inputs), found.residuals
+        driven = coupled(network, record, cycle.drive, cycle.watched, values, list(rows.values()))
+        run, record, residuals = driven.run, replace(record, inputs=driven.inputs), driven.residuals
     z = np.asarray(run.z)
     inside, hot = len(rows) - len(sensors(folder)), hot_spots(network, z)
     hottest = [z[:, r.index] @ r.weights for r in hot.values()]
@@ -103,7 +103,7 @@ def _ran(
     heat = audit(network, record, values)
     if heat.mismatch > MISMATCH:
         raise ThermoscopeError(f"{cycle.name}: injected and declared losses differ by {100 * heat.mismatch:.3g} %")
-    band = None if known is None else along(known, cycle.name, record, rows)
+    band = None if posterior is None else along(posterior, cycle.name, record, rows)
     file = write_whole(into / f"simulate-{cycle.name}.csv", _csv(record, rows, y, band))
     budget = error_budgets(folder, {cycle.name: record}, tell)[cycle.name]
     document = _document(cycle, record, rows, y, heat, residuals, file)
@@ -151,10 +151,10 @@ def _circuits(folder: Folder) -> list[dict[str, Any]]:
         return []
     from lumped.declarations.network import load_circuits
 
-    found = load_circuits(folder.settings.network)
+    circuits = load_circuits(folder.settings.network)
     return [
         {"circuit": n, "flow_m3_s": c.flow, "pressure_drop_Pa": c.pressure_drop(), "pump_W": c.pump_power()}
-        for n, c in found.items()
+        for n, c in circuits.items()
     ]
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
+from lumped.integration.record import Record
 from lumped.integration.simulate import initial_state
 from thermoscope.case_folder.files import write_whole
 from thermoscope.case_folder.folder import Folder
@@ -19,7 +20,7 @@ from thermoscope.case_folder.runs import mean_rows
 from thermoscope.commands.open_case import PACKAGE, open_case
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import STDOUT, give, progress, say
-from thermoscope.monitoring.live_rows import PIPE, TOGETHER, Rows, opened, table_of, together
+from thermoscope.monitoring.live_rows import PIPE, TOGETHER, Rows, open_stream, table_of, together
 from thermoscope.monitoring.observing import chosen, designed, joined, record_of, started
 from thermoscope.recordings.formats import stem_of
 from thermoscope.recordings.sheet import load_sheet
@@ -33,9 +34,9 @@ Array = NDArray[np.float64]
 MINUTE = 60.0
 
 
-def watch(case: str, follow: str, given: Sequence[str], like: str | None, out: Path | None, target: str | None) -> int:
-    """Rows from a file or a pipe.  given : sensors to use, by default all;  like : test whose sheet the rows have"""
-    with opened(follow) as stream:
+def watch(case: str, follow: str, names: Sequence[str], like: str | None, out: Path | None, target: str | None) -> int:
+    """Rows from a file or a pipe.  names : sensors to use, by default all;  like : test whose sheet the rows have"""
+    with open_stream(follow) as stream:
         with progress() as tell:
             folder = open_case(case, tell)
             sheets = {e.name: load_sheet(e.sheet) for e in folder.settings.tests}
@@ -43,7 +44,7 @@ def watch(case: str, follow: str, given: Sequence[str], like: str | None, out: P
             name, table, lines = table_of(stream, follow, sheets, network, like)
             channels = {c.name: c for t in folder.case.tests if t.name == name for c in t.channels}
             here = [c for n, c in channels.items() if n in table.sensors()]
-            sensors = chosen(here, given, follow)
+            sensors = chosen(here, names, follow)
             design = designed(folder, tell)
         session = Session(folder, design, sensors, [c for c in here if c not in sensors], target != STDOUT)
         with suppress(KeyboardInterrupt):
@@ -102,7 +103,7 @@ class Session:
         for sample in samples:
             self._note(sample)
 
-    def _open_loop(self, record: Any, count: int) -> list[Array]:
+    def _open_loop(self, record: Record, count: int) -> list[Array]:
         """States (n,) of the model as it stands, without any reading but the very first, the withheld sensors' too."""
         if not self.withheld or self.free is None:
             return []
@@ -138,14 +139,18 @@ class Session:
             self.spoken = sample.time_s
             say(self._line(sample, seen))
 
-    def _line(self, sample: Sample, seen: dict[str, tuple[float, float]]) -> str:
+    def _line(self, sample: Sample, estimates: dict[str, tuple[float, float]]) -> str:
         """One line for the terminal."""
         assert self.one is not None
         places = [c.place for c in self.sensors]
         places += [n for n in self.design.process.bodies if n not in places]
-        shown = [f"{n} {seen[n][0]:.1f} +- {1.96 * seen[n][1]:.1f}" for n in dict.fromkeys(places) if n in seen]
-        said = [_said(e.kind, e.where, e.amplitude, e.probability) for e in self.one.open.values()]
-        return f"{sample.time_s / MINUTE:7.1f} min  {', '.join(shown)} degC{''.join('; ' + s for s in said)}"
+        temperatures = [
+            f"{n} {estimates[n][0]:.1f} +- {1.96 * estimates[n][1]:.1f}"
+            for n in dict.fromkeys(places)
+            if n in estimates
+        ]
+        alarms = [_alarm_text(e.kind, e.where, e.amplitude, e.probability) for e in self.one.open.values()]
+        return f"{sample.time_s / MINUTE:7.1f} min  {', '.join(temperatures)} degC{''.join('; ' + s for s in alarms)}"
 
     def csv(self) -> str:
         head = ["time_s", *(x for n in self.rows for x in (f"T {n} (degC)", f"sd T {n} (K)"))]
@@ -181,7 +186,7 @@ def _interval(value: float, sd: float) -> list[float]:
     return [value - 1.96 * sd, value + 1.96 * sd]
 
 
-def _said(kind: str, where: str, amplitude: float, probability: float) -> str:
+def _alarm_text(kind: str, where: str, amplitude: float, probability: float) -> str:
     if kind == "model":
         return f"the model fails at {where}: {amplitude:+.3g} W beyond doubt ({100 * probability:.0f} %)"
     size = f" by {amplitude:+.2g} K" if np.isfinite(amplitude) else ""
@@ -194,7 +199,7 @@ def answer(document: dict[str, Any]) -> Answer:
     sentence = (f"{document['duration_s'] / MINUTE:.0f} min watched; hottest: {hottest['place']}, "
                 f"{hottest['max_C']:.1f} degC.")  # fmt: skip
     rows = [[p["place"], p["end_C"], p["end_ci95"][1] - p["end_C"], p["max_C"]] for p in document["places"]]
-    events = [[_said(e["kind"], e["where"], _number(e["amplitude"]), e["probability"]), e["from_s"], e["to_s"]]
+    events = [[_alarm_text(e["kind"], e["where"], _number(e["amplitude"]), e["probability"]), e["from_s"], e["to_s"]]
               for e in document["events"]]  # fmt: skip
     held = [[w["sensor"], w["rmse_K"], w["open_loop_rmse_K"]] for w in document["withheld"]]
     parts = [

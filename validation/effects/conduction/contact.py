@@ -5,12 +5,12 @@ from dataclasses import dataclass
 from lumped.model.network import Link, Network
 from lumped.transfer.laws import CONSTANT
 from validation.effects.base import Effect, Scene, with_parameter
-from validation.effects.sites import across_gap, own_links, solids
+from validation.effects.sites import across_gap, model_links, solids
 
 
 def joints(network: Network) -> list[Link]:
     """Contacts, and hand-declared links between two solids whose conductance follows nothing: a film is no joint."""
-    inner = [link for link in own_links(network) if not set(link.places) & set(network.boundaries)]
+    inner = [link for link in model_links(network) if not set(link.places) & set(network.boundaries)]
     return [link for link in inner if link.kind == "contact" or (link.kind == "link" and _solid(network, link))]
 
 

@@ -19,7 +19,7 @@ def shafts(network: Network) -> list[str]:
     return with_role(network, Role.SHAFT) or with_role(network, Role.ROTOR) or turning(network)
 
 
-def beyond(network: Network) -> str | None:
+def heat_sink(network: Network) -> str | None:
     """Where the heat goes: the driven machine where its temperature is read, else the air."""
     return next(iter(boundaries(network, Role.DRIVEN_MACHINE)), ambient(network))
 
@@ -47,9 +47,9 @@ class ShaftConduction(Effect):
 
     @classmethod
     def candidate_places(cls, scene: Scene) -> list[str]:
-        return shafts(scene.network) if beyond(scene.network) else []
+        return shafts(scene.network) if heat_sink(scene.network) else []
 
     def extend(self, network: Network) -> Network:
-        link = exchange(network, self.name, self.place, str(beyond(network)), Fixed(1.0))
+        link = exchange(network, self.name, self.place, str(heat_sink(network)), Fixed(1.0))
         most = stub(float(network.C[network.places[self.place].states[0]]))
         return with_parameter(network.extended(links=[link]), self.parameter(link.name, scale=most))

@@ -17,9 +17,9 @@ def gaps(network: Network) -> list[str]:
     """
     known = {p.name for p in solids(network)}
     joined = [link.places for link in network.links if set(link.places) <= known and len(set(link.places)) == 2]
-    apart = [(a, b) if turns(network, a) else (b, a) for a, b in joined if across_air(network, a, b)]
+    pairs = [(a, b) if turns(network, a) else (b, a) for a, b in joined if across_air(network, a, b)]
     untold = [] if any(turns(network, name) for name in known) else joined
-    return fluids(network, Role.AIR_GAP) or ["|".join(pair) for pair in apart or untold]
+    return fluids(network, Role.AIR_GAP) or ["|".join(pair) for pair in pairs or untold]
 
 
 def speed_law(network: Network) -> InputPower:

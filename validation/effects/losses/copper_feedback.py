@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 from lumped.model.network import Network, Source
 from lumped.sources.losses import ALPHA_CU
-from lumped.transfer.laws import CONSTANT, Linear
+from lumped.transfer.laws import CONSTANT, Linear, Scaled, WithTemperature
 from validation.effects.base import Effect, Scene, with_parameter
-from validation.effects.build import Shaped, copy_source
+from validation.effects.build import copy_source
 from validation.effects.sites import windings
 
 REFERENCE = 20.0  # degC, of losses that name no temperature at which they hold
@@ -40,9 +40,9 @@ class CopperFeedback(Effect):
     def extend(self, network: Network) -> Network:
         (source,) = [s for s in network.sources if s.name.split(":", 1)[-1] == self.place]
         rising, constant = f"{self.name}:rise", f"{self.name}:base"
-        law = Shaped(source.law, lambda inputs: 1.0, Linear(1.0, _reference(source) or REFERENCE))
+        law = WithTemperature(source.law, Linear(1.0, _reference(source) or REFERENCE))
         network = copy_source(network, source, rising, law)
-        network = copy_source(network, source, constant, Shaped(source.law, lambda inputs: -1.0))
+        network = copy_source(network, source, constant, WithTemperature(Scaled(source.law, -1.0)))
         return with_parameter(network, self.parameter(rising, constant))
 
 

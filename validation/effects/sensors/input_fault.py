@@ -3,13 +3,13 @@
 import warnings
 from abc import abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
 from lumped.correlations import RangeWarning
 from lumped.model.network import Link, Network, Source
-from lumped.transfer.laws import Array, Inputs, Law, TemperatureLaw
+from lumped.transfer.laws import Array, Inputs, Law, Wrapped
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import copy_link, copy_source
 
@@ -17,17 +17,10 @@ COUNTED = ("speed", "frequency")  # by encoder or clock: a wrong number of pulse
 
 
 @dataclass(frozen=True)
-class Chord(Law):
+class Chord(Wrapped):
     """How a law changes with an error of one input, per unit of the error: over a chord, for laws that bend."""
 
-    base: Law
     input: str
-    reads: tuple[str, ...] = field(init=False, default=())
-    temperature: TemperatureLaw = field(init=False, default=TemperatureLaw())
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "reads", self.base.reads)
-        object.__setattr__(self, "temperature", self.base.temperature)
 
     @abstractmethod
     def chord(self, u: Array) -> tuple[float, Array, Array]:

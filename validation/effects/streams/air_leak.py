@@ -4,11 +4,11 @@ from dataclasses import dataclass
 
 from lumped.model.network import Link, Network
 from validation.effects.base import Effect, Scene, with_parameter
-from validation.effects.sites import cell, own_links
+from validation.effects.sites import cell, model_links
 
 
 def streams(network: Network) -> list[Link]:
-    return [link for link in own_links(network) if link.kind == "stream" and not cell(network, link.places[1])]
+    return [link for link in model_links(network) if link.kind == "stream" and not cell(network, link.places[1])]
 
 
 @dataclass(frozen=True)

@@ -13,8 +13,8 @@ from validation.effects.sites import boundaries, fluids, neighbours, solids, was
 def coolants(network: Network) -> list[str]:
     """Boundaries and fluid nodes that are a coolant and wash a part; where none washes any, the boundaries."""
     inlets = boundaries(network, Role.COOLANT)
-    found = [n for n in (*inlets, *fluids(network, Role.COOLANT)) if n in network.states or n in inlets]
-    return [n for n in found if washed(network, n)] or inlets
+    names = [n for n in (*inlets, *fluids(network, Role.COOLANT)) if n in network.states or n in inlets]
+    return [n for n in names if washed(network, n)] or inlets
 
 
 def reached(network: Network, place: str) -> list[str]:

@@ -9,7 +9,7 @@ from lumped.transfer.laws import Inputs
 from validation.case import RUNNING
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import Shaped, copy_link
-from validation.effects.sites import own_links
+from validation.effects.sites import model_links
 from validation.effects.streams.flow import flows
 
 PARTS = (25, 50, 75)  # percent of the test after which it may have stopped
@@ -55,7 +55,7 @@ class FanStop(Effect):
         test = which.removeprefix(f"{original.name}:")
         new = []
         own = {t for t, _ in original.targets}
-        for link in [x for x in own_links(network) if x.name in own]:
+        for link in [x for x in model_links(network) if x.name in own]:
             new.append(f"{self.name}:{link.name}")
             law = Shaped(link.law, Stopped(test, int(part)), link.law.temperature, ("time_s",))
             network = copy_link(network, link, new[-1], law)

@@ -9,13 +9,13 @@ from lumped.model.network import Link, Network
 from lumped.transfer.laws import Inputs
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import HOUR, Shaped, copy_link
-from validation.effects.sites import boundaries, cell, own_links, part_of
+from validation.effects.sites import boundaries, cell, model_links, part_of
 
 
 def films(network: Network, part: str) -> list[Link]:
     """Films of a part to any boundary but a test bed, which it stands on."""
     washing = set(network.boundaries) - set(boundaries(network, Role.TEST_BED))
-    outer = [link for link in own_links(network) if set(link.places) & washing]
+    outer = [link for link in model_links(network) if set(link.places) & washing]
     outer = [link for link in outer if not any(cell(network, place) for place in link.places)]
     return [link for link in outer if part in {part_of(network, p) for p in link.places} | set(link.places)]
 

@@ -135,9 +135,9 @@ def effects(design: Design, values: Array, response: str = "", order: int = 2) -
     letters = [f.letter for f in design.factors]
     words = ["".join(w) for n in range(1, order + 1) for w in combinations(letters, n)]
     leading = [w for w in words if not any((len(a), a) < (len(w), w) for a in design.aliases(w, order))]
-    found = {w: float(2.0 * design.column(w) @ values / values.size) for w in leading}
-    PSE, margin, simultaneous = lenth(np.array(list(found.values())))
-    return Effects(response, found, {f.letter: f.name for f in design.factors}, PSE, margin, simultaneous)
+    by_word = {w: float(2.0 * design.column(w) @ values / values.size) for w in leading}
+    PSE, margin, simultaneous = lenth(np.array(list(by_word.values())))
+    return Effects(response, by_word, {f.letter: f.name for f in design.factors}, PSE, margin, simultaneous)
 
 
 def lenth(contrasts: Array) -> tuple[float, float, float]:

@@ -96,11 +96,11 @@ class Screening:
 def screen(machine: Machine, design: Design, load: Load | None = None) -> Screening:
     """All runs of a design, one transient each."""
     table = table_of(machine)
-    found = [run(machine, level, load or Load(), table) for level in design.settings()]
-    rises = np.array([list(one.values()) for one in found])
+    runs = [run(machine, level, load or Load(), table) for level in design.settings()]
+    rises = np.array([list(one.values()) for one in runs])
     named = {name: rises[:, j] for j, name in enumerate(RESPONSES)}
     named[STEP] = named["winding"] - named["magnets"]
-    named[PATH] = np.array([path_mK_W(one, load or Load()) for one in found])
+    named[PATH] = np.array([path_mK_W(one, load or Load()) for one in runs])
     return Screening(design, rises, {name: effects(design, y, name) for name, y in named.items()})
 
 

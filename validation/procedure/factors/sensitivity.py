@@ -59,9 +59,9 @@ def morris(factors: Sequence[Varied], response: Response, trajectories: int = 10
     problem = _problem(factors)
     X = sample.sample(problem, trajectories, num_levels=4, seed=seed)
     Y = _answers(problem, X, response)
-    found = analyse.analyze(problem, X, Y, num_levels=4, seed=seed)
-    names = [str(n) for n in found["names"]]
-    mean, conf, spread = (_named(names, found[key]) for key in ("mu_star", "mu_star_conf", "sigma"))
+    indices = analyse.analyze(problem, X, Y, num_levels=4, seed=seed)
+    names = [str(n) for n in indices["names"]]
+    mean, conf, spread = (_named(names, indices[key]) for key in ("mu_star", "mu_star_conf", "sigma"))
     return Ranking("Morris mu*", mean, conf, spread, len(X))
 
 
@@ -73,10 +73,10 @@ def sobol(factors: Sequence[Varied], response: Response, base: int = 64, seed: i
     problem = _problem(factors)
     X = sample.sample(problem, base, calc_second_order=False, seed=seed)
     Y = _answers(problem, X, response)
-    found = analyse.analyze(problem, Y, calc_second_order=False, seed=seed + 1)  # SALib takes 0 for no seed
+    indices = analyse.analyze(problem, Y, calc_second_order=False, seed=seed + 1)  # SALib takes 0 for no seed
     names = list(dict.fromkeys(problem["groups"])) if "groups" in problem else problem["names"]
-    share, conf = _named(names, found["ST"]), _named(names, found["ST_conf"])
-    return Ranking("Sobol ST", share, conf, _named(names, found["ST"] - found["S1"]), len(X))
+    share, conf = _named(names, indices["ST"]), _named(names, indices["ST_conf"])
+    return Ranking("Sobol ST", share, conf, _named(names, indices["ST"] - indices["S1"]), len(X))
 
 
 def _problem(factors: Sequence[Varied]) -> dict[str, Any]:

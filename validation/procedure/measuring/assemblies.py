@@ -26,7 +26,7 @@ class Assembly:
     """
 
     place: str
-    settled: bool
+    steady: bool
     measured: float
     calculated: float
     percent: float
@@ -45,11 +45,11 @@ class Assembly:
 
 
 def assembly(place: str, T_exp: tuple[float, bool], T_calc: float, ambient: float, u_K: float = 0.0) -> Assembly:
-    """T_exp : (degC, whether it had settled);  u_K : its standard uncertainty."""
-    measured, settled = T_exp
+    """T_exp : (degC, whether it was steady);  u_K : its standard uncertainty."""
+    measured, steady = T_exp
     off = 100.0 * abs(T_calc - measured)
     rise = max(abs(measured - ambient), 1e-9)
-    return Assembly(place, settled, measured, T_calc, off / abs(measured), off / rise, 200.0 * u_K / abs(measured))
+    return Assembly(place, steady, measured, T_calc, off / abs(measured), off / rise, 200.0 * u_K / abs(measured))
 
 
 def assemblies(test: Test, predicted: Array, resolution_K: float = 0.5, window_min: float = 10.0) -> list[Assembly]:
@@ -60,11 +60,11 @@ def assemblies(test: Test, predicted: Array, resolution_K: float = 0.5, window_m
         columns = [j for j, c in enumerate(test.channels) if c.place == place and np.isfinite(c.y).any()]
         if columns:
             y = np.nanmean([test.channels[j].y for j in columns], axis=0)
-            found = equilibrium(test.time / 60.0, y, resolution_K, window_min)
+            end = equilibrium(test.time / 60.0, y, resolution_K, window_min)
             late = test.time >= test.time[-1] - 60.0 * window_min
             calculated = float(np.mean(predicted[late][:, columns]))
             u = max(test.channels[j].sigma_K for j in columns)
-            out.append(assembly(place, (float(np.nanmean(y[late])), found.reached), calculated, ambient, u))
+            out.append(assembly(place, (float(np.nanmean(y[late])), end.reached), calculated, ambient, u))
     return out
 
 

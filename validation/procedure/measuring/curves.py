@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,7 @@ from validation.procedure.measuring.repeats import Repeats, repeats
 from validation.procedure.measuring.warming import Equilibrium, Warming, equilibrium, fit_eq8
 
 Array = NDArray[np.float64]
+R = TypeVar("R")
 STEADY = 0.02  # a load that strays further from its mean (rms) is no constant load
 ALIKE = 0.02  # tests whose mean loads differ by less are repeats of one test
 LATE = 0.75  # share of a test after which its readings count as its end
@@ -27,17 +28,17 @@ LATE = 0.75  # share of a test after which its readings count as its end
 
 @dataclass(frozen=True)
 class Curve:
-    """One sensor in one test.  warming, settled : None where `why` says what is missing for it"""
+    """One sensor in one test.  warming, equilibrium : None where `why` says what is missing for it"""
 
     channel: str
     place: str
     warming: Warming | None
-    settled: Equilibrium | None
+    equilibrium: Equilibrium | None
     why: str = ""
 
     def document(self) -> dict[str, Any]:
         return {"channel": self.channel, "place": self.place, "eq8": self.warming and self.warming.document(),
-                "equilibrium": self.settled and self.settled.document(), "why": self.why}  # fmt: skip
+                "equilibrium": self.equilibrium and self.equilibrium.document(), "why": self.why}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -53,7 +54,7 @@ class Curves:
     def agrees(self) -> bool:
         """Whether every assembly is within 4 % and equal tests repeat."""
         calibrated = all(worst(rows)["calibrated"] for rows in self.rules.values() if rows)
-        return calibrated and all(found.repeat for found in self.pooled.values())
+        return calibrated and all(repeats_of.repeat for repeats_of in self.pooled.values())
 
     def document(self) -> dict[str, Any]:
         tests = [
@@ -62,8 +63,8 @@ class Curves:
              "rule": worst(self.rules[name]) if self.rules[name] else None}
             for name, rows in self.curves.items()
         ]  # fmt: skip
-        equal = [{"tests": list(names), "place": place, **found.document()}
-                 for (names, place), found in self.pooled.items()]  # fmt: skip
+        equal = [{"tests": list(names), "place": place, **pooled.document()}
+                 for (names, place), pooled in self.pooled.items()]  # fmt: skip
         return {"case": self.case.name, "revision": self.case.model.revision, "agrees": self.agrees, "tests": tests,
                 "repeats": equal}  # fmt: skip
 
@@ -81,11 +82,11 @@ def curve(test: Test, channel: Channel, resolution_K: float = 0.5) -> Curve:
     """Eq. 8 and eq. 9 of one sensor, as far as its record allows."""
     minutes, fine = test.time / 60.0, max(resolution_K, channel.sigma_K)
     start = test.initial if isinstance(test.initial, float) else None
-    warming, why = _tried(lambda: fit_eq8(minutes, channel.y, start, resolution_K))
+    warming, why = _result_or_reason(lambda: fit_eq8(minutes, channel.y, start, resolution_K))
     if not constant(test):
         warming, why = None, "the load varies: eq. 8 is for constant load"
-    settled, short = _tried(lambda: equilibrium(minutes, channel.y, fine, window_min(test, channel)))
-    return Curve(channel.name, channel.place, warming, settled, "; ".join(w for w in (why, short) if w))
+    steady, short = _result_or_reason(lambda: equilibrium(minutes, channel.y, fine, window_min(test, channel)))
+    return Curve(channel.name, channel.place, warming, steady, "; ".join(w for w in (why, short) if w))
 
 
 def window_min(test: Test, channel: Channel) -> float:
@@ -94,7 +95,7 @@ def window_min(test: Test, channel: Channel) -> float:
     return max(10.0, 2.0 * float(np.median(np.diff(read)))) if read.size > 1 else 10.0
 
 
-def _tried(look: Any) -> tuple[Any, str]:
+def _result_or_reason(look: Callable[[], R]) -> tuple[R | None, str]:
     try:
         return look(), ""
     except InputError as fault:
@@ -110,8 +111,8 @@ def constant(test: Test) -> bool:
 
 def _rules(test: Test, predicted: Array, resolution_K: float) -> tuple[Assembly, ...]:
     window = max((window_min(test, c) for c in test.channels), default=10.0)
-    found, _ = _tried(lambda: assemblies(test, predicted, resolution_K, window))
-    return tuple(found or ())
+    rules, _ = _result_or_reason(lambda: assemblies(test, predicted, resolution_K, window))
+    return tuple(rules or ())
 
 
 def _pooled(tests: Sequence[Test], air: str) -> Iterator[tuple[tuple[tuple[str, ...], str], Repeats]]:
@@ -145,9 +146,9 @@ def _same(a: Test, b: Test) -> bool:
 def _end(test: Test, place: str, boundary: str) -> tuple[float, float] | None:
     """Rise over ambient (K) of a place in the last quarter, and the sensor's uncertainty (K)."""
     late, air = test.time >= LATE * test.time[-1], np.broadcast_to(test.boundaries[boundary], test.time.shape)
-    found = []
+    ends = []
     for c in (c for c in test.channels if c.place == place):
         seen = late & np.isfinite(c.y)
         if seen.any():
-            found.append((float(np.mean(c.y[seen] - air[seen])), c.sigma_K))
-    return (float(np.mean([r for r, _ in found])), max(u for _, u in found)) if found else None
+            ends.append((float(np.mean(c.y[seen] - air[seen])), c.sigma_K))
+    return (float(np.mean([r for r, _ in ends])), max(u for _, u in ends)) if ends else None

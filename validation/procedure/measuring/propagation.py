@@ -95,9 +95,9 @@ def _first_order(result: Callable[..., Any], readings: Sequence[Reading]) -> tup
     from uncertainties import ufloat, wrap
 
     variables = [ufloat(r.value, r.sd) for r in readings]
-    found = wrap(lambda *x: float(result(*x)))(*variables)
-    parts = found.error_components()
-    return float(found.std_dev), {r.name: float(parts.get(v, 0.0)) for r, v in zip(readings, variables, strict=True)}
+    linear = wrap(lambda *x: float(result(*x)))(*variables)
+    parts = linear.error_components()
+    return float(linear.std_dev), {r.name: float(parts.get(v, 0.0)) for r, v in zip(readings, variables, strict=True)}
 
 
 def _worst(result: Callable[..., Any], readings: Sequence[Reading]) -> tuple[float, float]:

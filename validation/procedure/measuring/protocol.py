@@ -23,7 +23,7 @@ ROOM_K = 1.0  # the machine counts as cold within this of the room
 WAIT_H = 12.0  # usual time after a run until it is
 SPEED_SHARE = 0.005  # of the speed; as much of a back-EMF is 5 K of a NdFeB magnet (-0.1 %/K)
 DRIFT_K_H = 2.0  # IEC 60034-1: less than 1 K per half hour
-APART_S, SPAN_S = 20.0, 300.0  # s; every 15 s for 5 min is asked for
+INTERVAL_S, SPAN_S = 20.0, 300.0  # s; every 15 s for 5 min is asked for
 
 
 @dataclass(frozen=True)
@@ -124,18 +124,18 @@ def protocol(record: Record) -> Protocol:
 def _result(record: Record, cold: Cold, hot: Hot, steps: tuple[Step, ...]) -> Protocol:
     winding = magnets = None
     ways: tuple[Extrapolated, ...] = ()
-    found: dict[str, float] = {}
+    temperatures: dict[str, float] = {}
     if hot.cooling:
         source = Winding(cold.ohm, cold.machine_C, record.ohmmeter, record.beta)
         ways = tuple(all_ways(cooling_of(source, hot), record.rated_kW))
-        found = {f"winding, {w.method}": w.value for w in ways}
+        temperatures = {f"winding, {w.method}": w.value for w in ways}
         best = min(ways[1:], key=lambda w: (w.method != "exponentials", w.method), default=ways[0])
         winding = source.rise(_ohm_at(source, best.value))
     if hot.volt is not None and hot.rpm and cold.volt is not None and cold.rpm:
         pm = Magnets(cold.volt, cold.machine_C, cold.rpm, record.voltmeter, record.alpha, record.curve)
         magnets = pm.rise(hot.volt, hot.rpm)
-        found["magnets"] = float(pm.temperature(hot.volt, hot.rpm))
-    return Protocol(steps, winding, magnets, ways, found)
+        temperatures["magnets"] = float(pm.temperature(hot.volt, hot.rpm))
+    return Protocol(steps, winding, magnets, ways, temperatures)
 
 
 def cooling_of(winding: Winding, hot: Hot) -> Cooling:
@@ -196,10 +196,10 @@ def _steady(record: Record) -> tuple[State, str]:
     minutes, T = np.array(record.warming, float).T
     if minutes.size < 4 or minutes[-1] < 60.0:
         return "refused", f"{minutes[-1]:g} min recorded; go on for an hour at least"
-    found = equilibrium(minutes, T, record.resolution_K)
-    if abs(found.drift_K_h) > DRIFT_K_H or not found.reached:
-        return "refused", f"still {found.drift_K_h:+.1f} K/h; go on until no two readings 10 min apart differ"
-    return "done", f"steady at {found.T_e:.1f} degC since {found.from_min:.0f} min, {found.drift_K_h:+.1f} K/h"
+    end = equilibrium(minutes, T, record.resolution_K)
+    if abs(end.drift_K_h) > DRIFT_K_H or not end.reached:
+        return "refused", f"still {end.drift_K_h:+.1f} K/h; go on until no two readings 10 min apart differ"
+    return "done", f"steady at {end.T_e:.1f} degC since {end.from_min:.0f} min, {end.drift_K_h:+.1f} K/h"
 
 
 def _hot_ohm(record: Record) -> tuple[State, str]:
@@ -215,7 +215,7 @@ def _hot_ohm(record: Record) -> tuple[State, str]:
     done = _guarded(lambda: _range_words(record.ohmmeter, hot.cooling[0][1], hot.range_high, "hot resistance"))
     if done[0] == "refused":
         return done
-    if len(times) < 4 or times[-1] < SPAN_S * 0.8 or max(np.diff(times)) > APART_S:
+    if len(times) < 4 or times[-1] < SPAN_S * 0.8 or max(np.diff(times)) > INTERVAL_S:
         return (
             "doubtful",
             f"{len(times)} readings to {times[-1]:g} s; every 15 s for 5 min let the fits judge themselves",

@@ -60,8 +60,8 @@ class Saturation:
         if np.min(emf) < low - 1e-9 or np.max(emf) > high + 1e-9:
             seen = float(np.min(emf) if np.min(emf) < low else np.max(emf))
             raise InputError(f"{seen:.4g} V lies outside the saturation curve", "saturation", f"{low:g} to {high:g} V")
-        found = PchipInterpolator(self.emf, self.remanence)(emf)
-        return float(found) if np.ndim(emf) == 0 else found
+        remanence = PchipInterpolator(self.emf, self.remanence)(emf)
+        return float(remanence) if np.ndim(emf) == 0 else remanence
 
 
 @dataclass(frozen=True)

@@ -152,10 +152,10 @@ def _fit(cooling: Cooling, terms: int) -> _Fitted | None:
     span = t[-1] - t[0]
     start = np.log([0.3 * span] if terms == 1 else [0.15 * span, 2.0 * span])
     low, high = np.log([span / 40.0] * terms), np.log([4.0 * span] if terms == 1 else [0.6 * span, 20.0 * span])
-    found = least_squares(left, start, bounds=(low, high))
-    tau = np.exp(found.x)
+    solution = least_squares(left, start, bounds=(low, high))
+    tau = np.exp(solution.x)
     coefficients = np.linalg.lstsq(basis(tau, t), T, rcond=None)[0]
-    square = float(found.fun @ found.fun)
+    square = float(solution.fun @ solution.fun)
     scale = max(square / (n - free), cooling.reading_sd**2)
 
     def slopes(at: Array) -> Array:

@@ -41,7 +41,7 @@ class Warming:
         """T(0), degC."""
         return float(self(0.0))
 
-    def settled_min(self, share: float = 0.95) -> float:
+    def time_to_share_min(self, share: float = 0.95) -> float:
         """tau_95: time (min) at which T reaches a share of its end, both in degC as the equation has them."""
         return float(np.log(np.log(share) / self.b) / self.c)
 
@@ -52,7 +52,7 @@ class Warming:
     def document(self) -> dict[str, Any]:
         return {
             "a_degC": self.a, "b": self.b, "c_1_min": self.c, "ci95": {k: list(v) for k, v in self.ci95.items()},
-            "rmse_K": self.rmse_K, "start_degC": self.start, "tau95_min": self.settled_min(),
+            "rmse_K": self.rmse_K, "start_degC": self.start, "tau95_min": self.time_to_share_min(),
             "warnings": list(self.warnings),
         }  # fmt: skip
 
@@ -92,8 +92,8 @@ def _doubts(fitted: Warming, measured: float | None, last_min: float) -> tuple[s
     if measured is not None and abs(fitted.start - measured) > START_K:
         out.append(f"the formula starts at {fitted.start:.1f} degC, the record at {measured:.1f} degC: "
                    "eq. 8 does not describe the first minutes")  # fmt: skip
-    if fitted.b < 0 and fitted.c < 0 and fitted.settled_min() > last_min:
-        out.append(f"95 % of the end is reached after {fitted.settled_min():.0f} min, after the record's end: "
+    if fitted.b < 0 and fitted.c < 0 and fitted.time_to_share_min() > last_min:
+        out.append(f"95 % of the end is reached after {fitted.time_to_share_min():.0f} min, after the record's end: "
                    "the end temperature is extrapolated")  # fmt: skip
     return tuple(out)
 

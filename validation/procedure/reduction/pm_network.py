@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from geom.description.areas import PartRow, part_table
+from geom.description.geometry import Group
 from geom.description.machine import Machine
 from geom.description.materials import winding_conductivity
 from lumped.declarations.network import read_network
@@ -65,7 +66,7 @@ class PmSettings:
 
 
 def pm_network(machine: Machine, settings: PmSettings, rows: Rows | None = None) -> Network:
-    """The network of a machine of family "pmsm" that has no housing; rows : its table of parts, if already made."""
+    """The network of a machine with magnets in open laminations.  rows : its table of parts, if already made"""
     return read_network(pm_document(machine, settings, rows), machine.name)
 
 
@@ -95,7 +96,7 @@ class _Builder:
     """Collects the tables of the document."""
 
     def __init__(self, machine: Machine, settings: PmSettings, rows: Rows) -> None:
-        self.machine, self.settings, self.g = machine, settings, machine.geometry
+        self.machine, self.settings, self.g = machine, settings, machine.dimensions
         self.rows = rows
         self.nodes: dict[str, Any] = {}
         self.links: dict[str, Any] = {}
@@ -209,7 +210,7 @@ class _Builder:
     def _base(self, name: str, emissivity: float, switch: str, of: Machine | None = None) -> None:
         """Foot, and a plate as a chain of bands along its length; `switch` is the input that couples it, "" always."""
         machine = of or self.machine
-        b, foot, rows = machine.geometry.base, machine.geometry.foot, self.rows if of is None else table_of(of)
+        b, foot, rows = machine.dimensions.base, machine.dimensions.foot, self.rows if of is None else table_of(of)
         k = machine.conductivity("base")[0] * b.thickness
         post = foot.height / (machine.conductivity("foot")[0] * rows["foot"].contacts["base"])
         spread = math.log(max(b.width / (foot.width + foot.length), 1.05)) / (2 * math.pi * k)
@@ -232,7 +233,7 @@ class _Builder:
     def _foot_capacity(self, machine: Machine, rows: Rows) -> float:
         return rows["foot"].mass * machine.material_of("foot").cp
 
-    def _plate(self, node: str, b: Any, share: float, emissivity: float) -> None:
+    def _plate(self, node: str, b: Group, share: float, emissivity: float) -> None:
         """Both sides of one band of the plate."""
         one, size = b.length * b.width * share, b.length * b.width / (2 * (b.length + b.width))
         self._film(node, "plate facing up", size, one, emissivity)

@@ -69,10 +69,10 @@ def transferred(source: Case, target: Case) -> Transfer:
     theirs = {p.name for p in target.model.network.parameters if not p.name.startswith("loss.")}
     values = {k: v for k, v in physical(source).items() if k in theirs}
     case = with_model(target, replace(target.model, values={**target.model.values, **values}))
-    return Transfer(case, tuple(values), tuple(settled(case)))
+    return Transfer(case, tuple(values), tuple(end_errors(case)))
 
 
-def settled(case: Case) -> list[Row]:
+def end_errors(case: Case) -> list[Row]:
     """Every channel of every test at its end, against the model as it stands."""
     network, _ = working(case)
     out = []

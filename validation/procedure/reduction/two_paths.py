@@ -73,7 +73,7 @@ def two_paths(
     T_w, T_m, P_w, P_all = rated
     if P_w <= 0 or P_all <= 0:
         raise InputError("no copper loss at this load", network.name, "a load with a current")
-    found = TwoPaths((T_m - ambient) / P_all, (T_w - T_m) / P_w, T_w - ambient, T_m - ambient, P_w, P_all, {})
+    paths = TwoPaths((T_m - ambient) / P_all, (T_w - T_m) / P_w, T_w - ambient, T_m - ambient, P_w, P_all, {})
     residual = {}
     for share in loads:
         level = {n: v * (share if network.measures(n) == "current" else 1.0) for n, v in inputs.items()}
@@ -81,9 +81,9 @@ def two_paths(
             T_w, T_m, P_w, P_all = _state(network, level, ambient, (winding, machine), values)
         except ThermoscopeError:  # at this load the machine runs away
             continue
-        expected = found.rises(P_w, P_all)
+        expected = paths.rises(P_w, P_all)
         residual[share] = (expected[0] - (T_w - ambient), expected[1] - (T_m - ambient))
-    return TwoPaths(found.R_ext, found.R_w, found.winding_K, found.machine_K, found.P_w, found.P_all, residual)
+    return TwoPaths(paths.R_ext, paths.R_w, paths.winding_K, paths.machine_K, paths.P_w, paths.P_all, residual)
 
 
 def of_test(case: Case, test: Test, winding: str = "winding.copper", machine: str = "magnets") -> TwoPaths:

@@ -51,8 +51,8 @@ class Hypothesis:
 def switches(network: Network) -> dict[str, str]:
     """Base -> the input that couples it."""
     laws = [link.law for link in network.links]
-    found = {law.switch: None for law in laws if isinstance(law, Switched) and law.closed}
-    return {name.removeprefix("on_"): name for name in found}
+    names = {law.switch: None for law in laws if isinstance(law, Switched) and law.closed}
+    return {name.removeprefix("on_"): name for name in names}
 
 
 def declared_base(test: Test, bases: Mapping[str, str]) -> str:
@@ -75,25 +75,25 @@ def which_base(case: Case, names: Sequence[str] = (), progress: Progress = no_pr
     if unknown := [n for n in names if n not in [t.name for t in tests]]:
         known = ", ".join(t.name for t in tests)
         raise InputError(f"no test '{unknown[0]}'", case.name, f"tests that are not held out: {known}")
-    as_said = _fitted(case, tests, None)
+    declared_fit = _fitted(case, tests, None)
     chosen = [t for t in tests if not names or t.name in names]
-    return [h for test in chosen for h in _of_test(case, tests, test, bases, as_said, progress)]
+    return [h for test in chosen for h in _of_test(case, tests, test, bases, declared_fit, progress)]
 
 
 def _of_test(
-    case: Case, tests: Sequence[Test], test: Test, bases: Mapping[str, str], as_said: Fit, progress: Progress
+    case: Case, tests: Sequence[Test], test: Test, bases: Mapping[str, str], declared_fit: Fit, progress: Progress
 ) -> list[Hypothesis]:
-    said, found = declared_base(test, bases), {}
+    declared, fits = declared_base(test, bases), {}
     for base in (NONE, *bases):
         progress(f"{test.name} on {base}")
         moved = [on_base(t, base, bases) if t is test else t for t in tests]
-        found[base] = as_said if base == said else _fitted(case, moved, as_said)
-    cost = {base: deviance(fit) for base, fit in found.items()}
+        fits[base] = declared_fit if base == declared else _fitted(case, moved, declared_fit)
+    cost = {base: deviance(fit) for base, fit in fits.items()}
     least = min(cost.values())
     rows = [
-        Hypothesis(test.name, base, base == said, cost[base] - least,
+        Hypothesis(test.name, base, base == declared, cost[base] - least,
                    base_heat(fit.network, on_base(test, base, bases), fit.values))
-        for base, fit in found.items()
+        for base, fit in fits.items()
     ]  # fmt: skip
     return sorted(rows, key=lambda h: h.deviance)
 
@@ -110,20 +110,20 @@ def deviance(fit: Fit) -> float:
     return 2.0 * fit.objective
 
 
-def bases_tried(case: Case, progress: Progress = no_progress) -> list[Hypothesis]:
+def base_hypotheses(case: Case, progress: Progress = no_progress) -> list[Hypothesis]:
     """Every base for every test; none where the network has no bases."""
     return which_base(case, progress=progress) if switches(case.model.network) else []
 
 
-def wrong_bases(found: Sequence[Hypothesis]) -> list[str]:
+def wrong_bases(hypotheses: Sequence[Hypothesis]) -> list[str]:
     """In words, every test whose readings exclude the base that its sheet says."""
-    return [_words(h, found) for h in found if h.declared and h.excluded]
+    return [_words(h, hypotheses) for h in hypotheses if h.declared and h.excluded]
 
 
-def _words(said: Hypothesis, found: Sequence[Hypothesis]) -> str:
-    own = [h for h in found if h.test == said.test and not h.excluded]
+def _words(declared: Hypothesis, hypotheses: Sequence[Hypothesis]) -> str:
+    own = [h for h in hypotheses if h.test == declared.test and not h.excluded]
     better = " or ".join(h.base for h in own)
     return (
-        f"{said.test} did not stand on the base its sheet says ({said.base}, deviance {said.deviance:.0f}) but on: "
-        f"{better}. At the base, not in the films of the machine: {said.heat.against(own[0].heat)}"
+        f"{declared.test} did not stand on the base its sheet says ({declared.base}, deviance {declared.deviance:.0f}) "
+        f"but on: {better}. At the base, not in the films of the machine: {declared.heat.against(own[0].heat)}"
     )

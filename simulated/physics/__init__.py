@@ -1,0 +1,1 @@
+"""The generator's own physics: conduction, films, losses, materials, the air stream."""

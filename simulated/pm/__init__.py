@@ -1,0 +1,1 @@
+"""The sealed magnet motors of the published thermal tests: films, plant, meters, files."""

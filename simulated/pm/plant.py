@@ -1,0 +1,139 @@
+"""A permanent-magnet machine in transient: copper and magnetic loss, closed air, a base on a foot."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from fnmatch import fnmatch
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import sparse
+from scipy.sparse.linalg import LinearOperator, cg, splu
+
+from geom import build_mesh, load_machine
+from simulated.physics import conduction
+from simulated.physics.conduction import Solid
+from simulated.physics.draws import Draws
+from simulated.physics.losses import copper
+from simulated.physics.materials import RESIN, SLOPES
+from simulated.physics.plant import TOLERANCE_W, Plant
+from simulated.physics.surfaces import Conditions
+from simulated.pm import films as pm_films
+
+Array = NDArray[np.float64]
+WINDING = {"winding": 0.45, "winding.left": 0.35, "winding.right": 0.35}  # part -> share of copper in it
+IN_ROTOR = 0.15  # of the magnetic loss: in the magnets
+CONTACTS = (
+    ("slot.gap|stator.core", 5000.0),
+    ("slot.gap|slot.liner", 5000.0),
+    ("slot.liner|winding", 1000.0),
+    ("winding|winding.*", 50_000.0),
+    ("magnets|rotor.core", 520.0),
+    ("rotor.core|shaft", 4000.0),
+    ("bearing.*|shaft", 150.0),
+    ("bearing.*|endcap.*", 1500.0),
+    ("base|foot", 500.0),
+    ("*", 1000.0),
+)
+
+
+@dataclass(frozen=True)
+class PmLosses:
+    """R20 : resistance at 20 degC that the meter sees (ohm);  phases : copper loss = phases x R x I^2
+
+    magnetic : iron and magnet loss (W) at 383 rpm;  friction : of each bearing (W) at 383 rpm
+    """
+
+    R20: float
+    phases: float
+    magnetic: float
+    friction: float
+
+
+@dataclass(frozen=True)
+class PmPlant(Plant):
+    """A Plant whose losses are PmLosses and whose films are PmFilms."""
+
+    def sources(self, T: Array, now: Conditions) -> tuple[Array, Array]:
+        heat, losses = np.zeros_like(T), self.losses
+        assert isinstance(losses, PmLosses)
+        watts, turning = losses.phases * losses.R20 * now.current2, now.rpm / 383.0
+        for part, share in self.copper_shares().items():
+            self._add(heat, part, share * watts, lambda nodes: copper(T[nodes]))
+        self._add(heat, "stator.core", (1 - IN_ROTOR) * losses.magnetic * turning**1.4)
+        self._add(heat, "magnets", IN_ROTOR * losses.magnetic * turning**2)
+        for bearing in ("bearing.left", "bearing.right"):
+            self._add(heat, bearing, losses.friction * turning)
+        return heat, np.zeros(self.air.size)
+
+    def _solved(self, matrix: sparse.csr_matrix, rhs: Array, guess: Array) -> Array:
+        """Conjugate gradients behind a factor of an earlier matrix, made anew when it no longer helps."""
+        known = self._cache.get("factor")
+        if known is not None:
+            T, failed = cg(matrix, rhs, guess, rtol=0.0, atol=TOLERANCE_W, maxiter=30, M=known)
+            if not failed:
+                return np.asarray(T)
+        factor = splu(
+            matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
+        )
+        self._cache["factor"] = LinearOperator(matrix.shape, factor.solve)
+        return np.asarray(factor.solve(rhs))
+
+    def copper_shares(self) -> dict[str, float]:
+        """Share of the copper in each piece of the winding."""
+        volume = {p: fill * float(self.body.volume[self.body.nodes(p)].sum()) for p, fill in WINDING.items()}
+        return {p: v / sum(volume.values()) for p, v in volume.items()}
+
+    def winding_mean(self, T: Array) -> float:
+        return sum(share * self.mean(part, T) for part, share in self.copper_shares().items())
+
+    def path(self, T: Array, now: Conditions, below: bool) -> float:
+        """Heat that foot and base (below) or all else carry off per kelvin between laminations and ambient (W/K)."""
+        heat = 0.0
+        for face in self.body.faces.values():
+            if face.fluid == "ambient" and (face.part in ("foot", "base")) == below:
+                h = self.films.coefficient(face.part, "ambient", T[face.nodes], now.ambient, now)
+                heat += float(face.areas * h @ (T[face.nodes] - now.ambient))
+        return heat / (self.mean("stator.core", T) - now.ambient)
+
+    def ohm(self, T: Array) -> float:
+        """What a perfect ohmmeter shows."""
+        losses = self.losses
+        assert isinstance(losses, PmLosses)
+        return losses.R20 * sum(share * float(copper(self.mean(p, T))) for p, share in self.copper_shares().items())
+
+
+def nominal_contact(name: str) -> float:
+    return next(value for pattern, value in CONTACTS if fnmatch(name, pattern))
+
+
+def contacts(names: Iterable[str], draws: Draws) -> dict[str, float]:
+    """Conductance of every contact (W/m2/K); left and right are alike, the base's is one of the hidden values."""
+    return {n: draws.around(f"contact.{_side(n)}", nominal_contact(n), 0.25) for n in names}
+
+
+def _side(name: str) -> str:
+    return name.replace(".left", "").replace(".right", "")
+
+
+def solids(machine: Any, draws: Draws) -> dict[str, Solid]:
+    """geom's materials moved by draws; the layer between liner and laminations is one of the hidden values."""
+    common = draws.around("capacity.machine", 1.0, 0.04)
+    out = {}
+    for part in machine.parts:
+        found, name = machine.material_of(part.name), _side(part.name)
+        factor = draws.around(f"conductivity.{name}", 1.0, 0.20 if name == "slot.gap" else 0.08)
+        out[part.name] = Solid((factor * found.k_plane, factor * found.k_axial), common * found.rho * found.cp,
+                               SLOPES.get(found.name, RESIN))  # fmt: skip
+    return out
+
+
+def build(name: str, losses: PmLosses, base: str, draws: Draws, axial: float, segments: int) -> PmPlant:
+    """The machine of geom's library with this name; axial (m): thickest layer, laminations conduct badly across."""
+    machine = load_machine(name)
+    mesh = build_mesh(machine, 0.06, segments, 1, axial)
+    body = conduction.build(mesh, solids(machine, draws), contacts(mesh.contacts, draws))
+    films = pm_films.draw(draws, machine.geometry, base)
+    return PmPlant(body, losses, films, pm_films.ClosedAir())  # type: ignore[arg-type]

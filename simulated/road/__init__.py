@@ -1,0 +1,1 @@
+"""Drive, readings and files of the road test."""

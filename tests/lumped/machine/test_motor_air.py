@@ -1,0 +1,147 @@
+"""The fan's air through a forced-ventilated machine: how it divides, what it takes up, and what is left without it."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from bare_networks import means_only
+
+from geom import Machine, load_machine
+from geom.description.geometry import NO_FEATURES
+from geom.errors import InputError
+from geom.machine_file import machine_from
+from lumped.integration.steady import steady
+from lumped.machine.air import AIR_HEAT, fan_shares
+from lumped.machine.films import surroundings
+from lumped.machine.motor import operating_point
+from lumped.model.network import Network
+from lumped.transfer.hydraulics import pressure_drop
+from lumped.transfer.properties import air
+from thermoscope.pipeline import prepared
+from thermoscope.verification.crosscheck import coefficients
+
+WAYS = ("airgap", "air.interpolar", "air.ducts")
+POINT = {"current_A": 150.0, "speed_rpm": 1000.0, "fan_flow_m3h": 138.0}
+
+
+@pytest.fixture(scope="module")
+def machine() -> Machine:
+    return load_machine("series-dc-100kw-air")
+
+
+@pytest.fixture(scope="module")
+def network(machine) -> Network:
+    return means_only(prepared(machine, 0.1, 36))
+
+
+def rest(network: Network, **changed: float) -> np.ndarray:
+    return steady(network, {**POINT, **changed}, {"ambient": 20.0}).z
+
+
+def at(network: Network, z: np.ndarray, name: str) -> float:
+    return float(z[network.column(name)])
+
+
+def with_ducts(number: int, diameter_mm: float, **fan: float) -> Machine:
+    rotor = {"ducts": number, "duct_diameter_mm": diameter_mm}
+    made = machine_from({"machine": {"family": "series-dc"}, "geometry": {"rotor": rotor}}, "made")
+    return replace(made, sections={"fans": {"flow_m3_h": 138.0, "gap_share": 0.1, **fan}})
+
+
+def shares_of(machine: Machine) -> dict[str, float]:
+    return surroundings(machine, ()).shares
+
+
+def test_all_ways_beside_the_gap_drop_the_same_pressure(machine):
+    shares, ducts, rated = shares_of(machine), machine.features.ducts, 138.0 / 3600.0
+    assert tuple(shares) == WAYS
+    assert sum(shares.values()) == pytest.approx(1.0, rel=1e-12)
+    assert shares["airgap"] == 0.10, "what the machine file says"
+    drops = [pressure_drop(duct, shares[name] * rated, air(40.0)) for name, duct in ducts.items()]
+    assert drops[0] == pytest.approx(drops[1], rel=1e-6)
+
+
+def test_laminar_ducts_by_hand(machine):
+    """In each of 12 ducts: Hagen and Poiseuille's 128 mu L Q / (pi d^4), 1.57 dynamic pressures at edge and exit."""
+    rated, warm = 138.0 / 3600.0, air(40.0)
+    each = shares_of(machine)["air.ducts"] * rated / 12
+    speed = each / (np.pi * 0.010**2)
+    assert speed * 0.020 / warm.nu < 2300.0
+    by_hand = 128 * warm.mu * 0.188 * each / (np.pi * 0.020**4) + 1.57 * warm.rho * speed**2 / 2
+    assert pressure_drop(machine.features.ducts["air.ducts"], 12 * each, warm) == pytest.approx(by_hand, rel=1e-3)
+
+
+@pytest.mark.parametrize("wider", [with_ducts(24, 10.0), with_ducts(12, 14.0)], ids=["more ducts", "wider ducts"])
+def test_more_room_in_the_rotor_takes_more_air(wider):
+    assert shares_of(wider)["air.ducts"] > 1.2 * shares_of(with_ducts(12, 10.0))["air.ducts"]
+
+
+def test_without_ducts_the_rest_passes_between_the_poles():
+    assert shares_of(load_machine("series-dc-100kw")) == {"airgap": 0.10, "air.interpolar": 0.90}
+    assert shares_of(with_ducts(12, 10.0, gap_share=1.0)) == {"airgap": 1.0}
+    machine = load_machine("pmsm-m1")
+    assert fan_shares(machine, surroundings(with_ducts(0, 10.0), ()).fan) == {"airgap": 1.0}
+
+
+def test_the_air_carries_off_what_the_outer_faces_do_not(machine, network):
+    """Losses = flow x rho cp x warming from ambient to the outlet + films to the surroundings."""
+    z = rest(network)
+    c = coefficients(network, POINT, z)
+    by_air = AIR_HEAT * 138.0 / 3600.0 * (at(network, z, "air.right") - 20.0)
+    outer = [place for place in network.places.values() if place.fluid == "ambient"]
+    by_faces = sum(c.films[p.name] * p.area * (float(p.mean.weights @ z[p.mean.index]) - 20.0) for p in outer)
+    windage = machine.sections["losses"]["windage_W"]
+    assert by_air + by_faces == pytest.approx(sum(c.watts.values()) + windage, rel=1e-6)
+    assert by_air > 0.3 * (by_air + by_faces), "a machine cooled by its air"
+
+
+def test_air_warms_along_its_way(network):
+    z = rest(network)
+    T = {name: at(network, z, name) for name in ("air.fan", "air.left", *WAYS, "air.right", "rotor.core")}
+    assert 20.0 < T["air.fan"] < T["air.left"] < T["air.ducts"] < T["rotor.core"]
+    assert T["air.left"] < T["air.right"]
+
+
+def test_a_duct_takes_up_what_its_walls_give_off(machine, network):
+    """share x flow x rho cp x warming in the ducts = film x wall x (rotor - air)."""
+    z = rest(network)
+    share, area = shares_of(machine)["air.ducts"], 12 * np.pi * 0.020 * 0.188
+    h = coefficients(network, POINT, z).films["rotor.core.air.ducts"]
+    taken = share * AIR_HEAT * 138.0 / 3600.0 * (at(network, z, "air.ducts") - at(network, z, "air.left"))
+    given = h * area * (at(network, z, "rotor.core") - at(network, z, "air.ducts"))
+    assert taken == pytest.approx(given, rel=0.01), "the mesh's wall is within 1 % of the cylinders"
+    assert 5.0 < h < 12.0, "laminar, entering: Nu between 3.66 and 9"
+
+
+def test_without_flow_the_streams_carry_nothing(machine, network):
+    z = rest(network, fan_flow_m3h=0.0)
+    T = at(network, z, "air.ducts")
+    assert pytest.approx(at(network, z, "rotor.core"), abs=1e-6) == T, "air shut in by one wall takes its temperature"
+    assert not coefficients(network, {**POINT, "fan_flow_m3h": 0.0}, z).streams.any()
+    still = machine.features.ducts["air.ducts"]
+    assert still.diameter == pytest.approx(0.020)
+    assert at(network, z, "rotor.core") > at(network, rest(network), "rotor.core") + 10.0
+
+
+def test_a_share_of_the_gap_beyond_one_is_refused():
+    with pytest.raises(InputError, match=r"gap_share = 1.2 is not possible.*from 0 to 1"):
+        shares_of(with_ducts(12, 10.0, gap_share=1.2))
+
+
+def test_rated_flow_is_that_of_the_file(machine):
+    assert operating_point(machine)["fan_flow_m3h"] == pytest.approx([138.0])
+
+
+def test_imported_machine_is_stirred_by_its_largest_turning_part():
+    """No declared gap: the air inside still passes the walls, as fast as a share of the rotor's tip."""
+    from lumped.machine.films import face_films, nominal
+
+    machine = load_machine("pmsm-m1-no-base")
+    inside = tuple(part for part in machine.fluids if part.name != "airgap")
+    bare = replace(machine, fluids=inside, geometry=None, features=NO_FEATURES, sections={})
+    around = surroundings(bare, ("rotor.core|shaft", "magnets|rotor.core", "bearing.left|shaft"))
+    assert around.tip_radius == pytest.approx(machine.geometry.stator.bore_diameter / 2 - 1e-3)
+    law = face_films("rotor.core", "air.left", around)
+    still, turning = (nominal(law, {"speed_rpm": np.array([n])}) for n in (0.0, 1000.0))
+    assert still == pytest.approx(15.0)
+    assert turning == pytest.approx(15.0 * (1 + 0.4 * (2 * np.pi * 1000 / 60 * around.tip_radius) ** 0.9), rel=1e-3)

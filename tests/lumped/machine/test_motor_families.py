@@ -1,0 +1,258 @@
+"""Networks of every family: streams, fans, losses and sensors as their machine files declare them."""
+
+import tomllib
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from bare_networks import means_only
+
+from geom import library, load_machine
+from geom.errors import InputError
+from geom.machine_file import machine_from
+from lumped.integration.steady import steady
+from lumped.machine.coolant import channel_of, cooling_of, jacket_film
+from lumped.machine.films import surroundings
+from lumped.machine.losses import _declared, loss_watts
+from lumped.machine.motor import operating_point
+from lumped.machine.outer import cowl_of, outer_films, outer_of
+from lumped.machine.path import path_of
+from lumped.machine.roles import turning
+from lumped.machine.settings import read_films
+from lumped.machine.shapes import fins_of
+from lumped.machine.zones import motor_zones
+from lumped.model.multipliers import multipliers
+from lumped.transfer.terms_value import temperature_value
+from thermoscope.pipeline import prepared
+
+FAMILIES = ("pmsm-m1", "ipmsm-48s8p-jacket", "tefc-industrial")
+
+
+@pytest.fixture(scope="module")
+def ready():
+    return {name: prepared(load_machine(name), 0.06, 48) for name in FAMILIES}
+
+
+@pytest.fixture(scope="module")
+def networks(ready):
+    return {name: means_only(one) for name, one in ready.items()}
+
+
+def rest(network, **inputs):
+    return steady(network, inputs, dict.fromkeys(network.boundaries, 20.0))
+
+
+@pytest.mark.parametrize("name", FAMILIES)
+def test_uniform_temperature_moves_no_heat(networks, name):
+    network = networks[name]
+    z = np.where(["#" in s for s in (*network.states, *network.boundaries)], 0.0, 37.0)
+    for link in network.links:
+        flow = np.zeros(network.size)
+        np.add.at(flow, link.rows, link.vals * z[link.cols])
+        assert np.abs(flow).max() < 1e-9 * max(1.0, np.abs(link.vals).max()), link.name
+
+
+@pytest.mark.parametrize("name", FAMILIES)
+def test_parameters_act_on_what_is_there(networks, name):
+    network = networks[name]
+    targets = {t for p in network.parameters for t, _ in p.targets if not t.startswith("capacity:")}
+    assert targets <= {item.name for item in (*network.links, *network.sources)}
+    assert multipliers(network, None)
+    films = {link.name for link in network.links if link.kind == "film"}
+    assert films <= targets, "a film nothing can calibrate"
+
+
+@pytest.mark.parametrize("name", list(library()))
+def test_losses_of_every_machine_are_all_placed(name):
+    for loss, _, shares, _, _ in _declared(load_machine(name)):
+        assert sum(shares.values()) == pytest.approx(1.0), loss
+
+
+def test_meshed_brushes_take_half_of_what_slides_on_the_commutator():
+    plain, table = load_machine("series-dc-100kw"), tomllib.loads(library()["series-dc-100kw"].read_text())
+    geared = machine_from({**table, "geometry": {**table["geometry"], "brushes": {"arms": 4}}})
+    for machine, expected in ((plain, {"commutator": 1.0}), (geared, {"commutator": 0.5, "brushes": 0.5})):
+        shares = {name: at for name, _, at, _, _ in _declared(machine)}
+        assert shares["brush.drop"] == shares["brush.friction"] == expected
+
+
+def test_a_meshed_fan_is_cooled_by_its_own_air():
+    """Its blades feel the cowl's air, the cowl what passes an end shield; neither is there without."""
+    table = tomllib.loads((library()["tefc-industrial"]).read_text())
+    machine = machine_from({**table, "geometry": {**table["geometry"], "fan": {"depth_mm": 60.0}}})
+    films, still = read_films(machine), {"speed_rpm": np.zeros(1)}
+    for part in ("fan.wheel", "fan.cowl"):
+        laws = outer_films(machine, part, films)
+        assert set(laws) == {"natural", "radiation", "blown"}
+        blown = [float(laws["blown"].factor({"speed_rpm": np.array([n])})[0]) for n in (0.0, 1460.0)]
+        assert blown[0] < 0.05 * blown[1]
+        assert float(laws["blown"].factor(still)[0]) == pytest.approx(blown[0])
+
+
+def test_direct_current_heating_at_standstill(networks, ready):
+    """8 A through three phases in series: 3 R I^2 with the copper's own resistance, all of it leaves to ambient."""
+    network = networks["pmsm-m1"]
+    found = rest(network, current_A=8.0, speed_rpm=0.0)
+    copper = network.place("winding.copper").mean
+    T = float(copper.weights @ found.z[copper.index])
+    heat = 3 * 0.88 * 64.0 * (1 + 0.00393 * (T - 20.0))
+    left = 0.0
+    for link in network.links:
+        if "ambient" in link.places:
+            hot = float(link.hot.weights @ found.z[link.hot.index])
+            h = temperature_value(link.law.temperature, hot, 20.0)
+            left += float(link.law.factor({})) * h * network.place(link.places[0]).area * (hot - 20.0)
+    assert left == pytest.approx(heat, rel=1e-6)
+    assert max(found["winding"], found["winding.left"]) > found["magnets"] > found["base"] > 20.0
+
+
+def test_resistance_sees_copper_by_volume(networks):
+    """In the slots 45 % copper, in the ends 35 %: densities say so."""
+    machine, place = load_machine("pmsm-m1"), networks["pmsm-m1"].place("winding.copper")
+    rho = {p: machine.material_of(p).rho for p in ("winding", "winding.left")}
+    copper = [(rho[p] - 1350.0) * machine.part(p).volume for p in ("winding", "winding.left")]
+    assert place.b[0] / place.b[1] == pytest.approx(copper[0] / copper[1])
+    assert place.b.sum() == pytest.approx(1.0)
+
+
+def test_emissivity_of_the_base_is_the_papers(networks):
+    (link,) = (link for link in networks["pmsm-m1"].links if link.name == "film:base.outer:radiation")
+    assert link.law.factor({}) == 0.1
+    plate = load_machine("pmsm-m1-plate")
+    assert outer_of(plate, "base", surroundings(plate, ()).films).emissivity == 0.03
+
+
+def test_what_turns_hangs_on_the_shaft(ready):
+    for name, own in {"pmsm-m1": "magnets", "tefc-industrial": "rotor.cage"}.items():
+        machine, contacts = ready[name].machine, ready[name].mesh.contacts
+        bare = replace(machine, parts=tuple(replace(p, role=None) for p in machine.parts))
+        assert turning(machine, contacts) == turning(bare, contacts) == {"shaft", "rotor.core", own}
+
+
+def test_coolant_warms_by_the_exact_exponential_along_walls_of_one_temperature(networks):
+    """T(x) = T_wall - (T_wall - T_in) exp(-h A(x) / mcp) at the end of every cell, at any flow: Incropera 8.41b."""
+    network, machine = networks["ipmsm-48s8p-jacket"], load_machine("ipmsm-48s8p-jacket")
+    cells = [name for name in network.states if name.startswith("jacket@")]
+    wall, cooling = 80.0, cooling_of(machine)
+    for flow in (1.0, 5.0, 12.0):
+        at, T, area = {"flow_l_min": np.array([flow])}, 20.0, 0.0
+        rate = cooling.liquid.rho * cooling.liquid.cp * flow / 60000.0
+        h = float(jacket_film(machine, "jacket", cooling).factor(at)[0])
+        for cell in cells:
+            films = [link for link in network.links if link.kind == "film" and link.places[1] == cell]
+            (stream,) = (link for link in network.links if link.name == f"stream:{cell}")
+            own = [network.place(film.places[0]).area for film in films]
+            area += sum(own)
+            G = sum(A * float(film.law.factor(at)[0]) for A, film in zip(own, films, strict=True))
+            assert float(stream.law.factor(at)[0]) == pytest.approx(rate, rel=2e-3)
+            T = (rate * T + G * wall) / (rate + G)
+            # The law's table is piecewise linear in the flow.
+            assert wall - T == pytest.approx((wall - 20.0) * np.exp(-h * area / rate), rel=2e-3)
+
+
+def test_jacket_takes_up_what_the_coolant_carries(networks):
+    """Steady: losses = heat to ambient + m cp (T_out - T_in); twice the flow warms half as much, turn after turn."""
+    network = networks["ipmsm-48s8p-jacket"]
+    carried = []
+    for flow in (5.0, 10.0):
+        found = rest(network, current_A=100.0, speed_rpm=3000.0, flow_l_min=flow)
+        along = [found[f"jacket@{k}"] for k in range(6)]
+        assert np.all(np.diff([20.0, *along]) > 0)
+        (stream,) = (link for link in network.links if link.name == "stream:jacket@5")
+        outlet = network.place("jacket.outlet").mean
+        assert found.z[outlet.index[0]] == along[-1]
+        carried.append(float(stream.law.factor({"flow_l_min": np.array([flow])})[0]) * (along[-1] - 20.0))
+    assert carried[1] == pytest.approx(carried[0], rel=0.05), "nearly all heat goes to the coolant"
+
+
+def test_walls_are_cut_along_the_way_of_the_coolant(ready):
+    """Turn by turn from the inlet; channel by channel around the axis; the cells have the area of the whole wall."""
+    films = ready["ipmsm-48s8p-jacket"].field.films
+    walls = [films[f"jacket.wall@{k}"].trace for k in range(6)]
+    z = [float(t.b @ ready["ipmsm-48s8p-jacket"].field.xyz[t.dofs, 2]) / t.area for t in walls]
+    assert np.all(np.diff(z) > 0.015)
+    assert max(t.area for t in walls) < 1.1 * min(t.area for t in walls)
+    zigzag = load_machine("series-dc-100kw-jacket-one")
+    path = path_of(zigzag, "jacket.left")
+    around = np.array([np.pi / 2, np.pi / 2 + 0.5, np.pi + 1.0, np.pi / 2 - 0.2])  # starts at the top, anticlockwise
+    come = path.along(np.column_stack([np.cos(around), np.sin(around), 0 * around]))
+    assert path.cells == 6
+    assert np.all(np.diff(come) > 0)
+
+
+def test_jackets_side_by_side_or_one_after_the_other():
+    machine = load_machine("series-dc-100kw-jacket-two")
+    cooling = cooling_of(machine)
+    assert cooling.feeds == {"jacket.left": "coolant", "jacket.right": "coolant"}
+    assert cooling.share("jacket.right") == 0.5
+    joined = dict(machine.sections["cooling"])
+    joined["jacket.right"] = {"inlet": "jacket.left.outlet", "outlet": "out"}
+    cooling = cooling_of(replace(machine, sections={**machine.sections, "cooling": joined}))
+    assert cooling.feeds["jacket.right"] == "jacket.left"
+    assert cooling.share("jacket.right") == 1.0
+    joined["jacket.left"] = {"inlet": "out", "outlet": "jacket.left.outlet"}
+    with pytest.raises(InputError, match=r"is fed by itself.*an inlet that no jacket feeds"):
+        cooling_of(replace(machine, sections={**machine.sections, "cooling": joined}))
+
+
+def test_spiral_channel_by_hand():
+    """10 mm high; six turns and seven ribs of 5 mm over 150 mm leave 19.17 mm of width."""
+    channel, wide = channel_of(load_machine("ipmsm-48s8p-jacket"), "jacket"), (150.0 - 7 * 5.0) / 6 * 1e-3
+    assert channel.area == pytest.approx(0.010 * wide)
+    assert channel.diameter == pytest.approx(2 * 0.010 * wide / (0.010 + wide))
+    assert channel.coil == pytest.approx(0.107 + 0.117)
+
+
+def test_shaft_fan_blows_with_speed(networks):
+    network, machine = networks["tefc-industrial"], load_machine("tefc-industrial")
+    (fins,) = (link for link in network.links if link.name == "film:housing.fins:blown")
+    h = [float(fins.law.factor({"speed_rpm": np.array([n])})[0]) for n in (0.0, 730.0, 1460.0)]
+    assert h[0] == 0.0
+    assert 20.0 < h[2] < 120.0, "blown fins: tens of W/m2/K at 10 m/s"
+    assert h[1] < h[2] < 2 * h[1], "less than proportional"
+    assert cowl_of(machine).rear == "left"
+    assert fins_of(machine).area_ratio == pytest.approx(1 + 2 * 40 * 20e-3 / (2 * np.pi * 0.111), rel=1e-6)
+
+
+def test_zones_divide_their_parts(ready):
+    """Every zone pair or set has the whole volume of its part; the teeth reach from the bore to the slots' bottom."""
+    field, zones = ready["pmsm-m1"].field, motor_zones(load_machine("pmsm-m1"))
+    assert {"winding.inner", "winding.outer", "stator.core.teeth", "stator.core.back"} <= set(zones)
+    for part in ("winding", "stator.core"):
+        block = field.blocks[part]
+        centres = block.xyz[block.tets].mean(1)
+        own = [zone.density(centres) for name, zone in zones.items() if zone.part == part]
+        assert np.sum(own, axis=0) == pytest.approx(1.0)
+    assert {f"winding.field.{k}" for k in (1, 2, 3, 4)} <= set(motor_zones(load_machine("series-dc-100kw")))
+    assert {"poles.shoe", "poles.body", "rotor.core.teeth"} <= set(motor_zones(load_machine("series-dc-100kw")))
+
+
+def test_a_loss_at_an_unknown_place_is_refused(ready):
+    machine = load_machine("pmsm-m1")
+    losses = {**machine.sections["losses"], "iron": {**machine.sections["losses"]["iron"], "at": "statr.core"}}
+    wrong = replace(machine, sections={**machine.sections, "losses": losses})
+    with pytest.raises(InputError, match=r"no place 'statr.core'.*known"):
+        means_only(ready["pmsm-m1"], wrong)
+
+
+def test_a_machine_without_losses_can_be_looked_at(ready):
+    machine = load_machine("pmsm-m1")
+    bare = replace(machine, sections={k: v for k, v in machine.sections.items() if k != "losses"})
+    watts = loss_watts(
+        bare, means_only(ready["pmsm-m1"], bare), {k: float(v[0]) for k, v in operating_point(bare).items()}
+    )
+    assert sum(watts.values()) == pytest.approx(100.0)
+    assert set(watts) == {"winding", "winding.left", "winding.right"}
+
+
+def test_a_part_may_have_its_own_film_of_the_shaft_fan():
+    """On the standing foot, which the cowl does not reach, and on the shield in the place of the cowl's film."""
+    machine = load_machine("tefc-industrial")
+    fan = {"h_W_m2K": 40.0, "at_rpm": 1460.0}
+    said = {"outer": {"foot": {"fan": fan}, "endcap.left": {"fan": fan}}}
+    machine = replace(machine, sections={**machine.sections, "films": said})
+    bare = outer_films(load_machine("tefc-industrial"), "foot", read_films(machine))
+    assert "blown" not in bare
+    for part in said["outer"]:
+        law = outer_films(machine, part, read_films(machine))["blown"]
+        assert law.factor({"speed_rpm": np.array([0.0, 730.0])}) == pytest.approx([0.0, 40.0 * 0.5**0.8])

@@ -1,0 +1,102 @@
+"""thermoscope explain improve and undo: the error staircase, what is never added, what stays in the history."""
+
+import io
+import json
+
+import pytest
+from small_case import small_case
+
+from thermoscope.case_folder.history import load_history
+from thermoscope.cli import app
+from thermoscope.commands.explain import improve as command
+from validation.diagnosis.result import Candidate, Diagnosis
+from validation.revision.improvement import offered, singletons
+
+
+@pytest.fixture(scope="module")
+def improved(tmp_path_factory):
+    """A case that lacks convection at the flange, improved without asking; exit code, document, folder."""
+    folder = tmp_path_factory.mktemp("improve")
+    case, target = small_case(folder), folder / "improve.json"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("THERMOSCOPE_CACHE", str(folder / "cache"))
+        code = command.improve(str(case), True, 3, str(target))
+    return code, json.loads(target.read_text()), case
+
+
+def test_it_ends_adequate(improved):
+    code, document, _ = improved
+    assert (code, document["verdict"], document["adequate"]) == (0, "adequate", True)
+
+
+def test_the_staircase_falls_on_the_test_never_used(improved):
+    stairs = improved[1]["stairs"]
+    assert [s["effect"] for s in stairs] == [None, None, "convection@flange"]
+    town = [next(t["rmse_K"] for t in s["tests"] if t["role"] == "hold-out") for s in stairs]
+    assert town[0] > 2.0
+    assert town[-1] < 0.4  # K, the smallest sigma declared
+
+
+def test_the_history_keeps_the_evidence(improved):
+    first, last = load_history(improved[2] / "model.toml").revisions[:2]
+    assert (first.action, last.action) == ("calibrate", "add")
+    assert last.evidence["decision"] == "named"
+    assert last.evidence["score"] > last.evidence["threshold"]
+    low, high = last.intervals["convection@flange"]
+    assert low < last.values["convection@flange"] < high
+
+
+def test_undo_brings_the_model_before_back_and_forgets_nothing(improved, capsys):
+    with pytest.raises(SystemExit) as done:
+        app(["undo", str(improved[2]), "--to", "1", "--json", "-"])
+    assert done.value.code == 0
+    document = json.loads(capsys.readouterr().out)
+    assert document["effects"] == []
+    assert document["rmse_K"]["town"] > 2.0
+    history = load_history(improved[2] / "model.toml")
+    assert [r.action for r in history.revisions] == ["calibrate", "add", "step back"]
+    assert history.last.values == history.revisions[0].values
+
+
+def row(name, decision):
+    return Candidate(name, 9.0, 3.0, 1.0, "W/K", (0.5, 1.5), decision)
+
+
+def answer(verdict, *rows):
+    groups = (tuple(r.effect for r in rows),) if rows else ()
+    return Diagnosis(verdict, "words", tuple(g[0] for g in groups), groups, rows, (), (), (), 1.0, 0.5, 3.0)
+
+
+@pytest.mark.parametrize(
+    ("found", "names"),
+    [
+        (answer("adequate"), []),
+        (answer("absorbed", row("flow@fan", "cannot-tell")), []),
+        (answer("outside", row("mass@yoke", "cannot-tell")), []),
+        (answer("named", row("mass@yoke", "named")), ["mass@yoke"]),
+        (answer("group", row("mass@yoke", "group"), row("iron@yoke", "group")), ["mass@yoke", "iron@yoke"]),
+    ],
+)
+def test_what_cannot_be_told_is_never_offered(found, names):
+    assert [c.effect for c in offered(found)] == names
+
+
+@pytest.mark.parametrize(
+    ("found", "name"),
+    [
+        (answer("named", row("mass@yoke", "named")), "mass@yoke"),
+        (answer("group", row("mass@yoke", "group"), row("iron@yoke", "group")), None),
+        (answer("data", row("sensor.bias@T_yoke", "named")), None),
+        (answer("several", row("sensor.bias@T_yoke", "named")), None),
+    ],
+)
+def test_only_physics_that_stands_alone_is_added_without_asking(found, name):
+    assert singletons(found, offered(found)) == name
+
+
+@pytest.mark.parametrize(("word", "name"), [("2\n", "iron@yoke"), ("\n", None), ("", None), ("3\n", None)])
+def test_asking_takes_a_number_of_the_list(word, name, monkeypatch, capsys):
+    found = answer("group", row("mass@yoke", "group"), row("iron@yoke", "group"))
+    monkeypatch.setattr("sys.stdin", io.StringIO(word))
+    assert command.user_choice(found, offered(found)) == name
+    assert capsys.readouterr().out == ""  # stdout belongs to the result

@@ -1,0 +1,27 @@
+"""What would decide is shown only where something would."""
+
+from thermoscope.commands.explain.next_tests import next_tests
+
+
+def shown(**document):
+    return str(next_tests({"next_tests": [], "next_sensors": [], **document}))
+
+
+def planned(name, gain, *separates):
+    return {"test": name, "separates": list(separates), "predicted_gain": gain, "hours": 2.0}
+
+
+def test_a_test_that_separates_is_shown_and_the_others_are_not():
+    out = shown(next_tests=[planned("blower on", 31.0, "a@b / c@d"), planned("spin", 4.0)])
+    assert "blower on" in out
+    assert "spin" not in out
+
+
+def test_that_none_would_decide_is_said_with_the_nearest():
+    out = shown(next_tests=[planned("spin", 4.0), planned("blower on", 7.0)])
+    assert "No candidate test" in out
+    assert "blower on" in out
+
+
+def test_nothing_is_said_where_there_is_no_group():
+    assert shown() == ""

@@ -1,0 +1,70 @@
+"""thermoscope show plan: a page with a test and what each hypothesis predicts; one message where there is none."""
+
+import json
+
+import numpy as np
+import pytest
+
+from geom.errors import InputError
+from thermoscope.case_folder.folder import load_case
+from thermoscope.commands.show.plan import plan
+from validation.planning.predicted_curves import UNCHANGED, predicted_curves, schedule
+from viz.figures.experiment import predicted
+
+RIVALS = ("convection@flange", "radiation@flange")
+
+
+def test_the_page_names_a_test_and_every_hypothesis(case, tmp_path):
+    """Wind that comes and goes tells convection from radiation: it separates them most per hour."""
+    page, target = tmp_path / "new" / "plan.html", tmp_path / "plan.json"
+    assert plan(str(case), RIVALS, None, page, str(target)) == 0
+    found, text = json.loads(target.read_text()), page.read_text()
+    assert found["hypotheses"] == [UNCHANGED, *RIVALS]
+    assert found["test"] == "cool-down with wind on and off"
+    assert found["closest_sigma"] > 2
+    assert all(word in text for word in ("Tomorrow: cool-down with wind on and off, 4 h", *RIVALS, "flange", "12"))
+    assert "http" not in text.replace("http://www.w3.org", "")
+
+
+@pytest.mark.parametrize(
+    ("effects", "test", "words"),
+    [((), None, "no diagnosis"), (("convection@flange",), "dance", "unknown test 'dance'"), (("a@b",), None, "a@b")],
+)
+def test_what_it_cannot_plan_is_one_message(case, tmp_path, effects, test, words):
+    with pytest.raises(InputError, match=words):
+        plan(str(case), effects, test, tmp_path / "new" / "p.html", None)
+    assert not (tmp_path / "new").exists()
+
+
+def test_a_file_that_is_no_page_is_refused(case, tmp_path):
+    with pytest.raises(InputError, match="is no name"):
+        plan(str(case), RIVALS, None, tmp_path / "p.png", None)
+
+
+def test_the_names_of_hypotheses_cover_no_curve(case):
+    folder = load_case(case)
+    figure = predicted(predicted_curves(folder.case, {"as it is": folder.case.model, "again": folder.case.model}))
+    figure.draw_without_rendering()
+    (legend,) = figure.legends
+    assert [text.get_text() for text in legend.get_texts()] == ["as it is", "again"]
+    assert not any(legend.get_window_extent().overlaps(ax.get_window_extent()) for ax in figure.axes)
+
+
+def test_one_model_twice_is_not_told_apart(case):
+    folder = load_case(case)
+    found = predicted_curves(folder.case, {"a": folder.case.model, "b": folder.case.model})
+    assert found.closest() == 0
+    assert all(found.spread_K(c.name) == 0 for c in found.test.channels)
+
+
+def test_the_schedule_is_what_the_plan_holds(case):
+    """Held inputs in full, in order, without gaps; a record that is driven again is not listed."""
+    folder = load_case(case)
+    name = "cool-down with wind on and off"
+    found = predicted_curves(folder.case, {"a": folder.case.model}, name)
+    rows = schedule(found.test, folder.case.tests[-1])
+    assert {row[0] for row in rows} == {"vehicle_speed_mps"}
+    assert [row[3] for row in rows] == [12.0, 0.0] * 3
+    assert rows[0][1] == found.test.time[0]
+    assert [a[2] for a in rows[:-1]] == [b[1] for b in rows[1:]]
+    assert np.isclose(rows[-1][2], found.test.time[-1])

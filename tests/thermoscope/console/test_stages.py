@@ -1,0 +1,97 @@
+"""Share and time left of long work, from how long its stages took the last time."""
+
+import json
+import re
+import time
+
+import pytest
+
+from thermoscope.console import progress_bar
+from thermoscope.console.progress_bar import ProgressBar, one_bar, progress
+
+
+class Clock:
+    now = 0.0
+
+    def __call__(self):
+        return self.now
+
+
+def worked(stages, clock, steps):
+    for message, seconds in steps:
+        stages.enter(message)
+        clock.now += seconds
+
+
+STEPS = [("reading a", 1.0), ("reading b", 1.0), ("fitting step 1", 3.0), ("fitting step 2", 3.0), ("drawing", 2.0)]
+
+
+def test_the_second_time_share_and_time_left_are_known():
+    clock = Clock()
+    first = ProgressBar({}, clock)
+    worked(first, clock, STEPS)
+    first.leave()
+    assert first.took == {"reading": 2.0, "fitting": 6.0, "drawing": 2.0}
+    assert first.left() is None
+    clock.now = 0.0
+    again = ProgressBar(first.took, clock)
+    worked(again, clock, STEPS[:3])
+    share, seconds = again.left()
+    assert share == pytest.approx(0.5)
+    assert seconds == pytest.approx(5.0)
+    assert again.words("fitting") == "fitting (50 %, about 5 s left)"
+
+
+def test_the_share_never_falls():
+    clock = Clock()
+    stages, seen = ProgressBar({"reading": 2.0, "fitting": 6.0, "drawing": 2.0}, clock), []
+    for message, seconds in [("reading", 9.0), ("fitting", 1.0), ("drawing", 4.0)]:
+        stages.enter(message)
+        for _ in range(4):
+            clock.now += seconds / 4
+            seen.append(stages.left()[0])
+    assert seen == sorted(seen)
+    assert seen[-1] == 0.99
+
+
+def test_a_pipe_has_one_line_a_stage(capsys, tmp_path, monkeypatch):
+    monkeypatch.setenv("THERMOSCOPE_CACHE", str(tmp_path))
+    with progress() as tell:
+        for message, _ in STEPS:
+            tell(message)
+    assert capsys.readouterr().err.splitlines() == ["reading a", "fitting step 1", "drawing"]
+
+
+def test_time_left_follows_the_pace_of_this_run():
+    """The last time 10 s in all; this run took twice as long for the first half: what is left takes twice as long."""
+    clock = Clock()
+    stages = ProgressBar({"reading": 5.0, "fitting": 5.0}, clock)
+    worked(stages, clock, [("reading", 10.0), ("fitting", 0.0)])
+    assert stages.left() == (pytest.approx(0.5), pytest.approx(10.0))
+
+
+def test_several_pieces_of_work_have_one_bar(tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv("THERMOSCOPE_CACHE", str(tmp_path))
+    monkeypatch.setattr("sys.argv", ["thermoscope", "demo", "--out", "x"])
+    monkeypatch.setattr("thermoscope.console.progress_bar._usual", dict)
+    for _ in range(2):
+        with one_bar(shortest_s=1e-3):
+            for _ in range(2):
+                with progress() as tell:
+                    tell("reading a")
+                    time.sleep(0.02)
+    kept = json.loads((tmp_path / "stages.json").read_text())
+    assert list(kept) == ["demo"], "the options are no part of its name"
+    assert len(kept["demo"]) == 2, "the same word in two pieces of work is two stages"
+    shares = [int(n) for n in re.findall(r"\((\d+) %", capsys.readouterr().err)]
+    assert shares == sorted(shares)
+    assert len(shares) == 2, "of the second run, each stage one line"
+    assert shares[-1] > 30
+
+
+def test_the_first_run_of_long_commands_knows_a_share(tmp_path, monkeypatch):
+    """Before anything was remembered on this computer."""
+    monkeypatch.setenv("THERMOSCOPE_CACHE", str(tmp_path))
+    known = progress_bar._usual()
+    assert {"demo", "explain diagnose 0", "model build 0", "model calibrate 0", "model add 0"} <= set(known)
+    assert all(sum(stages.values()) > progress_bar.WORTH_S for stages in known.values())

@@ -1,0 +1,136 @@
+"""Recordings dropped on the workbench: guessed, dragged to parts, made a case that compare runs."""
+
+import asyncio
+from pathlib import Path
+
+import numpy as np
+import pytest
+from aiohttp import ClientSession, CookieJar, FormData
+from small_case import small_case
+from test_serve_access_control import TOKEN, running
+
+from geom.errors import InputError
+from thermoscope.case_folder.folder import load_case
+from thermoscope.workbench.access_control import AccessControl
+from thermoscope.workbench.dropped import read, write
+
+HEAD = "Zeit;I [A];Wind [km/h];Raum;T Wicklung;Kanal 7;Bemerkung"
+
+
+@pytest.fixture
+def case(tmp_path):
+    return small_case(tmp_path / "home")
+
+
+def recording(folder: Path, name: str = "bench.csv") -> Path:
+    """As a recorder writes it: semicolons, decimal commas, a channel without a name that says anything."""
+    rows = []
+    for k in range(120):
+        now = [f"{10 * k},0", "80,0", "12,0", "20,5", f"{20 + 0.2 * k:.1f}".replace(".", ","),
+               f"{20 + 0.1 * k:.1f}".replace(".", ","), "ok"]  # fmt: skip
+        rows.append(";".join(now))
+    file = folder / name
+    file.write_text("\n".join([HEAD, *rows]), encoding="utf-8")
+    return file
+
+
+@pytest.fixture
+def dropped(case, tmp_path):
+    return read([recording(tmp_path)], load_case(case).case.model.network, lambda message: None)
+
+
+def goes(dropped):
+    return {row["name"]: row["goes"] for row in dropped.rows}
+
+
+def test_columns_are_guessed_against_the_open_model(dropped):
+    found = goes(dropped)
+    assert found["T Wicklung"] == "winding"
+    assert found["I [A]"] == "current_A"
+    assert found["Kanal 7"] == ""
+    assert [p["name"] for p in dropped.document["parts"]][:3] == ["winding", "yoke", "flange"]
+
+
+def test_a_channel_goes_where_it_is_dragged(dropped):
+    moved = dropped.moved("0:Kanal 7", "flange")
+    assert goes(moved)["Kanal 7"] == "flange"
+    assert next(r for r in moved.rows if r["name"] == "Kanal 7")["unit"] == "degC"
+    assert goes(moved.moved("0:Kanal 7", ""))["Kanal 7"] == ""
+    assert goes(moved.moved("0:Kanal 7", "ambient"))["Raum"] == "", "one column gives a boundary"
+
+
+@pytest.mark.parametrize(("key", "to", "words"), [
+    ("0:I [A]", "winding", "is a current"), ("0:T Wicklung", "current_A", "is a temperature"),
+    ("0:Bemerkung", "flange", "words, not numbers"), ("0:I [A]", "nowhere", "no 'nowhere'"), 
+    ("7:I [A]", "winding", "no column"),    ("x", "winding", "no column"),
+])  # fmt: skip
+def test_a_channel_cannot_go_where_it_makes_no_sense(dropped, key, to, words):
+    with pytest.raises(InputError, match=words):
+        dropped.moved(key, to)
+
+
+def test_what_was_not_recorded_is_asked_for(dropped):
+    without = dropped.moved("0:I [A]", "")
+    assert without.missing == ["current_A"]
+    with pytest.raises(InputError, match="no number"):
+        without.constant("current_A", "many")
+    assert without.constant("current_A", "80,5").document["constants"] == {"current_A": "80.5"}
+
+
+def test_a_case_beside_the_open_one(case, dropped):
+    folder = load_case(case)
+    made = write(dropped.moved("0:Kanal 7", "flange"), folder.settings, folder.case.model.network, lambda m: None)
+    assert made == case.parent / "bench"
+    found = load_case(made)
+    assert {c.place for c in found.case.tests[0].channels} == {"winding", "flange"}
+    assert np.isfinite(found.compared.rmse_K)
+    again = write(dropped, folder.settings, folder.case.model.network, lambda m: None)
+    assert again == case.parent / "bench-2"
+
+
+def upload(case, files, token=TOKEN, **options):
+    """(status, what arrived) of a drop on a tab of the served case."""
+    from thermoscope.workbench.session import Session
+
+    seen = []
+
+    async def take_in(self, files):
+        seen.extend((f.name, f.read_bytes()) for f in files)
+
+    async def main():
+        folder = load_case(case)
+        async with running(folder, AccessControl("127.0.0.1", TOKEN), **options) as address, ClientSession(
+            cookie_jar=CookieJar(unsafe=True)
+        ) as session:  # fmt: skip
+            await session.get(f"{address}?token={TOKEN}", allow_redirects=False)
+            first = await session.get(address, allow_redirects=False)
+            tab = first.headers["Location"].removesuffix("index.html").lstrip("/")
+            body = FormData(quote_fields=False)
+            for name, content in files:
+                body.add_field("recording", content, filename=name)
+            if not token:
+                session.cookie_jar.clear()
+            answer = await session.post(f"{address}/{tab}recordings", data=body)
+            return answer.status
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Session, "take_in", take_in)
+        return asyncio.run(main()), seen
+
+
+def test_files_arrive_under_their_names_and_nowhere_else(case):
+    status, seen = upload(case, [("a.csv", b"1"), ("../../b.csv", b"2"), ("a.csv", b"3")])
+    assert status == 204
+    assert seen == [("a.csv", b"1"), ("b.csv", b"2"), ("a.csv", b"3")]
+
+
+def test_strangers_cannot_drop(case):
+    status, seen = upload(case, [("a.csv", b"1")], token="")
+    assert status == 401
+    assert seen == []
+
+
+def test_a_drop_that_is_too_large_is_refused(case):
+    status, seen = upload(case, [("a.csv", b"x" * 100)], largest_drop=10)
+    assert status == 413
+    assert seen == []

@@ -1,0 +1,85 @@
+"""Form nuisances: neutral at zero, and what they bend is what their name says."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from playground import Truth, network
+
+from lumped.transfer.laws import Fixed, InputPower, Power, WithTemperature
+from validation.calibration.model_form import ExponentError, exponent_derivative, levels, shares, with_model_form
+from validation.comparison.predict import predict
+from validation.effects import effect, extended
+
+
+@pytest.fixture(scope="module")
+def case():
+    return Truth(3).case()
+
+
+def test_neutral_at_zero(case):
+    grown, names = with_model_form(network(), case.tests)
+    assert names
+    for test in case.tests[1:3]:
+        np.testing.assert_allclose(predict(grown, test, {}).y, predict(network(), test, {}).y, atol=1e-9)
+
+
+def test_exponent_of_an_input_is_the_derivative_of_the_power():
+    """Central difference of (u / 138)^n at the reference 100, with the level at the reference held."""
+    u, h = {"fan_flow_m3h": np.array([60.0, 100.0, 140.0])}, 1e-4
+    law = InputPower(9.0, (("fan_flow_m3h", 138.0, 1.0),))
+    level = {"fan_flow_m3h": 100.0}
+    found = ExponentError(law, "fan_flow_m3h", level).factor(u)
+
+    def powered(n):
+        q = u["fan_flow_m3h"] / 100.0
+        return 9.0 * 100.0 / 138.0 * q**n
+
+    np.testing.assert_allclose(found, (powered(1 + h) - powered(1 - h)) / (2 * h), rtol=1e-6, atol=1e-9)
+
+
+def test_one_input_of_two_is_bent_alone():
+    """Iron loss ~ I n^1.5: the speed's exponent leaves the dependence on current as it was."""
+    law = InputPower(2.0, (("current_A", 10.0, 1.0), ("speed_rpm", 1000.0, 1.5)))
+    bend = ExponentError(law, "speed_rpm", {"current_A": 20.0, "speed_rpm": 500.0})
+    current = np.array([5.0, 50.0])
+    relative = bend.factor({"current_A": current, "speed_rpm": np.full(2, 800.0)}) / current
+    assert relative[0] == pytest.approx(relative[1])
+
+
+def test_difference_is_right_where_it_settles():
+    law = WithTemperature(Fixed(3.0), exponent_derivative(Power(0.25)))
+    table = dict(zip(law.temperature.difference, law.temperature.value))
+    assert table[40.0] == 0.0
+    assert table[80.0] == pytest.approx(80.0**0.25 * np.log(2.0))
+
+
+def test_still_input_has_no_exponent(case):
+    tests = [replace(t, inputs={**t.inputs, "fan_flow_m3h": np.full_like(t.time, 138.0)}) for t in case.tests]
+    _, names = with_model_form(network(), tests)
+    assert "fan.flow^fan_flow_m3h" not in names
+    assert "fan.flow^fan_flow_m3h" in with_model_form(network(), case.tests)[1]
+
+
+def test_shares_name_each_body_once():
+    fan = [link for link in network().links if link.name.endswith(":fan")]
+    assert {p.name for p in shares("fan.flow", fan)} == {f"fan.flow:{link.places[0]}" for link in fan}
+
+
+def test_levels_pool_all_tests(case):
+    every = np.concatenate([t.inputs["current_A"] for t in case.tests])
+    assert levels(case.tests)["current_A"] == pytest.approx(np.sqrt(np.mean(every**2)))
+
+
+def test_an_added_effect_brings_its_own_exponent(case):
+    """Wind to the 0.8 may be wind to another power; while there is none that changes nothing."""
+    wind = effect("convection@flange.right")
+    grown, names = with_model_form(extended(network(), [wind]), case.tests, {wind.name})
+    own = f"{wind.name}^vehicle_speed_mps"
+    assert own in names
+    assert own not in with_model_form(extended(network(), [wind]), case.tests)[1]
+    road = next(t for t in case.tests if t.name == "road-1")
+    still, bent = (predict(grown, road, {own: e}).y for e in (0.0, 0.2))
+    np.testing.assert_allclose(still, bent, atol=1e-9)
+    here = {wind.name: 5.0}
+    assert np.max(np.abs(predict(grown, road, {**here, own: 0.2}).y - predict(grown, road, here).y)) > 0.01

@@ -1,0 +1,133 @@
+"""The model error's columns against machines that really differ by one doubt."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from playground import Truth, network
+
+from lumped.model.build import bare_network, node_link, node_source
+from lumped.model.network import Parameter
+from lumped.transfer.laws import Fixed, InputPower
+from validation.calibration.calibrate import InnerProduct, minimise
+from validation.calibration.unknowns import working
+from validation.case import Test
+from validation.comparison.linearisation import segments
+from validation.doubt import USUAL
+from validation.inference.model_error import alone, joints, jumps, lumping_errors, model_error, with_doubts
+from validation.measurement.noise import first_noise
+from validation.measurement.operators import lag
+
+
+@pytest.fixture(scope="module")
+def case():
+    whole = Truth(4).case()
+    return replace(whole, tests=whole.tests[:2])
+
+
+def test_a_network_with_neutral_doubts_reads_the_same(case):
+    plain = network()
+    grown, doubts = with_doubts(plain, USUAL)
+    assert doubts
+    for a, b in zip(segments(plain, case.tests, {}), segments(grown, case.tests, {}), strict=True):
+        np.testing.assert_allclose(a.r, b.r, atol=1e-9)
+
+
+def test_a_column_is_what_the_doubt_does(case):
+    """A bridge of one sigma: small against what it spans, so that the machine with it differs by the column."""
+    plain = network()
+    a, b, G = lumping_errors(plain, USUAL["bridge"])[0]
+    grown, doubts = with_doubts(plain, USUAL, case.tests)
+    k = [p.name for p in doubts].index(f"doubt:beside:{a}|{b}")
+    error = model_error(plain, case.tests, {}, USUAL)
+    with_it = segments(grown, case.tests, {doubts[k].name: 0.1 * G})
+    for s, t in zip(segments(plain, case.tests, {}), with_it, strict=True):
+        np.testing.assert_allclose(s.r - t.r, 0.1 * error.of(s)[:, k], atol=0.01 + 0.03 * np.abs(s.r - t.r).max())
+
+
+def test_what_a_parameter_moves_is_doubted_once_also_where_its_exponents_are_free(case):
+    """The exponents that a fit may bend come as copies that the same parameter moves."""
+    net, _ = working(case)
+    assert [x for x in (*net.links, *net.sources) if x.origin]
+    assert alone(net) >= alone(network())
+
+
+def test_contacts_and_bearings_of_one_parameter_differ_more_than_films_of_one():
+    """Two seats share a parameter; a gap shares one with what speed adds to it, and films to air share one."""
+    net = bare_network("ends", dict.fromkeys(("rotor", "left", "right", "shell"), 100.0), ("air",))
+    links = [node_link(net, n, "link", *n.split("-"), Fixed(2.0)) for n in ("left-shell", "right-shell", "rotor-shell")]
+    links += [node_link(net, "blown", "link", "rotor", "shell", InputPower(1.0, (("speed", 1.0, 0.8),)))]
+    links += [node_link(net, f"film {n}", "film", n, "air", Fixed(1.0)) for n in ("left", "right")]
+    heat = [node_source(net, f"friction {n}", "friction", {n: 1.0}, Fixed(5.0)) for n in ("left", "right")]
+    heat += [node_source(net, f"iron {n}", "iron", {n: 1.0}, Fixed(5.0)) for n in ("rotor", "shell")]
+    shared = {"seats": ("left-shell", "right-shell"), "gap": ("rotor-shell", "blown"),
+              "films": ("film left", "film right"), "friction": ("friction left", "friction right"),
+              "iron": ("iron rotor", "iron shell")}  # fmt: skip
+    parameters = tuple(Parameter(n, tuple((t, 1.0) for t in of)) for n, of in shared.items())
+    net = net.extended(links, heat, parameters)
+    assert joints(net) == {"left-shell", "right-shell"}
+    size = {p.name.removeprefix("doubt:"): p.prior_sd for p in with_doubts(net, USUAL)[1]}
+    lines = {"seats": "joint", "gap": "group", "films": "group", "friction": "bearing", "iron": "split"}
+    for group, line in lines.items():
+        assert {size[t] for t in shared[group]} == {USUAL[line]}
+
+
+def test_a_core_follows_its_node():
+    time = np.arange(0.0, 600.0, 10.0)
+    rise = np.where(time > 0, 1.0, 0.0)[:, None]
+    lag(time, rise, np.array([60.0]))
+    assert rise[-1, 0] == pytest.approx(1.0, abs=1e-3)
+    assert np.all(np.diff(rise[:, 0]) >= 0)
+
+
+def test_model_error_widens_what_a_fit_is_sure_of_and_never_narrows_it(case):
+    net, unknowns = working(case)
+    noise = first_noise(segments(net, case.tests, {}))
+    error = model_error(net, case.tests, {})
+    start = np.zeros(len(unknowns.parameters))
+    bare, wide = (minimise(net, case.tests, unknowns, start, noise, iterations=3, error=e) for e in (None, error))
+    at = minimise(net, case.tests, unknowns, bare.theta, noise, iterations=0, error=error)
+    assert np.all(at.sd >= bare.sd * (1 - 1e-9))
+    assert wide.objective <= bare.objective + 1e-6
+
+
+def test_woodbury_is_the_inverse_of_noise_and_model_error(case):
+    parts, error = segments(network(), case.tests, {}), model_error(network(), case.tests, {})
+    few = [s for s in parts if s.test == parts[0].test][:2]
+    measure, noise = InnerProduct(few, first_noise(few), error), first_noise(few)
+    root = [np.linalg.inv(noise.whiten(s, np.eye(s.r.size))) for s in few]
+    D = np.vstack([error.of(s) for s in few])
+    n = few[0].r.size
+    S = np.zeros((D.shape[0],) * 2)
+    S[:n, :n], S[n:, n:] = root[0] @ root[0].T, root[1] @ root[1].T
+    r = np.concatenate([s.r for s in few])
+    assert measure.square(few) == pytest.approx(r @ np.linalg.solve(S + D @ D.T, r), rel=1e-6)
+
+
+def test_losses_that_follow_the_load_unsaid_are_doubted():
+    """Iron by a tenth at the largest load of all tests, with its own law; copper, and what reads the load, are not."""
+    net = bare_network("two", {"winding": 300.0, "core": 5000.0}, ("ambient",))
+    copper = node_source(net, "copper", "copper", {"winding": 1.0}, InputPower(80.0, (("current_A", 10.0, 2.0),)))
+    iron = node_source(net, "iron", "iron", {"core": 1.0}, InputPower(40.0, (("speed_rpm", 1000.0, 1.5),)))
+    stray = node_source(net, "stray", "iron", {"core": 1.0}, InputPower(5.0, (("current_A", 10.0, 2.0),)))
+    net = net.extended([node_link(net, "film", "film", "core", "ambient", Fixed(2.0))], [copper, iron, stray], ())
+    time = np.arange(0.0, 100.0, 10.0)
+    inputs = {"current_A": np.linspace(0.0, 20.0, time.size), "speed_rpm": np.linspace(3000.0, 0.0, time.size)}
+    test = Test("run", "calibrate", time, inputs, {"ambient": np.full(time.size, 20.0)}, ())
+    grown, doubts = with_doubts(net, USUAL, [test])
+    assert {p.name: p.prior_sd for p in doubts if "*" in p.name} == {"doubt:iron*current_A": USUAL["load"]}
+    law = next(s.law for s in grown.sources if s.name == "iron*current_A")
+    np.testing.assert_allclose(law.factor(inputs), iron.law.factor(inputs) * (inputs["current_A"] / 20.0) ** 2)
+    assert not any("*" in p.name for p in with_doubts(net, USUAL)[1])  # without tests there is no largest load
+
+
+def test_what_jumps_between_samples_is_doubted_by_what_its_square_would_gain():
+    """A current that is on or off from line to line; one that is straight; a speed, whose square makes no heat."""
+    net, time = network(), np.arange(0.0, 1000.0, 10.0)
+    on = (time // 50 % 2 == 0).astype(float)
+    inputs = {"current_A": 100.0 * on, "speed_rpm": 1000.0 * on}
+    test = Test("run", "calibrate", time, inputs, {"ambient": np.full(time.size, 20.0)}, ())
+    steps, straight = ((on[1:] ** 2 + on[:-1] ** 2) / 2.0).sum(), np.where(np.diff(on), 1.0 / 3.0, on[1:]).sum()
+    assert jumps(net, test, USUAL) == {"current_A": pytest.approx(np.sqrt(steps / straight))}
+    ramp = replace(test, inputs={**inputs, "current_A": np.linspace(0.0, 100.0, time.size)})
+    assert jumps(net, ramp, USUAL) == {}

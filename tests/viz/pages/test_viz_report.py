@@ -1,0 +1,210 @@
+"""The report: one file, nothing loaded from elsewhere, carrying the numbers it was given."""
+
+import re
+from html import unescape
+from html.parser import HTMLParser
+
+import pytest
+from fictional import HISTORY, comparison, documents
+from PIL import Image
+from test_viz_viewer import BROWSER, NODES, PLACE, recorded
+
+from thermoscope.workbench.policy import report_policy
+from viz.pages.report import Report, render, write_report
+from viz.pages.words import story, verdict
+from viz.viewer.page import document as viewer_document
+from viz.viewer.page import render as viewer_page
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("report")
+    Image.new("RGB", (64, 40), "#123456").save(folder / "field.png")
+    compare, diagnose = documents()
+    value = {
+        "name": "h.flange.right.outer",
+        "value": 1.134,
+        "unit": "1",
+        "ci95": [1.021, 1.257],
+        "prior": None,
+        "identified": False,
+    }
+    report = Report(
+        "road <test>", "A fictional motor.", compare, diagnose, HISTORY, [value], [comparison()],
+        {"Field after an hour": folder / "field.png"}, ["Losses as rated."],
+        ["thermoscope show report CASE"], "today",
+    )  # fmt: skip
+    return write_report(report, folder / "report.html").read_text(encoding="utf-8")
+
+
+class Loads(HTMLParser):
+    """Collects everything a browser would fetch."""
+
+    def __init__(self):
+        super().__init__()
+        self.found = []
+
+    def handle_starttag(self, tag, attributes):
+        self.found += [v for k, v in attributes if k in ("src", "href", "xlink:href", "srcset", "data", "poster") and v]
+        assert tag not in ("script", "link", "iframe", "object", "embed")
+
+
+class Silent(HTMLParser):
+    """Counts pictures, and collects those without an alternative text of their own or of the figure they are in."""
+
+    def __init__(self):
+        super().__init__()
+        self.inside, self.pictures, self.silent = [], 0, []
+
+    def handle_starttag(self, tag, attributes):
+        a = dict(attributes)
+        if tag == "figure":
+            self.inside.append(a.get("aria-label", "") if a.get("role") == "img" else "")
+        if tag in ("img", "svg", "canvas"):
+            said = a.get("alt") or next(filter(None, self.inside), "")
+            self.pictures += 1
+            self.silent += [] if len(said.split()) > 2 else [f"{tag} {said}"]
+
+    def handle_endtag(self, tag):
+        if tag == "figure":
+            self.inside.pop()
+
+
+def test_every_picture_has_an_alternative_text(page):
+    read = Silent()
+    read.feed(page)
+    assert read.pictures > 4
+    assert read.silent == []
+
+
+def test_nothing_is_loaded_from_elsewhere(page):
+    loads = Loads()
+    loads.feed(page)
+    assert loads.found
+    assert [v[:60] for v in loads.found if not v.startswith(("data:", "#"))] == []
+    assert re.findall(r"url\((?!#|\"#)[^)]*\)|@import", page) == []
+
+
+def test_it_carries_the_numbers_it_was_given(page):
+    text = re.sub(r"<[^>]+>", " ", page).replace("\u00a0", " ")
+    numbers = [
+        "4.85",
+        "0.93",
+        "0.62",
+        "31.4",
+        "7.9",
+        "12.3 W/m2/K (95 %: 10.1 … 14.6)",
+        "1.13",
+        "1.02 … 1.26",
+        "123",
+        "5.07",
+        "9.14",
+    ]
+    assert [n for n in numbers if n not in text] == []
+
+
+def test_the_verdict_comes_first_and_names_the_effect(page):
+    body = page[page.index("<main>") :]
+    assert body.index("Missing from the model: convection at flange.right") < body.index("<h2>")
+
+
+def test_sections_follow_the_parts_given(page):
+    titles = re.findall(r"<h2>(.*?)</h2>", page)
+    assert titles[:3] == ["The error, step by step", "The machine", "Measured and modelled"]
+    assert "How to repeat this" in titles
+    assert re.findall(r"<h2>", render(Report("empty"))) == []
+
+
+def test_words_from_outside_are_escaped(page):
+    assert "road &lt;test&gt;" in page
+    assert "road <test>" not in page
+
+
+def test_ids_are_unique(page):
+    ids = re.findall(r'\bid="([^"]+)"', page)
+    assert len(ids) == len(set(ids))
+
+
+def test_pictures_travel_inside(page):
+    assert page.count("data:image/png;base64,") == 1
+
+
+@pytest.mark.parametrize(
+    ("code", "word"),
+    [("adequate", "agrees"), ("group", "one of"), ("several", "and"), ("outside", "near flange.right"),
+     ("absorbed", "hides"), ("data", "sensors")],
+)  # fmt: skip
+def test_every_verdict_has_its_words(code, word):
+    compare, diagnose = documents()
+    assert word in verdict({**diagnose, "verdict": code}, compare)[1]
+
+
+def test_a_wrong_base_is_what_the_report_says_first():
+    rows = [("none", True, True), ("bench", False, False), ("plate", False, False)]
+    bases = [{"test": "b", "base": b, "declared": said, "excluded": out} for b, said, out in rows]
+    sentence = verdict({**documents()[1], "verdict": "data", "bases": bases}, None)[1]
+    assert sentence.startswith("b did not stand on the base its sheet says (none), but on bench or plate")
+
+
+def test_an_addition_that_was_undone_is_no_story():
+    back = {"number": 3, "action": "step back", "effect": "", "effects": [], "tests": []}
+    assert "from 4.85 K to 0.93 K on road-2" in story(HISTORY)
+    assert story([*HISTORY, back]) == ""
+
+
+def told(**ahead):
+    _, diagnose = documents()
+    page = render(Report("a", "", None, {**diagnose, "next_tests": [], "next_sensors": [], **ahead}))
+    return re.sub(r"<[^>]+>", " ", page)
+
+
+def test_only_what_would_decide_is_proposed():
+    spin = {"test": "spin without current", "separates": [], "predicted_gain": 3.0, "hours": 4.0}
+    blower = {"test": "blower on", "separates": ["a@b / c@d"], "predicted_gain": 44.0, "hours": 4.0}
+    probe = {"place": "shaft", "separates": ["a@b / c@d"], "predicted_gain": 31.0, "hours": 16.0}
+    text = told(next_tests=[spin, blower], next_sensors=[probe])
+    assert "What would decide" in text
+    assert "blower on" in text
+    assert "shaft" in text
+    assert "spin" not in text
+
+
+def test_if_no_test_would_decide_the_report_says_so():
+    spin = {"test": "spin without current", "separates": [], "predicted_gain": 3.0, "hours": 4.0}
+    assert "No candidate test would tell them apart" in told(next_tests=[spin])
+
+
+def test_the_viewer_stands_in_a_frame_that_sees_nothing_of_the_page():
+    inner = '<!doctype html><p title="x">&amp;</p><script>1 < 2</script>'
+    text = render(Report("case", viewer=inner))
+    frame = re.search(r'<iframe ([^>]*) srcdoc="([^"]*)"></iframe>', text)
+    assert unescape(frame[2]) == inner
+    assert 'sandbox="allow-scripts"' in frame[1]
+    assert 'loading="lazy"' in frame[1]
+    assert "<script" not in text.replace(frame[0], "")
+    assert "<iframe" not in render(Report("case"))
+
+
+@pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
+def test_a_browser_draws_the_viewer_in_the_report(tmp_path):
+    """From disk, and with the policy under which the workbench hands the report out."""
+    playwright = pytest.importorskip("playwright.sync_api")
+    text = render(Report("case", viewer=viewer_page(viewer_document("motor", NODES, [recorded()], PLACE))))
+    rule = f'<meta http-equiv="Content-Security-Policy" content="{report_policy()}">'.replace(
+        "; frame-ancestors 'none'", ""
+    )  # a page from disk cannot forbid its frames
+    said = []
+    with playwright.sync_playwright() as engine:
+        arguments = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+        browser = engine.chromium.launch(executable_path=BROWSER, args=arguments)
+        for name, shown in (("plain", text), ("ruled", text.replace("<head>", f"<head>{rule}", 1))):
+            file = tmp_path / f"{name}.html"
+            file.write_text(shown, encoding="utf-8")
+            page = browser.new_page()
+            page.on("console", lambda message: said.append(message.text))
+            page.goto(file.as_uri())
+            page.click("summary:has-text('Turn it')")
+            page.frame_locator("iframe").locator("#title:has-text('at 60 min')").wait_for()
+            page.close()
+        browser.close()
+    assert said == []
