@@ -66,8 +66,8 @@ def fidelity_error(case: Case, small: Case, posterior: Posterior) -> dict[str, f
     tests = [known[t.name] for t in e.tests]
     out: dict[str, float] = {}
     for test, own, gap in zip(tests, e.tests, _gaps(large, tests, network, e.tests, values), strict=True):
-        for j, (c, lowered) in enumerate(zip(test.channels, own.channels, strict=True)):
-            off = float(np.nanmax(np.abs(gap[:, j] - (c.y - lowered.y)), initial=0.0))
+        for j, (c, seen) in enumerate(zip(test.channels, own.channels, strict=True)):
+            off = float(np.nanmax(np.abs(gap[:, j] - (c.y - seen.y)), initial=0.0))
             out[c.name] = max(out.get(c.name, 0.0), off)
     return out
 
