@@ -138,7 +138,7 @@ def test_what_would_have_to_differ_is_drawn_with_what_cannot(tmp_path):
     figure = scores.differences(found, png=tmp_path / "differences.png")
     (ax,) = figure.axes
     assert [t.get_text() for t in ax.get_yticklabels()] == ["bias of T in run4", "capacity.stator in run4"]
-    assert [t.get_text().strip("\u00a0") for t in ax.texts] == ["-1 K", "x 2.7"]
+    assert [t.get_text().strip("\u00a0") for t in ax.texts] == ["−1 K", "x 2.7"]
     colours = [bar.get_facecolor() for bar in ax.patches]
     assert colours[0] != colours[1]
 
