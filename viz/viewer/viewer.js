@@ -605,15 +605,17 @@ class Viewer {
     box.style.left = `${Math.min(x + 14, $("gl").clientWidth - 180)}px`; box.style.top = `${y + 14}px`;
   }
   tick(now) {
-    const times = this.test.times, span = times[times.length - 1] - times[0];
-    if (this.playing) {  // an hour in ten seconds
-      const time = this.time + (now - this.last) / 1000 * 360 / span;
-      this.move(Math.min(time, 1));
-      if (time >= 1) this.play(false);
+    if (this.drawn(now)) {
+      if (this.playing) this.advance((now - this.last) / 1000);
+      this.last = now;
+      this.next(now);
     }
-    this.last = now;
-    if (this.drawn(now)) this.next(now);
     requestAnimationFrame((t) => this.tick(t));
+  }
+  advance(seconds) {  // an hour in ten of them
+    const times = this.test.times, time = this.time + seconds * 360 / (times[times.length - 1] - times[0]);
+    this.move(Math.min(time, 1));
+    if (time >= 1) this.play(false);
   }
   next(now) {  // a slow computer draws roughly while something moves, and smoothly once a picture has stood still
     const resting = now - this.moved > REST;
