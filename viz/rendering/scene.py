@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 SIZE = (1280, 800)  # pixels
-MARK, GAP = 8.5, 8  # letters of a colour bar's numbers; pixels between them and the bar
+MARK, GAP = 9, 8  # letters of a colour bar's numbers; pixels between them and the bar
 FEATURE_ANGLE = 35.0  # degrees between facets from which an edge is drawn
 
 
@@ -145,7 +145,7 @@ def footnote(p: pyvista.Plotter, text: str, theme: Theme = LIGHT) -> None:
 
 
 def _line(
-    p: pyvista.Plotter, text: str, at: tuple[float, float], size: float, theme: Theme, name: str,
+    p: pyvista.Plotter, text: str, at: tuple[float, float], size: int, theme: Theme, name: str,
     anchor: tuple[str, str] = ("left", "bottom"),
 ) -> None:  # fmt: skip
     """In place of the line of that name. Its font comes with it: a plotter that has drawn draws again at once."""

@@ -494,7 +494,7 @@ class Viewer {
     return this.behind;
   }
   draw(samples) {  // edges are smooth with several samples per pixel
-    const gl = this.gl, c = $("gl"), scale = Math.min(devicePixelRatio || 1, 2);
+    const gl = this.gl, c = $("gl"), scale = Math.min(devicePixelRatio || 1, 2) * (samples > 1 ? 1 : COARSE);
     const [w, h] = [c.clientWidth, c.clientHeight].map((side) => Math.max(1, Math.round(side * scale)));
     if (c.width !== w || c.height !== h) { c.width = w; c.height = h; }
     const paper = getComputedStyle(document.body).backgroundColor.match(/\d+/g).map((v) => v / 255);
@@ -618,7 +618,7 @@ class Viewer {
     if (time >= 1) this.play(false);
   }
   next(now) {  // a slow computer draws roughly while something moves, and smoothly once a picture has stood still
-    const resting = now - this.moved > REST;
+    const resting = now - this.moved > Math.max(REST, 2 * this.took);  // else a slow hand meets a slow picture
     if (!this.dirty && (this.smooth || !resting)) return;
     this.smooth = !this.slow || !this.dirty;
     const still = !this.dirty;
@@ -652,6 +652,7 @@ const FACES = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];  // of a tetrahedron
 const SAME = 0.9999;  // cosine of the angle between normals below which they are one: under a degree
 const SAMPLES = 4;  // per pixel: every WebGL 2 has them
 const SLOW = 12, QUICK = 50;  // ms that a smooth picture takes from which moving ones are rough; a rough one, until which smooth ones are timed
+const COARSE = 0.5;  // of the pixels along a side, in rough pictures
 const REST = 200;  // ms without a movement until the picture is smooth
 const CREASE = 0.77;  // cosine of 40 degrees
 const WINDOW = 22, ABOVE = 0.01;  // pixels around a labelled sensor in which what hides it is ghosted; of the machine's size

@@ -72,7 +72,9 @@ def largest(sensors: Sequence[Sensor]) -> str:
 
     wrong = [s for s in sensors if s.verdict in ("hot", "cold")]
     worst = max(wrong, key=lambda s: s.weight, default=None)
-    return "" if worst is None else f": {short(worst.name)} {signed(worst.residual_K)} K"
+    if worst is None or worst.residual_K is None:
+        return ""
+    return f": {short(worst.name)} {signed(worst.residual_K)} K"
 
 
 def misses(
