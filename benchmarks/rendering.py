@@ -175,7 +175,7 @@ def main() -> None:
     mesh = build_mesh(load_machine("series-dc-100kw"), size_m=1e-3 * options.size_mm, segments=options.segments)
     nodes, rows = pictures(mesh)
     document = {
-        "benchmark": "viz",
+        "benchmark": "rendering",
         "computer": f"{platform.machine()}, {platform.processor() or platform.system()}",
         "date": datetime.date.today().isoformat(),
         "load": load,

@@ -11,6 +11,16 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
+def signed(value: float, digits: int = 1) -> str:
+    """A number with its sign, which is the one of mathematics; what rounds to zero is +0."""
+    return minus(f"{round(value, digits) + 0.0:+.{digits}f}")
+
+
+def minus(number: str) -> str:
+    """A printed number with the sign that matplotlib and the pages write, not a hyphen."""
+    return number.replace("-", "−")
+
+
 def spread_labels(values: Sequence[float], low: float, high: float, gap: float) -> list[float]:
     """Rising values moved apart to at least `gap` (less if they do not fit), within low..high, near where they were."""
     if not len(values):

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from thermoscope.case_folder.folder import load_case
-from thermoscope.case_folder.runs import before_last, by_interest, fields
+from thermoscope.case_folder.runs import before_last, by_interest, fields, temperature_range
 from thermoscope.commands.show.film import before, largest, misses, now
 from viz.appearance.moving import moving
 from viz.rendering.nodes import split
@@ -32,8 +32,9 @@ def draw(case: Path, gif: Path) -> None:
         T.append(values)
         seen += rows
         titles += [f"{t / 60:.0f} min, {words}{largest(row)}" for t, row in zip(times, rows, strict=True)]
-    moving(folder.built.machine, nodes, np.concatenate(T), gif, titles=titles, sensors=seen, width=WIDTH,
-           frames_per_second=PER_SECOND, tell=lambda k: print(f"\r{k}", end=""))  # fmt: skip
+    moving(folder.built.machine, nodes, np.concatenate(T), gif, titles=titles, sensors=seen,
+           limits=temperature_range(folder, nodes), width=WIDTH, frames_per_second=PER_SECOND,
+           tell=lambda k: print(f"\r{k}", end=""))  # fmt: skip
     assert gif.stat().st_size <= LARGEST, f"{gif.stat().st_size / 1e6:.1f} MB"
 
 

@@ -112,8 +112,6 @@ def story(walk: Walk, address: str) -> None:
     clicked(walk, "T_flange_right_degC")
     walk.shot("sensor")
     page.keyboard.press("d")
-    page.wait_for_function("/\\d+\\/\\d+/.test(document.querySelector('#job-message')?.innerText)")
-    page.screenshot(path=walk.folder / "workbench-searching.png")
     page.wait_for_selector("#verdict")
     walk.took("diagnose")
     page.evaluate("document.querySelector('#missing').scrollIntoView({block: 'start'})")

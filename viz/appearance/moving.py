@@ -30,15 +30,19 @@ def moving(
     *,
     titles: Sequence[str],
     sensors: Sequence[Sequence[Sensor]],
+    limits: tuple[float, float],
     width: int,
     frames_per_second: float,
     tell: Callable[[int], None] = lambda number: None,
 ) -> Path:
-    """Write a .gif or .mp4 of fields (n, n_nodes) degC, with a title and a row of sensors each; `width` in pixels."""
+    """Write a .gif or .mp4 of fields (n, n_nodes) degC, with a title and a row of sensors each.
+
+    limits : of the colours (degC);  width : in pixels
+    """
     from PIL import Image
 
     T = on_nodes(nodes, fields)
-    warm = Warm(nodes, T[0], (float(T.min()), float(T.max())))
+    warm = Warm(nodes, T[0], limits)
     p, painted = staged(machine, warm, QUARTER, VIEW, LIGHT, RENDER_SIZE, True)
     scene.footnote(p, CAPTION, LIGHT)
     pulses, pictures = Pulses(p, cut_away(nodes), sensors[0]), []

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from viz.colours import BLUE, LIGHT, ORANGE, PURPLE, VERMILION
 from viz.figures import paper
+from viz.labels import minus
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -81,7 +82,7 @@ def factor(d: Mapping[str, Any]) -> str:
     """How much a parameter would have to differ: times the others, or beside them."""
     if d["relative"]:
         return f"x {d['here'] / d['others']:.2g}"
-    return f"{d['here'] - d['others']:+.2g}{'' if d['unit'] == '1' else ' ' + d['unit']}"
+    return f"{minus(format(d['here'] - d['others'], '+.2g'))}{'' if d['unit'] == '1' else ' ' + d['unit']}"
 
 
 @paper.styled

@@ -36,6 +36,7 @@ def measured_and_model(comparison: Comparison, *, columns: int = 3, png: str | P
     for ax in axes[len(channels) :]:
         ax.set_visible(False)
     _name_lines(axes[0], comparison)
+    figure.suptitle(f"{comparison.test.name}: measured and modelled", fontsize=10.5, color=LIGHT.ink)
     figure.supxlabel(f"time ({comparison.clock[1]})", fontsize=9.5, color=LIGHT.ink)
     figure.supylabel("temperature (°C)", fontsize=9.5, color=LIGHT.ink)
     return paper.save(figure, png)
@@ -53,6 +54,7 @@ def residuals(comparison: Comparison, *, png: str | Path | None = None) -> Figur
         r = comparison.residual(channel)
         colours.append(wrongness(r, comparison.limit_K(channel)))
         ax.plot(t[thin], r[thin], color=colours[-1], lw=1.6 if colours[-1] != LIGHT.faint else 1.0)
+        alone(ax, t, r, colours[-1])
     ends = [float(r[np.isfinite(r)][-1]) for r in map(comparison.residual, channels)]
     end_labels(ax, ends, [short(c.name) for c in channels], [LIGHT.ink if c == LIGHT.faint else c for c in colours])
     ax.axhline(0, color=LIGHT.ink, lw=0.8)
@@ -77,6 +79,8 @@ def _panel(ax: Axes, comparison: Comparison, channel: Channel) -> None:
     limit = comparison.limit_K(channel)
     ax.fill_between(t, y - limit, y + limit, color=LIGHT.faint, alpha=0.45, lw=0)
     ax.plot(t, y, color=LIGHT.ink, lw=1.0)
+    read = np.asarray(channel.y, float)
+    alone(ax, comparison.clock[0], read, LIGHT.ink, limit)
     if comparison.before is not None:
         ax.plot(t, comparison.before[channel.name][thin], color=ORANGE, lw=1.4, ls=(0, (4, 2)))
     ax.plot(t, comparison.model[channel.name][thin], color=BLUE)
@@ -87,6 +91,14 @@ def _panel(ax: Axes, comparison: Comparison, channel: Channel) -> None:
     ax.set_title(
         f"rms {comparison.rmse(channel):.1f} K", loc="right", color=colour, fontweight="bold" if over else "normal"
     )
+
+
+def alone(ax: Axes, t: np.ndarray, y: np.ndarray, colour: str, within: float = 0.0) -> None:
+    """Dots where a reading has no neighbour, so that no line would show it, with a bar of +- `within` on each."""
+    known = np.pad(np.isfinite(y), 1)
+    lone = known[1:-1] & ~known[:-2] & ~known[2:]
+    if lone.any():
+        ax.errorbar(t[lone], y[lone], yerr=within or None, fmt="o", ms=3.5, color=colour, elinewidth=1.0, zorder=3)
 
 
 def _name_lines(ax: Axes, comparison: Comparison) -> None:

@@ -55,14 +55,18 @@ def flux_arrows(
     *,
     wedge: Wedge = QUARTER,
     title: str = "",
+    limits: tuple[float, float] | None = None,
     view: View | None = None,
     theme: Theme = LIGHT,
     png: str | Path | None = None,
 ) -> pyvista.Plotter:
-    """The field cut open, with arrows along the heat flux in both cut faces; their length grows with its root."""
+    """The field cut open, with arrows along the heat flux in both cut faces; their length grows with its root.
+
+    limits : of the colours (degC), those of T if not given
+    """
     p, view, T = scene.plotter(theme), view or View(), on_nodes(nodes, T)
     surface = cut_away(nodes, wedge)
-    paint(p, surface, T, None, theme)
+    paint(p, surface, T, limits, theme)
     at, flux = on_faces(nodes, heat_flux(nodes, T, conductivity), wedge)
     scene.colour_bar(p, UNIT, theme)  # of what was added last, so before the arrows
     _arrows(p, at, flux, float(np.ptp(nodes.points[:, 2])), theme)

@@ -114,7 +114,7 @@ def pair(
         paint(p, surface, field, limits, theme)
         scene.headline(p, titles[i], theme)
         scene.look(p, surface.points, view, Room(0.0, 0.16))
-    scene.colour_bar(p, UNIT, theme, position_x=0.84, width=0.09)
+    scene.colour_bar(p, UNIT, theme, position_x=0.84, width=0.034)
     scene.save(p, png)
     return p
 

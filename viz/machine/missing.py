@@ -11,6 +11,7 @@ import numpy as np
 from geom.errors import InputError
 from validation.diagnosis.missing_heat import is_located
 from viz.colours import BLUE, LIGHT, VERMILION, Theme, missing
+from viz.labels import signed
 from viz.rendering import scene
 from viz.rendering.callouts import Label, callouts, width
 from viz.rendering.cut import QUARTER, Wedge, cut_away
@@ -75,7 +76,7 @@ def missing_in_machine(
     scene.headline(p, f"Heat that the model misses, mean over {test}{unsure}", theme)
     scene.footnote(p, "at each place by itself; nats: evidence for it", theme)
     nats = {w["place"]: w["evidence_nats"] for w in where}
-    words = {n: f"{n}  {q:+.0f} W, {nats[n]:.0f} nats" for n, q in heat.items() if abs(q) > FAINT * top}
+    words = {n: f"{n}  {signed(q, 0)} W, {nats[n]:.0f} nats" for n, q in heat.items() if abs(q) > FAINT * top}
     wide = width(max(words.values(), key=len), SMALL)
     room = Room(0.02 + wide, 0.12 + wide, TITLE)
     scene.look(p, surface.points, view, room)

@@ -33,7 +33,7 @@ LABEL = 0.018, 0.045  # half height and width of such a label, share of the mach
 NODE = 0.02  # radius of a node, the same
 SHARES = (0.5, 0.42, 0.58, 0.34, 0.66, 0.26, 0.74)  # of a line: where its label may stand, the middle first
 BELOW: dict[str, Any] = {
-    "vertical": False, "position_x": 0.28, "position_y": 0.04, "width": 0.36, "height": 0.1, "unit": "W",
+    "vertical": False, "position_x": 0.28, "position_y": 0.05, "width": 0.36, "height": 0.022, "unit": "W",
 }  # fmt: skip
 
 
@@ -43,6 +43,7 @@ def network_in_machine(
     flow: Heat,
     *,
     title: str = "",
+    limits: tuple[float, float] | None = None,
     theme: Theme = LIGHT,
     png: str | Path | None = None,
 ) -> pyvista.Plotter:
@@ -52,6 +53,7 @@ def network_in_machine(
     Nodes off the axis (feet, base) and flows below 1 % of the largest are left out.
 
     temperatures : node -> degC;  flow : from viz.figures.flows.heat_flows, made with the states `z`
+    limits : of the nodes' colours (degC), those of the nodes if not given
     """
     p, nodes = scene.plotter(theme), split(mesh)
     surface = cut_away(nodes, HALF).clipped(np.array([0.0, 1.0, 0.0]))
@@ -66,7 +68,7 @@ def network_in_machine(
     at = spread_out(at, CLOSEST * length)
     frame = front + np.array([[0, -0.2 * high[1], low[2]], [0, high[1], high[2]]])
     widest = _lines(p, at, flow, power() if theme == LIGHT else power().reversed(), length)
-    _nodes(p, at, temperatures)
+    _nodes(p, at, temperatures, limits)
     names = [Label(tuple(xyz), f"{name}  {temperatures[name]:.0f} °C", LIGHT.ink) for name, xyz in at.items()]  # type: ignore[arg-type]
     scene.colour_bar(p, "°C", theme, mapper=p.actors["nodes"].mapper)
     if "link 0" in p.actors:
@@ -164,14 +166,16 @@ def clear_place(a: Array, b: Array, nodes: Sequence[Array], occupied: Sequence[A
     return next((at for at in (a + share * (b - a) for share in SHARES) if clear(at)), None)
 
 
-def _nodes(p: pyvista.Plotter, at: Mapping[str, Array], T: Mapping[str, float]) -> None:
+def _nodes(
+    p: pyvista.Plotter, at: Mapping[str, Array], T: Mapping[str, float], limits: tuple[float, float] | None
+) -> None:
     import pyvista
 
     cloud = pyvista.PolyData(np.array(list(at.values())))
     cloud.point_data["T"] = [T[name] for name in at]
     style: dict[str, Any] = {"render_points_as_spheres": True, "lighting": False, "show_scalar_bar": False}
     halo = p.add_mesh(cloud.copy(), color="white", point_size=50, **style)
-    limits = rounded(min(T[name] for name in at), max(T[name] for name in at))
-    dots = p.add_mesh(cloud, scalars="T", cmap=heat(), clim=limits, point_size=42, name="nodes", **style)
+    ends = rounded(*(limits or (min(T[name] for name in at), max(T[name] for name in at))))
+    dots = p.add_mesh(cloud, scalars="T", cmap=heat(), clim=ends, point_size=42, name="nodes", **style)
     on_top(halo, 4)
     on_top(dots, 5)

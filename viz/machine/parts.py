@@ -63,10 +63,12 @@ def exploded(
     view: View | None = None,
     theme: Theme = LIGHT,
     title: str = "",
+    limits: tuple[float, float] | None = None,
     png: str | Path | None = None,
 ) -> pyvista.Plotter:
     """The machine pulled apart along its axis, each group under its names; coloured by temperature (degC) if given.
 
+    limits : of the colours (degC), those of T if not given
     groups : parts that stay together, from left to right; by what they are if not given
     """
     p = scene.plotter(theme)
@@ -74,7 +76,7 @@ def exploded(
     shift = shifts(nodes, groups)
     surface = exposed(nodes, contacts=True)
     field = None if T is None else on_nodes(nodes, T)
-    _paint(p, surface, field, theme, shift)
+    _paint(p, surface, field, theme, shift, limits=limits)
     if T is not None:
         scene.colour_bar(p, "°C", theme)
     moved = nodes.points + shift[nodes.owner]
@@ -126,7 +128,8 @@ def shifts(nodes: SplitMesh, groups: Sequence[Sequence[str]]) -> Array:
 
 
 def _paint(
-    p: pyvista.Plotter, surface: Surface, T: Array | None, theme: Theme, shift: Array | None = None, mesh: bool = False
+    p: pyvista.Plotter, surface: Surface, T: Array | None, theme: Theme, shift: Array | None = None, mesh: bool = False,
+    limits: tuple[float, float] | None = None,
 ) -> None:  # fmt: skip
     data = scene.polydata(surface, shift)
     scene.outline(p, data, theme)
@@ -140,9 +143,8 @@ def _paint(
         p.add_mesh(data, scalars="colour", rgb=True, **light)
     else:
         data.point_data["T"] = surface.values(T)
-        p.add_mesh(
-            data, scalars="T", cmap=heat(), clim=rounded(float(T.min()), float(T.max())), show_scalar_bar=False, **light
-        )
+        ends = rounded(*(limits or (float(T.min()), float(T.max()))))
+        p.add_mesh(data, scalars="T", cmap=heat(), clim=ends, show_scalar_bar=False, **light)
 
 
 def _rgb(colour: str) -> tuple[int, ...]:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from viz.colours import VERDICT, Theme
 from viz.data import Sensor, short
+from viz.labels import signed
 from viz.rendering import scene
 from viz.rendering.callouts import Label, callouts, dot
 from viz.rendering.cut import Surface
@@ -63,5 +64,5 @@ def marked(surface: Surface, sensors: Sequence[Sensor], labels: int, eye: NDArra
 
 
 def _label(sensor: Sensor, hidden: bool) -> Label:
-    value = "" if sensor.residual_K is None else f"  {round(sensor.residual_K, 1) + 0.0:+.1f} K"
+    value = "" if sensor.residual_K is None else f"  {signed(sensor.residual_K)} K"
     return Label(sensor.xyz, f"{short(sensor.name)}{value}", VERDICT[sensor.verdict], hidden)

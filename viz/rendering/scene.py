@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from viz.colours import LIGHT, Theme
+from viz.labels import minus
 from viz.rendering.cut import Surface
 from viz.rendering.gl import require_gl
 from viz.rendering.scale import decimals, marks
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 SIZE = (1280, 800)  # pixels
+MARK, GAP = 9, 8  # letters of a colour bar's numbers; pixels between them and the bar
 FEATURE_ANGLE = 35.0  # degrees between facets from which an edge is drawn
 
 
@@ -109,19 +111,26 @@ def look(p: pyvista.Plotter, points: Array, view: View, room: Room = NO_ROOM) ->
 
 def colour_bar(p: pyvista.Plotter, title: str, theme: Theme = LIGHT, **options: Any) -> None:
     """A vertical bar at the right edge, its title above it, marked where a rounded range has its round numbers."""
-    style: dict[str, Any] = {
-        "title": title, "vertical": True, "position_x": 0.905, "position_y": 0.14, "width": 0.045, "height": 0.66,
-        "label_font_size": 17, "title_font_size": 17, "color": theme.ink,
-    }  # fmt: skip
+    style: dict[str, Any] = {"vertical": True, "position_x": 0.905, "position_y": 0.14, "width": 0.018, "height": 0.6}
     mapper: Any = options.get("mapper") or p.mapper
     low, high = mapper.scalar_range
     unit = f" {unit}" if (unit := options.pop("unit", "")) else ""
-    style |= {"n_labels": len(marks(low, high)), "fmt": f"%.{decimals(high - low)}f{unit}"}
-    bar = p.add_scalar_bar(**{**style, **options})
-    bar.SetTextPad(6)
-    bar.SetVerticalTitleSeparation(14)
-    for text in (bar.GetTitleTextProperty(), bar.GetLabelTextProperty()):
-        set_font(text)
+    style |= options
+    bar = p.add_scalar_bar(title=title, n_labels=0, **style)
+    bar.SetTitle("")  # VTK's words would leave the bar what room they do not need, and have a hyphen for a minus sign
+    bar.SetBarRatio(1.0)
+    bar.SetTextPad(0)
+    x, y, wide, tall = (style[k] for k in ("position_x", "position_y", "width", "height"))
+    gap = [GAP / side for side in p.renderer.GetSize()]
+    for mark in marks(low, high):
+        share = (mark - low) / (high - low)
+        words = f"{minus(f'{mark:.{decimals(high - low)}f}')}{unit}"
+        if style["vertical"]:
+            at, anchor = (x + wide + gap[0], y + share * tall), ("left", "center")
+        else:
+            at, anchor = (x + share * wide, y + tall + gap[1]), ("center", "bottom")
+        _line(p, words, at, MARK, theme, f"{title} {words}", anchor)
+    _line(p, title, (x, y + tall + 2 * gap[1]), MARK, theme, f"title {title}")
 
 
 def headline(p: pyvista.Plotter, text: str, theme: Theme = LIGHT) -> None:
@@ -135,9 +144,15 @@ def footnote(p: pyvista.Plotter, text: str, theme: Theme = LIGHT) -> None:
     _line(p, text, (0.02, 0.025), 9, theme, "footnote")
 
 
-def _line(p: pyvista.Plotter, text: str, at: tuple[float, float], size: int, theme: Theme, name: str) -> None:
+def _line(
+    p: pyvista.Plotter, text: str, at: tuple[float, float], size: int, theme: Theme, name: str,
+    anchor: tuple[str, str] = ("left", "bottom"),
+) -> None:  # fmt: skip
     """In place of the line of that name. Its font comes with it: a plotter that has drawn draws again at once."""
-    p.add_text(text, position=at, viewport=True, font_size=size, color=theme.ink, name=name, font_file=font_file())
+    line = p.add_text(
+        text, position=at, viewport=True, font_size=size, color=theme.ink, name=name, font_file=font_file()
+    )
+    line.prop.justification_horizontal, line.prop.justification_vertical = anchor
 
 
 def save(p: pyvista.Plotter, png: str | Path | None) -> None:

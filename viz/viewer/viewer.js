@@ -2,7 +2,8 @@ const $ = (id) => document.getElementById(id);
 const data = JSON.parse($("data").textContent);
 
 async function unpacked(p) {  // rows of numbers in one array that knows its columns; what is not known is NaN
-  const bytes = Uint8Array.from(atob(p.data), (c) => c.charCodeAt(0));
+  const text = atob(p.data), bytes = new Uint8Array(text.length);
+  for (let i = 0; i < text.length; i++) bytes[i] = text.charCodeAt(i);
   const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
   const planes = new Uint8Array(await new Response(stream).arrayBuffer());
   const size = planes.length / 4, rows = p.columns ? size / p.columns : 0;
@@ -30,21 +31,24 @@ precision highp float; precision highp int;
 in vec3 place; in vec3 normal; in vec2 ends; in float share;
 uniform mat4 view; uniform sampler2D field, told; uniform int wide;
 out vec3 at; out vec3 facing; out vec2 T; out float sure;
+uniform int layer;
 ivec2 cell(float i) { int k = int(i); return ivec2(k % wide, k / wide); }
 vec2 value(float i) { return texelFetch(field, cell(i), 0).rg; }
-void main() {
-  at = place; facing = normal; T = mix(value(ends.x), value(ends.y), share);
-  sure = mix(texelFetch(told, cell(ends.x), 0).r, texelFetch(told, cell(ends.y), 0).r, share);
+float known(float i) { return texelFetch(told, cell(i), 0).r; }
+void main() {  // looking values up is most of a vertex's work without a graphics card: nodes are looked up once
+  at = place; facing = normal; T = value(ends.x); sure = 1.0;
+  if (share > 0.0) T = mix(T, value(ends.y), share);
+  if (layer == 3) sure = mix(known(ends.x), known(ends.y), share);
   gl_Position = view * vec4(place, 1.0);
 }`;
 const FRAGMENT = `#version 300 es
-precision highp float;
+precision highp float; precision highp int;
 in vec3 at; in vec3 facing; in vec2 T; in float sure;
 uniform vec4 plane; uniform vec3 eye; uniform vec2 range; uniform float wipe, alpha, part, flat_; uniform int layer, mode;
 uniform vec3 windows[6]; uniform float reach; uniform sampler2D palette; out vec4 colour;
 void main() {
   if (flat_ < 0.5 && dot(at, plane.xyz) > plane.w) discard;
-  if (mode != 1) {  // in a window what is nearer than the sensor keeps one pixel of four; mode 2 draws what is behind
+  if (mode != 1 && reach > 0.0) {  // in a window what is nearer than the sensor keeps one pixel of four; mode 2 draws what is behind
     bool nearer = false, behind = false;
     for (int i = 0; i < 6; i++) if (distance(gl_FragCoord.xy, windows[i].xy) < reach) {
       nearer = nearer || gl_FragCoord.z < windows[i].z; behind = behind || gl_FragCoord.z >= windows[i].z;
@@ -83,16 +87,18 @@ void main() {
 }`;
 
 class Viewer {
-  constructor() {
-    this.points = data.points; this.tets = data.tets;
-    this.owner = Int32Array.from(data.parts.flatMap((p, k) => Array(p.nodes).fill(k)));
+  constructor() {  // asks for GL and its programs: they are made beside this script, while it unpacks the data
     this.gl = $("gl").getContext("webgl2", { antialias: false, preserveDrawingBuffer: true });
     if (!this.gl) throw new Error("this browser has no WebGL 2, which this page draws with");
+    this.programs();
+  }
+  open() {  // what is unpacked
+    this.points = data.points; this.tets = data.tets;
+    this.owner = Int32Array.from(data.parts.flatMap((p, k) => Array(p.nodes).fill(k)));
     this.parts = data.parts.map((p) => ({ ...p, shown: 1 }));
-    this.right = 0; this.left = 1; this.time = 1; this.playing = false; this.frames = 0; this.dirty = true; this.smooth = false; this.slow = true; this.moved = -Infinity; this.pointers = new Map();
+    this.right = 0; this.left = 1; this.time = 1; this.playing = false; this.frames = 0; this.dirty = true; this.smooth = false; this.slow = true; this.pointers = new Map();
     this.bounds();
     this.first();
-    this.programs();
     this.surface();
     this.textures();
     this.choose(0);
@@ -112,9 +118,7 @@ class Viewer {
     const gl = this.gl, p = gl.createProgram();
     for (const [kind, text] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
       const s = gl.createShader(kind);
-      gl.shaderSource(s, text); gl.compileShader(s);
-      if (!gl.getShaderParameter(s, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(s));
-      gl.attachShader(p, s);
+      gl.shaderSource(s, text); gl.compileShader(s); gl.attachShader(p, s);
     }
     inputs.forEach((name, k) => gl.bindAttribLocation(p, k, name));
     gl.linkProgram(p);
@@ -125,20 +129,25 @@ class Viewer {
     this.lines = this.program(LINES, LINE, ["place"]);
     this.dots = this.program(DOTS, DOT, ["place", "tint"]);
   }
+  linked() {
+    const gl = this.gl;
+    for (const { p } of [this.skin, this.lines, this.dots])
+      if (!gl.getProgramParameter(p, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(p) || "its shaders do not link");
+  }
   mesh(floats, sizes, index) {
     const gl = this.gl, vao = gl.createVertexArray(), buffer = gl.createBuffer();
     const stride = 4 * sizes.reduce((a, b) => a + b);
     gl.bindVertexArray(vao); gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
-    let offset = 0;
+    let offset = 0, order = null;
     sizes.forEach((n, k) => {
       gl.enableVertexAttribArray(k); gl.vertexAttribPointer(k, n, gl.FLOAT, false, stride, offset); offset += 4 * n;
     });
     gl.bufferData(gl.ARRAY_BUFFER, floats, gl.DYNAMIC_DRAW);
     if (index) {
-      gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
+      order = gl.createBuffer(); gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, order);
       gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, index, gl.STATIC_DRAW);
     }
-    return { vao, buffer };
+    return { vao, buffer, order };
   }
   triangles() {  // corners of the triangles that bound parts: first those that nothing lies on, then the others; by part each
     const t = this.tets, out = [], spans = [];
@@ -156,35 +165,37 @@ class Viewer {
   surface() {  // normals are shared by triangles that meet at less than 40 degrees, so that edges stay sharp
     const [t, spans] = this.triangles(), n = t.length / 3, p = this.points, nodes = p.length / 3, flat = new Float32Array(3 * n);
     const count = new Int32Array(nodes + 1);
-    for (let i = 0; i < n; i++) {
-      const [a, b, c] = [3 * t[3 * i], 3 * t[3 * i + 1], 3 * t[3 * i + 2]];
-      const u = [p[b] - p[a], p[b + 1] - p[a + 1], p[b + 2] - p[a + 2]];
-      const v = [p[c] - p[a], p[c + 1] - p[a + 1], p[c + 2] - p[a + 2]];
-      const x = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
-      const s = 1 / (Math.hypot(...x) || 1);
-      for (let k = 0; k < 3; k++) { flat[3 * i + k] = x[k] * s; count[t[3 * i + k] + 1]++; }
+    for (let i = 0; i < 3 * n; i += 3) {
+      const a = 3 * t[i], b = 3 * t[i + 1], c = 3 * t[i + 2];
+      const ux = p[b] - p[a], uy = p[b + 1] - p[a + 1], uz = p[b + 2] - p[a + 2];
+      const vx = p[c] - p[a], vy = p[c + 1] - p[a + 1], vz = p[c + 2] - p[a + 2];
+      const x = uy * vz - uz * vy, y = uz * vx - ux * vz, z = ux * vy - uy * vx, s = 1 / (Math.sqrt(x * x + y * y + z * z) || 1);
+      flat[i] = x * s; flat[i + 1] = y * s; flat[i + 2] = z * s;
+      for (let k = 0; k < 3; k++) count[t[i + k] + 1]++;
     }
     for (let i = 1; i < count.length; i++) count[i] += count[i - 1];
     const fill = count.slice(), around = new Int32Array(3 * n), index = new Uint32Array(3 * n);
     for (let i = 0; i < 3 * n; i++) around[fill[t[i]]++] = Math.floor(i / 3);
-    const last = new Int32Array(nodes).fill(-1), before = [], rows = [];  // a node has one vertex for each of its normals
+    const last = new Int32Array(nodes).fill(-1), before = new Int32Array(3 * n), rows = new Float32Array(27 * n);
+    let vertices = 0;  // a node has one for each of its normals
     for (let i = 0; i < 3 * n; i++) {
-      const node = t[i], own = 3 * Math.floor(i / 3), sum = [0, 0, 0];
+      const node = t[i], own = i - i % 3, nx = flat[own], ny = flat[own + 1], nz = flat[own + 2];
+      let x = 0, y = 0, z = 0;
       for (let j = count[node]; j < count[node + 1]; j++) {
         const o = 3 * around[j];
-        if (flat[o] * flat[own] + flat[o + 1] * flat[own + 1] + flat[o + 2] * flat[own + 2] > 0.77)
-          for (let k = 0; k < 3; k++) sum[k] += flat[o + k];
+        if (flat[o] * nx + flat[o + 1] * ny + flat[o + 2] * nz > CREASE) { x += flat[o]; y += flat[o + 1]; z += flat[o + 2]; }
       }
-      const s = 1 / (Math.hypot(...sum) || 1), same = (at) => (rows[at] * sum[0] + rows[at + 1] * sum[1] + rows[at + 2] * sum[2]) * s > SAME;
+      const s = 1 / (Math.sqrt(x * x + y * y + z * z) || 1);
       let vertex = last[node];
-      while (vertex >= 0 && !same(9 * vertex + 3)) vertex = before[vertex];
+      while (vertex >= 0 && (rows[9 * vertex + 3] * x + rows[9 * vertex + 4] * y + rows[9 * vertex + 5] * z) * s <= SAME) vertex = before[vertex];
       if (vertex < 0) {
-        vertex = before.length; before.push(last[node]); last[node] = vertex;
-        rows.push(p[3 * node], p[3 * node + 1], p[3 * node + 2], sum[0] * s, sum[1] * s, sum[2] * s, node, node, 0);
+        vertex = vertices++; before[vertex] = last[node]; last[node] = vertex;
+        rows.set([p[3 * node], p[3 * node + 1], p[3 * node + 2], x * s, y * s, z * s, node, node, 0], 9 * vertex);
       }
       index[i] = vertex;
     }
-    this.whole = { ...this.mesh(new Float32Array(rows), [3, 3, 2, 1], index), spans, triangles: t };
+    this.whole = { ...this.mesh(rows.subarray(0, 9 * vertices), [3, 3, 2, 1], index), spans, triangles: t, index };
+    this.behind = { order: this.gl.createBuffer() };
     this.section = this.mesh(new Float32Array(9), [3, 3, 2, 1]);
     this.outline = this.mesh(new Float32Array(3), [3]);
     this.beads = { ...this.mesh(new Float32Array(6), [3, 3]), rows: 0 };
@@ -220,6 +231,10 @@ class Viewer {
     $("wiping").hidden = !several;
     this.recolour();
     this.move(this.time);
+  }
+  told(errors) {  // what residuals tell between the sensors
+    data.errors = errors; $("layer").options[3].disabled = false;
+    this.sure();
   }
   sure() {  // the share of the variance that the sensors of this test explain, node by node; 1 where nothing is said
     const gl = this.gl, n = this.owner.length, share = new Float32Array(this.wide * this.high_).fill(1);
@@ -377,14 +392,15 @@ class Viewer {
     this.cutting = plane;
     for (let i = 0; i < n && !off; i++) d[i] = plane[0] * p[3 * i] + plane[1] * p[3 * i + 1] + plane[2] * p[3 * i + 2] - plane[3];
     const corner = (i, j) => {
-      const s = d[i] / (d[i] - d[j]);
-      for (let k = 0; k < 3; k++) out.push(p[3 * i + k] + s * (p[3 * j + k] - p[3 * i + k]));
-      out.push(plane[0], plane[1], plane[2], i, j, s);
+      const s = d[i] / (d[i] - d[j]), a = 3 * i, b = 3 * j;
+      out.push(p[a] + s * (p[b] - p[a]), p[a + 1] + s * (p[b + 1] - p[a + 1]), p[a + 2] + s * (p[b + 2] - p[a + 2]),
+        plane[0], plane[1], plane[2], i, j, s);
     };
     for (let i = 0; i < t.length && !off; i += 4) {
+      const above = (d[t[i]] > 0) + (d[t[i + 1]] > 0) + (d[t[i + 2]] > 0) + (d[t[i + 3]] > 0);
+      if (above === 0 || above === 4) continue;
       const up = [], down = [];
       for (let k = 0; k < 4; k++) (d[t[i + k]] > 0 ? up : down).push(t[i + k]);
-      if (!up.length || !down.length) continue;
       const triangles = up.length === 2
         ? [[up[0], down[0], up[0], down[1], up[1], down[1]], [up[0], down[0], up[1], down[1], up[1], down[0]]]
         : [(up.length === 1 ? down : up).flatMap((j) => [up.length === 1 ? up[0] : down[0], j])];
@@ -398,9 +414,11 @@ class Viewer {
   outlined(d) {  // where the plane, d away from every node, meets what bounds the parts: a line in each triangle, part by part
     const p = this.points, t = this.whole.triangles, lines = this.parts.map(() => []);
     for (let i = 0; i < t.length; i += 3)
-      for (const [a, b] of [[t[i], t[i + 1]], [t[i + 1], t[i + 2]], [t[i + 2], t[i]]])
+      for (let j = 0; j < 3; j++) {
+        const a = t[i + j], b = t[i + (j + 1) % 3];
         if (d[a] > 0 !== d[b] > 0)
           for (let k = 0; k < 3; k++) lines[this.owner[a]].push(p[3 * a + k] + d[a] / (d[a] - d[b]) * (p[3 * b + k] - p[3 * a + k]));
+      }
     this.gl.bindBuffer(this.gl.ARRAY_BUFFER, this.outline.buffer);
     this.gl.bufferData(this.gl.ARRAY_BUFFER, new Float32Array(lines.flat()), this.gl.DYNAMIC_DRAW);
     let first = 0;
@@ -429,26 +447,54 @@ class Viewer {
     gl.uniform3fv(s["windows[0]"], this.windows()); gl.uniform1f(s.reach, reach);
     gl.uniform1i(s.field, 0); gl.uniform1i(s.palette, 1); gl.uniform1i(s.told, 2);
     gl.uniform1f(s.wipe, this.test.states.length > 1 ? $("wipe").value / 1000 * $("gl").width : 0);
-    const whole = mode < 2 && this.parts.every((p) => p.shown === 1);  // then nobody sees a face that another part lies on
+    const shape = mode < 2 ? this.whole : this.through(reach), whole = mode < 2 && this.parts.every((p) => p.shown === 1);  // then nobody sees a face that another part lies on
     for (const shown of mode ? [1] : [1, 0.5]) {
       if (shown < 1) { this.blending(); gl.depthMask(false); }
       gl.uniform1f(s.alpha, shown < 1 ? 0.16 : 1);
       for (const [mesh, flat] of [[this.whole, 0], [this.section, 1]]) {
         gl.uniform1f(s.flat_, flat);
         gl.bindVertexArray(mesh.vao);
+        if (!flat) gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, shape.order);
         (flat || mode === 2 ? gl.disable : gl.enable).call(gl, gl.CULL_FACE);  // parts are closed, and closed again where they are cut
         this.parts.forEach((p, k) => {
           gl.uniform1f(s.part, k);
           if (p.shown !== shown) return;
           if (flat) gl.drawArrays(gl.TRIANGLES, ...mesh.spans[k]);
-          else for (const spans of whole ? mesh.spans.slice(0, 1) : mesh.spans) gl.drawElements(gl.TRIANGLES, spans[k][1], gl.UNSIGNED_INT, 4 * spans[k][0]);
+          else for (const spans of whole ? shape.spans.slice(0, 1) : shape.spans) gl.drawElements(gl.TRIANGLES, spans[k][1], gl.UNSIGNED_INT, 4 * spans[k][0]);
         });
       }
     }
     gl.disable(gl.BLEND); gl.depthMask(true);
   }
+  through(reach) {  // the triangles that may show in a window of `reach` pixels, part by part: a few of all
+    const gl = this.gl, { index, triangles: t, spans } = this.whole, w = this.windows(), p = this.points, n = this.owner.length;
+    const [a, b, , c] = this.rows, wide = $("gl").width / 2, high = $("gl").height / 2, x = new Float32Array(n), y = new Float32Array(n);
+    for (let i = 0, j = 0; i < n; i++, j += 3) {
+      const far = c[0] * p[j] + c[1] * p[j + 1] + c[2] * p[j + 2] + c[3];
+      x[i] = wide * (1 + (a[0] * p[j] + a[1] * p[j + 1] + a[2] * p[j + 2] + a[3]) / far);
+      y[i] = high * (1 + (b[0] * p[j] + b[1] * p[j + 1] + b[2] * p[j + 2] + b[3]) / far);
+    }
+    const meets = (i) => {
+      const [i0, i1, i2] = [t[i], t[i + 1], t[i + 2]];
+      const left = Math.min(x[i0], x[i1], x[i2]) - reach, right = Math.max(x[i0], x[i1], x[i2]) + reach;
+      const low = Math.min(y[i0], y[i1], y[i2]) - reach, top = Math.max(y[i0], y[i1], y[i2]) + reach;
+      for (let k = 0; k < w.length; k += 3) if (w[k] > left && w[k] < right && w[k + 1] > low && w[k + 1] < top) return true;
+      return false;
+    };
+    const some = new Uint32Array(index.length);
+    let size = 0;
+    this.behind.spans = spans.map((parts) => parts.map(([first, count]) => {
+      const begin = size;
+      for (let i = first; i < first + count; i += 3)
+        if (meets(i)) { some[size++] = index[i]; some[size++] = index[i + 1]; some[size++] = index[i + 2]; }
+      return [begin, size - begin];
+    }));
+    gl.bindVertexArray(this.whole.vao); gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.behind.order);
+    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, some.subarray(0, size), gl.DYNAMIC_DRAW);
+    return this.behind;
+  }
   draw(samples) {  // edges are smooth with several samples per pixel
-    const gl = this.gl, c = $("gl"), scale = Math.min(devicePixelRatio || 1, 2);
+    const gl = this.gl, c = $("gl"), scale = Math.min(devicePixelRatio || 1, 2) * (samples > 1 ? 1 : COARSE);
     const [w, h] = [c.clientWidth, c.clientHeight].map((side) => Math.max(1, Math.round(side * scale)));
     if (c.width !== w || c.height !== h) { c.width = w; c.height = h; }
     const paper = getComputedStyle(document.body).backgroundColor.match(/\d+/g).map((v) => v / 255);
@@ -559,22 +605,38 @@ class Viewer {
     box.style.left = `${Math.min(x + 14, $("gl").clientWidth - 180)}px`; box.style.top = `${y + 14}px`;
   }
   tick(now) {
-    const times = this.test.times, span = times[times.length - 1] - times[0];
-    if (this.playing) {  // an hour in ten seconds
-      const time = this.time + (now - this.last) / 1000 * 360 / span;
-      this.move(Math.min(time, 1));
-      if (time >= 1) this.play(false);
-    }
-    this.last = now;
-    const resting = now - this.moved > REST;
-    if (this.dirty || resting && !this.smooth) {  // a slow computer draws roughly while something moves, and smoothly once it rests
-      this.smooth = !this.slow || !this.dirty;
-      if (this.dirty) this.moved = now;
-      this.dirty = false;
-      this.draw(this.smooth ? SAMPLES : 1);
-      if (this.smooth && resting) this.slow = this.finished() - now > SLOW;
+    if (this.drawn(now)) {
+      if (this.playing) this.advance((now - this.last) / 1000);
+      this.last = now;
+      this.next(now);
     }
     requestAnimationFrame((t) => this.tick(t));
+  }
+  advance(seconds) {  // an hour in ten of them
+    const times = this.test.times, time = this.time + seconds * 360 / (times[times.length - 1] - times[0]);
+    this.move(Math.min(time, 1));
+    if (time >= 1) this.play(false);
+  }
+  next(now) {  // a slow computer draws roughly while something moves, and smoothly once a picture has stood still
+    const resting = now - this.moved > Math.max(REST, 2 * this.took);  // else a slow hand meets a slow picture
+    if (!this.dirty && (this.smooth || !resting)) return;
+    this.smooth = !this.slow || !this.dirty;
+    const still = !this.dirty;
+    this.dirty = false;
+    this.draw(this.smooth ? SAMPLES : 1);
+    this.begun = performance.now();
+    this.pending = this.gl.fenceSync(this.gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    this.gl.flush();
+    if (still && this.took < QUICK) this.slow = this.finished() - now > SLOW;
+  }
+  drawn(now) {  // is the last picture done? GL draws beside this script; no picture is asked for before that
+    const gl = this.gl;
+    if (this.pending) {
+      if (gl.clientWaitSync(this.pending, 0, 0) === gl.TIMEOUT_EXPIRED) return false;
+      gl.deleteSync(this.pending); this.pending = null;
+      this.moved = now; this.took = performance.now() - this.begun;
+    }
+    return true;
   }
   finished() {  // ms, when the picture is there: reading a pixel waits for it
     this.gl.readPixels(0, 0, 1, 1, this.gl.RGBA, this.gl.UNSIGNED_BYTE, new Uint8Array(4));
@@ -589,7 +651,10 @@ class Viewer {
 const FACES = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];  // of a tetrahedron, seen from outside
 const SAME = 0.9999;  // cosine of the angle between normals below which they are one: under a degree
 const SAMPLES = 4;  // per pixel: every WebGL 2 has them
-const SLOW = 12, REST = 200;  // ms that a smooth picture takes from which moving ones are rough; ms without a movement until it is smooth
+const SLOW = 12, QUICK = 50;  // ms that a smooth picture takes from which moving ones are rough; a rough one, until which smooth ones are timed
+const COARSE = 0.5;  // of the pixels along a side, in rough pictures
+const REST = 200;  // ms without a movement until the picture is smooth
+const CREASE = 0.77;  // cosine of 40 degrees
 const WINDOW = 22, ABOVE = 0.01;  // pixels around a labelled sensor in which what hides it is ghosted; of the machine's size
 const WIDE = 1100;  // pixels from which machine and network stand side by side
 const TINTS = data.tints;  // within, hot, cold, unknown: red, green, blue from 0 to 1
@@ -666,13 +731,18 @@ function wired(v) {
 
 (async () => {
   try {
+    const v = new Viewer(), { errors } = data;
+    delete data.errors;  // the first picture does without
     Object.assign(data, await opened(data));
-    const v = new Viewer();
+    v.open();
     v.slice();
     wired(v);
+    v.linked();
     window.viewer = v;
     $("wait").remove();
     requestAnimationFrame((t) => { v.last = t; v.tick(t); });
+    while (errors && !v.took) await new Promise(requestAnimationFrame);
+    if (errors) v.told(await opened(errors));
   } catch (fault) {
     $("wait").remove();
     $("fault").hidden = false; $("fault").textContent = `The machine cannot be drawn: ${fault.message}.`;

@@ -13,7 +13,7 @@ from viz.data import Comparison
 from viz.figures import bands as uncertain
 from viz.figures import candidates as scores
 from viz.figures import curves, errors, paper, screening
-from viz.labels import spread_labels
+from viz.labels import minus, signed, spread_labels
 from viz.live import sensor as live_sensor
 
 EFFECTS = {
@@ -138,7 +138,7 @@ def test_what_would_have_to_differ_is_drawn_with_what_cannot(tmp_path):
     figure = scores.differences(found, png=tmp_path / "differences.png")
     (ax,) = figure.axes
     assert [t.get_text() for t in ax.get_yticklabels()] == ["bias of T in run4", "capacity.stator in run4"]
-    assert [t.get_text().strip("\u00a0") for t in ax.texts] == ["-1 K", "x 2.7"]
+    assert [t.get_text().strip("\u00a0") for t in ax.texts] == ["−1 K", "x 2.7"]
     colours = [bar.get_facecolor() for bar in ax.patches]
     assert colours[0] != colours[1]
 
@@ -156,3 +156,21 @@ def test_the_band_around_readings_is_what_counts_as_within():
     low, high, *_, residual = live_sensor(c, channel.name).data
     assert np.asarray(high.y) - np.asarray(low.y) == pytest.approx(2 * 3.7)
     assert np.nanmax(np.abs(residual.y)) == pytest.approx(np.nanmax(np.abs(c.residual(channel)[c.thin])))
+
+
+def test_readings_without_neighbours_are_dots():
+    """A line through one reading is nothing: every fifth instant is read, as a resistance is."""
+    dense = comparison()
+    first = dense.channels[0]
+    sparse = np.where(np.arange(len(first.y)) % 5 == 0, first.y, np.nan)
+    one = replace(dense, test=replace(dense.test, channels=(replace(first, y=sparse),)))
+    for draw, shown in ((curves.measured_and_model, sparse), (curves.residuals, one.residual(one.channels[0]))):
+        dots = [line for line in draw(one).axes[0].lines if line.get_marker() == "o"]
+        assert len(dots) == 1
+        np.testing.assert_array_equal(dots[0].get_ydata(), shown[np.isfinite(shown)])
+    assert not [line for line in curves.residuals(dense).axes[0].lines if line.get_marker() == "o"]
+
+
+def test_a_printed_sign_is_the_one_of_mathematics():
+    assert [signed(-1.94), signed(0.04), signed(-0.04), signed(12.0, 0)] == ["−1.9", "+0.0", "+0.0", "+12"]
+    assert minus("-0.5") == "−0.5"

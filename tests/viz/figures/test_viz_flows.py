@@ -64,7 +64,10 @@ def test_conductance_is_that_of_the_link(heat):
 def test_width_is_conductance_and_colour_is_heat():
     """Twice the root of the conductance is twice as wide; equal heat has one colour."""
     flows = tuple(Flow("yoke", end, "link", w, g) for end, w, g in (("housing", 75.0, 8.0), ("shaft", 75.0, 2.0)))
-    p = network_in_machine(MESH, {"yoke": 90.0, "housing": 40.0, "shaft": 30.0}, Heat({}, flows, {}))
+    p = network_in_machine(
+        MESH, {"yoke": 90.0, "housing": 40.0, "shaft": 30.0}, Heat({}, flows, {}), limits=(0.0, 200.0)
+    )
+    assert p.actors["nodes"].mapper.scalar_range == (0.0, 200.0)
     wide, narrow = (p.actors[f"link {i}"] for i in (0, 1))
     assert wide.prop.line_width == pytest.approx(2 * narrow.prop.line_width)
     assert wide.mapper.dataset["W"].tolist() == narrow.mapper.dataset["W"].tolist()

@@ -20,6 +20,10 @@ DRAWN = """new Promise((done, failed) => {
     : fault.hidden ? setTimeout(look, 100) : failed(fault.textContent);
   look();
 })"""
+TOLD = """new Promise((done) => {  // what the first picture does without
+  const look = () => $("layer").options[3].disabled ? setTimeout(look, 100) : done(true);
+  look();
+})"""
 COLOURS = """(() => {  // how many colours the machine has on the screen
   const gl = viewer.gl, [w, h] = [gl.drawingBufferWidth, gl.drawingBufferHeight], out = new Uint8Array(4 * w * h);
   gl.readPixels(0, 0, w, h, gl.RGBA, gl.UNSIGNED_BYTE, out);
@@ -43,6 +47,7 @@ def test_firefox_draws_it_without_complaint(tmp_path):
             assert "at 60 min" in await tab.evaluate("$('title').textContent")
             assert await tab.evaluate("viewer.pick($('gl').clientWidth * 0.45, $('gl').clientHeight * 0.5).name")
             await tab.evaluate("viewer.move(0)")
+            assert await tab.evaluate(TOLD)
             await tab.evaluate("$('layer').value = '3'; $('layer').onchange()")
             assert await tab.evaluate("$('unit').textContent") == "K"
             assert "at 0 min" in await tab.evaluate("$('title').textContent")

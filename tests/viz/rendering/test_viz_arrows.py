@@ -9,6 +9,7 @@ from fem.matrices.material import Conductivity, isotropic
 from geom.errors import InputError
 from viz import flux_arrows, heat_flux, split
 from viz.machine.arrows import on_faces
+from viz.machine.parts import exploded
 from viz.rendering.cut import QUARTER
 
 NODES = split(motor(24))
@@ -50,6 +51,14 @@ def test_the_picture_has_arrows_and_says_how_much(tmp_path):
     p.close()
     dark = np.asarray(Image.open(tmp_path / "a.png").convert("L")) < 60
     assert 0.002 < dark.mean() < 0.2
+
+
+def test_colours_are_of_the_range_that_is_asked_for():
+    """Of the case, wider than the one field that is shown."""
+    hot, k = np.linspace(20.0, 60.0, NODES.size), dict.fromkeys(NODES.parts, isotropic(50.0))
+    for p in (flux_arrows(NODES, hot, k, limits=(0.0, 100.0)), exploded(NODES, hot, limits=(0.0, 100.0))):
+        assert p.scalar_bars["°C"].GetLookupTable().GetRange() == (0.0, 100.0)
+        p.close()
 
 
 def test_a_part_without_conductivity_is_named():

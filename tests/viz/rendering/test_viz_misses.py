@@ -28,6 +28,9 @@ def test_stripes_stand_where_it_is_a_guess_and_only_there(tmp_path):
     (all_told, limits, said), plain = drawn(np.ones(NODES.size), tmp_path / "a.png")
     (half_told, _, _), hatched = drawn(np.where(right, GUESS / 2, 1.0), tmp_path / "b.png")
     assert limits[0] == -limits[1]
+    printed = [actor.GetInput() for actor in all_told.values() if hasattr(actor, "GetInput") and hasattr(actor, "prop")]
+    assert f"−{limits[1]:.0f}" in printed
+    assert not any("-" in str(words) for words in printed)
     assert said == CAPTION
     assert "hatched" not in all_told
     assert "hatched" in half_told

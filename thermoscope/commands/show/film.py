@@ -68,10 +68,13 @@ def now(folder: Folder) -> str:
 def largest(sensors: Sequence[Sensor]) -> str:
     """The sensor that the model misses by most, and by how much; nothing where it misses none."""
     from viz.data import short
+    from viz.labels import signed
 
     wrong = [s for s in sensors if s.verdict in ("hot", "cold")]
     worst = max(wrong, key=lambda s: s.weight, default=None)
-    return "" if worst is None else f": {short(worst.name)} {worst.residual_K:+.1f} K"
+    if worst is None or worst.residual_K is None:
+        return ""
+    return f": {short(worst.name)} {signed(worst.residual_K)} K"
 
 
 def misses(

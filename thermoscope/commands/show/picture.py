@@ -178,7 +178,7 @@ def _bands(s: Subject, png: Path) -> None:
 def _exploded(s: Subject, png: Path) -> None:
     from viz import exploded
 
-    exploded(s.nodes, s.field(), title=f"{s.when}: pulled apart", png=png).close()
+    exploded(s.nodes, s.field(), title=f"{s.when}: pulled apart", limits=s.limits, png=png).close()
 
 
 def _parts(s: Subject, png: Path) -> None:
@@ -199,7 +199,7 @@ def _flux(s: Subject, png: Path) -> None:
 
     machine = s.built.machine
     k: dict[str, Any] = {part.name: conductivity_of(machine.material_of(part.name)) for part in machine.parts}
-    flux_arrows(s.nodes, s.field(), k, title=f"{s.when}: heat flux;", png=png).close()
+    flux_arrows(s.nodes, s.field(), k, title=f"{s.when}: heat flux;", limits=s.limits, png=png).close()
 
 
 def _network(s: Subject, png: Path) -> None:
@@ -207,7 +207,7 @@ def _network(s: Subject, png: Path) -> None:
 
     mesh = s.built.mesh
     flows, means, when = s.heat()
-    network_in_machine(mesh, means, flows, title=f"{when}: heat flows;", png=png).close()
+    network_in_machine(mesh, means, flows, title=f"{when}: heat flows;", limits=s.limits, png=png).close()
 
 
 def _losses(s: Subject, png: Path) -> None:
