@@ -58,10 +58,10 @@ def posterior_of(folder: Folder, progress: Progress) -> ParameterPosterior:
 
 
 def _from_cache(folder: Folder, file: Path) -> ParameterPosterior:
-    with np.load(file) as held:
-        names, fitted = json.loads(str(held["said"]))
+    with np.load(file) as archive:
+        names, fitted = json.loads(str(archive["said"]))
         bare = replace(folder.case, model=replace(folder.case.model, revision=0))
-        covariance, offset = held["covariance"], held["offset"]
+        covariance, offset = archive["covariance"], archive["offset"]
     read = rows_read([t for t in folder.case.tests if t.name in fitted])
     return replace(
         parameter_posterior(bare),

@@ -231,8 +231,8 @@ def flange(tests: Sequence[Any]) -> str:
 def closing(stages: Sequence[Stage], done: bool, out: Path, target: str | None, seconds: float) -> int:
     """The table the story ends with: rms error per test, all sensors, and on the right flange."""
     first, last = stages[0].errors["tests"], stages[-1].errors["tests"]
-    held = [(a, b) for a, b in zip(first, last, strict=True) if a["role"] == "hold-out"]
-    fell = done and all(b["rmse_K"] < a["rmse_K"] for a, b in held)
+    hold_out = [(a, b) for a, b in zip(first, last, strict=True) if a["role"] == "hold-out"]
+    fell = done and all(b["rmse_K"] < a["rmse_K"] for a, b in hold_out)
     document = {"case": CASE, "stages": [{"stage": s.name, **s.errors} for s in stages], "fell": fell}
     give(document, target, lambda: answer(stages, out, seconds))
     return 0 if fell else 1

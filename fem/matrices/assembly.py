@@ -126,8 +126,8 @@ def assemble(
     conductivity : part -> tensor field (W/m/K);  capacity : part -> rho cp (J/m3/K)
     quadratic : parts on quadratic elements
     """
-    for what, given in (("conductivity", conductivity), ("heat capacity", capacity)):
-        if missing := [p for p in mesh.parts if p not in given]:
+    for what, table in (("conductivity", conductivity), ("heat capacity", capacity)):
+        if missing := [p for p in mesh.parts if p not in table]:
             raise InputError(f"no {what} for {', '.join(missing)}", "assemble", "one value for every part")
     blocks: dict[str, Block] = {}
     start = 0

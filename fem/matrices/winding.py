@@ -101,9 +101,9 @@ def flat_cell(fill: float, k_conductor: float, k_resin: float, cells: int = 12) 
     )
     basis = Basis(mesh, ElementQuad2())
     cold, hot = (basis.get_dofs(lambda p, at=at: np.abs(p[0] - at) < 1e-12).all() for at in (0.0, 1.0))
-    given = np.zeros(basis.N)
-    given[hot] = 1.0
-    T = solve(*condense(K, np.zeros(basis.N), x=given, D=np.concatenate([cold, hot])))
+    fixed = np.zeros(basis.N)
+    fixed[hot] = 1.0
+    T = solve(*condense(K, np.zeros(basis.N), x=fixed, D=np.concatenate([cold, hot])))
     return float(T @ (K @ T))
 
 

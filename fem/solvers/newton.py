@@ -49,13 +49,13 @@ def solve_nonlinear(
     refuse_unknown_fluid(field, fluids)
     K = field.stiffness(films, contacts)
     B, D = film_columns(field, films, fluids.names)
-    given, G = load + from_fixed(field, films, fluids.fixed), D + fluids.D
+    source, G = load + from_fixed(field, films, fluids.fixed), D + fluids.D
     T = np.array(np.broadcast_to(np.asarray(start, float), field.n))
     u = np.linalg.solve(G, fluids.s + B.T @ T)
     steps: list[float] = []
     while not _done(steps):
         heat, slope = summed(field, terms, T)
-        left = np.concatenate([given - K @ T + B @ u - heat, fluids.s - G @ u + B.T @ T])
+        left = np.concatenate([source - K @ T + B @ u - heat, fluids.s - G @ u + B.T @ T])
         change = _linear(solver, sp.csr_array(K + slope), B, G)(left)
         T, u = T + change[: field.n], u + change[field.n :]
         steps.append(float(np.abs(change).max()))

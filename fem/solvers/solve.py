@@ -189,7 +189,7 @@ def _refuse_floating(field: FieldModel, K: sp.csr_array) -> None:
     """A piece that no film or contact holds has no steady temperature."""
     # In a symmetric pattern strongly connected is connected, and found in half the time.
     count, label = sp.csgraph.connected_components(sp.csr_array(K != 0), connection="strong")
-    held = np.bincount(label, K @ np.ones(field.n), count) > 1e-12 * np.bincount(label, K.diagonal(), count)
-    if not held.all():
-        loose = [part for part, block in field.blocks.items() if not held[label[block.dofs]].all()]
+    fixed = np.bincount(label, K @ np.ones(field.n), count) > 1e-12 * np.bincount(label, K.diagonal(), count)
+    if not fixed.all():
+        loose = [part for part, block in field.blocks.items() if not fixed[label[block.dofs]].all()]
         raise InputError(f"nothing takes heat from {', '.join(loose)}", "steady", "a film or a contact above 0")

@@ -48,15 +48,15 @@ class _Reading:
         return Geometry(**groups)
 
     def value(self, p: Parameter) -> float | int | str:
-        given = self.table.get(p.group, {})
-        if p.of is not None and p.ratio_name in given:
-            if p.name in given:
+        group = self.table.get(p.group, {})
+        if p.of is not None and p.ratio_name in group:
+            if p.name in group:
                 place = f"{self.where} [geometry.{p.group}]"
                 raise InputError(f"{p.name} and {p.ratio_name} are both given", place, "one of them")
-            ratio = p.checked_ratio(given[p.ratio_name], self.where)
+            ratio = p.checked_ratio(group[p.ratio_name], self.where)
             return p.of.start(self.so_far) + ratio * p.of.span(self.so_far) if ratio else 0.0
-        if p.name in given:
-            return p.checked(given[p.name], self.where)
+        if p.name in group:
+            return p.checked(group[p.name], self.where)
         return self._proportional(p) if p.of is not None and p.default else self._alike(p)
 
     def _proportional(self, p: Parameter) -> float:

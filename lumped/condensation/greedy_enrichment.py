@@ -65,8 +65,8 @@ class Size:
     ) -> Size:
         """points : the nominal one first, then random ones, all solved in full"""
         network = reduction.network(tolerance=0.0, max_states=max(requested, len(reduction.field.blocks)))
-        nominal, *drawn = (point_error(network, point, cases) for point in points)
-        random = merged(drawn)
+        nominal, *others = (point_error(network, point, cases) for point in points)
+        random = merged(others)
         return cls(
             requested, network, nominal, random, max(excess(nominal, allowed), excess(random, allowed)) <= RESERVE
         )

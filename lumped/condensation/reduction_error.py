@@ -129,11 +129,11 @@ def random_load_cases(
     rng = np.random.default_rng(3)
     own = np.array([rated.get(zone, 0.0) for zone in zones])
     own = own if own.any() else np.ones(len(zones))
-    drawn = own.sum() * rng.dirichlet(np.full(len(zones), 0.5), DRAWS)
+    random = own.sum() * rng.dirichlet(np.full(len(zones), 0.5), DRAWS)
     warm = np.array([0.0 if fluid == "ambient" else 20.0 for fluid in fluids])
     at_rated = np.array([(rises or {}).get(fluid, 0.0) for fluid in fluids])
     kelvin = [at_rated, *np.zeros((DRAWS, len(fluids))), 0.5 * at_rated + warm]
-    return LoadCases(tuple(zones), tuple(fluids), np.array([own, *drawn, 0.5 * own]), np.array(kelvin))
+    return LoadCases(tuple(zones), tuple(fluids), np.array([own, *random, 0.5 * own]), np.array(kelvin))
 
 
 def network_states(

@@ -20,17 +20,17 @@ Read = tuple[Law | list[Law], bool]
 
 def _coefficient(table: Table, has_area: bool, needed: bool = True) -> tuple[float, bool] | None:
     """The number of a mechanism and whether it is per area."""
-    given = [key for key in ("G_W_K", "R_K_W", "h_W_m2K") if key in table]
-    if len(given) > 1:
-        raise table.error(f"{' and '.join(given)} both given", "one of G_W_K, R_K_W, h_W_m2K")
-    if not given:
+    keys = [key for key in ("G_W_K", "R_K_W", "h_W_m2K") if key in table]
+    if len(keys) > 1:
+        raise table.error(f"{' and '.join(keys)} both given", "one of G_W_K, R_K_W, h_W_m2K")
+    if not keys:
         if needed:
             raise table.error("no coefficient", "one of G_W_K, R_K_W, h_W_m2K")
         return None
-    value = table.number(given[0])
-    if given[0] == "h_W_m2K" and not has_area:
+    value = table.number(keys[0])
+    if keys[0] == "h_W_m2K" and not has_area:
         raise table.error("h_W_m2K without an area", "area_m2 = ... in the link, or a surface as its first end")
-    return (1.0 / value if given[0] == "R_K_W" else value), given[0] == "h_W_m2K"
+    return (1.0 / value if keys[0] == "R_K_W" else value), keys[0] == "h_W_m2K"
 
 
 def _needs_area(table: Table, has_area: bool) -> None:

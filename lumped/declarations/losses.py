@@ -32,14 +32,14 @@ def _coefficient(table: Table, reference: float, default: float | None = None) -
 
 
 def _copper(table: Table) -> Law:
-    given = [key for key in ("R20_ohm", "R_ohm") if key in table]
-    if len(given) != 1:
+    keys = [key for key in ("R20_ohm", "R_ohm") if key in table]
+    if len(keys) != 1:
         raise table.error("resistance is not given once", "R20_ohm, or R_ohm with reference_degC")
-    reference = 20.0 if given[0] == "R20_ohm" else table.number("reference_degC")
+    reference = 20.0 if keys[0] == "R20_ohm" else table.number("reference_degC")
     ac = table.raw("ac")
     speed, at, coefficients = _ac(Table(ac, f"{table.where} ac")) if ac is not None else (None, 1.0, (1.0,))
     return CopperLoss(
-        table.number(given[0]), table.members("currents"), table.number("factor", 1.0),
+        table.number(keys[0]), table.members("currents"), table.number("factor", 1.0),
         _coefficient(table, reference, ALPHA_CU), reference, coefficients, speed, at,
     )  # fmt: skip
 

@@ -50,8 +50,8 @@ def coupled(
     residuals: list[float] = []
     for _ in range(most):
         inputs = {**record.inputs, **drive(T)}
-        given = replace(record, inputs=inputs)
-        run = simulate(network, given, values, [*looks, *rows], keep_states=True, precision=READINGS)
+        driven = replace(record, inputs=inputs)
+        run = simulate(network, driven, values, [*looks, *rows], keep_states=True, precision=READINGS)
         new = {name: run.y[:, k] for k, name in enumerate(watched)}
         residuals.append(max((float(np.abs(new[n] - T[n]).max()) for n in watched), default=0.0))
         T = new

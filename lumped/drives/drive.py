@@ -143,8 +143,8 @@ def drive_cycle(
     plant = np.array([machine.L_af, machine.L, machine.J + vehicle.inertia(), machine.B, wheel, drag])
     control = np.array([getattr(controller, f) for f in controller.__dataclass_fields__])
     R = np.full(len(time), machine.R) if resistance is None else resistance
-    given = (np.ascontiguousarray(x, float) for x in (time, wanted_mps, load0, R))
-    _march(*given, plant, control, step, out)
+    arrays = (np.ascontiguousarray(x, float) for x in (time, wanted_mps, load0, R))
+    _march(*arrays, plant, control, step, out)
     return Cycle(time, out[:, 0], out[:, 1] / RPM, out[:, 2], out[:, 3], out[:, 4])
 
 

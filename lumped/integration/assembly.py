@@ -106,9 +106,9 @@ _LAST: deque[tuple[tuple[Link, ...], tuple[Source, ...], tuple[int, int], Assemb
 def assembly(network: Network) -> Assembly:
     """Of the network's links and sources; networks that differ in parameters alone share one."""
     shape = len(network.states), network.size
-    for links, sources, size, made in tuple(_LAST):
+    for links, sources, size, pattern in tuple(_LAST):
         if links is network.links and sources is network.sources and size == shape:
-            return made
+            return pattern
     out = Assembly(network.links, network.sources, *shape)
     _LAST.append((network.links, network.sources, shape, out))
     return out

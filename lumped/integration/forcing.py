@@ -58,15 +58,15 @@ def forcing(
     """
     curves = [signals.curve(p.name, p.law) for p in patterns]
     at, sample = _knots(time, [c for c, acts in zip(curves, acting, strict=True) if acts])
-    t, given = time, signals
+    t, source = time, signals
     if at.size > time.size:
-        given = signals.finer(at)
-        curves = [given.curve(p.name, p.law) for p in patterns]
+        source = signals.finer(at)
+        curves = [source.curve(p.name, p.law) for p in patterns]
         t, u = between(time, at), np.stack([between(x, at) for x in u.T], axis=1).reshape(at.size, -1)
     ends = [straight(x) for x in u.T]
     chosen = np.arange(t.size)
     if not every_sample:
-        chosen = _needed(t, curves, ends, list(given.values()))
+        chosen = _needed(t, curves, ends, list(source.values()))
     (factor, bulge), (u, arch) = _between(t, chosen, curves), _between(t, chosen, ends)
     knots = t[chosen]
     renew = np.full(chosen.size, 2) if bends else _renewals(knots, factor[:, stiff], bulge[:, stiff])

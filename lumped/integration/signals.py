@@ -158,9 +158,9 @@ class Signals(dict[str, Array]):
     def _factor(self, name: str, law: Law, at: Array | None) -> Array:
         """The factor at positions, or at the samples of the whole record."""
         size = self.nt if at is None else at.size
-        given = self if at is None else self.source.between(at) if self.source else Between(self, at)
+        signals = self if at is None else self.source.between(at) if self.source else Between(self, at)
         with np.errstate(all="ignore"):  # what comes of it is looked at
-            value = np.asarray(law.factor(given), float)
+            value = np.asarray(law.factor(signals), float)
         if value.shape not in ((), (size,)):
             raise InputError(f"the input factor has shape {value.shape}", f"'{name}'", f"() or ({size},)")
         if not np.all(np.isfinite(value)):

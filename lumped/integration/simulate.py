@@ -87,16 +87,16 @@ def initial_state(network: Network, initial: float | Mapping[str, float]) -> Arr
     hidden = hidden_states(network)
     if not isinstance(initial, Mapping):
         return np.where(hidden, 0.0, float(initial))
-    given: dict[int, list[float]] = {}
+    by_column: dict[int, list[float]] = {}
     for name, value in initial.items():
         node = network.places[name].part if name not in network.states and name in network.places else name
         column = network.column(node)
         if column < len(network.states):
-            given.setdefault(column, []).append(float(value))
-    if not given:
+            by_column.setdefault(column, []).append(float(value))
+    if not by_column:
         raise InputError("no state has an initial temperature", "record.initial", "a number, or at least one node")
-    x = np.where(hidden, 0.0, np.mean([np.mean(v) for v in given.values()]))
-    for column, values in given.items():
+    x = np.where(hidden, 0.0, np.mean([np.mean(v) for v in by_column.values()]))
+    for column, values in by_column.items():
         x[column] = np.mean(values)
     return x
 

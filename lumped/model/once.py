@@ -23,8 +23,8 @@ def once(work: Callable[[T], R]) -> Callable[[T], R]:
         entry = known.get(id(of))
         if entry is not None and entry[0]() is of:
             return entry[1]
-        made, key = work(of), id(of)
-        known[key] = ref(of, lambda _: known.pop(key, None)), made
-        return made
+        result, key = work(of), id(of)
+        known[key] = ref(of, lambda _: known.pop(key, None)), result
+        return result
 
     return remembered

@@ -53,10 +53,10 @@ def seeds(top: Topology, stand: Collection[str]) -> dict[str, str]:
     """Bodies that turn for sure: with the heat of brushes or magnets, or beyond a bearing as seen from what stands."""
     out = {b: why for b, kinds in top.heat.items() for kind, why in ONLY_TURNING.items() if kind in kinds}
     out |= dict.fromkeys(top.journals, "runs between two bearings")
-    held = top.bearings
-    far = _steps(top, [b for b in stand if b not in held], held)
-    for bearing in held:
-        near = [b for b in top.joined(bearing) if b not in held]
+    bearings = top.bearings
+    far = _steps(top, [b for b in stand if b not in bearings], bearings)
+    for bearing in bearings:
+        near = [b for b in top.joined(bearing) if b not in bearings]
         away = {b: far.get(b, len(top.bodies)) for b in near}
         if away and max(away.values()) > min(away.values()):
             out |= {b: "beyond a bearing" for b in near if away[b] == max(away.values())}

@@ -57,8 +57,8 @@ class Table:
     def _needed(self, key: str, default: Any, right: str) -> Any:
         value = self.raw(key, default)
         if value is None:
-            given = ", ".join(self.data) or "nothing"
-            raise self.error(f"key '{key}' is missing (given: {given})", f"{key} = {right}{meaning(key)}")
+            keys = ", ".join(self.data) or "nothing"
+            raise self.error(f"key '{key}' is missing (given: {keys})", f"{key} = {right}{meaning(key)}")
         return value
 
     def number(

@@ -24,12 +24,14 @@ TIME = "time_s"
 
 def write_columns(folder: Folder, effects: Sequence[str]) -> list[Path]:
     """A column of 0 to 1 for each event of some effects, beside each test it held in."""
-    held = [one.condition for name in effects if isinstance(one := effect(name), During) and one.event]
+    conditions = [one.condition for name in effects if isinstance(one := effect(name), During) and one.event]
     tests, paths = {t.name: t for t in folder.case.tests}, []
     for entry in folder.settings.tests:
         file, test = _file(entry), tests[entry.name]
         own = [
-            condition for condition in dict.fromkeys(held) if (found := event(condition)) and test.name in found.spans
+            condition
+            for condition in dict.fromkeys(conditions)
+            if (found := event(condition)) and test.name in found.spans
         ]
         ours(file)
         if own:

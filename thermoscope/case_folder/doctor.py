@@ -58,9 +58,11 @@ def _within(p: Patient, network: Network) -> list[Column]:
 def _declared(p: Patient, network: Network) -> Iterator[Finding]:
     """What the sheet says of a test or a sensor, against what was read."""
     starts, span = first_readings(p), float(p.samples.time[-1])
-    given = p.sheet.initial
+    initial = p.sheet.initial
     for c in (c for c in _within(p, network) if c.name in starts):
-        first = given if isinstance(given, float) else given.get(c.place) if not isinstance(given, str) else None
+        first = (
+            initial if isinstance(initial, float) else initial.get(c.place) if not isinstance(initial, str) else None
+        )
         if first is not None and abs(first - starts[c.name]) > OFFSET_K:
             yield p.finding(c.name, f"starts at {starts[c.name]:.0f} degC, the sheet says initial = {first:g}",
                           'initial = "first-readings"')  # fmt: skip

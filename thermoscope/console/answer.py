@@ -85,12 +85,12 @@ def _cut(parts: Sequence[Grid | str], full: list[Any], width: int, room: int) ->
     """The least of each part, the most important first, as far as there is room; the rest goes in the same order."""
     lengths = list(map(len, full))
     least = [min(n, TITLE + 2) if isinstance(p, Grid) else n for p, n in zip(parts, lengths, strict=True)]
-    given = []
+    fitting = []
     for n in least:
-        given.append(n if n <= room else 0)
-        room -= given[-1]
+        fitting.append(n if n <= room else 0)
+        room -= fitting[-1]
     out = []
-    for part, whole, mine in zip(parts, full, given, strict=True):
+    for part, whole, mine in zip(parts, full, fitting, strict=True):
         more = min(len(whole) - mine, room) if mine else 0
         out.append(whole if mine + more >= len(whole) else _lines(part, width, mine + more))
         room -= len(out[-1]) - mine

@@ -36,8 +36,8 @@ class Compiled:
     def run(self, time: Array, u: Array, x0: Array) -> Array:
         """(n_time, n_output) degC from signals u (n_time, n_signal) and first states (n_state,)."""
         y = np.empty((time.size, len(self.model.outputs)))
-        given = [np.ascontiguousarray(a, float) for a in (time, u, x0)]
-        pointers = [a.ctypes.data_as(ctypes.c_void_p) for a in (*given, y)]
+        arrays = [np.ascontiguousarray(a, float) for a in (time, u, x0)]
+        pointers = [a.ctypes.data_as(ctypes.c_void_p) for a in (*arrays, y)]
         if self.code.thermal_run(ctypes.c_int(time.size), *pointers):
             raise ThermoscopeError(f"the exported code of '{self.model.name}' finds no step")
         return y
@@ -45,9 +45,9 @@ class Compiled:
 
 def signals_of(model: Model, record: Record) -> Array:
     """(n_time, n_signal)"""
-    given: Mapping[str, Array | float] = {**record.inputs, **record.boundaries}
+    signals: Mapping[str, Array | float] = {**record.inputs, **record.boundaries}
     return np.column_stack(
-        [np.broadcast_to(np.asarray(given[s.name], float), record.time.shape) for s in model.signals]
+        [np.broadcast_to(np.asarray(signals[s.name], float), record.time.shape) for s in model.signals]
     )
 
 

@@ -72,13 +72,13 @@ def observer_model(
     network, names = with_missing_heat(process.network, process.bodies)
     model = packed(network, process.values, tests, looks)
     off = np.zeros(len(sensors)) if bias is None else bias
-    made = ObserverModel(model, process, noise, table_sd, rise_K, tuple(sensors), names, off)
-    if made.bytes > MOST_BYTES:
+    result = ObserverModel(model, process, noise, table_sd, rise_K, tuple(sensors), names, off)
+    if result.bytes > MOST_BYTES:
         what = (
-            f"an observer of {process.size} temperatures and heats with {len(sensors)} sensors takes {made.bytes} bytes"
+            f"an observer of {process.size} temperatures and heats with {len(sensors)} sensors has {result.bytes} bytes"
         )
         raise InputError(what, "--as observer", f"at most {MOST_BYTES}: fewer sensors (--sensor), or a smaller network")
-    return made
+    return result
 
 
 def with_missing_heat(network: Network, bodies: Sequence[str]) -> tuple[Network, tuple[str, ...]]:

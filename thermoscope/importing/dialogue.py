@@ -38,8 +38,8 @@ class Dialogue:
     def answered(self, source: Source, guesses: list[Guess]) -> list[Guess]:
         """The guesses of one file after the questions about them; what --set gives is not read from a column."""
         completed = [self._completed(g, source.labels[g.column]) if self.asks else g for g in guesses]
-        given = self.constants
-        out = [g.without("--set gives it") if (g.feeds or g.place) in given else g for g in completed]
+        constants = self.constants
+        out = [g.without("--set gives it") if (g.feeds or g.place) in constants else g for g in completed]
         if not any(g.place in self.target.places or g.feeds or g.place for g in out):
             raise InputError("no column of it fits the model", str(source.file),
                              f"columns for {', '.join([*self.target.places, *self.target.inputs][:8])}")  # fmt: skip

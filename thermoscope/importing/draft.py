@@ -65,13 +65,13 @@ def squares_of(guesses: Sequence[Guess], target: Target) -> dict[str, tuple[str,
 
 def missing_inputs(draft: Draft, target: Target) -> list[str]:
     """Inputs that the model reads and nothing gives."""
-    given = {g.feeds for g in draft.guesses} | set(draft.constants) | set(draft.squares)
-    return [name for name in target.inputs if name not in given]
+    fed = {g.feeds for g in draft.guesses} | set(draft.constants) | set(draft.squares)
+    return [name for name in target.inputs if name not in fed]
 
 
 def missing_boundaries(draft: Draft, target: Target) -> list[str]:
-    given = {g.place for g in draft.guesses} | set(draft.boundaries)
-    return [name for name in target.boundaries if name not in given]
+    fed = {g.place for g in draft.guesses} | set(draft.boundaries)
+    return [name for name in target.boundaries if name not in fed]
 
 
 def coldest_start(draft: Draft) -> float:

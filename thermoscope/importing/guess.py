@@ -156,9 +156,9 @@ def single(guesses: list[Guess], target: Target) -> list[Guess]:
 
 def input_name(g: Guess) -> str:
     """An input called after the column, with the unit that memory holds."""
-    held = QUANTITIES[g.quantity].feeds.rpartition("_")[2]
+    unit = QUANTITIES[g.quantity].feeds.rpartition("_")[2]
     words = [w for w in tokens(g.column) if w.isascii()]
-    return "_".join([*words, held]) if words else f"{g.quantity}_{held}"
+    return "_".join([*words, unit]) if words else f"{g.quantity}_{unit}"
 
 
 def in_memory(source: Source, g: Guess) -> np.ndarray:

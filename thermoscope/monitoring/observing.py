@@ -39,9 +39,9 @@ def designed(folder: Folder, progress: Progress) -> Design:
     network = narrowed(network, values, folder.case)
     tests = [t for t in folder.case.tests if t.role == "calibrate"]
     file = cache_folder() / f"observer-{_key(folder)}.npz"
-    held = recalled(file, _from_cache)
-    if held is not None:
-        return design_of(network, values, held, tests, folder.case.doubt)
+    cached = recalled(file, _from_cache)
+    if cached is not None:
+        return design_of(network, values, cached, tests, folder.case.doubt)
     progress("missing heat that the table of doubt allows")
     bodies, table = most_doubtful(bodies_of(network), of_doubt(unsettled(folder.case), tests, bodies_of(network)))
     lesson = taught(network, values, bodies, table, tests, folder.case.doubt, progress)
@@ -52,8 +52,8 @@ def designed(folder: Folder, progress: Progress) -> Design:
 
 
 def _from_cache(file: Path) -> Lesson:
-    with np.load(file) as held:
-        return Lesson(tuple(str(b) for b in held["bodies"]), held["table"], held["constants"])
+    with np.load(file) as archive:
+        return Lesson(tuple(str(b) for b in archive["bodies"]), archive["table"], archive["constants"])
 
 
 def _key(folder: Folder) -> str:

@@ -37,9 +37,9 @@ def _boundaries(sheet: Sheet, network: Network) -> None:
             raise InputError(f"no boundary is called '{name}'", f"{sheet.where} [boundaries]", right)
     places = [c.place for c in sheet.columns if c.is_temperature and c.place in network.boundaries]
     for name in twice([*places, *sheet.boundaries]):
-        given = [f"[columns.{c.name}]" for c in sheet.columns if c.is_temperature and c.place == name]
-        given += ["[boundaries]"] if name in sheet.boundaries else []
-        raise InputError(f"boundary '{name}' is given by {' and by '.join(given)}", sheet.where,
+        columns = [f"[columns.{c.name}]" for c in sheet.columns if c.is_temperature and c.place == name]
+        columns += ["[boundaries]"] if name in sheet.boundaries else []
+        raise InputError(f"boundary '{name}' is given by {' and by '.join(columns)}", sheet.where,
                          "one of them: use = false, or delete the constant")  # fmt: skip
 
 

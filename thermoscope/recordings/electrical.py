@@ -123,10 +123,10 @@ def read_electrical(quantity: str, name: str, table: Table, folder: Path) -> Ele
 
 def meter_of(table: Table, key: str, usual: Meter) -> Meter:
     """A meter by its data sheet: one table of limits, or a list of them, one per range."""
-    given = table.raw(key)
-    if not given:
+    value = table.raw(key)
+    if not value:
         return usual
-    rows = given if isinstance(given, list) else [given]
+    rows = value if isinstance(value, list) else [value]
     return Meter("meter", usual.unit, tuple(_range(Table(row, f"{table.where} {key}")) for row in rows))
 
 
@@ -143,10 +143,10 @@ def _range(data: Table) -> Range:
 def _coefficient(table: Table, usual: Reading) -> Reading:
     if "coefficient_percent_K" not in table:
         return usual
-    given = table.numbers("coefficient_percent_K")
-    if len(given) not in (1, 2) or any(v == 0 for v in given):
-        raise table.error(f"coefficient_percent_K = {list(given)}", "one number, or [lowest, highest]")
-    return Reading(usual.name, sum(given) / len(given) / 100.0, abs(given[-1] - given[0]) / 200.0)
+    values = table.numbers("coefficient_percent_K")
+    if len(values) not in (1, 2) or any(v == 0 for v in values):
+        raise table.error(f"coefficient_percent_K = {list(values)}", "one number, or [lowest, highest]")
+    return Reading(usual.name, sum(values) / len(values) / 100.0, abs(values[-1] - values[0]) / 200.0)
 
 
 def saturation_of(table: Table) -> Saturation | None:

@@ -186,10 +186,10 @@ def _window(test: Table) -> tuple[float, float]:
 
 
 def _initial(test: Table) -> float | Mapping[str, float] | str:
-    given = test.raw("initial", FIRST)
-    if isinstance(given, Mapping):
+    value = test.raw("initial", FIRST)
+    if isinstance(value, Mapping):
         return test.shares("initial", of="initial")
-    return test.word("initial", FIRST, [FIRST]) if isinstance(given, str) else test.number("initial")
+    return test.word("initial", FIRST, [FIRST]) if isinstance(value, str) else test.number("initial")
 
 
 def _column(name: str, table: Table, filtered: float, folder: Path) -> Column | None:

@@ -101,8 +101,8 @@ def memory_quantity(of: str, name: str) -> str:
 def converted(values: Array, of: str, unit: str, settings: Mapping[str, float] | None = None) -> Array:
     """Values in the unit of memory; of a sensor of another quantity degC, with what its column says of the sensor."""
     factor, offset = _scale(of, unit)
-    held, degC = values * factor + offset, QUANTITIES[of].degC
-    return held if degC is None else np.asarray(degC(held, **(settings or QUANTITIES[of].settings)), float)
+    si, degC = values * factor + offset, QUANTITIES[of].degC
+    return si if degC is None else np.asarray(degC(si, **(settings or QUANTITIES[of].settings)), float)
 
 
 def usual_sigma(of: str, unit: str) -> float:

@@ -82,8 +82,8 @@ class Display:
         """The curves of a sensor; a name that is no sensor of the test means the first one."""
         names = [s["name"] for s in self.state.sensors]
         self.state.sensor = name if name in names else names[0]
-        drawn = sensor_figure(self.look.curves[self.state.test], self.state.sensor, theme=self.theme)
-        self.state.curve = drawn.to_plotly_json()
+        figure = sensor_figure(self.look.curves[self.state.test], self.state.sensor, theme=self.theme)
+        self.state.curve = figure.to_plotly_json()
         if self.stage is not None:
             seen = rows.placed(self.look, self.state.test, self.bench.folder.positions)
             self.stage.markers(seen, self.state.sensor)
@@ -131,8 +131,8 @@ class Display:
         self.state.candidates = rows.candidates(diagnosis, tuple(self.state.effects))
         names = [c["effect"] for c in diagnosis["candidates"] if c["effect"] in diagnosis["confusion"]][:CONFUSED]
         self.state.has_confusion = len(names) > 1
-        drawn = confusion(names, matrix(diagnosis["confusion"], names), theme=self.theme)
-        self.state.confusion = drawn.to_plotly_json()
+        figure = confusion(names, matrix(diagnosis["confusion"], names), theme=self.theme)
+        self.state.confusion = figure.to_plotly_json()
 
 
 def within(value: Any, low: float, high: float) -> float:

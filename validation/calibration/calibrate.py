@@ -382,12 +382,12 @@ def calibrated(
 
     Only the last needs a Jacobian of its own end; `rough`: nor does that, since another fit goes on from there.
     """
-    held = {p.name: values.get(p.name, p.value) for p in network.parameters}
-    fit = minimise(network, tests, unknowns, unknowns.coordinates(values), noise, held, progress=progress, keep=keep,
+    fixed = {p.name: values.get(p.name, p.value) for p in network.parameters}
+    fit = minimise(network, tests, unknowns, unknowns.coordinates(values), noise, fixed, progress=progress, keep=keep,
                    draft=rough or rounds > 0, worth=ROUGH if rounds else WORTH)  # fmt: skip
     for i in range(rounds):
         fit = minimise(
-            network, tests, unknowns, fit.theta, fit_noise(fit.parts), held, 10,
+            network, tests, unknowns, fit.theta, fit_noise(fit.parts), fixed, 10,
             CachedSegments(fit.parts, nearby=False, stale=True), draft=rough or i + 1 < rounds,
             progress=progress, keep=keep,
         )  # fmt: skip
@@ -403,8 +403,8 @@ def with_model_error(
     values : of what is not free.  Predictions are best by the parameters that follow the readings; how sure these are,
     and what is missing beside them, depends on the model error.
     """
-    held = {**values, **fit.values}
-    error = model_error(fit.network, tests, held, doubt)
+    fixed = {**values, **fit.values}
+    error = model_error(fit.network, tests, fixed, doubt)
     noise = fit_noise(InnerProduct(fit.parts, fit.noise, error).explained(fit.parts, error))
-    return minimise(fit.network, tests, fit.unknowns, fit.theta, noise, held, iterations,
+    return minimise(fit.network, tests, fit.unknowns, fit.theta, noise, fixed, iterations,
                     CachedSegments(fit.parts, nearby=False, stale=iterations > 0), draft, error=error)  # fmt: skip

@@ -102,10 +102,10 @@ def best_start(
     progress: Progress,
 ) -> dict[str, float]:  # fmt: skip
     """Rough fits from several points of the prior; the values of the best."""
-    rng, held = np.random.default_rng(search.seed), {p.name: values.get(p.name, p.value) for p in network.parameters}
+    rng, fixed = np.random.default_rng(search.seed), {p.name: values.get(p.name, p.value) for p in network.parameters}
     first = unknowns.coordinates(values)
     points = [first, *(unknowns.sd * rng.standard_normal(first.size) for _ in range(search.starts - 1))]
-    fits = [minimise(network, tests, unknowns, x, fixed=held, draft=True, progress=progress) for x in points]
+    fits = [minimise(network, tests, unknowns, x, fixed=fixed, draft=True, progress=progress) for x in points]
     alike = sum(f.objective < min(g.objective for g in fits) + SAME for f in fits)
     progress(f"{alike} of {len(fits)} starts end at the same optimum")
     return {**values, **min(fits, key=lambda f: f.objective).values}

@@ -110,8 +110,8 @@ def single_test_conditions(evidence: Evidence, bases: Sequence[Effect], values: 
     for chosen in every:
         own, seen = together(scores, len(bases), chosen)
         one = len(chosen) == 1
-        held = FORM["one whole test" if one else "several whole tests"]
-        share = held / (len(bases) * (len(names) if one else len(every) - len(names)))
+        form = FORM["one whole test" if one else "several whole tests"]
+        share = form / (len(bases) * (len(names) if one else len(every) - len(names)))
         name = condition_of([evidence.tests[t] for t in chosen])
         out += [
             Condition(During.of(base, name, share), float(b) + odds_against_nothing(share))

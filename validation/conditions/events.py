@@ -29,8 +29,8 @@ def possible_events(posterior: Posterior) -> tuple[PossibleEvent, ...]:
             groups.append([k])
         else:
             group.append(k)
-    held = [sum(float(p) for h, p in zip(posterior.hypotheses, P) if set(g) & set(h.members)) for g in groups]
-    rows = [_row(posterior, g[0], timed[g[0]], p) for g, p in zip(groups, held, strict=True)]
+    probability = [sum(float(p) for h, p in zip(posterior.hypotheses, P) if set(g) & set(h.members)) for g in groups]
+    rows = [_row(posterior, g[0], timed[g[0]], p) for g, p in zip(groups, probability, strict=True)]
     return tuple(sorted(rows, key=lambda r: -r.probability))
 
 

@@ -109,8 +109,8 @@ def bearings(network: Network) -> list[str]:
     names, near = [p.name for p in solids(network)], neighbours(network)
     still = [n for n in names if stands(network, n)]
     between = [n for n in still if any(turns(network, b) for b in near.get(n, set()) if b in names)]
-    held = [n for n in between if role(network, n) not in FIELD]
-    return held or with_role(network, Role.END_SHIELD) or [n for n in names if role(network, n) not in FIELD]
+    joints = [n for n in between if role(network, n) not in FIELD]
+    return joints or with_role(network, Role.END_SHIELD) or [n for n in names if role(network, n) not in FIELD]
 
 
 def commutators(network: Network) -> list[str]:

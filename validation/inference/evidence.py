@@ -119,9 +119,9 @@ def calibrated_case(
     """The model calibrated on every test but the held-out ones, model error in account."""
     network, unknowns = working(case)
     values, tests = {**case.model.values, **(start or {})}, diagnosing(case)
-    held = {p.name: values.get(p.name, p.value) for p in network.parameters}
+    fixed = {p.name: values.get(p.name, p.value) for p in network.parameters}
     plain = calibrated(network, tests, unknowns, values, 1, progress, rough=True)
-    return with_model_error(plain, tests, held, case.doubt, ROUNDS)
+    return with_model_error(plain, tests, fixed, case.doubt, ROUNDS)
 
 
 def scored(case: Case, effects: Sequence[Effect], fit: Fit) -> Evidence:
@@ -346,16 +346,16 @@ def refit(
     tangents : of all these where the fit begins, by default those without the candidates
     begun : objective there, by default that without the candidates
     """
-    network, unknowns, held = with_members(evidence, members)
+    network, unknowns, fixed = with_members(evidence, members)
     free, fit = free_of(evidence, members), evidence.fit
     before = fit.objective if begun is None else begun
-    rough = minimise(network, evidence.tests, unknowns, theta, fit.noise, held, 8,
+    rough = minimise(network, evidence.tests, unknowns, theta, fit.noise, fixed, 8,
                      CachedSegments(tangents or evidence.parts_of(free)), worth=ENOUGH, error=fit.error)  # fmt: skip
     far = any(evidence.effects[k].whole for k in members)  # exchanged plugs begin where the calibration is wrong
     straight = rough.gain_ratio > STRAIGHT and before - rough.objective < BENDS
     if straight or (rough.objective > fit.objective + HOPELESS and not far):
         return rough
-    return minimise(network, evidence.tests, unknowns, rough.theta, fit.noise, held, SECOND, draft=True, worth=ENOUGH,
+    return minimise(network, evidence.tests, unknowns, rough.theta, fit.noise, fixed, SECOND, draft=True, worth=ENOUGH,
                     error=fit.error)  # fmt: skip
 
 
@@ -387,11 +387,11 @@ def refit_onwards(evidence: Evidence, members: Sequence[int], before: Fit, finel
 
     finely : to its end, with tangents of its own there
     """
-    network, unknowns, held = with_members(evidence, members)
+    network, unknowns, fixed = with_members(evidence, members)
     moved, fit = before.unknowns.names != unknowns.names, evidence.fit
     known = CachedSegments(before.parts, nearby=moved, renewed=True, stale=True)
     steps, worth = (ROUNDS, FINE) if finely else (SECOND, ENOUGH)
-    return minimise(network, evidence.tests, unknowns, before.theta, fit.noise, held, steps, known, draft=not finely,
+    return minimise(network, evidence.tests, unknowns, before.theta, fit.noise, fixed, steps, known, draft=not finely,
                     worth=worth, error=fit.error)  # fmt: skip
 
 

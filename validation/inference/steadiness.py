@@ -72,8 +72,8 @@ def thinned(e: Evidence, fit: Fit, error: ModelError | None, first: int) -> Fit:
     if error is None and fit.error is not None:
         error = replace(fit.error, columns={key: columns[first::2] for key, columns in fit.error.columns.items()})
     parts = [every_second(s, first) for s in fit.parts]
-    held = values_of(fit.network, fit.values)
-    return minimise(fit.network, e.tests, fit.unknowns, fit.theta, e.fit.noise, held, 0,
+    fixed = values_of(fit.network, fit.values)
+    return minimise(fit.network, e.tests, fit.unknowns, fit.theta, e.fit.noise, fixed, 0,
                     CachedSegments(parts, nearby=False), error=error)  # fmt: skip
 
 

@@ -120,9 +120,9 @@ def _odds(e: Evidence, h: Hypothesis, p: float, sure: tuple[str, ...]) -> Odds:
     """A hypothesis with when it held."""
     own = tuple(e.names[k] for k in h.members)
     name = " + ".join((*sure, *([h.name(e)] if own or h.heat or not sure else [])))
-    held = [x for k in h.members if isinstance(x := e.effects[k], During)]
-    tests = tuple(dict.fromkeys(t for x in held for t in x.tests))
-    spans = [s for x in held if x.event for s in x.event.every]
+    conditions = [x for k in h.members if isinstance(x := e.effects[k], During)]
+    tests = tuple(dict.fromkeys(t for x in conditions for t in x.tests))
+    spans = [s for x in conditions if x.event for s in x.event.every]
     begin, end = spans[0] if len(spans) == 1 else (None, None)
     return Odds(name, (*sure, *own), p, h.nats, tests, begin, end)
 
@@ -203,10 +203,10 @@ def _row(
         a = float(within.theta[j])
         row = replace(row, value=a, ci95=interval(a, wide * float(within.sd[j]), scatter(e, k)))
     new = held_out_residuals(beside.tests, h.fit)
-    held = (rmse(beside.held), rmse(new)) if beside.tests else None
+    hold_out = (rmse(beside.held), rmse(new)) if beside.tests else None
     tests = (*by_test(e.fit.parts, h.fit.parts, False), *by_test(beside.held, new, True))
     return replace(
-        row, rmse_K=(before, after), explained=1.0 - (after / before) ** 2, holdout_rmse_K=held, tests=tests,
+        row, rmse_K=(before, after), explained=1.0 - (after / before) ** 2, holdout_rmse_K=hold_out, tests=tests,
         note=against(e, h.fit, beside) if beside.lead and not leads else "",
     )  # fmt: skip
 

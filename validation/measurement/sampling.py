@@ -76,18 +76,18 @@ class Modes:
     def of(cls, G: Array, C: Array) -> Modes:
         """Of C dx/dt = -G x; states without capacity follow the others."""
         warm, bare = np.flatnonzero(C > 0.0), np.flatnonzero(C == 0.0)
-        n, held = C.size, np.linalg.pinv(G[np.ix_(bare, bare)])
+        n, inverse = C.size, np.linalg.pinv(G[np.ix_(bare, bare)])
         lift, fall = np.zeros((n, warm.size)), np.zeros((warm.size, n))
         lift[warm, np.arange(warm.size)] = fall[np.arange(warm.size), warm] = 1.0
-        lift[bare] = -held @ G[np.ix_(bare, warm)]
-        fall[:, bare] = -G[np.ix_(warm, bare)] @ held
+        lift[bare] = -inverse @ G[np.ix_(bare, warm)]
+        fall[:, bare] = -G[np.ix_(warm, bare)] @ inverse
         rate, V = np.linalg.eig((fall @ G @ lift) / C[warm, None])
         rate = np.maximum(rate.real, SLOWEST)
         shape, weight = lift @ V, np.linalg.solve(V, fall / C[warm, None]) / rate[:, None]
         at_once = np.eye(n)[:, bare]
         return cls(
             np.append(rate, np.full(bare.size, np.inf)), np.hstack([shape, at_once]),
-            np.vstack([weight, held @ np.eye(n)[bare]]),
+            np.vstack([weight, inverse @ np.eye(n)[bare]]),
         )  # fmt: skip
 
 

@@ -69,11 +69,11 @@ class _Run:
         self.of, self.test, self.process, self.terms = of, test, of.process, of.terms
         self.n = self.process.size
         self.w, self.q = of.w, np.zeros(len(of.bodies))
-        given = record(test, {})
-        self.time = np.asarray(given.time, float)
-        self.f = self.terms.factors(given)
+        driven = record(test, {})
+        self.time = np.asarray(driven.time, float)
+        self.f = self.terms.factors(driven)
         names = self.process.network.boundaries
-        self.u = np.column_stack([np.broadcast_to(given.boundaries[b], self.time.shape) for b in names])
+        self.u = np.column_stack([np.broadcast_to(driven.boundaries[b], self.time.shape) for b in names])
         self.at = {c.name: j for j, c in enumerate(of.constants.channels)}
         self.x, self.P = self._begun(of.noise)
         self.along = np.zeros((self.x.size, self.process.slow.size))

@@ -83,8 +83,8 @@ class _Flows:
         own = {p.name for p in self.network.parameters}
         self.values = values_of(self.network, {k: v for k, v in values.items() if k in own})
         self.test, self.columns = test, [network.column(b) for b in bodies]
-        given = record(test, {})
-        self.z = np.asarray(simulate(self.network, given, self.values, keep_states=True).z)
+        driven = record(test, {})
+        self.z = np.asarray(simulate(self.network, driven, self.values, keep_states=True).z)
         self.some = np.unique(np.linspace(0, test.time.size - 1, INSTANTS).astype(int))
         self.terms = assembly(self.network)
         acting_now = multipliers(self.network, self.values)

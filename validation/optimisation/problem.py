@@ -121,8 +121,8 @@ class Problem:
         if machine is not None:
             from lumped.machine.motor import rated_inputs
 
-            given = rated_inputs(machine)
-            out |= {n: given[n] for n in self.from_machine}
+            rated = rated_inputs(machine)
+            out |= {n: rated[n] for n in self.from_machine}
         if self.driven is None:
             return out, {}
         load, lag = self.driven.inputs(named)

@@ -59,8 +59,8 @@ def _set(**levels: float | Callable[[Array], Array]) -> Change:
     """Inputs of a quantity held at a number, or given as a function of time; those the machine lacks are left out."""
 
     def change(time: Array, inputs: Inputs, boundaries: Inputs, network: Network) -> tuple[Inputs, Inputs]:
-        held = {q: (v(time) if callable(v) else np.full_like(time, v)) for q, v in levels.items()}
-        new = {name: v for q, v in held.items() for name in inputs_measuring(network, inputs, q)}
+        levels_in_time = {q: (v(time) if callable(v) else np.full_like(time, v)) for q, v in levels.items()}
+        new = {name: v for q, v in levels_in_time.items() for name in inputs_measuring(network, inputs, q)}
         return {**inputs, **new}, boundaries
 
     return change
@@ -153,8 +153,8 @@ CANDIDATE_TESTS = (
 def candidate_tests(test: Test, network: Network) -> list[tuple[Experiment, Test]]:
     """Experiments that change something on this machine, and the tests made from the one at hand."""
     measured = {network.measures(name) for name in test.inputs}
-    made = [(e, e.modified(test, network)) for e in CANDIDATE_TESTS if set(e.needs) <= measured]
-    return [(e, new) for e, new in made if _differ(new, repeated(test, e.hours))]
+    possible = [(e, e.modified(test, network)) for e in CANDIDATE_TESTS if set(e.needs) <= measured]
+    return [(e, new) for e, new in possible if _differ(new, repeated(test, e.hours))]
 
 
 def _differ(new: Test, old: Test) -> bool:

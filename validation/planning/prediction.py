@@ -92,16 +92,16 @@ def predicted_deviance(
 
 def _difference(evidence: Evidence, models: CompetingModels, new: Sequence[Test], right: int, wrong: int) -> float:
     read, rival = [predicted_readings(models.fit(right), t) for t in new], models.fit(wrong)
-    network, unknowns, held = with_members(evidence, [wrong])
+    network, unknowns, fixed = with_members(evidence, [wrong])
     known = {p.name for p in network.parameters}
     own = tuple(p for p in nuisances(network, read) if p.name not in known)
     network, free = replace(network, parameters=(*network.parameters, *own)), (*unknowns.parameters, *own)
-    here = {**held, **{p.name: p.value for p in own}, **rival.values}
+    here = {**fixed, **{p.name: p.value for p in own}, **rival.values}
     near = [replace(s, J=np.pad(s.J, ((0, 0), (0, len(own))))) for s in rival.parts]
     near += segments(network, read, here, free)
     theta, tests = np.concatenate([rival.theta, np.zeros(len(own))]), (*evidence.tests, *read)
     error = widened_error(evidence, read)
-    fit = minimise(network, tests, Unknowns(free), theta, models.noise, held, STEPS, CachedSegments(near),
+    fit = minimise(network, tests, Unknowns(free), theta, models.noise, fixed, STEPS, CachedSegments(near),
                    worth=ENOUGH, error=error)  # fmt: skip
     return deviance_difference(fit, models.fit(right))
 

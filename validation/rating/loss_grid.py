@@ -72,11 +72,11 @@ def loss_grid(columns: Mapping[str, Array], where: str, voltage: float | None = 
 def _at_voltage(columns: dict[str, Array], where: str, voltage: float | None) -> dict[str, Array]:
     if "voltage_V" not in columns:
         return columns
-    given = np.unique(columns["voltage_V"])
-    chosen = given[0] if voltage is None and given.size == 1 else voltage
-    if chosen not in given:
+    voltages = np.unique(columns["voltage_V"])
+    chosen = voltages[0] if voltage is None and voltages.size == 1 else voltage
+    if chosen not in voltages:
         raise InputError(
-            f"the map has {given.size} voltages", where, f"--voltage one of {', '.join(f'{v:g}' for v in given)}"
+            f"the map has {voltages.size} voltages", where, f"--voltage one of {', '.join(f'{v:g}' for v in voltages)}"
         )
     return {n: c[columns["voltage_V"] == chosen] for n, c in columns.items()}
 

@@ -66,9 +66,9 @@ class Model:
         """(n_rows,) largest temperatures of a duty that is repeated until it repeats itself."""
         time, share = s3(duty.period_s, duty.share, TOGETHER, duty.period_s / SAMPLES)
         pause = op.at(duty.idle * load, 0.0 if duty.stops else speed)
-        given = {n: np.where(share > 0.5, u, pause[n]) for n, u in op.at(load, speed).items()}
+        driven = {n: np.where(share > 0.5, u, pause[n]) for n, u in op.at(load, speed).items()}
         mean = load * np.sqrt(duty.share + (1.0 - duty.share) * duty.idle**2)
-        return self.again_and_again(op, Record(time, given, op.boundaries), mean, speed)
+        return self.again_and_again(op, Record(time, driven, op.boundaries), mean, speed)
 
     def again_and_again(self, op: Operation, record: Record, load: float, speed: float | None) -> Array:
         """(n_rows,) largest temperatures of a record that follows on itself until it repeats itself.

@@ -145,11 +145,11 @@ def _revised(
     after = errors(replace(case, model=new))
     changes = tuple(Change(b.name, b.role, b.rmse_K, a.rmse_K) for b, a in zip(before.tests, after.tests, strict=True))
     sure = [_sure(fit, tests, new, case) for fit in fits]
-    made = checks(sure[-1], name) if action == "add" and name else ()
-    accepted, why = judge(action, changes, fits, made)
+    acceptance = checks(sure[-1], name) if action == "add" and name else ()
+    accepted, why = judge(action, changes, fits, acceptance)
     rows = merged(sure, lambda fit: estimates(fit, _profiled(fit, tests, new, profiled, progress)))
     converged = all(fit.converged for fit in fits)
-    return Revision(action, name, new, accepted, why, changes, tuple(rows), before, after, converged, made)
+    return Revision(action, name, new, accepted, why, changes, tuple(rows), before, after, converged, acceptance)
 
 
 def _plain(tests: Sequence[Test]) -> list[Test]:
@@ -168,8 +168,8 @@ def _values(model: Model, fits: Sequence[Fit]) -> dict[str, float]:
 def _sure(fit: Fit, tests: Sequence[Test], model: Model, case: Case) -> Fit:
     """A stage's fit with the model error in its covariance."""
     own = [t for t in tests if t.name in {s.test for s in fit.parts}]
-    held = {p.name: model.values.get(p.name, p.value) for p in fit.network.parameters}
-    return with_model_error(fit, own, held, case.doubt)
+    fixed = {p.name: model.values.get(p.name, p.value) for p in fit.network.parameters}
+    return with_model_error(fit, own, fixed, case.doubt)
 
 
 def _profiled(
@@ -180,8 +180,8 @@ def _profiled(
         p.name for p in fit.unknowns.parameters if not of_measurement(p) and any(belongs(p.name, g) for g in globs)
     ]
     own = [t for t in tests if t.name in {s.test for s in fit.parts}]
-    held = {p.name: model.values.get(p.name, p.value) for p in fit.network.parameters}
-    return profiles(fit, own, held, names, progress)
+    fixed = {p.name: model.values.get(p.name, p.value) for p in fit.network.parameters}
+    return profiles(fit, own, fixed, names, progress)
 
 
 def start(case: Case) -> dict[str, float]:

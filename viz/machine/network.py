@@ -131,10 +131,10 @@ def _lines(p: pyvista.Plotter, at: Mapping[str, Array], flow: Heat, colours: Col
 
     inner = [replace(f, watts=abs(f.watts)) for f in flow.flows if f.start in at and f.end in at]
     most = max((f.watts for f in inner), default=1.0)
-    drawn = sorted((f for f in inner if f.conductance > 0 and f.watts >= SMALL * most), key=lambda f: -f.watts)
-    widest = max((f.conductance for f in drawn), default=0.0)
+    strongest = sorted((f for f in inner if f.conductance > 0 and f.watts >= SMALL * most), key=lambda f: -f.watts)
+    widest = max((f.conductance for f in strongest), default=0.0)
     occupied: list[Array] = []
-    for i, f in enumerate(drawn):
+    for i, f in enumerate(strongest):
         a, b = at[f.start], at[f.end]
         line = pyvista.Line(a, b)
         line.point_data["W"] = np.full(line.n_points, f.watts)

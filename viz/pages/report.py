@@ -138,8 +138,8 @@ def _missing(r: Report) -> str:
     parts.append(_contradiction(r.diagnosis))
     if placed(r.diagnosis) and r.diagnosis["where"][0].get("heat"):
         caption = "Heat that would have to enter (or leave, below zero) at the likeliest place, with its 2σ band."
-        drawn = heat.missing_heat(r.diagnosis["where"], events=r.diagnosis.get("events", []))
-        parts.append(html.plot(drawn, "heat", caption))
+        figure = heat.missing_heat(r.diagnosis["where"], events=r.diagnosis.get("events", []))
+        parts.append(html.plot(figure, "heat", caption))
     parts.append(html.text("Errors: without the effect → with it, all else fitted anew each time."))
     alike = [(c["effect"], ", ".join(c["confused_with"])) for c in ranked[:12] if c["confused_with"]]
     likeness = html.table(["effect", "looks like"], alike)
@@ -173,9 +173,9 @@ def _contradiction(diagnosis: Document) -> str:
     ]  # fmt: skip
     headers = ["test", "parameter", "other tests", "this test", "unit", "standard deviations", "can it differ?"]
     table = html.table(headers, rows, [d["possible"] is False for d in row["differences"][:12]])
-    drawn = html.plot(candidates.differences(row), "differences", "What would have to differ between tests.")
+    figure = html.plot(candidates.differences(row), "differences", "What would have to differ between tests.")
     head = f"<h3>Tests that contradict each other</h3>{html.text(row['words'])}"
-    return f"{head}{drawn}{html.more('In numbers', table)}"
+    return f"{head}{figure}{html.more('In numbers', table)}"
 
 
 _HEADERS = ["effect", "decision", "score", "threshold", "size", "95 % interval", "refitted, error (K)", "held-out (K)"]

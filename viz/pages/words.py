@@ -46,8 +46,8 @@ def story(history: Sequence[Document]) -> str:
     added = [r for r in history if r["action"] == "add" and r["effect"] in history[-1].get("effects", [r["effect"]])]
     if not added:
         return ""
-    held = [t for t in added[-1]["tests"] if t["role"] == "hold-out"]
-    parts = [f"{t['rmse_K']['before']:.2f} K to {t['rmse_K']['after']:.2f} K on {t['name']}" for t in held]
+    hold_out = [t for t in added[-1]["tests"] if t["role"] == "hold-out"]
+    parts = [f"{t['rmse_K']['before']:.2f} K to {t['rmse_K']['after']:.2f} K on {t['name']}" for t in hold_out]
     effect = spoken([added[-1]["effect"]])
     if not parts:
         return f"The model was extended by {effect}."
@@ -59,8 +59,8 @@ def detail(diagnosis: Document | None) -> str:
     best = next((c for c in (diagnosis or {}).get("candidates", []) if c["decision"] == "named"), None)
     if best is None:
         return ""
-    name, held = spoken([best["effect"]]), best.get("holdout_rmse_K")
-    rmse, tests = held or best.get("rmse_K"), "tests never used" if held else "the tests used"
+    name, hold_out = spoken([best["effect"]]), best.get("holdout_rmse_K")
+    rmse, tests = hold_out or best.get("rmse_K"), "tests never used" if hold_out else "the tests used"
     without = f" All else fitted anew, the error on {tests} is {rmse['before']:.2f} K without it" if rmse else ""
     gain = f"{without} and {rmse['after']:.2f} K with it." if rmse else ""
     return f"{name[0].upper()}{name[1:]}: {amplitude(best)}.{gain}"

@@ -25,15 +25,15 @@ def curves(case: str, resolution: float, target: str | None) -> int:
 
 def answer(document: Mapping[str, Any]) -> Answer:
     """The rule assembly by assembly, the repeats, then eq. 8 and eq. 9 sensor by sensor."""
-    held = [(t["name"], a) for t in document["tests"] for a in t["assemblies"]]
-    over = sum(a["verdict"] != "within" for _, a in held)
+    rows_of_tests = [(t["name"], a) for t in document["tests"] for a in t["assemblies"]]
+    over = sum(a["verdict"] != "within" for _, a in rows_of_tests)
     rows = [[a["place"], name, a["measured"], a["calculated"], a["percent"], a["percent_of_rise"], a["U95_percent"],
-             a["verdict"]] for name, a in held]  # fmt: skip
+             a["verdict"]] for name, a in rows_of_tests]  # fmt: skip
     headers = ["assembly", "test", "measured (degC)", "calculated (degC)", "%", "% of rise", "reading's 95 % (%)",
                "verdict"]  # fmt: skip
     rule = Grid("Within 3 to 4 % of the measured temperature, never above 7 %", headers, rows, ["beyond 7 %"],
                 ["test", "%", "verdict"])  # fmt: skip
-    sentence = f"{len(held) - over} of {len(held)} assemblies are within the 3 to 4 % rule."
+    sentence = f"{len(rows_of_tests) - over} of {len(rows_of_tests)} assemblies are within the 3 to 4 % rule."
     parts: list[Grid | str] = [rule, _repeats(document), _warming(document), *_doubts(document)]
     return Answer(sentence, parts, "--json FILE")
 

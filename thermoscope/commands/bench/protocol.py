@@ -130,10 +130,10 @@ def _pairs(source: Table, beside: Path, unit_s: float) -> Pairs:
 def _range(table: Table, key: str, usual: Reading) -> Reading:
     if key not in table:
         return usual
-    given = table.numbers(key)
-    if len(given) not in (1, 2):
-        raise table.error(f"{key} = {list(given)} is not possible", "one number, or [lowest, highest]")
-    low, high = given[0], given[-1]
+    values = table.numbers(key)
+    if len(values) not in (1, 2):
+        raise table.error(f"{key} = {list(values)} is not possible", "one number, or [lowest, highest]")
+    low, high = values[0], values[-1]
     return Reading(usual.name, (low + high) / 200.0, abs(high - low) / 200.0)
 
 

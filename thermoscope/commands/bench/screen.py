@@ -93,14 +93,14 @@ def plots(document: Mapping[str, Any], out: Path) -> list[Path]:
     from viz.figures.screening import ranking, screened
 
     title = f"{document['machine']}, {document['design']}"
-    made = []
+    paths = []
     for name, effects in document.get("effects", {}).items():
-        made.append(_png(out, name))
-        screened(effects, unit=unit_of(name), title=f"{title}: {name}", png=made[-1])
+        paths.append(_png(out, name))
+        screened(effects, unit=unit_of(name), title=f"{title}: {name}", png=paths[-1])
     for name, effects in document.get("rankings", {}).items():
-        made.append(_png(out, name))
-        ranking(effects["ranking"], measure=effects["method"], title=f"{title}: {name}", png=made[-1])
-    return made
+        paths.append(_png(out, name))
+        ranking(effects["ranking"], measure=effects["method"], title=f"{title}: {name}", png=paths[-1])
+    return paths
 
 
 def _png(out: Path, response: str) -> Path:

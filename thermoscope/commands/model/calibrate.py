@@ -38,9 +38,9 @@ def calibrate(
     def step(folder: Folder, tell: Progress) -> Revision:
         unfinished = Unfinished(folder)
         usual = folder.settings
-        many, drawn = usual.starts if starts is None else starts, usual.seed if seed is None else seed
+        many, first_seed = usual.starts if starts is None else starts, usual.seed if seed is None else seed
         _profilable(folder, profile)
-        search = Search(many, drawn, unfinished.values(tell), unfinished.keep)
+        search = Search(many, first_seed, unfinished.values(tell), unfinished.keep)
         result = fitted(folder.case, progress=tell, profiled=profile, search=search)
         unfinished.done()
         return result

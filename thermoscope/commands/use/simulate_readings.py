@@ -34,7 +34,7 @@ def short_of(record: Record, share: float = 0.01) -> dict[str, float]:
     """
     out = {}
     for name, wanted in record.inputs.items():
-        if (given := record.inputs.get(name.replace("_wanted", ""))) is not None and "_wanted" in name:
-            missing = np.abs(wanted) - np.abs(given) > share * np.abs(wanted).max(initial=1e-12)
+        if (actual := record.inputs.get(name.replace("_wanted", ""))) is not None and "_wanted" in name:
+            missing = np.abs(wanted) - np.abs(actual) > share * np.abs(wanted).max(initial=1e-12)
             out[name.replace("_wanted", "")] = float(np.mean(missing))
     return {name: of for name, of in out.items() if of > 0.0}

@@ -201,10 +201,10 @@ def answer(document: dict[str, Any]) -> Answer:
     rows = [[p["place"], p["end_C"], p["end_ci95"][1] - p["end_C"], p["max_C"]] for p in document["places"]]
     events = [[_alarm_text(e["kind"], e["where"], _number(e["amplitude"]), e["probability"]), e["from_s"], e["to_s"]]
               for e in document["events"]]  # fmt: skip
-    held = [[w["sensor"], w["rmse_K"], w["open_loop_rmse_K"]] for w in document["withheld"]]
+    withheld = [[w["sensor"], w["rmse_K"], w["open_loop_rmse_K"]] for w in document["withheld"]]
     parts = [
         Grid("What was said", ["event", "from (s)", "to (s)"], events),
-        Grid("Sensors that were not given", ["sensor", "error (K)", "open loop (K)"], held),
+        Grid("Sensors that were not given", ["sensor", "error (K)", "open loop (K)"], withheld),
         Grid("", ["place", "end (degC)", "95 % (+- K)", "largest (degC)"], rows, keep=["end (degC)", "95 % (+- K)"]),
     ]
     return Answer(sentence, [p for p in parts if p.rows], f"every sample in {document['file']}")
