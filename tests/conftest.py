@@ -1,6 +1,7 @@
 """Shared by all tests: one thread per process, files of long tests first, the command line, the small case."""
 
 import os
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -23,9 +24,26 @@ def root() -> Path:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Files with heavy tests begin: one that begins last keeps one of two workers waiting for its end."""
+    """Files with heavy tests begin: one that begins last keeps one of two workers waiting for its end.
+
+    First of all the rules of the house, which run no network: in a new checkout one worker compiles the kernels
+    meanwhile, and the other finds them.
+    """
     heavy = {item.path for item in items if item.get_closest_marker("heavy")}
-    items.sort(key=lambda item: item.path not in heavy)
+    items.sort(key=lambda item: (item.path not in heavy, item.path.parent.name != "house"))
+
+
+@pytest.fixture(scope="session", autouse=True)
+def run_cache(tmp_path_factory) -> Iterator[Path]:
+    """The cache of this run, of all workers: found by content, so that solids, meshes and shapes are made once.
+
+    The user's own is neither read nor filled: a test that passes for what lies there fails elsewhere.
+    """
+    base = tmp_path_factory.getbasetemp()
+    folder = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "cache"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("THERMOSCOPE_CACHE", str(folder))
+        yield folder
 
 
 @pytest.fixture(scope="session")

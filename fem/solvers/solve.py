@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 import scipy.sparse as sp
@@ -67,10 +66,17 @@ class Solver:
 
     field: FieldModel
 
-    @cached_property
+    @property
     def symbolic(self) -> Symbolic:
-        pattern = self.field.stiffness(dict.fromkeys(self.field.films, 1.0), dict.fromkeys(self.field.contacts, 1.0))
-        return analyse(sp.csr_array(pattern + self.field.M), self.field.xyz)
+        """Kept beside what the field itself works out once, so that its next solver has it too."""
+        kept: dict[str, Any] = vars(self.field)
+        if "symbolic" not in kept:
+            pattern = self.field.stiffness(
+                dict.fromkeys(self.field.films, 1.0), dict.fromkeys(self.field.contacts, 1.0)
+            )
+            kept["symbolic"] = analyse(sp.csr_array(pattern + self.field.M), self.field.xyz)
+        found: Symbolic = kept["symbolic"]
+        return found
 
     def factor(self, K: sp.csr_array, shift: float = 0.0) -> Factor:
         """Cholesky factor of K + shift M, shift in 1/s."""

@@ -102,7 +102,7 @@ def _pack_tangents(
     dC = np.zeros((len(slope), len(network.C)))
     for j in (j for j, d in enumerate(slope) if any(t.startswith("capacity:") for t in d)):
         dC[j] = network.C * capacity_slopes(network, slope[j])
-    column, state = np.nonzero(dC)
+    column, state = map(np.ascontiguousarray, np.nonzero(dC))  # columns of one array: another layout compiles anew
     hidden = hidden_states(network)
     first = np.zeros((hidden.size + len(network.boundaries), len(slope) + len(shifts)))
     for j, name in enumerate(shifts, len(slope)):

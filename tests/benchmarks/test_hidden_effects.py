@@ -25,6 +25,8 @@ from validation.effects import kinds
 from validation.effects.sites import solids
 from validation.effects.streams.flow import flows
 
+pytestmark = pytest.mark.heavy
+
 SAID = {"verdict": "adequate", "groups": [], "where": [], "pulls": [], "words": "", "candidates": {}, "lead": ""}
 
 

@@ -12,6 +12,7 @@ from skfem.helpers import dot, grad
 from fem.matrices.assembly import assemble
 from fem.matrices.grids import box, cylinder, ring, sector
 from fem.matrices.material import Conductivity, isotropic, laminated
+from fem.solvers import solve
 from fem.solvers.multifrontal import analyse, factorise
 from fem.solvers.pardiso import Pardiso
 from fem.solvers.solve import Fluids, Iterative, Solver, only_fixed, steady
@@ -219,6 +220,18 @@ def test_multifrontal_solves_what_was_asked():
     K = field.stiffness(dict.fromkeys(field.films, 5.0), {"core|yoke": 100.0})
     x = np.random.default_rng(3).normal(size=(field.n, 7))
     assert factorise(K, analyse(K, field.xyz))(K @ x) == pytest.approx(x, abs=1e-9)
+
+
+def test_solvers_of_one_field_analyse_it_once(monkeypatch):
+    seen = []
+    monkeypatch.setattr(solve, "analyse", lambda *given: seen.append(given) or analyse(*given))
+    field = assemble(cube(2), {"cube": isotropic(2.0)}, {"cube": 1e6})
+    K = field.stiffness(dict.fromkeys(field.films, 1.0), {})
+    for _ in range(2):
+        T = Solver(field).factor(K, 1.0)(np.ones(field.n))
+        assert np.abs((K + field.M) @ T - 1.0).max() < 1e-9
+    assert len(seen) == 1
+    assert Solver(assemble(cube(2), {"cube": isotropic(2.0)}, {"cube": 1e6})).symbolic is not Solver(field).symbolic
 
 
 def test_a_part_that_hangs_in_the_air_is_refused():

@@ -13,6 +13,8 @@ from thermoscope.monitoring.fleet import Reader, Recording
 from thermoscope.recordings.sheet import load_sheet
 from validation.fleet import Statistics, UnitHistory, population
 
+pytestmark = pytest.mark.heavy
+
 NAMES, SD = ("a", "b"), np.array([0.5, 0.5])
 
 

@@ -9,7 +9,8 @@ from measures import area
 from geom import COARSE, InputError, build_mesh, export_cad, import_step, library, load_machine
 from geom.description.part import Helix
 from geom.machine_file import machine_from
-from geom.solids.carved import carved, channel
+from geom.solids.cad import solids
+from geom.solids.carved import channel
 
 SHIPPED = [name for name in library() if "jacket" in name]
 HELICAL = ["ipmsm-48s8p-jacket", "series-dc-100kw-jacket-one-helical", "series-dc-100kw-jacket-two"]
@@ -130,14 +131,14 @@ def test_helix_of_any_turns_has_the_rings_volume_and_stays_inside_the_jacket(tur
 
 
 @pytest.mark.parametrize("name", SHIPPED)
-def test_bores_of_the_made_housing_lead_into_its_channel(name):
+def test_bores_of_the_made_housing_lead_into_its_channel(name, run_cache):
     """A thin probe through every port meets no metal before the inner wall, in the helix as in the prisms."""
     import cadquery as cq
 
     machine = load_machine(name)
     g = machine.geometry
     depth = 1e3 * (g.jacket.wall + g.jacket.height if hasattr(g, "jacket") else g.housing.wall + g.housing.channel)
-    (housing,) = carved(machine.part("housing").cad_shape)
+    (housing,) = solids(machine.part("housing"), run_cache)
     for port in machine.ports:
         x, y, z = (1e3 * value for value in port.position)
         out = cq.Vector(x, y, 0).normalized()

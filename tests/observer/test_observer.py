@@ -21,6 +21,8 @@ from validation.observer.process import Process, bodies_of
 from validation.observer.process_noise import most_doubtful, of_doubt
 from validation.observer.sensor_faults import FROZEN_S, LOST_S
 
+pytestmark = pytest.mark.heavy
+
 AIR = {"ambient": 20.0}
 
 

@@ -21,6 +21,8 @@ from validation.observer import ProcessNoise, observer
 from validation.observer.process import Process, bodies_of
 from validation.observer.process_noise import of_doubt
 
+pytestmark = pytest.mark.heavy
+
 WITHIN_K = 0.05  # with the covariance in single precision
 SAME_K = 1e-6  # and in double: the same arithmetic
 DOUBLE = ("-DTHERMAL_COVARIANCE=double",)

@@ -3,13 +3,17 @@
 import contextlib
 import json
 import sys
+from functools import cache
 from io import StringIO
 from pathlib import Path
 from typing import Any, NamedTuple
 from unittest.mock import patch
 
+import typer.main
+
 from thermoscope.cli import main
 
+commands_of = cache(typer.main.get_command)  # the tree of commands is made anew for each call: most of a refusal's time
 RUN = "import sys; sys.argv[0] = 'thermoscope'; from thermoscope.cli import main; main()"  # in a process of its own
 
 
@@ -37,6 +41,7 @@ def answered(*words: object, cwd: Path | str = ".") -> Answer:
     """thermoscope WORDS in the folder `cwd`."""
     out, err = StringIO(), StringIO()
     with contextlib.ExitStack() as stack:
+        stack.enter_context(patch.object(typer.main, "get_command", commands_of))
         stack.enter_context(patch.object(sys, "argv", ["thermoscope", *map(str, words)]))
         stack.enter_context(contextlib.chdir(cwd))
         stack.enter_context(contextlib.redirect_stdout(out))

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import ThermoscopeError
 from lumped.drives.duty import s3
+from lumped.integration.signals import Signals
 from lumped.integration.simulate import Record, Stand, initial_state, simulate
 from lumped.integration.steady import steady
 from lumped.model.network import Network, Row
@@ -76,6 +77,7 @@ class Model:
         load : whose rest is a first guess;  RUNAWAY_C where there is no rest
         """
         try:
+            record = replace(record, inputs=Signals(record.inputs, record.time.size))  # factors are worked out once
             x = self.start(op, load, speed).x
             seen: list[tuple[Array, Array]] = []
             for _ in range(ROUNDS):

@@ -32,9 +32,9 @@ SURFACE = 0.02  # triangles lie within 0.05 to 0.1 mm of the solid, mica is 0.8 
 
 
 @pytest.fixture(scope="module", params=MACHINES)
-def written(request, tmp_path_factory):
+def written(request, tmp_path_factory, run_cache):
     machine, folder = MACHINES[request.param], tmp_path_factory.mktemp("cad")
-    return machine, export_cad(machine, folder, cache=folder), folder
+    return machine, export_cad(machine, folder, cache=run_cache), run_cache
 
 
 def test_solids_are_watertight_and_have_the_volume_of_the_formula(written):
@@ -48,13 +48,13 @@ def test_solids_are_watertight_and_have_the_volume_of_the_formula(written):
 
 def test_step_keeps_names_and_volumes(written):
     """The file keeps 7 digits, and the integral over a helix's free-form faces shows it: 5e-5."""
-    machine, files, folder = written
+    machine, files, cache = written
     back = {name.split("/")[-1]: shape for shape, name, _, _ in cq.Assembly.load(str(files["step"]))}
     assert back.keys() == {part.name for part in machine.parts}
     for part in machine.parts:
         volume = sum(solid.Volume() for solid in back[part.name].Solids()) * 1e-9
         exact = 1e-4 if part.cad_shape else 1e-6
-        assert volume == pytest.approx(_volume(part, folder), rel=exact), part.name
+        assert volume == pytest.approx(_volume(part, cache), rel=exact), part.name
 
 
 def test_stl_is_watertight_and_keeps_the_volume(written):

@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from small_networks import boundaries, every_law, inputs
 
-from lumped.integration.compiled import compiled
+from lumped.integration.compiled import compiled, reordered
 from lumped.integration.simulate import Record, march, simulate
 from lumped.model.build import node_link
 from lumped.model.multipliers import multipliers
@@ -60,6 +60,15 @@ def test_tangent_of_a_boundary_and_of_the_start(boundary):
     assert np.abs(run.dy[:, :, 1]).max() > 1e-2
     assert_allclose(run.dy[:, :, 1], difference, atol=1e-6 * np.abs(difference).max())
     assert_allclose(run.dy[:, :, :1], simulate(NETWORK, record(0.0), None, ROWS, one).dy, atol=1e-12)
+
+
+@pytest.mark.parametrize("parameters", [NETWORK.parameters, NETWORK.parameters[:1], ()], ids=["all", "one", "none"])
+def test_the_kernel_is_compiled_for_one_layout_of_arrays(parameters):
+    """Each further one would cost every new checkout the seconds of another compilation."""
+    core = compiled(NETWORK, RECORD, None, ROWS, parameters)
+    for of in (core, reordered(core)):
+        parts = [(of.C,), (of.K0,), of.terms, of.forcing, of.tangents, of.rows, of.control]
+        assert all(array.flags.c_contiguous for part in parts for array in part)
 
 
 def test_asking_for_tangents_leaves_the_answer_as_it_is():

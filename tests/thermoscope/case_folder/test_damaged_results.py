@@ -15,6 +15,8 @@ from lumped.condensation.basis_cache import BasisCache, Centre
 from thermoscope import caches
 from thermoscope.importing.written import folder_whole
 
+pytestmark = pytest.mark.heavy
+
 
 def folder(file):
     file.unlink()

@@ -15,7 +15,7 @@ from thermoscope.pipeline import build as pipeline
 pytestmark = pytest.mark.heavy
 
 # Of any accuracy: what `build` writes and that it closes its balance is the point.
-TINY = Recipe(tolerance=0.3, random_points=1, local_points=1, local_states=1, max_states=40)
+TINY = Recipe(tolerance=0.3, shifts=(), random_points=1, local_points=1, local_states=1, max_states=40)
 FEW = {
     "series-dc-100kw": {"rotor": {"slots": 12}, "housing": {"fins": 8}},
     "pmsm-m1": {"stator": {"slots": 9, "liner_gap_mm": 0.5}, "rotor": {"poles": 6}},

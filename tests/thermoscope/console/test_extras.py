@@ -1,5 +1,6 @@
 """The core works without what is heavy; where an extra is missing, one message says what to install."""
 
+import re
 import subprocess
 import sys
 import tomllib
@@ -23,45 +24,46 @@ class Absent:
 sys.meta_path.insert(0, Absent())
 sys.argv[0] = "thermoscope"
 from thermoscope.cli import main
-main()
+for words in sys.argv[1:]:
+    sys.argv[1:] = words.split()
+    print("#", words, file=sys.stderr)
+    try:
+        main()
+    except SystemExit as end:
+        print("exit", end.code or 0, file=sys.stderr)
 """
 
 
-@pytest.fixture
-def core(case):
-    """core(*arguments) -> (exit code, stderr) of a command where no extra is installed; CASE is the case."""
-
-    def run(words):
-        arguments = [str(case) if w == "CASE" else w for w in words.split()]
-        done = subprocess.run([sys.executable, "-c", RUN, *arguments], capture_output=True, text=True, timeout=500,
-                              cwd=case.parent)  # fmt: skip
-        return done.returncode, done.stderr
-
-    return run
+def said(case, commands):
+    """(exit code, stderr) of each command, in one process where no extra is installed; CASE is the case."""
+    asked = [words.replace("CASE", str(case)) for words in commands]
+    done = subprocess.run([sys.executable, "-c", RUN, *asked], capture_output=True, text=True, timeout=500,
+                          cwd=case.parent)  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    parts = re.findall(r"^# .*?\n(.*?)^exit (\d+)$", done.stderr, re.M | re.S)
+    assert len(parts) == len(commands), done.stderr
+    return [(int(code), text) for text, code in parts]
 
 
 @pytest.mark.parametrize("commands", [
     ("test compare CASE --why", "model calibrate CASE", "explain diagnose CASE", "model add CASE convection@flange"),
-    ("test doctor CASE", "explain effects CASE", "use simulate CASE", "use export CASE --as json", "test quantities"),
-    ("test new three/tests/stand.csv --yes --network three/network.toml --out again",),
+    ("test doctor CASE", "explain effects CASE", "use simulate CASE", "use export CASE --as json", "test quantities",
+     "test new three/tests/stand.csv --yes --network three/network.toml --out again"),
 ])  # fmt: skip
-def test_declared_networks_need_the_core_alone(core, commands):
-    for words in commands:
-        code, said = core(words)
-        assert code in (0, 1), f"{words}: {said}"
-        assert "Traceback" not in said, f"{words}: {said}"
+def test_declared_networks_need_the_core_alone(case, commands):
+    for words, (code, text) in zip(commands, said(case, commands), strict=True):
+        assert code in (0, 1), f"{words}: {text}"
+        assert "Traceback" not in text, f"{words}: {text}"
 
 
-@pytest.mark.parametrize(("words", "extra"), [
-    ("model build tefc-industrial", "cad"), ("show report CASE", "view"), ("show serve CASE", "view"),
-    ("show picture CASE curves", "view"),
-])  # fmt: skip
-def test_a_missing_part_is_one_message(core, words, extra):
-    code, said = core(words)
-    assert code == 2
-    assert f"pip install 'thermoscope[{extra}]'" in said
-    assert "Traceback" not in said
-    assert said.count("error:") == 1
+def test_a_missing_part_is_one_message(case):
+    needs = {"model build tefc-industrial": "cad", "show report CASE": "view", "show serve CASE": "view",
+             "show picture CASE curves": "view"}  # fmt: skip
+    for extra, (code, text) in zip(needs.values(), said(case, list(needs)), strict=True):
+        assert code == 2
+        assert f"pip install 'thermoscope[{extra}]'" in text
+        assert "Traceback" not in text
+        assert text.count("error:") == 1
 
 
 def test_the_extras_are_those_of_the_project(root):

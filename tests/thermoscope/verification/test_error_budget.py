@@ -18,6 +18,8 @@ from thermoscope.verification.error_budget import MonitoredPlaces
 from thermoscope.verification.fixed_coefficients import rated
 from thermoscope.verification.rated_errors import HOT, Reader, at_rated_point, cached_errors
 
+pytestmark = pytest.mark.heavy
+
 MACHINE, SIZE, SEGMENTS, AXIAL = "pmsm-m1-no-base", 0.1, 36, 0.12
 RECIPE = Recipe(tolerance=0.05, shifts=(0.01,), random_points=1, max_states=60)
 SENSORS = {"T_winding": "winding", "T_end": "endcap.left"}

@@ -21,7 +21,10 @@ from thermoscope.case_folder.history import load_history
 
 BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 playwright = pytest.importorskip("playwright.sync_api", reason="needs playwright: uv pip install playwright")
-pytestmark = pytest.mark.skipif(BROWSER is None, reason="needs a browser: apt-get install -y chromium")
+pytestmark = [
+    pytest.mark.heavy,
+    pytest.mark.skipif(BROWSER is None, reason="needs a browser: apt-get install -y chromium"),
+]
 SERVER = Path(__file__).with_name("motor_case.py")
 LONG = 400_000  # ms; a shared computer may be slow
 
@@ -59,8 +62,8 @@ def page(browser, served):
     assert faults == []
 
 
-def opened(browser, address):
-    tab, faults = browser.new_context(viewport={"width": 1280, "height": 800}).new_page(), []
+def opened(browser, address, width=1280, height=800):
+    tab, faults = browser.new_context(viewport={"width": width, "height": height}).new_page(), []
     tab.context.set_default_timeout(LONG)
     # a call that is under way while the page is left (reload) ends in a bare object: no error of the page
     tab.on("pageerror", lambda fault: str(fault) == "Object" or faults.append(str(fault)))
@@ -236,11 +239,14 @@ def test_dropped_files_become_a_case(page, served):
 
 
 def test_the_machine_plays_in_the_browsers_own_gl(root, tmp_path, browser):
-    """In the page, under its policy; the frame has nothing of the page around it, and goes when it is not wanted."""
+    """In the page, under its policy; the frame has nothing of the page around it, and goes when it is not wanted.
+
+    In a small window: without a graphics card, each pixel of each frame costs processor time.
+    """
     said, arguments = [], ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
     drawing = browser.browser_type.launch(executable_path=BROWSER, args=arguments)
     with workbench(tmp_path) as (address, _):
-        tab, faults = opened(drawing, address)
+        tab, faults = opened(drawing, address, 960, 540)
         tab.on("console", lambda message: message.type == "error" and said.append(message.text))
         tab.click("#view")
         tab.frame_locator("#viewer").locator("#title:has-text(' min')").wait_for()

@@ -5,11 +5,13 @@ import pytest
 from numpy.testing import assert_allclose
 
 from geom.errors import InputError
+from lumped.integration.signals import Signals
 from lumped.integration.simulate import Record
 from lumped.integration.steady import steady
 from lumped.model.build import bare_network, node_link, node_source
 from lumped.model.network import Row
 from lumped.transfer.laws import Fixed, InputPower, Linear
+from validation.rating import points
 from validation.rating.derating import deratings
 from validation.rating.envelope import rated, until
 from validation.rating.holding_map import holding_times
@@ -56,6 +58,15 @@ def test_a_duty_repeats_itself():
     assert_allclose(rated(model(), OP, LIMIT, "S3 40 %", None).load, REST / np.sqrt(share), rtol=3e-3)
     always = model().repeated(OP, REST, None, Duty(share=0.999999))
     assert_allclose(always, 120.0, atol=0.3)
+
+
+def test_the_rounds_of_a_duty_share_what_follows_from_its_inputs(monkeypatch):
+    given, usual = [], points.simulate
+    monkeypatch.setattr(points, "simulate", lambda *a, **k: given.append(a[1].inputs) or usual(*a, **k))
+    model().repeated(OP, REST, None, Duty())
+    assert len(given) > 1
+    assert {id(inputs) for inputs in given} == {id(given[0])}
+    assert isinstance(given[0], Signals)
 
 
 def test_how_long_at_half_as_much_again():

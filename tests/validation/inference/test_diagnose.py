@@ -10,6 +10,8 @@ from playground import Truth, network, wind
 from validation import diagnose
 from validation.measurement.faults import broken_channels
 
+pytestmark = pytest.mark.heavy
+
 
 def brush(T, u, t):
     return {"commutator": 3.0 * abs(u["current_A"])}

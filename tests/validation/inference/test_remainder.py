@@ -4,9 +4,12 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
+import pytest
 from playground import Truth, wind
 
 from validation import diagnose
+
+pytestmark = pytest.mark.heavy
 
 BURST_K = 8.0
 
