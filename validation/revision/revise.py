@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -146,7 +146,7 @@ def _revised(
     changes = tuple(Change(b.name, b.role, b.rmse_K, a.rmse_K) for b, a in zip(before.tests, after.tests, strict=True))
     sure = [_sure(fit, tests, new, case) for fit in fits]
     acceptance = checks(sure[-1], name) if action == "add" and name else ()
-    accepted, why = judge(action, changes, fits, acceptance)
+    accepted, why = judge(action, changes, fits, acceptance, {t.name for t in tests})
     rows = merged(sure, lambda fit: estimates(fit, _profiled(fit, tests, new, profiled, progress)))
     converged = all(fit.converged for fit in fits)
     return Revision(action, name, new, accepted, why, changes, tuple(rows), before, after, converged, acceptance)
@@ -197,31 +197,35 @@ def nudge(p: Parameter) -> float:
     return float(np.clip(p.neutral + 0.3 * (p.sign or 1) * p.prior_sd / FREE, p.low, p.high))
 
 
-def judge(action: str, changes: Sequence[Change], fits: Sequence[Fit], acceptance: Sequence[Check]) -> tuple[bool, str]:
+def judge(
+    action: str, changes: Sequence[Change], fits: Sequence[Fit], acceptance: Sequence[Check], fitted: Collection[str]
+) -> tuple[bool, str]:
     """Accept what converges, passes its checks and lowers the error of the tests it was fitted to.
 
     An effect that foretells tests left out of its fit better than the refitted model without it may leave the plain
-    error as it was: that weighs all sensors alike. The held-out tests have no say; what became of them is told after.
+    error as it was: that weighs all sensors alike. Other tests have no say; what became of them is told after.
+    fitted : names of the tests it was fitted to
     """
-    seen = [c for c in changes if c.role != "hold-out"]
+    seen = [c for c in changes if c.name in fitted]
     was, now = mean_square(seen, "before"), mean_square(seen, "after")
     converged = all(fit.converged for fit in fits)
     foretells = any(c.check == "left out" and c.value > c.limit for c in acceptance)
     fell = now <= (GETS_WORSE * was if action == "calibrate" or foretells else was)
     reasons = [
         failures(acceptance), "" if converged else "not converged", f"rms over the tests used {fall(was, now)}",
-        *held_out_changes(changes),
+        *other_changes(changes, fitted),
     ]  # fmt: skip
     return bool(fell and converged and not failures(acceptance)), "; ".join(filter(None, reasons))
 
 
-def held_out_changes(changes: Sequence[Change]) -> list[str]:
+def other_changes(changes: Sequence[Change], fitted: Collection[str]) -> list[str]:
     """What became of the tests that were not fitted, in words."""
-    own = [c for c in changes if c.role == "hold-out"]
+    own = [c for c in changes if c.name not in fitted]
     if not own:
         return ["no held-out test"]
+    called = "held-out tests" if all(c.role == "hold-out" for c in own) else "tests that were not fitted"
     was, now = mean_square(own, "before"), mean_square(own, "after")
-    change = f"held-out tests {fall(was, now)}"
+    change = f"{called} {fall(was, now)}"
     worst = max(own, key=lambda c: c.after - c.before)
     return [
         f"{change}: {worst.name} got worse, the fit follows what only the fitted tests show" if now > was else change
