@@ -69,14 +69,14 @@ class Solver:
     @property
     def symbolic(self) -> Symbolic:
         """Kept beside what the field itself works out once, so that its next solver has it too."""
-        kept: dict[str, Any] = vars(self.field)
-        if "symbolic" not in kept:
+        memory: dict[str, Any] = vars(self.field)
+        if "symbolic" not in memory:
             pattern = self.field.stiffness(
                 dict.fromkeys(self.field.films, 1.0), dict.fromkeys(self.field.contacts, 1.0)
             )
-            kept["symbolic"] = analyse(sp.csr_array(pattern + self.field.M), self.field.xyz)
-        found: Symbolic = kept["symbolic"]
-        return found
+            memory["symbolic"] = analyse(sp.csr_array(pattern + self.field.M), self.field.xyz)
+        analysis: Symbolic = memory["symbolic"]
+        return analysis
 
     def factor(self, K: sp.csr_array, shift: float = 0.0) -> Factor:
         """Cholesky factor of K + shift M, shift in 1/s."""

@@ -59,25 +59,26 @@ def fidelity_error(case: Case, small: Case, posterior: Posterior) -> dict[str, f
     if small is case:
         return {}
     e, h = posterior.evidence, posterior.best
-    network, _, held = with_members(e, h.members)
-    values = {**held, **(h.fit.values if h.fit else e.fit.values)}
+    network, _, fixed = with_members(e, h.members)
+    values = {**fixed, **(h.fit.values if h.fit else e.fit.values)}
     large = extended(working(case)[0], [e.effects[k] for k in h.members])
-    known = {t.name: t for t in case.tests}
-    tests = [known[t.name] for t in e.tests]
+    by_name = {t.name: t for t in case.tests}
+    tests = [by_name[t.name] for t in e.tests]
     out: dict[str, float] = {}
-    for test, own, gap in zip(tests, e.tests, _gaps(large, tests, network, e.tests, values), strict=True):
-        for j, (c, seen) in enumerate(zip(test.channels, own.channels, strict=True)):
-            off = float(np.nanmax(np.abs(gap[:, j] - (c.y - seen.y)), initial=0.0))
+    for test, corrected_test, gap in zip(tests, e.tests, _gaps(large, tests, network, e.tests, values), strict=True):
+        for j, (c, less) in enumerate(zip(test.channels, corrected_test.channels, strict=True)):
+            off = float(np.nanmax(np.abs(gap[:, j] - (c.y - less.y)), initial=0.0))
             out[c.name] = max(out.get(c.name, 0.0), off)
     return out
 
 
 def _gaps(
-    large: Network, tests: Sequence[Test], small: Network, own: Sequence[Test], values: Mapping[str, float]
+    large: Network, tests: Sequence[Test], small: Network, small_tests: Sequence[Test], values: Mapping[str, float]
 ) -> list[Array]:
     """What the large network predicts above the small one (n_time, n_channel) K, test by test."""
     return [
-        predict(large, test, values).y - predict(small, seen, values).y for test, seen in zip(tests, own, strict=True)
+        predict(large, test, values).y - predict(small, other, values).y
+        for test, other in zip(tests, small_tests, strict=True)
     ]
 
 

@@ -95,8 +95,8 @@ def _panel(ax: Axes, comparison: Comparison, channel: Channel) -> None:
 
 def alone(ax: Axes, t: np.ndarray, y: np.ndarray, colour: str, within: float = 0.0) -> None:
     """Dots where a reading has no neighbour, so that no line would show it, with a bar of +- `within` on each."""
-    known = np.pad(np.isfinite(y), 1)
-    lone = known[1:-1] & ~known[:-2] & ~known[2:]
+    finite = np.pad(np.isfinite(y), 1)
+    lone = finite[1:-1] & ~finite[:-2] & ~finite[2:]
     if lone.any():
         ax.errorbar(t[lone], y[lone], yerr=within or None, fmt="o", ms=3.5, color=colour, elinewidth=1.0, zorder=3)
 
