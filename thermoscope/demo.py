@@ -219,7 +219,7 @@ def old_way(folder: Folder) -> OneFactorFit:
         tell("turning the fan's air flow")
         turned = one_factor_fit(folder.case, KNOB, flange(folder.case.tests))
     flow = 138 * turned.factor
-    say(f"{flow:.0f} m3/h instead of 138 bring the right flange closest on road-1; see below what else they do")
+    say(f"{flow:.0f} m3/h instead of 138 bring it closest on road-1; see below what else they do")
     return turned
 
 

@@ -153,11 +153,15 @@ def build(
 
 def networks_of(machine: Machine, reduction: Reduction, recipe: Recipe) -> tuple[Network, Network]:
     """The network of a recipe, and the small one for many runs."""
-    means = motor_network(machine, reduction.network(max_states=len(reduction.field.blocks)))
-    favour = dict.fromkeys(heated(means), recipe.favour)
+    favour = dict.fromkeys(heated(means_network(machine, reduction)), recipe.favour)
     large = reduction.network(recipe.tolerance, recipe.max_states, favour)
     small = reduction.network(recipe.tolerance, FEW, favour)
     return motor_network(machine, large), motor_network(machine, small)
+
+
+def means_network(machine: Machine, reduction: Reduction) -> Network:
+    """A mean per part and no shapes: enough for losses, fluids and streams."""
+    return motor_network(machine, reduction.network(max_states=len(reduction.field.blocks)))
 
 
 def heated(network: Network) -> set[str]:

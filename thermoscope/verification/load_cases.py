@@ -12,14 +12,15 @@ from lumped.condensation.linear import linear, unit_load
 from lumped.condensation.reduction import Reduction
 from lumped.condensation.reduction_error import LoadCases, random_load_cases
 from lumped.machine.losses import loss_watts
-from lumped.machine.motor import motor_network, rated_inputs
+from lumped.machine.motor import rated_inputs
 from lumped.model.network import Network
+from thermoscope.pipeline import means_network
 from thermoscope.verification.crosscheck import coefficients, fluid_nodes
 
 
 def load_cases(machine: Machine, reduction: Reduction) -> LoadCases:
     """The losses of the rated point with its fluids, and variations of them, as the guard applies them."""
-    whole = motor_network(machine, reduction.network(max_states=len(reduction.field.blocks)))
+    whole = means_network(machine, reduction)
     rated = rated_watts(machine, whole)
     return random_load_cases(
         list(reduction.zones), list(reduction.washing), rated, fluid_rises(machine, reduction, whole, rated)

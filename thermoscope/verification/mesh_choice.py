@@ -15,10 +15,9 @@ from geom import Machine
 from geom.disk_cache import recalled
 from lumped.condensation.reduction import Recipe
 from lumped.machine.bases import on_every_base
-from lumped.machine.motor import motor_network
 from thermoscope.caches import cache_folder
 from thermoscope.case_folder.files import write_whole
-from thermoscope.pipeline import Meshing, Prepared, Progress, meshed, reduced
+from thermoscope.pipeline import Meshing, Prepared, Progress, means_network, meshed, reduced
 from thermoscope.verification.crosscheck import FLOOR
 from thermoscope.verification.fixed_coefficients import FixedCoefficients, rated
 
@@ -106,8 +105,7 @@ def _left(here: float, there: float) -> float:
 
 def _at_rated_point(ready: Prepared) -> FixedCoefficients:
     machine = ready.machine
-    means = reduced(ready, MEANS).network(max_states=len(ready.field.blocks))
-    network = on_every_base(motor_network(machine, means))
+    network = on_every_base(means_network(machine, reduced(ready, MEANS)))
     return rated(machine, network, ready.films, ready.contacts)
 
 

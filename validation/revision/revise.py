@@ -223,7 +223,7 @@ def other_changes(changes: Sequence[Change], fitted: Collection[str]) -> list[st
     own = [c for c in changes if c.name not in fitted]
     if not own:
         return ["no held-out test"]
-    called = "held-out tests" if all(c.role == "hold-out" for c in own) else "tests that were not fitted"
+    called = "held-out tests" if all(c.role == "hold-out" for c in own) else "other tests"
     was, now = mean_square(own, "before"), mean_square(own, "after")
     change = f"{called} {fall(was, now)}"
     worst = max(own, key=lambda c: c.after - c.before)

@@ -11,6 +11,7 @@ from geom.errors import InputError
 from validation import add, calibrate, compare, remove
 from validation.calibration.unknowns import working
 from validation.comparison.linearisation import rmse, segments
+from validation.revision.revise import Change, judge
 
 EFFECT = "convection@flange.right"
 
@@ -36,6 +37,15 @@ def test_calibration_fits_the_stand():
     _, first = stand()
     assert first.converged
     assert all(t.after < 1.0 for t in first.tests if t.role == "calibrate")
+
+
+def test_a_calibration_is_judged_by_the_tests_it_was_fitted_to():
+    """What another test shows is told; that of the road is where the missing effect shows."""
+    changes = (Change("stand", "calibrate", 1.0, 0.3), Change("road", "validate", 1.0, 2.0))
+    accepted, why = judge("calibrate", changes, (), (), {"stand"})
+    assert accepted
+    assert "1.00 -> 0.30 K; other tests 1.00 -> 2.00 K: road got worse" in why
+    assert not judge("calibrate", changes, (), (), {"stand", "road"})[0]
 
 
 def test_road_fails_at_the_right_flange():
