@@ -72,6 +72,15 @@ def test_nothing_hidden_is_adequate_as_by_the_large_network():
     assert small.p_nothing == pytest.approx(large.p_nothing, abs=0.1)
 
 
+def test_held_out_tests_have_no_say():
+    given = case(True)
+    fewer = diagnose(replace(given, tests=tuple(t for t in given.tests if t.role != "hold-out")), plan=False)
+    _, every = answers(True)
+    assert [o.hypothesis for o in fewer.odds] == [o.hypothesis for o in every.odds]
+    assert_allclose([o.probability for o in fewer.odds], [o.probability for o in every.odds], atol=1e-9)
+    assert_allclose(fewer.candidates[0].score, every.candidates[0].score, atol=1e-6)
+
+
 def test_held_out_errors_are_those_of_the_large_network():
     large, small = answers(True)
     assert_allclose(small.candidates[0].holdout_rmse_K, large.candidates[0].holdout_rmse_K, atol=0.15)
