@@ -38,15 +38,16 @@ class Marked:
     hidden: NDArray[np.bool_]
     cut: Ghosted
 
-    def draw(self, p: pyvista.Plotter, surface: Surface, view: View, theme: Theme) -> None:
-        """Dots, some with labels; those inside or behind something are hollow, and the picture says so."""
+    def draw(self, p: pyvista.Plotter, surface: Surface, view: View, theme: Theme, note: str = "") -> None:
+        """Dots, some with labels; those inside or behind something are hollow, and the picture says so after `note`."""
         sensors = (*self.labelled, *self.others)
         labels = [_label(s, bool(h)) for s, h in zip(sensors, self.hidden, strict=True)]
         n = len(self.labelled)
         callouts(p, labels[:n], surface.points, view, theme)
         for label in labels[n:]:
             dot(p, label, PLAIN)
-        says = ["hollow dots lie inside or behind"] if self.hidden.any() else []
+        says = [note] if note else []
+        says += ["hollow dots lie inside or behind"] if self.hidden.any() else []
         says += [f"{len(self.others)} without a label"] if self.others else []
         if says:
             scene.footnote(p, "; ".join(says), theme)

@@ -79,7 +79,8 @@ def paced(nodes, times: np.ndarray, rng: np.random.Generator) -> np.ndarray:
 @pytest.fixture(scope="module")
 def shipped():
     """The page of a mesh as fine as that of its case, with five tests of an hour and three models each."""
-    nodes, rng = split(build_mesh(load_machine("series-dc-100kw"), CASE_MESH_M)), np.random.default_rng(2)
+    machine, rng = load_machine("series-dc-100kw"), np.random.default_rng(2)
+    nodes = split(build_mesh(machine, CASE_MESH_M))
     times = np.linspace(0.0, 3600.0, 61)
     readings = recorded().comparison.model
     tests = [
@@ -87,7 +88,7 @@ def shipped():
                 earlier=(Earlier(paced(nodes, times, rng), readings),))
         for _ in range(5)
     ]  # fmt: skip
-    return render(document("motor", nodes, tests, PLACE, revisions=["2", "1", "0"]))
+    return render(document("motor", nodes, tests, PLACE, revisions=["2", "1", "0"], machine=machine))
 
 
 def test_the_page_of_a_shipped_machine_is_small(shipped):
