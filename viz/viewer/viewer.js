@@ -100,7 +100,6 @@ class Viewer {
     this.parts = data.parts.map((p) => ({ ...p, shown: 1 }));
     this.chosen = ""; this.right = 0; this.left = 1; this.time = 1; this.playing = false; this.frames = 0; this.dirty = true; this.smooth = false; this.slow = true; this.pointers = new Map();
     this.bounds();
-    this.first();
     this.meshes();
     this.textures();
     this.choose(0);
@@ -126,6 +125,7 @@ class Viewer {
     }
     this.dirty = true;
   }
+  nearer(factor) { this.zoom = Math.max(0.3, Math.min(12, this.zoom * factor)); }
   row(k, xyz) { const m = this.rows[k]; return m[0] * xyz[0] + m[1] * xyz[1] + m[2] * xyz[2] + m[3]; }
   program(vertex, fragment, inputs) {
     const gl = this.gl, p = gl.createProgram();
@@ -479,7 +479,7 @@ class Viewer {
   matrix() {
     const [ct, st, cp, sp] = [Math.cos(this.turn), Math.sin(this.turn), Math.cos(this.tilt), Math.sin(this.tilt)];
     const towards = [st * cp, sp, ct * cp], right = [ct, 0, -st], up = [-st * sp, cp, -ct * sp];
-    const far = 3.4 * this.size / this.zoom, gl = $("gl"), f = 6.2, aspect = gl.width / gl.height;
+    const far = 3.4 * this.size / this.zoom, gl = $("gl"), f = 6.2, aspect = gl.clientWidth / gl.clientHeight;
     const near = Math.max(far - this.size, 0.01 * this.size), end = far + this.size;
     this.eye = this.middle.map((m, k) => m + far * towards[k]);
     const fy = f * Math.min(1, aspect), fx = fy / aspect;
@@ -776,17 +776,17 @@ function wired(v) {
     const other = [...v.pointers.values()].find((q) => q.pointerId !== e.pointerId);
     if (other) {
       const far = (q) => Math.hypot(q.clientX - other.clientX, q.clientY - other.clientY);
-      v.zoom *= far(e) / Math.max(far(old), 1);
+      v.nearer(far(e) / Math.max(far(old), 1));
     } else {
       v.turn -= 0.008 * (e.clientX - old.clientX);
       v.tilt = Math.max(-1.5, Math.min(1.5, v.tilt + 0.008 * (e.clientY - old.clientY)));
     }
     v.pointers.set(e.pointerId, e); again();
   };
-  c.onwheel = (e) => { e.preventDefault(); v.zoom = Math.max(0.3, Math.min(12, v.zoom * Math.exp(-0.001 * e.deltaY))); again(); };
+  c.onwheel = (e) => { e.preventDefault(); v.nearer(Math.exp(-0.001 * e.deltaY)); again(); };
   const keys = {
     ArrowLeft: () => { v.turn -= 0.15; }, ArrowRight: () => { v.turn += 0.15; }, ArrowUp: () => { v.tilt += 0.1; },
-    ArrowDown: () => { v.tilt -= 0.1; }, "+": () => { v.zoom *= 1.2; }, "-": () => { v.zoom /= 1.2; },
+    ArrowDown: () => { v.tilt -= 0.1; }, "+": () => v.nearer(1.2), "-": () => v.nearer(1 / 1.2),
     0: () => v.first(), " ": () => v.play(!v.playing), ",": () => v.move(Math.max(0, v.time - 0.02)),
     ".": () => v.move(Math.min(1, v.time + 0.02)),
   };
@@ -824,6 +824,7 @@ document.body.classList.toggle("bench", location.hash === "#bench");  // beside 
     v.open();
     v.slice();
     wired(v);
+    v.first();
     v.linked();
     window.viewer = v;
     $("wait").remove();
