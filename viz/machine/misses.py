@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from viz.colours import LIGHT, Theme, missing
 from viz.data import Sensor
 from viz.machine.field import cut_open, paint_cut, room_for
-from viz.machine.thermocouples import LABELS
+from viz.machine.thermocouples import LABELS, label_texts
 from viz.rendering import scene
 from viz.rendering.cut import QUARTER, Surface, Wedge
 from viz.rendering.nodes import SplitMesh, on_nodes
@@ -45,7 +45,7 @@ def misses(
     error : (n_nodes,) K;  explained : (n_nodes,) share of the variance that readings explain, see
         validation.comparison.interpolation;  sensors : where it was measured
     """
-    view, room = view or View(), room_for(bool(sensors), title, note=True)
+    view, room = view or View(), room_for(label_texts(sensors), title, note=True)
     p, surface, seen = cut_open(nodes, sensors, LABELS, room, wedge, view, theme)
     K = on_nodes(nodes, error)
     most = float(np.abs(K).max())

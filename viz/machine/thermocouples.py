@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     import pyvista
 
 LABELS = 6  # sensors with a label: more hide the machine
+LONGEST = 28  # letters of a sensor's name: longer ones would leave the machine less than half of the picture
 PLAIN = 0.6  # size of a dot without a label
 
 
@@ -53,6 +54,11 @@ class Marked:
             scene.footnote(p, "; ".join(says), theme)
 
 
+def label_texts(sensors: Sequence[Sensor], labels: int = LABELS) -> list[str]:
+    """The labels of those furthest beyond their uncertainty."""
+    return [_label(s, False).text for s in sorted(sensors, key=lambda s: -s.weight)[:labels]]
+
+
 def marked(surface: Surface, sensors: Sequence[Sensor], labels: int, eye: NDArray[np.float64]) -> Marked:
     """The sensors as seen from `eye` (m); labels for those furthest beyond their uncertainty."""
     ranked = sorted(sensors, key=lambda s: -s.weight)
@@ -66,4 +72,6 @@ def marked(surface: Surface, sensors: Sequence[Sensor], labels: int, eye: NDArra
 
 def _label(sensor: Sensor, hidden: bool) -> Label:
     value = "" if sensor.residual_K is None else f"  {signed(sensor.residual_K)} K"
-    return Label(sensor.xyz, f"{short(sensor.name)}{value}", VERDICT[sensor.verdict], hidden)
+    name = short(sensor.name)
+    name = name if len(name) <= LONGEST else f"{name[: LONGEST - 1]}…"
+    return Label(sensor.xyz, f"{name}{value}", VERDICT[sensor.verdict], hidden)

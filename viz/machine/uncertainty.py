@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from viz.colours import LIGHT, Theme, power
 from viz.data import Sensor
 from viz.machine.field import cut_open, paint_cut, room_for
-from viz.machine.thermocouples import LABELS
+from viz.machine.thermocouples import LABELS, label_texts
 from viz.rendering import scene
 from viz.rendering.cut import QUARTER, Wedge
 from viz.rendering.nodes import SplitMesh, on_nodes
@@ -39,7 +39,7 @@ def uncertainty(
 
     half95 : (n_nodes,) K;  sensors : where it was measured
     """
-    view, room = view or View(), room_for(bool(sensors), title)
+    view, room = view or View(), room_for(label_texts(sensors), title)
     p, surface, seen = cut_open(nodes, sensors, LABELS, room, wedge, view, theme)
     K = on_nodes(nodes, half95)
     paint_cut(p, surface, seen.cut, K, (0.0, float(K.max())), theme, power())

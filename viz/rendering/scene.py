@@ -53,6 +53,7 @@ class Room:
 
 NO_ROOM = Room()
 TITLE, NOTE = 0.07, 0.05  # shares of the height that a headline and a footnote take
+BAR = 0.1  # share of the width that a colour bar takes
 
 
 def plotter(

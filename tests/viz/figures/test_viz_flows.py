@@ -140,12 +140,15 @@ def test_a_label_on_a_line_covers_no_node_and_no_other_label():
     """A node in the middle of the line: the label moves along it; a line between close neighbours gets none."""
     a, b = np.array([0.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
     nodes = [a, b, np.array([0.0, 0.0, 0.5])]
-    first = clear_place(a, b, nodes, [], 1.0)
-    second = clear_place(a, b, nodes, [first], 1.0)
-    least = LABEL[1] + NODE
+    first = clear_place(a, b, nodes, [], PIXEL)
+    second = clear_place(a, b, nodes, [first], PIXEL)
+    least = PIXEL * (LABEL[1] + NODE)
     assert all(abs(first[2] - n[2]) >= least for n in nodes)
-    assert abs(second[2] - first[2]) >= 2 * LABEL[1]
-    assert clear_place(a, np.array([0.0, 0.0, least]), nodes, [], 1.0) is None
+    assert abs(second[2] - first[2]) >= 2 * PIXEL * LABEL[1]
+    assert clear_place(a, np.array([0.0, 0.0, least]), nodes, [], PIXEL) is None
+
+
+PIXEL = 0.0015  # m: a line of a metre is 670 of them long
 
 
 def test_the_network_s_colours_span_its_own_nodes():
