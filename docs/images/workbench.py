@@ -38,6 +38,7 @@ class Walk:
         """A picture of the page's top, after the bars have fallen; the clock starts again."""
         if name != "diagnosed":
             self.page.evaluate("window.scrollTo(0, 0)")
+        self.page.mouse.move(1, 1)  # else what it points at covers the machine
         self.page.wait_for_timeout(2500)
         self.page.wait_for_selector("#preparing", state="detached")
         machine(self.page)

@@ -98,7 +98,7 @@ class Viewer {
     this.points = data.points; this.tets = data.tets;
     this.owner = Int32Array.from(data.parts.flatMap((p, k) => Array(p.nodes).fill(k)));
     this.parts = data.parts.map((p) => ({ ...p, shown: 1 }));
-    this.chosen = ""; this.right = 0; this.left = 1; this.time = 1; this.playing = false; this.frames = 0; this.dirty = true; this.smooth = false; this.slow = true; this.pointers = new Map();
+    this.chosen = ""; this.behindOf = new Set(); this.right = 0; this.left = 1; this.time = 1; this.playing = false; this.frames = 0; this.dirty = true; this.smooth = false; this.slow = true; this.pointers = new Map();
     this.bounds();
     this.meshes();
     this.textures();
@@ -554,6 +554,7 @@ class Viewer {
     gl.viewport(0, 0, w, h); gl.clearColor(paper[0], paper[1], paper[2], 1); gl.enable(gl.DEPTH_TEST);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     const reach = samples > 1 ? WINDOW * scale : 0;  // windows cost a second pass: rough pictures have none
+    if (reach) { this.matrix(); this.behindOf = new Set(this.labelled().filter((s) => this.hidden(s)).map((s) => s.channel)); }
     this.skinned(0, reach);
     if (reach) this.skinned(2, reach);
     this.outlines();
@@ -607,9 +608,29 @@ class Viewer {
     return [(q[0] / q[3] + 1) / 2 * $("gl").width, (1 - q[1] / q[3]) / 2 * $("gl").height];
   }
   labelled() { return [...this.sensors].sort((a, b) => b.weight - a.weight).slice(0, 6); }  // the chosen one, and those furthest beyond their uncertainty
+  hidden(s) {  // does a triangle of what is drawn lie between the eye and the sensor? Cuts across the mesh are not asked: there always
+    const solid = this.solid;
+    if (!solid.edges) return true;
+    const { triangles: t, points: p } = solid, o = this.eye, d = s.xyz.map((v, k) => v - o[k]), far = 1 - ABOVE * this.size / Math.hypot(...d);
+    const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]], dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    return this.parts.some((part, k) => {
+      if (part.shown < 1) return false;
+      const [first, count] = solid.spans[0][k];
+      for (let i = first; i < first + count; i += 3) {  // Moeller and Trumbore 1997
+        const a = 3 * t[i], b = 3 * t[i + 1], c = 3 * t[i + 2];
+        const u = [p[b] - p[a], p[b + 1] - p[a + 1], p[b + 2] - p[a + 2]], v = [p[c] - p[a], p[c + 1] - p[a + 1], p[c + 2] - p[a + 2]];
+        const h = cross(d, v), det = dot(u, h), from = [o[0] - p[a], o[1] - p[a + 1], o[2] - p[a + 2]];
+        const x = dot(from, h) / det;
+        if (!(x >= 0 && x <= 1)) continue;
+        const q = cross(from, u), y = dot(d, q) / det, at = dot(v, q) / det;
+        if (y >= 0 && x + y <= 1 && at > 0 && at < far) return true;
+      }
+      return false;
+    });
+  }
   windows() {  // of what is labelled: pixels, and the depth down to which material is ghosted, just above the sensor
-    const out = new Float32Array(18);
-    this.labelled().forEach((s, i) => {
+    const out = new Float32Array(18).fill(-1e6);  // none there
+    this.labelled().filter((s) => this.behindOf.has(s.channel)).forEach((s, i) => {
       const far = this.eye.map((e, k) => e - s.xyz[k]), share = ABOVE * this.size / Math.hypot(...far);
       const at = [...s.xyz.map((v, k) => v + share * far[k]), 1], [x, y] = this.pixel(s);
       const [z, w] = [2, 3].map((row) => this.rows[row].reduce((sum, v, k) => sum + v * at[k], 0));
@@ -716,7 +737,7 @@ const FACES = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];  // of a tetrahedron
 const SAME = 0.9999;  // cosine of the angle between normals below which they are one: under a degree
 const SAMPLES = 4;  // per pixel: every WebGL 2 has them
 const SLOW = 12, QUICK = 50;  // ms that a smooth picture takes from which moving ones are rough; a rough one, until which smooth ones are timed
-const FILL = [0.6, 0.78];  // shares of the picture's width and height that the machine takes
+const FILL = [0.66, 0.86];  // shares of the picture's width and height that the machine takes
 const SHARES = 16;  // viz.viewer.looks
 const COARSE = 0.5;  // of the pixels along a side, in rough pictures
 const REST = 200;  // ms without a movement until the picture is smooth
@@ -791,8 +812,8 @@ function wired(v) {
     ".": () => v.move(Math.min(1, v.time + 0.02)),
   };
   onkeydown = (e) => {
-    if (["INPUT", "SELECT", "BUTTON"].includes(e.target.tagName) || !keys[e.key]) return;
-    e.preventDefault(); keys[e.key](); again();
+    if (["INPUT", "SELECT", "BUTTON"].includes(e.target.tagName)) return;
+    if (keys[e.key]) { e.preventDefault(); keys[e.key](); again(); } else if (parent !== window && e.key.length === 1) parent.postMessage({ key: e.key }, "*");
   };
   onmessage = ({ source, data: words }) => {  // from the page around, the workbench: what is chosen there, a key pressed there
     if (source !== parent || parent === window) return;

@@ -97,3 +97,29 @@ EXTENT = """() => {  // shares of the picture that the machine's corners reach o
   }
   return [0, 1].map((k) => Math.max(...at.map((a) => a[k])) - Math.min(...at.map((a) => a[k])));
 }"""
+
+
+def test_a_computer_that_cannot_draw_makes_the_page_all_the_same(monkeypatch):
+    """Shapes are cut by VTK's filters, which need no OpenGL."""
+    monkeypatch.setattr("viz.rendering.gl.off_screen_window", lambda: None)
+    nodes = split(motor(24))
+    assert document("motor", nodes, [recorded()], PLACE, machine=machine())["looks"]["counts"]
+
+
+@pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
+def test_windows_are_opened_to_what_is_hidden_and_to_nothing_else(tmp_path):
+    """As it looks: the open shaft is seen from above and the housing's lower side is not; from below the other way."""
+    nodes, one = split(motor(24)), recorded()
+    place = {"T_housing": (0.0, -0.22, 0.3), "T_shaft": (-0.02, 0.02, 0.3)}
+    (tmp_path / "v.html").write_text(render(document("motor", nodes, [one], place, machine=machine())))
+    with drawn_by_a_browser(tmp_path / "v.html") as (page, said):
+        seen = {tilt: page.evaluate(WINDOWS, tilt) for tilt in (1.4, -1.4)}
+    assert seen == {1.4: ["T_housing"], -1.4: ["T_shaft"]}
+    assert said == []
+
+
+WINDOWS = """(tilt) => {  // channels with a window, seen from above or below
+  viewer.tilt = tilt;
+  viewer.draw(SAMPLES);
+  return [...viewer.behindOf].sort();
+}"""

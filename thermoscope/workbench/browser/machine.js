@@ -1,5 +1,5 @@
 // The machine is drawn in a frame of its own. It is told the test and the sensor that are chosen here, the theme, and
-// keys pressed outside of it; it says which sensor was clicked.
+// keys pressed outside of it; it says which sensor was clicked, and what keys it has no use for.
 (() => {
   const KEYS = ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown", "+", "-", "0", " ", ",", "."];
   const ELSEWHERE = "input, select, textarea, button, a, summary, [role=slider], [role=listbox], [role=combobox]";
@@ -15,6 +15,10 @@
   addEventListener("message", (event) => {
     if (event.source !== frame()?.contentWindow || event.origin !== location.origin) return;
     if (event.data.ready) tell();
+    if (event.data.key) {
+      const code = event.data.key.charCodeAt(0);
+      document.dispatchEvent(new KeyboardEvent("keypress", { key: event.data.key, charCode: code, keyCode: code, which: code }));
+    }
     if (event.data.sensor) frame().dispatchEvent(new CustomEvent("pick", { detail: event.data.sensor }));
   });
   document.addEventListener("keydown", (event) => {
