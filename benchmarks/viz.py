@@ -45,7 +45,7 @@ from validation.case import Channel, Test
 from viz import split
 from viz.data import Comparison
 from viz.rendering.nodes import SplitMesh
-from viz.viewer.page import Recorded, write_viewer
+from viz.viewer.page import Recorded, document, render
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 ARGUMENTS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
@@ -55,6 +55,7 @@ MEASURES = (
     ("a turned picture, CPU of GL", "ms"), ("pictures a second while played", "1/s"),
     ("a played picture, CPU of the script", "ms"), ("a played picture, CPU of GL", "ms"),
 )  # fmt: skip
+MACHINE = "series-dc-100kw"
 FRAMES, WAIT_S = 61, 120
 PICTURE = 2000  # bytes of a message from which it holds a picture
 COLOURED, SHARE = 40, 0.02  # between the channels of a pixel that is no grey; of the middle that has such pixels
@@ -86,7 +87,9 @@ def ours(nodes: SplitMesh, folder: Path) -> Path:
     channels = tuple(Channel(n, n, row, model + i - 5.0) for i, n in enumerate(at))
     test = Test("hour", "hold-out", times, {}, {"ambient": np.full(FRAMES, 20.0)}, channels)
     comparison = Comparison(test, dict.fromkeys(at, model), dict.fromkeys(at, 1.0))
-    return write_viewer(folder / "viewer.html", "motor", nodes, [Recorded(comparison, times, fields)], at)
+    page, machine = folder / "viewer.html", load_machine(MACHINE)
+    page.write_text(render(document("motor", nodes, [Recorded(comparison, times, fields)], at, machine=machine)))
+    return page
 
 
 def peer(nodes: SplitMesh, folder: Path) -> Path:
@@ -141,7 +144,9 @@ def served_live(nodes: SplitMesh, folder: Path, seconds: float) -> list[float]:
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
-    server = subprocess.Popen([sys.executable, "-c", SERVED, str(folder / "cut.npz"), str(port)])
+    server = subprocess.Popen(
+        [sys.executable, "-c", SERVED, str(folder / "cut.npz"), str(port)], stderr=subprocess.DEVNULL
+    )
     try:
         listening(port)
         with sync_playwright() as engine:
@@ -264,7 +269,7 @@ def cpu(clock: Any) -> Counter[str]:
 
 
 def rows(size_m: float, seconds: float) -> list[dict[str, Any]]:
-    nodes = split(build_mesh(load_machine("series-dc-100kw"), size_m))
+    nodes = split(build_mesh(load_machine(MACHINE), size_m))
     case = f"series-wound motor, {nodes.size} nodes, {len(nodes.tets)} tets, 1280 x 800, no graphics card"
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
