@@ -161,7 +161,7 @@ class _Course:
         nt, n, nb, nr = self.time.size, core.C.size, core.forcing.u.shape[1], core.rows.start.size - 1
         self.tangents = core.tangents.first.shape[1]
         p = self.tangents + -self.tangents % ABREAST
-        self.z, self.y = np.zeros((nt if keep_states else 0, n + nb)), np.zeros((nt, nr))
+        self.z, self.y = np.empty((nt if keep_states else 0, n + nb)), np.zeros((nt, nr))
         self.dy, self.late = np.zeros((nt, nr, p)), np.zeros(nr)
         self.order = np.concatenate([core.order, np.arange(n, n + nb)])
         self.place = np.argsort(self.order)
@@ -246,7 +246,7 @@ class _Course:
         dy = np.ascontiguousarray(self.dy[:, :, : self.tangents]) if self.tangents else None
         return Run(
             self.time,
-            self.z[:, self.place] if len(self.z) else None,
+            self.z if len(self.z) else None,
             self.y,
             dy,
             end,
