@@ -13,9 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError, NoSolution
+from geom.text import counted
 from lumped.integration.compiled import RUN, Compiled, Precision, compiled, hidden_states, reordered
 from lumped.integration.failure import failure
-from lumped.integration.record import Record
+from lumped.integration.record import Record, instants
 from lumped.model.network import Network, Parameter, Row
 from lumped.numerics.dense import factored
 from lumped.numerics.kernel import (
@@ -75,6 +76,10 @@ class Run:
     time_error_K: Array
     steps: Steps
     path: Array | None = None
+
+    def __repr__(self) -> str:
+        outputs, steps = counted(self.y.shape[1], "output"), counted(self.steps.knot.size, "step")
+        return f"<Run over {instants(self.time)}; {outputs}, {steps}>"
 
 
 def initial_state(network: Network, initial: float | Mapping[str, float]) -> Array:

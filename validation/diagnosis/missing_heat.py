@@ -52,6 +52,9 @@ class MissingHeat:
     heat_W: dict[str, tuple[Array, Array, Array]]
     moves_K: float
 
+    def __repr__(self) -> str:
+        return f"<MissingHeat at {self.place}: {self.evidence_nats:.1f} nats, moves a reading by {self.moves_K:.2f} K>"
+
     def document(self) -> dict:
         series = {
             n: {"time_s": t.tolist(), "heat_W": q.tolist(), "sd_W": s.tolist()} for n, (t, q, s) in self.heat_W.items()
