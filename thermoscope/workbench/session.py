@@ -83,7 +83,7 @@ class Session:
         with self.state:
             self.state.outcome = {
                 "good": good,
-                "text": f"{action} {effect}: {verdict}; {document['why'].replace('->', '→')}",
+                "text": f"{f'{action} {effect}'.strip()}: {verdict}; {document['why'].replace('->', '→')}",
             }
             if good:
                 self._write(self.history.and_then(revision), look)
