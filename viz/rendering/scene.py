@@ -124,15 +124,17 @@ def colour_bar(p: pyvista.Plotter, title: str, theme: Theme = LIGHT, **options: 
     bar.SetTextPad(0)
     x, y, wide, tall = (style[k] for k in ("position_x", "position_y", "width", "height"))
     gap = [GAP / side for side in p.renderer.GetSize()]
-    for mark in marks(low, high):
+    every = marks(low, high)
+    for mark in every:
         share = (mark - low) / (high - low)
-        words = f"{minus(f'{mark:.{decimals(high - low)}f}')}{unit}"
+        words = f"{minus(f'{mark:.{decimals(high - low)}f}')}{unit if mark == every[-1] else ''}"
         if style["vertical"]:
             at, anchor = (x + wide + gap[0], y + share * tall), ("left", "center")
         else:
             at, anchor = (x + share * wide, y + tall + gap[1]), ("center", "bottom")
         _line(p, words, at, MARK, theme, f"{title} {words}", anchor)
-    _line(p, title, (x, y + tall + 2 * gap[1]), MARK, theme, f"title {title}")
+    if title:
+        _line(p, title, (x, y + tall + 2 * gap[1]), MARK, theme, f"title {title}")
 
 
 def headline(p: pyvista.Plotter, text: str, theme: Theme = LIGHT) -> None:

@@ -37,12 +37,12 @@ PICTURES = {
 }
 
 
-def boxes(p):
-    """text -> left, right, bottom, top in pixels of every label that has a ground of its own."""
+def boxes(p, grounded=True):
+    """text -> left, right, bottom, top in pixels of every label that has a ground of its own, or of all other words."""
     p.render()
     out = {}
     for actor in p.renderer.actors.values():
-        if hasattr(actor, "GetTextProperty") and actor.GetTextProperty().GetBackgroundOpacity() == 1.0:
+        if hasattr(actor, "GetTextProperty") and (actor.GetTextProperty().GetBackgroundOpacity() == 1.0) == grounded:
             box = [0.0] * 4
             actor.GetBoundingBox(p.renderer, box)
             x, y = actor.GetPositionCoordinate().GetComputedDoubleViewportValue(p.renderer)
@@ -89,3 +89,15 @@ def test_names_of_a_network_cover_no_node():
     assert all(box[1] <= SIZE[0] * (1.0 - BAR) and box[0] >= 0 for box in found.values())
     assert [words for words, box in found.items() if not all(apart(box, dot) for dot in dots)] == []
     assert [pair for pair in combinations(found, 2) if not apart(found[pair[0]], found[pair[1]])] == []
+
+
+def test_marks_of_a_bar_of_watts_stand_apart():
+    """Eight hundred watts in steps of a hundred; the unit stands once, at the end."""
+    flows = (Flow("yoke", "housing", "contact", 800.0, 8.0),)
+    p = network_in_machine(motor(24), {"yoke": 90.0, "housing": 40.0}, Heat({}, flows, {}), title="hour")
+    found = boxes(p, grounded=False)
+    p.close()
+    below = {words: box for words, box in found.items() if box[3] < 0.15 * SIZE[1]}
+    assert len(below) > 4
+    assert [words for words in below if words.endswith("W")] == ["800 W"]
+    assert [pair for pair in combinations(below, 2) if not apart(below[pair[0]], below[pair[1]])] == []
