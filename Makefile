@@ -36,7 +36,7 @@ check: setup  ## what this computer lacks, with the command that fixes it
 	@$(BIN)/thermoscope check
 
 lock: setup  ## refresh the locked dependencies from pyproject.toml
-	@$(BIN)/uv pip compile pyproject.toml --universal --generate-hashes --extra cad --extra view --extra bench --group dev --no-annotate --no-header --quiet -o requirements.lock
+	@$(BIN)/uv pip compile pyproject.toml --universal --generate-hashes --extra cad --extra view --extra bench --extra oil --group dev --no-annotate --no-header --quiet -o requirements.lock
 
 clean:
 	rm -rf out .pytest_cache .mypy_cache .ruff_cache .hypothesis dist
