@@ -188,24 +188,32 @@ def _complete(file: Path, block: bytes, header: list[str], first: int) -> None:
                              "as many as names: decimal commas become points")  # fmt: skip
 
 
-def _content(file: Path) -> bytes:
-    """The whole of a CSV file, unpacked; nothing that is no UTF-8 text, and nothing too large to be a test."""
-    packed = file.name.lower().endswith(".gz")
-    parts: list[bytes] = []
+def chunks(file: Path) -> Iterator[bytes]:
+    """All of a file, unpacked, piece by piece; InputError where it is not whole, or too large to be a test."""
+    packed, size = file.name.lower().endswith(".gz"), 0
     try:
         with gzip.open(file) if packed else file.open("rb") as source:
             while part := source.read(CHUNK):
-                parts.append(part)
-                if b"\0" in part:
-                    raise InputError("holds zero bytes, so it is no text", str(file), "CSV as UTF-8 text")
-                if len(parts) * CHUNK > LARGEST:
+                size += len(part)
+                if size > LARGEST:
                     raise InputError(f"holds more than {LARGEST / 2**20:.0f} MB", str(file), "a shorter recording")
-        content = b"".join(parts).removeprefix(b"\xef\xbb\xbf")
+                yield part
+    except (OSError, EOFError, zlib.error) as fault:
+        kind = "gzip" if packed else "text"
+        raise InputError(f"not readable as {kind}: {fault}", str(file), "a whole file of that kind") from None
+
+
+def _content(file: Path) -> bytes:
+    """The whole of a CSV file; nothing that is no UTF-8 text."""
+    parts: list[bytes] = []
+    for part in chunks(file):
+        if b"\0" in part:
+            raise InputError("holds zero bytes, so it is no text", str(file), "CSV as UTF-8 text")
+        parts.append(part)
+    content = b"".join(parts).removeprefix(b"\xef\xbb\xbf")
+    try:
         content.decode("utf-8")
     except UnicodeDecodeError as fault:
         raise InputError(f"is no UTF-8 text: {fault.reason} at byte {fault.start}", str(file),
                          "CSV saved as UTF-8") from None  # fmt: skip
-    except (OSError, EOFError, zlib.error) as fault:
-        kind = "gzip" if packed else "CSV"
-        raise InputError(f"not readable as {kind}: {fault}", str(file), "a whole file of that kind") from None
     return content
