@@ -10,6 +10,7 @@ from typing import ClassVar, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from lumped.integration.record import instants
 from lumped.integration.signals import Signals
 from lumped.model.network import Network, Parameter, Row
 from lumped.transfer.laws import CLOCK
@@ -84,6 +85,11 @@ class Test:
     frees: tuple[str, ...] = ()
     recorded: Recorded | None = None
     __test__: ClassVar[bool] = False  # its name makes pytest think so
+
+    def __repr__(self) -> str:
+        each = ("inputs", self.inputs), ("boundaries", self.boundaries), ("sensors", [c.name for c in self.channels])
+        columns = "; ".join(f"{what} {', '.join(names) or 'none'}" for what, names in each)
+        return f"<Test '{self.name}' ({self.role}): {instants(self.time)}; {columns}>"
 
     @cached_property
     def signals(self) -> Signals:

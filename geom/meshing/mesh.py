@@ -53,3 +53,6 @@ class NamedMesh:
     patches: Mapping[str, Patch] = field(default_factory=dict)
     contacts: Mapping[str, Contact] = field(default_factory=dict)
     identities: Mapping[str, Identity] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        return f"<NamedMesh of {', '.join(self.parts)}: {len(self.points)} points, {len(self.tets)} tetrahedra>"

@@ -4,7 +4,8 @@ Every function returns (value, Info): the film coefficient in W/m2/K unless it s
 Outside a stated range it warns with a RangeWarning that carries the number and the range; it never clips in silence.
 """
 
-from lumped.correlations.info import Info, RangeWarning
+from lumped.correlations.info import Info
 from lumped.correlations.tabulate import film_tabulated, tabulated
+from lumped.transfer.ranges import RangeWarning
 
 __all__ = ["Info", "RangeWarning", "film_tabulated", "tabulated"]

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-
-class RangeWarning(UserWarning):
-    """A correlation was used outside the range of its source."""
+from lumped.transfer.ranges import out_of_range
 
 
 @dataclass(frozen=True)
@@ -35,7 +32,5 @@ def checked(name: str, source: str, numbers: Mapping[str, float], limits: Mappin
     info = Info(name, source, dict(numbers), dict(limits))
     for key in info.outside:
         low, high = limits[key]
-        warnings.warn(
-            f"{name}: {key} = {numbers[key]:.4g} outside {low:g} to {high:g} ({source})", RangeWarning, stacklevel=3
-        )
+        out_of_range(f"{name}: {key} = {numbers[key]:.4g} outside {low:g} to {high:g} ({source})")
     return info

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Iterable
 
 import numpy as np
 
-from lumped.correlations.info import Info, RangeWarning
+from lumped.correlations.info import Info
 from lumped.transfer.laws import FILMS, FIRST_C, STEP_K, FilmTable, Table
+from lumped.transfer.ranges import within_silence
 
 STILL_AIR_K = tuple(float(d) for d in np.concatenate([[0.0], np.geomspace(0.1, 300.0, 48)]))
 
@@ -18,8 +18,7 @@ def film_tabulated(
 ) -> FilmTable:
     """Temperature law from `correlation(surface degC, fluid degC) -> (h, info)`, whatever the fluid's temperature."""
     grid = tuple(float(d) for d in differences)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RangeWarning)
+    with within_silence():
         h = (
             float(correlation(FIRST_C + k * STEP_K + 0.5 * d, FIRST_C + k * STEP_K - 0.5 * d)[0])
             for k in range(FILMS) for d in grid
@@ -38,7 +37,6 @@ def tabulated(
     the correlation's range by construction, so range warnings are silent here.
     """
     grid = tuple(float(d) for d in differences)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RangeWarning)
+    with within_silence():
         h = tuple(float(correlation(fluid_temperature + d, fluid_temperature)[0]) for d in grid)
     return Table(grid, h)

@@ -7,7 +7,6 @@ at one speed, times the shares with which the films at all speeds are mixtures o
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -15,11 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
-from lumped.correlations import Info, RangeWarning
+from lumped.correlations import Info
 from lumped.transfer.circuit import WARMTH
 from lumped.transfer.laws import CONSTANT, FILMS, FIRST_C, STEP_K, Array, FilmTable, Inputs, Law, TemperatureLaw
 from lumped.transfer.laws import Table as TableLaw
 from lumped.transfer.properties import Fluid
+from lumped.transfer.ranges import out_of_range, within_silence
 
 POINTS = 97  # of a table, closer near rest, where a film changes most
 TOLERANCE, SMALL = 3e-3, 1.0  # relative, of a film of at least SMALL (W/m2/K)
@@ -54,8 +54,7 @@ class FilmOver(Law):
         largest = float(x.max(initial=0.0))
         self.film(min(largest, self.top))
         if largest > self.top:
-            note = f"film over {self.of}: {self.of} = {largest:.4g} outside 0 to {self.top:g}"
-            warnings.warn(note, RangeWarning, stacklevel=2)
+            out_of_range(f"film over {self.of}: {self.of} = {largest:.4g} outside 0 to {self.top:g}")
         return np.interp(x, self.at, over_grid(self.film, self.at))
 
 
@@ -85,8 +84,7 @@ class Share(Law):
 
 def over_grid(film: Film, at: Sequence[float] | Array) -> Array:
     """h (W/m2/K) on a grid, which leaves the correlation's range by construction."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RangeWarning)
+    with within_silence():
         return np.array([film(float(v))[0] for v in at])
 
 

@@ -80,7 +80,8 @@ def reordered(core: Compiled) -> Compiled:
     T, S, L = core.terms, core.tangents, core.control
     return replace(
         core, C=core.C[order], K0=np.ascontiguousarray(core.K0[np.ix_(order, columns)]),
-        terms=T._replace(row=place[T.row], at=place[T.at]), rows=core.rows._replace(at=place[core.rows.at]),
+        terms=T._replace(row=place[T.row], at=place[T.at]),
+        rows=core.rows._replace(at=place[core.rows.at], state=columns[:-1]),
         tangents=S._replace(state=place[S.state], first=S.first[columns[:-1]]),
         control=L._replace(unit=L.unit[order], node=L.node[order]),
     )  # fmt: skip
@@ -91,8 +92,10 @@ def capacity_multipliers(network: Network, m: Mapping[str, float]) -> Array:
     return np.array([m.get(f"capacity:{g}", 1.0) for g in groups])
 
 
-def pack_rows(rows: Sequence[Row]) -> Rows:
-    return Rows(starts([r.index for r in rows]), ints([r.index for r in rows]), floats([r.weights for r in rows]))
+def pack_rows(rows: Sequence[Row], size: int) -> Rows:
+    """Outputs of a network whose states and boundaries are `size` in all."""
+    at, weight = [r.index for r in rows], [r.weights for r in rows]
+    return Rows(starts(at), ints(at), floats(weight), np.arange(size))
 
 
 def _pack_tangents(
@@ -159,7 +162,7 @@ def compiled(
         terms,
         driven,
         _pack_tangents(network, slope, names, shifts),
-        pack_rows(rows),
+        pack_rows(rows, network.size),
         control(network, every, m, factors, precision),
         *every.elimination,
     )

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
+from lumped.transfer.ranges import within_silence
 
 Array = NDArray[np.float64]
 CURVED = 1e-3  # of the largest factor of an interval: what a parabola may miss, times its share of the interval
@@ -113,8 +114,7 @@ def curve(
     looked = moves.far | (np.abs(bulge[1:]) > FLAT * np.maximum(np.abs(value[1:]), SMALL * scale))
     if skip is not None:
         looked &= ~skip[1:]
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # what is out of range was said of the samples
+    with within_silence():  # what is out of range was said of the samples
         inserted = _cut(again, np.flatnonzero(looked).astype(float), turns, SMALL * scale)
     return Curve(value, bulge, inserted)
 

@@ -64,62 +64,58 @@ def forcing(
         curves = [source.curve(p.name, p.law) for p in patterns]
         t, u = between(time, at), np.stack([between(x, at) for x in u.T], axis=1).reshape(at.size, -1)
     ends = [straight(x) for x in u.T]
-    chosen = np.arange(t.size)
+    chosen, wholes = np.arange(t.size), [np.empty(0)] * (len(curves) + len(ends))
     if not every_sample:
-        chosen = _needed(t, curves, ends, list(source.values()))
-    (factor, bulge), (u, arch) = _between(t, chosen, curves), _between(t, chosen, ends)
+        chosen, wholes = _needed(t, curves, ends, list(source.values()))
+    factor, bulge = _between(t, chosen, curves, wholes[: len(curves)])
+    u, arch = _between(t, chosen, ends, wholes[len(curves) :])
     knots = t[chosen]
     renew = np.full(chosen.size, 2) if bends else _renewals(knots, factor[:, stiff], bulge[:, stiff])
     return Forcing(knots, u, factor, bulge, arch, renew, *_samples(time, knots, chosen, np.flatnonzero(sample >= 0)))
 
 
-def _needed(time: Array, heats: Sequence[Curve], ends: Sequence[Curve], inputs: Sequence[Array]) -> Ints:
+def _needed(
+    time: Array, heats: Sequence[Curve], ends: Sequence[Curve], inputs: Sequence[Array]
+) -> tuple[Ints, list[Array]]:
     """Which knots a run needs: between them whatever drives it is a parabola, and so are all inputs of the record.
+
+    And the integrals (nk,) of heats and ends from the first knot; those of what never varies are empty.
 
     heats : of all terms, those that do not act among them: a tangent by a film that opens for a while turns where it
     opens, whatever its size
     """
     curves = [*((c, PARABOLA, 0.0) for c in heats), *((c, 0.0, PARABOLA_K) for c in ends),
               *((straight(x), PARABOLA, 0.0) for x in inputs)]  # fmt: skip
-    curves = [x for x in curves if _varies(x[0])]
-    value, middle, whole = np.zeros((3, len(curves), time.size))
-    allowed = np.empty((len(curves), 2))
-    for k, (c, share, most) in enumerate(curves):
-        value[k], middle[k, 1:], whole[k] = c.value, _middle(c), integral(c, time)
+    varying = [i for i, x in enumerate(curves) if _varies(x[0])]
+    value, bulge, whole = np.empty((3, len(varying), time.size))
+    allowed = np.empty((len(varying), 2))
+    for k, i in enumerate(varying):
+        c, share, most = curves[i]
+        value[k], bulge[k] = c.value, c.bulge
         allowed[k] = max(most, share * SMALL * float(np.abs(c.value).max())), share
     out = np.empty(time.size, np.int64)
-    return out[: needed(time, value, middle, whole, allowed, out)]
+    count, row = needed(time, value, bulge, allowed, whole, np.empty(3), out), {i: k for k, i in enumerate(varying)}
+    return out[:count], [whole[row[i]] if i in row else np.empty(0) for i in range(len(heats) + len(ends))]
 
 
 def _varies(c: Curve) -> bool:
     return c.value.ndim > 0 and (bool(np.any(c.value != c.value[0])) or bool(np.any(c.bulge)))
 
 
-def _middle(c: Curve) -> Array:
-    line = 0.5 * (c.value[1:] + c.value[:-1])
-    return line + c.bulge[1:] if c.bulge.ndim else line
+def _between(time: Array, chosen: Ints, curves: Sequence[Curve], wholes: Sequence[Array]) -> tuple[Array, Array]:
+    """(nk, n) values at some of the knots, and how far between them parabolas bulge that keep every integral.
 
-
-def integral(c: Curve, time: Array) -> Array:
-    """(nk,) from the first knot."""
-    mean = 0.5 * (c.value[1:] + c.value[:-1])
-    if c.bulge.ndim:
-        mean += c.bulge[1:] / 1.5
-    return np.concatenate([[0.0], np.cumsum(np.diff(time) * mean)])
-
-
-def _between(time: Array, chosen: Ints, curves: Sequence[Curve]) -> tuple[Array, Array]:
-    """(nk, n) values at some of the knots, and how far between them parabolas bulge that keep every integral."""
+    wholes : the integrals of the curves from the first knot
+    """
     value, bulge = np.zeros((2, chosen.size, len(curves)))
     starts = 1 + np.flatnonzero(np.diff(chosen) > 1)
     left, right = chosen[starts - 1], chosen[starts]
-    for e, c in enumerate(curves):
+    for e, (c, whole) in enumerate(zip(curves, wholes, strict=True)):
         value[:, e] = c.value if c.value.ndim == 0 else c.value[chosen]
-        if c.value.ndim == 0 or not _varies(c):
+        if c.value.ndim == 0:
             continue
         bulge[:, e] = c.bulge if c.bulge.ndim == 0 else c.bulge[chosen]
-        if starts.size:
-            whole = integral(c, time)
+        if starts.size and whole.size:
             mean = (whole[right] - whole[left]) / (time[right] - time[left])
             off = 1.5 * (mean - 0.5 * (c.value[left] + c.value[right]))
             off[np.abs(off) <= ROUNDING * np.abs(c.value).max()] = 0.0

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.text import counted
+
 Array = NDArray[np.float64]
 
 
@@ -22,3 +24,14 @@ class Record:
     inputs: Mapping[str, Array | float]
     boundaries: Mapping[str, Array | float]
     initial: float | Mapping[str, float] = 20.0
+
+    def __repr__(self) -> str:
+        each = ("inputs", self.inputs), ("boundaries", self.boundaries)
+        columns = "; ".join(f"{what} {', '.join(names) or 'none'}" for what, names in each)
+        return f"<Record of {instants(self.time)}; {columns}>"
+
+
+def instants(time: Array) -> str:
+    """How many there are, from when to when."""
+    ends = f", {time[0]:g} to {time[-1]:g} s" if len(time) else ""
+    return counted(len(time), "instant") + ends

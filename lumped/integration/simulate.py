@@ -13,9 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError, NoSolution
+from geom.text import counted
 from lumped.integration.compiled import RUN, Compiled, Precision, compiled, hidden_states, reordered
 from lumped.integration.failure import failure
-from lumped.integration.record import Record
+from lumped.integration.record import Record, instants
 from lumped.model.network import Network, Parameter, Row
 from lumped.numerics.dense import factored
 from lumped.numerics.kernel import (
@@ -75,6 +76,10 @@ class Run:
     time_error_K: Array
     steps: Steps
     path: Array | None = None
+
+    def __repr__(self) -> str:
+        outputs, steps = counted(self.y.shape[1], "output"), counted(self.steps.knot.size, "step")
+        return f"<Run over {instants(self.time)}; {outputs}, {steps}>"
 
 
 def initial_state(network: Network, initial: float | Mapping[str, float]) -> Array:
@@ -161,7 +166,7 @@ class _Course:
         nt, n, nb, nr = self.time.size, core.C.size, core.forcing.u.shape[1], core.rows.start.size - 1
         self.tangents = core.tangents.first.shape[1]
         p = self.tangents + -self.tangents % ABREAST
-        self.z, self.y = np.zeros((nt if keep_states else 0, n + nb)), np.zeros((nt, nr))
+        self.z, self.y = np.empty((nt if keep_states else 0, n + nb)), np.zeros((nt, nr))
         self.dy, self.late = np.zeros((nt, nr, p)), np.zeros(nr)
         self.order = np.concatenate([core.order, np.arange(n, n + nb)])
         self.place = np.argsort(self.order)
@@ -246,7 +251,7 @@ class _Course:
         dy = np.ascontiguousarray(self.dy[:, :, : self.tangents]) if self.tangents else None
         return Run(
             self.time,
-            self.z[:, self.place] if len(self.z) else None,
+            self.z if len(self.z) else None,
             self.y,
             dy,
             end,

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import ThermoscopeError
+from geom.text import table
 from lumped.integration.compiled import compiled
 from lumped.integration.record import Record
 from lumped.model.network import Network, Parameter, Row
@@ -16,6 +17,7 @@ from lumped.numerics.stages import stages, work
 from lumped.numerics.steady_start import settle
 
 Array = NDArray[np.float64]
+SCREEN = 20  # temperatures that a notebook shows
 ABOVE_K = 30.0  # still air takes nothing without a difference: a start without one would leave the nodes unheld
 
 
@@ -27,6 +29,11 @@ class Steady:
     z: Array
     y: Array
     dy: Array | None
+
+    def __repr__(self) -> str:
+        if len(self.names) > SCREEN:
+            return f"<Steady: {len(self.names)} temperatures, by name>"
+        return table(["place", "degC"], [[name, self[name]] for name in self.names])
 
     def __getitem__(self, name: str) -> float:
         """Temperature (degC) of a named state or boundary."""

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from lumped.correlations.info import RangeWarning
 from lumped.transfer.laws import CONSTANT, FILMS, FIRST_C, STEP_K, Array, FilmTable, Inputs, Law, TemperatureLaw
+from lumped.transfer.ranges import within_silence
 
 
 @dataclass(frozen=True)
@@ -38,8 +37,7 @@ def film_over(
     usual : the input at which the film's dependence on temperature is taken: it is the same throughout a regime
     reference : film temperature (degC) at which the film is tabulated over the input
     """
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RangeWarning)
+    with within_silence():
         value = tuple(float(film(float(x), reference)) for x in at)
         ratio = [film(usual, FIRST_C + k * STEP_K) / film(usual, reference) for k in range(FILMS)]
     return Interpolated(of, tuple(map(float, at)), value, FilmTable((0.0, 1.0), tuple(np.repeat(ratio, 2).tolist())))

@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 
 from geom.description.identity import Identity
 from geom.errors import InputError
+from geom.text import counted
 from lumped.model.quantities import INPUTS, USUAL
 from lumped.transfer.laws import Law
 
@@ -189,6 +190,11 @@ class Network:
     quantities: Mapping[str, str] = field(default_factory=dict)
     signals: Mapping[str, str] = field(default_factory=dict)
     file: str = field(default="", compare=False)
+
+    def __repr__(self) -> str:
+        each = (self.states, "state"), (self.links, "link"), (self.sources, "source")
+        sizes = ", ".join(counted(len(items), what) for items, what in each)
+        return f"<{self.title}: {sizes}; boundaries {', '.join(self.boundaries) or 'none'}>"
 
     @property
     def title(self) -> str:

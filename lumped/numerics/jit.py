@@ -20,3 +20,4 @@ _HIDDEN = {**_OPTIONS, "no_cpython_wrapper": True}
 inner = njit(**_HIDDEN)
 pasted = njit(**_HIDDEN, inline="always")
 inner_reordered = njit(**_HIDDEN, fastmath={"reassoc", "contract"})
+inner_finite = njit(**_HIDDEN, fastmath={"reassoc", "contract", "nnan", "nsz"})

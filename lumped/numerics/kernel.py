@@ -57,11 +57,15 @@ LARGEST = 5e-3  # K: what rounding and the estimate itself leave of the maximum 
 
 
 class Rows(NamedTuple):
-    """Outputs as sparse rows over z+: entries start[r]:start[r + 1] of at, weight."""
+    """Outputs as sparse rows over z+: entries start[r]:start[r + 1] of at, weight.
+
+    state (n + nb,) : which state or boundary of the network every one of the kernel's is, for states that are kept
+    """
 
     start: Ints
     at: Ints
     weight: Floats
+    state: Ints
 
 
 class Control(NamedTuple):
@@ -364,7 +368,7 @@ def _within(Q, R, X, k, P, a, q, z, y, late):
 def _sampled(R, t, now, error, z, y, late):
     if len(z) > 0:
         for i in range(z[t].size):
-            z[t, i] = now[i]
+            z[t, R.state[i]] = now[i]
     if y[t].size > 0:
         _outputs(R, now, y[t], error[1], error[1].size, late)
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lumped.transfer.laws import CONSTANT, Array, Inputs, Law, TemperatureLaw
+from lumped.transfer.ranges import out_of_range
 
 
 @dataclass(frozen=True)
@@ -39,14 +39,11 @@ class MapLoss(Law):
         return (1 - a) * low + a * high
 
     def _within(self, name: str, inputs: Inputs, at: tuple[float, ...]) -> Array:
-        from lumped.correlations.info import RangeWarning
-
         x = np.abs(np.asarray(inputs[name], float))
         outside = [v for v, out in ((x.min(), x.min() < at[0]), (x.max(), x.max() > at[-1])) if out] if x.size else []
         if outside:
             values = " and ".join(f"{v:.4g}" for v in outside)
-            note = f"loss map: {name} = {values} outside {at[0]:g} to {at[-1]:g}"
-            warnings.warn(note, RangeWarning, stacklevel=4)
+            out_of_range(f"loss map: {name} = {values} outside {at[0]:g} to {at[-1]:g}")
         return np.clip(x, at[0], at[-1])
 
 

@@ -82,3 +82,9 @@ def circle(graph):
 @pytest.mark.parametrize("text", ["import b", "from b import x", "def f():\n    from b import x"])
 def test_the_check_sees_a_circle(text):
     assert circle({"a": set(imports(ast.parse(text), {"a", "b"})), "b": {"a"}})
+
+
+def test_no_script_hides_a_room(root):
+    """Python looks first beside the script it runs: `benchmarks/viz.py` would be the `viz` of all benchmarks."""
+    beside = {path.stem: path for folder in ("benchmarks", "examples", "scripts") for path in (root / folder).iterdir()}
+    assert {name: beside[name] for name in ROOMS if name in beside} == {}

@@ -12,6 +12,7 @@ import thermoscope as ts
 from thermoscope.case_folder.folder import load_case
 from thermoscope.shadowing import ROOMS, hidden_by
 from validation import compare
+from validation.comparison.compare import errors
 from validation.effects import kinds
 
 HEAVY = ("numpy", "scipy", "numba", "pandas", "matplotlib", "pyvista", "skfem", "cadquery")
@@ -84,6 +85,54 @@ def test_compare_is_what_the_rooms_say(case, folder):
     assert case.compare().document() == compare(load_case(folder).case).document()
 
 
+def printed(thing):
+    """What a notebook shows: a screen at most, and no array of numbers."""
+    text = repr(thing)
+    assert len(text.splitlines()) < 25
+    assert len(text) < 2000
+    assert "array(" not in text
+    return text
+
+
+def test_a_case_shows_its_tests(case, better):
+    assert printed(case).startswith(f"Case '{case.name}', revision 0")
+    assert all(name in printed(case) for name in case.tests)
+    assert "with convection@flange, 1 step not saved" in printed(better)
+
+
+def test_a_comparison_shows_what_the_command_says(case, folder, capsys):
+    from thermoscope.commands.test.compare import compare as command
+
+    command(str(folder), None)
+    told = " ".join(capsys.readouterr().out.split())
+    sentence, *rows = printed(case.compare()).splitlines()
+    assert sentence in told
+    assert {row.split()[0] for row in rows[1:]} == set(case.tests)
+
+
+def test_errors_alone_are_not_called_within(case):
+    assert "held against no limit" in errors(case.folder.case).words
+    assert "within" not in errors(case.folder.case).words
+
+
+def test_a_step_shows_the_errors_before_and_after(better):
+    step = better.steps[-1]
+    *_, last = printed(step).splitlines()
+    assert "add convection@flange, accepted" in printed(step)
+    assert last.split()[-2:] == [f"{step.tests[-1].before:.2f}", f"{step.tests[-1].after:.2f}"]
+
+
+def test_a_network_shows_its_sizes(case):
+    network = case.network
+    assert f"{len(network.states)} states" in printed(network)
+    assert all(name in printed(network) for name in network.boundaries)
+
+
+def test_a_test_shows_its_sensors(case):
+    for test in case.tests.values():
+        assert all(channel.name in printed(test) for channel in test.channels)
+
+
 def test_a_step_gives_a_new_case(case, better):
     assert case.effects == ()
     assert better.effects == ("convection@flange",)
@@ -154,6 +203,8 @@ def test_the_readme_runs(root, tmp_path, monkeypatch):
     left: dict = {}
     exec(block, left)
     assert left["d"].best == "convection@flange"
+    assert printed(left["d"]).startswith("named: missing: forced convection by vehicle wind at flange")
+    assert printed(left["d"]).splitlines()[2].split()[0] == "convection@flange"
     assert ts.open("my-case").effects == ("convection@flange",)
     assert left["better"].compare().rmse_K < 0.5 * left["case"].compare().rmse_K
     assert (tmp_path / "better.png").stat().st_size > 1000
@@ -166,12 +217,20 @@ def test_a_machine_and_its_field():
     field = machine.field(ambient_C=25.0, current_A=half)
     assert field.energy_balance < 1e-6
     assert field.T.min() > 25.0
+    assert all(part in printed(field) for part in field.parts)
+    assert f"{len(machine.mesh.tets)} tetrahedra" in printed(machine)
     assert max(part.fem_max_C for part in field.parts.values()) == pytest.approx(field.T.max(), abs=1e-9)
     warmer = machine.field(ambient_C=25.0, current_A=more)
     assert warmer.heat_W > field.heat_W
     assert warmer.T.mean() > field.T.mean()
     with pytest.raises(ts.InputError, match="one of current_A"):
         machine.field(current=1.0)
+
+
+def test_a_load_at_which_nothing_settles_is_one_message():
+    machine = ts.build("pmsm-m1-no-base", size_m=0.1)
+    with pytest.raises(ts.InputError, match=r"does not settle at current_A = .*; a smaller load"):
+        machine.field(current_A=20.0 * machine.rated["current_A"])
 
 
 def test_machines_can_be_built_by_name():

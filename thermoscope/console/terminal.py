@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import sys
+import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -16,7 +17,18 @@ from thermoscope.console.answer import Answer, Grid, printed
 from thermoscope.console.progress_bar import Progress, progress
 
 STDOUT = "-"
-__all__ = ["Progress", "give", "notes", "notes_once", "plain", "progress", "say", "value_with_interval", "table"]
+__all__ = [
+    "Progress",
+    "give",
+    "notes",
+    "notes_once",
+    "plain",
+    "progress",
+    "ranges_as_notes",
+    "say",
+    "value_with_interval",
+    "table",
+]
 
 
 def _line(message: str) -> None:
@@ -44,6 +56,26 @@ def notes(messages: Iterable[str]) -> None:
             _line(f"note: {message}")
         if so_far is not None:
             so_far.add(message)
+
+
+@contextmanager
+def ranges_as_notes() -> Iterator[None]:
+    """What lies outside the range of its source is a note, said once; other warnings are shown as ever."""
+    usual, so_far = warnings.showwarning, set[str]()
+
+    def as_note(message: Warning | str, category: type[Warning], *where: Any, **more: Any) -> None:
+        what = str(message).split(" = ")[0]  # test after test has another number
+        if category.__name__ != "RangeWarning":
+            usual(message, category, *where, **more)
+        elif what not in so_far:
+            so_far.add(what)
+            notes([str(message)])
+
+    warnings.showwarning = as_note
+    try:
+        yield
+    finally:
+        warnings.showwarning = usual
 
 
 def plain(value: Any) -> Any:

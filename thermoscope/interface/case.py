@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from geom.errors import InputError
+from geom.text import counted, table
 from thermoscope.case_folder.folder import Folder, find_case, load_case
 from thermoscope.case_folder.history import History, save_history
 from thermoscope.extras import explained
@@ -41,6 +42,14 @@ class Case:
     on_disk: History
     steps: tuple[Revision, ...] = ()
     progress: Progress = silent
+
+    def __repr__(self) -> str:
+        rows = [[t.name, t.role, len(t.channels), (t.time[-1] - t.time[0]) / 60.0]
+                for t in self.folder.case.tests]  # fmt: skip
+        effects = f" with {', '.join(self.effects)}" if self.effects else ""
+        unsaved = f", {counted(len(self.steps), 'step')} not saved" if self.steps else ""
+        return (f"Case '{self.name}', revision {self.folder.history.last.number}{effects}{unsaved}\n"
+                f"{table(['test', 'role', 'sensors', 'minutes'], rows)}")  # fmt: skip
 
     @property
     def name(self) -> str:

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from geom.errors import InputError
+from geom.errors import InputError, NoSolution
+from geom.text import counted, table
 from thermoscope.case_folder.folder import load_machine_file
 from thermoscope.extras import explained
 
@@ -37,6 +38,13 @@ class Field:
 
     built: Built
     check: CrossCheck
+
+    def __repr__(self) -> str:
+        every = sorted(self.parts.values(), key=lambda part: -part.fem_max_C)
+        rows = [[p.place, p.fem_mean_C, p.fem_max_C, p.network_mean_C, p.network_max_C] for p in every]
+        headers = ["part", "mean (degC)", "hottest", "network: mean", "hottest"]
+        return (f"Steady field of '{self.built.machine.name}': {self.heat_W:.0f} W of loss, "
+                f"energy balance {self.energy_balance:.1e}\n{table(headers, rows)}")  # fmt: skip
 
     @property
     def T(self) -> Array:
@@ -75,6 +83,11 @@ class Machine:
 
     built: Built
 
+    def __repr__(self) -> str:
+        parts, tets = counted(len(self.built.machine.parts), "part"), len(self.mesh.tets)
+        rated = ", ".join(f"{name} = {value:g}" for name, value in self.rated.items())
+        return f"<Machine '{self.name}': {parts}, {tets} tetrahedra, {len(self.network.states)} states; rated {rated}>"
+
     @property
     def name(self) -> str:
         return self.built.machine.name
@@ -100,7 +113,7 @@ class Machine:
         """The steady field at an operating point, with the coefficients at which the network settles there.
 
         inputs : those of `rated`, for example current_A=20, speed_rpm=1450; those that are not given are rated
-        Raises InputError for an unknown input, ThermoscopeError where the machine does not settle.
+        Raises InputError for an unknown input, and where the machine does not settle: at a rating for an hour, say.
         """
         from lumped.machine.losses import loss_shares
         from thermoscope.verification.crosscheck import crosscheck
@@ -109,7 +122,13 @@ class Machine:
         if unknown:
             raise InputError(f"unknown input '{unknown[0]}'", self.name, f"one of {', '.join(self.rated)}")
         point, b = {**self.rated, **inputs}, self.built
-        return Field(b, crosscheck(b.field, b.network, point, ambient_C, shares=loss_shares(b.machine, b.network)))
+        try:
+            check = crosscheck(b.field, b.network, point, ambient_C, shares=loss_shares(b.machine, b.network))
+        except NoSolution as fault:
+            there = ", ".join(f"{name} = {value:g}" for name, value in point.items())
+            raise InputError(f"does not settle at {there}: its losses grow faster than its cooling", self.name,
+                             "a smaller load: field(current_A=...)") from fault  # fmt: skip
+        return Field(b, check)
 
 
 @explained()

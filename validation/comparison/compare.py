@@ -9,6 +9,7 @@ import numpy as np
 
 from geom.description.identity import Identity
 from geom.errors import ThermoscopeError
+from geom.text import table
 from lumped.integration.runaway import checked_run
 from lumped.model.network import Network
 from validation.calibration.unknowns import nuisances, working
@@ -65,6 +66,11 @@ class TestError:
     def rmse_K(self) -> float:
         return pooled(self.channels)
 
+    @property
+    def over(self) -> int:
+        """How many sensors are off by more than is uncertain."""
+        return sum(c.verdict == "over" for c in self.channels)
+
     def document(self) -> dict:
         rows = [c.document() for c in self.channels]
         return {"name": self.name, "role": self.role, "rmse_K": self.rmse_K, "channels": rows}
@@ -82,6 +88,22 @@ class Comparison:
     effects: tuple[str, ...]
     tests: tuple[TestError, ...]
     identities: Mapping[str, Identity] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        rows = [[t.name, t.role, len(t.channels), t.over, t.rmse_K] for t in sorted(self.tests, key=lambda t: -t.over)]
+        return f"{self.words}\n{table(['test', 'role', 'sensors', 'over', 'rms (K)'], rows)}"
+
+    @property
+    def words(self) -> str:
+        """How many sensors are over, and by how much the model is off, in a sentence."""
+        verdicts = [c.verdict for t in self.tests for c in t.channels]
+        over, every = verdicts.count("over"), len(verdicts)
+        effects = f" with {', '.join(self.effects)}" if self.effects else ""
+        records = f"{over} of {every} sensor records are over" if over else f"all {every} sensors within"
+        if "unknown" in verdicts:
+            records = f"{every} sensor records, held against no limit"
+        return (f"{self.case}, revision {self.revision}{effects}: {records}; rms {self.rmse_K:.2f} K, "
+                f"the sensors' own uncertainty explains {self.floor_K:.2f} K.")  # fmt: skip
 
     @property
     def rmse_K(self) -> float:
@@ -109,6 +131,7 @@ class Comparison:
             "tests": [t.document() for t in self.tests],
             "rmse_K": self.rmse_K,
             "floor_K": self.floor_K,
+            "words": self.words,
             "roles": [
                 {
                     "name": name,

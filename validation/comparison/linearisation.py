@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +15,7 @@ from validation.case import Channel, Test
 from validation.comparison.predict import Watch
 from validation.doubt import USUAL
 from validation.measurement.blocks import INSTANTS, Blocks, groups
+from validation.threads import side_by_side
 
 Array = NDArray[np.float64]
 NUMBERS = 2**22  # of a Jacobian looked at together: 34 MB, and some copies
@@ -64,9 +63,7 @@ def segments(
 
     if len(tests) < 2 or len(tests[0].time) * network.size < WORTH_A_THREAD:
         return [s for test in tests for s in look(test)]
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        begun = {i: pool.submit(look, tests[i]) for i in sorted(range(len(tests)), key=lambda i: -len(tests[i].time))}
-        return [s for i in range(len(tests)) for s in begun[i].result()]
+    return [s for each in side_by_side(look, tests, lambda test: len(test.time)) for s in each]
 
 
 def _of_test(

@@ -30,6 +30,7 @@ from validation.effects.time_window import Event, event
 from validation.inference.evidence import Evidence, extended_prior, projected, weighed
 from validation.inference.posterior import log_bayes_of
 from validation.inference.score import Score, per_test, score, total
+from validation.threads import side_by_side
 
 Array = NDArray[np.float64]
 TESTS, EVENTS, EACH = 16, 4, 6  # conditions of whole tests, events, and explanations of each that join the others
@@ -60,9 +61,9 @@ def conditions(
     progress("looking for what held in one test or for a while")
     whole = [e for e in single_test_effects(scene) if only is None or e.kind in only]
     chosen, events = best(single_test_conditions(evidence, whole, known), TESTS), []
-    for s in likely_intervals(evidence, looked, heat, known, len(bases)):
-        explanations, own = explained(evidence, bases, s, looked, known)
-        events.append(explanations)
+    intervals = likely_intervals(evidence, looked, heat, known, len(bases))
+    for timed, own in side_by_side(lambda s: explained(evidence, bases, s, looked, known), intervals):
+        events.append(timed)
         chosen += best(own, EACH)
     for name, share in declared_conditions(case, evidence, events):
         effects = [During.of(base, name, share / len(bases)) for base in bases]

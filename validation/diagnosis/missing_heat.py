@@ -29,6 +29,7 @@ from validation.inference.model_error import ModelError, nodes
 from validation.inference.score import Gram, gram
 from validation.measurement.blocks import INSTANTS
 from validation.measurement.noise import Noise
+from validation.threads import side_by_side
 
 Array = NDArray[np.float64]
 KNOT_S = 180.0  # between knots of a heat; chosen: shorter ones cost time, and masses smooth what they would show
@@ -50,6 +51,9 @@ class MissingHeat:
     log_bayes: float
     heat_W: dict[str, tuple[Array, Array, Array]]
     moves_K: float
+
+    def __repr__(self) -> str:
+        return f"<MissingHeat at {self.place}: {self.evidence_nats:.1f} nats, moves a reading by {self.moves_K:.2f} K>"
 
     def document(self) -> dict:
         series = {
@@ -103,7 +107,7 @@ class Scan:
         H = sum(g.JJ for g in grams.values()) + np.diag(weight)
         Jr = sum(g.Jr for g in grams.values()) - weight * theta
         cov = np.asarray(np.linalg.inv(H), float)
-        heats = [self._at(i, grams, cov, Jr) for i in range(len(self.places))]
+        heats = side_by_side(lambda i: self._at(i, grams, cov, Jr), range(len(self.places)))
         return sorted(heats, key=lambda x: -x.evidence_nats)
 
     @cached_property
@@ -156,19 +160,26 @@ def missing_heat(fit: Fit, tests: Sequence[Test], knot_s: float = KNOT_S) -> lis
 
 
 def scan(fit: Fit, tests: Sequence[Test], knot_s: float = KNOT_S) -> Scan:
-    """Hats every `knot_s`, or as many in a long test as its residual has instants to tell apart."""
-    own, knots = solids(fit.network), {}
-    places = tuple(p.name for p in own)
-    parts: list[Segment] = []
-    for test in tests:
-        span = test.time[-1] - test.time[0]
-        count = int(np.clip(round(span / knot_s) + 1, 2, INSTANTS // 2))
-        knots[test.name] = test.time[0] + np.linspace(0.0, span, count)
+    """The tangents of a heat input at every place and knot."""
+    own = solids(fit.network)
+    places, knots = tuple(p.name for p in own), {t.name: knots_of(t, knot_s) for t in tests}
+
+    def of_test(test: Test) -> tuple[list[Segment], Array]:
         network, hats = with_heat_inputs(fit.network, places, knots[test.name])
-        parts += segments(network, [test], fit.values, (*fit.unknowns.parameters, *hats))
-    T = [at_knots(t, nodes(fit.network, t, fit.values, own), knots[t.name]) for t in tests]
-    return Scan(places, knots, tuple(parts), fit.unknowns.sd, power_scale(fit.network), doing(tests, knots),
-                np.vstack(T))  # fmt: skip
+        T = at_knots(test, nodes(fit.network, test, fit.values, own), knots[test.name])
+        return segments(network, [test], fit.values, (*fit.unknowns.parameters, *hats)), T
+
+    each = side_by_side(of_test, tests, lambda test: len(test.time))
+    parts = tuple(s for some, _ in each for s in some)
+    return Scan(places, knots, parts, fit.unknowns.sd, power_scale(fit.network), doing(tests, knots),
+                np.vstack([T for _, T in each]))  # fmt: skip
+
+
+def knots_of(test: Test, knot_s: float) -> Array:
+    """Every so many seconds of a test, or as many as its residual has instants to tell apart."""
+    span = test.time[-1] - test.time[0]
+    count = int(np.clip(round(span / knot_s) + 1, 2, INSTANTS // 2))
+    return np.asarray(test.time[0] + np.linspace(0.0, span, count))
 
 
 def doing(tests: Sequence[Test], knots: Mapping[str, Array]) -> Array:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
 from geom.errors import InputError
+from geom.text import table
 from validation.diagnosis.missing_heat import MissingHeat
 
 if TYPE_CHECKING:
@@ -15,6 +16,11 @@ if TYPE_CHECKING:
 Verdict = Literal["adequate", "named", "group", "several", "outside", "absorbed", "data"]
 Decided = Literal["named", "group", "no", "cannot-tell"]
 Pair = tuple[float, float]
+
+MOST_ODDS, LEAST_PROBABILITY = (
+    5,
+    0.005,
+)  # hypotheses of a diagnosis that is printed, and the probability from which they are
 
 
 @dataclass(frozen=True)
@@ -227,6 +233,11 @@ class Diagnosis:
     remainder: tuple[Remainder, ...] = ()
     contradiction: Contradiction | None = None
     question: Question | None = None
+
+    def __repr__(self) -> str:
+        likely = [o for o in self.odds if o.probability > LEAST_PROBABILITY] or self.odds[:1]
+        rows = [[o.hypothesis, f"{100 * o.probability:.1f} %"] for o in likely[:MOST_ODDS]]
+        return f"{self.verdict}: {self.words}\n{table(['hypothesis', 'probability'], rows)}"
 
     @property
     def best(self) -> str:

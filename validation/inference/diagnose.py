@@ -50,7 +50,7 @@ from validation.inference.tables import tabulate
 from validation.measurement.faults import PlainFaults, broken_channels, without
 from validation.measurement.noise import Noise
 from validation.procedure.reduction.which_base import base_hypotheses, wrong_bases
-from validation.threads import one_blas_thread
+from validation.threads import one_blas_thread, side_by_side
 
 Progress = Callable[[str], None]
 CONTENDERS = 8  # effects whose own noise is looked at: one of them leads under any
@@ -163,10 +163,10 @@ def noise_of_leader(evidence: Evidence, also: Sequence[int] = ()) -> Noise | Non
     e, ones = evidence, singles(evidence)
     leading = [k for i in np.argsort(-weights(ones), kind="stable") for k in ones[i].members if not e.effects[k].whole]
     few = [ones[1 + k] for k in dict.fromkeys([*leading[:CONTENDERS], *also[:CONTENDERS]])]
-    best, worth = None, log_evidence(e) + ones[0].log_prior
-    for h in few:
+
+    def beside(h: Hypothesis) -> tuple[float, Noise]:
         noise = noise_beside(e, h.members)
-        gain = with_noise(e, h.members, noise) + h.log_prior
-        if gain > worth:
-            best, worth = noise, gain
-    return best
+        return with_noise(e, h.members, noise) + h.log_prior, noise
+
+    gain, noise = max(side_by_side(beside, few), key=lambda x: x[0], default=(-np.inf, None))
+    return noise if gain > log_evidence(e) + ones[0].log_prior else None

@@ -26,6 +26,7 @@ from validation.comparison.predict import heat_model, record
 from validation.doubt import USUAL, Doubt
 from validation.effects.build import Shaped, copy_link, copy_source, exchange, heat
 from validation.measurement.operators import lag, setting
+from validation.threads import side_by_side
 
 Array = NDArray[np.float64]
 SQUARED = ("current", "torque")  # quantities whose square makes heat
@@ -260,23 +261,25 @@ def model_error(
     sensed : tests whose sensors' placement is in doubt, and whose largest load counts; by default `tests`
     """
     grown, doubts = with_doubts(network, doubt, sensed or tests)
-    out: dict[tuple[str, str], Array] = {}
-    for test in tests:
+
+    def of_test(test: Test) -> tuple[tuple[Parameter, ...], dict[tuple[str, str], Array]]:
         cored = with_cores(grown, test, values, doubt)
-        cores = cored.parameters[len(grown.parameters) :]
-        parts = segments(cored, [test], values, (*doubts, *cores))
-        scale = np.array([p.prior_sd for p in (*doubts, *cores)])
+        every = (*doubts, *cored.parameters[len(grown.parameters) :])
+        parts = segments(cored, [test], values, every)
+        scale = np.array([p.prior_sd for p in every])
         beside = placements(network, test, values, doubt, sensed or tests)
         flow = of_inputs(network, test, values, doubt, parts)
-        out |= {(s.test, s.channel): np.column_stack([s.J * scale, beside[s.channel], flow[s.channel]]) for s in parts}
-    return ModelError(out, named(network, doubts, cores, doubt, sensed or tests), doubt["law"])
+        columns = {s.channel: np.column_stack([s.J * scale, beside[s.channel], flow[s.channel]]) for s in parts}
+        return every, {(s.test, s.channel): columns[s.channel] for s in parts}
+
+    each = side_by_side(of_test, tests, lambda test: len(test.time))
+    names = named(network, each[-1][0], doubt, sensed or tests)
+    return ModelError({key: x for _, columns in each for key, x in columns.items()}, names, doubt["law"])
 
 
-def named(
-    network: Network, doubts: Sequence[Parameter], cores: Sequence[Parameter], doubt: Doubt, tests: Sequence[Test]
-) -> tuple[str, ...]:
+def named(network: Network, doubts: Sequence[Parameter], doubt: Doubt, tests: Sequence[Test]) -> tuple[str, ...]:
     """What each column stands for."""
-    own = [p.name.removeprefix("doubt:") for p in (*doubts, *cores)]
+    own = [p.name.removeprefix("doubt:") for p in doubts]
     beside = [f"{n} in the reading of {c}" for c, n, _ in sensed_beside(network, tests, doubt)]
     return (*own, *beside, "flow of air", "flow of liquid", "jumps between samples")
 

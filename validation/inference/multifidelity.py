@@ -25,6 +25,7 @@ from validation.comparison.predict import predict
 from validation.effects import extended
 from validation.inference.evidence import with_members
 from validation.inference.posterior import Posterior
+from validation.threads import side_by_side
 
 Array = NDArray[np.float64]
 
@@ -81,10 +82,11 @@ def _gaps(
     large: Network, tests: Sequence[Test], small: Network, small_tests: Sequence[Test], values: Mapping[str, float]
 ) -> list[Array]:
     """What the large network predicts above the small one (n_time, n_channel) K, test by test."""
-    return [
-        predict(large, test, values).y - predict(small, other, values).y
-        for test, other in zip(tests, small_tests, strict=True)
-    ]
+
+    def gap(pair: tuple[Test, Test]) -> Array:
+        return predict(large, pair[0], values).y - predict(small, pair[1], values).y
+
+    return side_by_side(gap, zip(tests, small_tests, strict=True), lambda pair: len(pair[0].time))
 
 
 def _less(test: Test, gap: Array) -> Test:

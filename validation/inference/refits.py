@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import replace
 from types import MappingProxyType
@@ -29,6 +27,7 @@ from validation.inference.evidence import (
 )
 from validation.inference.posterior import Hypothesis, log_sign_gain, probabilities, weights
 from validation.measurement.noise import Noise
+from validation.threads import side_by_side
 
 Array = NDArray[np.float64]
 Begun = Mapping[tuple[int, ...], Fit]
@@ -73,8 +72,7 @@ def together(
     for i in due:
         progress(f"refitting {out[i].name(evidence)}")
     near = all_beside(evidence, out, due)
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        refitted = list(pool.map(lambda i: laplace(evidence, out[i], near.get(i), begun), due))
+    refitted = side_by_side(lambda i: laplace(evidence, out[i], near.get(i), begun), due)
     for i, h in zip(due, refitted, strict=True):
         out[i] = h
 
@@ -188,9 +186,8 @@ def finely(evidence: Evidence, hypotheses: Sequence[Hypothesis]) -> list[Hypothe
     """The hypotheses, those that will be told refitted to their end: sizes are read off them."""
     out, P = list(hypotheses), probabilities(hypotheses)
     due = [i for i in np.argsort(-P) if P[i] > REPORTED and out[i].fit and free_of(evidence, out[i].members)]
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        for i, h in zip(due, pool.map(lambda i: to_the_end(evidence, out[i]), due), strict=True):
-            out[i] = h
+    for i, h in zip(due, side_by_side(lambda i: to_the_end(evidence, out[i]), due), strict=True):
+        out[i] = h
     return out
 
 

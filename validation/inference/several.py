@@ -17,6 +17,7 @@ from validation.effects.during import During
 from validation.inference.evidence import Evidence, scored
 from validation.inference.posterior import Hypothesis, prior_shares, singles, weights
 from validation.inference.refits import NEAR, laplace
+from validation.threads import side_by_side
 
 MOST = 3  # effects at once: who forgot more begins with another model
 RIVALS = 4  # effects that are tried beside the same others
@@ -65,10 +66,11 @@ def with_one_more(
     if not others:
         return []
     now = scored(case, [evidence.effects[k] for k in others], best.fit)
-    out = []
-    for one in most_probable(singles(now)):
+    rivals, out = most_probable(singles(now)), []
+    for one in rivals:
         progress(f"refitting {best.name(evidence)} + {one.name(now)}")
-        refitted, k = laplace(now, one), others[one.members[0]]
+    for refitted in side_by_side(lambda one: laplace(now, one), rivals):
+        k = others[refitted.members[0]]
         prior = best.log_prior + AGAIN + float(np.log(prior_shares(evidence)[k]))
         out.append(
             Hypothesis((*best.members, k), "", prior, best.log_bayes + refitted.log_bayes, best.loud, refitted.fit)

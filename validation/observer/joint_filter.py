@@ -8,14 +8,12 @@ and no further. From test to test only w and its covariance are carried. Source:
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.correlations import RangeWarning
 from lumped.integration.assembly import assembly
 from lumped.integration.compiled import capacity_multipliers, capacity_slopes
 from lumped.integration.record import Record
@@ -24,6 +22,7 @@ from lumped.integration.simulate import initial_state
 from lumped.model.multipliers import multipliers, slopes
 from lumped.model.network import Row
 from lumped.transfer.laws import CONSTANT, TemperatureLaw
+from lumped.transfer.ranges import within_silence
 from lumped.transfer.terms_value import temperature_value
 from validation.case import Channel, Test
 from validation.comparison.predict import record
@@ -175,8 +174,7 @@ class _Terms:
         """(nt, ne) of a record."""
         u, nt = record.inputs, record.time.shape
         signals = u if isinstance(u, Signals) else Signals(u, record.time.size)
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", RangeWarning)  # a comparison says so
+        with within_silence():  # a comparison says so
             every = [signals.factor(p.name, p.law) for p in self.every.patterns]
         return np.column_stack([np.broadcast_to(f, nt) for f in every])
 

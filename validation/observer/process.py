@@ -9,7 +9,6 @@ heat capacity, shapes and nodes without any at their balance.
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property, partial
@@ -19,11 +18,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import get_lapack_funcs
 
-from lumped.correlations import RangeWarning
 from lumped.integration.compiled import READINGS, Compiled, compiled
 from lumped.integration.record import Record
 from lumped.model.network import Network, Row
 from lumped.numerics.instant import instant
+from lumped.transfer.ranges import within_silence
 from validation.case import Channel
 
 Array = NDArray[np.float64]
@@ -93,8 +92,7 @@ class Process:
         return self.network.column(places[c.place].part if c.place in places else c.place)
 
     def driven(self, record: Record) -> Driven:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", RangeWarning)  # a comparison says so once; here it would be every row
+        with within_silence():  # a comparison says so once; here it would be every row
             core = compiled(self.network, record, self.values, precision=READINGS)
         at = core.forcing.first[1:] > core.forcing.first[:-1]
         return Driven(core, np.asarray(record.time, float), core.forcing.factor[at], core.forcing.u[at])

@@ -6,19 +6,18 @@ the calibration tests, by the covariance that the calibration has left, is the c
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.correlations import RangeWarning
 from lumped.integration.assembly import Assembly, assembly
 from lumped.integration.compiled import capacity_slopes
 from lumped.integration.simulate import simulate
 from lumped.model.multipliers import multipliers, slopes, values_of
 from lumped.model.network import Network, Parameter
+from lumped.transfer.ranges import within_silence
 from lumped.transfer.terms_value import temperature_value
 from validation.bands.posterior import ParameterPosterior, acting
 from validation.case import Test
@@ -96,8 +95,7 @@ class _Flows:
         self.stored = rate * network.C[self.columns]
 
     def _factors(self, test: Test) -> Array:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", RangeWarning)  # a comparison says so
+        with within_silence():  # a comparison says so
             every = [test.signals.factor(p.name, p.law) for p in self.terms.patterns]
         return np.stack([np.broadcast_to(f, test.time.shape) for f in every], axis=1)[self.some]
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from geom.errors import InputError
+from geom.text import table
 from lumped.model.network import Parameter
 from validation.calibration.calibrate import Fit, no_progress, with_model_error
 from validation.calibration.intervals import Estimate, Profile, estimates
@@ -57,6 +58,13 @@ class Revision:
     after: Comparison
     converged: bool
     checks: tuple[Check, ...] = ()
+
+    def __repr__(self) -> str:
+        what = " ".join(x for x in (self.action, self.effect) if x)
+        rows = [[t.name, t.role, t.before, t.after] for t in self.tests]
+        accepted = "accepted" if self.accepted else "not accepted"
+        return (f"Revision {self.revision}, {what}, {accepted}: {self.why}\n"
+                f"{table(['test', 'role', 'rms before (K)', 'after (K)'], rows)}")  # fmt: skip
 
     @property
     def revision(self) -> int:

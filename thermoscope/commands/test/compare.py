@@ -63,18 +63,14 @@ def answer(document: Mapping[str, Any], called: str) -> Answer:
     """How many sensors are over, which, and what the rest looks like.  called : what the user calls the case"""
     records = [{"test": t["name"], **c} for t in document["tests"] for c in t["channels"]]
     over = sorted((r for r in records if r["verdict"] == "over"), key=lambda r: -r["rmse_K"] / r["limit_K"])
-    model = document["model"]
-    effects = f" with {', '.join(model['effects'])}" if model["effects"] else ""
-    found = f"{len(over)} of {len(records)} sensor records are over" if over else f"all {len(records)} sensors within"
-    sentence = (f"{document['case']}, revision {model['revision']}{effects}: {found}; rms {document['rmse_K']:.2f} K, "
-                f"the sensors' own uncertainty explains {document['floor_K']:.2f} K.")  # fmt: skip
     why = _why(document) if "patterns" in document else []
     parts = [*why, records_of("Over: error is measured - model", over), tests(document["tests"]),
              in_short(document["error_budget"], document["sampling"]), roles_in_short(document["roles"])]  # fmt: skip
     rest = [*(records_of(f"{t['name']} ({t['role']})", [{"test": t["name"], **c} for c in t["channels"]])
               for t in document["tests"]), roles(document["roles"]),
              *budget(document["error_budget"], document["sampling"]), bands_of(document.get("bands", ()))]  # fmt: skip
-    return Answer(sentence, parts, f"{RULE}; --why, --json FILE; thermoscope show report {quote(called)}", rest)
+    more = f"{RULE}; --why, --json FILE; thermoscope show report {quote(called)}"
+    return Answer(document["words"], parts, more, rest)
 
 
 def tests(records: Sequence[Mapping[str, Any]]) -> Grid:

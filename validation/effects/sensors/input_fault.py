@@ -1,15 +1,14 @@
 """An error of a recorded input: everything that follows it is off with it."""
 
-import warnings
 from abc import abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from lumped.correlations import RangeWarning
 from lumped.model.network import Link, Network, Source
 from lumped.transfer.laws import Array, Inputs, Law, Wrapped
+from lumped.transfer.ranges import within_silence
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import copy_link, copy_source
 
@@ -29,8 +28,7 @@ class Chord(Wrapped):
     def factor(self, inputs: Inputs) -> Array | float:
         known: Mapping[str, Array] = {name: inputs[name] for name in self.reads}
         error, above, below = self.chord(np.asarray(inputs[self.input], float))
-        with warnings.catch_warnings():  # the chord may leave a table that the input itself stays in
-            warnings.simplefilter("ignore", RangeWarning)
+        with within_silence():  # the chord may leave a table that the input itself stays in
             more, less = (np.asarray(self.base.factor({**known, self.input: u})) for u in (above, below))
         return np.asarray((more - less) / (2.0 * error))
 

@@ -1,6 +1,6 @@
 """The machine in a browser's own GL: bytes sent, seconds to the first picture, pictures a second, and who takes them.
 
-    python benchmarks/viz.py [--size-mm 30] [--seconds 4] [--json FILE]
+    python benchmarks/viewer.py [--size-mm 30] [--seconds 4] [--json FILE]
 
 A headless Chromium without a graphics card opens the page of viz.viewer, from disk, with an hour of a synthetic field
 on the mesh of the series-wound motor. The peer is pyvista's own trame view as it can be kept, `export_html`, of the
