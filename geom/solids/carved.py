@@ -25,9 +25,7 @@ def carved(shape: CadShape) -> list[cq.Solid]:
         shells = [shell.wrapped for shell in body.Shells()]
         inside = [shell.wrapped.Reversed() for void in voids for shell in void.Shells()]
         body = Boundary().solid([*shells, *inside])
-    tools = [
-        _rod(cut) if isinstance(cut, Rod) else stacked([cut])[0] for cut in shape.cuts if not isinstance(cut, Helix)
-    ]
+    tools = [_tool(cut) for cut in shape.cuts if not isinstance(cut, Helix)]
     return [cq.Solid(solid.wrapped) for solid in body.cut(*tools).Solids()] if tools else [body]
 
 
