@@ -104,11 +104,11 @@ def document(
     }  # fmt: skip
 
 
-def render(shown: Mapping[str, Any]) -> str:
+def render(content: Mapping[str, Any]) -> str:
     """The page as text. The data stand in a block that no browser runs."""
     page, css = (files("viz.viewer").joinpath(f"viewer.{end}").read_text(encoding="utf-8") for end in ("html", "css"))
-    data = json.dumps(shown, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
-    for key, text in (("TITLE", escape(shown["title"])), ("CSS", css), ("DATA", data), ("SCRIPT", script())):
+    data = json.dumps(content, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
+    for key, text in (("TITLE", escape(content["title"])), ("CSS", css), ("DATA", data), ("SCRIPT", script())):
         page = page.replace(f"@{key}@", text, 1)
     return page
 
