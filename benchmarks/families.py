@@ -1,13 +1,16 @@
-"""Random machines of every family, drawn within the documented bounds: how many build, closed, of the right volume.
+"""Random machines of every family: within the documented bounds all build, beyond them all are built or told how.
 
-    python benchmarks/families.py [--machines 1000] [--prisms 1000] [--partitions 60] [--solids 20] [--family NAME]
+    python benchmarks/families.py [--machines 1000] [--prisms 1000] [--partitions 60] [--beyond 2000] [--family NAME]
         [--json FILE]
 
 Every machine passes the family's rules or not. Of the first `--prisms`, every prism's section is a valid polygon, so
 that the prism is closed, and every part's volume as it is meshed, 144 chords per turn, is its exact one within 1 %. Of
 the first `--partitions` the whole plane partition is made: no two solids overlap, faces tile the plane, and no void is
-left that no fluid fills. Of the first `--solids` machines, of at most MOST prisms, CAD solids are built and
-tessellated: watertight, and of the exact volume.
+left that no fluid fills. (family_solids.py builds their CAD solids.)
+
+For `--beyond` machines the bounds of all ratios are made half as wide again. One length is beyond its bounds and all
+else random within them; in as many machines all lengths are random within the wider bounds. Lengths are given in mm,
+each within its own range. What a refusal asks for is done and the machine built again, until it is built.
 """
 
 from __future__ import annotations
@@ -16,19 +19,22 @@ import argparse
 import datetime
 import json
 import platform
+import re
 import sys
 from collections import Counter
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import shapely
 
-from geom import InputError, Machine, check_cad
+from geom import InputError, Machine
+from geom.description.parameters import UNITS, Parameter
 from geom.description.profile import ArcGrid
 from geom.description.random_geometry import random_geometry
+from geom.description.reading import read_geometry
 from geom.families import families
 from geom.families.family import Family
 from geom.machine_file import machine_from
@@ -36,7 +42,9 @@ from geom.meshing.partition import partition
 from geom.meshing.voids import filled
 
 WITHIN = 0.01  # of the exact volume
-MOST = 400  # prisms of a machine whose solids are built: with hundreds of bars a single one takes minutes
+WIDER = 1.5  # bounds of ratios, beyond which machines are drawn
+MOST = 60  # changes: more than any family has lengths
+Table = dict[str, dict[str, Any]]
 SEGMENTS = 144
 
 
@@ -87,31 +95,95 @@ def tiled(family: Family, seed: int) -> bool:
     return bool(abs(cut.area().sum() / box - 1.0) < 1e-9)
 
 
-def solid(family: Family, machines: int, wanted: int) -> Iterator[tuple[int, bool, float]]:
-    """(seed, watertight, worst relative error of a solid's volume) of the first small machines."""
-    for seed in range(machines):
-        if not wanted:
-            return
-        machine = machine_of(family, seed)
-        if sum(len(part.prisms) for part in machine.parts) <= MOST:
-            wanted -= 1
-            checks = check_cad(machine, 0.2)
-            yield seed, all(c.watertight for c in checks), max(abs(c.solid_volume / c.volume - 1.0) for c in checks)
+def widened(p: Parameter) -> Parameter:
+    """Its ratio with bounds WIDER times as far apart; a lower bound is at most halved, so that it stays a length."""
+    if p.of is None:
+        return p
+    more = (WIDER - 1) / 2 * (p.of.high - p.of.low)
+    return replace(p, of=replace(p.of, low=max(p.of.low - more, p.of.low / 2), high=p.of.high + more))
 
 
-def rows(family: Family, machines: int, sections: int, partitions: int, solids: int) -> list[dict[str, Any]]:
+def one_beyond(family: Family, rng: np.random.Generator) -> Table | None:
+    """A machine within the bounds, one of whose lengths leaves them; None if it leaves its own range too."""
+    lengths = [p for p in family.parameters if p.of is not None]
+    table, p = random_geometry(family, rng), lengths[rng.integers(len(lengths))]
+    far = widened(p).of
+    assert p.of is not None
+    assert far is not None
+    ratio = rng.uniform(far.low, p.of.low) if rng.random() < 0.5 else rng.uniform(p.of.high, far.high)
+    values = read_geometry(family.parameters, table, "")
+    length = (p.of.start(values) + ratio * p.of.span(values)) / UNITS[p.unit]
+    table[p.group].pop(p.ratio_name, None)
+    table[p.group][p.name] = float(length)
+    return table if p.low <= length <= p.high else None
+
+
+def all_beyond(family: Family, rng: np.random.Generator) -> Table | None:
+    """All lengths in mm, within the wider bounds; None if one leaves its own range."""
+    wide = replace(family, parameters=tuple(map(widened, family.parameters)))
+    table = random_geometry(wide, rng)
+    values = read_geometry(wide.parameters, table, "")
+    for p in family.parameters:
+        if p.ratio_name in table[p.group]:
+            table[p.group][p.name] = float(getattr(getattr(values, p.group), p.attribute) / UNITS[p.unit])
+            del table[p.group][p.ratio_name]
+            if not p.low <= table[p.group][p.name] <= p.high and table[p.group][p.name] != 0.0:
+                return None
+    return table
+
+
+def changes(family: Family, table: Table) -> int | None:
+    """How many lengths are changed, as refusals ask, until the machine is built; None if one asks for nothing."""
+    lengths = {(p.group, p.name): p for p in family.parameters}
+    for n in range(MOST):
+        try:
+            machine_from({"machine": {"family": family.name}, "geometry": table})
+            return n
+        except InputError as refusal:
+            asked = re.search(r"\[geometry\.(\w+)\] (\w+) = (\S+) (fits|is a beginning)$", refusal.right)
+        if asked is None:
+            return None
+        group, name, value, _ = asked.groups()
+        table[group].pop(lengths[group, name].ratio_name, None)
+        table[group][name] = float(value)
+    return None
+
+
+def beyond(family: Family, draw: Callable[[Family, np.random.Generator], Table | None], machines: int) -> Counter[Any]:
+    """How many machines need how many changes."""
+    rng, times = np.random.default_rng(24), Counter[Any]()
+    while times.total() < machines:
+        table = draw(family, rng)
+        if table is not None:
+            times[changes(family, table)] += 1
+    return times
+
+
+def refusals(family: Family, machines: int) -> dict[str, int]:
+    out = {}
+    for what, draw in (("one length beyond", one_beyond), ("all lengths wide", all_beyond)):
+        times = beyond(family, draw, machines)
+        several = [n for n in times if n is not None and n > 1]
+        values = {
+            "machines": machines, "built": times[0], "one change cures": times[1],
+            "several changes cure": sum(times[n] for n in several), "most changes": max(several, default=0),
+            "refused without advice": times[None],
+        }  # fmt: skip
+        out |= {f"{what}: {name}": n for name, n in values.items()}
+    return out
+
+
+def rows(family: Family, machines: int, sections: int, partitions: int, wide: int) -> list[dict[str, Any]]:
     refused = [r for r in (refusal(family, seed) for seed in range(machines)) if r]
     drawn = [prisms(family, seed) for seed in range(sections)]
     for what, times in Counter([*refused, *(d.fault for d in drawn if d.fault)]).most_common(9):
         print(f"    {times} x {what}", file=sys.stderr)
-    made = list(solid(family, machines, solids))
     found = {
         "machines drawn": machines, "built": machines - len(refused),
         "looked at prism by prism": len(drawn), "closed": sum(not d.fault for d in drawn),
         "within 1 % of the exact volume": sum(d.right for d in drawn), "largest error": max(d.error for d in drawn),
         "partitions made": partitions, "without gap or overlap": sum(tiled(family, seed) for seed in range(partitions)),
-        "solids built": len(made), "watertight": sum(tight for _, tight, _ in made),
-        "largest error of a solid": max((error for *_, error in made), default=0.0),
+        **refusals(family, wide),
     }  # fmt: skip
     return [{"case": family.name, "measure": measure, "unit": "1", "ours": value} for measure, value in found.items()]
 
@@ -129,16 +201,16 @@ def main() -> None:
     parser.add_argument("--machines", type=int, default=1000)
     parser.add_argument("--prisms", type=int, default=1000)
     parser.add_argument("--partitions", type=int, default=60)
-    parser.add_argument("--solids", type=int, default=20)
+    parser.add_argument("--beyond", type=int, default=2000)
     parser.add_argument("--family", choices=list(families()))
     parser.add_argument("--json", metavar="FILE")
     args = parser.parse_args()
     found = []
     for name, family in families().items():
         if args.family in (None, name):
-            found += rows(family, args.machines, args.prisms, args.partitions, args.solids)
-            for line in found[-11:]:
-                print(f"{line['case']:12} {line['measure']:32} {line['ours']:10.4g}", flush=True)
+            found += rows(family, args.machines, args.prisms, args.partitions, args.beyond)
+            for line in found[-20:]:
+                print(f"{line['case']:12} {line['measure']:44} {line['ours']:10.4g}", flush=True)
     if args.json:
         computer = f"{platform.machine()}, Python {platform.python_version()}"
         head = {"benchmark": "families", "computer": computer, "date": datetime.date.today().isoformat()}

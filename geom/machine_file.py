@@ -16,6 +16,7 @@ from geom.description.reading import read_geometry
 from geom.description.toml_file import read_toml
 from geom.errors import InputError
 from geom.families import Family, families
+from geom.families.proportions import remedy
 from geom.solids.step import import_step
 
 LARGEST_MM = 1e6  # as all lengths of a machine file
@@ -52,11 +53,13 @@ def machine_from(sections: Mapping[str, Any], where: str = "machine") -> Machine
             raise InputError(f"{section!r} is not a section", where, f"write [{section}]")
     header = sections.get("machine", {})
     family = _family(header, where)
-    values = read_geometry(family.parameters, sections.get("geometry", {}), where)
+    table = sections.get("geometry", {})
+    values = read_geometry(family.parameters, table, where)
     try:
         built = family.build(values)
     except InputError as error:
-        raise InputError(error.what, f"{where} {error.where}", error.right) from error
+        right = "; ".join(words for words in (error.right, remedy(family, table, error)) if words)
+        raise InputError(error.what, f"{where} {error.where}", right) from error
     built = _with_materials(built, sections.get("materials", {}), where)
     machine = Machine(
         name=checked_name(header.get("name", Path(where).stem), f"{where} [machine] name"),

@@ -8,6 +8,7 @@ from __future__ import annotations
 from html import escape
 
 from geom.description.machine import Machine
+from geom.text import counted
 from lumped.model.network import Network
 from validation.comparison.compare import Comparison as Compared
 from validation.diagnosis.result import Diagnosis
@@ -23,8 +24,7 @@ MOST_ROWS = 10  # rows of a cell
 def compared(c: Compared) -> str:
     """Error per sensor of every test; those beyond their uncertainty marked."""
     rows = [(t.name, t.role, s.channel, s.place, s.rmse_K, s.sigma_K, s.verdict) for t in c.tests for s in t.channels]
-    head = f"{c.case}, revision {c.revision}: rms {c.rmse_K:.2f} K; the sensors explain {c.floor_K:.2f} K"
-    return titled(head) + html.table(["test", "role", "sensor", "place", "rms (K)", "1σ (K)", "verdict"], rows)
+    return titled(c.words) + html.table(["test", "role", "sensor", "place", "rms (K)", "1σ (K)", "verdict"], rows)
 
 
 def diagnosed(d: Diagnosis) -> str:
@@ -58,7 +58,8 @@ def machine(m: Machine) -> str:
 def network(n: Network) -> str:
     """How large, and what may be calibrated."""
     rows = [(p.name, p.value, p.unit, p.prior_sd) for p in n.parameters[:MOST_ROWS]]
-    head = f"{n.name}: {len(n.states)} states, {len(n.links)} links, {len(n.sources)} sources"
+    each = (n.states, "state"), (n.links, "link"), (n.sources, "source")
+    head = f"{n.name}: {', '.join(counted(len(items), what) for items, what in each)}"
     return titled(head) + html.table(["parameter", "value", "unit", "prior sd"], rows)
 
 

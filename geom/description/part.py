@@ -56,9 +56,12 @@ class Rod:
 
 @dataclass(frozen=True)
 class CadShape:
-    """A part as it is made, where its prisms simplify it: what it starts from, and what is cut out."""
+    """A part as it is made, where its prisms simplify it: what it starts from, one body, and what is cut out.
 
-    start: tuple[Prism | Rod, ...]
+    Helices lie wholly inside the body; ports open them.
+    """
+
+    start: tuple[Prism, ...] | Rod
     cuts: tuple[Prism | Rod | Helix, ...]
 
 

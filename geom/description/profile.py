@@ -18,6 +18,7 @@ Loop = tuple[Vertex, ...]
 _CENTRED = 1e-8  # m; an arc whose centre is nearer to the axis than this is concentric with the machine
 _THIN = 0.05  # radii of one profile nearer than this share their break points
 _RADIUS_GRID = 1e-8  # m; radii are equal when they round to the same multiple
+_SAME = 1e-9  # rad; ends of arcs nearer than this are one: in files from elsewhere points that meet differ by 1e-13 m
 
 
 @dataclass(frozen=True)
@@ -108,16 +109,17 @@ class ArcGrid:
         ends: dict[int, set[float]] = defaultdict(set)
         partners: dict[int, set[int]] = defaultdict(set)
         for profile in profiles:
-            own = _arc_ends(profile)
-            for radius, angles in own.items():
+            arcs = _arc_ends(profile)
+            for radius, angles in arcs.items():
                 ends[radius] |= angles
                 if any(len(loop) > 2 for loop in profile.loops):  # a plain ring is cut alike anyway
-                    partners[radius] |= {other for other in own if other != radius and abs(other / radius - 1) < _THIN}
+                    partners[radius] |= {other for other in arcs if other != radius and abs(other / radius - 1) < _THIN}
+        breaks = {radius: _distinct(angles) for radius, angles in ends.items()}
         self._cuts: dict[int, list[float]] = {}
-        for radius in sorted(ends, key=lambda r: (-len(ends[r]), r)):
+        for radius in sorted(breaks, key=lambda r: (-len(breaks[r]), r)):
             neighbours = [cut for other in partners[radius] for cut in self._cuts.get(other, ())]
             step = min([self.step, *(_fine_step(radius, other) for other in partners[radius])])
-            self._cuts[radius] = _divided(self._merged(ends[radius], neighbours), step)
+            self._cuts[radius] = _divided(self._merged(breaks[radius], neighbours), step)
 
     def _merged(self, own: Iterable[float], others: Iterable[float]) -> list[float]:
         """All own breaks, and those of others that do not nearly coincide with one already there."""
@@ -187,6 +189,15 @@ def _arc_ends(profile: Profile) -> dict[int, set[float]]:
             if arc is not None and arc.concentric:
                 ends[_radius_key(arc.radius)].update((_wrap(arc.start), _wrap(arc.start + arc.sweep)))
     return ends
+
+
+def _distinct(angles: Iterable[float]) -> list[float]:
+    """Angles (rad) in order, of those that are one the first."""
+    out: list[float] = []
+    for angle in sorted(angles):
+        if not out or (angle - out[-1] > _SAME and out[0] + 2 * math.pi - angle > _SAME):
+            out.append(angle)
+    return out
 
 
 def _divided(breaks: list[float], step: float) -> list[float]:

@@ -75,7 +75,7 @@ class Nozzle:
 
     def _tube(self) -> CadShape:
         inside = (shapes.disc(self.wall), self.z - self.bore, self.z + self.bore)
-        return CadShape((Rod(self.angle, self.z, 0.9 * self.wall, self.tip, TUBE * self.bore),), (self.drill, inside))
+        return CadShape(Rod(self.angle, self.z, 0.9 * self.wall, self.tip, TUBE * self.bore), (self.drill, inside))
 
 
 def bored_ring(inner: float, outer: float, bored: Sequence[Nozzle]) -> list[Profile]:

@@ -3,28 +3,34 @@
 from __future__ import annotations
 
 import json
+import math
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from geom.description.identity import Identity
 from geom.description.machine import Machine
-from geom.description.part import Part
+from geom.description.part import Part, Prism
 from geom.disk_cache import atomic_write, cache_file, recalled
 from geom.drawings.palette import colour
 from geom.errors import InputError
-from geom.solids.carved import carved, prism
+from geom.solids.carved import carved
 from geom.solids.glb import write_glb
+from geom.solids.stack import stacked
 from geom.solids.step import step_sidecar
 
 if TYPE_CHECKING:
     import cadquery as cq
 
 FORMATS = ("step", "stl", "glb")
+_DIGITS = 10  # of a length (m); profiles that agree in them are equal
 
 
 def solids(part: Part, cache: Path | str | None = None) -> list[cq.Solid]:
-    """Exact solids (mm), touching prisms of the part fused into one; with ports and helices as they are made.
+    """Exact solids (mm), prisms that stand on one another made one; with ports and helices as they are made.
 
     cache : folder of solids by content of their prisms, so that only what changed is built; None for no cache
     """
@@ -43,22 +49,27 @@ def solids(part: Part, cache: Path | str | None = None) -> list[cq.Solid]:
 
 
 def _built(part: Part) -> list[cq.Solid]:
-    import cadquery as cq
-
     if part.cad_shape is not None:
         return carved(part.cad_shape)
-    prisms = [prism(profile, z0, z1) for profile, z0, z1 in part.prisms]
-    if len(_stacked(part)) == len(prisms):
-        return prisms
-    whole = prisms[0].fuse(*prisms[1:])  # clean() is slow and has made invalid solids
-    return [cq.Solid(solid.wrapped) for solid in whole.Solids()]
+    starts, ends = ({round(z, 7) for z in planes} for planes in list(zip(*part.prisms))[1:])
+    return stacked(part.prisms) if starts & ends else _single(part.prisms)
 
 
-def _stacked(part: Part) -> set[int]:
-    """Indices of prisms that touch no other prism of the part at an end plane."""
-    starts = [round(z0, 7) for _, z0, _ in part.prisms]
-    ends = [round(z1, 7) for _, _, z1 in part.prisms]
-    return {i for i, (a, b) in enumerate(zip(starts, ends)) if a not in ends and b not in starts}
+def _single(prisms: Sequence[Prism]) -> list[cq.Solid]:
+    """Prisms of which none stands on another; of equal ones around the axis one is built, the others are it, turned."""
+    import cadquery as cq
+
+    solids_of: dict[tuple[Any, ...], tuple[float, cq.Solid]] = {}
+    out = []
+    for profile, z0, z1 in prisms:
+        angle = math.atan2(profile.outer[0][1], profile.outer[0][0])
+        shape = np.concatenate([np.ravel(loop) for loop in profile.rotated(-angle).loops]).round(_DIGITS)
+        key = (*(len(loop) for loop in profile.loops), *(shape + 0.0).tolist(), z0, z1)
+        if key not in solids_of:
+            solids_of[key] = angle, stacked([(profile, z0, z1)])[0]
+        first, solid = solids_of[key]
+        out.append(solid.moved(cq.Location(cq.Vector(), cq.Vector(0, 0, 1), math.degrees(angle - first))))
+    return out
 
 
 def assembly(machine: Machine, cache: Path | str | None = None) -> cq.Assembly:

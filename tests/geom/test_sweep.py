@@ -1,13 +1,19 @@
 """Families that can be swept: any draw within the documented bounds builds, and what is not given follows what is."""
 
+import re
+from dataclasses import replace
+from itertools import count, islice
+
 import numpy as np
 import pytest
 from test_random_machines import FAMILIES, FEW, build, table_of
 
 from geom import InputError, check_cad
+from geom.description.parameters import UNITS
 from geom.description.random_geometry import random_geometry
-from geom.description.reading import usual_geometry
+from geom.description.reading import read_geometry, usual_geometry
 from geom.families import families
+from geom.families.proportions import remedy
 from geom.machine_file import machine_from
 from geom.meshing.partition import partition
 from geom.meshing.voids import filled
@@ -90,3 +96,74 @@ def test_what_is_not_given_follows_what_is():
 def test_what_cannot_be_is_refused_with_one_key(values, says):
     with pytest.raises(InputError, match=says):
         build(families()["pmsm"], values)
+
+
+def widened(p):
+    """Bounds of its ratio half as wide again."""
+    if p.of is None:
+        return p
+    more = (p.of.high - p.of.low) / 4
+    return replace(p, of=replace(p.of, low=max(p.of.low - more, p.of.low / 2), high=p.of.high + more))
+
+
+def lengths_given(family, table, which):
+    """The table with these lengths in mm; None if one leaves its own range."""
+    values = read_geometry(tuple(map(widened, family.parameters)), table, "")
+    for p in (p for p in which if p.ratio_name in table[p.group]):
+        length = float(getattr(getattr(values, p.group), p.attribute) / UNITS[p.unit])
+        if not (p.low <= length <= p.high or length == 0.0):
+            return None
+        del table[p.group][p.ratio_name]
+        table[p.group][p.name] = length
+    return table
+
+
+def refused(family, table):
+    """What the refusal asks for: group, key, value, and whether it says that this fits; None where it is built."""
+    try:
+        machine_from({"machine": {"family": family.name}, "geometry": table}, "drawn.toml")
+    except InputError as refusal:
+        return re.search(r"\[geometry\.(\w+)\] (\w+) = (\S+) (fits|is a beginning)$", refusal.right).groups()
+    return None
+
+
+def as_asked(family, table, group, key, value, _):
+    """The table with a length changed."""
+    ratio = next(p.ratio_name for p in family.parameters if (p.group, p.name) == (group, key))
+    rest = {name: old for name, old in table[group].items() if name != ratio}
+    return {**table, group: {**rest, key: float(value)}}
+
+
+@FAMILIES
+def test_one_length_out_of_proportion_is_built_or_refused_with_what_fits(family):
+    rng, times = np.random.default_rng(3), 0
+    lengths = [p for p in family.parameters if p.of is not None]
+    for _ in range(150):
+        table, p = random_geometry(family, rng), lengths[rng.integers(len(lengths))]
+        far = widened(p).of
+        table[p.group].pop(p.name, None)
+        table[p.group][p.ratio_name] = float(rng.choice([far.low, far.high]))
+        if lengths_given(family, table, [p]) and (asked := refused(family, table)):
+            times += 1
+            assert asked[-1] == "fits", table
+            assert refused(family, as_asked(family, table, *asked)) is None, table
+    assert times >= 5  # one in ten, or more
+
+
+@FAMILIES
+def test_any_lengths_out_of_proportion_end_in_a_machine_as_refusals_ask(family):
+    wide, rng, several = replace(family, parameters=tuple(map(widened, family.parameters))), np.random.default_rng(4), 0
+    tables = (lengths_given(family, random_geometry(wide, rng), family.parameters) for _ in count())
+    for table in islice(filter(None, tables), 120):
+        changes = 0
+        while asked := refused(family, table):
+            table, changes = as_asked(family, table, *asked), changes + 1
+            assert changes <= len(family.parameters), table
+            assert asked[-1] != "fits" or refused(family, table) is None, table
+        several += changes > 1
+    assert several > 0
+
+
+@FAMILIES
+def test_where_all_is_in_proportion_no_length_is_to_blame(family):
+    assert remedy(family, random_geometry(family, np.random.default_rng(5)), InputError("no room")) == ""

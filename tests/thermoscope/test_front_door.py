@@ -12,6 +12,7 @@ import thermoscope as ts
 from thermoscope.case_folder.folder import load_case
 from thermoscope.shadowing import ROOMS, hidden_by
 from validation import compare
+from validation.comparison.compare import errors
 from validation.effects import kinds
 
 HEAVY = ("numpy", "scipy", "numba", "pandas", "matplotlib", "pyvista", "skfem", "cadquery")
@@ -107,6 +108,11 @@ def test_a_comparison_shows_what_the_command_says(case, folder, capsys):
     sentence, *rows = printed(case.compare()).splitlines()
     assert sentence in told
     assert {row.split()[0] for row in rows[1:]} == set(case.tests)
+
+
+def test_errors_alone_are_not_called_within(case):
+    assert "held against no limit" in errors(case.folder.case).words
+    assert "within" not in errors(case.folder.case).words
 
 
 def test_a_step_shows_the_errors_before_and_after(better):

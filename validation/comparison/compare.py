@@ -96,9 +96,12 @@ class Comparison:
     @property
     def words(self) -> str:
         """How many sensors are over, and by how much the model is off, in a sentence."""
-        over, every = sum(t.over for t in self.tests), sum(len(t.channels) for t in self.tests)
+        verdicts = [c.verdict for t in self.tests for c in t.channels]
+        over, every = verdicts.count("over"), len(verdicts)
         effects = f" with {', '.join(self.effects)}" if self.effects else ""
         records = f"{over} of {every} sensor records are over" if over else f"all {every} sensors within"
+        if "unknown" in verdicts:
+            records = f"{every} sensor records, held against no limit"
         return (f"{self.case}, revision {self.revision}{effects}: {records}; rms {self.rmse_K:.2f} K, "
                 f"the sensors' own uncertainty explains {self.floor_K:.2f} K.")  # fmt: skip
 

@@ -31,10 +31,9 @@ def housing(o: Outlines, part: Part) -> list[Body]:
 
 def _pipe(o: Outlines, part: Part) -> list[Body] | None:
     """A port's tube, with a nut, a nozzle and a piece of hose."""
-    rods = [] if part.cad_shape is None else [start for start in part.cad_shape.start if isinstance(start, Rod)]
-    if len(rods) != 1:
+    one = None if part.cad_shape is None else part.cad_shape.start
+    if not isinstance(one, Rod):
         return None
-    one = rods[0]
     r, angle, z = one.diameter / 2, one.angle, one.z
     t = np.pi / 3 * np.arange(6)
     nut = extruded(shapely.Polygon(1.35 * r * np.stack([np.cos(t), np.sin(t)], axis=1)), 0.0, 0.8 * r, 0.08 * r)

@@ -77,3 +77,18 @@ def test_the_length_of_a_loop_counts_its_arcs():
     disc = shapes.circle_loop(0.1)
     assert loop_length(disc) == pytest.approx(2.0 * math.pi * 0.1, rel=1e-12)
     assert loop_length(shapes.rectangle(0.0, 0.3, 0.0, 0.2).outer) == pytest.approx(1.0, rel=1e-12)
+
+
+def corners(off):
+    """Of a circle on the grid of two sectors that meet, one turned by `off` (rad)."""
+    grid = ArcGrid([shapes.sector(0.1, 0.2, 0.0, 1.0), shapes.sector(0.1, 0.2, 1.0 + off, 6.0)])
+    return len(grid.facet(shapes.circle_loop(0.1)))
+
+
+@pytest.mark.parametrize("off", [3e-12, 3e-10])
+def test_ends_that_differ_by_rounding_cut_a_circle_once(off):
+    assert corners(off) == corners(0.0)
+
+
+def test_ends_that_differ_both_cut_it():
+    assert corners(1e-3) == corners(0.0) + 1

@@ -37,7 +37,7 @@ def test_a_step_shows_both_errors():
 
 def test_curves_network_and_report_show_themselves():
     assert "<svg" in comparison()._repr_html_()
-    assert "1 states" in bare_network("one", {"a": 5.0}, ("ambient",))._repr_html_()
+    assert "1 state," in bare_network("one", {"a": 5.0}, ("ambient",))._repr_html_()
     compare, diagnose = documents()
     framed = Report("road-test", comparison=compare, diagnosis=diagnose)._repr_html_()
     assert framed.startswith('<iframe title="report" srcdoc=')
