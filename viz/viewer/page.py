@@ -169,18 +169,18 @@ def _tests(tests: Sequence[Recorded], positions: Mapping[str, Sequence[float]]) 
 
 def _sensors(test: Recorded, positions: Mapping[str, Sequence[float]]) -> dict[str, Any]:
     """Sensors, their readings and those of every model at the page's instants: a column each. No place is null."""
-    shown, clock = test.comparison, np.asarray(test.comparison.test.time, float)
+    comparison, clock = test.comparison, np.asarray(test.comparison.test.time, float)
     at = np.clip(np.searchsorted(clock, test.times), 0, len(clock) - 1)
-    last = [] if test.before is None or shown.before is None else [shown.before]
-    models = [shown.model, *last, *(e.readings for e in test.earlier)]
-    places = [[float(x) for x in positions[c.name]] if c.name in positions else None for c in shown.channels]
-    known = zip(shown.channels, places, strict=True)
+    last = [] if test.before is None or comparison.before is None else [comparison.before]
+    models = [comparison.model, *last, *(e.readings for e in test.earlier)]
+    places = [[float(x) for x in positions[c.name]] if c.name in positions else None for c in comparison.channels]
+    known = zip(comparison.channels, places, strict=True)
     return {
         "sensors": [
-            {"channel": c.name, "name": short(c.name), "xyz": xyz, "limit": shown.limit_K(c)} for c, xyz in known
+            {"channel": c.name, "name": short(c.name), "xyz": xyz, "limit": comparison.limit_K(c)} for c, xyz in known
         ],
-        "measured": _columns([c.y for c in shown.channels], at),
-        "models": [_columns([of[c.name] for c in shown.channels], at) for of in models],
+        "measured": _columns([c.y for c in comparison.channels], at),
+        "models": [_columns([of[c.name] for c in comparison.channels], at) for of in models],
     }
 
 

@@ -97,7 +97,7 @@ class Viewer {
   open() {  // what is unpacked
     this.points = data.points; this.tets = data.tets;
     this.owner = Int32Array.from(data.parts.flatMap((p, k) => Array(p.nodes).fill(k)));
-    this.parts = data.parts.map((p) => ({ ...p, shown: 1 }));
+    this.parts = data.parts.map((p) => ({ ...p, opacity: 1 }));
     this.chosen = ""; this.behindOf = new Set(); this.right = 0; this.left = 1; this.time = 1; this.playing = false; this.frames = 0; this.dirty = true; this.smooth = false; this.slow = true; this.pointers = new Map();
     this.bounds();
     this.meshes();
@@ -499,10 +499,10 @@ class Viewer {
     gl.uniform3fv(s["windows[0]"], this.windows()); gl.uniform1f(s.reach, reach);
     gl.uniform1i(s.field, 0); gl.uniform1i(s.palette, 1); gl.uniform1i(s.told, 2);
     gl.uniform1f(s.wipe, this.test.states.length > 1 ? $("wipe").value / 1000 * $("gl").width : 0);
-    const solid = this.solid, shape = mode < 2 ? solid : this.through(reach), whole = mode < 2 && this.parts.every((p) => p.shown === 1);  // then nobody sees a face that another part lies on
-    for (const shown of mode ? [1] : [1, 0.5]) {
-      if (shown < 1) { this.blending(); gl.depthMask(false); }
-      gl.uniform1f(s.alpha, shown < 1 ? 0.16 : 1);
+    const solid = this.solid, shape = mode < 2 ? solid : this.through(reach), whole = mode < 2 && this.parts.every((p) => p.opacity === 1);  // then nobody sees a face that another part lies on
+    for (const opacity of mode ? [1] : [1, 0.5]) {
+      if (opacity < 1) { this.blending(); gl.depthMask(false); }
+      gl.uniform1f(s.alpha, opacity < 1 ? 0.16 : 1);
       for (const [mesh, flat] of [[solid, 0], [this.section, 1]]) {
         gl.uniform1f(s.flat_, flat);
         gl.bindVertexArray(mesh.vao);
@@ -510,7 +510,7 @@ class Viewer {
         (flat || mode === 2 ? gl.disable : gl.enable).call(gl, gl.CULL_FACE);  // parts are closed, and closed again where they are cut
         this.parts.forEach((p, k) => {
           gl.uniform1f(s.part, k);
-          if (p.shown !== shown) return;
+          if (p.opacity !== opacity) return;
           if (flat) gl.drawArrays(gl.TRIANGLES, ...mesh.spans[k]);
           else for (const spans of whole ? shape.spans.slice(0, 1) : shape.spans) gl.drawElements(gl.TRIANGLES, spans[k][1], gl.UNSIGNED_INT, 4 * spans[k][0]);
         });
@@ -600,7 +600,7 @@ class Viewer {
     gl.useProgram(this.lines.p); gl.bindVertexArray(this.outline.vao);
     gl.uniformMatrix4fv(this.lines.view, false, this.matrix());
     this.blending();
-    this.parts.forEach((p, k) => { if (p.shown) gl.drawArrays(gl.LINES, ...this.outline.spans[k]); });
+    this.parts.forEach((p, k) => { if (p.opacity) gl.drawArrays(gl.LINES, ...this.outline.spans[k]); });
     gl.disable(gl.BLEND);
   }
   pixel(sensor) {
@@ -614,7 +614,7 @@ class Viewer {
     const { triangles: t, points: p } = solid, o = this.eye, d = s.xyz.map((v, k) => v - o[k]), far = 1 - ABOVE * this.size / Math.hypot(...d);
     const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]], dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     return this.parts.some((part, k) => {
-      if (part.shown < 1) return false;
+      if (part.opacity < 1) return false;
       const [first, count] = solid.spans[0][k];
       for (let i = first; i < first + count; i += 3) {  // Moeller and Trumbore 1997
         const a = 3 * t[i], b = 3 * t[i + 1], c = 3 * t[i + 2];
@@ -779,7 +779,7 @@ function wired(v) {
   $("play").onclick = () => v.play(!v.playing);
   const words = { 1: "shown", 0.5: "ghost", 0: "hidden" }, next = { 1: 0.5, 0.5: 0, 0: 1 };
   $("parts").replaceChildren(...v.parts.map((p) => line(p.name, "shown", "", (span) => {
-    p.shown = next[p.shown]; span.textContent = words[p.shown]; again();
+    p.opacity = next[p.opacity]; span.textContent = words[p.opacity]; again();
   })));
   c.onpointerdown = (e) => { c.setPointerCapture(e.pointerId); v.pointers.set(e.pointerId, e); c.pressed = v.pointers.size > 1 ? null : e; };
   c.onpointerup = c.onpointercancel = (e) => {

@@ -113,7 +113,7 @@ def test_adding_twice_is_an_error():
 def test_comparison_document():
     case, first = stand()
     out = compare(replace(case, model=first.model)).document()
-    assert {"case", "model", "tests", "rmse_K", "floor_K", "roles"} == set(out)
+    assert {"case", "model", "tests", "rmse_K", "floor_K", "words", "roles"} == set(out)
     row = out["tests"][0]["channels"][0]
     assert {
         "channel",

@@ -18,6 +18,7 @@ from validation.inference.diagnose import infer
 from validation.inference.evidence import with_members
 from validation.inference.multifidelity import at_low_fidelity, corrected, fidelity_error
 
+pytestmark = pytest.mark.heavy
 WIND = 16.0  # W/K at 10 m/s
 OFF = 1.15  # of every joint: more than a network of half the shapes is off
 
