@@ -3,13 +3,16 @@ export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 BIN := .venv/bin
 
-.PHONY: demo test docs benchmark designs setup check lock clean
+.PHONY: demo test quick docs benchmark designs setup check lock clean
 
 demo: setup  ## the whole loop on the shipped hidden-effect case
 	@$(BIN)/thermoscope demo --out out/demo
 
 test: setup  ## every check: style, types, import contracts, tests
 	@$(BIN)/python -m pytest
+
+quick: setup  ## the tests without those marked heavy, which build machines of full size, diagnose, or start programs
+	@$(BIN)/python -m pytest -m "not heavy"
 
 docs: setup  ## the documentation as a site, in out/site
 	@$(BIN)/mkdocs build --quiet
@@ -36,7 +39,7 @@ check: setup  ## what this computer lacks, with the command that fixes it
 	@$(BIN)/thermoscope check
 
 lock: setup  ## refresh the locked dependencies from pyproject.toml
-	@$(BIN)/uv pip compile pyproject.toml --universal --generate-hashes --extra cad --extra view --extra bench --group dev --no-annotate --no-header --quiet -o requirements.lock
+	@$(BIN)/uv pip compile pyproject.toml --universal --generate-hashes --extra cad --extra view --extra bench --extra oil --group dev --no-annotate --no-header --quiet -o requirements.lock
 
 clean:
 	rm -rf out .pytest_cache .mypy_cache .ruff_cache .hypothesis dist

@@ -1,4 +1,4 @@
-"""Pictures, recording and workbench: how long one waits.
+"""Pictures, recording and curves: how long one waits.
 
     python benchmarks/rendering.py [--size-mm 10] [--segments 200] [--json FILE]
 
@@ -135,26 +135,14 @@ def recording(nodes: SplitMesh) -> list[dict[str, Any]]:
 
 
 def click(nodes: SplitMesh) -> list[dict[str, Any]]:
-    """What the workbench does when a sensor is clicked: find it, draw its curves, make them JSON, mark it."""
-    from thermoscope.workbench.view import Stage
-    from viz.data import sensors
-
-    comparison, at = hour(nodes.points)
-    stage = Stage(cut_away(nodes), (20.0, 120.0), lambda name: None)
-    seen = sensors(comparison, at)
-    stage.markers(seen, "T0")
-    stage.plotter.screenshot(return_img=True)
+    """What the workbench does on the server when a sensor is clicked: its curves as JSON."""
+    comparison = hour(nodes.points)[0]
 
     def clicked(name: str) -> None:
-        stage.at(*stage.on_screen()[name])
         json.dumps(sensor(comparison, name).to_plotly_json())
-        stage.markers(seen, name)
-        stage.plotter.render()
-        stage.plotter.screenshot(return_img=True)
 
     clicked("T1")
     walls, cpus, _ = zip(*(timed(lambda n=n: clicked(f"T{n}")) for n in range(2, 9)), strict=True)
-    stage.close()
     case = "workbench, click to curve, server side"
     return [row(case, "time", "s", float(np.median(walls))), row(case, "time, CPU", "s", float(np.median(cpus)))]
 

@@ -8,6 +8,8 @@ same mesh cut open by the same plane, with one field: it cannot play, cut or nam
 movements of the mouse, as fast as the page answers; ours is played, too. The first picture is there when the browser
 hands out a frame with colours in it, drawn to the end. A picture counts when something was drawn between two frames.
 CPU time is the browser's own count: of its script's process, and of the process that draws (here software GL).
+The second peer is the same view live: a trame server draws and sends a picture for every movement. Its bytes are those
+of pictures, its CPU time the server's, both while it is turned; a picture counts when it has come.
 """
 
 from __future__ import annotations
@@ -20,11 +22,14 @@ import json
 import os
 import platform
 import shutil
+import socket
+import subprocess
 import sys
 import tempfile
 import time
 from collections import Counter
 from collections.abc import Callable
+from contextlib import suppress
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -40,7 +45,7 @@ from validation.case import Channel, Test
 from viz import split
 from viz.data import Comparison
 from viz.rendering.nodes import SplitMesh
-from viz.viewer.page import Recorded, write_viewer
+from viz.viewer.page import Recorded, document, render
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 ARGUMENTS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
@@ -50,7 +55,9 @@ MEASURES = (
     ("a turned picture, CPU of GL", "ms"), ("pictures a second while played", "1/s"),
     ("a played picture, CPU of the script", "ms"), ("a played picture, CPU of GL", "ms"),
 )  # fmt: skip
+MACHINE = "series-dc-100kw"
 FRAMES, WAIT_S = 61, 120
+PICTURE = 2000  # bytes of a message from which it holds a picture
 COLOURED, SHARE = 40, 0.02  # between the channels of a pixel that is no grey; of the middle that has such pixels
 COUNT = """(() => {
   const gl = WebGL2RenderingContext.prototype;
@@ -80,7 +87,9 @@ def ours(nodes: SplitMesh, folder: Path) -> Path:
     channels = tuple(Channel(n, n, row, model + i - 5.0) for i, n in enumerate(at))
     test = Test("hour", "hold-out", times, {}, {"ambient": np.full(FRAMES, 20.0)}, channels)
     comparison = Comparison(test, dict.fromkeys(at, model), dict.fromkeys(at, 1.0))
-    return write_viewer(folder / "viewer.html", "motor", nodes, [Recorded(comparison, times, fields)], at)
+    page, machine = folder / "viewer.html", load_machine(MACHINE)
+    page.write_text(render(document("motor", nodes, [Recorded(comparison, times, fields)], at, machine=machine)))
+    return page
 
 
 def peer(nodes: SplitMesh, folder: Path) -> Path:
@@ -97,6 +106,90 @@ def peer(nodes: SplitMesh, folder: Path) -> Path:
     return path
 
 
+SERVED = """
+import sys, numpy as np, pyvista
+from trame.app import get_server
+from trame.ui.vuetify3 import SinglePageLayout
+from trame.widgets import vuetify3
+from trame_pyvista.ui import plotter_ui
+
+held = np.load(sys.argv[1])
+data = pyvista.PolyData.from_regular_faces(held["points"], held["triangles"])
+data.point_data["T"] = held["T"]
+p = pyvista.Plotter(off_screen=True, window_size=[1280, 800])
+p.add_mesh(data, scalars="T")
+server = get_server(client_type="vue3")
+with SinglePageLayout(server) as layout, layout.content:
+    with vuetify3.VContainer(fluid=True, classes="pa-0 fill-height"):
+        plotter_ui(p, mode="server", default_server_rendering=True)
+server.start(port=int(sys.argv[2]), open_browser=False, show_connection_info=False, exec_mode="main", timeout=0)
+"""
+LIVE = (
+    "first picture",
+    "pictures a second while turned",
+    "MB a second while turned",
+    "a turned picture, CPU of the server",
+)
+
+
+def served_live(nodes: SplitMesh, folder: Path, seconds: float) -> list[float]:
+    """What LIVE says of pyvista's own view, served and drawn by trame; turned as the others are."""
+    import pyvista
+    from playwright.sync_api import sync_playwright
+
+    grid = pyvista.UnstructuredGrid({pyvista.CellType.TETRA: nodes.tets}, nodes.points)
+    grid.point_data["T"] = warming(nodes)[1][-1]
+    cut = grid.clip("x", invert=False).extract_surface(algorithm="dataset_surface").triangulate()
+    np.savez(folder / "cut.npz", points=cut.points, triangles=cut.regular_faces, T=cut.point_data["T"])
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    server = subprocess.Popen(
+        [sys.executable, "-c", SERVED, str(folder / "cut.npz"), str(port)], stderr=subprocess.DEVNULL
+    )
+    try:
+        listening(port)
+        with sync_playwright() as engine:
+            browser = engine.chromium.launch(
+                executable_path=next(filter(None, map(shutil.which, BROWSERS))), args=ARGUMENTS
+            )
+            page, came = browser.new_page(viewport={"width": 1280, "height": 800}), []
+            page.set_default_timeout(1e3 * WAIT_S)
+            page.on("websocket", lambda line: line.on("framereceived", lambda payload: came.append(len(payload))))
+            first = first_picture(page, f"http://127.0.0.1:{port}/index.html")
+            page.mouse.move(400, 400)
+            page.mouse.down()
+            came.clear()
+            before, begin, step = cpu_of(server.pid), time.perf_counter(), 0
+            while (spent := time.perf_counter() - begin) < seconds:
+                step += 1
+                turned(page, step)
+                page.wait_for_timeout(1)  # what came is heard
+            page.mouse.up()
+            pictures = [size for size in came if size > PICTURE]
+            used = cpu_of(server.pid) - before
+            browser.close()
+    finally:
+        server.terminate()
+        server.wait()
+    return [first, len(pictures) / spent, 1e-6 * sum(pictures) / spent, 1e3 * used / max(len(pictures), 1)]
+
+
+def listening(port: int) -> None:
+    """Wait until a server answers there."""
+    for _ in range(10 * WAIT_S):
+        with suppress(OSError), socket.create_connection(("127.0.0.1", port), timeout=1):
+            return
+        time.sleep(0.1)
+    raise SystemExit(f"nothing answers at {port} after {WAIT_S} s")
+
+
+def cpu_of(pid: int) -> float:
+    """CPU seconds of a process (Linux)."""
+    fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
 def looked(file: Path, seconds: float, plays: bool) -> list[float]:
     """What MEASURES says, after the bytes; played only where the page can."""
     from playwright.sync_api import sync_playwright
@@ -108,7 +201,7 @@ def looked(file: Path, seconds: float, plays: bool) -> list[float]:
         page.set_default_timeout(1e3 * WAIT_S)
         page.add_init_script(COUNT)
         clock = browser.new_browser_cdp_session()
-        before, first = cpu(clock), first_picture(page, file)
+        before, first = cpu(clock), first_picture(page, file.as_uri())
         out = [first, sum(cpu(clock).values()) - sum(before.values())]
         page.mouse.move(400, 400)
         page.mouse.down()
@@ -121,7 +214,7 @@ def looked(file: Path, seconds: float, plays: bool) -> list[float]:
     return out
 
 
-def first_picture(page: Any, file: Path) -> float:
+def first_picture(page: Any, address: str) -> float:
     """Seconds from asking for the page until a frame of the screen has colours; later frames are not asked for."""
     screen, came = page.context.new_cdp_session(page), []
 
@@ -134,9 +227,9 @@ def first_picture(page: Any, file: Path) -> float:
     screen.on("Page.screencastFrame", frame)
     screen.send("Page.startScreencast", {"format": "jpeg", "quality": 50, "maxWidth": 640, "maxHeight": 400})
     start = time.perf_counter()
-    page.goto(file.as_uri())
+    page.goto(address)
     while not came:
-        assert time.perf_counter() - start < WAIT_S, f"{file.name} shows nothing after {WAIT_S} s"
+        assert time.perf_counter() - start < WAIT_S, f"{address} shows nothing after {WAIT_S} s"
         page.wait_for_timeout(20)
     screen.send("Page.stopScreencast")
     return came[0] - start
@@ -176,14 +269,21 @@ def cpu(clock: Any) -> Counter[str]:
 
 
 def rows(size_m: float, seconds: float) -> list[dict[str, Any]]:
-    nodes = split(build_mesh(load_machine("series-dc-100kw"), size_m))
+    nodes = split(build_mesh(load_machine(MACHINE), size_m))
     case = f"series-wound motor, {nodes.size} nodes, {len(nodes.tets)} tets, 1280 x 800, no graphics card"
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         files = [ours(nodes, folder), *([peer(nodes, folder)] if find_spec("trame_pyvista") else [])]
         found = [(file.stat().st_size / 1e6, *looked(file, seconds, file is files[0])) for file in files]
+        live = served_live(nodes, folder, seconds) if len(files) > 1 else []
     columns = [[one[i] for one in found if i < len(one)] for i in range(len(MEASURES))]
-    return [row(case, *measure, values) for measure, values in zip(MEASURES, columns, strict=True)]
+    out = [row(case, *measure, values) for measure, values in zip(MEASURES, columns, strict=True)]
+    mine = {one["measure"]: one["ours"] for one in out}
+    name = "pyvista's live trame view"
+    for measure, unit, value in zip(LIVE, ("s", "1/s", "MB/s", "ms"), live, strict=False):
+        both = {"ours": mine[measure], "ratio": mine[measure] / value} if measure in mine else {"ours": 0.0}
+        out.append({"case": case, "measure": measure, "unit": unit, **both, "peer": value, "peer_name": name})
+    return out
 
 
 def row(case: str, measure: str, unit: str, values: list[float]) -> dict[str, Any]:
@@ -210,7 +310,8 @@ def main() -> None:
         "date": datetime.date.today().isoformat(), "load": os.getloadavg()[0], "rows": found,
     }  # fmt: skip
     for one in found:
-        beside = f" peer {one['peer']:8.3g}  ratio {one['ratio']:.2g}" if "peer" in one else ""
+        beside = f" {one['peer_name']} {one['peer']:8.3g}" if "peer" in one else ""
+        beside += f"  ratio {one['ratio']:.2g}" if "ratio" in one else ""
         print(f"{one['measure']:38} {one['ours']:8.3g} {one['unit']:4}{beside}")
     if asked.json:
         asked.json.write_text(json.dumps(document, indent=1))

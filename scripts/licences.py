@@ -13,7 +13,7 @@ from packaging.requirements import Requirement
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs" / "reference" / "licences.md"
-PARTS = ("cad", "view", "bench")
+PARTS = ("cad", "view", "bench", "oil")
 # What a package's own record leaves out, from the licence file that it brings.
 UNSAID = {"CoolProp": "MIT"}
 SHORT = {  # classifiers and long names -> SPDX
@@ -80,7 +80,7 @@ def page() -> str:
         "# Licences of what comes along",
         "",
         "Written by `scripts/licences.py`. thermoscope itself is under the MIT licence. `pip install thermoscope`",
-        f"brings the core, {count['core']} packages; the parts `[cad]`, `[view]` and `[bench]` bring the others.",
+        f"brings the core, {count['core']} packages; {', '.join(f'`[{part}]`' for part in PARTS)} bring the others.",
         "Nothing in the core is under the GPL or the LGPL. What makes films (`[video]`) has an encoder under the GPL,",
         "so it is in no other part.",
         "",

@@ -31,6 +31,7 @@ EXTRAS = {
                        "trame"), "pictures, the report, the workbench"),
         Extra("bench", ("asammdf", "nptdms", "pyarrow", "SALib"),
               "recordings in TDMS, MF4 and Parquet; sensitivities of a screening"),
+        Extra("oil", ("CoolProp",), "properties of oil"),
     )
 }  # fmt: skip
 

@@ -17,6 +17,7 @@ from lumped.schemas.reader import suggestion
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.runs import named_rows
 from thermoscope.recordings.csv_file import read_csv
+from thermoscope.recordings.data_table import as_number
 from thermoscope.verification.error_budget import model_of
 from validation.rating.loss_grid import SPEED, TORQUE, loss_grid, with_losses
 from validation.rating.operation import Operation, air_boundaries, coolant_boundaries, operation
@@ -109,16 +110,13 @@ def _air(folder: Folder) -> dict[str, float]:
 
 def columns_of(file: Path) -> dict[str, np.ndarray]:
     """The columns of a loss map as numbers."""
-    import pandas as pd
-
     if not file.is_file():
         raise InputError("no such file", f"--losses {file}", "a CSV file with a row per torque and speed")
     table = read_csv(file)
     out = {}
     for name in table.columns:
-        numbers = pd.to_numeric(table[name], errors="coerce").to_numpy(float)
-        if not np.all(np.isfinite(numbers)):
-            row = int(np.argmin(np.isfinite(numbers)))
+        values = [as_number(cell) for cell in table[name]]
+        if (row := next((i for i, v in enumerate(values) if v is None or not np.isfinite(v)), None)) is not None:
             raise InputError(f"column '{name}' has no number in row {row + 2}", str(file), "numbers in every row")
-        out[str(name)] = numbers
+        out[name] = np.array(values, float)
     return out

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from lumped.integration.simulate import Record
+from lumped.model.multipliers import parameter_values
 from thermoscope.bands import along
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.runs import named_rows
@@ -83,7 +84,7 @@ def _half95(folder: Folder, op: Operation, r: Rating, of: ParameterPosterior) ->
     seen = named_rows(network, folder)[r.at]
     if r.form == "S1":
         bare = thermal(network)
-        values = {p.name: of.values.get(p.name, p.value) for p in bare.parameters}
+        values = parameter_values(bare, of.values)
         at = {n: float(u) for n, u in op.at(r.load, r.speed).items()}
         return NORMAL_95 * AtRest(of, bare).sd(values, at, op.boundaries, seen) / r.slope
     span = TIMES.get(r.form, STEADY_TIME_CONSTANTS * network.settles_s)

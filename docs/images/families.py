@@ -15,7 +15,7 @@ SHOWN = {
     "ipmsm-48s8p-jacket": "interior magnets, spiral jacket",
     "tefc-industrial-radial": "induction, radial fins",
     "series-dc-100kw-jacket-two-zigzag": "series-wound DC, two jackets",
-    "pmsm-m1": "magnets, tooth coils, on its bench",
+    "pmsm-m2": "magnets, on its bench",
 }
 COLUMNS, SIZE, CAPTION = 3, (560, 420), 40
 

@@ -24,7 +24,7 @@ def draw(case: Path, png: Path) -> None:
     wrong = sensors(Comparison(test, now.before, now.limits), folder.positions)  # type: ignore[arg-type]
     nodes = split(folder.built.mesh)  # type: ignore[union-attr]
     before, after = last.rmse_K[test.name]
-    title = f"{test.name}: measured minus modelled"
+    title = f"{test.name} at {test.time[-1] / 60:.0f} min: measured minus modelled"
     ends = temperature_range(folder, nodes)
     p = cutaway(nodes, fields(earlier, test, nodes, 1)[1][-1], sensors=wrong, title=title, limits=ends)
     words = f"found missing:\n{last.effect}\nadded: {before:.2f} K → {after:.2f} K rms"

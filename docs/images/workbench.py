@@ -7,25 +7,19 @@ Needs playwright and Chromium.
 
 from __future__ import annotations
 
-import io
 import shutil
 import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
-from contextlib import suppress
 from pathlib import Path
 
-import numpy as np
-from PIL import Image
-from playwright.sync_api import Page, TimeoutError, sync_playwright
-from scipy.ndimage import binary_dilation, center_of_mass, label
+from playwright.sync_api import Frame, Page, sync_playwright
 
 HERE = Path(__file__).resolve().parent
 LONG = 3_600_000  # ms
 OTHER = "T_flange_left_degC"  # chosen first; the model is right there
-COLD = (0, 114, 178)  # viz.colours.VERDICT["cold"]
+GL = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 
 
 class Walk:
@@ -44,7 +38,10 @@ class Walk:
         """A picture of the page's top, after the bars have fallen; the clock starts again."""
         if name != "diagnosed":
             self.page.evaluate("window.scrollTo(0, 0)")
+        self.page.mouse.move(1, 1)  # else what it points at covers the machine
         self.page.wait_for_timeout(2500)
+        self.page.wait_for_selector("#preparing", state="detached")
+        machine(self.page)
         self.page.screenshot(path=self.folder / f"workbench-{name}.png")
         self.begun = time.perf_counter()
 
@@ -67,34 +64,30 @@ class Walk:
         self.page.wait_for_function("old => document.querySelector('#revision').innerText !== old", arg=before)
 
 
-def dots(page: Page, colour: tuple[int, int, int]) -> Iterator[tuple[float, float]]:
-    """Page coordinates of the dots and rings of that colour on the machine, the largest first."""
-    box = page.locator("#machine").bounding_box()
-    assert box is not None
-    picture = np.asarray(Image.open(io.BytesIO(page.locator("#machine").screenshot())).convert("RGB")).astype(int)
-    patch, count = label(binary_dilation(np.abs(picture - colour).max(axis=2) < 40, iterations=3))
-    for i in sorted(range(1, count + 1), key=lambda i: -int((patch == i).sum())):
-        row, column = center_of_mass(patch == i)
-        yield box["x"] + column, box["y"] + row
+def machine(page: Page) -> Frame:
+    """The frame in which the browser draws, once a smooth picture stands still."""
+    frame = page.wait_for_selector("#viewer").content_frame()
+    assert frame is not None
+    while not frame.evaluate("window.viewer && viewer.smooth && !viewer.dirty"):
+        page.wait_for_timeout(100)
+    return frame
 
 
 def clicked(walk: Walk, sensor: str) -> None:
-    """Click dot after dot on the machine until that sensor is the chosen one; time the last click to its curves."""
-    chosen = "document.querySelector('#sensors .chosen').id"
+    """Click a sensor's dot on the machine; time the click to its curves."""
+    frame, box = machine(walk.page), walk.page.locator("#viewer").bounding_box()
+    assert box is not None
     walk.page.click(f"#sensor-{OTHER}")
-    walk.page.wait_for_function(f"name => {chosen} === name", arg=f"sensor-{OTHER}")
-    walk.page.wait_for_timeout(2500)  # until its dot is drawn
-    for x, y in dots(walk.page, COLD):
-        before = walk.page.evaluate(chosen)
-        walk.begun = time.perf_counter()
-        walk.page.mouse.click(x, y)
-        with suppress(TimeoutError):  # no dot, but something else of its colour
-            walk.page.wait_for_function(f"old => {chosen} !== old", arg=before, timeout=20_000)
-        if walk.page.evaluate(chosen) == f"sensor-{sensor}":
-            words = sensor.removeprefix("T_").removesuffix("_degC").replace("_", " ")
-            walk.page.wait_for_function("name => document.querySelector('#curve').innerText.includes(name)", arg=words)
-            return walk.took("click on its dot to its curves")
-    raise SystemExit(f"no dot of {sensor} was found")
+    x, y = frame.evaluate(PLACE, sensor)
+    walk.begun = time.perf_counter()
+    walk.page.mouse.click(box["x"] + x, box["y"] + y)
+    words = sensor.removeprefix("T_").removesuffix("_degC").replace("_", " ")
+    walk.page.wait_for_function("name => document.querySelector('#curve').innerText.includes(name)", arg=words)
+    walk.took("click on its dot to its curves")
+
+
+PLACE = """(channel) => viewer.pixel(viewer.sensors.find((s) => s.channel === channel))
+  .map((v) => v * $("gl").clientWidth / $("gl").width)"""
 
 
 def story(walk: Walk, address: str) -> None:
@@ -103,8 +96,9 @@ def story(walk: Walk, address: str) -> None:
     page.set_default_timeout(LONG)
     page.goto(address)
     page.wait_for_selector("#sensors .sensor")
-    page.wait_for_selector("#machine img[src^=blob], #machine canvas", state="attached")
     walk.took("open")
+    machine(page)
+    walk.took("its machine, smooth")
     if page.inner_text("#revision") == "revision 0":
         walk.tab_to("#calibrate")
         walk.step("Enter", "calibrate")
@@ -155,7 +149,7 @@ def main() -> None:
         server = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
         try:
             address = str(server.stdout.readline()).split()[1]  # type: ignore[union-attr]
-            chromium = engine.chromium.launch(executable_path=browser, args=["--no-sandbox", "--disable-gpu"])
+            chromium = engine.chromium.launch(executable_path=browser, args=GL)
             story(Walk(chromium.new_page(viewport={"width": 1280, "height": 800}), folder), address)
         finally:
             server.terminate()

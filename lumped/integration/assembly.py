@@ -167,18 +167,18 @@ def _pack(patterns: Sequence[Pattern], steady: Mask) -> Terms:
     distinct = [patterns[k] for k in np.unique(shared, return_index=True)[1]]
     rows = starts([p.row for p in distinct])
     probes = [side if p.bends else NOTHING for p in patterns for side in (p.hot, p.cold)]
-    seen = _numbered([(x.index.tobytes(), x.weights.tobytes()) for x in probes]).reshape(-1, 2)
-    looked = [probes[k] for k in np.unique(seen, return_index=True)[1]]
+    probe_of = _numbered([(x.index.tobytes(), x.weights.tobytes()) for x in probes]).reshape(-1, 2)
+    probed = [probes[k] for k in np.unique(probe_of, return_index=True)[1]]
     to = ints(first + p.to for first, p in zip(rows, distinct, strict=False))
     by_row = np.argsort(to, kind="stable")
     kind = [(c[0], not s, p.stiff, p.bends, p.heats) for c, p, s in zip(codes, patterns, steady, strict=True)]
-    width = [*np.bincount(to, minlength=rows[-1]), *(x.index.size for x in looked)]
+    width = [*np.bincount(to, minlength=rows[-1]), *(x.index.size for x in probed)]
     return Terms(
         begin=np.concatenate([[0], np.cumsum(width)]).astype(np.int64),
-        at=ints([ints(p.cols for p in distinct)[by_row], *(x.index for x in looked)]),
-        weight=floats([floats(p.vals for p in distinct)[by_row], *(x.weights for x in looked)]),
+        at=ints([ints(p.cols for p in distinct)[by_row], *(x.index for x in probed)]),
+        weight=floats([floats(p.vals for p in distinct)[by_row], *(x.weights for x in probed)]),
         row=ints(p.row for p in distinct),
-        part=np.column_stack([shared, rows[shared], rows[shared + 1], rows[-1] + seen, points[:-1], points[1:]]),
+        part=np.column_stack([shared, rows[shared], rows[shared + 1], rows[-1] + probe_of, points[:-1], points[1:]]),
         order=np.argsort(shared, kind="stable"),
         kind=np.array(kind, np.int64).reshape(-1, 5),
         par=np.array([c[1:] for c in codes], float).reshape(-1, 2),

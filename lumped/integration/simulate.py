@@ -34,7 +34,7 @@ from lumped.numerics.kernel import (
     integrate,
 )
 from lumped.numerics.stages import EULER, GAMMA, Steps, stages, work
-from lumped.numerics.steady_start import settle
+from lumped.numerics.steady_start import solve_steady_start
 from lumped.numerics.tangents import differentiate
 from lumped.numerics.terms import Forcing
 
@@ -204,7 +204,7 @@ class _Course:
     def _rest(self, forcing: Forcing) -> None:
         core, own = self.core, self.moved[1]
         scratch = self.scratch._replace(D=own.D, R=own.R)
-        if not settle(core.C, core.K0, core.terms, core.tangents, forcing.factor[0], self.both, scratch):
+        if not solve_steady_start(core.C, core.K0, core.terms, core.tangents, forcing.factor[0], self.both, scratch):
             raise self._failed(forcing)
 
     def _failed(self, forcing: Forcing) -> NoSolution:

@@ -14,7 +14,7 @@ from lumped.integration.compiled import compiled
 from lumped.integration.record import Record
 from lumped.model.network import Network, Parameter, Row
 from lumped.numerics.stages import stages, work
-from lumped.numerics.steady_start import settle
+from lumped.numerics.steady_start import solve_steady_start
 
 Array = NDArray[np.float64]
 SCREEN = 20  # temperatures that a notebook shows
@@ -60,7 +60,7 @@ def steady(
     hidden = np.array(["#" in s for s in network.states], bool)
     x0 = np.where(hidden, 0.0, ABOVE_K + (u.mean() if u.size else 20.0))
     both, scratch = stages(x0, u, core.terms), work(n, u.size, core.terms, p)
-    rests = settle(np.zeros(n), core.K0, core.terms, core.tangents, core.forcing.factor[0], both, scratch)
+    rests = solve_steady_start(np.zeros(n), core.K0, core.terms, core.tangents, core.forcing.factor[0], both, scratch)
     if not rests or np.linalg.eigvals(scratch.G[:, :n]).real.min() <= 0:
         why = "a node nothing holds, or thermal runaway"
         raise ThermoscopeError(f"{network.title} does not come to rest: {why}")

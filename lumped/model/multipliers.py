@@ -22,12 +22,17 @@ def factor(parameter: Parameter, value: float) -> tuple[float, float]:
 
 
 def values_of(network: Network, values: Mapping[str, float] | None) -> dict[str, float]:
-    """The value of every parameter: the declared one unless given."""
-    declared = {p.name: p.value for p in network.parameters}
-    unknown = sorted(set(values or {}) - set(declared))
+    """The value of every parameter: the declared one unless given. InputError for a value of no parameter."""
+    declared = {p.name for p in network.parameters}
+    unknown = sorted(set(values or {}) - declared)
     if unknown:
         raise InputError(f"unknown parameter '{unknown[0]}'", network.title, f"known: {', '.join(sorted(declared))}")
-    return {**declared, **{k: float(v) for k, v in (values or {}).items()}}
+    return parameter_values(network, values or {})
+
+
+def parameter_values(network: Network, values: Mapping[str, float]) -> dict[str, float]:
+    """The value of every parameter: the declared one unless given. Values of no parameter are left out."""
+    return {p.name: float(values.get(p.name, p.value)) for p in network.parameters}
 
 
 def _valid_targets(network: Network) -> set[str]:

@@ -164,7 +164,7 @@ def restored(T, K0, x0, U, h, a, q):
 
 
 @inner
-def taken(T, e, s, stage, a, q, h):
+def stage_outflow(T, e, s, stage, a, q, h):
     """What a stage takes out of row s by term e, times the step and without m; it linearises at the start."""
     at = min(stage, 1)
     turn = directional(T, e, q.f[0, e], slope_of(stage) * h * q.df[e], a.tau[0], a.vw[stage])

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from lumped.numerics.dense import axpy, solve_many
 from lumped.numerics.jit import entry, inner, pasted
-from lumped.numerics.stages import C21, C31, C32, EULER, GAMMA, forced, inside, restored, slope_of, taken
+from lumped.numerics.stages import C21, C31, C32, EULER, GAMMA, forced, inside, restored, slope_of, stage_outflow
 from lumped.numerics.steady_start import outside
 from lumped.numerics.terms import (
     BENDS,
@@ -20,14 +20,14 @@ from lumped.numerics.terms import (
     STIFF,
     Floats,
     Ints,
-    bend,
     clear,
+    conductance_derivative,
+    conductance_difference,
     flow,
     jacobian,
+    pattern_products,
     patterns,
-    seen,
     spread,
-    turned,
 )  # fmt: skip
 
 
@@ -53,7 +53,7 @@ def _moved(T, S, stage, a, q, h, out):
     for i in range(S.term.size):
         e, j, slope = S.term[i], S.tangent[i], S.slope[i]
         for s in range(T.part[e, ROW], T.part[e, END]):
-            out[T.row[s], j] -= slope * taken(T, e, s, stage, a, q, h)
+            out[T.row[s], j] -= slope * stage_outflow(T, e, s, stage, a, q, h)
 
 
 @inner
@@ -90,9 +90,9 @@ def _rosenbrock(T, S, C, h, curved, L, slot, B, a, q):
     for stage in range(4):
         clear(q.R[stage])
     if curved:
-        seen(T, q.D, q.V)
+        pattern_products(T, q.D, q.V)
         late = slope_of(0) * h, slope_of(1) * h, slope_of(2) * h
-        bend(T, q.f[0], q.df, late, a.tau[0], a.v[0], a.vw, gh, q.V, q.R)
+        conductance_derivative(T, q.f[0], q.df, late, a.tau[0], a.v[0], a.vw, gh, q.V, q.R)
     for stage in range(3):
         _moved(T, S, stage, a, q, h, q.R[stage])
         _heavier(S, -1.0, a.w[stage], q.R[stage])
@@ -104,8 +104,8 @@ def _rosenbrock(T, S, C, h, curved, L, slot, B, a, q):
         _less(q.D[i], R0[i])
         axpy(1.0 / GAMMA, R0[i], q.D[i])
     if curved:
-        seen(T, q.D, q.V)
-        turned(T, q.f, a.tau, a.v, gh, q.V, R3)
+        pattern_products(T, q.D, q.V)
+        conductance_difference(T, q.f, a.tau, a.v, gh, q.V, R3)
     outside(B, q.D, gh, R3)
     _heavier(S, GAMMA * C21, a.w[0], R1)
     _heavier(S, GAMMA * C31, a.w[0], R2)

@@ -263,7 +263,7 @@ def directional(T, e, f, df, tau, v_dot):
 
 
 @inner_reordered
-def _looked(T, s, D, V):
+def _probe(T, s, D, V):
     """Row s of V = what it sees of D; four at a time, so that V is written a quarter as often."""
     out, i, last = V[s], T.begin[s], T.begin[s + 1]
     for j in range(out.size):
@@ -281,7 +281,7 @@ def _looked(T, s, D, V):
 
 
 @inner
-def seen(T, D, V):
+def pattern_products(T, D, V):
     """V = P D of all acting terms that touch the matrix, and what their laws see: rows of v, a column per tangent."""
     acts, last = False, -1
     for k in range(T.order.size):
@@ -290,18 +290,18 @@ def seen(T, D, V):
             acts = True
             same = last >= 0 and T.part[e, HOT] == T.part[last, HOT] and T.part[e, COLD] == T.part[last, COLD]
             if T.kind[e, BENDS] and not same:
-                _looked(T, T.part[e, HOT], D, V)
-                _looked(T, T.part[e, COLD], D, V)
+                _probe(T, T.part[e, HOT], D, V)
+                _probe(T, T.part[e, COLD], D, V)
                 last = e
         if _ends(T, k):
             for s in range(T.part[e, ROW], T.part[e, END] if acts else T.part[e, ROW]):
-                _looked(T, s, D, V)
+                _probe(T, s, D, V)
             acts = False
 
 
 @inner
-def turned(T, f, tau, v, scale, V, out):
-    """out -= scale times how G differs between slots 1 and 0, times D.  V : of `seen`"""
+def conductance_difference(T, f, tau, v, scale, V, out):
+    """out -= scale times how G differs between slots 1 and 0, times D.  V : of `pattern_products`"""
     other = 0.0
     for k in range(T.order.size):
         e = T.order[k]
@@ -318,10 +318,10 @@ def turned(T, f, tau, v, scale, V, out):
 
 
 @inner
-def bend(T, f, df, late, tau, v, v_dot, scale, V, out):
+def conductance_derivative(T, f, df, late, tau, v, v_dot, scale, V, out):
     """out (3, n, p) -= scale times how G changes along v_dot (3, nv) and over `late` (3,) seconds, times D.
 
-    df (ne,) slopes of the factors;  V : of `seen`
+    df (ne,) slopes of the factors;  V : of `pattern_products`
     """
     t0, t1, t2 = 0.0, 0.0, 0.0
     for k in range(T.order.size):
@@ -332,7 +332,7 @@ def bend(T, f, df, late, tau, v, v_dot, scale, V, out):
             t1 += m * directional(T, e, f[e], late[1] * df[e], tau, v_dot[1])
             t2 += m * directional(T, e, f[e], late[2] * df[e], tau, v_dot[2])
             for stage in range(3 if T.kind[e, BENDS] else 0):
-                _law_turns(T, e, m, f[e], late[stage] * df[e], tau, v, v_dot[stage], V, out[stage])
+                _law_derivative(T, e, m, f[e], late[stage] * df[e], tau, v, v_dot[stage], V, out[stage])
         if _ends(T, k):
             for s in range(T.part[e, ROW], T.part[e, END]):
                 if t0 != 0.0 or t1 != 0.0 or t2 != 0.0:
@@ -341,7 +341,7 @@ def bend(T, f, df, late, tau, v, v_dot, scale, V, out):
 
 
 @inner
-def _law_turns(T, e, m, f, slope, tau, v, v_dot, V, out):
+def _law_derivative(T, e, m, f, slope, tau, v, v_dot, V, out):
     """The part of a law that follows temperature."""
     hot, cold = T.part[e, HOT], T.part[e, COLD]
     by_hot = slope * tau[e, 1] + f * (tau[e, 3] * v_dot[hot] + tau[e, 4] * v_dot[cold])

@@ -92,7 +92,7 @@ def oil(T: float) -> Fluid:
     try:
         from CoolProp.CoolProp import PropsSI
     except ImportError:
-        raise MissingDependency("the package 'CoolProp' is not installed: pip install CoolProp") from None
+        raise MissingDependency("oil needs the package CoolProp: pip install 'thermoscope[oil]'") from None
     low, high = (PropsSI(end, OIL) - ZERO_C for end in ("Tmin", "Tmax"))
     if not low <= T <= high:
         raise InputError(f"T = {T:g} degC", "oil", f"{low:g} to {high:g} degC")

@@ -26,7 +26,10 @@ from thermoscope.verification import fixed_coefficients, network_size
 ROOT = Path(__file__).resolve().parents[2]
 TINY = Recipe(tolerance=0.3, shifts=(), random_points=1, local_points=1, local_states=1, max_states=40)
 # One of each kind through `build`: two bases to stand on, a jacket, a cowl with radial fins.
-BUILT = ["cases/pmsm-bases/machine.toml", "ipmsm-48s8p-jacket", "tefc-industrial-radial"]
+BUILT = [
+    "cases/pmsm-bases/machine.toml",
+    *(pytest.param(name, marks=pytest.mark.heavy) for name in ("ipmsm-48s8p-jacket", "tefc-industrial-radial")),
+]
 FORMS = ("xlsx", "csv", "c", "json", "matlab", "fmu")
 LOOK = ("doctor", "compare", "compare --why", "simulate", "effects", "curves", "report", "render")
 DRAWN = ("picture curves", "picture residuals")

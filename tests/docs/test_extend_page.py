@@ -36,13 +36,14 @@ print(json.dumps({"parts": {p.name: p.role for p in machine.parts}, "end": run.y
 RECORDING = (
     HOUSE
     + """
-from thermoscope.recordings.formats import read_frame
+from thermoscope.recordings.formats import read_recording
 from thermoscope.importing.source import read_source
 
 file = Path(sys.argv[1]) / "bench.acme"
 np.array([[k, 10.0, 20.0 + k] for k in range(5)], "<f4").tofile(file)
-table, source = read_frame(file), read_source(file)
-print(json.dumps({"columns": list(table.columns), "last": table.iloc[-1].tolist(), "units": source.units}))
+table, source = read_recording(file), read_source(file)
+last = [table[name][-1] for name in table.columns]
+print(json.dumps({"columns": table.columns, "last": last, "units": source.units}))
 """
 )
 SENSOR = (

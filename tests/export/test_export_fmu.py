@@ -9,7 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.io import loadmat
 from small_case import small_case
-from test_export_code import CASES, SHIPPED, curved, states
+from test_export_code import curved, states
 
 from lumped.integration.simulate import initial_state, simulate
 from thermoscope.case_folder.folder import load_case
@@ -94,18 +94,6 @@ class Slave:
         self.unit.terminate()
         self.unit.freeInstance()
         return np.array(y)
-
-
-@pytest.mark.parametrize("name", SHIPPED)
-def test_every_shipped_case_runs_in_fmpy(name, tmp_path):
-    """Its shortest test, sample by sample: what `simulate` says, within 0.05 K."""
-    folder = load_case(CASES / name)
-    network, values = model_of(folder)
-    model = exported(folder, {})
-    given = sampled(record(min(folder.case.tests, key=lambda t: t.time.size), {}))
-    run, u = simulate(network, given, values, [o.row for o in model.outputs]), signals_of(model, given)
-    own = Slave(model, tmp_path, initial_state(network, given.initial), u[0]).over(given.time, u)
-    assert np.abs(own - run.y).max() < AGREES_K
 
 
 def test_stiff_steps_run_in_fmpy(tmp_path):

@@ -62,7 +62,6 @@ ALLOWED = {  # file -> what its strings are, none of them a user's name for a pa
     "thermoscope/importing/target.py": "inputs by the unit that their name says, NAME_W: a guess that is shown",
     "thermoscope/importing/words.py": "words of headers in other people's files: a guess that is shown",
     "thermoscope/importing/draft.py": "files by their own name, NAME.csv",
-    "thermoscope/importing/text.py": "endings of files",
     "thermoscope/commands/test/new.py": "options, NAME=VALUE",
     "thermoscope/case_folder/folder.py": "effects by their own name, KIND@PLACE",
     "thermoscope/recordings/formats.py": "endings of files",

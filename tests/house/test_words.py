@@ -7,7 +7,7 @@ import pytest
 
 ROOMS = ("geom", "fem", "lumped", "validation", "viz", "thermoscope")
 # How often a word is still in use; none may be added.
-REMAINING = {"taken": 1}
+REMAINING: dict[str, int] = {}
 # Participles that stand for a noun: what it is says more.
 PARTICIPLES = {
     "found",
@@ -23,11 +23,11 @@ PARTICIPLES = {
     "settled",
     "saved",
 }
-REMAINING_PARTICIPLES = {"held": 2, "seen": 1, "written": 1}
-REMAINING_PARTICIPLES_LOCALLY = {"drawn": 4, "found": 15, "given": 4, "held": 6, "known": 81, "made": 4, "own": 169,
-                                 "seen": 67, "tried": 1, "written": 2}  # fmt: skip
+REMAINING_PARTICIPLES = {"held": 1, "written": 1}
+REMAINING_PARTICIPLES_LOCALLY = {"drawn": 4, "found": 15, "given": 4, "held": 6, "known": 81, "made": 4, "own": 166,
+                                 "seen": 66, "tried": 1, "written": 2}  # fmt: skip
 # In parameters and variables.
-REMAINING_LOCALLY = {"kept": 1, "shown": 2}
+REMAINING_LOCALLY = {"kept": 1, "shown": 1}
 EVERYDAY = """apart hand asked behind beyond borrowed bridges failing gates kept lowered mixes said shown stood taken
 told tuned undisturbed wish"""  # in sentences
 

@@ -5,7 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from geom.description.identity import identity
+from geom.description.machine import Machine
+from geom.description.part import Part
 from geom.description.roles import Role
+from geom.description.shapes import disc
+from geom.description.shapes import ring as annulus
 from geom.meshing.mesh import NamedMesh
 
 RADII = np.array([0.0, 0.03, 0.09, 0.115, 0.12, 0.155, 0.20, 0.22])
@@ -61,3 +65,15 @@ def motor(segments: int = 32) -> NamedMesh:
     used, tets = np.unique(tets, return_inverse=True)
     mesh = NamedMesh(points[used], tets.reshape(-1, 4).astype(np.int64), np.repeat(region, 3), PARTS, identities=KNOWN)
     return mesh
+
+
+def machine() -> Machine:
+    """What the mesh is of: round parts of one material, which nothing says more of."""
+    prisms: dict[int, list] = {k: [] for k in range(len(PARTS))}
+    for i in range(len(RADII) - 1):
+        for level in range(len(LEVELS) - 1):
+            if (part := _part(i, level)) >= 0:
+                profile = annulus(RADII[i], RADII[i + 1]) if i else disc(RADII[1])
+                prisms[part].append((profile, LEVELS[level], LEVELS[level + 1]))
+    parts = tuple(Part(name, "steel", tuple(prisms[k])) for k, name in enumerate(PARTS))
+    return Machine("small", "", "", parts, (), {}, None, {})

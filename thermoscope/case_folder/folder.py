@@ -15,10 +15,10 @@ from lumped.model.network import Network, Parameter
 from lumped.schemas.reader import suggestion
 from thermoscope.case_folder.doctor import examined
 from thermoscope.case_folder.history import History, checked_values, load_history
+from thermoscope.case_folder.quantities import with_quantities
 from thermoscope.case_folder.recording_checks import Finding, Patient
 from thermoscope.case_folder.settings import Entry, Settings, read_settings
 from thermoscope.recordings.formats import recording
-from thermoscope.recordings.quantities import with_quantities
 from thermoscope.recordings.readings import read_test, rows_of
 from thermoscope.recordings.sheet import Sheet, load_sheet
 from thermoscope.recordings.tables import Samples, load_table

@@ -3,77 +3,77 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from thermoscope.case_folder.files import write_whole
+from thermoscope.recordings.data_table import csv_text, rows_of
 
 if TYPE_CHECKING:
-    import pandas as pd
-
     from thermoscope.case_folder.folder import Folder
     from validation.case import Test
 
+Worksheet = Mapping[str, Sequence[Any] | NDArray[Any]]  # column -> its cells
 UNREADABLE = str.maketrans("[]:*?/\\", "_______")  # what Excel forbids in the name of a worksheet
 
 
-def tables(folder: Folder) -> dict[str, pd.DataFrame]:
+def tables(folder: Folder) -> dict[str, Worksheet]:
     """Worksheet -> table: parameters, errors, and for each test its inputs and its results side by side."""
-    import pandas as pd
-
-    result = folder.compared
-    errors = [{"test": t.name, "role": t.role, **c.document()} for t in result.tests for c in t.channels]
+    errors = [{"test": t.name, "role": t.role, **c.document()} for t in folder.compared.tests for c in t.channels]
     model = folder.case.model
     parameters = [
         {"parameter": p.name, "value": model.values.get(p.name, p.value), "unit": p.unit, "prior sd": p.prior_sd,
          "source": p.source}
         for p in model.network.parameters
     ]  # fmt: skip
-    out = {"parameters": pd.DataFrame(parameters), "errors": pd.DataFrame(errors)}
+    out: dict[str, Worksheet] = {"parameters": _columns(parameters), "errors": _columns(errors)}
     for test in folder.case.tests:
         out[f"{test.name} input"] = _inputs(test)
         out[f"{test.name} results"] = _results(folder, test)
     return out
 
 
-def _inputs(test: Test) -> pd.DataFrame:
-    import pandas as pd
+def _columns(records: Sequence[Mapping[str, Any]]) -> Worksheet:
+    """Records as columns, None where one lacks a key."""
+    keys = dict.fromkeys(key for record in records for key in record)
+    return {key: [record.get(key) for record in records] for key in keys}
 
+
+def _inputs(test: Test) -> Worksheet:
     boundaries = {f"{name} (degC)": np.broadcast_to(v, test.time.shape) for name, v in test.boundaries.items()}
     inputs = {name: np.broadcast_to(v, test.time.shape) for name, v in test.inputs.items()}
-    return pd.DataFrame({"time_s": test.time, **inputs, **boundaries})
+    return {"time_s": test.time, **inputs, **boundaries}
 
 
-def _results(folder: Folder, test: Test) -> pd.DataFrame:
-    import pandas as pd
-
+def _results(folder: Folder, test: Test) -> Worksheet:
     from thermoscope.case_folder.runs import readings
 
     calculated = readings(folder.case, test)
-    columns: dict[str, Any] = {"time_s": test.time}
+    columns = {"time_s": test.time}
     for channel in test.channels:
         columns[f"{channel.name} measured (degC)"] = channel.y
         columns[f"{channel.name} calculated (degC)"] = calculated[channel.name]
-    return pd.DataFrame(columns)
+    return columns
 
 
-def write_xlsx(path: Path, content: Mapping[str, pd.DataFrame]) -> Path:
-    """One worksheet per table."""
-    import pandas as pd
+def write_xlsx(path: Path, content: Mapping[str, Worksheet]) -> Path:
+    """One worksheet per table; its header stays in sight."""
+    from openpyxl import Workbook
 
-    memory = io.BytesIO()
-    with pd.ExcelWriter(memory, engine="openpyxl") as book:
-        for name, table in content.items():
-            table.to_excel(book, sheet_name=name.translate(UNREADABLE)[:31], index=False)
+    book, memory = Workbook(write_only=True), io.BytesIO()
+    for name, table in content.items():
+        sheet = book.create_sheet(name.translate(UNREADABLE)[:31])
+        sheet.freeze_panes = "A2"
+        for row in rows_of(table):
+            sheet.append([str(cell) if isinstance(cell, float) and np.isinf(cell) else cell for cell in row])
+    book.save(memory)
     return write_whole(path, memory.getvalue())
 
 
-def write_csvs(folder: Path, content: Mapping[str, pd.DataFrame]) -> list[Path]:
+def write_csvs(folder: Path, content: Mapping[str, Worksheet]) -> list[Path]:
     """One file per table, named after it."""
-    return [
-        write_whole(folder / f"{name.replace(' ', '-')}.csv", table.to_csv(index=False))
-        for name, table in content.items()
-    ]
+    return [write_whole(folder / f"{name.replace(' ', '-')}.csv", csv_text(table)) for name, table in content.items()]

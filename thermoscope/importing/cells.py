@@ -6,6 +6,8 @@ import re
 from collections.abc import Sequence
 from datetime import date, datetime, time
 
+from thermoscope.recordings.data_table import MISSING
+
 NUMBER = re.compile(r"[-+]?(\d+([.,]\d*)?|[.,]\d+)([eE][-+]?\d+)?")
 # Digits in threes: with a decimal part, in several groups, or with a sign between them that is no decimal sign.
 GROUPED = re.compile(
@@ -16,43 +18,10 @@ ONE_GROUP = re.compile(r"[-+]?[1-9]\d{0,2}([.,])\d{3}")
 DECIMAL = re.compile(r"^[-+]?\d*([.,])\d+(?:[eE][-+]?\d+)?$")
 CLOCK = re.compile(r"\d{1,3}:\d{2}(:\d{2})?([.,]\d+)?(\s?[AaPp][Mm])?")
 DATE = re.compile(r"(\d{4}[-/.]\d{1,2}[-/.]\d{1,2}|\d{1,2}[-/.]\d{1,2}[-/.]\d{2,4})([T ].*)?")
-EMPTY = frozenset(
-    {
-        "",
-        "nan",
-        "-",
-        "--",
-        "---",
-        "n/a",
-        "na",
-        "null",
-        "none",
-        "#n/a",
-        "inf",
-        "-inf",
-        "overload",
-        "ovld",
-        "ovl",
-        "ovf",
-        "ol",
-        "over",
-        "overrange",
-        "over range",
-        "open",
-        "error",
-        "err",
-        "bad",
-        "invalid",
-        "n.a.",
-        "no data",
-        "nodata",
-        "bad input",
-        "????",
-        "***",
-        "****",
-        "*****",
-    }
-)
+EMPTY = MISSING | {
+    "-", "--", "---", "n.a.", "no data", "nodata", "inf", "-inf", "overload", "ovld", "ovl", "ovf", "ol", "over",
+    "overrange", "over range", "open", "error", "err", "bad", "bad input", "invalid", "????", "***", "****", "*****",
+}  # fmt: skip
 SWITCH = {"on": 1.0, "off": 0.0, "true": 1.0, "false": 0.0, "ein": 1.0, "aus": 0.0, "yes": 1.0, "no": 0.0,
           "an": 1.0, "running": 1.0, "stopped": 0.0}  # fmt: skip
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from datetime import date, datetime, time
+from datetime import UTC, date, datetime, time
 from typing import Any
 
 import numpy as np
@@ -13,13 +13,19 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError
 from thermoscope.importing.cells import is_clock, is_date, unit_of
-from thermoscope.importing.source import BINARY, Source
+from thermoscope.importing.source import BINARY, EPOCH, Source
 from thermoscope.recordings.formats import TIME
 from thermoscope.recordings.units import QUANTITIES
 
 Array = NDArray[np.float64]
 WORDS = frozenset({"time", "zeit", "timestamp", "date", "datum", "uhrzeit", "clock", "elapsed", "datetime",
                    "zeitstempel", "messzeit"})  # fmt: skip
+INSTANT = re.compile(
+    r"(?P<a>\d{1,2}|\d{4})(?P<sign>[-/.])(?P<b>\d{1,2})[-/.](?P<c>\d{1,2}|\d{4})"
+    r"(?:[T ,]\s*(?P<hour>\d{1,2}):(?P<minute>\d{2})(?::(?P<second>\d{2})(?:[.,:](?P<fraction>\d+))?)?)?"
+    r"(?:\s*(?P<half>[AaPp])\.?[Mm]\.?)?"
+    r"\s*(?P<zone>Z|UTC|GMT|(?P<east>[-+])(?P<hours>\d{2}):?(?P<minutes>\d{2})?)?"
+)
 DAY_S = 86400.0
 UNIX = {1e9: 1.0, 1e12: 1e-3, 1e15: 1e-6, 1e18: 1e-9}  # seconds since 1970 are 1e9 today; ms, us, ns
 SHARE = 0.9  # of the cells of a column that is a clock
@@ -106,27 +112,40 @@ def _day(cell: Any) -> str:
 
 def _instants(cells: Sequence[Any], columns: tuple[str, ...]) -> Clock:
     """Dates with times, in any zone; a day before the month where points divide them or a first number is over 12."""
-    import pandas as pd
-
     if isinstance(cells, np.ndarray) and cells.dtype.kind == "M":
-        texts = pd.Series(cells)
-        stamps = pd.to_datetime(texts, utc=True)
-        return _from_stamps(stamps, columns, "dates")
-    texts = pd.Series([None if c is None else re.sub(r"(\d),(\d)", r"\1.\2", str(c).strip()) for c in cells])
-    firsts = [int(m[1]) for c in texts if c and (m := re.match(r"(\d{1,2})[-/.]", str(c)))]
-    points = bool(texts.dropna().str.match(r"\d{1,2}\.\d{1,2}\.").all()) if len(texts.dropna()) else False
-    day_first = points or any(n > 12 for n in firsts)
-    zone = bool(texts.dropna().str.contains(r"(?:Z|UTC|GMT|[+-]\d{2}:?\d{2})$", regex=True).mean() > SHARE)
-    stamps = pd.to_datetime(texts, utc=True, errors="coerce", dayfirst=day_first, format="mixed")
-    order = "day before month, " if day_first else "month before day, " if firsts else ""
-    return _from_stamps(stamps, columns, f"dates, {order}{'with' if zone else 'without'} a zone")
+        return _since_first((cells - EPOCH) / np.timedelta64(1, "s"), columns, "dates")
+    parts = [INSTANT.fullmatch(str(c).strip()) for c in cells]
+    read = [m for m in parts if m]
+    points = bool(read) and all(m["sign"] == "." and len(m["a"]) < 4 for m in read)
+    day_first = points or any(len(m["a"]) < 4 and int(m["a"]) > 12 for m in read)
+    zone = sum(m["zone"] is not None for m in read) > SHARE * len(read)
+    seconds = np.array([np.nan if m is None else _unix(m, day_first) for m in parts])
+    named = day_first or any(len(m["a"]) < 4 for m in read)
+    order = "day before month, " if day_first else "month before day, " if named else ""
+    return _since_first(seconds, columns, f"dates, {order}{'with' if zone else 'without'} a zone")
 
 
-def _from_stamps(stamps: Any, columns: tuple[str, ...], words: str) -> Clock:
-    import pandas as pd
+def _unix(m: re.Match[str], day_first: bool) -> float:
+    """Seconds since 1970, NaN where there is no such day or time."""
+    a, b, c = int(m["a"]), int(m["b"]), int(m["c"])
+    if len(m["a"]) == 4:
+        year, month, day = a, b, c
+    else:
+        year, (month, day) = c, (b, a) if (day_first and b <= 12) or a > 12 else (a, b)
+    if len(m["c"]) == 2 and len(m["a"]) < 4:
+        year += 2000 if year < 69 else 1900  # as POSIX has it
+    hour, late = int(m["hour"] or 0), (m["half"] or "").lower()
+    hour = hour % 12 + 12 * (late == "p") if late else hour
+    try:
+        whole = datetime(year, month, day, hour, int(m["minute"] or 0), int(m["second"] or 0), tzinfo=UTC)
+    except ValueError:
+        return float("nan")
+    offset = 3600 * int(m["hours"] or 0) + 60 * int(m["minutes"] or 0)
+    return whole.timestamp() + float(f"0.{m['fraction'] or 0}") - (-offset if m["east"] == "-" else offset)
 
-    origin = pd.Timestamp(0, tz="UTC")
-    seconds = ((stamps - origin) / pd.Timedelta(seconds=1)).to_numpy(float)
+
+def _since_first(seconds: Array, columns: tuple[str, ...], words: str) -> Clock:
+    """A clock of seconds since 1970."""
     first = seconds[np.isfinite(seconds)]
     start = float(first[0]) if first.size else 0.0
     return Clock(seconds - start, start, columns, words)

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,14 +16,12 @@ from geom.errors import InputError
 from thermoscope.importing.cells import EMPTY, SWITCH, in_thousands, number, split_unit
 from thermoscope.importing.rows import layout
 from thermoscope.importing.text import text_rows
-from thermoscope.recordings.formats import READERS, TIME, guarded, read_frame
-
-if TYPE_CHECKING:
-    import pandas as pd
+from thermoscope.recordings.formats import READERS, TIME, guarded, read_recording, workbook, worksheet_rows
 
 Array = NDArray[np.float64]
 TEXT = 0.2  # share of cells that are words from which a column holds no readings
 BINARY = (".tdms", ".mf4", ".parquet", *(f".{name}" for name in READERS))
+EPOCH = np.datetime64(0, "s")  # 1970
 BOOKS = (".xlsx", ".xlsm")
 
 
@@ -68,12 +67,18 @@ def as_numbers(cells: Sequence[Any]) -> Array:
     """Numbers of cells, nan for all else; commas are points, switches 0 and 1."""
     if isinstance(cells, np.ndarray) and cells.dtype.kind in "fiub":
         return np.asarray(cells, float)
-    import pandas as pd
-
-    quick = np.array(pd.to_numeric(pd.Series(list(cells), dtype=object), errors="coerce"), float)
+    quick = np.fromiter(map(_quick, cells), float, len(cells))
     for i in np.flatnonzero(~np.isfinite(quick)):
         quick[i] = _number(cells[int(i)])
     return quick
+
+
+def _quick(cell: Any) -> float:
+    """By Python's own reader, which takes nearly all cells; it would also take 1_000."""
+    try:
+        return float("nan") if isinstance(cell, str) and "_" in cell else float(cell)
+    except (TypeError, ValueError):
+        return float("nan")
 
 
 def _number(cell: Any) -> float:
@@ -95,13 +100,11 @@ def read_source(file: Path) -> Source:
 
 def _book(file: Path) -> list[list[Any]]:
     """The rows of the worksheet with the most cells."""
-    import pandas as pd
 
     def read() -> list[list[Any]]:
-        with pd.ExcelFile(file, engine="openpyxl") as book:
-            sheets = [book.parse(name, header=None) for name in book.sheet_names]
-        largest = max(sheets, key=lambda sheet: sheet.size)
-        return [[None if pd.isna(c) else c for c in row] for row in largest.to_numpy(object).tolist()]
+        with workbook(file) as book:
+            sheets = [worksheet_rows(sheet) for sheet in book.worksheets]
+        return max(sheets, key=lambda rows: len(rows) * len(rows[0]) if rows else 0)
 
     rows: list[list[Any]] = guarded(file, "an Excel workbook", "openpyxl", read)
     return rows
@@ -124,13 +127,9 @@ def _of_rows(file: Path, rows: list[Any]) -> Source:
 
 
 def _of_frame(file: Path) -> Source:
-    table: pd.DataFrame = read_frame(file)
-    if table.index.name or table.index.dtype.kind == "M":
-        table = table.reset_index()
-    table.columns = [str(c).strip() for c in table.columns]
+    table = read_recording(file)
     units, start = _described(file)
-    columns = [table[c].to_numpy() for c in table.columns]
-    return _source(file, list(table.columns), columns, units, [], start)
+    return _source(file, table.columns, list(table.cells.values()), units, [], start)
 
 
 def _source(
@@ -184,11 +183,11 @@ def _seconds(instant: Any) -> float | None:
     """Seconds since 1970, of a datetime or a NumPy instant."""
     if instant is None:
         return None
-    import pandas as pd
-
-    stamp = pd.Timestamp(instant)
-    seconds = float(stamp.timestamp())
-    return seconds if np.isfinite(seconds) and seconds > 0 else None
+    if isinstance(instant, datetime):
+        stamp = (instant if instant.tzinfo else instant.replace(tzinfo=UTC)).timestamp()
+    else:
+        stamp = float((np.datetime64(instant) - EPOCH) / np.timedelta64(1, "s"))
+    return stamp if np.isfinite(stamp) and stamp > 0 else None
 
 
 def signature(source: Source) -> frozenset[str]:

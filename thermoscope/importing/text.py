@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import csv
-import gzip
 import io
-import zlib
 from collections.abc import Callable
 from pathlib import Path
 
 from geom.errors import InputError
 from thermoscope.importing.cells import is_reading
-from thermoscope.recordings.csv_file import CHUNK, LARGEST
+from thermoscope.recordings.csv_file import chunks
 
 DELIMITERS = ("\t", ";", ",", "|")
 SAMPLE = 400  # lines from the middle that tell the delimiter
@@ -22,22 +20,8 @@ Rows = list[list[str]]
 
 def text_rows(file: Path) -> Rows:
     """The cells of a text file, line by line."""
-    lines = decoded(_bytes(file), file).splitlines()
+    lines = decoded(b"".join(chunks(file)), file).splitlines()
     return _split(lines, delimiter(lines))
-
-
-def _bytes(file: Path) -> bytes:
-    """All of it, unpacked; nothing endless."""
-    parts: list[bytes] = []
-    try:
-        with gzip.open(file) if file.name.lower().endswith(".gz") else file.open("rb") as source:
-            while part := source.read(CHUNK):
-                parts.append(part)
-                if len(parts) * CHUNK > LARGEST:
-                    raise InputError(f"holds more than {LARGEST / 2**20:.0f} MB", str(file), "a shorter recording")
-    except (OSError, EOFError, zlib.error) as fault:
-        raise InputError(f"cannot be read: {fault}", str(file), "a whole file") from None
-    return b"".join(parts)
 
 
 def decoded(raw: bytes, file: Path) -> str:

@@ -9,19 +9,17 @@ import shutil
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
 from uuid import uuid4
 
 import numpy as np
+from numpy.typing import NDArray
 
 from geom.errors import InputError
 from thermoscope.case_folder.files import abandoned, locked, within_inputs, write_whole
 from thermoscope.importing.aligned import Recording
 from thermoscope.importing.draft import Draft, sample_of
 from thermoscope.importing.guess import Guess
-
-if TYPE_CHECKING:
-    import pandas as pd
+from thermoscope.recordings.data_table import csv_text
 
 BARE = re.compile(r"[A-Za-z0-9_-]+")
 TIME = "time_s"
@@ -72,29 +70,22 @@ def roles(count: int) -> list[str]:
 def write_test(folder: Path, draft: Draft) -> None:
     """The recordings as plain CSV, each with its own clock, and the sheet."""
     for i, record in enumerate(draft.records):
-        write_whole(folder / _file(draft, i), _csv(readings(record)))
+        write_whole(folder / _file(draft, i), csv_text(readings(record)))
     write_whole(folder / f"{draft.name}.toml", "\n".join(_sheet(draft)) + "\n")
-
-
-def _csv(table: pd.DataFrame) -> bytes:
-    """Shortest numbers that read back the same, empty cells where there is none."""
-    return table.to_csv(index=False).encode()
 
 
 def _file(draft: Draft, i: int) -> str:
     return f"{draft.name}.csv" if i == 0 else f"{draft.name}.recorder-{i + 1}.csv"
 
 
-def readings(record: Recording) -> pd.DataFrame:
+def readings(record: Recording) -> dict[str, NDArray[np.float64]]:
     """Time (s) and all columns of numbers as the file has them; rows without a time of their own are left out."""
-    import pandas as pd
-
     t = record.clock.seconds
     keep = np.flatnonzero(np.isfinite(t))
     keep = keep[np.concatenate([[True], np.diff(t[keep]) > 0])]
     columns = [g.column for g in record.guesses if g.column != TIME and record.source.is_numeric(g.column)]
     body = {c: record.source.numbers(c)[keep] for c in columns}
-    return pd.DataFrame({TIME: t[keep], **{c: np.where(np.isfinite(v), v, np.nan) for c, v in body.items()}})
+    return {TIME: t[keep], **{c: np.where(np.isfinite(v), v, np.nan) for c, v in body.items()}}
 
 
 def _sheet(draft: Draft) -> Iterator[str]:

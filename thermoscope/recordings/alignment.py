@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
+from thermoscope.recordings.data_table import Column, DataTable
 
 Array = NDArray[np.float64]
 AGREE = 0.8  # correlation below which the records do not show the same thing
+EMPTY: Mapping[str, Any] = {"f": np.nan, "M": "NaT", "m": "NaT"}  # of what kinds a column may be; others hold None
 
 
 def clock_shift(time: Array, values: Array, other_time: Array, other: Array, limit_s: float, where: str) -> float:
@@ -41,3 +46,28 @@ def _agreement(time: Array, values: Array, other_time: Array, other: Array) -> f
         return 0.0
     a, b = values[inside], np.interp(time[inside], other_time, other)
     return float(np.corrcoef(a, b)[0, 1]) if np.ptp(a) and np.ptp(b) else 0.0
+
+
+def merged(table: DataTable, time: str, others: Mapping[str, tuple[DataTable, str, float]], where: str) -> DataTable:
+    """The main table with those of other recorders beside it, on all instants (in the main clock).
+
+    others : recorder -> (table, its time column, seconds to add to its clock); columns that exist already are refused
+    """
+    clocks = {name: other[clock] + shift for name, (other, clock, shift) in others.items()}
+    instants = np.unique(np.concatenate([table[time], *clocks.values()]))
+    cells = {time: instants, **{c: _at(instants, table[time], table[c]) for c in table.columns if c != time}}
+    for name, (other, clock, _) in others.items():
+        for column in other.columns:
+            if column in cells and column != clock:
+                raise InputError(f"column '{column}' is recorded twice", f"{where} [recorders.{name}]",
+                                 "columns of other names")  # fmt: skip
+        cells |= {c: _at(instants, clocks[name], other[c]) for c in other.columns if c != clock}
+    return DataTable(cells)
+
+
+def _at(instants: Array, time: Array, column: Column) -> Column:
+    """A column on all instants, empty where it was not sampled."""
+    kind = column.dtype.kind
+    out = np.full(instants.size, EMPTY.get(kind), column.dtype if kind in EMPTY else object)
+    out[np.searchsorted(instants, time)] = column
+    return out

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from geom.errors import InputError
 from lumped.model.network import Network
 from lumped.schemas.reader import suggestion
+from thermoscope.recordings.data_table import cell
 from thermoscope.recordings.duplicates import twice
-from thermoscope.recordings.formats import cell
 from thermoscope.recordings.sheet import Column, Sheet
 from thermoscope.recordings.tables import Samples
 from thermoscope.recordings.units import QUANTITIES

@@ -5,76 +5,158 @@ from __future__ import annotations
 import csv
 import gzip
 import io
+import re
 import zlib
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
 from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
-
-if TYPE_CHECKING:
-    import pandas as pd
+from thermoscope.recordings.data_table import Column, DataTable, as_number, is_missing
 
 CHUNK, LARGEST = 2**24, 2**30  # bytes; a day of 100 channels at 1 Hz is a tenth of that
-SMALL = 2**20  # bytes; so many readings take NumPy less time than pandas needs to be loaded
 MOST_COLUMNS, MOST_LINES = 10_000, 50_000_000  # what so many bytes of readings cannot exceed
+COMMA, QUOTE, LF, CR = b',"\n\r'
+NAN = np.frombuffer(b"nan", np.uint8)
+BLOCK = 2**20  # bytes that are read at once; csv takes ten times as long for one as NumPy
 
 
-class NumberTable(dict[str, NDArray[np.float64]]):
-    """Columns of equal length that hold numbers only, NaN where that was written."""
-
-    @property
-    def columns(self) -> list[str]:
-        return list(self)
-
-    def __len__(self) -> int:
-        """Rows."""
-        return len(next(iter(self.values())))
-
-
-def read_numbers(file: Path) -> NumberTable | None:
-    """The table of a small CSV file in which every cell is a number; None for any other (read_csv reads them all)."""
-    content = _content(file)
-    if len(content) > SMALL or b'"' in content or content.strip().count(b"\n") == 0:
-        return None
-    names = [name.strip() for name in _header(file, content)]
-    _complete(file, content, names)
-    try:
-        body = np.loadtxt(io.BytesIO(content), delimiter=",", skiprows=1, ndmin=2, comments=None, encoding="utf-8")
-    except ValueError:
-        return None
-    if body.shape[1] != len(names) or len(set(names)) < len(names):
-        return None
-    return NumberTable(zip(names, np.ascontiguousarray(body.T)))
-
-
-def read_csv(file: Path) -> pd.DataFrame:
+def read_csv(file: Path) -> DataTable:
     """The table of a CSV file under its own header."""
-    import pandas as pd
-
     content = _content(file)
+    if not content.strip():
+        raise InputError("the file is empty", str(file), "a header line and rows of numbers")
     try:
-        header = _header(file, content)
-        _complete(file, content, header)
-        table = pd.read_csv(io.BytesIO(content), skipinitialspace=True, low_memory=False, index_col=False)
-    except pd.errors.EmptyDataError:
-        raise InputError("the file is empty", str(file), "a header line and rows of numbers") from None
-    except (pd.errors.ParserError, csv.Error, UnicodeError) as fault:
-        why = str(fault).rpartition("C error: ")[2]
+        header, start = _header(file, content)
+        columns = _Body(file, header).columns(content, start)
+    except (csv.Error, UnicodeError) as fault:
         right = "commas between columns, one header line, quotation marks in pairs"
-        raise InputError(f"not readable as CSV: {why}", str(file), right) from None
-    if len(header) == len(table.columns):
-        table.columns = header  # pandas would rename a second column of one name
-    return table
+        raise InputError(f"not readable as CSV: {fault}", str(file), right) from None
+    return DataTable.of(zip(header, columns, strict=True), file)
 
 
-def _header(file: Path, content: bytes) -> list[str]:
-    """The names of the columns; InputError where the first row has more values than there are names."""
+@dataclass
+class _Body:
+    """The rows under a header, read block by block; words : columns that hold words;  gaps : there are empty cells
+
+    Both are learnt from the block that NumPy's reader cannot take as it is, so that it takes those that follow.
+    """
+
+    file: Path
+    header: list[str]
+    words: set[int] = field(default_factory=set)
+    gaps: bool = False
+
+    def columns(self, content: bytes, start: int) -> list[Any]:
+        """The cells from a byte on, column by column: numbers, or all cells of a column that has a word in it."""
+        parts: list[Sequence[Any]] = []
+        for at, block in _blocks(content, start):
+            if (part := self._quick(block)) is None and (part := self._slow(block, content, at)) is None:
+                return _parsed(content[start:], len(self.header))
+            parts.append(part)
+        return [_joined([part[j] for part in parts]) for j in range(len(self.header))]
+
+    def _quick(self, block: bytes) -> Sequence[Any] | None:
+        """By NumPy's reader; None where it meets anything that is not as it was so far."""
+        plain = _plain(block) if self.gaps else block
+        return self._loaded(plain) if plain and plain.strip() else None
+
+    def _loaded(self, block: bytes) -> Sequence[Any] | None:
+        width = len(self.header)
+        kinds = np.dtype([(f"{j}", object if j in self.words else float) for j in range(width)])
+        try:
+            rows = np.loadtxt(io.BytesIO(block), kinds, comments=None, delimiter=",", ndmin=1, encoding="utf-8")
+        except ValueError:
+            return None
+        return [_numeric(rows[f"{j}"].tolist()) if j in self.words else rows[f"{j}"] for j in range(width)]
+
+    def _slow(self, block: bytes, content: bytes, at: int) -> Sequence[Any] | None:
+        """With its rows looked at one by one; None where quotation marks hold commas or line ends."""
+        if b'"' not in block:
+            _complete(self.file, block, self.header, content.count(b"\n", 0, at) + 1)
+        if (plain := _plain(block)) is None:
+            return None
+        self.gaps |= plain != block
+        if plain.strip() and (part := self._loaded(plain)) is not None:
+            return part
+        columns = _parsed(plain, len(self.header))
+        self.words |= {j for j, column in enumerate(columns) if isinstance(column, list)}
+        return columns
+
+
+def _blocks(content: bytes, start: int) -> Iterator[tuple[int, bytes]]:
+    """Whole lines, so many at once, each with the byte at which they begin."""
+    while start < len(content):
+        end = content.find(b"\n", start + BLOCK) + 1 or len(content)
+        yield start, content[start:end]
+        start = end
+
+
+def _plain(block: bytes) -> bytes | None:
+    """With nan in empty cells, which NumPy's reader does not know, and without quotation marks around cells.
+
+    None where such marks are anything else, so that commas and line ends may be within them.
+    """
+    lines = b"\n" + re.sub(rb", +", b",", block) + b"\n"
+    signs = np.frombuffer(lines.replace(b'\n""', b"\nnan"), np.uint8)  # else a line of one empty cell would be blank
+    comma, end = _limits(signs)
+    if b'"' in block:
+        mark, limit = signs == QUOTE, comma | end
+        at = np.flatnonzero(mark)
+        odd = np.cumsum(mark, dtype=np.uint8)[limit] % 2
+        if odd.any() or not (limit[at - 1] | limit[at + 1]).all():
+            return None
+        signs = signs[~mark]
+        comma, end = _limits(signs)
+    empty = np.flatnonzero((comma[:-1] & (comma | end)[1:]) | (end[:-1] & comma[1:])) + 1
+    return np.insert(signs, np.repeat(empty, 3), np.tile(NAN, empty.size))[1:-1].tobytes()
+
+
+def _limits(signs: NDArray[np.uint8]) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Where cells end at a comma, and where at the end of a line."""
+    return signs == COMMA, (signs == LF) | (signs == CR)
+
+
+def _parsed(block: bytes, width: int) -> list[Any]:
+    """Columns by csv, whose rows may be shorter than the header; blank lines are none."""
+    text = io.StringIO(block.decode("utf-8"), newline="")
+    rows = [row for row in csv.reader(text, skipinitialspace=True, strict=True) if len(row) > 1 or "".join(row).strip()]
+    if long := [row for row in rows if not all(map(is_missing, row[width:]))]:
+        raise csv.Error(f"{len(long[0])} values under {width} names")
+    return [_numeric([row[j] if j < len(row) else "" for row in rows]) for j in range(width)]
+
+
+def _numeric(cells: list[str]) -> list[str] | Column:
+    """As numbers, or as they are where one is a word."""
+    values = {cell: as_number(cell) for cell in set(cells)}
+    if None in values.values():
+        return [cell.strip() for cell in cells]
+    return np.array([values[cell] for cell in cells], float)
+
+
+def _joined(parts: Sequence[Any]) -> Any:
+    """One column of the parts of all blocks."""
+    if any(isinstance(part, list) for part in parts):
+        return [cell for part in parts for cell in part]
+    return np.concatenate(parts) if parts else np.empty(0)
+
+
+def _header(file: Path, content: bytes) -> tuple[list[str], int]:
+    """The names of the columns and the byte after them.
+
+    InputError where the first row has more values than there are names, or the file more lines than a recording.
+    """
     with io.TextIOWrapper(io.BytesIO(content), encoding="utf-8", newline="") as text:
-        header, first = [*islice(csv.reader(text, skipinitialspace=True), 2), [], []][:2]
+        reader = csv.reader(text, skipinitialspace=True)
+        header = next(reader, [])
+        lines, first = reader.line_num, next(reader, [])
+        text.seek(0)
+        start = sum(len(line.encode()) for line in islice(text, lines))
     if b"\n" not in content and b"\r" in content:
         raise InputError("its lines end with CR alone", str(file), "lines that end with LF or CR LF: save it again")
     for sign, name in ((";", "';'"), ("\t", "tabs")):
@@ -85,17 +167,18 @@ def _header(file: Path, content: bytes) -> list[str]:
     if any(cell.strip() for cell in first[len(header) :]):
         raise InputError(f"{len(first)} values under {len(header)} names", f"{file} line 2",
                          "as many as names: decimal commas become points, the header is line 1")  # fmt: skip
-    return header
-
-
-def _complete(file: Path, content: bytes, header: list[str]) -> None:
-    """A row that ends early was cut off, mostly within a number: what is left of that would be a wrong reading."""
     if content.count(b"\n") > MOST_LINES:
         raise InputError(f"has more than {MOST_LINES} lines", str(file), "a shorter recording")
-    if b'"' in content:
-        return  # commas and line breaks within quotes are no ends
+    return header, start
+
+
+def _complete(file: Path, block: bytes, header: list[str], first: int) -> None:
+    """InputError for a row that was cut off or has more cells than names: what were readings would be others.
+
+    first : line at which the block begins
+    """
     least = max((i for i, name in enumerate(header, 1) if name.strip()), default=0)
-    for number, line in enumerate(io.BytesIO(content), 1):
+    for number, line in enumerate(io.BytesIO(block), first):
         columns = line.count(b",") + 1
         if columns < least and line.strip():
             raise InputError(f"{columns} values under {least} names: the row was cut off", f"{file} line {number}",
@@ -105,24 +188,32 @@ def _complete(file: Path, content: bytes, header: list[str]) -> None:
                              "as many as names: decimal commas become points")  # fmt: skip
 
 
-def _content(file: Path) -> bytes:
-    """The whole of a CSV file, unpacked; nothing that is no UTF-8 text, and nothing too large to be a test."""
-    packed = file.name.lower().endswith(".gz")
-    parts: list[bytes] = []
+def chunks(file: Path) -> Iterator[bytes]:
+    """All of a file, unpacked, piece by piece; InputError where it is not whole, or too large to be a test."""
+    packed, size = file.name.lower().endswith(".gz"), 0
     try:
         with gzip.open(file) if packed else file.open("rb") as source:
             while part := source.read(CHUNK):
-                parts.append(part)
-                if b"\0" in part:
-                    raise InputError("holds zero bytes, so it is no text", str(file), "CSV as UTF-8 text")
-                if len(parts) * CHUNK > LARGEST:
+                size += len(part)
+                if size > LARGEST:
                     raise InputError(f"holds more than {LARGEST / 2**20:.0f} MB", str(file), "a shorter recording")
-        content = b"".join(parts).removeprefix(b"\xef\xbb\xbf")
+                yield part
+    except (OSError, EOFError, zlib.error) as fault:
+        kind = "gzip" if packed else "text"
+        raise InputError(f"not readable as {kind}: {fault}", str(file), "a whole file of that kind") from None
+
+
+def _content(file: Path) -> bytes:
+    """The whole of a CSV file; nothing that is no UTF-8 text."""
+    parts: list[bytes] = []
+    for part in chunks(file):
+        if b"\0" in part:
+            raise InputError("holds zero bytes, so it is no text", str(file), "CSV as UTF-8 text")
+        parts.append(part)
+    content = b"".join(parts).removeprefix(b"\xef\xbb\xbf")
+    try:
         content.decode("utf-8")
     except UnicodeDecodeError as fault:
         raise InputError(f"is no UTF-8 text: {fault.reason} at byte {fault.start}", str(file),
                          "CSV saved as UTF-8") from None  # fmt: skip
-    except (OSError, EOFError, zlib.error) as fault:
-        kind = "gzip" if packed else "CSV"
-        raise InputError(f"not readable as {kind}: {fault}", str(file), "a whole file of that kind") from None
     return content

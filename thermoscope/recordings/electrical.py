@@ -24,7 +24,8 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError
 from lumped.schemas.reader import Table
-from thermoscope.recordings.formats import pairs, read_frame, recording
+from thermoscope.recordings.data_table import pairs
+from thermoscope.recordings.formats import read_recording, recording
 from validation.procedure.measuring.meters import OHMMETER, VOLTMETER, Meter, Range
 from validation.procedure.measuring.propagation import PropagatedUncertainty, Reading
 from validation.procedure.measuring.readings import COPPER, NDFEB, Magnets, Saturation, Winding
@@ -57,11 +58,11 @@ class After:
     def at_switch_off(self, winding: Winding) -> Extrapolated:
         """The winding's mean (degC) when the motor was switched off."""
         file = recording(self.file)
-        table = read_frame(file, self.worksheet)
+        table = read_recording(file, self.worksheet)
         for name in (self.time, self.column):
             if name not in table.columns:
                 raise InputError(f"column '{name}' is not in {self.file.name}", self.where,
-                                 f"known: {', '.join(map(str, table.columns))}")  # fmt: skip
+                                 f"known: {', '.join(table.columns)}")  # fmt: skip
         read = pairs(table, self.time, self.column, file)
         sd = winding.reading_sd(float(np.median(read[:, 1])))
         cooling = Cooling(read[:, 0], winding.temperature(read[:, 1]), self.ambient, sd)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from geom.errors import InputError
 from lumped.schemas.bounds import bounds
 from lumped.schemas.reader import Table, excerpt, suggestion
+from thermoscope.recordings.data_table import as_number, is_missing, numbers
 
 Array = NDArray[np.float64]
 WORDS = {"on": 1.0, "off": 0.0}
@@ -62,26 +63,20 @@ def _value(word: Any, where: str) -> float:
 
 def _of_file(path: Path, name: str) -> tuple[list[float], list[float]]:
     """Instants and values of a CSV; rows without a value for this input are those of other inputs."""
-    from thermoscope.recordings.formats import numbers, read_frame, recording
+    from thermoscope.recordings.formats import read_recording, recording
 
-    table = read_frame(recording(path), least=1)
+    table = read_recording(recording(path), least=1)
     for column in ("time_s", name):
         if column not in table.columns:
-            raise InputError(
-                f"column '{column}' is not in the file", str(path), suggestion(column, map(str, table.columns))
-            )
-    rows = [
-        (t, v) for t, v in zip(numbers(table, "time_s", path), table[name], strict=True) if v == v and v is not None
-    ]
+            raise InputError(f"column '{column}' is not in the file", str(path), suggestion(column, table.columns))
+    rows = [(t, v) for t, v in zip(numbers(table, "time_s", path), table[name], strict=True) if not is_missing(v)]
     return [float(t) for t, _ in rows], [_value(_plain(v), str(path)) for _, v in rows]
 
 
 def _plain(cell: Any) -> Any:
     """A cell of a column that holds words and numbers."""
-    try:
-        return float(cell)
-    except ValueError:
-        return cell
+    number = as_number(cell)
+    return cell if number is None else number
 
 
 def _checked(at: list[float], values: list[float], where: str) -> Events:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,15 +13,12 @@ from numpy.typing import NDArray
 from geom.errors import InputError
 from lumped.schemas.bounds import COLDEST, HOTTEST
 from lumped.schemas.reader import suggestion
-from thermoscope.recordings.alignment import clock_shift
-from thermoscope.recordings.csv_file import NumberTable, read_numbers
-from thermoscope.recordings.formats import HEADER, cell, merged, numbers, read_frame, recording
+from thermoscope.recordings.alignment import clock_shift, merged
+from thermoscope.recordings.data_table import HEADER, DataTable, cell, is_switch, numbers
+from thermoscope.recordings.formats import TIME, read_recording, recording
 from thermoscope.recordings.invalid_readings import code_note, coded
 from thermoscope.recordings.sheet import Column, Recorder, Sheet
 from thermoscope.recordings.units import converted
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 Array = NDArray[np.float64]
 GAP = 3.5  # times the usual step
@@ -51,13 +48,11 @@ class Samples:
 def load_table(path: Path, sheet: Sheet) -> Samples:
     """The columns the sheet uses, checked and converted."""
     file = recording(path)
-    table = _frame(file, sheet)
+    table = _merged(file, sheet)
     for name in [*([sheet.time] if sheet.time else []), *(c.header for c in sheet.columns)]:
         if name not in table.columns:
-            here = [str(c) for c in table.columns]
-            raise InputError(
-                f"column '{name}' is not in the file", f"{file} (asked for by {sheet.where})", suggestion(name, here)
-            )
+            raise InputError(f"column '{name}' is not in the file", f"{file} (asked for by {sheet.where})",
+                             suggestion(name, table.columns))  # fmt: skip
     time = _times(table, replace(sheet, time_unit="s") if sheet.recorders else sheet, file)
     rows = _window(time, sheet, file)
     time = time[rows]
@@ -69,7 +64,7 @@ def load_table(path: Path, sheet: Sheet) -> Samples:
         if (codes := coded(raw)).any():
             notes.append(code_note(f"{file.name} column '{column.header}'", raw, codes, HEADER + rows.start))
             raw = np.where(codes, np.nan, raw)
-        if table[column.header].dtype.kind == "b" and column.quantity not in SWITCHED:
+        if is_switch(table[column.header]) and column.quantity not in SWITCHED:
             raise InputError(f"holds true and false, no {column.quantity}", f"{file} column '{column.header}'",
                              "numbers, or another column")  # fmt: skip
         values[column.name], own = _in_memory(column, raw, file)
@@ -90,65 +85,75 @@ def _in_memory(column: Column, raw: Array, file: Path) -> tuple[Array, float | N
         raise InputError(fault.what, f"{file} column '{column.header}'", fault.right) from None
 
 
-def _frame(file: Path, sheet: Sheet) -> pd.DataFrame | NumberTable:
+def _merged(file: Path, sheet: Sheet) -> DataTable:
     """The recording, and those of other recorders moved to its clock."""
-    plain = file.suffix == ".csv" and not (sheet.recorders or sheet.worksheet)
-    if plain and (table := read_numbers(file)) is not None and len(table) >= LEAST:
-        return table
-    main = read_frame(file, sheet.worksheet)
+    main = read_recording(file, sheet.worksheet)
     if not sheet.recorders:
         return main
-    time = sheet.time or "time_s"
-    main = main.assign(**{time: _times(main, sheet, file)})
+    time = sheet.time or TIME
+    main = main.with_columns(**{time: _times(main, sheet, file)})
     return merged(main, time, {name: _beside(main, time, r) for name, r in sheet.recorders.items()}, sheet.where)
 
 
-def _beside(main: pd.DataFrame, time: str, recorder: Recorder) -> tuple[pd.DataFrame, str, float]:
+def _beside(main: DataTable, time: str, recorder: Recorder) -> tuple[DataTable, str, float]:
     """Table, time column and shift (s) of a second recorder."""
     file = recording(recorder.file)
-    table, shift = read_frame(file, recorder.worksheet), recorder.shift_s
+    table, shift = read_recording(file, recorder.worksheet), recorder.shift_s
     _has(table, [recorder.time, *recorder.align[1:]], recorder.where)
     _has(main, recorder.align[:1], recorder.where)
     seconds = converted(numbers(table, recorder.time, file), "time", recorder.time_unit)
+    _rising(seconds, table[recorder.time], recorder.time, file)
     if recorder.align:
         here, there = recorder.align
-        shift = clock_shift(main[time].to_numpy(float), main[here].to_numpy(float), seconds,
-                            table[there].to_numpy(float), recorder.limit_s, recorder.where)  # fmt: skip
-        table = table.drop(columns=[there] if there == here else [])
-    return table.assign(**{recorder.time: seconds}), recorder.time, shift
+        shift = clock_shift(main[time], numbers(main, here, file), seconds, numbers(table, there, file),
+                            recorder.limit_s, recorder.where)  # fmt: skip
+        if there == here:
+            table = DataTable({name: column for name, column in table.cells.items() if name != there})
+    return table.with_columns(**{recorder.time: seconds}), recorder.time, shift
 
 
-def _has(table: pd.DataFrame, names: Sequence[str], where: str) -> None:
+def _has(table: DataTable, names: Sequence[str], where: str) -> None:
     for name in names:
         if name not in table.columns:
-            right = suggestion(name, [str(c) for c in table.columns])
-            raise InputError(f"column '{name}' is not in the file", where, right)
+            raise InputError(f"column '{name}' is not in the file", where, suggestion(name, table.columns))
 
 
-def _times(table: pd.DataFrame | NumberTable, sheet: Sheet, file: Path) -> Array:
+def _times(table: DataTable, sheet: Sheet, file: Path) -> Array:
     if not sheet.time:
-        return np.asarray(np.arange(len(table)) * sheet.period_s, float)
+        return np.arange(table.rows, dtype=np.float64) * sheet.period_s
     t = _seconds(table, sheet, file)
-    missing = np.flatnonzero(np.isnan(t))
-    if missing.size:
-        raise InputError("a time is missing", cell(file, sheet.time, int(missing[0])), "a time in every row")
-    wrong = np.flatnonzero(np.diff(t) <= 0)
-    if wrong.size:
-        row = int(wrong[0]) + 1
-        texts = [f"{w:.15g}" if isinstance(w, float) else w for w in table[sheet.time]]
-        what = "is given twice" if t[row] == t[row - 1] else f"comes after {texts[row - 1]}"
-        count = f" ({wrong.size} such rows)" if wrong.size > 1 else ""
-        raise InputError(f"time {texts[row]} {what}{count}", cell(file, sheet.time, row),
-                         "times that rise from row to row: sort the file by time and delete repeated rows")  # fmt: skip
+    _rising(t, table[sheet.time], sheet.time, file)
     return np.asarray(t - t[0], float)
 
 
-def _seconds(table: pd.DataFrame | NumberTable, sheet: Sheet, file: Path) -> Array:
+def _rising(t: Array, column: NDArray[Any], name: str, file: Path) -> None:
+    """InputError where a time (s) is missing or no later than the one before. column : as the file has them"""
+    missing = np.flatnonzero(np.isnan(t))
+    if missing.size:
+        raise InputError("a time is missing", cell(file, name, int(missing[0])), "a time in every row")
+    wrong = np.flatnonzero(np.diff(t) <= 0)
+    if wrong.size:
+        row = int(wrong[0]) + 1
+        what = "is given twice" if t[row] == t[row - 1] else f"comes after {_text(column[row - 1])}"
+        count = f" ({wrong.size} such rows)" if wrong.size > 1 else ""
+        raise InputError(f"time {_text(column[row])} {what}{count}", cell(file, name, row),
+                         "times that rise from row to row: sort the file by time and delete repeated rows")  # fmt: skip
+
+
+def _text(time: Any) -> str:
+    """A number of seconds, an instant, or a word."""
+    if isinstance(time, np.datetime64 | np.timedelta64):
+        return str(time.astype(f"{time.dtype.kind}8[us]").item())
+    return f"{time:.15g}" if isinstance(time, float) else str(time)
+
+
+def _seconds(table: DataTable, sheet: Sheet, file: Path) -> Array:
     """Of the column of times: numbers in its unit, or instants where the format has such."""
     column = table[sheet.time]
-    if not isinstance(column, np.ndarray) and column.dtype.kind in "mM":
-        since = column - column.min() if column.dtype.kind != "m" else column
-        return np.asarray(since.dt.total_seconds(), float)
+    if column.dtype.kind == "M":
+        column = column - column[0]
+    if column.dtype.kind == "m":
+        return np.asarray(column / np.timedelta64(1, "s"))
     try:
         return np.asarray(converted(numbers(table, sheet.time, file), "time", sheet.time_unit))
     except InputError as fault:

@@ -1,42 +1,45 @@
-"""What all tabs share: the open case, and the machine's surface, cut once. Nothing here changes."""
+"""What all tabs share: the open case, its first comparison, and the pages of the machines that were drawn."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from functools import cached_property
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, field, replace
 
-from geom.errors import MissingDependency
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import History
-from thermoscope.case_folder.runs import at_revision, temperature_range
+from thermoscope.case_folder.runs import at_revision
+from thermoscope.commands.show.viewer import viewer_page
 from thermoscope.console.terminal import Progress
 from thermoscope.workbench.appearance import Appearance, appearance_of
 
-if TYPE_CHECKING:
-    from viz.rendering.cut import Surface
-
-
 NO_MACHINE = "This case has a network declared by hand, so there is no machine to show."
+MOST_PAGES = 8  # pages of machines, about 1 MB each
+
+
+@dataclass
+class Machines:
+    """Pages that play a model on the machine in the browser's own GL, the last MOST_PAGES of them."""
+
+    pages: list[tuple[History, str]] = field(default_factory=list)
+
+    def find(self, history: History) -> str | None:
+        return next((page for model, page in self.pages if model == history), None)
+
+    def store(self, history: History, page: str) -> None:
+        self.pages = [*self.pages, (history, page)][-MOST_PAGES:]
 
 
 @dataclass(frozen=True)
 class Bench:
-    """folder : the case as opened;  first : its model when it was opened
-
-    surface : the machine cut open, None without geometry or without OpenGL;  why_flat : which of the two, else ""
-    """
+    """folder : the case as opened;  first : its model when it was opened;  machines : of the models that tabs showed"""
 
     folder: Folder
     first: Appearance
-    surface: Surface | None = None
-    why_flat: str = ""
+    machines: Machines = field(default_factory=Machines)
 
-    @cached_property
-    def limits(self) -> tuple[float, float]:
-        """Coldest and hottest temperature that colours show (degC), of a case with a surface."""
-        assert self.surface is not None
-        return temperature_range(self.folder, self.surface.nodes)
+    @property
+    def why_flat(self) -> str:
+        """Why there is no machine to show; empty where there is one."""
+        return NO_MACHINE if self.folder.built is None else ""
 
 
 def at(folder: Folder, history: History) -> Folder:
@@ -45,20 +48,9 @@ def at(folder: Folder, history: History) -> Folder:
 
 
 def bench(folder: Folder, tell: Progress) -> Bench:
-    """Cut the machine open, if there is one and this computer can draw it, and run the model once."""
-    surface, why_flat = _surface(folder)
+    """Run the model once on every test, and draw the machine if there is one: the first page shows it at once."""
     tell("running the model on every test")
-    return Bench(folder, appearance_of(folder, surface), surface, why_flat)
-
-
-def _surface(folder: Folder) -> tuple[Surface | None, str]:
-    if folder.built is None:
-        return None, NO_MACHINE
-    from viz import require_gl, split
-    from viz.rendering.cut import cut_away
-
-    try:
-        require_gl()
-    except MissingDependency as fault:
-        return None, str(fault)
-    return cut_away(split(folder.built.mesh)), ""
+    opened = Bench(folder, appearance_of(folder))
+    if folder.built is not None:
+        opened.machines.store(folder.history, viewer_page(folder, tell))
+    return opened

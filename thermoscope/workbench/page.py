@@ -8,22 +8,18 @@ from typing import Any
 from trame.ui.vuetify3 import VAppLayout
 from trame.widgets import client, html, plotly
 from trame.widgets import trame as extra
-from trame.widgets import vtk as vtk_widgets
 from trame.widgets import vuetify3 as v3
 
-from thermoscope.workbench.display import debounced
 from thermoscope.workbench.session import Session, started
 from validation.comparison.uncertainty import RULE
 
 KEYS = (
-    ("j", "next"), ("k", "previous"), ("d", "diagnose"), ("u", "undo"), ("r", "report"), ("left", "left"),
-    ("right", "right"), ("up", "up"), ("down", "down"), ("+", "nearer"), ("-", "farther"), ("0", "first_view"),
+    ("j", "next"), ("k", "previous"), ("d", "diagnose"), ("u", "undo"), ("r", "report"),
 )  # fmt: skip
-HINT = "Keys: j, k sensors · arrows, +, −, 0 view · d diagnose · u undo · r report · Tab and Enter everywhere"
-TURNS = {
-    "left": (15.0, 0.0, 1.0), "right": (-15.0, 0.0, 1.0), "up": (0.0, 10.0, 1.0), "down": (0.0, -10.0, 1.0),
-    "nearer": (0.0, 0.0, 1.2), "farther": (0.0, 0.0, 1 / 1.2),
-}  # fmt: skip
+BROWSER = ("drop", "machine")  # scripts of the page
+HINT = (
+    "Keys: j, k sensors · arrows, +, −, 0 view · space plays · d diagnose · u undo · r report · Tab, Enter everywhere"
+)
 
 
 def draw(session: Session) -> None:
@@ -52,7 +48,9 @@ def draw(session: Session) -> None:
 def _browser_code(session: Session) -> None:
     """What the page runs besides its templates, from this package and nowhere else."""
     code = str(files("thermoscope.workbench").joinpath("browser"))
-    session.shown.server.enable_module({"serve": {"__thermoscope": code}, "scripts": ["__thermoscope/drop.js"]})
+    session.shown.server.enable_module(
+        {"serve": {"__thermoscope": code}, "scripts": [f"__thermoscope/{name}.js" for name in BROWSER]}
+    )
 
 
 def aria(attribute: str, value: str) -> dict[str, list[str]]:
@@ -67,11 +65,10 @@ def pictured(words: str) -> dict[str, list[str]]:
 
 def _keys(session: Session) -> None:
     """Shortcuts; plain Tab and Enter work without them."""
-    turns = {name: (lambda by=by: session.shown.turn(*by)) for name, by in TURNS.items()}
     acts: dict[str, Any] = {
         "next": lambda: session.shown.next_sensor(1), "previous": lambda: session.shown.next_sensor(-1),
         "diagnose": lambda: started(session.diagnose()), "undo": lambda: started(session.undo()),
-        "report": lambda: started(session.report()), "first_view": session.shown.first_view, **turns,
+        "report": lambda: started(session.report()),
     }  # fmt: skip
     trap = extra.MouseTrap(**acts)
     for key, name in KEYS:
@@ -106,51 +103,28 @@ def _button(text: str, name: str, icon: str, act: Any, disabled: str) -> None:
 
 
 def _machine(session: Session) -> None:
+    """A frame in which the browser draws; `browser/machine.js` tells it what is chosen, and hears what is clicked."""
+    session.shown.server.controller.trigger("pick")(lambda name: session.shown.select(str(name)))
     with html.Div(classes="card machine"):
         with html.Div(classes="row"):
             v3.VSelect(
                 v_model=("test",), items=("test_names",), label="test", density="compact", hide_details=True,
                 variant="outlined", style="max-width: 14rem", id="test",
             )  # fmt: skip
-            if session.shown.stage is not None:
-                v3.VSlider(
-                    v_model=("frame",), min=0, max=("frames",), step=1, hide_details=True, density="compact",
-                    id="frame", **aria("aria-label", "instant of the test"),
-                )  # fmt: skip
-                html.Span("{{ minute }}", classes="minute")
-                for icon, name in _VIEW:
-                    act = session.shown.first_view if name == "first_view" else _turning(session, name)
-                    v3.VBtn(icon=icon, size="x-small", variant="text", click=act, **aria("aria-label", _LABEL[name]))
-            if session.bench.folder.built is not None:
-                v3.VBtn("{{ viewer ? 'Back' : 'Play' }}", id="view", size="small", variant="outlined",
-                        disabled=("busy",), click=lambda: started(session.view()),
-                        **aria(":aria-label", "viewer ? 'back to the picture' : 'turn, cut and play the machine here'"),
-                        )  # fmt: skip
-        html.Iframe(v_if=("viewer",), src=("viewer",), classes="view", id="viewer", **aria("title", "the machine"))
-        if session.shown.stage is None:
+            html.Span("the machine of revision {{ revision }} is being prepared: {{ preparing }}", v_if=("preparing",),
+                      classes="faint", id="preparing", **aria("role", "status"))  # fmt: skip
+        if session.bench.why_flat:
             html.P("{{ why_flat }}", classes="flat")
             return
-        label = "'the machine cut open, coloured by temperature: ' + test + ' at ' + minute"
-        with html.Div(v_show=("!viewer",), classes="view", id="machine", **pictured(label)):
-            view = vtk_widgets.VtkRemoteView(
-                session.shown.stage.window, ref="machine", interactive_ratio=0.6, interactive_quality=60,
-                still_quality=92,
-            )  # fmt: skip
-            session.shown.push_image = debounced(view.update)
-
-
-_VIEW = (
-    ("mdi-arrow-left", "left"), ("mdi-arrow-right", "right"), ("mdi-arrow-up", "up"), ("mdi-arrow-down", "down"),
-    ("mdi-plus", "nearer"), ("mdi-minus", "farther"), ("mdi-restore", "first_view"),
-)  # fmt: skip
-_LABEL = {
-    "left": "turn left", "right": "turn right", "up": "look from above", "down": "look from below",
-    "nearer": "nearer", "farther": "farther", "first_view": "first view",
-}  # fmt: skip
-
-
-def _turning(session: Session, name: str) -> Any:
-    return lambda: session.shown.turn(*TURNS[name])
+        chosen = [
+            ':data-test="test"',
+            ':data-sensor="sensor"',
+            ':data-dark="dark"',
+            ":title=\"'the machine: ' + test\"",
+        ]
+        html.Iframe(v_if=("viewer",), src=("viewer",), classes="view", id="viewer",
+                    raw_attrs=[*chosen, "@pick=\"trigger('pick', [$event.detail])\""])  # fmt: skip
+        html.Div(v_if=("!viewer",), classes="view waiting", **aria("aria-hidden", "true"))
 
 
 def _curve() -> None:

@@ -16,7 +16,7 @@ from thermoscope.commands.stored_diagnosis import current_diagnosis, save_diagno
 from thermoscope.workbench import revisions as ledger
 from thermoscope.workbench import steps
 from thermoscope.workbench.appearance import Appearance
-from thermoscope.workbench.application import NO_MACHINE, Bench, at
+from thermoscope.workbench.application import Bench, at
 from thermoscope.workbench.display import Display
 from thermoscope.workbench.dropped import Dropped
 from thermoscope.workbench.jobs import FailedError, Job, StoppedError
@@ -38,6 +38,7 @@ class Session:
         self.viewer_page = ""
         self._refused: Revision | None = None
         self._job: Job | None = None
+        self._drawing: Job | None = None
         self._known: list[tuple[Revision, Appearance]] = [(self.history.last, bench.first)]
 
     @property
@@ -72,7 +73,7 @@ class Session:
         if effect not in allowed.get(action, {""}):
             return
         title = f"{TITLES[action]} {effect}".strip()
-        result = await self._calculate(title, steps.stepped, self.folder, self.bench.surface, action, effect)
+        result = await self._calculate(title, steps.stepped, self.folder, action, effect)
         if result is None:
             return
         revision, document, look = result
@@ -82,7 +83,7 @@ class Session:
         with self.state:
             self.state.outcome = {
                 "good": good,
-                "text": f"{action} {effect}: {verdict}; {document['why'].replace('->', '→')}",
+                "text": f"{f'{action} {effect}'.strip()}: {verdict}; {document['why'].replace('->', '→')}",
             }
             if good:
                 self._write(self.history.and_then(revision), look)
@@ -139,28 +140,39 @@ class Session:
 
     async def make_case(self) -> None:
         """A new case of the dropped files beside this one; new tabs open it."""
-        case, bench = self.folder, self.bench
+        case = self.folder
         made = await self._calculate(
-            "Writing the case", steps.new_case, self.dropped, case.settings, case.case.model.network, bench.surface
+            "Writing the case", steps.new_case, self.dropped, case.settings, case.case.model.network
         )
         if made is not None:
             folder, look = made
-            drawn = (bench.surface, bench.why_flat) if folder.built is not None else (None, NO_MACHINE)
-            self.turn_to(Bench(folder, look, *drawn))
+            self.turn_to(Bench(folder, look))
             with self.state:
                 self.state.drop, self.state.made = None, str(folder.settings.path)
 
-    async def view(self) -> None:
-        """The model on the machine in the browser's own GL, instead of the pictures from here; then back again."""
-        if self.state.viewer:
-            with self.state:
-                self.state.viewer = ""
+    async def machine(self) -> None:
+        """The model on the machine, for the browser to draw: made beside whatever else is calculated."""
+        if self.bench.folder.built is None:
             return
-        page = await self._calculate("Preparing the machine", steps.viewed, self.folder)
-        if page is not None:
+        history, page = self.history, self.bench.machines.find(self.history)
+        if self._drawing is not None:
+            self._drawing.stop()
+        if page is None:
+            self._drawing = Job(steps.viewed, self.folder)
+            try:
+                page = await self._drawing.run(self._preparing)
+            except StoppedError:
+                return  # another model was to be drawn
+            except FailedError as fault:
+                self._complain(str(fault))
+                return
+            finally:
+                self._preparing("")
+            self.bench.machines.store(history, page)
+        if history == self.history:
             self.viewer_page = page
             with self.state:
-                self.state.viewer = f"viewer.html?{time.time_ns()}"
+                self.state.viewer = f"viewer.html?{time.time_ns()}#bench"
 
     def paper(self) -> None:
         """From light to dark and back."""
@@ -173,8 +185,8 @@ class Session:
 
     def close(self) -> None:
         self.stop()
-        if self.shown.stage is not None:
-            self.shown.stage.close()
+        if self._drawing is not None:
+            self._drawing.stop()
 
     def _write(self, new: History, look: Appearance | None = None) -> bool:
         """To model.toml, unless somebody else has written there; then show it."""
@@ -193,7 +205,7 @@ class Session:
         look = next((look for r, look in self._known if ledger.same(r, history.last)), None)
         if look is None:
             folder = at(self.bench.folder, history)
-            look = await self._calculate("Running the model", steps.appearance, folder, self.bench.surface)
+            look = await self._calculate("Running the model", steps.appearance, folder)
         if look is not None:
             with self.state:
                 self.state.error, self.history = "", history
@@ -205,6 +217,7 @@ class Session:
         self.shown.model(self.history, look)
         self.diagnosis = current_diagnosis(self.folder)
         self.shown.show_candidates(self.diagnosis)
+        started(self.machine())
 
     async def _calculate(self, title: str, work: Callable[..., Any], *arguments: Any) -> Any:
         """The result of a process of its own; None when it failed, was stopped, or another one is running."""
@@ -227,6 +240,10 @@ class Session:
     def _tell(self, title: str, message: str) -> None:
         with self.state:
             self.state.job = {"title": title, "message": message, "percent": share(message)}
+
+    def _preparing(self, message: str) -> None:
+        with self.state:
+            self.state.preparing = message
 
     def _complain(self, message: str) -> None:
         with self.state:

@@ -16,13 +16,12 @@ if TYPE_CHECKING:
     from lumped.model.network import Network
     from thermoscope.case_folder.settings import Settings
     from thermoscope.workbench.dropped import Dropped
-    from viz.rendering.cut import Surface
 
 
-def appearance(folder: Folder, surface: Surface | None, tell: Progress) -> Appearance:
+def appearance(folder: Folder, tell: Progress) -> Appearance:
     """The model as it stands."""
     tell("running the model on every test")
-    return appearance_of(folder, surface)
+    return appearance_of(folder)
 
 
 def searched(folder: Folder, tell: Progress) -> Mapping[str, Any]:
@@ -33,9 +32,7 @@ def searched(folder: Folder, tell: Progress) -> Mapping[str, Any]:
     return {"case": folder.case.name, "revision": folder.case.model.revision, **diagnosis.document()}
 
 
-def stepped(
-    folder: Folder, surface: Surface | None, action: str, effect: str, tell: Progress
-) -> tuple[Revision, Mapping[str, Any], Appearance]:
+def stepped(folder: Folder, action: str, effect: str, tell: Progress) -> tuple[Revision, Mapping[str, Any], Appearance]:
     """Add or remove an effect, or calibrate: the step as model.toml keeps it, its document, the model after it."""
     from thermoscope.commands.model.revise import evidence, recorded
     from validation.revision import revise
@@ -46,7 +43,7 @@ def stepped(
         result = {"add": revise.add, "remove": revise.remove}[action](folder.case, effect, progress=tell)
     revision = recorded(result, evidence(folder, result))
     after = at(folder, folder.history.and_then(revision))
-    return revision, result.document(), appearance(after, surface, tell)
+    return revision, result.document(), appearance(after, tell)
 
 
 def recordings(files: Sequence[Path], network: Network, tell: Progress) -> Dropped:
@@ -56,15 +53,13 @@ def recordings(files: Sequence[Path], network: Network, tell: Progress) -> Dropp
     return read(files, network, tell)
 
 
-def new_case(
-    dropped: Dropped, settings: Settings, network: Network, surface: Surface | None, tell: Progress
-) -> tuple[Folder, Appearance]:
+def new_case(dropped: Dropped, settings: Settings, network: Network, tell: Progress) -> tuple[Folder, Appearance]:
     """A new case of dropped files, opened, and its first comparison."""
     from thermoscope.case_folder.folder import load_case
     from thermoscope.workbench.dropped import write
 
     folder = load_case(write(dropped, settings, network, tell), tell)
-    return folder, appearance(folder, None if folder.built is None else surface, tell)
+    return folder, appearance(folder, tell)
 
 
 def viewed(folder: Folder, tell: Progress) -> str:

@@ -7,7 +7,7 @@ from typing import Any
 
 from thermoscope.case_folder.history import History
 from thermoscope.workbench.appearance import Appearance
-from viz.data import Sensor, sensors, short
+from viz.data import sensors, short
 from viz.figures.candidates import amplitude
 from viz.pages.next_tests import deciding
 from viz.pages.words import verdict
@@ -39,11 +39,6 @@ def channels(look: Appearance, test: str, scale: float) -> list[Row]:
         }
         for c in look.test(test)["channels"]
     ]  # fmt: skip
-
-
-def placed(look: Appearance, test: str, positions: Mapping[str, tuple[float, ...]]) -> tuple[Sensor, ...]:
-    """The sensors of a test that have a position on the machine."""
-    return sensors(look.curves[test], positions)
 
 
 def worst(look: Appearance) -> tuple[str, str]:

@@ -31,13 +31,10 @@ class Tab:
         from trame.app import get_server
 
         from thermoscope.workbench.page import draw
-        from thermoscope.workbench.view import Stage
 
         self.name, self.connected, self.left = name, 0, time.monotonic()
         server: Any = get_server(name, client_type="vue3")
         self.session = Session(bench, server, turn_to)
-        if bench.surface is not None:
-            self.session.shown.stage = Stage(bench.surface, bench.limits, self._picked)
         draw(self.session)
         self._server, self._task = server, server.start(
             backend="generic", exec_mode="task", show_connection_info=False, open_browser=False, timeout=0,
@@ -45,10 +42,6 @@ class Tab:
         )  # fmt: skip
         self.session.open()
         self.folders = {"": Path(server._www), **{k: Path(v) for k, v in server.serve.items()}}
-
-    def _picked(self, sensor: str) -> None:
-        with self.session.state:
-            self.session.shown.select(sensor)
 
     async def talk(self, socket: web.WebSocketResponse) -> None:
         """Carry messages between a browser and the session until it leaves."""
@@ -70,12 +63,9 @@ class Tab:
             await self._server._server["ws"].disconnect(link)
 
     async def close(self) -> None:
-        from trame_vtk.modules.vtk import HELPERS_PER_SERVER
-
         self.session.close()
         await self._server.stop()
         await asyncio.gather(self._task, return_exceptions=True)
-        HELPERS_PER_SERVER.pop(self.name, None)
 
 
 class Tabs:

@@ -21,6 +21,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from lumped.model.multipliers import parameter_values
 from lumped.model.network import Network, Parameter, Row
 from validation.calibration.calibrate import CachedSegments, Fit, minimise, with_model_error
 from validation.calibration.unknowns import working
@@ -89,7 +90,7 @@ def silent(message: str) -> None:
 def parameter_posterior(case: Case, progress: Progress = silent) -> ParameterPosterior:
     """Of the model as it stands: on the tests that it was fitted to; before any calibration the priors alone."""
     network, unknowns = working(case)
-    values = {p.name: case.model.values.get(p.name, p.value) for p in network.parameters}
+    values = parameter_values(network, case.model.values)
     roles = ("calibrate", "validate") if case.model.effects else ("calibrate",)
     tests = [t for t in case.tests if t.role in roles] if case.model.revision else []
     grown, doubts = with_doubts(network, case.doubt, tests or case.tests)

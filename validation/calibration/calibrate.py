@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import NoSolution
+from lumped.model.multipliers import parameter_values
 from lumped.model.network import Network
 from validation.calibration.unknowns import Unknowns
 from validation.case import Test
@@ -382,7 +383,7 @@ def calibrated(
 
     Only the last needs a Jacobian of its own end; `rough`: nor does that, since another fit goes on from there.
     """
-    fixed = {p.name: values.get(p.name, p.value) for p in network.parameters}
+    fixed = parameter_values(network, values)
     fit = minimise(network, tests, unknowns, unknowns.coordinates(values), noise, fixed, progress=progress, keep=keep,
                    draft=rough or rounds > 0, worth=ROUGH if rounds else WORTH)  # fmt: skip
     for i in range(rounds):

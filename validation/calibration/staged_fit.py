@@ -9,6 +9,7 @@ from fnmatch import fnmatchcase
 import numpy as np
 
 from geom.errors import InputError
+from lumped.model.multipliers import parameter_values
 from lumped.model.network import Network, Parameter
 from validation.calibration.calibrate import Fit, Keep, Progress, calibrated, minimise, no_memory, no_progress
 from validation.calibration.unknowns import Unknowns, working
@@ -102,7 +103,7 @@ def best_start(
     progress: Progress,
 ) -> dict[str, float]:  # fmt: skip
     """Rough fits from several points of the prior; the values of the best."""
-    rng, fixed = np.random.default_rng(search.seed), {p.name: values.get(p.name, p.value) for p in network.parameters}
+    rng, fixed = np.random.default_rng(search.seed), parameter_values(network, values)
     first = unknowns.coordinates(values)
     points = [first, *(unknowns.sd * rng.standard_normal(first.size) for _ in range(search.starts - 1))]
     fits = [minimise(network, tests, unknowns, x, fixed=fixed, draft=True, progress=progress) for x in points]

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import logsumexp
 
+from lumped.model.multipliers import parameter_values
 from validation.case import Test
 from validation.comparison.linearisation import Segment, segments
 from validation.conditions.windows import ways
@@ -158,7 +159,7 @@ def columns(evidence: Evidence, effects: Sequence[Effect], base_values: Values) 
     fit, p = evidence.fit, evidence.p
     network = extended(fit.network, effects)
     own = network.parameters[-len(effects) :]
-    values = {**{q.name: base_values.get(q.name, q.value) for q in network.parameters}, **fit.values}
+    values = {**parameter_values(network, base_values), **fit.values}
     parts = segments(network, [t for t in evidence.tests if any(acts_in(e, t) for e in effects)], values, own)
     new = {(s.test, s.channel): s.J for s in parts}
     return [

@@ -12,6 +12,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from lumped.model.multipliers import parameter_values
 from validation.calibration.calibrate import Fit
 from validation.case import Test
 from validation.comparison.linearisation import segments
@@ -121,7 +122,7 @@ def steps(fit: Fit, base: Effect, test: Test, at: Array) -> tuple[Array, Array]:
     effects = [During.of(base, Event.of({test.name: [(t, last)]}).name) for t in instants]
     network = extended(fit.network, effects)
     own = network.parameters[-len(effects) :]
-    values = {**{q.name: fit.values.get(q.name, q.value) for q in network.parameters}, **fit.values}
+    values = {**parameter_values(network, fit.values), **fit.values}
     new = {(s.test, s.channel): s.J for s in segments(network, [test], values, own)}
     parts = [replace(s, J=np.column_stack([s.J, new.get((s.test, s.channel), np.zeros((s.r.size, len(own))))]))
              for s in fit.parts]  # fmt: skip

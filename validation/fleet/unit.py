@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from lumped.model.multipliers import parameter_values
 from lumped.model.network import Network, Parameter
 from validation.calibration.calibrate import minimise
 from validation.calibration.unknowns import to_coordinate, working
@@ -64,7 +65,7 @@ def statistics(case: Case, test: Test) -> Statistics:
     one = replace(case, tests=(replace(test, role="calibrate"),))
     network, unknowns = working(one)
     free = {p.name for p in (case.nuisances or case.model.network.parameters)} | {e.name for e in case.model.effects}
-    values = {p.name: case.model.values.get(p.name, p.value) for p in network.parameters}
+    values = parameter_values(network, case.model.values)
     start = np.array([to_coordinate(p, values[p.name]) for p in unknowns.parameters])
     fit = minimise(network, one.tests, unknowns, start, None, values, ITERATIONS)
     own = np.array([p.name in free for p in unknowns.parameters], bool)

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError, NoSolution
-from lumped.model.multipliers import values_of
+from lumped.model.multipliers import parameter_values, values_of
 from lumped.model.network import Network, Parameter
 from validation.calibration.calibrate import (
     CachedSegments,
@@ -119,7 +119,7 @@ def calibrated_case(
     """The model calibrated on every test but the held-out ones, model error in account."""
     network, unknowns = working(case)
     values, tests = {**case.model.values, **(start or {})}, diagnosing(case)
-    fixed = {p.name: values.get(p.name, p.value) for p in network.parameters}
+    fixed = parameter_values(network, values)
     plain = calibrated(network, tests, unknowns, values, 1, progress, rough=True)
     return with_model_error(plain, tests, fixed, case.doubt, ROUNDS)
 
@@ -130,7 +130,7 @@ def scored(case: Case, effects: Sequence[Effect], fit: Fit) -> Evidence:
     by_name = {p.name: p for p in network.parameters}
     parameters = tuple(by_name[e.name] for e in effects)
     tests, p = diagnosing(case), len(fit.unknowns.parameters)
-    values = {**{q.name: case.model.values.get(q.name, q.value) for q in network.parameters}, **fit.values}
+    values = {**parameter_values(network, case.model.values), **fit.values}
     parts = tuple(segments(network, tests, values, (*fit.unknowns.parameters, *parameters)))
     exchange(parts, effects, p)
     own = [replace(s, J=s.J[:, :p]) for s in parts]

@@ -21,7 +21,7 @@ from lumped.integration.record import Record
 from lumped.model.multipliers import multipliers
 from lumped.model.network import Network, Row
 from lumped.numerics.stages import stages, work
-from lumped.numerics.steady_start import settle
+from lumped.numerics.steady_start import solve_steady_start
 from lumped.transfer.laws import Law, Linear, Scaled, WithTemperature
 from lumped.transfer.terms_value import temperature_value
 
@@ -71,7 +71,7 @@ def rest(
     cold = np.where(hidden, 0.0, u.mean() if u.size else 20.0)
     both, scratch = stages(cold + np.where(hidden, 0.0, ABOVE_K), u, core.terms), work(n, u.size, core.terms, 0)
     zero = np.zeros(n)
-    if not settle(zero, core.K0, core.terms, core.tangents, core.forcing.factor[0], both, scratch):
+    if not solve_steady_start(zero, core.K0, core.terms, core.tangents, core.forcing.factor[0], both, scratch):
         return None
     C, z = np.maximum(core.C, SMALLEST * core.C.max()), both.z[0, :-1].copy()
     stable = bool(np.linalg.eigvals(scratch.G[:, :n]).real.min() > 0.0)

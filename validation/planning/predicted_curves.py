@@ -37,12 +37,19 @@ class PredictedCurves:
 
     def closest(self) -> float:
         """Root mean square over the channels, in their one-sigma, by which the two that stay closest differ."""
-        sigma = {c.name: float(np.hypot(c.sigma_K, c.model_K)) for c in self.test.channels}
-        gaps = [
-            np.sqrt(np.mean([np.mean(((a[n] - b[n]) / s) ** 2) for n, s in sigma.items()]))
-            for a, b in combinations(self.curves.values(), 2)
-        ]
+        gaps = [np.sqrt(np.mean(gap**2)) for gap in self._gaps()]
         return float(min(gaps, default=0.0))
+
+    def decisive(self) -> int:
+        """Number of the sample at which the two that stay closest are furthest apart, over all channels."""
+        gaps = [np.mean(gap**2, axis=0) for gap in self._gaps()]
+        return int(np.argmax(np.min(gaps, axis=0))) if gaps else len(self.test.time) - 1
+
+    def _gaps(self) -> list[Array]:
+        """(n_channels, n_time) by which two hypotheses differ, in one-sigma of each channel; one for each pair."""
+        sigma = np.array([[np.hypot(c.sigma_K, c.model_K)] for c in self.test.channels])
+        every = [np.stack([y[c.name] for c in self.test.channels]) for y in self.curves.values()]
+        return [(a - b) / sigma for a, b in combinations(every, 2)]
 
 
 def hypotheses(case: Case, effects: Sequence[str], tell: Progress = no_progress) -> dict[str, Model]:
@@ -90,7 +97,7 @@ def schedule(test: Test, before: Test) -> list[tuple[str, float, float, float]]:
         value = np.broadcast_to(np.asarray(values, float), test.time.shape)
         starts = np.flatnonzero(np.diff(value, prepend=np.nan))
         own = before.inputs.get(name, before.boundaries.get(name))
-        driven = own is not None and len(np.unique(np.asarray(own, float))) == len(np.unique(value))
+        driven = own is not None and np.array_equal(np.unique(np.asarray(own, float)), np.unique(value))
         if len(starts) > STEPS or driven:
             continue
         ends = [*starts[1:], len(value) - 1]

@@ -9,6 +9,7 @@ import numpy as np
 
 from geom.errors import InputError
 from geom.text import table
+from lumped.model.multipliers import parameter_values
 from lumped.model.network import Parameter
 from validation.calibration.calibrate import Fit, no_progress, with_model_error
 from validation.calibration.intervals import Estimate, Profile, estimates
@@ -175,9 +176,7 @@ def _values(model: Model, fits: Sequence[Fit]) -> dict[str, float]:
 
 def _sure(fit: Fit, tests: Sequence[Test], model: Model, case: Case) -> Fit:
     """A stage's fit with the model error in its covariance."""
-    own = [t for t in tests if t.name in {s.test for s in fit.parts}]
-    fixed = {p.name: model.values.get(p.name, p.value) for p in fit.network.parameters}
-    return with_model_error(fit, own, fixed, case.doubt)
+    return with_model_error(fit, *_conditions(fit, tests, model), case.doubt)
 
 
 def _profiled(
@@ -187,9 +186,13 @@ def _profiled(
     names = [
         p.name for p in fit.unknowns.parameters if not of_measurement(p) and any(belongs(p.name, g) for g in globs)
     ]
-    own = [t for t in tests if t.name in {s.test for s in fit.parts}]
-    fixed = {p.name: model.values.get(p.name, p.value) for p in fit.network.parameters}
-    return profiles(fit, own, fixed, names, progress)
+    return profiles(fit, *_conditions(fit, tests, model), names, progress)
+
+
+def _conditions(fit: Fit, tests: Sequence[Test], model: Model) -> tuple[list[Test], dict[str, float]]:
+    """The tests of a stage's fit, and the value of every parameter."""
+    stage = {s.test for s in fit.parts}
+    return [t for t in tests if t.name in stage], parameter_values(fit.network, model.values)
 
 
 def start(case: Case) -> dict[str, float]:

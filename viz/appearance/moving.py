@@ -17,6 +17,7 @@ from viz.machine.pulses import Pulses
 from viz.rendering import scene
 from viz.rendering.cut import QUARTER, cut_away
 from viz.rendering.nodes import SplitMesh, on_nodes
+from viz.rendering.scene import NOTE, TITLE, Room
 
 Array = NDArray[np.float64]
 RENDER_SIZE = (1080, 720)  # pixels; the film is a smaller copy, which smooths its letters
@@ -43,7 +44,7 @@ def moving(
 
     T = on_nodes(nodes, fields)
     warm = Warm(nodes, T[0], limits)
-    p, painted = staged(machine, warm, QUARTER, VIEW, LIGHT, RENDER_SIZE, True)
+    p, painted = staged(machine, warm, QUARTER, VIEW, LIGHT, RENDER_SIZE, Room(0.0, 0.1, TITLE, NOTE))
     scene.footnote(p, CAPTION, LIGHT)
     pulses, pictures = Pulses(p, cut_away(nodes), sensors[0]), []
     for number, (words, values, row) in enumerate(zip(titles, T, sensors, strict=True), 1):

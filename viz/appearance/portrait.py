@@ -22,7 +22,7 @@ from viz.rendering import scene
 from viz.rendering.cut import QUARTER, Wedge
 from viz.rendering.nodes import SplitMesh, on_nodes
 from viz.rendering.scale import rounded
-from viz.rendering.scene import TITLE, Room, View
+from viz.rendering.scene import NOTE, TITLE, Room, View
 
 if TYPE_CHECKING:
     import pyvista
@@ -54,7 +54,8 @@ def portrait(
     caption : below the picture
     """
     warm = None if nodes is None or T is None else Warm(nodes, on_nodes(nodes, T), limits)
-    p = staged(machine, warm, wedge, view, theme, size, bool(title))[0]
+    room = Room(0.0, 0.1 if warm else 0.0, TITLE if title else 0.0, NOTE if caption else 0.0)
+    p = staged(machine, warm, wedge, view, theme, size, room)[0]
     scene.headline(p, title, theme)
     scene.footnote(p, caption, theme)
     scene.save(p, png)
@@ -63,21 +64,21 @@ def portrait(
 
 def staged(
     machine: Machine, warm: Warm | None, wedge: Wedge | None, view: View, theme: Theme, size: tuple[int, int],
-    title: bool,
+    room: Room,
 ) -> tuple[pyvista.Plotter, list[Painted]]:  # fmt: skip
-    """The machine lit and standing, with room for a title; and what of it is coloured by temperature."""
+    """The machine lit and standing, with room around it; and what of it is coloured by temperature."""
     p, bodies = _stage(theme, size), dressed(machine)
     painted = [_add(p, pieces, *kind, warm) for kind, pieces in _gathered(bodies, wedge).items()]
-    points = _framed(machine, bodies)
+    points = framed(machine, bodies)
     p.add_actor(shadow([b.shape for b in bodies], theme), reset_camera=False, pickable=False)
-    scene.look(p, points, view, Room(0.0, 0.1 if warm else 0.0, TITLE if title else 0.0))
+    scene.look(p, points, view, room)
     if warm is not None:
         scene.colour_bar(p, "°C", theme)
     _shade(p, points)
     return p, [one for one in painted if one is not None]
 
 
-def _framed(machine: Machine, bodies: Sequence[Body]) -> Array:
+def framed(machine: Machine, bodies: Sequence[Body]) -> Array:
     """(n, 3) m that the picture must hold: all, of a long base only what is near the machine."""
     bases = {part.name for part in machine.parts if part.identity and part.identity.role is Role.BASE}
     inner = np.concatenate([b.shape.points for b in bodies if b.part not in bases])

@@ -27,6 +27,7 @@ def predicted(plan: PredictedCurves, *, sensors: int = SENSORS, png: str | Path 
     chosen = sorted(plan.test.channels, key=lambda c: -plan.spread_K(c.name))[:sensors]
     time = np.asarray(plan.test.time, float)
     unit, unit_s = ("min", 60.0) if time[-1] - time[0] < LONG_S else ("h", 3600.0)
+    at = plan.decisive()
     thin = slice(None, None, max(1, -(-len(time) // POINTS)))
     t = (time - time[0])[thin] / unit_s
     rows = -(-len(chosen) // 2)
@@ -38,6 +39,7 @@ def predicted(plan: PredictedCurves, *, sensors: int = SENSORS, png: str | Path 
             ax.plot(t, y, color=colour)
         ax.set_title(f"{short(channel.name)}: up to {_largest(plan, channel.name):.1f} K apart")
         ax.margins(x=0)
+        ax.axvline((time[at] - time[0]) / unit_s, color=LIGHT.ink, lw=0.8, ls=":")
         ends = [float(curves[channel.name][-1]) for curves in plan.curves.values()][: len(COLOURS)]
         end_labels(ax, ends, [f"{end:.1f}" for end in ends], COLOURS)
     for ax in axes[len(chosen) :]:
@@ -45,7 +47,7 @@ def predicted(plan: PredictedCurves, *, sensors: int = SENSORS, png: str | Path 
     names = list(plan.curves)[: len(COLOURS)]
     figure.legend(
         axes[0].get_lines(), names, loc="outside upper left", ncols=2, frameon=False, labelcolor="linecolor",
-        handlelength=0.0, fontsize=8.5,
+        handlelength=1.2, fontsize=8.5,
     )  # fmt: skip
     figure.supxlabel(f"time ({unit})", fontsize=9.5, color=LIGHT.ink)
     figure.supylabel("temperature (°C)", fontsize=9.5, color=LIGHT.ink)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,8 +19,12 @@ from viz.rendering.cut import QUARTER, Wedge, cut_away
 from viz.rendering.nodes import SplitMesh, on_nodes
 from viz.rendering.scene import Room, View
 
+if TYPE_CHECKING:
+    from PIL import Image
+
 Array = NDArray[np.float64]
-PALETTE = 8  # pictures that a GIF's colours are taken from
+PALETTE = 24  # pictures that a GIF's colours are taken from
+BITS, ROUNDS = 5, 3  # of a channel by which colours are counted; of k-means after the median cut
 
 
 def animate(
@@ -77,16 +82,30 @@ def _minutes(times: Sequence[float]) -> list[str]:
 
 def _gif(path: Path, pictures: list[NDArray[np.uint8]], frames_per_second: float) -> Path:
     """A looping GIF with one palette, taken from pictures all along the way."""
-    from PIL import Image, ImageColor
+    from PIL import Image
 
-    some = [pictures[i][::2, ::2] for i in np.linspace(0, len(pictures) - 1, min(PALETTE, len(pictures))).astype(int)]
-    for colour in VERDICT.values():  # dots are small, but their colours matter
-        some.append(np.full((12, some[0].shape[1], 3), ImageColor.getrgb(colour), np.uint8))
-    palette = Image.fromarray(np.concatenate(some)).quantize(255)
+    palette = _palette(pictures)
     frames = [Image.fromarray(one).quantize(palette=palette, dither=Image.Dither.NONE) for one in pictures]
     pause = round(1000 / frames_per_second)
     frames[0].save(path, save_all=True, append_images=frames[1:], duration=pause, loop=0, optimize=False)
     return path
+
+
+def _palette(pictures: list[NDArray[np.uint8]]) -> Image.Image:
+    """255 colours. Each colour has the root of its share to say: else paper and shell leave none to small hot parts."""
+    from PIL import Image, ImageColor
+
+    chosen = np.linspace(0, len(pictures) - 1, min(PALETTE, len(pictures))).astype(int)
+    some = np.concatenate([pictures[i][::2, ::2].reshape(-1, 3) for i in chosen])
+    key = (some >> (8 - BITS)).astype(int) @ [1 << 2 * BITS, 1 << BITS, 1]
+    _, group, count = np.unique(key, return_inverse=True, return_counts=True)
+    mean = np.stack([np.bincount(group, channel) / count for channel in some.T], axis=1)
+    says = np.sqrt(count).astype(int)
+    dots = np.array([ImageColor.getrgb(colour) for colour in VERDICT.values()], np.uint8)  # small, but they matter
+    row = np.concatenate(
+        [np.repeat(np.round(mean).astype(np.uint8), says, axis=0), np.repeat(dots, says.max(), axis=0)]
+    )
+    return Image.fromarray(row[None]).quantize(255, kmeans=ROUNDS)
 
 
 def _mp4(path: Path, pictures: list[NDArray[np.uint8]], frames_per_second: float) -> Path:

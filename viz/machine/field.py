@@ -14,14 +14,14 @@ from numpy.typing import NDArray
 
 from viz.colours import LIGHT, Theme, heat, missing
 from viz.data import Sensor
-from viz.machine.thermocouples import LABELS, Marked, marked
+from viz.machine.thermocouples import LABELS, Marked, label_texts, marked
 from viz.rendering import scene
-from viz.rendering.callouts import on_top
+from viz.rendering.callouts import beside, on_top
 from viz.rendering.cut import QUARTER, Surface, Wedge, cut_away
 from viz.rendering.ghost import OPACITY, Ghosted
 from viz.rendering.nodes import SplitMesh, on_nodes
 from viz.rendering.scale import rounded
-from viz.rendering.scene import TITLE, Room, View
+from viz.rendering.scene import BAR, NOTE, TITLE, Room, View
 
 if TYPE_CHECKING:
     import pyvista
@@ -51,7 +51,9 @@ def cutaway(
     limits : colour scale (degC), from the field itself if not given; widened to round numbers
     """
     view = view or View()
-    p, surface, seen = cut_open(nodes, sensors, labels, _room(bool(sensors), title), wedge, view, theme)
+    p, surface, seen = cut_open(
+        nodes, sensors, labels, room_for(label_texts(sensors, labels), title), wedge, view, theme
+    )
     paint_cut(p, surface, seen.cut, on_nodes(nodes, T), limits, theme)
     scene.colour_bar(p, UNIT, theme)
     scene.headline(p, title, theme)
@@ -87,7 +89,7 @@ def difference(
     paint(p, surface, change, (-most, most), theme, colours=missing())
     scene.colour_bar(p, "K", theme)
     scene.headline(p, title, theme)
-    scene.look(p, surface.points, view, _room(False, title))
+    scene.look(p, surface.points, view, room_for([], title))
     scene.save(p, png)
     return p
 
@@ -144,8 +146,9 @@ def paint(
 
 
 def paint_cut(
-    p: pyvista.Plotter, surface: Surface, cut: Ghosted, T: Array, limits: tuple[float, float] | None, theme: Theme
-) -> list[tuple[Surface, pyvista.PolyData]]:
+    p: pyvista.Plotter, surface: Surface, cut: Ghosted, T: Array, limits: tuple[float, float] | None, theme: Theme,
+    colours: Colormap | None = None,
+) -> list[tuple[Surface, pyvista.PolyData]]:  # fmt: skip
     """Add a surface with its windows; what was painted, to be repainted."""
     import pyvista
 
@@ -157,15 +160,18 @@ def paint_cut(
         clear = scene.polydata(cut.ghost)
         clear.point_data["T"] = cut.ghost.values(T)
         p.add_mesh(
-            clear, scalars="T", cmap=heat(), clim=rounded(*limits), show_scalar_bar=False, opacity=OPACITY,
+            clear, scalars="T", cmap=colours or heat(), clim=rounded(*limits), show_scalar_bar=False, opacity=OPACITY,
             lighting=False, culling="back",
         )  # fmt: skip
         out.append((cut.ghost, clear))
-    out.append((cut.solid, paint(p, cut.solid, T, limits, theme, outlined=surface)))  # last: a colour bar is of this
+    solid = paint(p, cut.solid, T, limits, theme, outlined=surface, colours=colours)  # last: a colour bar is of this
+    out.append((cut.solid, solid))
     p.renderer.ResetCameraClippingRange()
     return out
 
 
-def _room(labels: bool, title: str) -> Room:
-    top = TITLE if title else 0.0
-    return Room(0.16, 0.24, top) if labels else Room(0.0, 0.1, top)
+def room_for(labels: Sequence[str], title: str, note: bool = False) -> Room:
+    """Beside the machine for labels and a colour bar, above it for a title, below it for a footnote."""
+    top, bottom = TITLE if title else 0.0, NOTE if labels or note else 0.0
+    wide = beside(labels, least=0.14) if labels else 0.0
+    return Room(wide, wide + BAR, top, bottom)

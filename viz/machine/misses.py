@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 
 from viz.colours import LIGHT, Theme, missing
 from viz.data import Sensor
-from viz.machine.field import cut_open, paint
-from viz.machine.thermocouples import LABELS
+from viz.machine.field import cut_open, paint_cut, room_for
+from viz.machine.thermocouples import LABELS, label_texts
 from viz.rendering import scene
 from viz.rendering.cut import QUARTER, Surface, Wedge
 from viz.rendering.nodes import SplitMesh, on_nodes
-from viz.rendering.scene import TITLE, Room, View
+from viz.rendering.scene import View
 
 if TYPE_CHECKING:
     import pyvista
@@ -45,19 +45,18 @@ def misses(
     error : (n_nodes,) K;  explained : (n_nodes,) share of the variance that readings explain, see
         validation.comparison.interpolation;  sensors : where it was measured
     """
-    view, room = view or View(), Room(0.16, 0.24, TITLE) if sensors else Room(0.0, 0.1, TITLE)
+    view, room = view or View(), room_for(label_texts(sensors), title, note=True)
     p, surface, seen = cut_open(nodes, sensors, LABELS, room, wedge, view, theme)
     K = on_nodes(nodes, error)
     most = float(np.abs(K).max())
-    paint(p, seen.cut.solid, K, (-most, most), theme, colours=missing(), outlined=surface)
+    paint_cut(p, surface, seen.cut, K, (-most, most), theme, missing())
     scene.colour_bar(p, "K", theme)
     guess: NDArray[np.bool_] = np.asarray(seen.cut.solid.values(on_nodes(nodes, explained)) < GUESS)
     _hatch(p, seen.cut.solid, guess, theme)
     renderer: Any = p.renderer
     renderer.ResetCameraClippingRange()
     scene.headline(p, title, theme)
-    seen.draw(p, surface, view, theme)
-    scene.footnote(p, CAPTION, theme)
+    seen.draw(p, surface, view, theme, CAPTION)
     scene.save(p, png)
     return p
 
@@ -72,7 +71,7 @@ def _hatch(p: pyvista.Plotter, surface: Surface, guess: NDArray[np.bool_], theme
         return
     data = scene.polydata(hatched)
     data.points = hatched.points + NEARER * (np.array(p.camera.position) - hatched.points)
-    x, y = _pixels(p, hatched.points).T
+    x, y = pixels(p, hatched.points).T
     data.active_texture_coordinates = np.stack([(x + y) / PERIOD, np.zeros_like(x)], axis=1)
     actor = pyvista.Actor(mapper=pyvista.DataSetMapper(data))
     actor.texture = _stripes(theme)
@@ -95,7 +94,7 @@ def _stripes(theme: Theme) -> pyvista.Texture:
     return texture
 
 
-def _pixels(p: pyvista.Plotter, points: Array) -> Array:
+def pixels(p: pyvista.Plotter, points: Array) -> Array:
     """(n, 2) where points (m) are on the screen; the camera must stand."""
     renderer: Any = p.renderer
     wide, high = renderer.GetSize()

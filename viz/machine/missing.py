@@ -17,7 +17,7 @@ from viz.rendering.callouts import Label, callouts, width
 from viz.rendering.cut import QUARTER, Wedge, cut_away
 from viz.rendering.nodes import SplitMesh
 from viz.rendering.scale import rounded
-from viz.rendering.scene import TITLE, Room, View
+from viz.rendering.scene import NOTE, TITLE, Room, View
 from viz.rendering.visibility import anchors
 
 if TYPE_CHECKING:
@@ -78,7 +78,7 @@ def missing_in_machine(
     nats = {w["place"]: w["evidence_nats"] for w in where}
     words = {n: f"{n}  {signed(q, 0)} W, {nats[n]:.0f} nats" for n, q in heat.items() if abs(q) > FAINT * top}
     wide = width(max(words.values(), key=len), SMALL)
-    room = Room(0.02 + wide, 0.12 + wide, TITLE)
+    room = Room(0.02 + wide, 0.12 + wide, TITLE, NOTE)
     scene.look(p, surface.points, view, room)
     seen = {nodes.parts[i]: xyz for i, xyz in anchors(surface, view, room).items()}
     labels = [

@@ -14,7 +14,7 @@ from geom.meshing.mesh import NamedMesh
 from viz.colours import LIGHT, Theme, heat, power
 from viz.figures.flows import Heat
 from viz.rendering import scene
-from viz.rendering.callouts import Label, callouts, on_top, text
+from viz.rendering.callouts import Label, beside, callouts, on_top, pixel, text
 from viz.rendering.cut import HALF, cut_away
 from viz.rendering.nodes import SplitMesh, split
 from viz.rendering.scale import rounded
@@ -27,10 +27,12 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 SIDE = View(direction=(-1.0, 0.0, 0.0), angle=4.0)
 CLOSEST = 0.075  # distance of two nodes, share of the machine's length
+LETTERS = 13  # size of the names
 SMALL = 0.01  # of the largest flow: thinner lines are left out
 LABELLED = 10  # flows whose watts are written
-LABEL = 0.018, 0.045  # half height and width of such a label, share of the machine's length in a picture 1280 wide
-NODE = 0.02  # radius of a node, the same
+LABEL = 12, 32  # half height and width of such a label, pixels
+NODE = 25  # radius of a node, pixels
+ASIDE = 20  # pixels from a line to the middle of a label beside it
 SHARES = (0.5, 0.42, 0.58, 0.34, 0.66, 0.26, 0.74)  # of a line: where its label may stand, the middle first
 BELOW: dict[str, Any] = {
     "vertical": False, "position_x": 0.28, "position_y": 0.05, "width": 0.36, "height": 0.022, "unit": "W",
@@ -64,18 +66,26 @@ def network_in_machine(
     front = np.array([surface.points[:, 0].min() - 0.02, 0.0, 0.0])
     at = {name: xyz + front for name, xyz in at.items() if xyz[1] > 0 and name in temperatures}
     low, high = surface.points.min(axis=0), surface.points.max(axis=0)
-    length = float(np.ptp(nodes.points[:, 2]))
-    at = spread_out(at, CLOSEST * length)
-    frame = front + np.array([[0, -0.2 * high[1], low[2]], [0, high[1], high[2]]])
-    widest = _lines(p, at, flow, power() if theme == LIGHT else power().reversed(), length)
+    words = {name: f"{name}  {temperatures[name]:.0f} °C" for name in at}
+    wide = beside(list(words.values()), LETTERS, 0.17)
+    room, length = Room(wide, wide + scene.BAR, scene.TITLE), float(np.ptp(nodes.points[:, 2]))
+    scene.look(p, front + np.array([[0, low[1], low[2]], [0, high[1], high[2]]]), SIDE, room)
+    at = spread_out(at, max(CLOSEST * length, 2 * NODE * pixel(p)))
+    z = [xyz[2] for xyz in at.values()]  # pushed apart, some stand beside the machine
+    reach = LABEL[1] * pixel(p)
+    ends = min([low[2], *(v - reach for v in z)]), max([high[2], *(v + reach for v in z)])
+    frame = front + np.array([[0, -0.2 * high[1], ends[0]], [0, high[1], ends[1]]])
+    scene.look(p, frame, SIDE, room)
+    widest = _lines(p, at, flow, power() if theme == LIGHT else power().reversed(), pixel(p))
     _nodes(p, at, temperatures, limits)
-    names = [Label(tuple(xyz), f"{name}  {temperatures[name]:.0f} °C", LIGHT.ink) for name, xyz in at.items()]  # type: ignore[arg-type]
+    names = [Label(tuple(xyz), words[name], LIGHT.ink) for name, xyz in at.items()]  # type: ignore[arg-type]
     scene.colour_bar(p, "°C", theme, mapper=p.actors["nodes"].mapper)
     if "link 0" in p.actors:
         scene.colour_bar(p, "", theme, mapper=p.actors["link 0"].mapper, **BELOW)
     scene.headline(p, f"{title}  widest line {float(f'{widest:.2g}'):g} W/K".strip(), theme)
-    scene.look(p, frame, SIDE, Room(0.18, 0.27, scene.TITLE))
-    callouts(p, names, frame, SIDE, theme, size=13, dots=False)
+    callouts(p, names, frame, SIDE, theme, size=LETTERS, dots=False)
+    renderer: Any = p.renderer
+    renderer.ResetCameraClippingRange()  # the camera stood before lines and nodes were there
     scene.save(p, png)
     return p
 
@@ -125,7 +135,7 @@ def _volumes(nodes: SplitMesh) -> Array:
     return np.abs(np.einsum("ij,ij->i", np.cross(edges[:, 0], edges[:, 1]), edges[:, 2])) / 6
 
 
-def _lines(p: pyvista.Plotter, at: Mapping[str, Array], flow: Heat, colours: Colormap, length: float) -> float:
+def _lines(p: pyvista.Plotter, at: Mapping[str, Array], flow: Heat, colours: Colormap, pixel_m: float) -> float:
     """A line per flow; the largest carry their watts where there is room. The widest line's W/K."""
     import pyvista
 
@@ -143,19 +153,20 @@ def _lines(p: pyvista.Plotter, at: Mapping[str, Array], flow: Heat, colours: Col
             name=f"link {i}", line_width=max(2.0, 24 * np.sqrt(f.conductance / widest)),
         )  # fmt: skip
         on_top(actor, 1)
-        place = clear_place(a, b, list(at.values()), occupied, length) if len(occupied) < LABELLED else None
+        place = clear_place(a, b, list(at.values()), occupied, pixel_m) if len(occupied) < LABELLED else None
         if place is not None:
             p.add_actor(text(f"{f.watts:.0f} W", place, "#6B2A12", 0, 11), reset_camera=False)
             occupied.append(place)
     return widest
 
 
-def clear_place(a: Array, b: Array, nodes: Sequence[Array], occupied: Sequence[Array], length: float) -> Array | None:
-    """Where a label on the line from a to b (m) covers no node and no other label, near its middle; None: nowhere.
+def clear_place(a: Array, b: Array, nodes: Sequence[Array], occupied: Sequence[Array], pixel_m: float) -> Array | None:
+    """Where a label on the line from a to b (m), or beside it, covers no node and no other label, near the line's
+    middle; None: nowhere.
 
-    length : of the machine (m), which the sizes of labels and nodes go by
+    pixel_m : what a pixel of the picture is wide (m)
     """
-    half, dot = length * np.array(LABEL), length * NODE
+    half, dot = pixel_m * np.array(LABEL), pixel_m * NODE
 
     def clear(at: Array) -> bool:
         near = [np.abs(at - other)[1:] < half + dot for other in nodes] + [
@@ -163,7 +174,9 @@ def clear_place(a: Array, b: Array, nodes: Sequence[Array], occupied: Sequence[A
         ]
         return not any(one.all() for one in near)
 
-    return next((at for at in (a + share * (b - a) for share in SHARES) if clear(at)), None)
+    along = (b - a) / max(float(np.linalg.norm(b - a)), 1e-12)
+    aside = pixel_m * ASIDE * np.array([0.0, -along[2], along[1]])
+    return next((at for k in (0, 1, -1) for share in SHARES if clear(at := a + share * (b - a) + k * aside)), None)
 
 
 def _nodes(

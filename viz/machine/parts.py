@@ -13,7 +13,7 @@ from geom.description.identity import Identity
 from geom.description.roles import Role
 from viz.colours import LIGHT, Theme, heat, part_colours
 from viz.rendering import scene
-from viz.rendering.callouts import Label, callouts, text
+from viz.rendering.callouts import Label, beside, callouts, text
 from viz.rendering.cut import QUARTER, Surface, Wedge, cut_away, exposed
 from viz.rendering.nodes import SplitMesh, on_nodes
 from viz.rendering.scale import rounded
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     import pyvista
 
 Array = NDArray[np.float64]
+LETTERS = 13  # size of the names
 GAP = 0.25  # between assemblies pulled apart, share of the machine's length
 ASIDE = View(direction=(-1.0, 0.3, 0.22))
 
@@ -46,11 +47,12 @@ def regions(
     surface = cut_away(nodes, wedge)
     _paint(p, surface, None, theme, mesh=mesh)
     scene.headline(p, title, theme)
-    room = Room(0.2, 0.2, TITLE if title else 0.0)
+    wide = beside(nodes.parts, LETTERS, 0.2)
+    room = Room(wide, wide, TITLE if title else 0.0)
     scene.look(p, surface.points, view, room)
     seen = anchors(surface, view, room)
     labels = [Label(tuple(xyz), nodes.parts[i], LIGHT.ink) for i, xyz in seen.items()]  # type: ignore[arg-type]
-    callouts(p, labels, surface.points, view, theme, size=13)
+    callouts(p, labels, surface.points, view, theme, size=LETTERS)
     scene.save(p, png)
     return p
 

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     import pyvista
 
 LABELS = 6  # sensors with a label: more hide the machine
+LONGEST = 28  # letters of a sensor's name: longer ones would leave the machine less than half of the picture
 PLAIN = 0.6  # size of a dot without a label
 
 
@@ -38,18 +39,24 @@ class Marked:
     hidden: NDArray[np.bool_]
     cut: Ghosted
 
-    def draw(self, p: pyvista.Plotter, surface: Surface, view: View, theme: Theme) -> None:
-        """Dots, some with labels; those inside or behind something are hollow, and the picture says so."""
+    def draw(self, p: pyvista.Plotter, surface: Surface, view: View, theme: Theme, note: str = "") -> None:
+        """Dots, some with labels; those inside or behind something are hollow, and the picture says so after `note`."""
         sensors = (*self.labelled, *self.others)
         labels = [_label(s, bool(h)) for s, h in zip(sensors, self.hidden, strict=True)]
         n = len(self.labelled)
         callouts(p, labels[:n], surface.points, view, theme)
         for label in labels[n:]:
             dot(p, label, PLAIN)
-        says = ["hollow dots lie inside or behind"] if self.hidden.any() else []
+        says = [note] if note else []
+        says += ["hollow dots lie inside or behind"] if self.hidden.any() else []
         says += [f"{len(self.others)} without a label"] if self.others else []
         if says:
             scene.footnote(p, "; ".join(says), theme)
+
+
+def label_texts(sensors: Sequence[Sensor], labels: int = LABELS) -> list[str]:
+    """The labels of those furthest beyond their uncertainty."""
+    return [_label(s, False).text for s in sorted(sensors, key=lambda s: -s.weight)[:labels]]
 
 
 def marked(surface: Surface, sensors: Sequence[Sensor], labels: int, eye: NDArray[np.float64]) -> Marked:
@@ -65,4 +72,6 @@ def marked(surface: Surface, sensors: Sequence[Sensor], labels: int, eye: NDArra
 
 def _label(sensor: Sensor, hidden: bool) -> Label:
     value = "" if sensor.residual_K is None else f"  {signed(sensor.residual_K)} K"
-    return Label(sensor.xyz, f"{short(sensor.name)}{value}", VERDICT[sensor.verdict], hidden)
+    name = short(sensor.name)
+    name = name if len(name) <= LONGEST else f"{name[: LONGEST - 1]}…"
+    return Label(sensor.xyz, f"{name}{value}", VERDICT[sensor.verdict], hidden)

@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 
 from viz.colours import LIGHT, Theme, power
 from viz.data import Sensor
-from viz.machine.field import cut_open, paint
-from viz.machine.thermocouples import LABELS
+from viz.machine.field import cut_open, paint_cut, room_for
+from viz.machine.thermocouples import LABELS, label_texts
 from viz.rendering import scene
 from viz.rendering.cut import QUARTER, Wedge
 from viz.rendering.nodes import SplitMesh, on_nodes
-from viz.rendering.scene import TITLE, Room, View
+from viz.rendering.scene import View
 
 if TYPE_CHECKING:
     import pyvista
@@ -39,10 +39,10 @@ def uncertainty(
 
     half95 : (n_nodes,) K;  sensors : where it was measured
     """
-    view, room = view or View(), Room(0.16, 0.24, TITLE) if sensors else Room(0.0, 0.1, TITLE)
+    view, room = view or View(), room_for(label_texts(sensors), title)
     p, surface, seen = cut_open(nodes, sensors, LABELS, room, wedge, view, theme)
     K = on_nodes(nodes, half95)
-    paint(p, seen.cut.solid, K, (0.0, float(K.max())), theme, colours=power(), outlined=surface)
+    paint_cut(p, surface, seen.cut, K, (0.0, float(K.max())), theme, power())
     scene.colour_bar(p, "± K", theme)
     scene.headline(p, title, theme)
     seen.draw(p, surface, view, theme)

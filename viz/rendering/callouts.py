@@ -17,6 +17,9 @@ if TYPE_CHECKING:
     import pyvista
 
 Array = NDArray[np.float64]
+SMALL = 15  # letters of a label
+LINE = 1.9  # of its letters' size from one label to the next: its ground is 1.8 of it high
+GAP = 0.03  # share of the picture's width from the machine to a label, and from a label to the edge
 HOLLOW = 0.42  # of the diameter of a dot that something covers is left white
 
 
@@ -31,12 +34,12 @@ class Label:
 
 
 def callouts(
-    p: pyvista.Plotter, labels: Sequence[Label], points: Array, view: View, theme: Theme = LIGHT, size: int = 15,
+    p: pyvista.Plotter, labels: Sequence[Label], points: Array, view: View, theme: Theme = LIGHT, size: int = SMALL,
     dots: bool = True,
 ) -> None:  # fmt: skip
     """Markers on the machine with labels beside it, in the order of their heights so that lines seldom cross.
 
-    points : (n, 3) m that the labels stand beside;  dots : draw the markers too
+    The camera must stand.  points : (n, 3) m that the labels stand beside;  dots : draw the markers too
     """
     towards, right, up = view.axes()
     across, above = points @ right, points @ up
@@ -46,14 +49,21 @@ def callouts(
         mine = sorted(
             (q for q in labels if (np.dot(q.xyz, right) > middle) == (side > 0)), key=lambda q: np.dot(q.xyz, up)
         )
-        heights = spread_labels(
-            [float(np.dot(q.xyz, up)) for q in mine], above.min(), above.max(), 0.075 * np.ptp(above)
-        )
+        step = max(0.075 * np.ptp(above), LINE * size * pixel(p))
+        more = max(0.0, step * (len(mine) - 1) - np.ptp(above)) / 2  # labels of a flat machine reach above and below it
+        places = [float(np.dot(q.xyz, up)) for q in mine]
+        heights = spread_labels(places, above.min() - more, above.max() + more, step)
         edge = middle + side * (0.5 + 0.03) * np.ptp(across)
         for q, height in zip(mine, heights, strict=True):
             _callout(p, q, edge * right + height * up + front * towards, side, theme, size)
             if dots:
                 dot(p, q)
+
+
+def pixel(p: pyvista.Plotter) -> float:
+    """What a pixel is high where the camera looks (m)."""
+    far = np.linalg.norm(np.subtract(p.camera.position, p.camera.focal_point))
+    return float(2 * far * np.tan(np.deg2rad(p.camera.view_angle) / 2) / p.window_size[1])
 
 
 def dot(p: pyvista.Plotter, label: Label, size: float = 1.0) -> None:
@@ -79,6 +89,11 @@ def _callout(p: pyvista.Plotter, label: Label, end: Array, side: int, theme: The
 def width(text: str, size: int) -> float:
     """Share of the picture's width that a label of that size takes, about."""
     return 0.55 * size * (len(text) + 1) / SIZE[0]
+
+
+def beside(texts: Sequence[str], size: int = SMALL, least: float = 0.0) -> float:
+    """Share of the picture's width that labels on one side take, with the gap to the machine; `least` in any case."""
+    return max([least, *(GAP + width(text, size) for text in texts)])
 
 
 def text(text: str, at: Array, colour: str, side: int, size: int) -> Any:

@@ -48,10 +48,12 @@ class Room:
     left: float = 0.0
     right: float = 0.0
     top: float = 0.0
+    bottom: float = 0.0
 
 
 NO_ROOM = Room()
-TITLE = 0.07  # share of the height that a headline takes
+TITLE, NOTE = 0.07, 0.05  # shares of the height that a headline and a footnote take
+BAR = 0.1  # share of the width that a colour bar takes
 
 
 def plotter(
@@ -99,10 +101,10 @@ def look(p: pyvista.Plotter, points: Array, view: View, room: Room = NO_ROOM) ->
     aspect = p.renderer.GetSize()[0] / max(p.renderer.GetSize()[1], 1)
     tan = np.tan(np.deg2rad(view.angle) / 2)
     half_w = np.ptp(across) / 2 * view.margin / (1 - room.left - room.right)
-    half_h = np.ptp(above) / 2 * view.margin / (1 - room.top)
+    half_h = np.ptp(above) / 2 * view.margin / (1 - room.top - room.bottom)
     distance = max(half_h, half_w / aspect) / tan + np.ptp(depth) / 2
     middle = (across.max() + across.min()) / 2 + half_w * (room.right - room.left)
-    height = (above.max() + above.min()) / 2 + half_h * room.top
+    height = (above.max() + above.min()) / 2 + half_h * (room.top - room.bottom)
     focus = middle * right + height * up + (depth.max() + depth.min()) / 2 * towards
     p.camera.position = focus + distance * towards
     p.camera.focal_point, p.camera.up, p.camera.view_angle = focus, view.up, view.angle

@@ -1,4 +1,4 @@
-"""Arrays as short text for a page: whole numbers, differences of neighbours, deflate, base64."""
+"""Arrays as short text for a page: whole numbers, differences of neighbours without a sign, deflate, base64."""
 
 from __future__ import annotations
 
@@ -15,9 +15,13 @@ LEVEL = 8  # of deflate: 9 makes a page half a percent shorter and takes two and
 
 
 def packed_integers(values: NDArray[np.int64]) -> dict[str, Any]:
-    """Rows of whole numbers (n, k), each as the difference from the row before it: meshes are regular."""
-    steps = np.diff(values, axis=0, prepend=np.zeros((1, values.shape[1]), np.int64)).astype("<i4")
-    planes = np.ascontiguousarray(steps.T).view(np.uint8).reshape(-1, 4).T  # equal bytes side by side deflate well
+    """Rows of whole numbers (n, k), each as the difference from the row before it: meshes are regular.
+
+    A difference n is 2 n, and -n is 2 n - 1: the upper bytes of small ones are then zero, whatever their sign.
+    """
+    steps = np.diff(values, axis=0, prepend=np.zeros((1, values.shape[1]), np.int64))
+    unsigned = np.where(steps < 0, -2 * steps - 1, 2 * steps).astype("<u4")
+    planes = np.ascontiguousarray(unsigned.T).view(np.uint8).reshape(-1, 4).T  # equal bytes side by side deflate well
     data = zlib.compress(np.ascontiguousarray(planes).tobytes(), LEVEL)
     return {"columns": values.shape[1], "data": base64.b64encode(data).decode("ascii")}
 
@@ -38,8 +42,8 @@ def unpacked(packed: dict[str, Any]) -> Array:
     """What the page reads: (n, k)."""
     columns = packed["columns"]
     planes = np.frombuffer(zlib.decompress(base64.b64decode(packed["data"])), np.uint8).reshape(4, -1)
-    steps = np.ascontiguousarray(planes.T).view("<i4").reshape(columns, -1).T
-    whole = np.cumsum(steps, axis=0)
+    unsigned = np.ascontiguousarray(planes.T).view("<u4").reshape(columns, -1).T.astype(np.int64)
+    whole = np.cumsum(np.where(unsigned % 2, -(unsigned + 1) // 2, unsigned // 2), axis=0)
     if "step" not in packed:
         return whole
     return np.where(whole == UNKNOWN, np.nan, whole * np.array(packed["step"]) + np.array(packed["low"]))

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.description.machine import Machine
 from geom.disk_cache import atomic_write
 from geom.meshing.mesh import NamedMesh
 from viz.colours import VERDICT, heat, missing, part_colours, power
@@ -21,6 +22,7 @@ from viz.rendering.nodes import SplitMesh
 from viz.rendering.scale import marks, rounded
 from viz.viewer.error_map import ErrorMap, error_marks, packed_maps
 from viz.viewer.flux import nodal_flux
+from viz.viewer.looks import packed_looks
 from viz.viewer.low_rank import ERROR_K
 from viz.viewer.network import NetworkRun, network_document
 from viz.viewer.packing import packed_integers, packed_numbers
@@ -76,12 +78,13 @@ def write_viewer(
 def document(
     title: str, nodes: SplitMesh, tests: Sequence[Recorded], positions: Mapping[str, Sequence[float]],
     conductivity: Mapping[str, tuple[float, float]] | None = None, revisions: Sequence[str] = ("now", "before"),
-    mesh: NamedMesh | None = None, limits: tuple[float, float] | None = None,
+    mesh: NamedMesh | None = None, limits: tuple[float, float] | None = None, machine: Machine | None = None,
 ) -> dict[str, Any]:  # fmt: skip
     """All the page draws.
 
     conductivity : part -> across and along the axis (W/m/K), for heat flux;  revisions : names of a test's states
     mesh : where the nodes of the tests' networks are;  limits : of the colours (degC), wider where a state is beyond
+    machine : is drawn as it looks, too
     """
     every, runs = [part for t in tests for part in t.states], [t.network for t in tests if t.network is not None]
     order, colours = np.argsort(nodes.region, kind="stable"), part_colours(nodes.parts, nodes.identities)
@@ -96,15 +99,16 @@ def document(
         "k": conductivity and [conductivity[name] for name in nodes.parts], "power": _palette(power()),
         "flux_marks": conductivity and _flux(nodes, tests, conductivity), "errors": _errors(tests, nodes),
         "network": _network(mesh, nodes, runs) if len(runs) == len(tests) else None,
+        "looks": machine and packed_looks(machine, nodes),
         "tints": [[int(c[i : i + 2], 16) / 255 for i in (1, 3, 5)] for c in VERDICT.values()],
     }  # fmt: skip
 
 
-def render(shown: Mapping[str, Any]) -> str:
+def render(content: Mapping[str, Any]) -> str:
     """The page as text. The data stand in a block that no browser runs."""
     page, css = (files("viz.viewer").joinpath(f"viewer.{end}").read_text(encoding="utf-8") for end in ("html", "css"))
-    data = json.dumps(shown, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
-    for key, text in (("TITLE", escape(shown["title"])), ("CSS", css), ("DATA", data), ("SCRIPT", script())):
+    data = json.dumps(content, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
+    for key, text in (("TITLE", escape(content["title"])), ("CSS", css), ("DATA", data), ("SCRIPT", script())):
         page = page.replace(f"@{key}@", text, 1)
     return page
 
@@ -157,7 +161,8 @@ def _tests(tests: Sequence[Recorded], positions: Mapping[str, Sequence[float]]) 
         n, count = len(test.times), len(test.states)
         name = f"{test.comparison.test.name} ({test.comparison.test.role})"
         states = [first + i * n for i in range(count)]
-        out.append({"name": name, "times": test.times.tolist(), "states": states, **_sensors(test, positions)})
+        run = {"test": test.comparison.test.name, "name": name, "times": test.times.tolist(), "states": states}
+        out.append({**run, **_sensors(test, positions)})
         first += n * count
     return out
 
@@ -171,7 +176,9 @@ def _sensors(test: Recorded, positions: Mapping[str, Sequence[float]]) -> dict[s
     places = [[float(x) for x in positions[c.name]] if c.name in positions else None for c in shown.channels]
     known = zip(shown.channels, places, strict=True)
     return {
-        "sensors": [{"name": short(c.name), "xyz": xyz, "limit": shown.limit_K(c)} for c, xyz in known],
+        "sensors": [
+            {"channel": c.name, "name": short(c.name), "xyz": xyz, "limit": shown.limit_K(c)} for c, xyz in known
+        ],
         "measured": _columns([c.y for c in shown.channels], at),
         "models": [_columns([of[c.name] for c in shown.channels], at) for of in models],
     }

@@ -12,7 +12,8 @@ async function unpacked(p) {  // rows of numbers in one array that knows its col
     let sum = 0;
     for (let i = 0; i < rows; i++) {
       const at = k * rows + i;
-      sum += planes[at] | (planes[size + at] << 8) | (planes[2 * size + at] << 16) | (planes[3 * size + at] << 24);
+      const step = planes[at] | (planes[size + at] << 8) | (planes[2 * size + at] << 16) | (planes[3 * size + at] << 24);
+      sum += (step >>> 1) ^ -(step & 1);  // an odd one is negative
       out[i * p.columns + k] = !p.step ? sum : sum < 0 ? NaN : sum * p.step[k] + p.low[k];
     }
   }
@@ -59,7 +60,8 @@ void main() {
   float s = (value - range.x) / (range.y - range.x);
   if (mode == 1) { float q = clamp(s, 0.0, 1.0) * 65535.0; colour = vec4((part + 1.0) / 255.0, floor(q / 256.0) / 255.0, mod(q, 256.0) / 255.0, layer == 3 && sure < 0.5 ? 0.0 : 1.0); return; }
   vec3 towards = normalize(eye - at), n = normalize(facing);
-  float light = flat_ > 0.5 ? 1.0 : 0.62 + 0.38 * abs(dot(n, towards));
+  float facing = dot(n, towards), above = facing < 0.0 ? -n.y : n.y;
+  float light = flat_ > 0.5 ? 1.0 : 0.6 + 0.28 * abs(facing) + 0.12 * above;
   vec3 paint = texture(palette, vec2(clamp(s, 0.002, 0.998), 0.5)).rgb * light;
   if (layer == 3 && sure < 0.5 && mod(gl_FragCoord.x + gl_FragCoord.y, 14.0) < 4.0) paint = mix(paint, vec3(0.12, 0.16, 0.2), 0.6);
   colour = vec4(paint, alpha);
@@ -74,8 +76,8 @@ out vec4 colour;
 void main() { colour = vec4(0.12, 0.16, 0.2, 0.55); }`;
 const DOTS = `#version 300 es
 precision highp float;
-in vec3 place; in vec3 tint; uniform mat4 view; uniform vec4 plane; uniform float size, nearer; out vec3 ink;
-void main() { ink = tint; gl_Position = view * vec4(place, 1.0); gl_Position.z -= nearer * gl_Position.w; gl_PointSize = nearer > 0.0 && dot(place, plane.xyz) > plane.w + 0.006 ? 0.0 : size;
+in vec3 place; in vec3 tint; uniform mat4 view; uniform vec4 plane; uniform vec3 wedge[2]; uniform float size, nearer; out vec3 ink;
+void main() { ink = tint; gl_Position = view * vec4(place, 1.0); gl_Position.z -= nearer * gl_Position.w; gl_PointSize = nearer > 0.0 && (dot(place, plane.xyz) > plane.w + 0.006 || dot(place, wedge[0]) > 0.006 && dot(place, wedge[1]) > 0.006) ? 0.0 : size;
   if (gl_PointSize == 0.0) gl_Position = vec4(2.0, 2.0, 2.0, 1.0); }`;
 const DOT = `#version 300 es
 precision highp float;
@@ -96,10 +98,9 @@ class Viewer {
     this.points = data.points; this.tets = data.tets;
     this.owner = Int32Array.from(data.parts.flatMap((p, k) => Array(p.nodes).fill(k)));
     this.parts = data.parts.map((p) => ({ ...p, shown: 1 }));
-    this.right = 0; this.left = 1; this.time = 1; this.playing = false; this.frames = 0; this.dirty = true; this.smooth = false; this.slow = true; this.pointers = new Map();
+    this.chosen = ""; this.behindOf = new Set(); this.right = 0; this.left = 1; this.time = 1; this.playing = false; this.frames = 0; this.dirty = true; this.smooth = false; this.slow = true; this.pointers = new Map();
     this.bounds();
-    this.first();
-    this.surface();
+    this.meshes();
     this.textures();
     this.choose(0);
   }
@@ -110,10 +111,22 @@ class Viewer {
       if (v < this.low[k]) this.low[k] = v;
       if (v > this.high[k]) this.high[k] = v;
     }
-    this.middle = this.low.map((v, k) => (v + this.high[k]) / 2);
-    this.size = Math.hypot(...this.high.map((v, k) => v - this.low[k]));
+    this.frame = data.looks ? data.looks.frame : [this.low, this.high];
+    this.middle = this.frame[0].map((v, k) => (v + this.frame[1][k]) / 2);
+    this.size = Math.hypot(...this.frame[0].map((v, k) => v - this.frame[1][k]));
   }
-  first() { this.turn = -1.0; this.tilt = 0.35; this.zoom = 1; this.dirty = true; }
+  first() {  // all of the machine, as large as leaves room for labels on both sides
+    this.turn = -1.0; this.tilt = 0.35; this.zoom = 1;
+    const corners = Array.from({ length: 8 }, (_, i) => [0, 1, 2].map((k) => this.frame[i >> k & 1][k]));
+    for (let i = 0; i < 2; i++) {  // nearer means more perspective, so once more
+      this.matrix();
+      const at = corners.map((c) => [0, 1].map((k) => this.row(k, c) / this.row(3, c))), width = (k) => Math.max(...at.map((a) => a[k])) - Math.min(...at.map((a) => a[k]));
+      this.zoom *= Math.min(2 * FILL[0] / width(0), 2 * FILL[1] / width(1));
+    }
+    this.dirty = true;
+  }
+  nearer(factor) { this.zoom = Math.max(0.3, Math.min(12, this.zoom * factor)); }
+  row(k, xyz) { const m = this.rows[k]; return m[0] * xyz[0] + m[1] * xyz[1] + m[2] * xyz[2] + m[3]; }
   program(vertex, fragment, inputs) {
     const gl = this.gl, p = gl.createProgram();
     for (const [kind, text] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
@@ -162,8 +175,39 @@ class Viewer {
     }
     return [Int32Array.from(out), spans];
   }
-  surface() {  // normals are shared by triangles that meet at less than 40 degrees, so that edges stay sharp
-    const [t, spans] = this.triangles(), n = t.length / 3, p = this.points, nodes = p.length / 3, flat = new Float32Array(3 * n);
+  meshes() {  // as it looks, cut open; the mesh itself waits until somebody asks for it
+    this.behind = { order: this.gl.createBuffer() };
+    this.section = this.mesh(new Float32Array(9), [3, 3, 2, 1]);
+    this.outline = this.mesh(new Float32Array(3), [3]);
+    this.beads = { ...this.mesh(new Float32Array(6), [3, 3]), rows: 0 };
+    if (data.looks) this.looks = this.dressed();
+    $("axis").options[0].hidden = $("axis").options[0].disabled = !data.looks;
+    $("axis").value = data.looks ? "3" : "0";
+  }
+  get whole() { return this.own ??= this.bare(); }
+  get solid() { return $("axis").value === "3" ? this.looks : this.whole; }
+  bare() {  // the mesh: every corner is a node
+    const [t, spans] = this.triangles();
+    return this.shaded(t, this.points, spans, (node) => [node, node, 0]);
+  }
+  dressed() {  // shapes for the eye: a corner shows a mix of two nodes; sections have outlines
+    const { points, triangles: t, mix, counts } = data.looks, spans = [], edges = [];
+    let first = 0;
+    for (const [shell, caps] of counts) {
+      const known = new Map(), size = points.length;
+      spans.push([first, 3 * (shell + caps)]);
+      for (let i = first + 3 * shell; i < first + 3 * (shell + caps); i += 3)
+        for (let k = 0; k < 3; k++) {
+          const a = t[i + k], b = t[i + (k + 1) % 3], key = Math.min(a, b) * size + Math.max(a, b);
+          if (!known.delete(key)) known.set(key, [a, b]);
+        }
+      edges.push([...known.values()].flatMap((ends) => ends.flatMap((i) => [points[3 * i], points[3 * i + 1], points[3 * i + 2]])));
+      first += 3 * (shell + caps);
+    }
+    return { ...this.shaded(t, points, [spans, spans.map(([at]) => [at, 0])], (i) => [mix[3 * i], mix[3 * i + 1], mix[3 * i + 2] / SHARES]), edges };
+  }
+  shaded(t, p, spans, mix) {  // normals are shared by triangles that meet at less than 40 degrees, so that edges stay sharp
+    const n = t.length / 3, nodes = p.length / 3, flat = new Float32Array(3 * n);
     const count = new Int32Array(nodes + 1);
     for (let i = 0; i < 3 * n; i += 3) {
       const a = 3 * t[i], b = 3 * t[i + 1], c = 3 * t[i + 2];
@@ -190,15 +234,11 @@ class Viewer {
       while (vertex >= 0 && (rows[9 * vertex + 3] * x + rows[9 * vertex + 4] * y + rows[9 * vertex + 5] * z) * s <= SAME) vertex = before[vertex];
       if (vertex < 0) {
         vertex = vertices++; before[vertex] = last[node]; last[node] = vertex;
-        rows.set([p[3 * node], p[3 * node + 1], p[3 * node + 2], x * s, y * s, z * s, node, node, 0], 9 * vertex);
+        rows.set([p[3 * node], p[3 * node + 1], p[3 * node + 2], x * s, y * s, z * s, ...mix(node)], 9 * vertex);
       }
       index[i] = vertex;
     }
-    this.whole = { ...this.mesh(rows.subarray(0, 9 * vertices), [3, 3, 2, 1], index), spans, triangles: t, index };
-    this.behind = { order: this.gl.createBuffer() };
-    this.section = this.mesh(new Float32Array(9), [3, 3, 2, 1]);
-    this.outline = this.mesh(new Float32Array(3), [3]);
-    this.beads = { ...this.mesh(new Float32Array(6), [3, 3]), rows: 0 };
+    return { ...this.mesh(rows.subarray(0, 9 * vertices), [3, 3, 2, 1], index), spans, triangles: t, index, points: p };
   }
   spans(n, part, first = 0) {  // of n triangles sorted by part: [first, count] in corners
     const out = this.parts.map(() => [first, 0]);
@@ -368,7 +408,8 @@ class Viewer {
     const all = this.test.sensors.map((s, j) => {
       const read = measured[k * measured.columns + j], y = Number.isNaN(read) ? null : read, residual = this.residual(j, k, this.right);
       const verdict = residual === null ? 3 : Math.abs(residual) <= s.limit ? 0 : residual > 0 ? 1 : 2;
-      return { ...s, y, residual, verdict, weight: residual === null ? -1 : Math.abs(residual) / s.limit };
+      const weight = s.channel === this.chosen ? Infinity : residual === null ? -1 : Math.abs(residual) / s.limit;
+      return { ...s, y, residual, verdict, weight };
     });
     this.sensors = all.filter((s) => s.xyz);
     const beads = new Float32Array(6 * this.sensors.length);
@@ -376,11 +417,18 @@ class Viewer {
     this.gl.bindBuffer(this.gl.ARRAY_BUFFER, this.beads.buffer);
     this.gl.bufferData(this.gl.ARRAY_BUFFER, beads, this.gl.DYNAMIC_DRAW);
     this.beads.rows = this.sensors.length;
-    $("sensors").replaceChildren(...all.map((s) => line(s.name, s.y === null ? "–" : `${s.y.toFixed(1)} °C  ${signed(s.residual)} K`, `rgb(${TINTS[s.verdict].map((c) => 255 * c)})`)));
+    const list = $("sensors"), held = [...list.querySelectorAll("button")].indexOf(document.activeElement);
+    list.replaceChildren(...all.map((s) => line(s.name, s.y === null ? "–" : `${s.y.toFixed(1)} °C  ${signed(s.residual)} K`, `rgb(${TINTS[s.verdict].map((c) => 255 * c)})`, () => this.pin(s.channel), s.channel === this.chosen)));
+    if (held >= 0) list.querySelectorAll("button")[held].focus();
+  }
+  pin(channel) {  // a sensor gets a label and a larger dot, whatever the others miss
+    this.chosen = channel;
+    this.readings();
+    this.dirty = true;
   }
   plane() {
     const axis = +$("axis").value;
-    if (axis < 0) return [0, 0, 0, 1];
+    if (axis < 0 || axis > 2) return [0, 0, 0, 1];
     const share = $("cut").value / 1000, sign = axis === 0 ? -1 : 1, out = [0, 0, 0, 0];
     out[axis] = sign;
     out[3] = sign * (this.low[axis] + share * (this.high[axis] - this.low[axis])) + 1e-7 * this.size;
@@ -409,7 +457,8 @@ class Viewer {
     this.gl.bindBuffer(this.gl.ARRAY_BUFFER, this.section.buffer);
     this.gl.bufferData(this.gl.ARRAY_BUFFER, new Float32Array(out), this.gl.DYNAMIC_DRAW);
     this.section.spans = this.spans(part.length, (i) => part[i]);
-    this.outlined(d);
+    $("cut").disabled = off;
+    this.lined(this.solid.edges ?? this.outlined(d));
   }
   outlined(d) {  // where the plane, d away from every node, meets what bounds the parts: a line in each triangle, part by part
     const p = this.points, t = this.whole.triangles, lines = this.parts.map(() => []);
@@ -419,6 +468,9 @@ class Viewer {
         if (d[a] > 0 !== d[b] > 0)
           for (let k = 0; k < 3; k++) lines[this.owner[a]].push(p[3 * a + k] + d[a] / (d[a] - d[b]) * (p[3 * b + k] - p[3 * a + k]));
       }
+    return lines;
+  }
+  lined(lines) {  // of every part
     this.gl.bindBuffer(this.gl.ARRAY_BUFFER, this.outline.buffer);
     this.gl.bufferData(this.gl.ARRAY_BUFFER, new Float32Array(lines.flat()), this.gl.DYNAMIC_DRAW);
     let first = 0;
@@ -427,7 +479,7 @@ class Viewer {
   matrix() {
     const [ct, st, cp, sp] = [Math.cos(this.turn), Math.sin(this.turn), Math.cos(this.tilt), Math.sin(this.tilt)];
     const towards = [st * cp, sp, ct * cp], right = [ct, 0, -st], up = [-st * sp, cp, -ct * sp];
-    const far = 3.4 * this.size / this.zoom, gl = $("gl"), f = 6.2, aspect = gl.width / gl.height;
+    const far = 3.4 * this.size / this.zoom, gl = $("gl"), f = 6.2, aspect = gl.clientWidth / gl.clientHeight;
     const near = Math.max(far - this.size, 0.01 * this.size), end = far + this.size;
     this.eye = this.middle.map((m, k) => m + far * towards[k]);
     const fy = f * Math.min(1, aspect), fx = fy / aspect;
@@ -447,11 +499,11 @@ class Viewer {
     gl.uniform3fv(s["windows[0]"], this.windows()); gl.uniform1f(s.reach, reach);
     gl.uniform1i(s.field, 0); gl.uniform1i(s.palette, 1); gl.uniform1i(s.told, 2);
     gl.uniform1f(s.wipe, this.test.states.length > 1 ? $("wipe").value / 1000 * $("gl").width : 0);
-    const shape = mode < 2 ? this.whole : this.through(reach), whole = mode < 2 && this.parts.every((p) => p.shown === 1);  // then nobody sees a face that another part lies on
+    const solid = this.solid, shape = mode < 2 ? solid : this.through(reach), whole = mode < 2 && this.parts.every((p) => p.shown === 1);  // then nobody sees a face that another part lies on
     for (const shown of mode ? [1] : [1, 0.5]) {
       if (shown < 1) { this.blending(); gl.depthMask(false); }
       gl.uniform1f(s.alpha, shown < 1 ? 0.16 : 1);
-      for (const [mesh, flat] of [[this.whole, 0], [this.section, 1]]) {
+      for (const [mesh, flat] of [[solid, 0], [this.section, 1]]) {
         gl.uniform1f(s.flat_, flat);
         gl.bindVertexArray(mesh.vao);
         if (!flat) gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, shape.order);
@@ -467,7 +519,7 @@ class Viewer {
     gl.disable(gl.BLEND); gl.depthMask(true);
   }
   through(reach) {  // the triangles that may show in a window of `reach` pixels, part by part: a few of all
-    const gl = this.gl, { index, triangles: t, spans } = this.whole, w = this.windows(), p = this.points, n = this.owner.length;
+    const gl = this.gl, { index, triangles: t, spans, points: p, vao } = this.solid, w = this.windows(), n = p.length / 3;
     const [a, b, , c] = this.rows, wide = $("gl").width / 2, high = $("gl").height / 2, x = new Float32Array(n), y = new Float32Array(n);
     for (let i = 0, j = 0; i < n; i++, j += 3) {
       const far = c[0] * p[j] + c[1] * p[j + 1] + c[2] * p[j + 2] + c[3];
@@ -489,12 +541,12 @@ class Viewer {
         if (meets(i)) { some[size++] = index[i]; some[size++] = index[i + 1]; some[size++] = index[i + 2]; }
       return [begin, size - begin];
     }));
-    gl.bindVertexArray(this.whole.vao); gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.behind.order);
+    gl.bindVertexArray(vao); gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.behind.order);
     gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, some.subarray(0, size), gl.DYNAMIC_DRAW);
     return this.behind;
   }
   draw(samples) {  // edges are smooth with several samples per pixel
-    const gl = this.gl, c = $("gl"), scale = Math.min(devicePixelRatio || 1, 2) * (samples > 1 ? 1 : COARSE);
+    const gl = this.gl, c = $("gl"), full = Math.min(devicePixelRatio || 1, 2), scale = full * (samples > 1 ? 1 : COARSE);
     const [w, h] = [c.clientWidth, c.clientHeight].map((side) => Math.max(1, Math.round(side * scale)));
     if (c.width !== w || c.height !== h) { c.width = w; c.height = h; }
     const paper = getComputedStyle(document.body).backgroundColor.match(/\d+/g).map((v) => v / 255);
@@ -502,23 +554,32 @@ class Viewer {
     gl.viewport(0, 0, w, h); gl.clearColor(paper[0], paper[1], paper[2], 1); gl.enable(gl.DEPTH_TEST);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     const reach = samples > 1 ? WINDOW * scale : 0;  // windows cost a second pass: rough pictures have none
+    if (reach) { this.matrix(); this.behindOf = new Set(this.labelled().filter((s) => this.hidden(s)).map((s) => s.channel)); }
     this.skinned(0, reach);
     if (reach) this.skinned(2, reach);
     this.outlines();
     gl.useProgram(this.dots.p); gl.bindVertexArray(this.beads.vao);
-    gl.uniformMatrix4fv(this.dots.view, false, this.matrix()); gl.uniform4fv(this.dots.plane, this.cutting);
+    gl.uniformMatrix4fv(this.dots.view, false, this.matrix()); gl.uniform4fv(this.dots.plane, this.cutting); gl.uniform3fv(this.dots["wedge[0]"], this.missing());
+    const at = this.sensors.findIndex((s) => s.channel === this.chosen);
     for (const [hollow, test] of [[0.42, false], [0, true]]) {  // hollow everywhere, filled where nothing covers it
       (test ? gl.enable : gl.disable).call(gl, gl.DEPTH_TEST);
       gl.uniform1f(this.dots.hollow, hollow); gl.uniform1f(this.dots.size, 15 * scale); gl.uniform1f(this.dots.nearer, test ? 0.002 : 0);
       gl.drawArrays(gl.POINTS, 0, this.beads.rows);
+      gl.uniform1f(this.dots.size, 22 * scale);
+      if (at >= 0) gl.drawArrays(gl.POINTS, at, 1);
     }
     if (samples > 1) {
       gl.bindFramebuffer(gl.READ_FRAMEBUFFER, this.sampled.frame); gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, null);
       gl.blitFramebuffer(0, 0, w, h, 0, 0, w, h, gl.COLOR_BUFFER_BIT, gl.NEAREST);
       gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     }
-    this.labels(scale);
+    this.labels(scale, full);
     this.frames++;
+  }
+  missing() {  // of the wedge that the shapes for the eye have not: normals of its sides, towards it; nothing elsewhere
+    if ($("axis").value !== "3") return new Float32Array(6);
+    const [start, end] = [data.looks.wedge[0], data.looks.wedge[0] + data.looks.wedge[1]].map((v) => v * Math.PI / 180);
+    return new Float32Array([-Math.sin(start), Math.cos(start), 0, Math.sin(end), -Math.cos(end), 0]);
   }
   target(samples) {  // draw into a buffer of several samples per pixel, of the canvas's size
     const gl = this.gl, c = $("gl"), s = this.sampled, size = [c.width, c.height];
@@ -546,10 +607,30 @@ class Viewer {
     const at = [...sensor.xyz, 1], q = this.rows.map((row) => row.reduce((sum, v, k) => sum + v * at[k], 0));
     return [(q[0] / q[3] + 1) / 2 * $("gl").width, (1 - q[1] / q[3]) / 2 * $("gl").height];
   }
-  labelled() { return [...this.sensors].sort((a, b) => b.weight - a.weight).slice(0, 6); }  // furthest beyond their uncertainty
+  labelled() { return [...this.sensors].sort((a, b) => b.weight - a.weight).slice(0, 6); }  // the chosen one, and those furthest beyond their uncertainty
+  hidden(s) {  // does a triangle of what is drawn lie between the eye and the sensor? Cuts across the mesh are not asked: there always
+    const solid = this.solid;
+    if (!solid.edges) return true;
+    const { triangles: t, points: p } = solid, o = this.eye, d = s.xyz.map((v, k) => v - o[k]), far = 1 - ABOVE * this.size / Math.hypot(...d);
+    const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]], dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    return this.parts.some((part, k) => {
+      if (part.shown < 1) return false;
+      const [first, count] = solid.spans[0][k];
+      for (let i = first; i < first + count; i += 3) {  // Moeller and Trumbore 1997
+        const a = 3 * t[i], b = 3 * t[i + 1], c = 3 * t[i + 2];
+        const u = [p[b] - p[a], p[b + 1] - p[a + 1], p[b + 2] - p[a + 2]], v = [p[c] - p[a], p[c + 1] - p[a + 1], p[c + 2] - p[a + 2]];
+        const h = cross(d, v), det = dot(u, h), from = [o[0] - p[a], o[1] - p[a + 1], o[2] - p[a + 2]];
+        const x = dot(from, h) / det;
+        if (!(x >= 0 && x <= 1)) continue;
+        const q = cross(from, u), y = dot(d, q) / det, at = dot(v, q) / det;
+        if (y >= 0 && x + y <= 1 && at > 0 && at < far) return true;
+      }
+      return false;
+    });
+  }
   windows() {  // of what is labelled: pixels, and the depth down to which material is ghosted, just above the sensor
-    const out = new Float32Array(18);
-    this.labelled().forEach((s, i) => {
+    const out = new Float32Array(18).fill(-1e6);  // none there
+    this.labelled().filter((s) => this.behindOf.has(s.channel)).forEach((s, i) => {
       const far = this.eye.map((e, k) => e - s.xyz[k]), share = ABOVE * this.size / Math.hypot(...far);
       const at = [...s.xyz.map((v, k) => v + share * far[k]), 1], [x, y] = this.pixel(s);
       const [z, w] = [2, 3].map((row) => this.rows[row].reduce((sum, v, k) => sum + v * at[k], 0));
@@ -557,13 +638,13 @@ class Viewer {
     });
     return out;
   }
-  labels(scale) {  // of the six sensors furthest beyond their uncertainty; none covers a dot or another label
-    const c = $("over"), x = c.getContext("2d"), d = 9 * scale;
-    const taken = this.sensors.map((s) => this.pixel(s)).map((p) => [p[0] - d, p[1] - d, 2 * d, 2 * d]);
-    c.width = $("gl").width; c.height = $("gl").height;
+  labels(drawn, scale) {  // at full size, however coarse GL draws: of the six sensors furthest beyond their uncertainty; none covers a dot or another label
+    const c = $("over"), x = c.getContext("2d"), d = 9 * scale, by = scale / drawn, place = (s) => this.pixel(s).map((v) => v * by);
+    const taken = this.sensors.map(place).map((p) => [p[0] - d, p[1] - d, 2 * d, 2 * d]);
+    c.width = Math.round($("gl").width * by); c.height = Math.round($("gl").height * by);
     x.font = `${13 * scale}px "DejaVu Sans", system-ui, sans-serif`; x.textBaseline = "middle";
     for (const s of this.labelled()) {
-      const at = this.pixel(s);
+      const at = place(s);
       const text = `${s.name}  ${signed(s.residual)} K`, wide = x.measureText(text).width + 12 * scale, tall = 22 * scale;
       const room = c.width - 100 * scale - wide;
       const left = Math.max(0, at[0] < c.width * 0.45 ? at[0] - wide - 26 * scale : Math.min(at[0] + 26 * scale, room));
@@ -595,10 +676,14 @@ class Viewer {
     const s = (256 * out[1] + out[2]) / 65535;
     return { name: this.parts[out[0] - 1].name, value: this.range[0] + s * (this.range[1] - this.range[0]), guess: !out[3] };
   }
-  hover(x, y) {
-    const box = $("hover"), scale = $("gl").width / $("gl").clientWidth;
+  near(x, y) {  // the sensor whose dot is there
+    const scale = $("gl").width / $("gl").clientWidth;
     const far = (s) => { const p = this.pixel(s); return Math.hypot(p[0] / scale - x, p[1] / scale - y); };
-    const sensor = this.sensors.find((s) => far(s) < 9), found = sensor || this.pick(x, y);
+    const [first] = [...this.sensors].sort((a, b) => far(a) - far(b));
+    return first && far(first) < NEAR ? first : undefined;
+  }
+  hover(x, y) {
+    const box = $("hover"), sensor = this.near(x, y), found = sensor || this.pick(x, y);
     box.style.display = found ? "block" : "none";
     if (sensor) box.textContent = `${sensor.name}  ${sensor.y === null ? "–" : sensor.y.toFixed(1)} °C, ${signed(sensor.residual)} K`;
     else if (found) box.textContent = `${found.name}  ${found.value.toFixed(1)} ${$("unit").textContent}${found.guess ? ", a guess" : ""}`;
@@ -652,15 +737,18 @@ const FACES = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];  // of a tetrahedron
 const SAME = 0.9999;  // cosine of the angle between normals below which they are one: under a degree
 const SAMPLES = 4;  // per pixel: every WebGL 2 has them
 const SLOW = 12, QUICK = 50;  // ms that a smooth picture takes from which moving ones are rough; a rough one, until which smooth ones are timed
+const FILL = [0.66, 0.86];  // shares of the picture's width and height that the machine takes
+const SHARES = 16;  // viz.viewer.looks
 const COARSE = 0.5;  // of the pixels along a side, in rough pictures
 const REST = 200;  // ms without a movement until the picture is smooth
 const CREASE = 0.77;  // cosine of 40 degrees
 const WINDOW = 22, ABOVE = 0.01;  // pixels around a labelled sensor in which what hides it is ghosted; of the machine's size
+const NEAR = 12, STILL = 4;  // pixels from a dot that mean its sensor; that a pointer moves in a click
 const WIDE = 1100;  // pixels from which machine and network stand side by side
 const TINTS = data.tints;  // within, hot, cold, unknown: red, green, blue from 0 to 1
 const signed = (v) => v === null ? "–" : (v < 0 ? "−" : "+") + Math.abs(v).toFixed(1);
 
-function line(name, value, colour, act) {  // a dot of the colour, the name, the value
+function line(name, value, colour, act, on) {  // a dot of the colour, the name, the value; on or off where it can be chosen
   const li = document.createElement("li"), b = document.createElement("button");
   b.append(...[name, value].map((text) => Object.assign(document.createElement("span"), { textContent: text })));
   if (colour) {
@@ -668,7 +756,8 @@ function line(name, value, colour, act) {  // a dot of the colour, the name, the
     dot.style.background = colour;
     b.firstChild.prepend(dot);
   }
-  if (act) b.onclick = () => act(b.lastChild);
+  b.onclick = () => act(b.lastChild);
+  if (on !== undefined) b.ariaPressed = on;
   li.append(b);
   return li;
 }
@@ -692,8 +781,15 @@ function wired(v) {
   $("parts").replaceChildren(...v.parts.map((p) => line(p.name, "shown", "", (span) => {
     p.shown = next[p.shown]; span.textContent = words[p.shown]; again();
   })));
-  c.onpointerdown = (e) => { c.setPointerCapture(e.pointerId); v.pointers.set(e.pointerId, e); };
-  c.onpointerup = c.onpointercancel = (e) => v.pointers.delete(e.pointerId);
+  c.onpointerdown = (e) => { c.setPointerCapture(e.pointerId); v.pointers.set(e.pointerId, e); c.pressed = v.pointers.size > 1 ? null : e; };
+  c.onpointerup = c.onpointercancel = (e) => {
+    v.pointers.delete(e.pointerId);
+    const still = e.type === "pointerup" && c.pressed && Math.hypot(e.clientX - c.pressed.clientX, e.clientY - c.pressed.clientY) < STILL;
+    const sensor = still && v.near(e.offsetX, e.offsetY);
+    if (!sensor) return;
+    v.pin(sensor.channel);
+    if (parent !== window) parent.postMessage({ sensor: sensor.channel }, "*");
+  };
   c.onpointerleave = () => { $("hover").style.display = "none"; };
   c.onpointermove = (e) => {
     const old = v.pointers.get(e.pointerId);
@@ -701,23 +797,33 @@ function wired(v) {
     const other = [...v.pointers.values()].find((q) => q.pointerId !== e.pointerId);
     if (other) {
       const far = (q) => Math.hypot(q.clientX - other.clientX, q.clientY - other.clientY);
-      v.zoom *= far(e) / Math.max(far(old), 1);
+      v.nearer(far(e) / Math.max(far(old), 1));
     } else {
       v.turn -= 0.008 * (e.clientX - old.clientX);
       v.tilt = Math.max(-1.5, Math.min(1.5, v.tilt + 0.008 * (e.clientY - old.clientY)));
     }
     v.pointers.set(e.pointerId, e); again();
   };
-  c.onwheel = (e) => { e.preventDefault(); v.zoom = Math.max(0.3, Math.min(12, v.zoom * Math.exp(-0.001 * e.deltaY))); again(); };
+  c.onwheel = (e) => { e.preventDefault(); v.nearer(Math.exp(-0.001 * e.deltaY)); again(); };
   const keys = {
     ArrowLeft: () => { v.turn -= 0.15; }, ArrowRight: () => { v.turn += 0.15; }, ArrowUp: () => { v.tilt += 0.1; },
-    ArrowDown: () => { v.tilt -= 0.1; }, "+": () => { v.zoom *= 1.2; }, "-": () => { v.zoom /= 1.2; },
+    ArrowDown: () => { v.tilt -= 0.1; }, "+": () => v.nearer(1.2), "-": () => v.nearer(1 / 1.2),
     0: () => v.first(), " ": () => v.play(!v.playing), ",": () => v.move(Math.max(0, v.time - 0.02)),
     ".": () => v.move(Math.min(1, v.time + 0.02)),
   };
   onkeydown = (e) => {
-    if (["INPUT", "SELECT", "BUTTON"].includes(e.target.tagName) || !keys[e.key]) return;
-    e.preventDefault(); keys[e.key](); again();
+    if (["INPUT", "SELECT", "BUTTON"].includes(e.target.tagName)) return;
+    if (keys[e.key]) { e.preventDefault(); keys[e.key](); again(); } else if (parent !== window && e.key.length === 1) parent.postMessage({ key: e.key }, "*");
+  };
+  onmessage = ({ source, data: words }) => {  // from the page around, the workbench: what is chosen there, a key pressed there
+    if (source !== parent || parent === window) return;
+    const said = words ?? {};
+    if (keys[said.key]) keys[said.key]();
+    const k = data.tests.findIndex((t) => t.test === said.test);
+    if (k >= 0 && k !== v.number) { $("test").value = k; v.choose(k); }
+    if (said.dark !== undefined) document.documentElement.dataset.theme = said.dark ? "dark" : "light";
+    if (said.sensor) v.pin(said.sensor);
+    again();
   };
   if (data.network) {
     v.network = new Network($("network"), data.network);
@@ -729,6 +835,8 @@ function wired(v) {
   matchMedia("(prefers-color-scheme: dark)").onchange = again;
 }
 
+document.body.classList.toggle("bench", location.hash === "#bench");  // beside the workbench's own lists of tests and sensors
+
 (async () => {
   try {
     const v = new Viewer(), { errors } = data;
@@ -737,9 +845,11 @@ function wired(v) {
     v.open();
     v.slice();
     wired(v);
+    v.first();
     v.linked();
     window.viewer = v;
     $("wait").remove();
+    if (parent !== window) parent.postMessage({ ready: true }, "*");
     requestAnimationFrame((t) => { v.last = t; v.tick(t); });
     while (errors && !v.took) await new Promise(requestAnimationFrame);
     if (errors) v.told(await opened(errors));

@@ -1,13 +1,14 @@
 """Coolant circuits: exact balance, series and parallel, one- and two-sided, the closed loop, pressure and power."""
 
 import copy
+import sys
 
 import ht
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from geom.errors import InputError
+from geom.errors import InputError, MissingDependency
 from lumped.declarations.circuit import read_circuits
 from lumped.declarations.network import read_network
 from lumped.integration.balance import balance
@@ -24,7 +25,7 @@ from lumped.transfer.hydraulics import (
     pressure_drop,
     pumping_power,
 )
-from lumped.transfer.properties import water
+from lumped.transfer.properties import oil, water
 
 CHANNEL = {"wall": "housing", "width_mm": 20, "height_mm": 6, "length_m": 1.2, "bends": 2}
 LOSS, LOSS_W = {"kind": "constant", "at": "housing", "P_W": 12420.0}, 12420.0
@@ -233,6 +234,13 @@ def test_oil_is_a_mineral_oil():
     assert coolant("oil")(65.0).nu < 0.5 * coolant("oil")(40.0).nu < 0.25 * coolant("oil")(15.0).nu
     with pytest.raises(InputError, match="oil"):
         coolant("oil")(900.0)
+
+
+def test_oil_without_its_package_is_one_message(monkeypatch):
+    monkeypatch.setitem(sys.modules, "CoolProp.CoolProp", None)
+    oil.cache_clear()
+    with pytest.raises(MissingDependency, match=r"pip install 'thermoscope\[oil\]'"):
+        coolant("oil")(40.0)
 
 
 def test_a_share_by_volume_is_another_mixture_than_by_mass():

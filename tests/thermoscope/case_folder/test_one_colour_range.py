@@ -1,4 +1,4 @@
-"""Pictures, film, recording, viewer and workbench of a case take their colours from one range of temperatures."""
+"""Pictures, film, recording and the viewer (the workbench's machine, too) take their colours from one range."""
 
 import json
 from functools import partial
@@ -12,8 +12,7 @@ from thermoscope import pipeline
 from thermoscope.case_folder.folder import load_case
 from thermoscope.case_folder.runs import by_interest, fields, temperature_range
 from thermoscope.commands.show import pages, viewer
-from thermoscope.workbench.appearance import appearance_of
-from thermoscope.workbench.application import Bench
+from thermoscope.workbench.application import bench
 from viz.rendering.scale import rounded
 
 pytestmark = pytest.mark.heavy
@@ -44,7 +43,7 @@ def test_one_range_for_all(folder, tmp_path, monkeypatch):
     for module in (pages, viewer):  # one test: what costs time is done for each
         monkeypatch.setattr(module, "by_interest", lambda folder: by_interest(folder)[:1])
     pages.rendered(folder, tmp_path, silent)
-    data = json.loads(viewer.viewer_page(folder, silent).partition('id="data">')[2].partition("</script>")[0])
-    given.append(Bench(folder, appearance_of(folder, None), viz.rendering.cut.cut_away(nodes)).limits)
-    assert np.array(given) == pytest.approx(np.array([expected] * 3))
+    page = bench(folder, silent).machines.find(folder.history)
+    data = json.loads(page.partition('id="data">')[2].partition("</script>")[0])
+    assert np.array(given) == pytest.approx(np.array([expected] * 2))
     assert (data["marks"][0], data["marks"][-1]) == rounded(*expected)

@@ -1,6 +1,8 @@
 """thermoscope show plan: a page with a test and what each hypothesis predicts; one message where there is none."""
 
 import json
+from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 import pytest
@@ -8,7 +10,8 @@ import pytest
 from geom.errors import InputError
 from thermoscope.case_folder.folder import load_case
 from thermoscope.commands.show.plan import plan
-from validation.planning.predicted_curves import UNCHANGED, predicted_curves, schedule
+from validation.planning.candidate_tests import Experiment
+from validation.planning.predicted_curves import UNCHANGED, PredictedCurves, predicted_curves, schedule
 from viz.figures.experiment import predicted
 
 RIVALS = ("convection@flange", "radiation@flange")
@@ -57,6 +60,18 @@ def test_one_model_twice_is_not_told_apart(case):
     assert all(found.spread_K(c.name) == 0 for c in found.test.channels)
 
 
+def test_what_is_read_is_read_where_hypotheses_are_furthest_apart(case):
+    """Three curves that part in the middle and meet again: the pair that stays closest says when."""
+    folder = load_case(case)
+    test, n = folder.case.tests[-1], len(folder.case.tests[-1].time)
+    bump = np.sin(np.linspace(0.0, np.pi, n)) ** 2
+    curves = {f"{k}": {c.name: 20.0 + k * np.roll(bump, n // 10 * k) for c in test.channels} for k in range(3)}
+    found = PredictedCurves(Experiment("hour", lambda time, *held: held), test, curves)
+    gaps = [abs(a[test.channels[0].name] - b[test.channels[0].name]) for a, b in combinations(curves.values(), 2)]
+    assert found.decisive() == np.argmax(np.min(gaps, axis=0))
+    assert 0.2 * n < found.decisive() < 0.8 * n
+
+
 def test_the_schedule_is_what_the_plan_holds(case):
     """Held inputs in full, in order, without gaps; a record that is driven again is not listed."""
     folder = load_case(case)
@@ -68,3 +83,16 @@ def test_the_schedule_is_what_the_plan_holds(case):
     assert rows[0][1] == found.test.time[0]
     assert [a[2] for a in rows[:-1]] == [b[1] for b in rows[1:]]
     assert np.isclose(rows[-1][2], found.test.time[-1])
+
+
+def test_a_record_in_steps_hides_no_other_steps(case):
+    """Half at 15 A and half at 9 A was driven; 20 A, then nothing is planned: both parts are listed."""
+    test = load_case(case).case.tests[-1]
+    first = np.arange(len(test.time)) < len(test.time) // 2
+    before = replace(test, inputs={"current_A": np.where(first, 15.0, 9.0)}, boundaries={})
+    planned = replace(before, inputs={"current_A": np.where(first, 20.0, 0.0)})
+    assert [(name, value) for name, _, _, value in schedule(planned, before)] == [
+        ("current_A", 20.0),
+        ("current_A", 0.0),
+    ]
+    assert schedule(before, before) == []

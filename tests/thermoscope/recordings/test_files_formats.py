@@ -10,7 +10,7 @@ from small_case import HEADER, measured, small_case
 from geom.errors import InputError
 from thermoscope.case_folder.folder import load_case
 from thermoscope.recordings.alignment import clock_shift
-from thermoscope.recordings.formats import joined, read_frame, recording
+from thermoscope.recordings.formats import joined, read_recording, recording
 from thermoscope.recordings.sheet import read_sheet
 from thermoscope.recordings.tables import load_table
 from thermoscope.recordings.units import checked_unit, converted
@@ -77,12 +77,13 @@ def test_channels_of_two_rates_share_the_time(tmp_path):
         fast = ChannelObject("E", "I", np.arange(21.0), properties={"wf_increment": 1.0})
         slow = ChannelObject("T", "T1", np.arange(5.0), properties={"wf_increment": 5.0})
         file.write_segment([fast, slow])
-    table = read_frame(tmp_path / "a.tdms")
+    table = read_recording(tmp_path / "a.tdms")
     assert table["time_s"].tolist() == list(range(21))
-    assert table["T1"].dropna().to_numpy().tolist() == [0, 1, 2, 3, 4]
-    assert table["time_s"][table["T1"].notna()].tolist() == [0, 5, 10, 15, 20]
+    sampled = np.isfinite(table["T1"])
+    assert table["T1"][sampled].tolist() == [0, 1, 2, 3, 4]
+    assert table["time_s"][sampled].tolist() == [0, 5, 10, 15, 20]
     with pytest.raises(InputError, match="known: E, T"):
-        read_frame(tmp_path / "a.tdms", "X")
+        read_recording(tmp_path / "a.tdms", "X")
 
 
 @pytest.mark.parametrize("suffix", [".xlsx", ".tdms", ".mf4", ".parquet"])
@@ -90,16 +91,16 @@ def test_a_file_that_is_something_else(tmp_path, suffix):
     path = tmp_path / f"a{suffix}"
     path.write_bytes(b"this is no such file, but long enough to be looked at twice" * 10)
     with pytest.raises(InputError, match="not readable as"):
-        read_frame(path)
+        read_recording(path)
 
 
 def test_unknown_format_and_missing_worksheet(tmp_path):
     (tmp_path / "a.mat").write_text("x")
     with pytest.raises(InputError, match=r"ending in '\.mat'"):
-        read_frame(tmp_path / "a.mat")
+        read_recording(tmp_path / "a.mat")
     as_xlsx(tmp_path / "a.xlsx")
     with pytest.raises(InputError, match=r"no worksheet 'result'.*did you mean 'results'"):
-        read_frame(tmp_path / "a.xlsx", "result")
+        read_recording(tmp_path / "a.xlsx", "result")
     with pytest.raises(InputError, match=r"found there: a\.xlsx"):
         recording(tmp_path / "b.csv")
 
@@ -213,7 +214,7 @@ def test_column_recorded_twice_is_refused(tmp_path):
 
 def test_joined_leaves_out_what_is_no_number():
     table = joined([("a", np.arange(3.0), np.arange(3.0)), ("note", np.arange(3.0), np.array(["x", "y", "z"]))])
-    assert list(table.columns) == ["time_s", "a"]
+    assert [name for name, _ in table] == ["time_s", "a"]
 
 
 def test_workbook_holds_input_and_results(tmp_path):
@@ -231,7 +232,8 @@ def test_workbook_holds_input_and_results(tmp_path):
     road = folder.case.tests[1]
     assert back["T_yoke measured (degC)"].to_numpy() == pytest.approx(road.channels[1].y)
     gap = back["T_yoke calculated (degC)"] - back["T_yoke measured (degC)"]
-    errors = content["errors"].set_index(["test", "channel"])
-    assert np.sqrt((gap**2).mean()) == pytest.approx(errors.loc[("road", "T_yoke"), "rmse_K"])
+    errors = content["errors"]
+    rmse = dict(zip(zip(errors["test"], errors["channel"]), errors["rmse_K"]))
+    assert np.sqrt((gap**2).mean()) == pytest.approx(rmse["road", "T_yoke"])
     written = write_csvs(tmp_path / "csv", content)
-    assert pd.read_csv(written[1])["rmse_K"].to_numpy() == pytest.approx(content["errors"]["rmse_K"].to_numpy())
+    assert pd.read_csv(written[1])["rmse_K"].to_numpy() == pytest.approx(errors["rmse_K"])

@@ -12,7 +12,7 @@ HERE = Path(__file__).resolve().parent
 sys.path += [str(HERE), str(HERE.parents[1] / "shared")]
 
 from small_case import small_case  # noqa: E402
-from small_motor import motor  # noqa: E402
+from small_motor import machine, motor  # noqa: E402
 
 from thermoscope.case_folder.folder import Folder, load_case  # noqa: E402
 
@@ -32,16 +32,6 @@ class Uniform:
         return np.repeat(x[None, self.states.index(node)], self.count[part], axis=0)
 
 
-@dataclass(frozen=True)
-class Iron:
-    """A machine of one conductivity (W/m/K)."""
-
-    parts: tuple[SimpleNamespace, ...]
-
-    def conductivity(self, part: str) -> tuple[float, float]:
-        return 40.0, 40.0
-
-
 def with_motor(path: Path) -> Folder:
     """The case of that folder, its three nodes spread over the parts of a small motor."""
     from viz import split
@@ -49,12 +39,11 @@ def with_motor(path: Path) -> Folder:
     folder, mesh = load_case(path), motor(24)
     nodes = split(mesh)
     count = {part: len(nodes.of(part)) for part in nodes.parts}
-    iron = Iron(tuple(SimpleNamespace(name=part) for part in nodes.parts))
     network = folder.case.model.network
     recovered = replace(network, recovery=Uniform(count, network.states))
     case = replace(folder.case, model=replace(folder.case.model, network=recovered))
     return replace(
-        folder, case=case, built=SimpleNamespace(mesh=mesh, network=recovered, machine=iron), positions=POSITIONS
+        folder, case=case, built=SimpleNamespace(mesh=mesh, network=recovered, machine=machine()), positions=POSITIONS
     )
 
 

@@ -7,6 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from lumped.model.build import bare_network, node_link, node_source
+from lumped.model.multipliers import parameter_values
 from lumped.model.network import Parameter, Row
 from lumped.transfer.laws import Fixed
 from validation.bands import Place, at_end, bands, parameter_posterior
@@ -101,7 +102,7 @@ def test_at_rest_the_band_is_that_of_a_long_record(calibrated):
     time = np.linspace(0.0, 400_000.0, 400)
     long = Test("rest", "hold-out", time, {}, {"air": np.full(time.size, 20.0)}, (), 20.0)
     network = thermal(known.network)
-    values = {p.name: known.values.get(p.name, p.value) for p in network.parameters}
+    values = parameter_values(network, known.values)
     sd = AtRest(known, network).sd(values, {}, {"air": 20.0}, core.row)
     assert_allclose(sd, bands(known, long, [core]).sd[-1, 0], rtol=0.03)
 

@@ -69,7 +69,7 @@ def test_table_dot_curve_bar_and_page_say_the_same(off):
     (channel,) = test.channels
     shown = Comparison(test, {channel.name: channel.y - mine.bias_K}, found.limits[test.name])
     (dot,) = sensors(shown, {channel.name: (0.0, 0.0, 0.0)})
-    look = Appearance(found.document(), {test.name: shown}, {})
+    look = Appearance(found.document(), {test.name: shown})
     (bar,) = tables.channels(look, test.name, 1.0)
     assert mine.bias_K == pytest.approx(off, abs=0.02), "measured - model: positive where the machine is hotter"
     assert dot.residual_K == pytest.approx(mine.bias_K)

@@ -11,7 +11,7 @@ from lumped.transfer.laws import Fixed
 from viz.figures import paper
 from viz.figures.flows import Flow, Heat, heat_flows, last_running_step
 from viz.figures.sankey import sankey_of_losses
-from viz.machine.animation import animate
+from viz.machine.animation import WRITERS, animate
 from viz.machine.network import LABEL, NODE, clear_place, network_in_machine, places, spread_out
 from viz.rendering.nodes import split
 
@@ -136,16 +136,36 @@ def test_animation_has_a_frame_per_time_and_warms_up(tmp_path):
     assert last[200:500, 200:700, 1].mean() > first[200:500, 200:700, 1].mean() + 20
 
 
+def test_small_hot_parts_keep_their_colour_in_a_gif(tmp_path):
+    """Beside a shell of all shades from blue to red: a thousandth of the picture stays orange, within eight of 255."""
+    high, wide, spot = 200, 320, (slice(90, 98), slice(150, 158))
+    x, light = np.linspace(0, 1, wide)[None, :, None], np.linspace(0.4, 1.0, high)[:, None, None]
+    shell = (np.array([70.0, 60.0, 200.0]) * (1 - x) + np.array([235.0, 90.0, 110.0]) * x) * light
+    pictures = []
+    for k in range(6):
+        one = np.clip(shell + 2 * k, 0, 255).astype(np.uint8)
+        one[spot] = (230 + k, 140, 60)
+        pictures.append(one)
+    gif = Image.open(WRITERS[".gif"](tmp_path / "a.gif", pictures, 12.0))
+    for k, one in enumerate(pictures):
+        gif.seek(k)
+        seen = np.asarray(gif.convert("RGB")).astype(int)
+        assert np.abs(seen[spot] - one[spot]).max() <= 8
+
+
 def test_a_label_on_a_line_covers_no_node_and_no_other_label():
     """A node in the middle of the line: the label moves along it; a line between close neighbours gets none."""
     a, b = np.array([0.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
     nodes = [a, b, np.array([0.0, 0.0, 0.5])]
-    first = clear_place(a, b, nodes, [], 1.0)
-    second = clear_place(a, b, nodes, [first], 1.0)
-    least = LABEL[1] + NODE
+    first = clear_place(a, b, nodes, [], PIXEL)
+    second = clear_place(a, b, nodes, [first], PIXEL)
+    least = PIXEL * (LABEL[1] + NODE)
     assert all(abs(first[2] - n[2]) >= least for n in nodes)
-    assert abs(second[2] - first[2]) >= 2 * LABEL[1]
-    assert clear_place(a, np.array([0.0, 0.0, least]), nodes, [], 1.0) is None
+    assert abs(second[2] - first[2]) >= 2 * PIXEL * LABEL[1]
+    assert clear_place(a, np.array([0.0, 0.0, least]), nodes, [], PIXEL) is None
+
+
+PIXEL = 0.0015  # m: a line of a metre is 670 of them long
 
 
 def test_the_network_s_colours_span_its_own_nodes():

@@ -79,7 +79,8 @@ def paced(nodes, times: np.ndarray, rng: np.random.Generator) -> np.ndarray:
 @pytest.fixture(scope="module")
 def shipped():
     """The page of a mesh as fine as that of its case, with five tests of an hour and three models each."""
-    nodes, rng = split(build_mesh(load_machine("series-dc-100kw"), CASE_MESH_M)), np.random.default_rng(2)
+    machine, rng = load_machine("series-dc-100kw"), np.random.default_rng(2)
+    nodes = split(build_mesh(machine, CASE_MESH_M))
     times = np.linspace(0.0, 3600.0, 61)
     readings = recorded().comparison.model
     tests = [
@@ -87,7 +88,7 @@ def shipped():
                 earlier=(Earlier(paced(nodes, times, rng), readings),))
         for _ in range(5)
     ]  # fmt: skip
-    return render(document("motor", nodes, tests, PLACE, revisions=["2", "1", "0"]))
+    return render(document("motor", nodes, tests, PLACE, revisions=["2", "1", "0"], machine=machine))
 
 
 def test_the_page_of_a_shipped_machine_is_small(shipped):
@@ -226,6 +227,76 @@ def test_a_browser_draws_it_without_complaint(tmp_path):
             page.mouse.move(*sensor[1:])
             assert sensor[0] in page.inner_text("#hover")
     assert said == []
+
+
+@pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
+def test_fingers_turn_it_bring_it_nearer_and_choose_a_sensor(tmp_path):
+    """Touches as the browser's own protocol sends them: one finger drags, two spread, one taps a dot."""
+    write_viewer(tmp_path / "v.html", "motor", NODES, [recorded()], PLACE)
+    with drawn_by_a_browser(tmp_path / "v.html") as (page, said):
+        screen = page.context.new_cdp_session(page)
+        screen.send("Emulation.setTouchEmulationEnabled", {"enabled": True, "maxTouchPoints": 2})
+
+        def touched(*steps):
+            """Fingers down at the first step's points, along the others, and up."""
+            for kind, points in zip(("touchStart", *["touchMove"] * (len(steps) - 1)), steps, strict=True):
+                fingers = [{"x": x, "y": y, "id": k} for k, (x, y) in enumerate(points)]
+                screen.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": fingers})
+            screen.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+
+        before = page.evaluate(POSE)
+        touched([(200, 300)], [(230, 300)], [(280, 340)])
+        dragged = page.evaluate(POSE)
+        assert dragged["turn"] == pytest.approx(before["turn"] - 0.008 * 80)
+        assert dragged["tilt"] == pytest.approx(before["tilt"] + 0.008 * 40)
+        assert dragged["zoom"] == before["zoom"]
+        touched([(200, 300), (300, 300)], [(150, 300), (350, 300)])
+        spread = page.evaluate(POSE)
+        assert spread["zoom"] == pytest.approx(2 * before["zoom"])
+        assert spread["turn"] == dragged["turn"]
+        page.evaluate("() => { viewer.first(); viewer.draw(1); }")
+        for channel, x, y in page.evaluate(DOTS):
+            touched([(x, y)])
+            assert page.evaluate("viewer.chosen") == channel
+    assert said == []
+
+
+@pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
+def test_keys_alone_turn_step_play_and_choose(tmp_path):
+    """Tab reaches the machine and every control; each key does what the page says of it."""
+    write_viewer(tmp_path / "v.html", "motor", NODES, [recorded()], PLACE)
+    with drawn_by_a_browser(tmp_path / "v.html") as (page, said):
+        page.keyboard.press("Tab")
+        assert page.evaluate("document.activeElement.id") == "gl"
+        first = page.evaluate(POSE)
+        for key, what, sign in KEYS:
+            before = page.evaluate(POSE)[what]
+            page.keyboard.press(key)
+            assert np.sign(page.evaluate(POSE)[what] - before) == sign, key
+        page.keyboard.press("0")
+        back = page.evaluate(POSE)
+        assert {k: back[k] for k in ("turn", "tilt", "zoom")} == pytest.approx(
+            {k: first[k] for k in ("turn", "tilt", "zoom")}
+        )
+        reached = set()
+        for _ in range(40):
+            page.keyboard.press("Tab")
+            reached.add(page.evaluate("document.activeElement.id || document.activeElement.textContent"))
+            if "shaft" in page.evaluate("document.activeElement.textContent"):
+                break
+        assert {"play", "time", "test", "layer", "axis", "cut"} <= reached
+        page.keyboard.press("Enter")
+        assert page.evaluate("viewer.chosen") == "T_shaft"
+        assert "shaft" in page.evaluate("document.activeElement.textContent")  # the list is drawn anew, the place stays
+    assert said == []
+
+
+POSE = "({ turn: viewer.turn, tilt: viewer.tilt, zoom: viewer.zoom, time: viewer.time })"
+DOTS = "viewer.sensors.map((s) => [s.channel, ...viewer.pixel(s).map((v) => v * $('gl').clientWidth / $('gl').width)])"
+KEYS = (
+    ("ArrowLeft", "turn", -1), ("ArrowRight", "turn", 1), ("ArrowUp", "tilt", 1), ("ArrowDown", "tilt", -1),
+    ("+", "zoom", 1), ("-", "zoom", -1), (",", "time", -1), (".", "time", 1),
+)  # fmt: skip
 
 
 @pytest.mark.skipif(BROWSER is None, reason="needs Chromium")

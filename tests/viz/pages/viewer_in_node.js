@@ -10,14 +10,16 @@ const context = (kind) => kind === "2d"
 const element = () => ({
   value: "0", style: {}, options: [{}, {}, {}, {}], selectedIndex: 0, selectedOptions: [{}], parentNode: {}, width: 100, height: 100, clientWidth: 100, clientHeight: 100,
   getContext: context, replaceChildren() {}, append() {}, prepend() {}, remove() {}, firstChild: { prepend() {} }, lastChild: {},
+  querySelectorAll: () => [],
 });
 const known = { data: { ...element(), textContent: between('id="data">', "</script>") } };
-globalThis.document = { getElementById: (id) => known[id] ??= element(), createElement: element, documentElement: element() };
+globalThis.document = { getElementById: (id) => known[id] ??= element(), createElement: element, documentElement: element(), body: { classList: { toggle() {} } } };
+globalThis.location = { hash: "" };
 globalThis.Option = class {};
-globalThis.window = globalThis;
+globalThis.window = globalThis.parent = globalThis;
 globalThis.matchMedia = () => ({});
 globalThis.getComputedStyle = () => ({ getPropertyValue: () => "#000" });
-globalThis.devicePixelRatio = 1; globalThis.onkeydown = globalThis.onresize = null;
+globalThis.devicePixelRatio = 1; globalThis.onkeydown = globalThis.onresize = globalThis.onmessage = null;
 let ready;
 globalThis.requestAnimationFrame = () => ready();
 new Promise((done) => { ready = done; }).then(() => {

@@ -5,12 +5,13 @@ import pytest
 from PIL import Image
 from small_motor import motor
 
-from viz import Sensor, misses, split, uncertainty
-from viz.machine.misses import CAPTION, GUESS
+from geom import load_machine
+from viz import Sensor, cutaway, misses, portrait, split, uncertainty
+from viz.machine.misses import CAPTION, GUESS, pixels
 from viz.machine.pulses import Pulses
 from viz.rendering import scene
 from viz.rendering.cut import cut_away
-from viz.rendering.scene import View
+from viz.rendering.scene import NOTE, View
 
 NODES = split(motor(24))
 ERROR = np.linspace(-3.0, 1.0, NODES.size)
@@ -52,6 +53,33 @@ def test_a_band_begins_at_zero_and_is_darker_where_less_is_known(tmp_path):
     some = len(columns) // 4
     left, right = (np.nanmedian(machine[:, c]) for c in (columns[:some], columns[-some:]))
     assert right < left - 20.0
+
+
+SENSORS = [Sensor("shaft", (0.0, 0.0, 0.3), 5.0, 1.0), Sensor("yoke", (0.1, -0.1, 0.3), 1.0, 1.0)]
+FOOTED = {
+    "misses": lambda: misses(NODES, ERROR, np.ones(NODES.size), sensors=SENSORS, title="hour"),
+    "uncertainty": lambda: uncertainty(NODES, 1.0 + ERROR**2, sensors=SENSORS, title="hour"),
+    "field": lambda: cutaway(NODES, 20.0 + ERROR, sensors=SENSORS, title="hour"),
+    "machine": lambda: portrait(load_machine("series-dc-100kw"), title="motor"),
+}
+
+
+@pytest.mark.parametrize("kind", FOOTED)
+def test_what_is_said_below_touches_nothing(kind):
+    """The machine stays above its footnote, and nothing is drawn through it: the depths of the view are its own."""
+    p = FOOTED[kind]()
+    p.render()
+    said = p.actors["footnote"].GetInput()
+    meshes = [a.mapper.dataset for a in p.actors.values() if hasattr(getattr(a, "mapper", None), "dataset")]
+    solid = max(meshes, key=lambda data: data.n_points).points
+    near = p.camera.clipping_range[0]
+    closest = ((np.array(p.camera.position) - solid) @ -np.array(p.camera.direction)).min()
+    lowest = pixels(p, np.asarray(solid, float))[:, 1].min() / p.window_size[1]
+    p.close()
+    assert lowest > NOTE
+    assert near > 0.5 * closest
+    assert kind == "machine" or "hollow dots" in said
+    assert kind != "misses" or CAPTION in said
 
 
 @pytest.mark.parametrize(("residual_K", "pulses"), [(5.0, True), (-5.0, True), (0.2, False)])

@@ -17,7 +17,7 @@ from viz.rendering.scene import View
 from viz.rendering.visibility import SLACK
 
 VIEWS = {"default": View(), "other side": View((1.0, 0.42, 0.62)), "aside": ASIDE, "below": View((-1.0, -0.5, -0.4)),
-         "portrait": VIEW}  # fmt: skip
+         "portrait": VIEW, "viewer": View((-0.79, 0.34, 0.51))}  # fmt: skip
 WIDE = 0.25  # of a whole window: half of it even between two neighbours, and more than its sensor's dot covers
 
 

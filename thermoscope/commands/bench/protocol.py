@@ -44,8 +44,9 @@ from geom.errors import InputError
 from lumped.schemas.reader import Table
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import give, progress
+from thermoscope.recordings.data_table import pairs
 from thermoscope.recordings.electrical import meter_of, saturation_of
-from thermoscope.recordings.formats import pairs, read_frame, recording
+from thermoscope.recordings.formats import read_recording, recording
 from validation.procedure.measuring.meters import OHMMETER, VOLTMETER
 from validation.procedure.measuring.propagation import PropagatedUncertainty, Reading
 from validation.procedure.measuring.protocol import Cold, Hot, Protocol, Record
@@ -120,10 +121,10 @@ def _pairs(source: Table, beside: Path, unit_s: float) -> Pairs:
         return ()
     path, time, column = beside.parent / source.word("file"), source.word("time", "time_s"), source.word("column")
     file = recording(path)
-    frame = read_frame(file, source.word("worksheet", ""))
+    frame = read_recording(file, source.word("worksheet", ""))
     for name in (time, column):
         if name not in frame.columns:
-            raise source.error(f"column '{name}' is not in {path.name}", f"known: {', '.join(map(str, frame.columns))}")
+            raise source.error(f"column '{name}' is not in {path.name}", f"known: {', '.join(frame.columns)}")
     return tuple((float(t) / unit_s, float(v)) for t, v in pairs(frame, time, column, file))
 
 

@@ -77,7 +77,7 @@ def viewer_page(folder: Folder, tell: Progress) -> str:
     names = [f"{r.number}: {r.effect or (r.action if r.number else 'as it was')}" for r in revisions(folder)]
     return render(document(
         folder.case.name, nodes, tests, folder.positions, conductivity, names or ["now"], folder.built.mesh,
-        temperature_range(folder, nodes),
+        temperature_range(folder, nodes), folder.built.machine,
     ))  # fmt: skip
 
 

@@ -5,7 +5,7 @@ import pytest
 
 from geom.errors import InputError
 from lumped.declarations.network import read_network
-from thermoscope.recordings.quantities import with_quantities
+from thermoscope.case_folder.quantities import with_quantities
 from thermoscope.recordings.sheet import read_sheet
 from validation.case import Test
 

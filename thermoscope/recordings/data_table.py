@@ -1,0 +1,169 @@
+"""A recording as columns of equal length: numbers, instants, true and false, or words."""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime, timedelta
+from decimal import Decimal
+from numbers import Real
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geom.errors import InputError
+
+Array = NDArray[np.float64]
+Column = NDArray[Any]
+HEADER = 2  # line of the first row of numbers
+NUMBER = re.compile(r"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?|inf(?:inity)?)", re.ASCII | re.IGNORECASE)
+# As loggers, spreadsheets and statistics programs write that nothing was read.
+MISSING = frozenset({"", "#n/a", "#n/a n/a", "#na", "-1.#ind", "1.#ind", "-1.#qnan", "1.#qnan", "-nan", "nan", "<na>",
+                     "n/a", "na", "null", "none"})  # fmt: skip
+SWITCH = {"true": True, "false": False}
+
+
+@dataclass(frozen=True)
+class DataTable:
+    """cells : name -> (rows,) float with NaN where nothing was read; datetime64 and timedelta64; bool; or objects of
+    any kind with None where nothing was read"""
+
+    cells: Mapping[str, Column]
+
+    @classmethod
+    def of(cls, columns: Iterable[tuple[object, Any]], file: Path) -> DataTable:
+        """Of pairs (name, values) in the order of the file. InputError for a name that comes twice."""
+        pairs = [(str(name).strip(), values) for name, values in columns]
+        twice = [name for name, count in Counter(name for name, _ in pairs).items() if count > 1]
+        if twice:
+            raise InputError(f"column '{twice[0]}' stands twice in the header", str(file), "a name of its own for each")
+        cells = {name: _typed(values) for name, values in pairs}
+        if len(rows := {column.size for column in cells.values()}) > 1:
+            raise InputError(f"columns have from {min(rows)} to {max(rows)} rows", str(file), "columns of equal length")
+        return cls(cells)
+
+    @property
+    def columns(self) -> list[str]:
+        return list(self.cells)
+
+    @property
+    def rows(self) -> int:
+        return len(next(iter(self.cells.values()), ()))
+
+    def __getitem__(self, name: str) -> Column:
+        return self.cells[name]
+
+    def with_columns(self, **columns: Column) -> DataTable:
+        """With these columns, in place of those of the same name."""
+        return DataTable({**self.cells, **columns})
+
+
+def _typed(values: Any) -> Column:
+    """Values as the narrowest kind of column that holds them all."""
+    if hasattr(values, "dtype") and np.ndim(values) == 1:
+        column = np.asarray(values)
+        if column.dtype.kind in "iuf":
+            return np.asarray(column, float)
+        if column.dtype.kind in "bmM":
+            return column
+        values = column.tolist()
+    if set(map(type, values)) == {str}:
+        return _of_words(values)
+    cells = [None if is_missing(cell) else cell for cell in values]
+    kinds = {type(cell) for cell in cells if cell is not None}
+    if kinds <= {int, float}:
+        return np.array(cells, float)  # None is NaN
+    if kinds == {datetime}:
+        return np.array([cell and _utc(cell) for cell in cells], "datetime64[us]")
+    if kinds == {timedelta}:
+        return np.array(cells, "timedelta64[us]")
+    return np.array(cells, bool) if kinds == {bool} and None not in cells else np.fromiter(cells, object, len(cells))
+
+
+def _of_words(words: Sequence[str]) -> Column:
+    """True and false where there is nothing else."""
+    meaning: dict[str, Any] = {word: None if is_missing(word) else word for word in set(words)}
+    if all(word is None or word.strip().lower() in SWITCH for word in meaning.values()):
+        meaning = {word: value and SWITCH[value.strip().lower()] for word, value in meaning.items()}
+    cells = np.fromiter(map(meaning.__getitem__, words), object, len(words))
+    return cells.astype(bool) if set(meaning.values()) <= {True, False} else cells
+
+
+def _utc(instant: datetime) -> datetime:
+    """Without its zone, in that of Greenwich."""
+    return instant if instant.tzinfo is None else instant.astimezone(UTC).replace(tzinfo=None)
+
+
+def is_missing(cell: object) -> bool:
+    """Does a cell say that nothing was read?"""
+    if isinstance(cell, str):
+        return cell.strip().lower() in MISSING
+    return cell is None or (isinstance(cell, float | np.datetime64) and cell != cell)
+
+
+def as_number(cell: object) -> float | None:
+    """The number in a cell, NaN where nothing was read, None where it is no number."""
+    if isinstance(cell, str):
+        text = cell.strip()
+        return float(text) if NUMBER.fullmatch(text) else float("nan") if is_missing(text) else None
+    if isinstance(cell, Real | Decimal):
+        return float(cell)
+    return float("nan") if is_missing(cell) else None
+
+
+def numbers(table: DataTable, name: str, file: Path) -> Array:
+    """A column as numbers, NaN where nothing was read; InputError with the line of what is no finite number."""
+    column = table[name]
+    values = np.asarray(column, float) if column.dtype.kind in "fb" else _numbers(column, name, file)
+    endless = np.flatnonzero(np.isinf(values))
+    if endless.size:
+        raise InputError("the value is infinite", cell(file, name, int(endless[0])), "a finite number")
+    return values
+
+
+def _numbers(column: Column, name: str, file: Path) -> Array:
+    """Of a column of words or instants."""
+    if column.dtype.kind in "mM":
+        raise InputError("holds instants, no numbers", f"{file} column '{name}'", "numbers, or another column")
+    values = [as_number(word) for word in column]
+    if None in values:
+        row = values.index(None)
+        raise InputError(f"'{column[row]}' is no number", cell(file, name, row),
+                         "a number with a decimal point, or nothing where nothing was read")  # fmt: skip
+    return np.array(values, float)
+
+
+def is_switch(column: Column) -> bool:
+    """Does a column hold true and false?"""
+    return column.dtype.kind == "b" or (column.dtype.kind == "O" and any(isinstance(word, bool) for word in column))
+
+
+def cell(file: Path, column: str, row: int) -> str:
+    """Where a reading stands."""
+    return f"{file} column '{column}' line {row + HEADER}"
+
+
+def pairs(table: DataTable, time: str, column: str, file: Path) -> Array:
+    """(n, 2) times and readings of two columns, where both are given."""
+    both = np.column_stack([numbers(table, time, file), numbers(table, column, file)])
+    return np.asarray(both[np.isfinite(both).all(axis=1)])
+
+
+def rows_of(columns: Mapping[str, Sequence[Any] | Column]) -> list[list[Any]]:
+    """Rows under their header, of Python's own types; None where a number is missing."""
+    lists = [values.tolist() if isinstance(values, np.ndarray) else list(values) for values in columns.values()]
+    plain = [[None if v != v else v for v in values] for values in lists]
+    return [list(columns), *(list(row) for row in zip(*plain, strict=True))]
+
+
+def csv_text(columns: Mapping[str, Sequence[Any] | Column]) -> str:
+    """Columns as CSV: shortest numbers that read back the same, empty cells where there is none."""
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows(rows_of(columns))
+    return text.getvalue()

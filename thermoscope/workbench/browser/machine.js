@@ -1,0 +1,29 @@
+// The machine is drawn in a frame of its own. It is told the test and the sensor that are chosen here, the theme, and
+// keys pressed outside of it; it says which sensor was clicked, and what keys it has no use for.
+(() => {
+  const KEYS = ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown", "+", "-", "0", " ", ",", "."];
+  const ELSEWHERE = "input, select, textarea, button, a, summary, [role=slider], [role=listbox], [role=combobox]";
+  const frame = () => document.getElementById("viewer");
+  const say = (words) => frame()?.contentWindow.postMessage(words, location.origin);
+  const tell = () => {
+    const { test, sensor, dark } = frame()?.dataset ?? {};
+    if (test) say({ test, sensor, dark: dark === "true" });
+  };
+  new MutationObserver(tell).observe(document, {
+    subtree: true, attributes: true, attributeFilter: ["data-test", "data-sensor", "data-dark"],
+  });
+  addEventListener("message", (event) => {
+    if (event.source !== frame()?.contentWindow || event.origin !== location.origin) return;
+    if (event.data.ready) tell();
+    if (event.data.key) {
+      const code = event.data.key.charCodeAt(0);
+      document.dispatchEvent(new KeyboardEvent("keypress", { key: event.data.key, charCode: code, keyCode: code, which: code }));
+    }
+    if (event.data.sensor) frame().dispatchEvent(new CustomEvent("pick", { detail: event.data.sensor }));
+  });
+  document.addEventListener("keydown", (event) => {
+    if (!KEYS.includes(event.key) || event.target.closest?.(ELSEWHERE) || !frame()) return;
+    event.preventDefault(); // else the page scrolls
+    say({ key: event.key });
+  });
+})();
