@@ -57,7 +57,7 @@ class Drawn:
 
     @property
     def right(self) -> bool:
-        return not self.fault and self.error <= WITHIN
+        return not self.fault and bool(self.error <= WITHIN)
 
 
 def machine_of(family: Family, seed: int) -> Machine:
@@ -134,7 +134,7 @@ def all_beyond(family: Family, rng: np.random.Generator) -> Table | None:
 
 def changes(family: Family, table: Table) -> int | None:
     """How many lengths are changed, as refusals ask, until the machine is built; None if one asks for nothing."""
-    lengths = {(p.group, p.name): p for p in family.parameters}
+    lengths = {(p.group, key): p for p in family.parameters for key in (p.name, p.ratio_name)}
     for n in range(MOST):
         try:
             machine_from({"machine": {"family": family.name}, "geometry": table})
@@ -144,8 +144,9 @@ def changes(family: Family, table: Table) -> int | None:
         if asked is None:
             return None
         group, name, value, _ = asked.groups()
-        table[group].pop(lengths[group, name].ratio_name, None)
-        table[group][name] = float(value)
+        p = lengths[group, name]
+        rest = {key: entry for key, entry in table[group].items() if key not in (p.name, p.ratio_name)}
+        table = {**table, group: {**rest, name: float(value)}}
     return None
 
 

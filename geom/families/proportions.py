@@ -27,17 +27,17 @@ def remedy(family: Family, table: Table, refusal: InputError) -> str:
     """
     trials = list(_trials(family, table))
     trials.sort(key=lambda trial: f"[geometry.{trial[0].group}] {trial[0].name}" != refusal.where)
-    answers = [(p, value, _refusal(family, _changed(table, p, value))) for p, value in trials]
+    answers = [(p, key, value, _refusal(family, _changed(table, p, key, value))) for p, key, value in trials]
     for word, holds in (("fits", lambda e: e is None), ("is a beginning", lambda e: e.where != refusal.where),
                         ("is a beginning", lambda e: True)):  # fmt: skip
-        for p, value, answer in answers:
+        for p, key, value, answer in answers:
             if holds(answer):
-                return f"[geometry.{p.group}] {p.name} = {value:g} {word}"
+                return f"[geometry.{p.group}] {key} = {value} {word}"
     return ""
 
 
-def _trials(family: Family, table: Table) -> Iterator[tuple[Parameter, float]]:
-    """Lengths out of proportion, each with a value (in the unit of its key) within its bounds."""
+def _trials(family: Family, table: Table) -> Iterator[tuple[Parameter, str, str]]:
+    """Lengths out of proportion, each with a key and a value within its bounds: a ratio where mm leave their range."""
     values = read_geometry(family.parameters, table, "")
     for p in family.parameters:
         ratio = None if p.of is None else _ratio(p, values)
@@ -46,8 +46,7 @@ def _trials(family: Family, table: Table) -> Iterator[tuple[Parameter, float]]:
         margin = _INSIDE * (p.of.high - p.of.low)
         inside = min(max(ratio, p.of.low + margin), p.of.high - margin)
         length = (p.of.start(values) + inside * p.of.span(values)) / UNITS[p.unit]
-        if p.low <= length <= p.high:
-            yield p, float(f"{length:.4g}")
+        yield (p, p.name, f"{length:.6g}") if p.low <= length <= p.high else (p, p.ratio_name, f"{inside:.6g}")
 
 
 def _ratio(p: Parameter, values: Geometry) -> float | None:
@@ -57,9 +56,9 @@ def _ratio(p: Parameter, values: Geometry) -> float | None:
     return (value - p.of.start(values)) / span if span > 0.0 and not (p.off and value == 0) else None
 
 
-def _changed(table: Table, p: Parameter, value: float) -> dict[str, Any]:
-    group = {name: entry for name, entry in table.get(p.group, {}).items() if name != p.ratio_name}
-    return {**table, p.group: {**group, p.name: value}}
+def _changed(table: Table, p: Parameter, key: str, value: str) -> dict[str, Any]:
+    group = {name: entry for name, entry in table.get(p.group, {}).items() if name not in (p.name, p.ratio_name)}
+    return {**table, p.group: {**group, key: float(value)}}
 
 
 def _refusal(family: Family, table: Table) -> InputError | None:

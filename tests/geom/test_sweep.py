@@ -129,8 +129,8 @@ def refused(family, table):
 
 def as_asked(family, table, group, key, value, _):
     """The table with a length changed."""
-    ratio = next(p.ratio_name for p in family.parameters if (p.group, p.name) == (group, key))
-    rest = {name: old for name, old in table[group].items() if name != ratio}
+    p = next(p for p in family.parameters if p.group == group and key in (p.name, p.ratio_name))
+    rest = {name: entry for name, entry in table[group].items() if name not in (p.name, p.ratio_name)}
     return {**table, group: {**rest, key: float(value)}}
 
 
@@ -162,6 +162,15 @@ def test_any_lengths_out_of_proportion_end_in_a_machine_as_refusals_ask(family):
             assert asked[-1] != "fits" or refused(family, table) is None, table
         several += changes > 1
     assert several > 0
+
+
+def test_a_length_whose_range_ends_too_early_is_asked_for_as_a_ratio():
+    """The longest stack, its windings and end-caps need more than the 3 m that a frame may have in mm."""
+    tefc = families()["tefc"]
+    table = {"stator": {"outer_diameter_mm": 3000.0, "stack_length_mm": 2000.0}, "frame": {"length_mm": 2990.0}}
+    group, key, value, word = refused(tefc, table)
+    assert (group, key, word) == ("frame", "length_ratio", "fits")
+    assert refused(tefc, as_asked(tefc, table, group, key, value, word)) is None
 
 
 @FAMILIES
