@@ -26,6 +26,7 @@ from thermoscope.commands.open_case import open_case
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import Progress, give, progress
 from validation.case import Case, Test
+from validation.threads import side_by_side
 
 if TYPE_CHECKING:
     from viz.rendering.nodes import SplitMesh
@@ -65,14 +66,17 @@ def viewer_page(folder: Folder, tell: Progress) -> str:
     if folder.built is None:
         right = f"a case with a machine; or: thermoscope show picture {folder.settings.path} curves"
         raise InputError("has a network declared by hand, and so no geometry", folder.case.name, right)
-    nodes, earlier, tests = split(folder.built.mesh), before_last(folder), []
-    others = revisions(folder)[2:]
-    for test in by_interest(folder):
-        tell(f"running {test.name}")
-        played = _recorded(folder, test, nodes, earlier, [at_revision(folder, r) for r in others])
+    nodes, earlier = split(folder.built.mesh), before_last(folder)
+    others = [at_revision(folder, r) for r in revisions(folder)[2:]]
+
+    def played(test: Test) -> Recorded:
+        run = _recorded(folder, test, nodes, earlier, others)
         channels, gain = error_gain(folder, test, nodes)
         between = ErrorMap(tuple(c.name for c in channels), gain.mean, gain.explained)
-        tests.append(replace(played, error_map=between, network=network_run(folder.case, test, played.times)))
+        return replace(run, error_map=between, network=network_run(folder.case, test, run.times))
+
+    tell("running every test")
+    tests = side_by_side(played, by_interest(folder))
     conductivity = {part.name: folder.built.machine.conductivity(part.name) for part in folder.built.machine.parts}
     names = [f"{r.number}: {r.effect or (r.action if r.number else 'as it was')}" for r in revisions(folder)]
     return render(document(
