@@ -24,7 +24,7 @@ _MEASURED = (
     "These lengths are measured in others. A file gives the ratio, or the length itself with `_mm`, or neither: then "
     "it has the default machine's proportion, so that what is not given follows what is. Any ratios within their "
     "bounds, with any of the parameters above, make a machine that fits; a length that does not fit is refused with "
-    "its key and what it must be. The refusal ends with one length out of proportion and a value for it: with that the "
+    "its key and what it must be. The message ends with one length out of proportion and a value for it: with that the "
     "machine fits, or, where it says *is a beginning*, after others. "
     "`geom.description.random_geometry.random_geometry` draws machines, `benchmarks/families.py` checks them.",
     "",

@@ -239,7 +239,7 @@ def _outside(T, K0, C, h, P, a, q):
 
 
 @inner
-def _tried(T, K0, C, kind, h, build, L, X, slot, P, a, q):
+def _attempt(T, K0, C, kind, h, build, L, X, slot, P, a, q):
     """A step; how many times the allowed error it has, at least: below 1 it may stand."""
     if kind == EULER:
         if not _euler(T, K0, C, h, X.L, slot, a, q):
@@ -270,7 +270,7 @@ def _tried(T, K0, C, kind, h, build, L, X, slot, P, a, q):
 
 
 @inner
-def _kept(X, k, slot, P, L, kind, h, s1, a, q, C):
+def _accept(X, k, slot, P, L, kind, h, s1, a, q, C):
     """Write down the step and go to its end."""
     n = C.size
     X.knot[k], X.start[k], X.share[k], X.kind[k], X.h[k] = P.at[KNOT], P.clock[SHARE], s1, kind, h
@@ -323,10 +323,10 @@ def _step(Q, C, K0, T, L, X, k, P, a, q):
             known = True
         slot = (last + 1) % len(X.B) if build or kind == EULER or tries > 0 else last
         P.at[STATUS] = 0
-        size = _tried(T, K0, C, kind, h, build, L, X, slot, P, a, q)
+        size = _attempt(T, K0, C, kind, h, build, L, X, slot, P, a, q)
         if size <= 1.0 or (P.at[STATUS] == 0 and (L.follow[0] or kind == EULER)) or (L.follow[0] and size < 1e300):
             P.at[STATUS] = 0
-            _kept(X, k, slot, P, L, kind, h, s1, a, q, C)
+            _accept(X, k, slot, P, L, kind, h, s1, a, q, C)
             P.clock[SHARE], P.clock[NEXT], P.at[FRESH] = s1, h * min(max(0.9 * size ** (-1 / 3), 0.2), 8.0), 1
             return P.at[STATUS] == 0
         if L.follow[0]:
