@@ -24,7 +24,7 @@ from geom.description.part import Helix
 from geom.families import families
 from geom.families.family import Family
 
-TOLERANCE_MM = 2.0  # then 0.1 rad decides; the volume is the solid's, and closed it is or not at any fineness
+TOLERANCE_MM = 0.2  # at 2 mm the triangles of ports of a few mm fold
 
 
 def helical(machine: Machine) -> bool:
