@@ -19,7 +19,7 @@ docs: setup  ## the documentation as a site, in out/site
 
 benchmark: setup  ## every benchmark at a small size, results in out/benchmarks; hours at full size: docs/benchmarks.md
 	@mkdir -p out/benchmarks
-	@for name in geometry field network rendering viz first_comparison; do echo "== $$name"; $(BIN)/python benchmarks/$$name.py --json out/benchmarks/$$name.json || exit 1; done
+	@for name in geometry field network rendering viewer first_comparison; do echo "== $$name"; $(BIN)/python benchmarks/$$name.py --json out/benchmarks/$$name.json || exit 1; done
 	@echo "== condensation"; $(BIN)/python benchmarks/condensation.py series-dc-100kw --coarse --json out/benchmarks/condensation.json
 	@echo "== robustness"; $(BIN)/python benchmarks/robustness.py --hits 1 --json out/benchmarks/robustness.json
 	@echo "== diagnosis"; $(BIN)/python benchmarks/diagnosis.py --samples 400000 --json out/benchmarks/diagnosis.json

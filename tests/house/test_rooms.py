@@ -88,3 +88,8 @@ def test_no_script_hides_a_room(root):
     """Python looks first beside the script it runs: `benchmarks/viz.py` would be the `viz` of all benchmarks."""
     beside = {path.stem: path for folder in ("benchmarks", "examples", "scripts") for path in (root / folder).iterdir()}
     assert {name: beside[name] for name in ROOMS if name in beside} == {}
+
+
+def test_make_runs_benchmarks_that_are_there(root):
+    named = re.search(r"for name in ([\w ]+); do", (root / "Makefile").read_text(encoding="utf-8"))
+    assert [name for name in named[1].split() if not (root / "benchmarks" / f"{name}.py").is_file()] == []
