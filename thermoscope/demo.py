@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from geom.errors import InputError, MissingDependency
 from thermoscope.case_folder.folder import find_case
-from thermoscope.case_folder.runs import by_interest, comparison_of, fields
+from thermoscope.case_folder.runs import by_interest, comparison_of, end_of, fields, temperature_range
 from thermoscope.commands.explain.diagnose import answer as diagnosis_answer
 from thermoscope.commands.explain.diagnose import diagnosed
 from thermoscope.commands.model.build import build
@@ -160,7 +160,9 @@ def misses(folder: Folder, out: Path) -> Path | None:
     def draw(png: Path) -> None:
         nodes = split(built.mesh)
         now = fields(folder.case, test, nodes, 1)[1][-1]
-        cutaway(nodes, now, sensors=sensors(comparison_of(folder, test), folder.positions), title=test.name, png=png)
+        labels, limits = sensors(comparison_of(folder, test), folder.positions), temperature_range(folder, nodes)
+        title = f"{end_of(test)}: temperature; labels: measured minus model"
+        cutaway(nodes, now, sensors=labels, title=title, limits=limits, png=png)
 
     return _picture(out / "2-misses.png", draw)
 

@@ -100,6 +100,11 @@ def fields(case: Case, test: Test, nodes: SplitMesh, frames: int) -> tuple[Array
     return run.time[chosen], np.ascontiguousarray(network.on_parts(nodes.parts, states.T).T)
 
 
+def end_of(test: Test) -> str:
+    """Which test and which instant a picture of its end shows."""
+    return f"{test.name} at {test.time[-1] / 60:.0f} min"
+
+
 def temperature_range(folder: Folder, nodes: SplitMesh) -> tuple[float, float]:
     """Coldest and hottest temperature (degC) of all tests, with the model now and before its last step.
 

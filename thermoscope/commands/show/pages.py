@@ -21,6 +21,7 @@ from thermoscope.case_folder.runs import (
     before_last,
     by_interest,
     comparison_of,
+    end_of,
     fields,
     parameters,
     readings,
@@ -153,7 +154,7 @@ def _pictures(folder: Folder, into: Path, diagnosis: Mapping[str, Any] | None) -
     nodes, test = split(folder.built.mesh), by_interest(folder)[0]
     now, file = fields(folder.case, test, nodes, 1)[1][-1], into / "field.png"
     seen = sensors(comparison_of(folder, test), folder.positions)
-    title = f"{test.name} at {test.time[-1] / 60:.0f} min: temperature of the model"
+    title = f"{end_of(test)}: temperature of the model"
     limits = temperature_range(folder, nodes)
     cutaway(nodes, now, sensors=seen, title=title, limits=limits, png=file)
     out = {f"Temperature at the end of {test.name}; labels: measured minus modelled.": file}
@@ -161,7 +162,7 @@ def _pictures(folder: Folder, into: Path, diagnosis: Mapping[str, Any] | None) -
     earlier = before_last(folder)
     if earlier is not None:
         both = into / "field-before-after.png"
-        titles = ("before the last step", "now")
+        titles = (f"{end_of(test)}, before the last step", f"{end_of(test)}, now")
         pair(nodes, fields(earlier, test, nodes, 1)[1][-1], now, titles=titles, limits=limits, png=both)
         out[f"End of {test.name} before and after the last step of the model."] = both
     return out

@@ -21,6 +21,7 @@ from thermoscope.case_folder.runs import (
     before_last,
     by_interest,
     comparison_of,
+    end_of,
     fields,
     named_rows,
     steps,
@@ -70,7 +71,7 @@ class Subject:
 
     @property
     def when(self) -> str:
-        return f"{self.test.name} at {self.test.time[-1] / 60:.0f} min"
+        return end_of(self.test)
 
     @property
     def built(self) -> Built:
