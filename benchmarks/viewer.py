@@ -36,9 +36,6 @@ from typing import Any
 
 import numpy as np
 
-sys.path = [p for p in sys.path if Path(p).resolve() != Path(__file__).resolve().parent]  # else `viz` is this file
-# ruff: noqa: E402
-
 from geom import build_mesh, load_machine
 from lumped.model.network import Row
 from validation.case import Channel, Test

@@ -8,7 +8,6 @@ from __future__ import annotations
 from html import escape
 
 from geom.description.machine import Machine
-from geom.text import counted
 from lumped.model.network import Network
 from validation.comparison.compare import Comparison as Compared
 from validation.diagnosis.result import Diagnosis
@@ -58,9 +57,7 @@ def machine(m: Machine) -> str:
 def network(n: Network) -> str:
     """How large, and what may be calibrated."""
     rows = [(p.name, p.value, p.unit, p.prior_sd) for p in n.parameters[:MOST_ROWS]]
-    each = (n.states, "state"), (n.links, "link"), (n.sources, "source")
-    head = f"{n.name}: {', '.join(counted(len(items), what) for items, what in each)}"
-    return titled(head) + html.table(["parameter", "value", "unit", "prior sd"], rows)
+    return titled(f"{n.name}: {n.sizes}") + html.table(["parameter", "value", "unit", "prior sd"], rows)
 
 
 def report(r: Report) -> str:

@@ -192,9 +192,13 @@ class Network:
     file: str = field(default="", compare=False)
 
     def __repr__(self) -> str:
+        return f"<{self.title}: {self.sizes}; boundaries {', '.join(self.boundaries) or 'none'}>"
+
+    @property
+    def sizes(self) -> str:
+        """How many states, links and sources, in words."""
         each = (self.states, "state"), (self.links, "link"), (self.sources, "source")
-        sizes = ", ".join(counted(len(items), what) for items, what in each)
-        return f"<{self.title}: {sizes}; boundaries {', '.join(self.boundaries) or 'none'}>"
+        return ", ".join(counted(len(items), what) for items, what in each)
 
     @property
     def title(self) -> str:
