@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from geom import Machine
+from geom import Machine, build_mesh
 from geom.disk_cache import recalled
 from lumped.condensation.reduction import Recipe
 from lumped.machine.bases import on_every_base
@@ -24,7 +24,8 @@ from thermoscope.verification.fixed_coefficients import FixedCoefficients, rated
 SHARE = 0.5  # of the wish that the mesh may use up: the rest is left to the condensation
 ORDER = 2.0  # of the means and the hottest points of linear elements; windings, quadratic, converge faster
 SAFETY = 1.25  # Roache's factor where the order is known (1994, J. Fluids Eng. 116, 405)
-MOST_POINTS = 250_000  # of a mesh: beyond, a factorisation takes some 8 GB
+UNCONFIRMED = 3.0  # his factor where nothing finer confirms an order; one is assumed: left is what halving moved
+MOST_POINTS = 250_000  # of any mesh that is solved: a field and its factors take some 8 GB there, 13 with 340,000
 MEANS = Recipe(shifts=(), random_points=0)  # enough for losses, fluids and streams
 
 
@@ -57,7 +58,8 @@ def chosen_mesh(
     """The coarsest of the first mesh and its refinements whose error uses up no more than SHARE of the wish.
 
     accuracy : percent of a part's own rise, as the wish has it, of mesh and condensation together
-    It is kept by content. Where the mesh would exceed `most_points`, the finest below it is taken and `met` is False.
+    No mesh of more than `most_points` is solved. The finest below has its error extrapolated from the mesh of twice
+    the element size, at order one; `met` is False where that is too much. The choice is kept by content.
     """
     file = cache_folder() / f"mesh-choice-{_key(machine, accuracy, first, most_points)}.json"
     cached = recalled(file, lambda path: _read(path.read_text(encoding="utf-8")))
@@ -83,15 +85,31 @@ def _looked_for(machine: Machine, share: float, first: Meshing, progress: Progre
     mesh = meshed(machine, first, progress)
     point = _at_rated_point(mesh)
     hot = _hot_spots(point, mesh)
-    while True:
+    coarser: dict[str, float] = {}
+    while _points(machine, mesh.meshing.finer) <= most_points:
         fine = meshed(machine, mesh.meshing.finer, partial(_report, progress))
         there = _hot_spots(point, fine)
-        floor = FLOOR * max(there.values())
-        percent = {p: SAFETY * _left(hot[p], there[p]) / max(there[p], floor) for p in hot}
-        choice = MeshChoice(mesh.meshing, percent, mesh.field.n, max(percent.values()) <= share)
-        if choice.met or len(fine.mesh.points) > most_points:
+        choice = _choice(mesh, share, there, {p: _left(hot[p], there[p]) for p in hot})
+        if choice.met:
             return choice
-        mesh, hot = fine, there
+        mesh, hot, coarser = fine, there, hot
+    if not coarser:
+        coarser = _hot_spots(point, meshed(machine, mesh.meshing.coarser, partial(_report, progress)))
+    return _choice(mesh, share, hot, {p: abs(hot[p] - coarser[p]) for p in hot}, UNCONFIRMED)
+
+
+def _choice(
+    mesh: Prepared, share: float, hot: Mapping[str, float], left: Mapping[str, float], safety: float = SAFETY
+) -> MeshChoice:
+    """hot : rise of each heated part's hot spot;  left : what the mesh is off by (K), before the factor of safety"""
+    floor = FLOOR * max(hot.values())
+    percent = {p: 100.0 * safety * left[p] / max(hot[p], floor) for p in hot}
+    return MeshChoice(mesh.meshing, percent, mesh.field.n, max(percent.values()) <= share)
+
+
+def _points(machine: Machine, how: Meshing) -> int:
+    """Of a mesh that is kept on disk: nothing is assembled on it."""
+    return len(build_mesh(machine, how.size_m, how.segments, how.across, how.axial_m, cache_folder()).points)
 
 
 def _report(progress: Progress, message: str) -> None:
@@ -99,8 +117,8 @@ def _report(progress: Progress, message: str) -> None:
 
 
 def _left(here: float, there: float) -> float:
-    """Percent-making error of the coarser of two values, extrapolated from a mesh of half the element size."""
-    return 100.0 * abs(there - here) / (1.0 - 0.5**ORDER)
+    """Error of the coarser of two values (K), extrapolated from a mesh of half the element size."""
+    return abs(there - here) / (1.0 - 0.5**ORDER)
 
 
 def _at_rated_point(ready: Prepared) -> FixedCoefficients:
