@@ -110,9 +110,7 @@ def _commutator_rules(g: Geometry) -> tuple[Rule, ...]:
         return ()
     around, high = math.pi * c.diameter / c.bars, (c.diameter - g.shaft.hub_diameter) / 2
     limit = min(0.5 * around, 0.5 * high)
-    return ((c.bars > 2, "commutator.bars", c.bars, "0 or more than 2"),
-            (c.mica < limit, "commutator.mica_mm", c.mica * mm,
-             f"less than {limit * mm:.4g} mm, to leave copper"))  # fmt: skip
+    return ((c.mica < limit, "commutator.mica_mm", c.mica * mm, f"less than {limit * mm:.4g} mm, to leave copper"),)
 
 
 def _brush_rules(g: Geometry, z: Axial) -> tuple[Rule, ...]:
