@@ -25,7 +25,7 @@ Progress = Callable[[str], None]
 ACROSS = 1  # elements over a compact face: windings are quadratic, so their hot spots are within 0.5 % with one
 AXIAL = 0.75  # thickest layer over the size of a triangle: 45 mm, a stack of 140 mm in four layers
 CASE = Recipe(  # hot spots within 2 % over the range of films and contacts: docs/condensation.md
-    tolerance=0.13, random_points=6, film_factors=(0.3, 10.0), joined_contacts=(5.0,), favour=2.0
+    tolerance=0.13, random_points=6, film_factors=(0.3, 10.0), joined_contacts=(2.2, 5.0), favour=3.0
 )
 FEW = 100  # means and shapes of the network that a diagnosis runs: its effects are within 1 % (median) of the larger's
 

@@ -4,10 +4,12 @@ import math
 from functools import partial
 
 import pytest
+import shapely
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from geom import InputError, check_cad
+from geom.description.profile import ArcGrid
 from geom.families import families
 from geom.machine_file import machine_from
 from geom.meshing.partition import partition
@@ -101,3 +103,19 @@ def test_random_invalid_values_are_refused_with_key_value_and_range(family, data
     assert f"random.toml [geometry.{parameter.group}] {parameter.name}: {value!r}" in message
     assert parameter.allowed in message
     assert "\n" not in message
+
+
+@pytest.mark.parametrize(("poles", "arc", "bent"), [(4, 0.65, False), (4, 0.85, True), (2, 0.6, True), (2, 0.75, True)])
+def test_no_shoe_cuts_the_face_of_its_pole(poles, arc, bent):
+    """A straight back from the tips of a wide shoe to a slender body would pass nearer to the axis than the face."""
+    stator = {"stator.poles": poles, "stator.pole_arc": arc, "stator.tip_mm": 3.0, "stator.body_width_mm": 60.0}
+    machine = build(families()["series-dc"], {**FEW["series-dc"], **stator})
+    pole = next(part for part in machine.parts if part.name == "poles").prisms[0][0]
+    shape = pole.to_polygon(ArcGrid([pole], 720))
+    face, tips = (math.hypot(*pole.outer[i][:2]) for i in (0, 1))
+    assert shape.is_valid
+    assert shape.area == pytest.approx(pole.area, rel=1e-4)
+    assert shapely.Point(0, 0).distance(shape) == pytest.approx(face, rel=1e-4)
+    back = shapely.LineString([pole.outer[1][:2], *(v[:2] for v in pole.outer[2:4])])
+    assert (len(pole.outer) > 8) == bent
+    assert shapely.Point(0, 0).distance(back) > (0.9 if bent else 0.999) * tips
