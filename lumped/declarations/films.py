@@ -128,9 +128,9 @@ def _across(table: Table, fluid: Fluid) -> Film:
 
 
 def _end_space(table: Table, fluid: Fluid) -> Film:
-    from lumped.correlations.end_space import end_space
+    from lumped.correlations.end_space import SCHUBERT, end_space
 
-    return partial(end_space, k1=table.number("k1", 15.0), k2=table.number("k2", 0.4), k3=table.number("k3", 0.9))
+    return partial(end_space, **{k: table.number(k, usual) for k, usual in zip(("k1", "k2", "k3"), SCHUBERT)})
 
 
 def _helix(table: Table, fluid: Fluid) -> Film:

@@ -6,7 +6,6 @@ import math
 import pkgutil
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import partial
 
 import lumped.correlations
 from lumped.correlations import Info, air_gap, bearings, contacts, ducts, end_space, fins, forced, natural, rotating
@@ -64,16 +63,7 @@ CARRY_UNITS: dict[tuple[object, str], Callable[[Units], object]] = {
     (contacts, "SIGMA"): lambda u: contacts.SIGMA * u.film / u.K**3,
     (contacts, "ZERO_C"): lambda u: contacts.ZERO_C * u.K,
     (bearings, "KYLANDER"): lambda u: _kylander(bearings.KYLANDER, u),
-    **{
-        (end_space, name): partial(lambda name, u: _stirred(getattr(end_space, name), u), name)
-        for name in ("SCHUBERT", "MELLOR", "BOGLIETTI", "STOKUM", "DI_GERLANDO", "HAMDI")
-    },
 }
-
-
-def _stirred(constants, u):
-    k1, k2, k3 = constants
-    return k1 * u.film, k2 / u.v**k3, k3
 
 
 def _kylander(constants, u):
@@ -105,11 +95,6 @@ def _film(run, outside, sweep, top, rest):
 def _still(run, outside, sweep, rest, top=300.0):
     """A film of still fluid over the surface's temperature."""
     return _film(lambda f, u: run(lambda T: u.fluid(f), u), outside, sweep, top, rest)
-
-
-def _end_space(name):
-    f, k1 = getattr(end_space, name), getattr(end_space, name.upper())[0]
-    return _film(lambda _, u: f(10.0 * u.v), lambda: f(80.0), lambda x: f(x)[0], 50.0, k1)
 
 
 CASES = {
@@ -226,7 +211,6 @@ CASES = {
         lambda _, u: end_space.end_space(10 * u.v, 20 * u.film, 0.5 / u.v**0.7, 0.7),
         lambda: end_space.end_space(80.0), lambda x: end_space.end_space(x)[0], 50.0, 15.0,
     ),
-    **{name: _end_space(name) for name in ("schubert", "mellor", "boglietti", "stokum", "di_gerlando", "hamdi")},
     "cooper_mikic_yovanovich": _film(
         lambda _, u: contacts.cooper_mikic_yovanovich(180 * u.k, 0.1, 2e-6 * u.m, 1e6 * u.Pa, 1e9 * u.Pa, 0.026 * u.k),
         lambda: contacts.cooper_mikic_yovanovich(180.0, 0.1, 2e-6, 1e8, 1e9),

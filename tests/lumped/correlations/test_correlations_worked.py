@@ -118,12 +118,6 @@ WORKED = {
         "by hand, Re 1.5e5",
     ),
     "end_space": (lambda: end_space.end_space(10.0, 20.0, 0.5, 1.0), 120.0, 1e-12, "by hand"),
-    "schubert": (lambda: end_space.schubert(10.0), 15 * (1 + 0.4 * 10**0.9), 1e-12, "by hand"),
-    "mellor": (lambda: end_space.mellor(10.0), 15.5 * 3.9, 1e-12, "by hand"),
-    "boglietti": (lambda: end_space.boglietti(10.0), 41.4 + 62.2, 1e-12, "by hand"),
-    "stokum": (lambda: end_space.stokum(10.0), 33.2 * 1.445, 1e-12, "by hand"),
-    "di_gerlando": (lambda: end_space.di_gerlando(10.0), 80.0, 1e-12, "by hand"),
-    "hamdi": (lambda: end_space.hamdi(10.0), 40.0, 1e-12, "by hand"),
     "cooper_mikic_yovanovich": (
         lambda: contacts.cooper_mikic_yovanovich(180.0, 0.1, 2e-6, 1e6, 1e9),
         1.25 * 180 * 0.1 / 2e-6 * 1e-3**0.95 + 0.026 / (1.53 * 2e-6 * 1e-3**-0.097), 1e-9, "by hand",
@@ -138,6 +132,15 @@ WORKED = {
 def test_it_gives_its_worked_value(name):
     run, value, tolerance, _ = WORKED[name]
     assert run()[0] == pytest.approx(value, rel=tolerance)
+
+
+@pytest.mark.parametrize(
+    ("name", "h"),
+    [("Schubert", 15 * (1 + 0.4 * 10**0.9)), ("Mellor 1991", 60.45), ("Boglietti 2003", 103.6), ("Stokum", 47.974),
+     ("Di Gerlando", 80.0), ("Hamdi", 40.0)],
+)  # fmt: skip
+def test_published_end_spaces_at_10_m_s(name, h):
+    assert end_space.end_space(10.0, *end_space.PUBLISHED[name])[0] == pytest.approx(h, rel=1e-12)
 
 
 def test_windage_meets_at_its_limits():
