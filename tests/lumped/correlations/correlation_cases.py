@@ -6,10 +6,10 @@ import math
 import pkgutil
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import lumped.correlations
 from lumped.correlations import Info, air_gap, bearings, contacts, ducts, end_space, fins, forced, natural, rotating
-from lumped.correlations import windings as wires
 from lumped.transfer.properties import Fluid, air, ethylene_glycol
 
 AIR, GLYCOL = air(60.0), ethylene_glycol(60.0, 0.5)
@@ -137,10 +137,10 @@ CASES = {
     ),
     "heiles_decaying": _film(
         lambda f, u: fins.heiles_decaying(
-            8 * u.v, 0.02 * u.m, 0.25 * u.m, fins.straight_decay(0.2), 1.7, u.fluid(f)
+            8 * u.v, 0.02 * u.m, 0.25 * u.m, partial(fins.straight_decay, 0.2), 1.7, u.fluid(f)
         ),
-        lambda: fins.heiles_decaying(60.0, 0.02, 0.25, fins.straight_decay(0.2)),
-        lambda x: fins.heiles_decaying(x, 0.02, 0.25, fins.straight_decay(0.2))[0], 30.0, 0.0,
+        lambda: fins.heiles_decaying(60.0, 0.02, 0.25, partial(fins.straight_decay, 0.2)),
+        lambda x: fins.heiles_decaying(x, 0.02, 0.25, partial(fins.straight_decay, 0.2))[0], 30.0, 0.0,
     ),
     "flat_plate": _film(
         lambda f, u: forced.flat_plate(8 * u.v, 0.5 * u.m, u.fluid(f)), lambda: forced.flat_plate(400.0, 10.0),
@@ -224,10 +224,6 @@ CASES = {
         lambda _, u: bearings.kylander_bearing(0.06 * u.m, 100 / u.s), lambda u: u.K / u.W,
         lambda: bearings.kylander_bearing(0.2, 10.0), lambda x: bearings.kylander_bearing(0.06, x)[0], 500.0,
         0.45 * (0.12 - 0.06) * 33.0,
-    ),
-    "hashin_shtrikman": Case(
-        lambda _, u: wires.hashin_shtrikman(0.5, 400 * u.k, 0.2 * u.k), lambda u: u.k,
-        lambda: wires.hashin_shtrikman(0.9, 400.0, 0.2), lambda x: wires.hashin_shtrikman(x, 400.0, 0.2)[0], 0.9, 0.2,
     ),
 }  # fmt: skip
 
