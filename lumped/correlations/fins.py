@@ -97,7 +97,7 @@ def heiles_decaying(
     """Blown fin channel whose air leaks out along its way, mean h over the fin (W/m2/K).
 
     Heiles' film of the whole channel at the speed of each of `pieces` equal lengths, averaged; decay: share of the
-    cowl's speed over the share of the length, e.g. straight_decay with its end. Source: Heiles 1952 with the leakage that
+    cowl's speed over the share of the length, e.g. straight_decay. Source: Heiles 1952 with the leakage that
     Staton and Cavagnino 2008 describe; Motor-CAD starts from 1 at the cowl to 0.2 at the far end.
     """
     at = [(k + 0.5) / pieces for k in range(pieces)]
