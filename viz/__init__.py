@@ -15,7 +15,7 @@ _HOME = {
     "network_in_machine": "machine.network", "animate": "machine.animation", "measured_and_model": "figures.curves",
     "residuals": "figures.curves", "before_after": "figures.errors", "staircase": "figures.errors",
     "scores": "figures.candidates", "posterior": "figures.candidates", "confusion": "figures.candidates",
-    "write_recording": "recordings.recording", "verify": "recordings.recording", "Report": "pages.report",
+    "write_recording": "recordings.recording", "Report": "pages.report",
     "write_report": "pages.report", "write_pdf": "pages.pdf", "screened": "figures.screening",
     "ranking": "figures.screening", "portrait": "appearance.portrait", "misses": "machine.misses",
     "uncertainty": "machine.uncertainty", "predicted": "figures.bands", "Predicted": "figures.bands",
