@@ -34,7 +34,7 @@ from lumped.condensation.condensed import network_in
 from lumped.condensation.zone import Zone
 from lumped.model.network import Array, Network
 
-__all__ = ["FullPoint", "Recipe", "Reduction", "Zone", "condense", "reduce"]
+__all__ = ["FullPoint", "Recipe", "Reduction", "Zone", "reduce"]
 
 
 @dataclass(frozen=True)
@@ -162,22 +162,6 @@ def reduce(
         cached = stored.keep(centre, principals(field, S, energies(field, films, contacts), local), recipe.tolerance**2)
     principal = {part: Principal(*pair) for part, pair in cached.items()}
     return Reduction(field, films, contacts, places, fluids, boundaries, name, recipe, principal)
-
-
-def condense(
-    field: FieldModel,
-    films: Mapping[str, float],
-    contacts: Mapping[str, float],
-    fluids: Mapping[str, float],
-    boundaries: tuple[str, ...] = ("ambient",),
-    recipe: Recipe = DEFAULT,
-    name: str = "machine",
-    cache: Path | None = None,
-    zones: Mapping[str, Zone] | None = None,
-) -> Network:
-    """The network of a field at the recipe's own tolerance and size; arguments as for `reduce`."""
-    reduction = reduce(field, films, contacts, fluids, boundaries, recipe, name, cache, zones)
-    return reduction.network(max_states=recipe.max_states)
 
 
 def unit_loads(field: FieldModel, zones: Mapping[str, Zone]) -> dict[str, Array]:

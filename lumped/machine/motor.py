@@ -1,7 +1,7 @@
 """The network of a motor built from geometry: condensed conduction plus films, streams, losses and priors.
 
     films, contacts = nominal_coefficients(machine, faces, contact_names)  # what the condensation is centred on
-    condensed = condense(field, films, contacts, fluids(machine), boundaries(machine), ...)
+    condensed = reduce(field, films, contacts, fluids(machine), boundaries(machine), ...).network()
     network = motor_network(machine, condensed)          # or thermoscope.pipeline.build(machine).network: all of it
 
 What comes out, for every family and for imported machines alike (the machine file decides, no names do):
