@@ -72,9 +72,6 @@ class Vehicle:
     drag_area: float = 3.0
     air_density: float = 1.2
 
-    def motor_speed_rpm(self, speed_mps: Array | float) -> Array | float:
-        return np.asarray(speed_mps) / self.wheel_radius * self.gear / RPM
-
     def load_torque(self, speed_mps: Array | float, slope: Array | float) -> Array | float:
         """At the motor shaft, steady (N m); slope: rise over run."""
         angle = np.arctan(slope)
