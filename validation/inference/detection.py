@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 
 from validation.doubt import PRIOR, nats_worth
 from validation.inference.evidence import Evidence
-from validation.inference.posterior import one_size, prior_shares
+from validation.inference.posterior import prior_shares
+from validation.inference.score import one_size
 
 Array = NDArray[np.float64]
 POWER = 0.842  # normal quantile of 80 %
