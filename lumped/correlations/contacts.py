@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 
+from geom.constants import SIGMA, ZERO_C
 from lumped.correlations.info import Info, checked
-from lumped.transfer.properties import ZERO_C
 
 K_AIR = 0.026  # W/m/K, of still air at 25 degC
-SIGMA = 5.670374419e-8  # W/m2/K4, CODATA 2018
 
 # Effective air gaps (m) after the Motor-CAD default tables.
 GAPS = {

@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+from geom.constants import GRAVITY as G
 from lumped.correlations.info import Info, checked
-from lumped.correlations.natural import G, Of
+from lumped.correlations.natural import Of
 from lumped.transfer.properties import Fluid, air
 
 INVERSE_METRE = 11.8 / 0.0254  # the paper's 11.8 per inch

@@ -6,17 +6,15 @@ J dw/dt = L_af i^2 - B w - T_load                        (4-6)
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.constants import GRAVITY, RPM
 from lumped.numerics.jit import entry
 
 Array = NDArray[np.float64]
-RPM = math.pi / 30.0
-GRAVITY = 9.80665
 
 
 @dataclass(frozen=True)

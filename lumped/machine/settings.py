@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any, TypeVar
 
+from geom.constants import ALPHA_CU
 from geom.description.machine import Machine
 from geom.errors import InputError
 from lumped.schemas.bounds import bounds
@@ -29,7 +30,7 @@ class Losses:
     armature_resistance_mOhm: float = 28.6
     field_resistance_mOhm: float = 19.0
     reference_C: float = 75.0
-    temperature_coefficient_per_K: float = 0.00393
+    temperature_coefficient_per_K: float = ALPHA_CU
     brush_drop_V: float = 2.0
     brush_friction_W: float = 250.0
     bearing_friction_W: float = 50.0

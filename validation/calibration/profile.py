@@ -13,8 +13,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.constants import NORMAL_95
 from validation.calibration.calibrate import CachedSegments, Fit, Progress, minimise, no_progress
-from validation.calibration.intervals import NORMAL_95, Profile
+from validation.calibration.intervals import Profile
 from validation.calibration.unknowns import Unknowns, to_value
 from validation.case import Test
 
