@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 from geom.constants import ALPHA_CU
 from geom.description.machine import Machine
 from geom.errors import InputError
+from lumped.correlations.end_space import SCHUBERT
 from lumped.schemas.bounds import bounds
 from lumped.schemas.reader import Table, excerpt
 
@@ -53,9 +54,9 @@ class Films:
     """
 
     emissivity: float | None = None
-    end_space_k1_W_m2K: float = 15.0
-    end_space_k2: float = 0.4
-    end_space_k3: float = 0.9
+    end_space_k1_W_m2K: float = SCHUBERT[0]
+    end_space_k2: float = SCHUBERT[1]
+    end_space_k3: float = SCHUBERT[2]
     still_wall_share: float = 0.2
     moving_wall_share: float = 1.0
     channel_wall_share: float = 0.1
