@@ -44,7 +44,7 @@ def next_sensors(evidence: Evidence, models: CompetingModels) -> list[Experiment
     return [
         Experiment(
             "place", p.what, separable_pairs(evidence, p.gaps), p.gain, p.hours, WHY[access(network, places[p.what])]
-        )  # fmt: skip
+        )
         for p in refitted_gains(evidence, models, plans)
     ]
 
