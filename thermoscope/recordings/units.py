@@ -85,11 +85,11 @@ def _belongs(of: str, unit: str) -> str:
 
 def checked_input(of: str, name: str, where: str) -> str:
     """The input a column feeds, unless its name says another unit than the one memory holds."""
-    held = QUANTITIES[of].feeds.rpartition("_")[2]
+    suffix = QUANTITIES[of].feeds.rpartition("_")[2]
     for unit in QUANTITIES[of].units:
         word = unit.replace("/", "_").replace("*", "")
-        if held and word.isidentifier() and name.endswith(f"_{word}") and not name.endswith(f"_{held}"):
-            right = f'input = "{name.removesuffix(word)}{held}": a {of} is held in {held} whatever its unit here'
+        if suffix and word.isidentifier() and name.endswith(f"_{word}") and not name.endswith(f"_{suffix}"):
+            right = f'input = "{name.removesuffix(word)}{suffix}": a {of} is held in {suffix} whatever its unit here'
             raise InputError(f"input '{name}' says {word}", where, right)
     return name
 
