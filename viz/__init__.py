@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import Any
+from geom.lazy import loaded_when_used
 
 _HOME = {
     "Comparison": "data", "Sensor": "data", "sensors": "data", "SplitMesh": "rendering.nodes",
@@ -21,9 +20,4 @@ _HOME = {
     "uncertainty": "machine.uncertainty", "predicted": "figures.bands", "Predicted": "figures.bands",
 }  # fmt: skip
 __all__ = sorted(_HOME)
-
-
-def __getattr__(name: str) -> Any:
-    if name not in _HOME:
-        raise AttributeError(f"module 'viz' has no attribute '{name}'; known: {', '.join(__all__)}")
-    return getattr(import_module(f"viz.{_HOME[name]}"), name)
+__getattr__, __dir__ = loaded_when_used(__name__, _HOME, within="viz.")
