@@ -17,7 +17,7 @@ _HOME = {
     "write_recording": "recordings.recording", "Report": "pages.report",
     "write_report": "pages.report", "write_pdf": "pages.pdf", "screened": "figures.screening",
     "ranking": "figures.screening", "portrait": "appearance.portrait", "misses": "machine.misses",
-    "uncertainty": "machine.uncertainty", "predicted": "figures.bands", "Predicted": "figures.bands",
+    "uncertainty": "machine.field", "predicted": "figures.bands", "Predicted": "figures.bands",
 }  # fmt: skip
 __all__ = sorted(_HOME)
 __getattr__, __dir__ = loaded_when_used(__name__, _HOME, within="viz.")
