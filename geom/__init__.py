@@ -8,8 +8,7 @@ mesh = build_mesh(machine, **COARSE)
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import Any
+from geom.lazy import loaded_when_used
 
 _HOME = {
     "load_machine": "machine_file",
@@ -44,9 +43,4 @@ _HOME = {
     "write_vtu": "meshing.meshio_io",
 }
 __all__ = [*_HOME]
-
-
-def __getattr__(name: str) -> Any:
-    if name not in _HOME:
-        raise AttributeError(f"module 'geom' has no attribute {name!r}")
-    return getattr(import_module(f"geom.{_HOME[name]}"), name)
+__getattr__, __dir__ = loaded_when_used(__name__, _HOME, within="geom.")

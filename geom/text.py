@@ -6,7 +6,11 @@ from collections.abc import Sequence
 from math import floor, log10
 from typing import Any
 
-SPACE, DIGITS, DECIMALS = "  ", 3, 2
+SPACE, DIGITS, DECIMALS = (
+    "  ",
+    3,
+    2,
+)  # between columns; digits of a number, more than a model is sure of; decimals, a hundredth of a kelvin
 
 
 def table(headers: Sequence[str], rows: Sequence[Sequence[object]]) -> str:

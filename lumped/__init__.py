@@ -5,8 +5,9 @@ Names are loaded when they are used: a command pays for nothing else.
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from geom.lazy import loaded_when_used
 
 if TYPE_CHECKING:
     from lumped.declarations.network import load_circuits, load_network
@@ -78,13 +79,4 @@ __all__ = [
     "steady",
     "stream",
 ]
-
-
-def __getattr__(name: str) -> Any:
-    if name not in _HOME:
-        raise AttributeError(f"module 'lumped' has no attribute '{name}'; known: {', '.join(__all__)}")
-    return getattr(import_module(_HOME[name]), name)
-
-
-def __dir__() -> list[str]:
-    return __all__
+__getattr__, __dir__ = loaded_when_used(__name__, _HOME)

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.constants import NORMAL_95
 from geom.disk_cache import recalled
 from lumped.integration.signals import Signals
 from lumped.integration.simulate import Record
@@ -23,7 +24,6 @@ from thermoscope.case_folder.files import write_whole
 from thermoscope.case_folder.folder import Folder, Progress
 from thermoscope.case_folder.runs import named_rows
 from validation.bands import Bands, ParameterPosterior, Place, at_end, bands, parameter_posterior
-from validation.bands.band import NORMAL_95
 from validation.bands.posterior import rows_read
 from validation.case import RUNNING, Recorded, Test
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from geom.constants import NORMAL_95
 from lumped.integration.simulate import Record
 from lumped.model.multipliers import parameter_values
 from thermoscope.bands import along
@@ -15,7 +16,6 @@ from thermoscope.case_folder.runs import named_rows
 from thermoscope.rating import Rated
 from validation.bands import ParameterPosterior
 from validation.bands.at_rest import AtRest
-from validation.bands.band import NORMAL_95
 from validation.comparison.predict import thermal
 from validation.rating.derating import deratings
 from validation.rating.envelope import TIMES, Rating, rated

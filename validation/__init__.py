@@ -5,8 +5,9 @@ Names are loaded when they are used: a command pays for nothing else.
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from geom.lazy import loaded_when_used
 
 if TYPE_CHECKING:
     from validation.case import AddedEffect, Case, Channel, Model, Test
@@ -56,13 +57,4 @@ __all__ = [
     "kinds",
     "remove",
 ]
-
-
-def __getattr__(name: str) -> Any:
-    if name not in _HOME:
-        raise AttributeError(f"module 'validation' has no attribute '{name}'; known: {', '.join(__all__)}")
-    return getattr(import_module(_HOME[name]), name)
-
-
-def __dir__() -> list[str]:
-    return __all__
+__getattr__, __dir__ = loaded_when_used(__name__, _HOME)

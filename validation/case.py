@@ -13,12 +13,11 @@ from numpy.typing import NDArray
 from lumped.integration.record import instants
 from lumped.integration.signals import Signals
 from lumped.model.network import Network, Parameter, Row
-from lumped.transfer.laws import CLOCK
+from lumped.transfer.laws import CLOCK, RUNNING
 from validation.doubt import USUAL, Doubt
 
 Array = NDArray[np.float64]
 Role = Literal["calibrate", "validate", "hold-out"]
-RUNNING = "running "  # the input that is 1 in one test only
 
 
 @dataclass(frozen=True)

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import Any
+from geom.lazy import loaded_when_used
 
 _HOME = {
     "Comparison": "data", "Sensor": "data", "sensors": "data", "SplitMesh": "rendering.nodes",
@@ -15,15 +14,10 @@ _HOME = {
     "network_in_machine": "machine.network", "animate": "machine.animation", "measured_and_model": "figures.curves",
     "residuals": "figures.curves", "before_after": "figures.errors", "staircase": "figures.errors",
     "scores": "figures.candidates", "posterior": "figures.candidates", "confusion": "figures.candidates",
-    "write_recording": "recordings.recording", "verify": "recordings.recording", "Report": "pages.report",
+    "write_recording": "recordings.recording", "Report": "pages.report",
     "write_report": "pages.report", "write_pdf": "pages.pdf", "screened": "figures.screening",
     "ranking": "figures.screening", "portrait": "appearance.portrait", "misses": "machine.misses",
-    "uncertainty": "machine.uncertainty", "predicted": "figures.bands", "Predicted": "figures.bands",
+    "uncertainty": "machine.field", "predicted": "figures.bands", "Predicted": "figures.bands",
 }  # fmt: skip
 __all__ = sorted(_HOME)
-
-
-def __getattr__(name: str) -> Any:
-    if name not in _HOME:
-        raise AttributeError(f"module 'viz' has no attribute '{name}'; known: {', '.join(__all__)}")
-    return getattr(import_module(f"viz.{_HOME[name]}"), name)
+__getattr__, __dir__ = loaded_when_used(__name__, _HOME, within="viz.")

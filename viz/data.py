@@ -12,7 +12,7 @@ from geom.errors import InputError
 from validation.case import Channel, Test
 
 Array = NDArray[np.float64]
-LONG_S = 5 * 3600.0
+LONG_S = 5 * 3600.0  # beyond 300 min an axis reads better in hours
 POINTS = 700  # a line of a page is some 700 pixels wide
 
 

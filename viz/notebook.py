@@ -30,8 +30,8 @@ def diagnosed(d: Diagnosis) -> str:
     """The verdict, and the candidates by score."""
     document = d.document()
     _, sentence = words.verdict(document, None)
-    found = document["candidates"][:MOST_ROWS]
-    rows = [(c["effect"], c["score"], candidates.amplitude(c), c["decision"]) for c in found]
+    leading = document["candidates"][:MOST_ROWS]
+    rows = [(c["effect"], c["score"], candidates.amplitude(c), c["decision"]) for c in leading]
     return titled(sentence) + html.table(["effect", "score", "size", "decision"], rows)
 
 

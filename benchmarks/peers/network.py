@@ -19,9 +19,10 @@ import numpy as np
 from numba import njit
 from scipy.integrate import solve_ivp
 
+from geom.constants import SIGMA, ZERO_C
 from lumped.integration.simulate import Record
 from lumped.model.network import Network
-from lumped.numerics.terms import SIGMA, SMOOTH, ZERO_C
+from lumped.numerics.terms import SMOOTH
 
 TOLERANCES = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10)
 USUAL = 1e-6

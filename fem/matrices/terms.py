@@ -11,11 +11,10 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from fem.matrices.assembly import FieldModel
+from geom.constants import ALPHA_CU, SIGMA, ZERO_C
 from geom.errors import InputError
 
 Floats = NDArray[np.float64]
-SIGMA = 5.670374419e-8  # W/m2/K4
-ZERO_C = 273.15  # K
 
 
 class Term(Protocol):
@@ -100,7 +99,7 @@ class CopperLoss:
 
     part: str
     watts: float
-    alpha: float = 0.00393
+    alpha: float = ALPHA_CU
     reference: float = 20.0
 
     def heat(self, field: FieldModel, T: Floats) -> Floats:

@@ -9,7 +9,6 @@ from typing import Any
 from geom.description.geometry import NO_FEATURES, Features, Geometry
 from geom.description.materials import Material, filled, material
 from geom.description.part import Part, Port
-from geom.description.profile import ArcGrid
 from geom.errors import InputError
 
 SECTIONS = (
@@ -77,12 +76,3 @@ class Machine:
         x0, y0, x1, y1 = zip(*(profile.bounds for part in self.parts for profile, _, _ in part.prisms))
         spans = [part.span for part in self.parts]
         return max(z1 for _, z1 in spans) - min(z0 for z0, _ in spans), max(x1) - min(x0), max(y1) - min(y0)
-
-    def point_in(self, name: str) -> tuple[float, float, float]:
-        """A point (m) well inside the part: in the plane inside its largest prism, at half its length."""
-        import shapely
-
-        prisms = self.part(name).prisms
-        profile, z0, z1 = max(prisms, key=lambda prism: prism[0].area * (prism[2] - prism[1]))
-        inside = shapely.maximum_inscribed_circle(profile.to_polygon(ArcGrid([profile], 72)))
-        return float(inside.coords[0][0]), float(inside.coords[0][1]), (z0 + z1) / 2

@@ -6,7 +6,7 @@ import math
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -88,12 +88,6 @@ class Profile:
         from shapely import Polygon
 
         return Polygon(grid.facet(self.outer), [grid.facet(hole) for hole in self.holes])
-
-    def to_face(self) -> Any:
-        """Exact cadquery face in the plane z = 0."""
-        import cadquery as cq
-
-        return cq.Face.makeFromWires(_wire(self.outer), [_wire(hole) for hole in self.holes])
 
 
 class ArcGrid:
@@ -231,16 +225,3 @@ def _wrap(angle: float) -> float:
 
 def _radius_key(radius: float) -> int:
     return round(radius / _RADIUS_GRID)
-
-
-def _wire(loop: Loop) -> Any:
-    import cadquery as cq
-
-    pieces = []
-    for (vertex, arc), following in zip(edges(loop), (*loop[1:], loop[0])):
-        a, b = cq.Vector(*vertex[:2]), cq.Vector(*following[:2])
-        if arc is None:
-            pieces.append(cq.Edge.makeLine(a, b))
-        else:
-            pieces.append(cq.Edge.makeThreePointArc(a, cq.Vector(*arc.at(arc.start + arc.sweep / 2)), b))
-    return cq.Wire.assembleEdges(pieces)

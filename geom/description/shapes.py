@@ -87,10 +87,6 @@ def turned(profile: Profile, angles: Sequence[float]) -> list[Profile]:
     return [profile.rotated(angle) for angle in angles]
 
 
-def turned_list(profiles: Sequence[Profile], angle: float) -> list[Profile]:
-    return [profile.rotated(angle) for profile in profiles]
-
-
 def evenly(count: int, start: float = 0.0) -> list[float]:
     """`count` angles (rad) around the circle."""
     return [start + 2 * math.pi * i / count for i in range(count)]

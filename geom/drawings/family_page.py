@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
+from geom.description.geometry import Geometry
 from geom.description.parameters import Parameter
 from geom.description.reading import usual_geometry
 from geom.drawings.drawing import drawing_of
@@ -63,7 +63,7 @@ def _rows(family: Family, measured: bool) -> list[str]:
     return [_measured(p, usual) if measured else f"| `{p.key}` | {p.default} | {p.allowed} | {p.doc} |" for p in chosen]
 
 
-def _measured(p: Parameter, usual: Any) -> str:
+def _measured(p: Parameter, usual: Geometry) -> str:
     assert p.of is not None
     ratio = (p.usual - p.of.start(usual)) / p.of.span(usual) if p.default else 0.0
     return (f"| `{p.group}.{p.ratio_name}` | {ratio:.3g} | {p.allowed_ratio} | `{p.name}` | {p.default} | {p.allowed} "

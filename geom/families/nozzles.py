@@ -13,7 +13,6 @@ from geom.description.profile import Loop, Profile, Vertex
 from geom.description.roles import Role
 
 TUBE = 1.5  # outer diameter, and length, of a port over its bore
-CLEAR = 0.55  # of the bore: from its middle to the end of the channel
 _THIN = 1e-6  # m; a bore's end nearer than this to another level is there
 
 

@@ -6,9 +6,9 @@ import math
 from dataclasses import dataclass
 
 from geom.description.part import Helix
-from geom.families.nozzles import CLEAR
 
 _END = 0.8  # of a rib: what a helix may take from the walls at its ends
+CLEAR = 0.55  # of a port's bore: from its middle to the end of the channel, a tenth more than the bore needs
 
 
 @dataclass(frozen=True)

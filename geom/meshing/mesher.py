@@ -19,8 +19,12 @@ from geom.meshing.partition import Partition, partition
 from geom.meshing.triangulate import triangulate
 from geom.meshing.voids import filled
 
-COARSE: dict[str, Any] = {"size_m": 0.06, "segments": 44, "across": 1}
-FINE: dict[str, Any] = {"size_m": 0.012, "segments": 72, "across": 4}
+COARSE: dict[str, Any] = {"size_m": 0.06, "segments": 44, "across": 1}  # for a first look and for tests
+FINE: dict[str, Any] = {
+    "size_m": 0.012,
+    "segments": 72,
+    "across": 4,
+}  # a fifth of it: finer moves no temperature that is read
 
 
 def build_mesh(

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     import cadquery as cq
 
 mm = 1e3
-_DEGREE = 11
+_DEGREE = 11  # of the polynomials of a face: interpolated, a cosine over a quarter turn is off by 6e-14
 _SPAN = math.pi / 2  # rad; of one face, at most
 Poles = NDArray[np.float64]
 

@@ -34,7 +34,7 @@ from lumped.condensation.condensed import network_in
 from lumped.condensation.zone import Zone
 from lumped.model.network import Array, Network
 
-__all__ = ["FullPoint", "Recipe", "Reduction", "Zone", "condense", "reduce"]
+__all__ = ["FullPoint", "Recipe", "Reduction", "Zone", "reduce"]
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ class Reduction:
     films, contacts : nominal coefficients (W/m2/K), by face and by contact
     zones : losses that may vary alone, one uniform loss per part among them
     fluids : fluid node -> heat capacity (J/K);  boundaries : fluids whose temperature is given
-    found : part -> principal fields
+    principal : part -> its principal fields
     """
 
     field: FieldModel
@@ -65,7 +65,7 @@ class Reduction:
     boundaries: tuple[str, ...]
     name: str
     recipe: Recipe
-    found: Mapping[str, Principal]
+    principal: Mapping[str, Principal]
 
     @cached_property
     def loads(self) -> dict[str, Array]:
@@ -90,7 +90,7 @@ class Reduction:
         """Conduction and contacts as links, faces, parts and zones as places; no films yet. Costs no solve."""
         fine = self.recipe.tolerance if tolerance is None else tolerance
         recipe = replace(self.recipe, tolerance=fine, max_states=max_states)
-        shapes = bases(self.field, self.found, self.energy, recipe, weights)
+        shapes = bases(self.field, self.principal, self.energy, recipe, weights)
         whole = frozenset(key for key, zone in self.zones.items() if key == zone.part and zone.density is None)
         return network_in(self.field, shapes, self.contacts, self.loads, whole, self.fluids, self.boundaries, self.name)
 
@@ -126,7 +126,7 @@ class Reduction:
     def enriched(self, points: Sequence[FullPoint]) -> Reduction:
         """The same with the solutions of these points among its snapshots."""
         S = np.column_stack([p.X for p in points])
-        return replace(self, found=enriched(self.field, self.found, S, self.films, self.contacts, self.energy))
+        return replace(self, principal=enriched(self.field, self.principal, S, self.films, self.contacts, self.energy))
 
 
 def reduce(
@@ -162,22 +162,6 @@ def reduce(
         cached = stored.keep(centre, principals(field, S, energies(field, films, contacts), local), recipe.tolerance**2)
     principal = {part: Principal(*pair) for part, pair in cached.items()}
     return Reduction(field, films, contacts, places, fluids, boundaries, name, recipe, principal)
-
-
-def condense(
-    field: FieldModel,
-    films: Mapping[str, float],
-    contacts: Mapping[str, float],
-    fluids: Mapping[str, float],
-    boundaries: tuple[str, ...] = ("ambient",),
-    recipe: Recipe = DEFAULT,
-    name: str = "machine",
-    cache: Path | None = None,
-    zones: Mapping[str, Zone] | None = None,
-) -> Network:
-    """The network of a field at the recipe's own tolerance and size; arguments as for `reduce`."""
-    reduction = reduce(field, films, contacts, fluids, boundaries, recipe, name, cache, zones)
-    return reduction.network(max_states=recipe.max_states)
 
 
 def unit_loads(field: FieldModel, zones: Mapping[str, Zone]) -> dict[str, Array]:

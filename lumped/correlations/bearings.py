@@ -1,16 +1,12 @@
-"""Bearings, brushes and commutator: friction and the way heat takes through them."""
+"""Bearings and brushes: friction, and the way heat takes through a bearing."""
 
 from __future__ import annotations
-
-import math
 
 from lumped.correlations.info import Info, checked
 
 CONTACT_PRESSURE_PA = 2.0e4  # usual spring pressure of carbon brushes, 15 to 25 kPa
 BRUSH_FRICTION = 0.2  # carbon on copper, 0.15 to 0.3
-CARBON_BRUSH_DROP = 2.0  # V, both brushes together (IEC 60034-2-1: 1 V each)
 KYLANDER = (0.45, 0.12, 33.0)  # K s/(W m2), m, m/s
-BRUSH_K = {"electrographite": 30.0, "carbon-graphite": 15.0, "metal-graphite": 40.0}  # W/m/K along the brush
 
 
 def kylander_bearing(diameter: float, omega: float) -> tuple[float, Info]:
@@ -40,20 +36,3 @@ def brush_friction(
 ) -> float:
     """Rubbing of all brushes (W): coefficient * pressure (Pa) * contact area (m2) * surface speed (m/s). Coulomb."""
     return coefficient * pressure * area * abs(speed)
-
-
-def brush_resistance(length: float, area: float, k: float = BRUSH_K["electrographite"]) -> float:
-    """Along a brush from commutator to holder (K/W): length (m) over k (W/m/K) times section (m2). Fourier."""
-    return length / (k * area)
-
-
-def commutator_share(drop_V: float, current: float, friction_W: float) -> tuple[float, float]:
-    """(to the commutator, to the brushes) of contact and rubbing loss (W): half each for the drop, as copper takes
-    nine tenths of the rubbing heat (ratio of the effusivities sqrt(k rho cp) of copper and carbon)."""
-    drop = drop_V * abs(current)
-    return 0.5 * drop + 0.9 * friction_W, 0.5 * drop + 0.1 * friction_W
-
-
-def mean_surface_speed(diameter: float, speed_rpm: float) -> float:
-    """m/s"""
-    return math.pi * diameter * abs(speed_rpm) / 60.0

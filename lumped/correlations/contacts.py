@@ -1,14 +1,13 @@
-"""Contacts, gaps, bearings and radiation between solids."""
+"""Contacts, gaps and radiation between solids."""
 
 from __future__ import annotations
 
 import math
 
+from geom.constants import SIGMA, ZERO_C
 from lumped.correlations.info import Info, checked
-from lumped.transfer.properties import ZERO_C
 
 K_AIR = 0.026  # W/m/K, of still air at 25 degC
-SIGMA = 5.670374419e-8  # W/m2/K4, CODATA 2018
 
 # Effective air gaps (m) after the Motor-CAD default tables.
 GAPS = {
@@ -60,11 +59,6 @@ def cooper_mikic_yovanovich(
     gas = k_gas / (1.53 * roughness * load**-0.097)
     info = checked("cooper_mikic_yovanovich", "CMY 1969", {"p/H": load, "h solid": solid}, {"p/H": (1e-6, 0.02)})
     return solid + gas, info
-
-
-def bearing_resistance(mean_diameter: float, width: float, gap: float = 0.3e-3, k: float = K_AIR) -> float:
-    """Between the races (K/W): still air of an effective gap over the mean cylinder; gap 0.2 to 0.4 mm (Staton)."""
-    return gap / (k * math.pi * mean_diameter * width)
 
 
 def radiation_film(emissivity: float, hot: float, cold: float, view: float = 1.0) -> tuple[float, Info]:

@@ -11,9 +11,16 @@ from lumped.correlations.info import Info, checked
 
 Number = TypeVar("Number", float, NDArray[np.float64])
 
-# Published sets k1 (W/m2/K), k2 ((s/m)^k3), k3.
-SCHUBERT, MELLOR, BOGLIETTI = (15.0, 0.4, 0.9), (15.5, 0.29, 1.0), (41.4, 6.22 / 41.4, 1.0)
-STOKUM, DI_GERLANDO, HAMDI = (33.2, 0.0445, 1.0), (40.0, 0.1, 1.0), (10.0, 0.3, 1.0)  # published sets
+# k1 (W/m2/K), k2 ((s/m)^k3), k3, as listed by Staton et al. 2005: end spaces differ by a factor 2 to 3 at standstill.
+PUBLISHED = {
+    "Schubert": (15.0, 0.4, 0.9),
+    "Mellor 1991": (15.5, 0.29, 1.0),
+    "Boglietti 2003": (41.4, 6.22 / 41.4, 1.0),
+    "Stokum": (33.2, 0.0445, 1.0),
+    "Di Gerlando": (40.0, 0.1, 1.0),
+    "Hamdi": (10.0, 0.3, 1.0),
+}
+SCHUBERT = PUBLISHED["Schubert"]
 
 
 def end_space(
@@ -28,33 +35,3 @@ def end_space(
     h = k1 * (1.0 + k2 * abs(v) ** k3)
     top = float(np.max(np.abs(v)))
     return h, checked("end_space", "Staton et al. 2005", {"v": top}, {"v": (0, 50)})
-
-
-def schubert(v: Number) -> tuple[Number, Info]:
-    """15 (1 + 0.4 v^0.9)."""
-    return end_space(v, *SCHUBERT)
-
-
-def mellor(v: Number) -> tuple[Number, Info]:
-    """15.5 (1 + 0.29 v): Mellor, Roberts, Turner 1991, IEE Proc. B 138, 205."""
-    return end_space(v, *MELLOR)
-
-
-def boglietti(v: Number) -> tuple[Number, Info]:
-    """41.4 (1 + 0.15 v): Boglietti, Cavagnino, Lazzari, Pastorelli 2003, IEEE Trans. Ind. Appl. 39, 780."""
-    return end_space(v, *BOGLIETTI)
-
-
-def stokum(v: Number) -> tuple[Number, Info]:
-    """33.2 (1 + 0.0445 v), as listed by Staton et al. 2005."""
-    return end_space(v, *STOKUM)
-
-
-def di_gerlando(v: Number) -> tuple[Number, Info]:
-    """40 (1 + 0.1 v), as listed by Staton et al. 2005."""
-    return end_space(v, *DI_GERLANDO)
-
-
-def hamdi(v: Number) -> tuple[Number, Info]:
-    """10 (1 + 0.3 v), as listed by Staton et al. 2005."""
-    return end_space(v, *HAMDI)

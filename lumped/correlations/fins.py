@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+from geom.constants import GRAVITY as G
 from lumped.correlations.info import Info, checked
-from lumped.correlations.natural import G, Of
+from lumped.correlations.natural import Of
 from lumped.transfer.properties import Fluid, air
 
 INVERSE_METRE = 11.8 / 0.0254  # the paper's 11.8 per inch
@@ -85,14 +86,9 @@ def mean_of_decay(share_at_end: float) -> float:
     return 0.5 * (1.0 + share_at_end)
 
 
-def straight_decay(share_at_end: float) -> Callable[[float], float]:
-    """Share of the cowl's air speed over the share of the channel passed (0 to 1): in a straight line."""
-    return lambda x: 1.0 + (share_at_end - 1.0) * x
-
-
-def exponential_decay(share_at_end: float) -> Callable[[float], float]:
-    """The same, falling by equal factors on equal lengths."""
-    return lambda x: share_at_end**x
+def straight_decay(share_at_end: float, x: float) -> float:
+    """Share of the cowl's air speed where the share x of the channel is passed (0 to 1): in a straight line."""
+    return 1.0 + (share_at_end - 1.0) * x
 
 
 def heiles_decaying(
@@ -102,15 +98,9 @@ def heiles_decaying(
     """Blown fin channel whose air leaks out along its way, mean h over the fin (W/m2/K).
 
     Heiles' film of the whole channel at the speed of each of `pieces` equal lengths, averaged; decay: share of the
-    cowl's speed over the share of the length, e.g. straight_decay(0.2). Source: Heiles 1952 with the leakage that
+    cowl's speed over the share of the length, e.g. straight_decay. Source: Heiles 1952 with the leakage that
     Staton and Cavagnino 2008 describe; Motor-CAD starts from 1 at the cowl to 0.2 at the far end.
     """
     at = [(k + 0.5) / pieces for k in range(pieces)]
     films = [heiles(speed * decay(x), diameter, length, turbulence, fluid) for x in at]
     return math.fsum(h for h, _ in films) / pieces, films[0][1]
-
-
-def straight_fin_efficiency(h: float, k: float, thickness: float, depth: float) -> float:
-    """tanh(mL)/(mL), m = sqrt(2 h / (k thickness)), L = depth: straight fin with an insulated tip (Incropera)."""
-    mL = math.sqrt(2 * h / (k * thickness)) * depth
-    return math.tanh(mL) / mL if mL > 1e-9 else 1.0

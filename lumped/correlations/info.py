@@ -10,7 +10,7 @@ from lumped.transfer.ranges import out_of_range
 
 @dataclass(frozen=True)
 class Info:
-    """name and source of the correlation; numbers: Nu, Re, Ra, ... it went through; range_ok: all inside `limits`."""
+    """name and source of the correlation; numbers: Nu, Re, Ra, ... it went through."""
 
     name: str
     source: str
@@ -21,10 +21,6 @@ class Info:
     def outside(self) -> tuple[str, ...]:
         """The dimensionless numbers that lie outside the source's range."""
         return tuple(k for k, (low, high) in self.limits.items() if not low <= self.numbers[k] <= high)
-
-    @property
-    def range_ok(self) -> bool:
-        return not self.outside
 
 
 def checked(name: str, source: str, numbers: Mapping[str, float], limits: Mapping[str, tuple[float, float]]) -> Info:

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+from geom.constants import GRAVITY as G
 from lumped.correlations.info import Info, checked
 from lumped.transfer.properties import Fluid, air
 
-G = 9.80665  # m/s2
 MOST_CURVED = 5.0  # end of its range
 Of = Callable[[float], Fluid]
 

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 
-FIN_SIDES = 0.0  # facing sides of fins see each other at the same temperature: no exchange with the surroundings
-
 
 def coaxial_discs(radius_1: float, radius_2: float, distance: float) -> float:
     """Two parallel discs on one axis (m): rotor face to end shield.
@@ -34,8 +32,3 @@ def groove(depth: float, width: float) -> float:
     """
     a = depth / width
     return math.sqrt(1 + a * a) - a
-
-
-def enclosed() -> float:
-    """A convex body wholly surrounded: 1."""
-    return 1.0

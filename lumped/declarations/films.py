@@ -102,17 +102,13 @@ def _duct(table: Table, fluid: Fluid) -> Film:
 
 
 def _fin_channel(table: Table, fluid: Fluid) -> Film:
-    from lumped.correlations.fins import heiles_decaying
+    from lumped.correlations.fins import heiles_decaying, straight_decay
 
-    end, turbulence = table.number("speed_at_end", 1.0), table.number("turbulence", 1.7)
+    decay, turbulence = partial(straight_decay, table.number("speed_at_end", 1.0)), table.number("turbulence", 1.7)
     return partial(
-        heiles_decaying, diameter=millimetres(table, "diameter_mm"), length=_size(table), decay=partial(_line, end),
+        heiles_decaying, diameter=millimetres(table, "diameter_mm"), length=_size(table), decay=decay,
         turbulence=turbulence, fluid=fluid,
     )  # fmt: skip
-
-
-def _line(end: float, x: float) -> float:
-    return 1.0 + (end - 1.0) * x
 
 
 def _flat(table: Table, fluid: Fluid) -> Film:
@@ -128,9 +124,9 @@ def _across(table: Table, fluid: Fluid) -> Film:
 
 
 def _end_space(table: Table, fluid: Fluid) -> Film:
-    from lumped.correlations.end_space import end_space
+    from lumped.correlations.end_space import SCHUBERT, end_space
 
-    return partial(end_space, k1=table.number("k1", 15.0), k2=table.number("k2", 0.4), k3=table.number("k3", 0.9))
+    return partial(end_space, **{k: table.number(k, usual) for k, usual in zip(("k1", "k2", "k3"), SCHUBERT)})
 
 
 def _helix(table: Table, fluid: Fluid) -> Film:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from itertools import pairwise
 
+from geom.constants import L_MIN, M3_H
 from lumped.declarations.films import contact, natural, over
 from lumped.declarations.mixed import mixed
 from lumped.declarations.rotor import gap, rotating
@@ -137,7 +138,7 @@ def _named(suffix: str, laws: Law | list[Law], per_area: bool) -> list[Mechanism
     return [(f"{suffix}:{k + 1}" if k else suffix, law, per_area) for k, law in enumerate(several)]
 
 
-FLOW_INPUTS = {"flow_l_min_input": 1 / 60000.0, "flow_m3_h_input": 1 / 3600.0}
+FLOW_INPUTS = {"flow_l_min_input": L_MIN, "flow_m3_h_input": M3_H}
 
 
 def flow_column(table: Table, measures: Callable[[str], str]) -> str | None:
@@ -152,7 +153,7 @@ def flow_law(table: Table) -> Law:
         return InputPower(table.number("mcp_W_K"), powers(table))
     rate = table.number("density_kg_m3") * table.number("cp_J_kgK")
     if "flow_l_min" in table:
-        return Fixed(rate * table.number("flow_l_min") / 60000.0)
+        return Fixed(rate * table.number("flow_l_min") * L_MIN)
     for key, scale in FLOW_INPUTS.items():
         if key in table:
             return InputPower(rate * scale, ((table.word(key), 1.0, 1.0),))

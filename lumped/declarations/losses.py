@@ -7,11 +7,12 @@ from collections.abc import Callable, Collection, Mapping
 from functools import partial
 from itertools import pairwise
 
+from geom.constants import ALPHA_CU, RPM
 from lumped.model.quantities import USUAL
 from lumped.schemas.reader import Table, powers
 from lumped.sources.loss_map import MapLoss
 from lumped.sources.loss_measured import MeasuredLoss
-from lumped.sources.losses import ALPHA_CU, BrushLoss, CopperLoss, IronLoss, PowerLoss, RippleLoss
+from lumped.sources.losses import BrushLoss, CopperLoss, IronLoss, PowerLoss, RippleLoss
 from lumped.transfer.laws import CONSTANT, Law, Linear, TemperatureLaw
 
 COLDEST, HOTTEST = -60.0, 300.0  # degC: from the coldest place a machine stands in to beyond what insulation bears
@@ -141,7 +142,7 @@ def _mechanical(table: Table, speeds: Collection[str]) -> Products:
             raise item.error(
                 "none of these inputs is known as a speed", 'factor = ..., or [inputs.NAME] quantity = "speed"'
             )
-        out.append((-item.number("factor", math.pi / 30 if turning else 1.0, of="mechanical.factor"), names))
+        out.append((-item.number("factor", RPM if turning else 1.0, of="mechanical.factor"), names))
         item.close()
     return tuple(out)
 

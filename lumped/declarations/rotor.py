@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from functools import partial
 
+from geom.constants import RPM
 from lumped.correlations import Info
 from lumped.declarations.films import film_air, film_laws, millimetres
 from lumped.declarations.separated import Film
 from lumped.schemas.reader import Table
 from lumped.transfer.laws import Law
 from lumped.transfer.properties import Fluid
-
-RPM = math.pi / 30.0
 
 
 def gap(table: Table) -> list[Law]:

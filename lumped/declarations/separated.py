@@ -15,10 +15,9 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError
 from lumped.correlations import Info
-from lumped.transfer.circuit import WARMTH
 from lumped.transfer.laws import CONSTANT, FILMS, FIRST_C, STEP_K, Array, FilmTable, Inputs, Law, TemperatureLaw
 from lumped.transfer.laws import Table as TableLaw
-from lumped.transfer.properties import Fluid
+from lumped.transfer.properties import TABULATED_C, Fluid
 from lumped.transfer.ranges import out_of_range, within_silence
 
 POINTS = 97  # of a table, closer near rest, where a film changes most
@@ -116,7 +115,7 @@ def film_degC() -> list[float]:
 def _liquid_range(fluid: Callable[[float], Fluid]) -> list[float]:
     """Where a liquid is one."""
     out = []
-    for T in WARMTH:
+    for T in TABULATED_C:
         try:
             fluid(T)
         except InputError:

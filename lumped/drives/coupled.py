@@ -8,13 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.constants import ALPHA_CU
 from geom.errors import ThermoscopeError
 from lumped.drives.drive import Controller, Cycle, SeriesMachine, Vehicle, drive_cycle
 from lumped.drives.permanent_magnet import PMMachine
 from lumped.integration.compiled import READINGS
 from lumped.integration.simulate import Record, Run, initial_state, simulate
 from lumped.model.network import Network, Row
-from lumped.sources.losses import ALPHA_CU
 
 Array = NDArray[np.float64]
 Drive = Callable[[Mapping[str, Array]], Mapping[str, Array]]

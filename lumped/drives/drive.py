@@ -6,17 +6,15 @@ J dw/dt = L_af i^2 - B w - T_load                        (4-6)
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.constants import GRAVITY, RPM
 from lumped.numerics.jit import entry
 
 Array = NDArray[np.float64]
-RPM = math.pi / 30.0
-GRAVITY = 9.80665
 
 
 @dataclass(frozen=True)
@@ -71,9 +69,6 @@ class Vehicle:
     rolling: float = 0.01
     drag_area: float = 3.0
     air_density: float = 1.2
-
-    def motor_speed_rpm(self, speed_mps: Array | float) -> Array | float:
-        return np.asarray(speed_mps) / self.wheel_radius * self.gear / RPM
 
     def load_torque(self, speed_mps: Array | float, slope: Array | float) -> Array | float:
         """At the motor shaft, steady (N m); slope: rise over run."""

@@ -5,14 +5,13 @@ v_d = R i_d - w Lq i_q,  v_q = R i_q + w (Ld i_d + psi),  T = 3/2 p (psi + (Ld -
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.sources.losses import ALPHA_CU
+from geom.constants import ALPHA_CU, RPM
 
 Array = NDArray[np.float64]
 HALVINGS = 50  # a current to the last digit
@@ -51,7 +50,7 @@ class PMMachine:
         magnet_degC: Array | float = 20.0,
     ) -> Array:  # fmt: skip
         """Peak phase voltage (V)."""
-        w = self.pole_pairs * np.abs(np.asarray(speed_rpm, float)) * math.pi / 30
+        w = self.pole_pairs * np.abs(np.asarray(speed_rpm, float)) * RPM
         R = self.resistance(winding_degC)
         return np.hypot(R * i_d - w * self.Lq * i_q, R * i_q + w * (self.Ld * i_d + self.flux(magnet_degC)))
 

@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 Ints = NDArray[np.int64]
 PARABOLA, PARABOLA_K = 2e-4, 1e-3  # of the largest of an interval, K: a few hundredths of what a step may be wrong by
-ROUNDING = 1e-12
+ROUNDING = 1e-12  # of the largest: what is smaller comes from rounding, not from the record
 
 
 def checked_time(time: Array) -> Array:

@@ -101,10 +101,10 @@ class Signals(dict[str, Array]):
         curve = self._known.get(id(law))
         if curve is not None and curve[0]() is law:
             return curve[1]
-        made = self._made(name, law)
+        new = self._curve_of(name, law)
         if self.nt <= LONG:
-            self._known[id(law)] = ref(law, _forgetting(self, id(law))), made
-        return made
+            self._known[id(law)] = ref(law, _forgetting(self, id(law))), new
+        return new
 
     def forget(self, key: int) -> None:
         """The factor of a law that is gone."""
@@ -118,7 +118,7 @@ class Signals(dict[str, Array]):
         c = self.finer(knots).curve(name, law)
         return c.value if c.value.ndim == 0 else parabolas(c, knots, at)
 
-    def _made(self, name: str, law: Law) -> Curve:
+    def _curve_of(self, name: str, law: Law) -> Curve:
         missing = [x for x in law.reads if x not in self]
         if missing:
             raise InputError(

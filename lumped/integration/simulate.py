@@ -225,8 +225,8 @@ class _Course:
         if self.path is not None:
             self.path.append(ends(X, done)[:, self.place[: core.C.size]])
         if self.tangents:
-            given = (core.rows, core.curved, X, done, sample, int(at[SAMPLE]), *self.moved, self.dy)
-            differentiate(forcing, core.C, core.K0, core.terms, core.tangents, *given)
+            position = (core.rows, core.curved, X, done, sample, int(at[SAMPLE]), *self.moved, self.dy)
+            differentiate(forcing, core.C, core.K0, core.terms, core.tangents, *position)
         return bool(at[STATUS] == FULL)
 
     def _follow(self, first: int) -> Control:

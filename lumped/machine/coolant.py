@@ -14,6 +14,7 @@ from functools import cache
 
 import numpy as np
 
+from geom.constants import L_MIN
 from geom.description.machine import Machine
 from geom.description.profile import loop_length
 from lumped.correlations.ducts import duct_film, schmidt_helical
@@ -100,7 +101,7 @@ class Channel:
 
     def film(self, flow_l_min: float, fluid: Fluid) -> float:
         """W/m2/K"""
-        speed = flow_l_min / 60000.0 / self.area
+        speed = flow_l_min * L_MIN / self.area
         if self.coil:
             return schmidt_helical(speed, self.diameter, self.coil, fluid)[0]
         return duct_film(speed, self.diameter, self.length, fluid)[0]
@@ -178,4 +179,4 @@ def outlets(machine: Machine, network: Network, cooling: Cooling) -> dict[str, P
 def _rate(jacket: str, cooling: Cooling) -> np.ndarray:
     """Heat capacity rate m cp (W/K) at the flows of the tables."""
     fluid = cooling.liquid
-    return fluid.rho * fluid.cp * np.array(_flows(cooling)) * cooling.share(jacket) / 60000.0
+    return fluid.rho * fluid.cp * np.array(_flows(cooling)) * cooling.share(jacket) * L_MIN

@@ -1,7 +1,7 @@
 """The network of a motor built from geometry: condensed conduction plus films, streams, losses and priors.
 
     films, contacts = nominal_coefficients(machine, faces, contact_names)  # what the condensation is centred on
-    condensed = condense(field, films, contacts, fluids(machine), boundaries(machine), ...)
+    condensed = reduce(field, films, contacts, fluids(machine), boundaries(machine), ...).network()
     network = motor_network(machine, condensed)          # or thermoscope.pipeline.build(machine).network: all of it
 
 What comes out, for every family and for imported machines alike (the machine file decides, no names do):
@@ -22,11 +22,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
 from geom.description.machine import Machine
+from geom.description.part import Part
 from lumped.machine.air import fan_streams
 from lumped.machine.bases import switched
 from lumped.machine.coolant import FLOW, INLET, coolant_streams, outlet_film, outlets
@@ -50,7 +50,7 @@ def fluids(machine: Machine) -> dict[str, float]:
     return out
 
 
-def _cells(machine: Machine, jacket: Any) -> dict[str, float]:
+def _cells(machine: Machine, jacket: Part) -> dict[str, float]:
     liquid = surroundings(machine, ()).cooling.liquid  # type: ignore[union-attr]
     names = cells_of(machine, jacket.name)
     return dict.fromkeys(names, liquid.rho * liquid.cp * jacket.volume / len(names))

@@ -6,13 +6,13 @@ such that walls of one temperature warm the liquid by the exact exponential (fem
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from geom.description.machine import Machine
+from geom.description.part import Prism
 from lumped.model.network import Array
 
 CELLS = 6  # at most; a jacket of fewer turns has one per turn
@@ -55,7 +55,7 @@ def _start(machine: Machine, jacket: str) -> tuple[float, float, float] | None:
     return next((port.position for port in machine.ports if port.name == f"{jacket}.inlet"), None)
 
 
-def _channels(prisms: Any) -> int:
+def _channels(prisms: Sequence[Prism]) -> int:
     """The most prisms at one place along the axis: the straight part of the channels."""
     spans = [(z0, z1) for _, z0, z1 in prisms]
     return max(spans.count(span) for span in spans)

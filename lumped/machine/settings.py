@@ -7,8 +7,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any, TypeVar
 
+from geom.constants import ALPHA_CU
 from geom.description.machine import Machine
 from geom.errors import InputError
+from lumped.correlations.end_space import SCHUBERT
 from lumped.schemas.bounds import bounds
 from lumped.schemas.reader import Table, excerpt
 
@@ -29,7 +31,7 @@ class Losses:
     armature_resistance_mOhm: float = 28.6
     field_resistance_mOhm: float = 19.0
     reference_C: float = 75.0
-    temperature_coefficient_per_K: float = 0.00393
+    temperature_coefficient_per_K: float = ALPHA_CU
     brush_drop_V: float = 2.0
     brush_friction_W: float = 250.0
     bearing_friction_W: float = 50.0
@@ -52,9 +54,9 @@ class Films:
     """
 
     emissivity: float | None = None
-    end_space_k1_W_m2K: float = 15.0
-    end_space_k2: float = 0.4
-    end_space_k3: float = 0.9
+    end_space_k1_W_m2K: float = SCHUBERT[0]
+    end_space_k2: float = SCHUBERT[1]
+    end_space_k3: float = SCHUBERT[2]
     still_wall_share: float = 0.2
     moving_wall_share: float = 1.0
     channel_wall_share: float = 0.1

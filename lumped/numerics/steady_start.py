@@ -7,7 +7,7 @@ from lumped.numerics.jit import entry, inner, pasted
 from lumped.numerics.stages import finite
 from lumped.numerics.terms import END, ROW, clear, flow, jacobian
 
-MOST_ITERATIONS, CONVERGED_K = 50, 1e-9
+MOST_ITERATIONS, CONVERGED_K = 50, 1e-9  # of Newton: more would be a cycle, not a way; far below any step's error
 
 
 @pasted

@@ -11,12 +11,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.constants import SIGMA, ZERO_C
 from lumped.numerics.dense import axpy, matvec
 from lumped.numerics.jit import inner, inner_reordered, pasted
 from lumped.transfer.laws import FILMS, FIRST_C, STEP_K
 
-SIGMA = 5.670374419e-8
-ZERO_C = 273.15
 SMOOTH = 0.01  # K: |dT| ** p is smoothed below this difference, where its derivative would be unbounded
 CONSTANT, POWER, RADIATION, LINEAR, TABLE, FILM = range(6)
 PATTERN, ROW, END, HOT, COLD, POINT, LAST = range(7)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 COLDEST, HOTTEST = -100.0, 3000.0  # degC: no test bench is colder; copper, steel and insulation are gone before
-TINY = 1e-12
+TINY = 1e-12  # stands for "above zero" where a number divides
 
 
 @dataclass(frozen=True)
@@ -50,9 +50,9 @@ UNITS = {
     "exponent": Bounds(-10.0, 10.0), "factor": Bounds(0.0, 1e6),
 }  # fmt: skip
 
-ANY = Bounds(-1e12, 1e12)
+ANY = Bounds(-1e12, 1e12)  # keeps out what overflows, and no more
 AIR_C = Bounds(-60.0, 200.0)  # where the tables of fluids hold
-COOLANT_C = Bounds(-40.0, 200.0)
+COOLANT_C = Bounds(-40.0, 200.0)  # from where glycol mixtures freeze to where oils are used
 
 # Keys without a unit in their name, or tighter than their unit; "table.key" where a key means something else there.
 KEYS = {

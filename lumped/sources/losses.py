@@ -9,10 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from geom.constants import ALPHA_CU
 from geom.errors import InputError
 from lumped.transfer.laws import CONSTANT, Array, Inputs, Law, Linear, TemperatureLaw
-
-ALPHA_CU = 0.00393  # 1/K at 20 degC, IEC 60028
 
 Power = tuple[str, float, float]
 

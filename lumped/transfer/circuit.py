@@ -14,6 +14,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from geom.constants import L_MIN, M3_H
 from geom.errors import InputError
 from lumped.correlations.ducts import duct_film, schmidt_helical, staton_rectangle
 from lumped.model.build import node_row
@@ -22,11 +23,11 @@ from lumped.transfer.coolant import Coolant
 from lumped.transfer.exchanger import BACKWARDS, CellFilm, Effectiveness, Exchanger, Flow, Rate
 from lumped.transfer.hydraulics import Duct, parallel_shares, pressure_drop, pumping_power
 from lumped.transfer.laws import Law, Table
+from lumped.transfer.properties import TABULATED_C
 from lumped.transfer.reversal import Direction, OneWay
 
 RANGE = (0.0, *(2.0**k for k in np.arange(-5, 2.01, 0.125)))  # films are tabulated at these times the declared flow
-PER_M3S = {"l_min": 1 / 60000.0, "m3_h": 1 / 3600.0}
-WARMTH = tuple(float(T) for T in range(-40, 161, 5))  # degC, at which films are tabulated where they follow
+PER_M3S = {"l_min": L_MIN, "m3_h": M3_H}
 TANK_M3 = 5e-5  # of the pipe in which branches meet
 
 Edge = tuple[str, str, float]  # from, to, share of the flow
@@ -189,7 +190,7 @@ class Circuit:
 
     def _films_at(self, duct: Duct, flow: float) -> Iterator[tuple[float, float]]:
         """(degC, W/m2/K) wherever the liquid is known."""
-        for T in WARMTH:
+        for T in TABULATED_C:
             with suppress(InputError):
                 yield T, self.film(duct, flow, T)
 

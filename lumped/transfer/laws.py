@@ -75,6 +75,7 @@ class FilmTable(TemperatureLaw):
 
 CONSTANT = Constant()
 CLOCK = "time_s"  # the input that is the record's time
+RUNNING = "running "  # before the name of a test: the input that is 1 in this one only
 
 
 class Law(ABC):

@@ -5,11 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cache
 
+from geom.constants import ZERO_C
 from geom.errors import InputError, MissingDependency
 
-ZERO_C = 273.15
 GAS_CONSTANT_AIR = 287.0528  # J/kg/K
 CP_AIR = 1005.7  # J/kg/K, dry air, within 0.3 % from -20 to 120 degC (Lemmon et al. 2000)
+TABULATED_C = tuple(
+    float(T) for T in range(-40, 161, 5)
+)  # where films that follow a coolant are tabulated: no coolant goes beyond
 
 
 @dataclass(frozen=True)

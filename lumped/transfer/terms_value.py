@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from geom.constants import SIGMA, ZERO_C
 from lumped.transfer.laws import FILMS, FIRST_C, STEP_K, FilmTable, Linear, Power, Radiation, Table, TemperatureLaw
-
-SIGMA, ZERO_C = 5.670374419e-8, 273.15
 
 
 def temperature_value(law: TemperatureLaw, hot: float, cold: float) -> float:

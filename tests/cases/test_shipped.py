@@ -154,12 +154,12 @@ def test_a_network_beside_no_case_is_read(file):
 
 @pytest.mark.parametrize("name", BUILT)
 @pytest.mark.usefixtures("home")
-def test_a_shipped_machine_is_built_and_held_against_its_field(name, monkeypatch):
+def test_a_shipped_machine_is_built_and_held_against_its_field(name):
     """On a coarse mesh, of any accuracy, looked at in few points: that it runs and closes its balance is the point."""
-    monkeypatch.setattr(network_size, "LOOKS", 1)
-    monkeypatch.setattr(network_size, "JOINTS", (5.0,))
     machine = load_machine_file(ROOT / name if name.endswith(".toml") else Path(name))
-    found = network_size.smallest_network(machine, 1e3, size_m=0.15, segments=24, recipe=TINY, rounds=0, across=1)
+    found = network_size.smallest_network(
+        machine, 1e3, size_m=0.15, segments=24, recipe=TINY, rounds=0, across=1, points_each=1, contact_factors=(5.0,)
+    )
     result = checked(found.built, found, lambda message: None)
     assert result["energy_balance"] < 1e-9
     assert all(math.isfinite(part["network_mean_C"]) for part in result["crosscheck"])

@@ -8,10 +8,11 @@ from scipy.optimize import brentq
 from fem.matrices.assembly import assemble
 from fem.matrices.grids import box
 from fem.matrices.material import isotropic
-from fem.matrices.terms import SIGMA, ZERO_C, CopperLoss, Radiation, VaryingConductivity
+from fem.matrices.terms import CopperLoss, Radiation, VaryingConductivity
 from fem.solvers.newton import solve_nonlinear
 from fem.solvers.solve import Iterative, Solver, only_fixed
 from fem.solvers.transient import transient
+from geom.constants import SIGMA, ZERO_C
 from geom.errors import InputError
 
 GIVEN = 1e9  # a film so good that its fluid's temperature is the wall's, W/m2/K

@@ -15,6 +15,8 @@ BESIDE = (
     "tests",
 )  # examples/ is a gallery, side by side
 MOST = 15  # files of a folder beside its __init__: more do not fit on a screen
+# The longest chain of modules that import each other inside a room: what a reader passes from the top to the bottom.
+DEEPEST = {"geom": 12, "fem": 10, "lumped": 12, "validation": 14, "viz": 9, "thermoscope": 21}
 SENTENCES = 6  # of the page of the architecture, which has one picture
 
 
@@ -52,6 +54,25 @@ def test_the_page_of_rooms_names_every_room(root):
 def test_modules_import_each_other_one_way(root):
     known = modules(root)
     assert circle({name: set(imports(ast.parse(file.read_text()), known)) for name, file in known.items()}) == []
+
+
+def test_no_room_is_deeper_than_it_was(root):
+    known = modules(root)
+    every = {name: set(imports(ast.parse(file.read_text()), known)) for name, file in known.items()}
+    depths = {room: depth({n: m for n, m in every.items() if n.partition(".")[0] == room}) for room in ROOMS}
+    assert {room: n for room, n in depths.items() if n > DEEPEST[room]} == {}
+
+
+def depth(graph):
+    """Modules on the longest chain inside the graph."""
+    levels = {}
+    for name in TopologicalSorter({n: m & graph.keys() - {n} for n, m in graph.items()}).static_order():
+        levels[name] = 1 + max((levels[m] for m in graph[name] & levels.keys()), default=0)
+    return max(levels.values())
+
+
+def test_a_chain_is_as_deep_as_its_modules():
+    assert depth({"a": {"b", "x"}, "b": {"c"}, "c": set(), "d": {"c"}}) == 3
 
 
 def imports(tree, known):

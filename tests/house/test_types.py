@@ -6,7 +6,9 @@ import pytest
 
 ROOMS = ("geom", "fem", "lumped", "validation", "viz", "thermoscope")
 OURS = {"machine", "part", "prism", "geometry", "g", "mesh", "field", "block", "trace", "reduction", "network", "built",
-        "case", "test", "record", "folder", "evidence", "fit", "effect", "sensor", "channel", "surface"}  # fmt: skip
+        "case", "test", "record", "folder", "evidence", "fit", "effect", "sensor", "channel", "surface",
+        "jacket", "prisms", "usual", "fluid", "link", "source", "place", "parameter", "profile", "tests", "run",
+        "diagnosis"}  # fmt: skip
 
 
 def untyped(tree):

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from compiled_observer import CompiledObserver
 from small_case import small_case
 from watched import run
 
@@ -14,7 +15,7 @@ from geom.errors import InputError
 from thermoscope.case_folder.folder import load_case
 from thermoscope.case_folder.runs import mean_rows
 from thermoscope.export.model import Output
-from thermoscope.export.observer_code import MOST_BYTES, CompiledObserver, observer_files, observer_model
+from thermoscope.export.observer_code import MOST_BYTES, observer_files, observer_model
 from thermoscope.verification.error_budget import model_of
 from validation.bands import parameter_posterior
 from validation.observer import ProcessNoise, observer

@@ -31,7 +31,7 @@ def write_columns(folder: Folder, effects: Sequence[str]) -> list[Path]:
         own = [
             condition
             for condition in dict.fromkeys(conditions)
-            if (found := event(condition)) and test.name in found.spans
+            if (condition_event := event(condition)) and test.name in condition_event.spans
         ]
         ours(file)
         if own:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.constants import NORMAL_95
 from lumped.integration.simulate import simulate
 from lumped.model.network import Parameter
 from thermoscope.case_folder.folder import Folder
@@ -62,4 +63,4 @@ def deviation(parameter: Parameter, interval: Sequence[float] | None) -> float:
     if interval is None:
         return parameter.prior_sd
     low, high = np.log(interval) if parameter.mapping == "log" else interval
-    return min(float(high - low) / (2 * 1.96), parameter.prior_sd)
+    return min(float(high - low) / (2 * NORMAL_95), parameter.prior_sd)

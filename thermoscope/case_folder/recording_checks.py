@@ -9,12 +9,13 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.constants import ZERO_C
 from thermoscope.recordings.sheet import Sheet
 from thermoscope.recordings.tables import Samples
 
 Array = NDArray[np.float64]
 FIRST = 5  # readings that say where a column starts
-KELVIN, OFF_K = 273.15, 15.0  # how near a start has to be to that of the others in another unit
+OFF_K = 15.0  # how near a start has to be to that of the others in another unit
 OFFSET_K = 12.0  # how far it has to be as it stands
 SPIKE_K, SPIKE_TIMES = 8.0, 20.0  # a reading that leaps and comes back, in K and in usual steps of its column
 UNEVEN = 0.5  # of a long step of a clock, between nine in ten and one in ten of all
@@ -74,7 +75,7 @@ def _units(p: Patient) -> Iterator[Finding]:
         usual = float(np.median(others)) if others else 20.0
         if abs(start - usual) < OFFSET_K:
             continue
-        if abs(start - KELVIN - usual) < OFF_K:
+        if abs(start - ZERO_C - usual) < OFF_K:
             yield p.finding(name, f"starts at {start:.0f} degC, the others at {usual:.0f}: kelvin?", 'unit = "K"')
         elif abs((start - 32.0) / 1.8 - usual) < OFF_K / 3:
             yield p.finding(

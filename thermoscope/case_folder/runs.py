@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.constants import NORMAL_95
 from lumped.condensation.recovery import Shapes
 from lumped.integration.simulate import Run, simulate
 from lumped.model.network import Network, Row
@@ -153,7 +154,7 @@ def parameters(folder: Folder) -> list[dict[str, Any]]:
     for p in working(folder.case)[1].parameters:
         if p.name not in last.intervals:
             continue
-        low, high = (max(p.low, min(p.high, to_value(p, s * 1.96 * p.prior_sd))) for s in (-1.0, 1.0))
+        low, high = (max(p.low, min(p.high, to_value(p, s * NORMAL_95 * p.prior_sd))) for s in (-1.0, 1.0))
         a, b = last.intervals[p.name]
         out.append({
             "name": p.name, "value": last.values[p.name], "unit": p.unit, "ci95": [a, b],

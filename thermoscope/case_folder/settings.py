@@ -115,13 +115,13 @@ def _kinds(table: Table) -> tuple[str, ...] | None:
         return None
     from validation.effects import kinds
 
-    found: dict[str, None] = {}
+    matches: dict[str, None] = {}
     for glob in table.members("catalogue"):
         matched = [kind for kind in kinds() if fnmatchcase(kind, glob)]
         if not matched:
             raise table.error(f"catalogue: '{glob}' is no kind of effect", suggestion(glob, kinds()))
-        found |= dict.fromkeys(matched)
-    return tuple(found)
+        matches |= dict.fromkeys(matched)
+    return tuple(matches)
 
 
 def _entry(path: Path, name: str, table: Table) -> Entry:

@@ -99,8 +99,8 @@ def _cut(parts: Sequence[Grid | str], full: list[Any], width: int, room: int) ->
 
 def _lines(part: Grid | str, width: int, most: int | None) -> list[tuple[str, str]]:
     if isinstance(part, str):
-        found = _plain(part, width)
-        return found if most is None or len(found) <= most else []
+        lines = _plain(part, width)
+        return lines if most is None or len(lines) <= most else []
     if most is not None and most < TITLE + 2:
         return []
     rows = part.rows if most is None or len(part.rows) + TITLE <= most else part.rows[: most - TITLE - 1]

@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-import ctypes
-import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from geom.errors import InputError, ThermoscopeError
+from geom.errors import InputError
 from lumped.model.network import Network
 from lumped.schemas.bounds import COLDEST, HOTTEST
 from lumped.sources.loss_measured import MeasuredLoss
 from thermoscope.export.c_code import RUNTIME, c_files, ints, joined, reals
-from thermoscope.export.compilers import here, library
 from thermoscope.export.model import Model, Output, packed
 from validation.case import Channel, Test
 from validation.doubt import TEMPER, USUAL
@@ -140,33 +136,3 @@ def _data(of: ObserverModel) -> str:
         reals("LAG_S", [c.lag_s for c in of.sensors]), reals("TABLE_SD", of.table_sd),
         reals("ALLOWED_SD", odds.allowed), reals("SPREAD_SD", odds.spread), reals("LOG_PRIOR", odds.prior), "",
     ])  # fmt: skip
-
-
-class CompiledObserver:
-    """The observer's C code for this computer."""
-
-    def __init__(self, of: ObserverModel, extra: Sequence[str] = ()) -> None:
-        self.of = of
-        sources = {**observer_files(of)}
-        network = sources.pop("thermal_network.c")
-        main = sources.pop("thermal_observer.c").replace('#include "thermal_network.c"', network)
-        run = (RUNTIME / "thermal_observer_run.c").read_text(encoding="utf-8")
-        files = {**sources, "run.c": run.replace('#include "thermal_observer.c"', main)}
-        with tempfile.TemporaryDirectory() as folder:
-            file = Path(folder) / f"observer{here().ending}"
-            file.write_bytes(library(files, here(), extra))
-            self.code = ctypes.CDLL(str(file))
-
-    @property
-    def bytes(self) -> int:
-        return int(self.code.thermal_observer_bytes())
-
-    def run(self, time: Array, u: Array, y: Array) -> tuple[Array, Array, Array]:
-        """Temperatures (n, outputs), missing heat (n, m) and what is dropped (n, s) from inputs and readings."""
-        n = time.size
-        out = [np.empty((n, k)) for k in (len(self.of.model.outputs), len(self.of.heats), len(self.of.sensors))]
-        arrays = [np.ascontiguousarray(a, float) for a in (time, u, y)]
-        pointers = [a.ctypes.data_as(ctypes.c_void_p) for a in (*arrays, *out)]
-        if self.code.thermal_observer_run(ctypes.c_int(n), *pointers):
-            raise ThermoscopeError(f"the observer in C of '{self.of.model.name}' finds no step")
-        return out[0], out[1], out[2]

@@ -74,7 +74,7 @@ def in_thousands(columns: Sequence[Sequence[object]]) -> dict[int, list[object]]
     """Columns whose points, or commas, stand between thousands, without them: where all others have decimal commas,
     1.500 is 1500.  columns : cells of a text file; a file with both decimal signs says nothing"""
     text = {j: [c for c in cells if isinstance(c, str)] for j, cells in enumerate(columns)}
-    marked = {j: found for j, cells in text.items() if (found := [c for c in cells if "," in c or "." in c])}
+    marked = {j: signed for j, cells in text.items() if (signed := [c for c in cells if "," in c or "." in c])}
     groups = {j: sign for j, cells in marked.items() if (sign := _grouping(cells))}
     decimals = {m[1] for j, cells in marked.items() if j not in groups for c in cells if (m := DECIMAL.search(c))}
     if len(decimals) != 1:

@@ -14,7 +14,7 @@ from thermoscope.importing.target import Target
 from thermoscope.importing.words import tokens
 
 INSTANTS = 2000  # of a test on the analysis grid; more cost time and tell little
-NICE = (1, 2, 5)
+NICE = (1, 2, 5)  # what people read off a clock: 1, 2, 5, 10 s
 AXES = ({"id", "iq"}, {"ialpha", "ibeta"})  # components whose squares add up to the current's
 STILL = 5  # readings whose median a column starts from
 

@@ -108,7 +108,7 @@ def _toml(
         "[network]", f"name = {json.dumps(name)}", f"boundaries = {json.dumps(list(boundaries))}", "",
     ]  # fmt: skip
     for node in nodes:
-        role = [f'role = "{found[0]}"'] if (found := roles_of(node)) else []
+        role = [f'role = "{roles[0]}"'] if (roles := roles_of(node)) else []
         lines += [f"[nodes.{json.dumps(node)}]", f"C_J_K = {max(C, 1.0):.3g}", *role, f"prior_sd = {SPREAD}", ""]
     inside = [(a, b, 5 * G) for a, b in itertools.pairwise(nodes)]
     outside = [(n, b, G / len(nodes) / len(boundaries)) for n in nodes for b in boundaries]

@@ -14,14 +14,14 @@ from geom.disk_cache import recalled
 from geom.errors import InputError
 from lumped.integration.record import Record
 from lumped.schemas.reader import suggestion
-from lumped.transfer.laws import CLOCK
+from lumped.transfer.laws import CLOCK, RUNNING
 from thermoscope.bands import case_key
 from thermoscope.caches import cache_folder
 from thermoscope.case_folder.files import write_whole
 from thermoscope.case_folder.folder import Folder, Progress
 from thermoscope.monitoring.live_rows import Rows
 from thermoscope.verification.error_budget import model_of
-from validation.case import RUNNING, Channel
+from validation.case import Channel
 from validation.observer import Observer
 from validation.observer.learning import Design, Lesson, design_of, narrowed, taught, unsettled
 from validation.observer.process import bodies_of

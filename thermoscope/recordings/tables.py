@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.constants import ZERO_C
 from geom.errors import InputError
 from lumped.schemas.bounds import COLDEST, HOTTEST
 from lumped.schemas.reader import suggestion
@@ -190,7 +191,7 @@ def _look(column: Column, values: Array, file: Path, first: int) -> list[str]:
     low, high = (COLDEST, HOTTEST) if column.is_temperature else (-LARGEST, LARGEST)
     out = np.flatnonzero(~((values >= low) & (values <= high)) & ~np.isnan(values))
     if out.size:
-        what, row = "is below absolute zero" if values[out[0]] < -273.15 else "cannot be", int(out[0])
+        what, row = "is below absolute zero" if values[out[0]] < -ZERO_C else "cannot be", int(out[0])
         unit = " degC" if column.is_temperature else ""
         raise InputError(f"{values[row]:g}{unit} {what if column.is_temperature else 'cannot be'}",
                          cell(file, column.name, row + first), f"{low:g} to {high:g}{unit}: check the unit in the "

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.constants import ZERO_C
 from geom.errors import InputError
 from geom.plugins import plugins
 from lumped.schemas.reader import excerpt, suggestion
@@ -23,7 +24,7 @@ Array = NDArray[np.float64]
 
 
 QUANTITIES: dict[str, Quantity] = {
-    "temperature": Quantity({"degC": (1, 0), "K": (1, -273.15), "degF": (5 / 9, -160 / 9)}),
+    "temperature": Quantity({"degC": (1, 0), "K": (1, -ZERO_C), "degF": (5 / 9, -160 / 9)}),
     "current": Quantity({"A": (1, 0), "mA": (1e-3, 0), "kA": (1e3, 0)}, "current_A"),
     "speed": Quantity({"rpm": (1, 0), "1/min": (1, 0), "rad/s": (30 / pi, 0), "Hz": (60, 0)}, "speed_rpm"),
     "vehicle_speed": Quantity({"m/s": (1, 0), "km/h": (1 / 3.6, 0), "mph": (0.44704, 0)}, "vehicle_speed_mps"),
@@ -84,11 +85,11 @@ def _belongs(of: str, unit: str) -> str:
 
 def checked_input(of: str, name: str, where: str) -> str:
     """The input a column feeds, unless its name says another unit than the one memory holds."""
-    held = QUANTITIES[of].feeds.rpartition("_")[2]
+    suffix = QUANTITIES[of].feeds.rpartition("_")[2]
     for unit in QUANTITIES[of].units:
         word = unit.replace("/", "_").replace("*", "")
-        if held and word.isidentifier() and name.endswith(f"_{word}") and not name.endswith(f"_{held}"):
-            right = f'input = "{name.removesuffix(word)}{held}": a {of} is held in {held} whatever its unit here'
+        if suffix and word.isidentifier() and name.endswith(f"_{word}") and not name.endswith(f"_{suffix}"):
+            right = f'input = "{name.removesuffix(word)}{suffix}": a {of} is held in {suffix} whatever its unit here'
             raise InputError(f"input '{name}' says {word}", where, right)
     return name
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -16,10 +17,12 @@ from thermoscope.pipeline import ACROSS, AXIAL, Built, Meshing, Progress, prepar
 from thermoscope.verification.load_cases import load_cases
 from thermoscope.verification.mesh_choice import MeshChoice, chosen_mesh
 
-FINE = Recipe(tolerance=0.01, random_points=8, local_points=12, local_states=16)
+FINE = Recipe(
+    tolerance=0.01, random_points=8, local_points=12, local_states=16
+)  # finer than a case's own: every accuracy that may be asked is cut out of it
 ROUNDS = 3  # of learning: each solves the field at new points
-LOOKS = 3  # random points, and extreme ones, at which every size is checked
-JOINTS = (0.2, 5.0)  # times all contacts, as well
+POINTS_EACH = 3  # random ones and extreme ones: each costs a solve of the field, and errors of a kind are alike
+CONTACT_FACTORS = (0.2, 5.0)  # times all contacts at once: about the spread of one contact in the tables
 SEGMENTS = 48  # chords per turn
 LEAST = 0.25  # of the wish, asked of the condensation even where the mesh has used it up
 
@@ -75,17 +78,21 @@ def accurate_network(
 def smallest_network(
     machine: Machine, accuracy: float, size_m: float = 0.06, segments: int = 48, recipe: Recipe = FINE,
     progress: Progress = silent, rounds: int = ROUNDS, across: float = ACROSS, axial_m: float | None = None,
+    points_each: int = POINTS_EACH, contact_factors: Sequence[float] = CONTACT_FACTORS,
 ) -> NetworkSize:  # fmt: skip
-    """Build at several sizes and keep the smallest that meets the wish; if none does, learn from where it fails."""
+    """Build at several sizes and keep the smallest that is accurate enough; if none is, learn from where it fails.
+
+    points_each : random points, and extreme ones, at which every size is checked;  contact_factors : times all contacts
+    """
     machine = on_all(machine)
     ready = prepared(machine, size_m, segments, progress, axial_m, across)
     progress("what the parts can look like")
     reduction = reduced(ready, recipe, motor_zones(machine))
     cases, allowed = load_cases(machine, reduction), accuracy_of(accuracy)
     progress("error against number of states")
-    guides = [reduction.random_point(k) for k in range(LOOKS)]
-    points = [reduction.nominal_point(), *(reduction.extreme_point(k) for k in range(LOOKS))]
-    points += [reduction.joined_point(factor) for factor in JOINTS]
+    guides = [reduction.random_point(k) for k in range(points_each)]
+    points = [reduction.nominal_point(), *(reduction.extreme_point(k) for k in range(points_each))]
+    points += [reduction.joined_point(factor) for factor in contact_factors]
     table = tuple(Size.of(reduction, requested, [*points, *guides], cases, allowed) for requested in SIZES)
     good = [size for size in table if size.met]
     enrichment = None if good else enrich(reduction, cases, allowed, rounds, points, guides, tell=progress)

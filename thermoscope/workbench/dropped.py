@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from thermoscope.case_folder.settings import Settings
 
 LARGEST = 2**30  # bytes of one drop: an hour at 1 kHz in text, twice over
-CHUNK = 2**20
+CHUNK = 2**20  # bytes: little memory, few system calls
 
 
 @dataclass(frozen=True)

@@ -141,11 +141,11 @@ class Session:
     async def make_case(self) -> None:
         """A new case of the dropped files beside this one; new tabs open it."""
         case = self.folder
-        made = await self._calculate(
+        answer = await self._calculate(
             "Writing the case", steps.new_case, self.dropped, case.settings, case.case.model.network
         )
-        if made is not None:
-            folder, look = made
+        if answer is not None:
+            folder, look = answer
             self.turn_to(Bench(folder, look))
             with self.state:
                 self.state.drop, self.state.made = None, str(folder.settings.path)

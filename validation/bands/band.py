@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.constants import NORMAL_95
 from lumped.model.multipliers import values_of
 from lumped.model.network import Row
 from validation.bands.posterior import ParameterPosterior, acting
@@ -18,7 +19,6 @@ from validation.comparison.predict import Watch, predict
 from validation.measurement.operators import head
 
 Array = NDArray[np.float64]
-NORMAL_95 = 1.96
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.constants import NORMAL_95
 from lumped.model.network import Parameter
 from validation.calibration.calibrate import Fit
 from validation.calibration.unknowns import to_value
@@ -16,7 +17,6 @@ from validation.measurement.operators import of_measurement
 Array = NDArray[np.float64]
 UNINFORMED = 0.9  # of its prior sd: a parameter that data narrow by less than a tenth was not seen
 TRADES = 0.7  # correlation: half of the one's variance is the other's
-NORMAL_95 = 1.96
 
 
 @dataclass(frozen=True)

@@ -13,8 +13,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.constants import NORMAL_95
 from validation.calibration.calibrate import CachedSegments, Fit, Progress, minimise, no_progress
-from validation.calibration.intervals import NORMAL_95, Profile
+from validation.calibration.intervals import Profile
 from validation.calibration.unknowns import Unknowns, to_value
 from validation.case import Test
 
@@ -47,7 +48,7 @@ class Line:
 
     fit: Fit
     tests: Sequence[Test]
-    held: Mapping[str, float]
+    fixed: Mapping[str, float]
     i: int
 
     @property
@@ -61,7 +62,7 @@ class Line:
         follow = fit.covariance[rest, i] / fit.covariance[i, i]
         start = fit.theta[rest] + follow * (at - fit.theta[i])
         near = [replace(s, J=s.J[:, rest]) for s in fit.parts]
-        values = {**self.held, **fit.values, p.name: to_value(p, at)}
+        values = {**self.fixed, **fit.values, p.name: to_value(p, at)}
         free = Unknowns(tuple(fit.unknowns.parameters[j] for j in rest))
         best = minimise(
             fit.network, self.tests, free, start, fit.noise, values, cache=CachedSegments(near), error=fit.error

@@ -13,13 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import gammaincc, kolmogorov
 
+from geom.constants import NORMAL_95
 from validation.case import Test
 from validation.comparison.linearisation import Segment
 from validation.measurement.blocks import groups
 
 Array = NDArray[np.float64]
 LAGS = 20  # usual for the test of Ljung and Box; more lose power
-NORMAL_95 = 1.96
 
 
 @dataclass(frozen=True)

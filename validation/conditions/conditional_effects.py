@@ -27,7 +27,7 @@ from validation.effects import Effect, extended
 from validation.effects.during import During
 from validation.effects.sites import neighbours
 from validation.effects.time_window import Event, event
-from validation.inference.evidence import Evidence, extended_prior, projected, weighed
+from validation.inference.evidence import Evidence, extended_prior, projected
 from validation.inference.posterior import log_bayes_of
 from validation.inference.score import Score, per_test, score, total
 from validation.threads import side_by_side
@@ -207,15 +207,3 @@ def scored_in(
     moved = np.max([np.max(np.abs(s.J[:, evidence.p :]), axis=0) / s.weight for s in parts], axis=0)
     clear = scores.visible & (moved * np.abs(scores.amplitude) > USUAL["excursion"])
     return [Condition(e, float(b) + prior) for e, b, seen in zip(effects, bayes, clear, strict=True) if seen]
-
-
-def joined(evidence: Evidence, effects: Sequence[Effect], values: Mapping[str, float]) -> Evidence:
-    """The evidence with further effects behind its own."""
-    if not effects:
-        return evidence
-    e, fit, p = evidence, evidence.fit, evidence.p
-    network = extended(e.network, effects)
-    parameters = (*e.parameters, *network.parameters[-len(effects) :])
-    new = columns(evidence, effects, values)
-    parts = tuple(replace(s, J=np.column_stack([s.J, n.J[:, p:]])) for s, n in zip(e.parts, new, strict=True))
-    return weighed(e.tests, fit, network, (*e.effects, *effects), parameters, parts, e.jumps, e.large)

@@ -19,8 +19,7 @@ from validation.effects.build import conductance_scale, power_scale
 from validation.effects.time_window import Event, Span
 from validation.inference.evidence import Evidence, extended_prior, projected
 from validation.inference.model_error import nodes
-from validation.inference.posterior import one_size
-from validation.inference.score import Score, per_test, score
+from validation.inference.score import Score, one_size, per_test, score
 
 Array = NDArray[np.float64]
 

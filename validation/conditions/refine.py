@@ -17,9 +17,8 @@ from validation.doubt import SIZES, USUAL
 from validation.effects import Effect, extended
 from validation.effects.during import During
 from validation.effects.time_window import Event, Span
-from validation.inference.evidence import Evidence, extended_prior, projected
-from validation.inference.posterior import one_size
-from validation.inference.score import Score, score, total
+from validation.inference.evidence import Evidence, extended_prior, projected, weighed
+from validation.inference.score import Score, one_size, score, total
 
 Array = NDArray[np.float64]
 Values = Mapping[str, float]
@@ -171,3 +170,15 @@ def columns(evidence: Evidence, effects: Sequence[Effect], base_values: Values) 
 def acts_in(effect: Effect, test: Test) -> bool:
     """Can the effect act in the test?  What an input says may be in any."""
     return not isinstance(effect, During) or test.name in effect.tests or effect.condition in test.inputs
+
+
+def joined(evidence: Evidence, effects: Sequence[Effect], values: Mapping[str, float]) -> Evidence:
+    """The evidence with further effects behind its own."""
+    if not effects:
+        return evidence
+    e, fit, p = evidence, evidence.fit, evidence.p
+    network = extended(e.network, effects)
+    parameters = (*e.parameters, *network.parameters[-len(effects) :])
+    new = columns(evidence, effects, values)
+    parts = tuple(replace(s, J=np.column_stack([s.J, n.J[:, p:]])) for s, n in zip(e.parts, new, strict=True))
+    return weighed(e.tests, fit, network, (*e.effects, *effects), parameters, parts, e.jumps, e.large)

@@ -16,8 +16,7 @@ from lumped.model.multipliers import parameter_values
 from validation.calibration.calibrate import Fit
 from validation.case import Test
 from validation.comparison.linearisation import segments
-from validation.conditions.conditional_effects import joined
-from validation.conditions.refine import GRID_POINTS, around
+from validation.conditions.refine import GRID_POINTS, around, joined
 from validation.effects import Effect, extended
 from validation.effects.during import During
 from validation.effects.time_window import Event, Span

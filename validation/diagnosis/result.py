@@ -83,31 +83,23 @@ class DetectionLimit:
 
 
 @dataclass(frozen=True)
-class NextTest:
-    """A candidate test: the pairs it would separate and the deviance by which (20 is decisive)."""
+class Experiment:
+    """What would separate hypotheses: "test", a candidate test, or "place", a further thermocouple in the same tests.
 
-    test: str
+    separates : pairs;  predicted_gain : the deviance by which (20 is decisive);  hours : what it costs
+    """
+
+    kind: Literal["test", "place"]
+    name: str
     separates: tuple[str, ...]
     predicted_gain: float
     hours: float
     why: str = ""
 
     def document(self) -> dict:
-        return {**vars(self), "separates": list(self.separates)}
-
-
-@dataclass(frozen=True)
-class NextSensor:
-    """A further thermocouple in the same tests: the pairs it would set apart and the deviance by which."""
-
-    place: str
-    separates: tuple[str, ...]
-    predicted_gain: float
-    hours: float
-    why: str = ""
-
-    def document(self) -> dict:
-        return {**vars(self), "separates": list(self.separates)}
+        """JSON: what is to be done stands under its kind."""
+        of = {k: v for k, v in vars(self).items() if k not in ("kind", "name")}
+        return {self.kind: self.name, **of, "separates": list(self.separates)}
 
 
 @dataclass(frozen=True)
@@ -219,13 +211,13 @@ class Diagnosis:
     candidates: tuple[Candidate, ...]
     cannot_see: tuple[DetectionLimit, ...]
     where: tuple[MissingHeat, ...]
-    next_tests: tuple[NextTest, ...]
+    next_tests: tuple[Experiment, ...]
     rmse_K: float
     floor_K: float
     threshold: float
     pulls: tuple[tuple[str, float, float], ...] = ()
     cosine: dict[str, dict[str, float]] = field(default_factory=dict)
-    next_sensors: tuple[NextSensor, ...] = ()
+    next_sensors: tuple[Experiment, ...] = ()
     bases: tuple[Hypothesis, ...] = ()
     odds: tuple[Odds, ...] = ()
     p_nothing: float = 1.0

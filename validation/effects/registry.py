@@ -56,8 +56,8 @@ def effect(name: str, scene: Scene | None = None) -> Effect:
     if kind == KIND:
         return Above(place)
     cls = _of(kind, kinds(), f"effect '{name}'")
-    base, held, condition = place.rpartition(IN)
-    if held:
+    base, separator, condition = place.rpartition(IN)
+    if separator:
         return During.of(cls(base), _checked_condition(condition, scene, name))
     if scene is not None and place not in (places := cls.places(scene)):
         needs = ", ".join(cls.needs)

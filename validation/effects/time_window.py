@@ -6,13 +6,16 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
-from lumped.transfer.laws import CLOCK, Inputs
-from validation.case import RUNNING, Test
+from lumped.transfer.laws import CLOCK, RUNNING, Inputs
+
+if TYPE_CHECKING:
+    from validation.case import Test
 
 Array = NDArray[np.float64]
 Span = tuple[float, float]

@@ -40,10 +40,10 @@ def decide(evidence: Evidence, hypotheses: Sequence[Hypothesis]) -> Decision:
         return Decision("adequate", (), 1.0 - nothing)
     if heat > 0.5 * (1.0 - nothing):
         return Decision("outside", (), 1.0 - nothing)
-    found = [cover(evidence, hypotheses, P)]
-    while more := beside(evidence, hypotheses, P, found):
-        found.append(more)
-    groups = tuple(found)
+    groups_in_turn = [cover(evidence, hypotheses, P)]
+    while more := beside(evidence, hypotheses, P, groups_in_turn):
+        groups_in_turn.append(more)
+    groups = tuple(groups_in_turn)
     return Decision(_verdict(evidence, groups, P, hypotheses), groups, 1.0 - nothing)
 
 

@@ -7,11 +7,12 @@ from numpy.typing import NDArray
 
 from validation.doubt import PRIOR, nats_worth
 from validation.inference.evidence import Evidence
-from validation.inference.posterior import one_size, prior_shares
+from validation.inference.posterior import prior_shares
+from validation.inference.score import one_size
 
 Array = NDArray[np.float64]
 POWER = 0.842  # normal quantile of 80 %
-HALVINGS = 60
+HALVINGS = 60  # of the interval up to FARTHEST: past the last bit of a number
 FARTHEST = 1e4  # prior deviations: beyond them an effect is never seen
 
 

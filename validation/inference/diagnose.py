@@ -10,10 +10,11 @@ import numpy as np
 
 from validation.calibration.calibrate import no_progress
 from validation.case import Case
-from validation.conditions.conditional_effects import conditions, joined, reach
+from validation.conditions.conditional_effects import conditions, reach
 from validation.conditions.contradiction import contradiction
 from validation.conditions.laws import laws
 from validation.conditions.question import answered
+from validation.conditions.refine import joined
 from validation.conditions.retime import retimed
 from validation.conditions.robust import quiet
 from validation.diagnosis.missing_heat import MissingHeat, Scan, scan

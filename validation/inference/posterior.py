@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import log_ndtr, logsumexp
+from scipy.special import logsumexp
 
 from validation.calibration.calibrate import Fit
 from validation.diagnosis.missing_heat import MissingHeat
@@ -26,7 +26,7 @@ from validation.effects import Effect
 from validation.effects.above import Above
 from validation.effects.during import During
 from validation.inference.evidence import Evidence
-from validation.inference.score import Score
+from validation.inference.score import Score, log_sign_gain, one_size
 
 if TYPE_CHECKING:
     from validation.conditions.contradiction import Contradiction
@@ -128,12 +128,6 @@ def log_bayes_of(s: Score, sd: Array) -> Array:
     return np.asarray(np.where(s.visible, logsumexp(sizes, axis=0) - np.log(len(SIZES)), 0.0))
 
 
-def one_size(u: Array, V: Array, sd: Array, sign: NDArray[np.int64]) -> Array:
-    """Log Bayes factors of single effects with amplitudes of one usual size."""
-    q = V + sd**-2.0
-    return np.asarray(0.5 * u**2 / q - 0.5 * np.log(sd**2 * q) + log_sign_gain(u / np.sqrt(q), sign))
-
-
 def pairs(evidence: Evidence, ones: Sequence[Hypothesis]) -> list[Hypothesis]:
     """Every two of the leading effects, in proportion to the prior of each."""
     e, prior = evidence, prior_shares(evidence)
@@ -165,11 +159,6 @@ def two(evidence: Evidence, a: NDArray[np.int64], b: NDArray[np.int64]) -> Array
             gain + log_sign_gain(ma / np.sqrt(B / det), s.sign[a]) + log_sign_gain(mb / np.sqrt(A / det), s.sign[b])
         )
     return np.asarray(logsumexp(out, axis=0) - np.log(len(SIZES)))
-
-
-def log_sign_gain(z: Array, sign: NDArray[np.int64]) -> Array:
-    """log P(sign | readings) - log P(sign) of amplitudes z deviations from zero."""
-    return np.where(sign == 0, 0.0, np.log(2.0) + log_ndtr(np.where(sign == 0, 1, sign) * z))
 
 
 def unknown_heat(evidence_nats: Mapping[str, float]) -> list[Hypothesis]:

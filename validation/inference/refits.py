@@ -25,7 +25,8 @@ from validation.inference.evidence import (
     starts,
     tangents_beside,
 )
-from validation.inference.posterior import Hypothesis, log_sign_gain, probabilities, weights
+from validation.inference.posterior import Hypothesis, probabilities, weights
+from validation.inference.score import log_sign_gain
 from validation.measurement.noise import Noise
 from validation.threads import side_by_side
 

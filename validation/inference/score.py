@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import block_diag
+from scipy.special import log_ndtr
 
 from validation.comparison.linearisation import Segment
 from validation.measurement.noise import Noise
@@ -132,3 +133,14 @@ def per_test(grams: Mapping[str, Gram]) -> Gram:
         np.sum([g.JJ for g in each], axis=0), np.hstack([g.JZ for g in each]), block_diag(*(g.ZZ for g in each)),
         np.sum([g.Jr for g in each], axis=0), np.concatenate([g.Zr for g in each]), sum(g.rr for g in each),
     )  # fmt: skip
+
+
+def one_size(u: Array, V: Array, sd: Array, sign: NDArray[np.int64]) -> Array:
+    """Log Bayes factors of single effects with amplitudes of one usual size."""
+    q = V + sd**-2.0
+    return np.asarray(0.5 * u**2 / q - 0.5 * np.log(sd**2 * q) + log_sign_gain(u / np.sqrt(q), sign))
+
+
+def log_sign_gain(z: Array, sign: NDArray[np.int64]) -> Array:
+    """log P(sign | readings) - log P(sign) of amplitudes z deviations from zero."""
+    return np.where(sign == 0, 0.0, np.log(2.0) + log_ndtr(np.where(sign == 0, 1, sign) * z))

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtri
 
+from geom.constants import NORMAL_95
 from validation.calibration.calibrate import Fit, InnerProduct
 from validation.case import Case, Test
 from validation.comparison.linearisation import Segment, rmse, segments
@@ -32,7 +33,6 @@ from validation.procedure.reduction.which_base import Hypothesis as Base
 
 Array = NDArray[np.float64]
 ROWS, LEAST_ODDS = 20, 1e-4  # candidates in the table; odds below one in ten thousand are not listed
-NORMAL_95 = 1.96
 LEAST_MEMBER = 0.02  # probability below which a member of a group is in the table, and not in the sentence
 RIVALS = 4  # of a group are compared with each other where a plan is wanted
 

@@ -73,9 +73,12 @@ def _matern(time: bytes, ell: float) -> Array:
     return np.asarray((1.0 + d) * np.exp(-d))
 
 
-FASTS = ((0.0, TAU), *product((1.0, 10.0, 100.0), (60.0, 240.0)))
-ELLS = (ELL, 600.0, 2400.0)
-SLOWS = np.array([0.0, 1.0, 10.0, 100.0, 1000.0, 10000.0])
+FASTS = (
+    (0.0, TAU),
+    *product((1.0, 10.0, 100.0), (60.0, 240.0)),
+)  # variance over the white one, and s: decades, as the evidence turns slowly with either
+ELLS = (ELL, 600.0, 2400.0)  # s, of the slow part: the usual one, a shorter and a longer
+SLOWS = np.array([0.0, 1.0, 10.0, 100.0, 1000.0, 10000.0])  # variance over the white one, by decades
 _AT = [(f, e, b) for f, e, b in product(range(len(FASTS)), range(len(ELLS)), range(len(SLOWS))) if b or ELLS[e] == ELL]
 GRID = tuple(Shape(*FASTS[f], float(SLOWS[b]), ELLS[e]) for f, e, b in _AT)
 CHOSEN = tuple(np.array(_AT).T)  # of all fast parts, lengths and slow parts those on the grid

@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 OPERATORS = ("bias", "gain", "lag", "stem", "drift", "delay", "swap")
 SHIFTS = ("boundary", "initial")
 GAIN_ZERO = 20.0  # degC, at which sensors are compared
-STEP = {"lag": 0.05, "delay": 0.05}
+STEP = {"lag": 0.05, "delay": 0.05}  # s, of a difference quotient; chosen, small beside any sample step
 Memory = dict[str, Array]
 
 

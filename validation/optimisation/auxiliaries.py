@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from geom.constants import L_MIN
 from geom.description.machine import Machine
 from lumped.machine.coolant import FLOW, INLET, Cooling, channel_of
 from lumped.machine.films import surroundings
@@ -32,7 +33,7 @@ def auxiliary_power(machine: Machine, inputs: Mapping[str, float]) -> float:
     A fan on the shaft ([fans.cowl]) takes its power as windage, which is among the losses.
     """
     around = surroundings(machine, ())
-    out = 0.0 if around.cooling is None else _pump(machine, around.cooling, inputs[FLOW] / 60000.0)
+    out = 0.0 if around.cooling is None else _pump(machine, around.cooling, inputs[FLOW] * L_MIN)
     ducts = machine.features.ducts
     if around.fan is not None and ducts and inputs[FAN] > 0.0:
         flow, (way, duct) = inputs[FAN] / 3600.0, next(iter(ducts.items()))  # all ways drop the same pressure

@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.constants import ALPHA_CU
 from lumped.drives.drive import Controller, SeriesMachine, Vehicle, drive_cycle
-from lumped.sources.losses import ALPHA_CU
 
 Array = NDArray[np.float64]
 GAINS = {"controller.Kp": "Kp", "controller.Ki": "Ki"}  # keys of a cycle that a design may change

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from geom.constants import RPM
 from geom.errors import InputError
-from lumped.drives.drive import RPM, SeriesMachine
+from lumped.drives.drive import SeriesMachine
 from lumped.schemas.reader import suggestion
 
 CURRENT, SPEED = "current_A", "speed_rpm"

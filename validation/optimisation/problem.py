@@ -10,6 +10,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.constants import NORMAL_95
 from geom.description.machine import Machine
 from geom.errors import InputError
 from lumped.model.network import Network, Row
@@ -148,7 +149,7 @@ class Problem:
             T, rows[s.name] = s.hottest(rest.z)
             out[s.name] = around + (T - around) * self.corrections.ratio(s.name, share)
             if self.sure is not None:
-                out[s.name] += 1.96 * self.sure.sd(values, inputs, self.boundaries, rows[s.name])
+                out[s.name] += NORMAL_95 * self.sure.sd(values, inputs, self.boundaries, rows[s.name])
         hottest = max([s.name for s in self.spots][: self.peak], key=lambda name: out[name])
         return out, rest.settling(rows[hottest])
 

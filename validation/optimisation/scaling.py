@@ -9,6 +9,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from geom.constants import L_MIN
 from geom.description.machine import Machine
 from geom.description.part import Part
 from geom.description.profile import loop_length
@@ -106,7 +107,7 @@ def _conductance(where: Surroundings, jacket: str, area: float, inputs: Mapping[
     assert cooling is not None
     flow, liquid = cooling.share(jacket) * inputs[FLOW], cooling.liquid
     film = channel_of(where.machine, jacket).film(flow, liquid) * area
-    rate = liquid.rho * liquid.cp * flow / 60000.0
+    rate = liquid.rho * liquid.cp * flow * L_MIN
     return film * float(grown(np.minimum(np.array([film / rate]), MOST_UNITS))[0]) if rate > 0.0 else film
 
 

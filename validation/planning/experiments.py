@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from geom.errors import ThermoscopeError
 from validation.comparison.linearisation import segments
-from validation.diagnosis.result import NextTest
+from validation.diagnosis.result import Experiment
 from validation.inference.evidence import Evidence
 from validation.inference.score import gram
 from validation.planning.candidate_tests import candidate_tests
@@ -20,13 +20,13 @@ from validation.planning.separability import separable_pairs, separation
 Array = NDArray[np.float64]
 
 
-def next_tests(evidence: Evidence, models: CompetingModels) -> list[NextTest]:
+def next_tests(evidence: Evidence, models: CompetingModels) -> list[Experiment]:
     """Tests that separate the group, best gain per hour first.
 
     Gain: the smallest deviance, over all pairs, by which the wrong one would fit worse with the new test added.
     """
     left = refitted_gains(evidence, models, _planned(evidence, models))
-    return [NextTest(p.what, separable_pairs(evidence, p.gaps), p.gain, p.hours) for p in left]
+    return [Experiment("test", p.what, separable_pairs(evidence, p.gaps), p.gain, p.hours) for p in left]
 
 
 def _planned(evidence: Evidence, models: CompetingModels) -> Iterator[Plan]:

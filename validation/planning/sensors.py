@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from lumped.model.network import Network, Place
 from validation.case import Channel, Test
 from validation.comparison.linearisation import Segment, segments
-from validation.diagnosis.result import NextSensor
+from validation.diagnosis.result import Experiment
 from validation.effects.sites import outside, turns
 from validation.inference.evidence import Evidence
 from validation.inference.score import Gram
@@ -30,7 +30,7 @@ WHY = {
 }  # fmt: skip
 
 
-def next_sensors(evidence: Evidence, models: CompetingModels) -> list[NextSensor]:
+def next_sensors(evidence: Evidence, models: CompetingModels) -> list[Experiment]:
     """Places without a sensor, by the deviance gap of the pair that stays closest, per hour of mounting."""
     network = evidence.fit.network
     places = {p.name: p for p in free_places(network, evidence.tests)}
@@ -42,7 +42,9 @@ def next_sensors(evidence: Evidence, models: CompetingModels) -> list[NextSensor
         for place, more in with_sensors(evidence, tuple(places.values()), models.group)
     ]  # fmt: skip
     return [
-        NextSensor(p.what, separable_pairs(evidence, p.gaps), p.gain, p.hours, WHY[access(network, places[p.what])])
+        Experiment(
+            "place", p.what, separable_pairs(evidence, p.gaps), p.gain, p.hours, WHY[access(network, places[p.what])]
+        )
         for p in refitted_gains(evidence, models, plans)
     ]
 

@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 LARGEST = 50.0  # of the reference load; beyond, no temperature limits
 CLOSE = 1e-3  # of a load: a tenth of what inputs are known to
 DUTIES = ("S1", "S2 60 min", "S2 60 s", "S2 10 s", "S3 40 %", "S6 40 %")
-TIMES = {"S2 60 min": 3600.0, "S2 60 s": 60.0, "S2 10 s": 10.0}
+TIMES = {"S2 60 min": 3600.0, "S2 60 s": 60.0, "S2 10 s": 10.0}  # s, as their names say
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.constants import RPM
 from geom.errors import InputError
 from lumped.model.network import Network, Source
 from lumped.schemas.bounds import UNITS
@@ -98,7 +99,7 @@ def _balanced(columns: Mapping[str, Array], names: list[str], where: str) -> Non
     """Input less shaft power is what becomes heat."""
     if "input_W" not in columns:
         return
-    shaft = columns[TORQUE] * columns[SPEED] * np.pi / 30.0
+    shaft = columns[TORQUE] * columns[SPEED] * RPM
     heat = np.sum([columns[f"{n}_W"] for n in names], axis=0)
     off = np.abs(columns["input_W"] - shaft - heat)
     allowed = BALANCED * np.maximum(np.abs(columns["input_W"]), np.abs(shaft))

@@ -46,10 +46,10 @@ def share_for_ever(model: Model, op: Operation, limits: Mapping[str, float], lap
     around, load = lap.mean(op)
     if load == 0.0:
         raise InputError(f"'{op.main}' is zero all along", "--cycle", "a cycle with a load")
-    found = reached(
+    limit = reached(
         lambda share: model.again_and_again(around, lap.at(share), share * load, None), limits, "cycle", None
     )
-    return found.load, found.at
+    return limit.load, limit.at
 
 
 def time_to_limit(model: Model, op: Operation, limits: Mapping[str, float], lap: Lap) -> float:

@@ -78,7 +78,7 @@ class Supervisor:
 
     choose: Callable[[Diagnosis, Sequence[Candidate]], str | None]
     keep: Callable[[Revision, Mapping[str, float | str]], None] = field(default=lambda step, evidence: None)
-    offer: Callable[[Diagnosis], tuple[Candidate, ...]] = field(default=lambda found: offered(found))
+    offer: Callable[[Diagnosis], tuple[Candidate, ...]] = field(default=lambda diagnosis: offered(diagnosis))
 
 
 def singletons(diagnosis: Diagnosis, choice: Sequence[Candidate]) -> str | None:

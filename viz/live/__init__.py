@@ -6,17 +6,11 @@ installed. The drawings on paper (viz.figures) need no browser.
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import Any
+from geom.lazy import loaded_when_used
 
 _HOME = {
     "sensor": "curves", "residuals": "curves", "against_input": "curves", "parity": "curves",
     "confusion": "candidates", "save": "style", "parallel_coordinates": "designs", "objective_space": "designs",
 }  # fmt: skip
 __all__ = sorted(_HOME)
-
-
-def __getattr__(name: str) -> Any:
-    if name not in _HOME:
-        raise AttributeError(f"module 'viz.live' has no attribute '{name}'; known: {', '.join(__all__)}")
-    return getattr(import_module(f"viz.live.{_HOME[name]}"), name)
+__getattr__, __dir__ = loaded_when_used(__name__, _HOME, within="viz.live.")

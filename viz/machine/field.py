@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from viz.colours import LIGHT, Theme, heat, missing
+from viz.colours import LIGHT, Theme, heat, missing, power
 from viz.data import Sensor
 from viz.machine.thermocouples import LABELS, Marked, label_texts, marked
 from viz.rendering import scene
@@ -40,11 +40,13 @@ def cutaway(
     labels: int = LABELS,
     title: str = "",
     limits: tuple[float, float] | None = None,
+    colours: Colormap | None = None,
+    unit: str = UNIT,
     view: View | None = None,
     theme: Theme = LIGHT,
     png: str | Path | None = None,
 ) -> pyvista.Plotter:
-    """The machine with a wedge taken out, coloured by temperature (degC), 1280 x 800.
+    """The machine with a wedge taken out, coloured by temperature (degC) or by another field in its unit, 1280 x 800.
 
     T : (n_nodes,) per node of every part, or one per point of the conformal mesh
     labels : of so many sensors, those furthest beyond their uncertainty first; the others are dots
@@ -54,12 +56,23 @@ def cutaway(
     p, surface, seen = cut_open(
         nodes, sensors, labels, room_for(label_texts(sensors, labels), title), wedge, view, theme
     )
-    paint_cut(p, surface, seen.cut, on_nodes(nodes, T), limits, theme)
-    scene.colour_bar(p, UNIT, theme)
+    paint_cut(p, surface, seen.cut, on_nodes(nodes, T), limits, theme, colours)
+    scene.colour_bar(p, unit, theme)
     scene.headline(p, title, theme)
     seen.draw(p, surface, view, theme)
     scene.save(p, png)
     return p
+
+
+def uncertainty(
+    nodes: SplitMesh, half95: Array, *, sensors: Sequence[Sensor] = (), title: str = "", png: str | Path | None = None
+) -> pyvista.Plotter:
+    """Half the width of the 95 % band (K), the darker the less sure; the scale begins at zero.
+
+    half95 : (n_nodes,) K;  sensors : where it was measured
+    """
+    limits = 0.0, float(np.max(half95))
+    return cutaway(nodes, half95, sensors=sensors, title=title, limits=limits, colours=power(), unit="± K", png=png)
 
 
 def cut_open(

@@ -6,19 +6,14 @@ nothing listens on the network. Open it with `rerun FILE.rrd`.
 
 from __future__ import annotations
 
-import os
-import shutil
-import subprocess
-import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from geom.errors import InputError, MissingDependency
+from geom.errors import InputError
 from viz.colours import BLUE, LIGHT, ORANGE, VERDICT, heat
 from viz.data import Comparison, Sensor, short
 from viz.figures.curves import wrongness
@@ -85,21 +80,6 @@ def write_recording(
     stream.flush()
     stream.disconnect()
     return path
-
-
-def verify(path: str | Path) -> None:
-    """Check a recording with rerun's own tool, its usage statistics switched off for this call."""
-    program = shutil.which("rerun", path=str(Path(sys.executable).parent)) or shutil.which("rerun")
-    if program is None:
-        raise MissingDependency("the rerun program is missing; install it with: uv pip install rerun-sdk")
-    with TemporaryDirectory() as home:
-        alone = {**os.environ, "HOME": home, "XDG_CONFIG_HOME": home}
-        subprocess.run([program, "analytics", "disable"], env=alone, capture_output=True, check=False)
-        done = subprocess.run([program, "rrd", "verify", str(path)], env=alone, capture_output=True, text=True)
-    if done.returncode:
-        raise InputError(
-            f"not a valid recording: {done.stderr.strip()[-300:]}", str(path), "a file written by this version"
-        )
 
 
 def _machine(

@@ -49,14 +49,14 @@ def network_document(mesh: NamedMesh, nodes: SplitMesh, runs: Sequence[NetworkRu
     pairs = sorted({pair for r in runs for pair in r.watts if pair[0] in at and pair[1] in at})
     largest = {pair: max(float(np.abs(r.watts[pair]).max()) for r in runs if pair in r.watts) for pair in pairs}
     most = max(largest.values(), default=1.0)
-    drawn = [pair for pair in pairs if largest[pair] >= SMALL * most]
-    widest = max((runs[0].conductance.get(pair, 0.0) for pair in drawn), default=1.0) or 1.0
+    active = [pair for pair in pairs if largest[pair] >= SMALL * most]
+    widest = max((runs[0].conductance.get(pair, 0.0) for pair in active), default=1.0) or 1.0
     return {
         "nodes": [{"name": name, "z": round(float(z), 4), "y": round(float(y), 4)} for name, (_, y, z) in at.items()],
-        "links": [[names.index(a), names.index(b), round(runs[0].conductance.get((a, b), 0.0), 2)] for a, b in drawn],
+        "links": [[names.index(a), names.index(b), round(runs[0].conductance.get((a, b), 0.0), 2)] for a, b in active],
         "widest": widest, "most": most,
         "tests": [{
             "T": packed_numbers(np.transpose([r.T[name] for name in names]), STEP_K),
-            "W": packed_numbers(_side_by_side([r.watts[pair] for pair in drawn], len(r.T[names[0]])), STEP_W),
+            "W": packed_numbers(_side_by_side([r.watts[pair] for pair in active], len(r.T[names[0]])), STEP_W),
         } for r in runs],
     }  # fmt: skip

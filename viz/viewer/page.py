@@ -7,14 +7,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 from importlib.resources import files
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geom.description.machine import Machine
-from geom.disk_cache import atomic_write
 from geom.meshing.mesh import NamedMesh
 from viz.colours import VERDICT, heat, missing, part_colours, power
 from viz.data import Comparison, short
@@ -63,16 +61,6 @@ class Recorded:
         """Fields of the model as it is, before its last step, and of the earlier revisions."""
         first = [self.fields] if self.before is None else [self.fields, self.before]
         return [*first, *(e.fields for e in self.earlier)]
-
-
-def write_viewer(
-    path: str | Path, title: str, nodes: SplitMesh, tests: Sequence[Recorded], positions: Mapping[str, Sequence[float]]
-) -> Path:
-    """Write the page and return its path. positions : sensor -> (m)"""
-    path, page = Path(path), render(document(title, nodes, tests, positions))
-    with atomic_write(path) as partial:
-        partial.write_text(page, encoding="utf-8")
-    return path
 
 
 def document(

@@ -24,10 +24,10 @@ def packed_fields(fields: Array, nodes: SplitMesh, error: float, step: float) ->
     """
     blocks, weights = [], []
     for part in range(len(nodes.parts)):
-        found = low_rank(fields[:, nodes.owner == part], error)
-        columns = np.column_stack([found.mean, found.shapes.T])
-        blocks.append(packed_numbers(columns, np.array([step, *found.steps(step)])))
-        weights += [np.ones((len(fields), 1)), found.amplitudes]
+        reduced = low_rank(fields[:, nodes.owner == part], error)
+        columns = np.column_stack([reduced.mean, reduced.shapes.T])
+        blocks.append(packed_numbers(columns, np.array([step, *reduced.steps(step)])))
+        weights += [np.ones((len(fields), 1)), reduced.amplitudes]
     return {"blocks": blocks, "weights": packed_numbers(np.hstack(weights), step)}
 
 

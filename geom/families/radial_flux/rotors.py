@@ -28,7 +28,7 @@ def magnet_rotor(g: Geometry, at: Layout) -> tuple[Part, ...]:
 
 def shapes_of_magnets(g: Geometry, at: Layout) -> list[Profile]:
     """All magnets in the plane."""
-    return [magnet for angle in shapes.evenly(g.rotor.poles) for magnet in shapes.turned_list(_pole(g, at), angle)]
+    return [magnet.rotated(angle) for angle in shapes.evenly(g.rotor.poles) for magnet in _pole(g, at)]
 
 
 def _pole(g: Geometry, at: Layout) -> list[Profile]:

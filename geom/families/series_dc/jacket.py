@@ -10,9 +10,9 @@ from geom.description.geometry import Geometry
 from geom.description.part import Part, Port, Prism, fluid
 from geom.description.profile import Profile
 from geom.description.roles import Role
-from geom.families.nozzles import CLEAR, Nozzle, bored_circle, bored_ring, slices
+from geom.families.nozzles import Nozzle, bored_circle, bored_ring, slices
 from geom.families.series_dc.layout import Axial, Radii
-from geom.families.turns import Turns
+from geom.families.turns import CLEAR, Turns
 
 Sector = tuple[float, float]  # angles (rad) at which a channel begins and ends
 

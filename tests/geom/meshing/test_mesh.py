@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from inside_parts import point_in
 from measures import area, facets_of_tets, keys, tet_volumes
 
 from geom import build_mesh
@@ -129,7 +130,7 @@ def test_point_in_lies_in_the_part(motor, motor_mesh):
         corners = motor_mesh.points[motor_mesh.tets[motor_mesh.region == index]]
         local = np.linalg.solve(
             np.moveaxis(corners[:, 1:] - corners[:, :1], 1, 2),
-            (np.array(motor.point_in(name)) - corners[:, 0])[..., None],
+            (np.array(point_in(motor, name)) - corners[:, 0])[..., None],
         )[..., 0]
         assert ((local > -1e-9).all(axis=1) & (local.sum(axis=1) < 1 + 1e-9)).any(), name
 

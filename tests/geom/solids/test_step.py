@@ -11,6 +11,7 @@ from geom.description import shapes
 from geom.description.machine import Machine
 from geom.description.part import Part
 from geom.solids.slicing import sliced
+from geom.solids.stack import stacked
 
 R, L = 0.02, 0.1
 
@@ -65,7 +66,7 @@ def test_bodies_cut_by_booleans_are_sliced():
 
 def test_concentric_arcs_come_back_as_they_were():
     wire = shapes.sector(0.1, 0.14, 0.2, 0.5)
-    ((profile, z0, z1),) = sliced(cq.Solid.extrudeLinear(wire.scaled(1e3).to_face(), cq.Vector(0, 0, 50)), "wire")
+    ((profile, z0, z1),) = sliced(stacked([(wire, 0.0, 0.05)])[0], "wire")
     assert (z0, z1) == (0.0, 0.05)
     corners = {tuple(round(v, 9) for v in vertex) for vertex in profile.outer}
     assert corners == {tuple(round(v, 9) for v in vertex) for vertex in wire.outer}

@@ -10,7 +10,7 @@ import pytest
 from fem.matrices.assembly import assemble
 from fem.matrices.grids import ring
 from fem.matrices.material import Conductivity
-from lumped.condensation.reduction import Recipe, condense
+from lumped.condensation.reduction import Recipe, reduce
 
 ri, ro, L, k_r, k_z = 0.03, 0.05, 0.08, 30.0, 4.0
 
@@ -25,7 +25,9 @@ def compliance():
     field = assemble(mesh, {"ring": Conductivity(k_r, k_r, k_z)}, {"ring": 3.6e6})
     # Almost no film: the shapes are then those of a given flux.
     films = dict.fromkeys(field.films, 1e-4)
-    network = condense(field, films, {}, dict.fromkeys(field.fluids, 0.0), (), Recipe(1e-6, shifts=(), random_points=0))
+    network = reduce(
+        field, films, {}, dict.fromkeys(field.fluids, 0.0), (), Recipe(1e-6, shifts=(), random_points=0)
+    ).network()
     (conduction,) = (link for link in network.links if link.kind == "conduction")
     face = {f: network.places[f"ring.{f}"].mean.weights[1:] for f in field.fluids}
     return lambda a, b: float(face[a] @ (face[b] / conduction.vals))

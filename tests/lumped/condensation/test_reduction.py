@@ -9,7 +9,7 @@ from fem.matrices.material import isotropic, laminated, wound
 from fem.solvers.solve import Fluids, Solver, only_fixed, steady
 from geom.errors import InputError
 from lumped.condensation.linear import linear, unit_load
-from lumped.condensation.reduction import Recipe, Zone, condense
+from lumped.condensation.reduction import Recipe, Zone, reduce
 from lumped.condensation.reduction_error import errors
 from lumped.transfer.laws import Fixed
 
@@ -44,7 +44,7 @@ def films(field):
 @pytest.fixture(scope="module")
 def network(field, films):
     zones = {"coil.left": Zone("coil", lambda c: (c[:, 2] < 0.06).astype(float))}
-    return condense(field, films, CONTACTS, FLUIDS, recipe=Recipe(tolerance=0.003), zones=zones)
+    return reduce(field, films, CONTACTS, FLUIDS, recipe=Recipe(tolerance=0.003), zones=zones).network()
 
 
 @pytest.fixture(scope="module")
@@ -169,7 +169,7 @@ def test_means_only_then_more_states_then_better(field, films, network, solver):
     exact = solver.factor(field.stiffness(films, CONTACTS))(full)
     found = []
     for size in (3, 10, 30):
-        small = condense(field, films, CONTACTS, FLUIDS, recipe=Recipe(max_states=size))
+        small = reduce(field, films, CONTACTS, FLUIDS, recipe=Recipe(max_states=size)).network(max_states=size)
         system = linear(small, films, CONTACTS)
         assert len(system.C) <= size
         _, load = loaded(field, small, {"coil": 300.0, "core": 100.0})
@@ -195,7 +195,7 @@ def test_pieces_of_one_part_are_told_apart():
     films, contacts = {"core.outer": 30.0}, {"coil|core": 300.0}
     left = Zone("coil", lambda c: (c[:, 2] < 0.06).astype(float))
     recipe = Recipe(tolerance=0.003, random_points=0)
-    network = condense(field, films, contacts, {}, recipe=recipe, zones={"coil.left": left})
+    network = reduce(field, films, contacts, {}, recipe=recipe, zones={"coil.left": left}).network()
     contacts = {"coil|core": 60.0}
     load = 100.0 * field.load("coil", left.density)
     T = steady(Solver(field), films, contacts, load, only_fixed(ambient=0.0)).T
@@ -225,7 +225,7 @@ def test_point_outside_its_part_is_refused(network):
 
 def test_cache_gives_the_same_network(field, films, tmp_path):
     recipe = Recipe(tolerance=0.03, random_points=0)
-    first, second = (condense(field, films, CONTACTS, FLUIDS, recipe=recipe, cache=tmp_path) for _ in range(2))
+    first, second = (reduce(field, films, CONTACTS, FLUIDS, recipe=recipe, cache=tmp_path).network() for _ in range(2))
     assert len(list(tmp_path.glob("*.npz"))) == 1
     assert np.array_equal(first.C, second.C)
     assert all(np.array_equal(a.vals, b.vals) for a, b in zip(first.links, second.links, strict=True))

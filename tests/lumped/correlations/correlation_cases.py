@@ -10,7 +10,6 @@ from functools import partial
 
 import lumped.correlations
 from lumped.correlations import Info, air_gap, bearings, contacts, ducts, end_space, fins, forced, natural, rotating
-from lumped.correlations import windings as wires
 from lumped.transfer.properties import Fluid, air, ethylene_glycol
 
 AIR, GLYCOL = air(60.0), ethylene_glycol(60.0, 0.5)
@@ -64,16 +63,7 @@ CARRY_UNITS: dict[tuple[object, str], Callable[[Units], object]] = {
     (contacts, "SIGMA"): lambda u: contacts.SIGMA * u.film / u.K**3,
     (contacts, "ZERO_C"): lambda u: contacts.ZERO_C * u.K,
     (bearings, "KYLANDER"): lambda u: _kylander(bearings.KYLANDER, u),
-    **{
-        (end_space, name): partial(lambda name, u: _stirred(getattr(end_space, name), u), name)
-        for name in ("SCHUBERT", "MELLOR", "BOGLIETTI", "STOKUM", "DI_GERLANDO", "HAMDI")
-    },
 }
-
-
-def _stirred(constants, u):
-    k1, k2, k3 = constants
-    return k1 * u.film, k2 / u.v**k3, k3
 
 
 def _kylander(constants, u):
@@ -105,11 +95,6 @@ def _film(run, outside, sweep, top, rest):
 def _still(run, outside, sweep, rest, top=300.0):
     """A film of still fluid over the surface's temperature."""
     return _film(lambda f, u: run(lambda T: u.fluid(f), u), outside, sweep, top, rest)
-
-
-def _end_space(name):
-    f, k1 = getattr(end_space, name), getattr(end_space, name.upper())[0]
-    return _film(lambda _, u: f(10.0 * u.v), lambda: f(80.0), lambda x: f(x)[0], 50.0, k1)
 
 
 CASES = {
@@ -152,10 +137,10 @@ CASES = {
     ),
     "heiles_decaying": _film(
         lambda f, u: fins.heiles_decaying(
-            8 * u.v, 0.02 * u.m, 0.25 * u.m, fins.straight_decay(0.2), 1.7, u.fluid(f)
+            8 * u.v, 0.02 * u.m, 0.25 * u.m, partial(fins.straight_decay, 0.2), 1.7, u.fluid(f)
         ),
-        lambda: fins.heiles_decaying(60.0, 0.02, 0.25, fins.straight_decay(0.2)),
-        lambda x: fins.heiles_decaying(x, 0.02, 0.25, fins.straight_decay(0.2))[0], 30.0, 0.0,
+        lambda: fins.heiles_decaying(60.0, 0.02, 0.25, partial(fins.straight_decay, 0.2)),
+        lambda x: fins.heiles_decaying(x, 0.02, 0.25, partial(fins.straight_decay, 0.2))[0], 30.0, 0.0,
     ),
     "flat_plate": _film(
         lambda f, u: forced.flat_plate(8 * u.v, 0.5 * u.m, u.fluid(f)), lambda: forced.flat_plate(400.0, 10.0),
@@ -226,7 +211,6 @@ CASES = {
         lambda _, u: end_space.end_space(10 * u.v, 20 * u.film, 0.5 / u.v**0.7, 0.7),
         lambda: end_space.end_space(80.0), lambda x: end_space.end_space(x)[0], 50.0, 15.0,
     ),
-    **{name: _end_space(name) for name in ("schubert", "mellor", "boglietti", "stokum", "di_gerlando", "hamdi")},
     "cooper_mikic_yovanovich": _film(
         lambda _, u: contacts.cooper_mikic_yovanovich(180 * u.k, 0.1, 2e-6 * u.m, 1e6 * u.Pa, 1e9 * u.Pa, 0.026 * u.k),
         lambda: contacts.cooper_mikic_yovanovich(180.0, 0.1, 2e-6, 1e8, 1e9),
@@ -240,10 +224,6 @@ CASES = {
         lambda _, u: bearings.kylander_bearing(0.06 * u.m, 100 / u.s), lambda u: u.K / u.W,
         lambda: bearings.kylander_bearing(0.2, 10.0), lambda x: bearings.kylander_bearing(0.06, x)[0], 500.0,
         0.45 * (0.12 - 0.06) * 33.0,
-    ),
-    "hashin_shtrikman": Case(
-        lambda _, u: wires.hashin_shtrikman(0.5, 400 * u.k, 0.2 * u.k), lambda u: u.k,
-        lambda: wires.hashin_shtrikman(0.9, 400.0, 0.2), lambda x: wires.hashin_shtrikman(x, 400.0, 0.2)[0], 0.9, 0.2,
     ),
 }  # fmt: skip
 

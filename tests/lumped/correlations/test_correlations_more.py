@@ -2,22 +2,16 @@
 
 import math
 import warnings
+from functools import partial
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
 from lumped.correlations import RangeWarning, air_gap, contacts, ducts, natural, rotating
-from lumped.correlations.bearings import (
-    brush_friction,
-    brush_resistance,
-    commutator_share,
-    kylander_bearing,
-    mean_surface_speed,
-    skf_friction,
-)
-from lumped.correlations.fins import exponential_decay, heiles, heiles_decaying, mean_of_decay, straight_decay
-from lumped.correlations.views import coaxial_discs, enclosed, groove, parallel_rectangles
+from lumped.correlations.bearings import brush_friction, kylander_bearing, skf_friction
+from lumped.correlations.fins import heiles, heiles_decaying, mean_of_decay, straight_decay
+from lumped.correlations.views import coaxial_discs, groove, parallel_rectangles
 from lumped.transfer.properties import air
 
 
@@ -47,11 +41,11 @@ def test_without_through_flow_the_gap_is_taylor_s():
 
 def test_a_leaking_channel_lies_between_its_ends():
     whole, far = heiles(10.0, 0.02, 0.25)[0], heiles(2.0, 0.02, 0.25)[0]
-    straight = heiles_decaying(10.0, 0.02, 0.25, straight_decay(0.2))[0]
-    steep = heiles_decaying(10.0, 0.02, 0.25, exponential_decay(0.2))[0]
+    straight = heiles_decaying(10.0, 0.02, 0.25, partial(straight_decay, 0.2))[0]
+    steep = heiles_decaying(10.0, 0.02, 0.25, lambda x: 0.2**x)[0]
     assert far < steep < straight < whole
-    assert heiles_decaying(10.0, 0.02, 0.25, straight_decay(1.0))[0] == pytest.approx(whole, rel=1e-12)
-    assert mean_of_decay(0.2) == pytest.approx(np.mean([straight_decay(0.2)(x) for x in np.linspace(0, 1, 101)]))
+    assert heiles_decaying(10.0, 0.02, 0.25, partial(straight_decay, 1.0))[0] == pytest.approx(whole, rel=1e-12)
+    assert mean_of_decay(0.2) == pytest.approx(np.mean([straight_decay(0.2, x) for x in np.linspace(0, 1, 101)]))
 
 
 def test_view_factors_are_the_published_values():
@@ -59,7 +53,7 @@ def test_view_factors_are_the_published_values():
     assert coaxial_discs(1.0, 1.0, 1.0) == pytest.approx(0.382, abs=5e-4)
     assert parallel_rectangles(1.0, 1.0, 1.0) == pytest.approx(0.1998, abs=5e-5)
     assert coaxial_discs(1.0, 2.0, 1.5) == pytest.approx(coaxial_discs(2.0, 1.0, 1.5) * 4.0, rel=1e-12)
-    assert parallel_rectangles(1.0, 1.0, 1e-6) == pytest.approx(enclosed(), abs=1e-4)
+    assert parallel_rectangles(1.0, 1.0, 1e-6) == pytest.approx(1.0, abs=1e-4)
     assert groove(0.0, 1.0) == 1.0
     assert groove(1.0, 1.0) == pytest.approx(math.sqrt(2) - 1)
 
@@ -76,12 +70,7 @@ def test_bearings_and_brushes():
     assert kylander_bearing(0.06, 0.0)[0] == pytest.approx(0.891)
     assert kylander_bearing(0.06, 300.0)[0] < 0.891
     assert skf_friction(2000.0, 0.05, 100.0) == pytest.approx(7.5)
-    assert brush_friction(4e-3, mean_surface_speed(0.2, 1000.0)) == pytest.approx(
-        0.2 * 2e4 * 4e-3 * math.pi * 0.2 / 0.06
-    )
-    assert brush_resistance(0.03, 1e-3) == pytest.approx(1.0)
-    copper, carbon = commutator_share(2.0, 500.0, 250.0)
-    assert copper + carbon == pytest.approx(2.0 * 500.0 + 250.0)
+    assert brush_friction(4e-3, 10.0) == pytest.approx(0.2 * 2e4 * 4e-3 * 10.0)
 
 
 @pytest.mark.parametrize("pair", contacts.PRESSED)

@@ -41,13 +41,13 @@ MOVING = {
     "cylinder": ({"size_m": 0.3}, lambda v, fluid: forced.churchill_bernstein(v, 0.3, fluid)),
     "fin channel": (
         {"size_m": 0.25, "diameter_mm": 20.0, "speed_at_end": 0.2},
-        lambda v, fluid: fins.heiles_decaying(v, 0.02, 0.25, fins.straight_decay(0.2), fluid=fluid),
+        lambda v, fluid: fins.heiles_decaying(v, 0.02, 0.25, partial(fins.straight_decay, 0.2), fluid=fluid),
     ),
     "duct": ({"size_m": 0.3, "diameter_mm": 20.0}, lambda v, fluid: ducts.duct_film(v, 0.02, 0.3, fluid)),
     "helical pipe": (
         {"diameter_mm": 9.0, "coil_diameter_mm": 200.0}, lambda v, fluid: ducts.schmidt_helical(v, 0.009, 0.2, fluid),
     ),
-    "end space": ({}, lambda v, fluid: end_space.schubert(v)),
+    "end space": ({}, lambda v, fluid: end_space.end_space(v)),
 }  # fmt: skip
 
 

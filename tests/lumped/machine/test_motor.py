@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from inside_parts import point_in
 
 from geom import load_machine
 from geom.errors import InputError
@@ -82,7 +83,7 @@ def test_no_loss_no_rise(motor):
 def test_a_point_reads_what_the_field_shows(motor):
     network = motor.network
     x = steady_state(network, POINT, 20.0)[: len(network.states)]
-    xyz = np.array(motor.machine.point_in("yoke"))
+    xyz = np.array(point_in(motor.machine, "yoke"))
     row = network.recovery.row("yoke", xyz)
     coolest, hottest = network.recovery.of_part("yoke", x).min(), network.recovery.of_part("yoke", x).max()
     assert coolest <= row.weights @ x[row.index] <= hottest

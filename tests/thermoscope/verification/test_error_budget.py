@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from inside_parts import point_in
 from small_case import small_case
 
 from geom import load_machine
@@ -40,7 +41,7 @@ def built(cache):
 @pytest.fixture(scope="module")
 def looks(built):
     places = built.network.places
-    at = {"T_point": np.array(built.machine.point_in("stator.core"))}
+    at = {"T_point": np.array(point_in(built.machine, "stator.core"))}
     return MonitoredPlaces({n: places[p].mean for n, p in SENSORS.items()}, {**SENSORS, "T_point": "stator.core"}, at)
 
 

@@ -7,9 +7,9 @@ import pytest
 from scipy.integrate import solve_ivp
 from test_sites import MOTOR
 
+from geom.constants import ALPHA_CU
 from lumped.declarations.network import read_network
 from lumped.integration.simulate import Record, simulate
-from lumped.sources.losses import ALPHA_CU
 from validation.effects import Scene, effect, kinds
 
 SPEED = frozenset({"speed_rpm"})

@@ -18,7 +18,6 @@ from validation.inference.posterior import (
     Hypothesis,
     inclusion,
     linear,
-    one_size,
     pairs,
     prior_shares,
     probabilities,
@@ -26,6 +25,7 @@ from validation.inference.posterior import (
     two,
 )
 from validation.inference.refits import laplace, promised, with_smaller_shortfall
+from validation.inference.score import one_size
 
 NAMES = ("convection@flange.right", "convection.constant@flange.right", "brush.drop@commutator", "sensor.bias@yoke",
          "mass@shaft")  # fmt: skip

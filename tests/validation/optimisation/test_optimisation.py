@@ -212,7 +212,7 @@ def test_a_cycle_at_constant_speed_takes_the_current_of_its_torque():
     inputs, lag = cycle.inputs({})
     steady = machine.current(vehicle.load_torque(40.0 / 3.6, 0.04))
     assert_allclose(inputs["current_A"], steady, rtol=0.02)
-    assert_allclose(inputs["speed_rpm"], vehicle.motor_speed_rpm(40.0 / 3.6), rtol=0.02)
+    assert_allclose(inputs["speed_rpm"], 40.0 / 3.6 / vehicle.wheel_radius * vehicle.gear * 30 / np.pi, rtol=0.02)
     assert max(lag.values()) < 0.0
     weak = cycle.inputs({"controller.Kp": 0.5, "controller.Ki": 0.001})[1]
     assert max(weak.values()) > 0.0

@@ -85,7 +85,7 @@ def test_the_same_again_decides_nothing():
 
 def test_two_speeds_are_said_to_decide():
     evidence, found = raced()
-    said = {t.test: t for t in next_tests(evidence, found)}
+    said = {t.name: t for t in next_tests(evidence, found)}
     assert said["same current at two speeds"].predicted_gain > DECISIVE
     assert said["same current at two speeds"].separates
     assert not said["spin without current"].separates  # at one speed again

@@ -34,7 +34,7 @@ def raced(*more):
 @cache
 def said():
     evidence, found = raced()
-    return {s.place: s for s in next_sensors(evidence, found)}
+    return {s.name: s for s in next_sensors(evidence, found)}
 
 
 def test_without_a_sensor_on_either_they_cannot_be_told_apart():
@@ -51,7 +51,7 @@ def test_every_free_place_is_ranked_by_gain_per_hour():
 
 def test_a_sensor_on_one_of_the_two_is_said_to_decide():
     best = max(said().values(), key=lambda s: s.predicted_gain)
-    assert best.place in PLACES
+    assert best.name in PLACES
     assert best.predicted_gain > DECISIVE
 
 

@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 from fictional import HISTORY, POSITIONS, comparison
 from PIL import Image
+from rerun_pictures import snapshots
 from small_motor import motor
 
 from geom.errors import InputError
 from thermoscope.check import findings
 from viz import Report, animate, split, write_pdf, write_recording, write_report
-from viz.recordings.snapshots import snapshots
 
 NODES = split(motor(16))
 FIELDS = np.stack([np.full(NODES.size, T) for T in (25.0, 60.0, 95.0)])

@@ -9,12 +9,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fictional import HISTORY, PLACES, POSITIONS, TIME, comparison
+from rerun_pictures import verify
 from small_motor import motor
 
 from geom.errors import InputError
 from viz.recordings.arrangement import beside, blueprint, in_view, non_overlapping
 from viz.recordings.recording import TIME as TIME_LINE
-from viz.recordings.recording import verify, write_recording
+from viz.recordings.recording import write_recording
 from viz.rendering.nodes import split
 from viz.rendering.scene import View
 

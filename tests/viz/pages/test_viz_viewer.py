@@ -21,7 +21,7 @@ from viz.viewer.flux import nodal_flux
 from viz.viewer.low_rank import BLOCK, ERROR_K, low_rank
 from viz.viewer.network import NetworkRun
 from viz.viewer.packing import packed_integers, packed_numbers, unpacked
-from viz.viewer.page import STEP_K, Earlier, Recorded, document, render, write_viewer
+from viz.viewer.page import STEP_K, Earlier, Recorded, document, render
 from viz.viewer.part_shapes import mixed, packed_fields
 
 NODES = split(motor(24))
@@ -177,6 +177,11 @@ def test_the_page_holds_the_fields_it_was_made_from(before):
     for first, fields in zip(states, one.states, strict=True):
         assert np.abs(found[first : first + len(fields)] - fields).max() < 1.5 * ERROR_K
     assert np.abs(unpacked(held["points"]) - NODES.points).max() < 1e-5
+
+
+def write_viewer(path, title, nodes, tests, positions):
+    path.write_text(render(document(title, nodes, tests, positions)), encoding="utf-8")
+    return path
 
 
 def test_what_a_name_holds_is_never_run(tmp_path):

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from geom.constants import ZERO_C
 from geom.errors import InputError, MissingDependency, ThermoscopeError
 from lumped.schemas.reader import suggestion
 from thermoscope.case_folder.files import write_whole
@@ -52,7 +53,7 @@ def export(
 
 def read_limits(words: Sequence[str]) -> dict[str, float]:
     """PLACE=DEGC, ..."""
-    return read_pairs(words, "--limit", "limit", "PLACE=DEGC, for example winding=155", -273.15, 3000.0)
+    return read_pairs(words, "--limit", "limit", "PLACE=DEGC, for example winding=155", -ZERO_C, 3000.0)
 
 
 def _model(

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from geom.constants import NORMAL_95
 from geom.errors import InputError
 from lumped.integration.ensemble import dask_cluster
 from lumped.schemas.reader import suggestion
@@ -21,8 +22,6 @@ from thermoscope.recordings.sheet import load_sheet
 from validation.fleet import Population, population
 from validation.fleet.population import DIFFERS
 from validation.threads import one_blas_thread
-
-WIDE = 1.96
 
 
 @one_blas_thread
@@ -57,7 +56,7 @@ def _document(of: Population, fits: Mapping[str, float]) -> dict[str, Any]:
             "probability_equal": of.spread_probability[k],
         }  # fmt: skip
         if of.drift is not None and of.drift_sd is not None and of.drift_spread is not None:
-            low, high = of.drift[k] - WIDE * of.drift_sd[k], of.drift[k] + WIDE * of.drift_sd[k]
+            low, high = of.drift[k] - NORMAL_95 * of.drift_sd[k], of.drift[k] + NORMAL_95 * of.drift_sd[k]
             row["drift_percent_year"] = 100.0 * of.drift[k]
             row["drift_ci95"] = [100.0 * low, 100.0 * high]
             row["drift_spread_percent_year"] = 100.0 * of.drift_spread[k]
@@ -83,13 +82,13 @@ def _document(of: Population, fits: Mapping[str, float]) -> dict[str, Any]:
 def _drifts(of: Population, i: int) -> dict[str, Any]:
     if of.unit_drift is None or of.unit_drift_sd is None:
         return {}
-    rows = {n: [100.0 * (of.unit_drift[i, k] + s * WIDE * of.unit_drift_sd[i, k]) for s in (-1.0, 0.0, 1.0)]
+    rows = {n: [100.0 * (of.unit_drift[i, k] + s * NORMAL_95 * of.unit_drift_sd[i, k]) for s in (-1.0, 0.0, 1.0)]
             for k, n in enumerate(of.names)}  # fmt: skip
     return {"drift_percent_year": {n: [low, high] for n, (low, _, high) in rows.items()}}
 
 
 def _factor(mean: float, sd: float) -> list[float]:
-    return [float(np.exp(mean - WIDE * sd)), float(np.exp(mean + WIDE * sd))]
+    return [float(np.exp(mean - NORMAL_95 * sd)), float(np.exp(mean + NORMAL_95 * sd))]
 
 
 def answer(document: Mapping[str, Any]) -> Answer:

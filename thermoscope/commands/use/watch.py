@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.constants import NORMAL_95
 from geom.errors import InputError
 from lumped.integration.record import Record
 from lumped.integration.simulate import initial_state
@@ -145,7 +146,7 @@ class Session:
         places = [c.place for c in self.sensors]
         places += [n for n in self.design.process.bodies if n not in places]
         temperatures = [
-            f"{n} {estimates[n][0]:.1f} +- {1.96 * estimates[n][1]:.1f}"
+            f"{n} {estimates[n][0]:.1f} +- {NORMAL_95 * estimates[n][1]:.1f}"
             for n in dict.fromkeys(places)
             if n in estimates
         ]
@@ -169,7 +170,7 @@ class Session:
             "sensors": [{"sensor": c.name, "place": c.place, "given": c in self.sensors,
                          "dropped": states[c.name].dropped if c.name in states else ""}
                         for c in (*self.sensors, *self.withheld)],
-            "places": [{"place": n, "end_C": T, "end_ci95": [T - 1.96 * sd, T + 1.96 * sd],
+            "places": [{"place": n, "end_C": T, "end_ci95": [T - NORMAL_95 * sd, T + NORMAL_95 * sd],
                         "max_C": self.hottest[n][0], "max_at_s": self.hottest[n][1]} for n, (T, sd) in seen.items()],
             "missing_heat": [
                 {"place": b, "end_W": last.heat[i], "end_ci95": _interval(last.heat[i], last.heat_sd[i]),
@@ -183,7 +184,7 @@ class Session:
 
 
 def _interval(value: float, sd: float) -> list[float]:
-    return [value - 1.96 * sd, value + 1.96 * sd]
+    return [value - NORMAL_95 * sd, value + NORMAL_95 * sd]
 
 
 def _alarm_text(kind: str, where: str, amplitude: float, probability: float) -> str:

@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
+from geom.constants import ALPHA_CU
 from lumped.model.network import Network, Source
-from lumped.sources.losses import ALPHA_CU
 from lumped.transfer.laws import CONSTANT, Linear, Scaled, WithTemperature
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import copy_source

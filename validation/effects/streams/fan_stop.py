@@ -5,8 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lumped.model.network import Network
-from lumped.transfer.laws import Inputs
-from validation.case import RUNNING
+from lumped.transfer.laws import RUNNING, Inputs
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import Shaped, copy_link
 from validation.effects.sites import model_links

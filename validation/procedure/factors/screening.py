@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.constants import ALPHA_CU
 from geom.description.machine import Machine
 from lumped.integration.simulate import Record, simulate
-from lumped.sources.losses import ALPHA_CU
 from validation.procedure.factors.factorial import Design, Effects, Factor, effects
 from validation.procedure.factors.sensitivity import Response, Varied
 from validation.procedure.reduction.pm_network import PmSettings, Rows, pm_network, table_of

@@ -17,10 +17,11 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.constants import NORMAL_95
+
 Array = NDArray[np.float64]
 DRAWS = 20_000  # hold a 95 % interval within 1 % (GUM supplement 1 asks for more where tails matter)
 CORNERS = 12  # inputs up to which all corners are visited
-COVERAGE = 1.96
 
 
 @dataclass(frozen=True)
@@ -68,7 +69,7 @@ class PropagatedUncertainty:
     @property
     def first_order(self) -> tuple[float, float]:
         """95 % interval to first order."""
-        return self.value - COVERAGE * self.sd, self.value + COVERAGE * self.sd
+        return self.value - NORMAL_95 * self.sd, self.value + NORMAL_95 * self.sd
 
     def document(self) -> dict[str, Any]:
         return {

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.constants import NORMAL_95
 from geom.errors import InputError
 
 Array = NDArray[np.float64]
@@ -50,8 +51,8 @@ def repeats(values: Sequence[float], u: float) -> Repeats:
         raise InputError(f"{x.size} runs with uncertainty {u:g}", "repeats", "2 or more runs, an uncertainty above 0")
     sd = float(x.std(ddof=1))
     chi = float(((x - x.mean()) ** 2).sum() / u**2)
-    return Repeats(x.size, float(x.mean()), sd, max(sd, u) / np.sqrt(x.size), float(np.ptp(x)), 1.96 * np.sqrt(2.0) * u,
-                   float(chi2.sf(chi, x.size - 1)))  # fmt: skip
+    return Repeats(x.size, float(x.mean()), sd, max(sd, u) / np.sqrt(x.size), float(np.ptp(x)),
+                   NORMAL_95 * np.sqrt(2.0) * u, float(chi2.sf(chi, x.size - 1)))  # fmt: skip
 
 
 def pooled_curves(minutes: Sequence[Array], T: Sequence[Array]) -> tuple[Array, Array, Array]:

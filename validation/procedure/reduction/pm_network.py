@@ -12,19 +12,25 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from geom.constants import RPM
 from geom.description.areas import PartRow, part_table
 from geom.description.geometry import Group
 from geom.description.machine import Machine
 from geom.description.materials import winding_conductivity
+from lumped.correlations.end_space import SCHUBERT
 from lumped.declarations.network import read_network
 from lumped.model.network import Network
 
 Rows = Mapping[str, PartRow]
 K_AIR = 0.028  # W/m/K, air near 50 degC
 AIR_K = 0.026  # W/m/K
-K1, K2, K3 = 15.0, 0.4, 0.9  # Schubert's end space
+K1, K2, K3 = SCHUBERT
 WALL = 0.3  # share of the rotor's tip speed that passes a wall at rest
-COPPER_SHARE = {"winding": 0.45, "winding.left": 0.35, "winding.right": 0.35}
+COPPER_SHARE = {
+    "winding": 0.45,
+    "winding.left": 0.35,
+    "winding.right": 0.35,
+}  # of their space (assumed): end turns lie looser than wires in slots
 JOINTS = {"base": 500.0, "foot": 1000.0, "endcap": 1000.0, "shaft": 4000.0, "bearing": 150.0, "seat": 1500.0,
           "magnets": 520.0, "gap": 5000.0, "wire": 1000.0}  # fmt: skip
 BANDS = 5  # of a base plate, from foot to rim; chosen
@@ -168,7 +174,7 @@ class _Builder:
                 self._stirred(part, air, area, 1.0 if part in ("rotor.core", "shaft") else WALL)
 
     def _stirred(self, part: str, air: str, area: float, share: float) -> None:
-        tip = 383 * math.pi / 30 * (self.g.stator.bore_diameter / 2 - self.g.stator.air_gap)
+        tip = 383 * RPM * (self.g.stator.bore_diameter / 2 - self.g.stator.air_gap)
         turning = {"input": "speed_rpm", "at": 383, "exponent": K3}
         forced = {"h_W_m2K": K1 * K2 * (share * tip) ** K3, "of": turning}
         self.link(part, air, area_m2=area, h_W_m2K=K1, forced=forced)

@@ -1,4 +1,4 @@
-"""Pictures of a recording, taken by the rerun viewer itself without a window; any Vulkan driver will do."""
+"""A recording in rerun's own hands: checked by its tool, and pictures by its viewer without a window."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
-from geom.errors import MissingDependency
+from geom.errors import InputError, MissingDependency
 
 if TYPE_CHECKING:
     from rerun.experimental import ViewerClient
@@ -93,3 +93,18 @@ def _connected(process: subprocess.Popen, port: int) -> ViewerClient:
                 return ViewerClient.connect(f"rerun+http://127.0.0.1:{port}/proxy")
         time.sleep(0.2)
     raise MissingDependency(f"the rerun viewer cannot draw here; a software Vulkan helps: {COMMAND}")
+
+
+def verify(path: str | Path) -> None:
+    """Check a recording with rerun's own tool, its usage statistics switched off for this call."""
+    program = shutil.which("rerun", path=str(Path(sys.executable).parent)) or shutil.which("rerun")
+    if program is None:
+        raise MissingDependency("the rerun program is missing; install it with: uv pip install rerun-sdk")
+    with TemporaryDirectory() as home:
+        alone = {**os.environ, "HOME": home, "XDG_CONFIG_HOME": home}
+        subprocess.run([program, "analytics", "disable"], env=alone, capture_output=True, check=False)
+        done = subprocess.run([program, "rrd", "verify", str(path)], env=alone, capture_output=True, text=True)
+    if done.returncode:
+        raise InputError(
+            f"not a valid recording: {done.stderr.strip()[-300:]}", str(path), "a file written by this version"
+        )
