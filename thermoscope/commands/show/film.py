@@ -29,12 +29,13 @@ def film(case: str, out: Path | None, target: str | None) -> int:
     if out is not None and (out.suffix not in SUFFIXES or out.is_dir()):
         raise InputError("is no name of a film", f"--out {out}", "a file NAME.gif or NAME.mp4")
     with progress() as tell:
-        from viz import animate, split
+        from viz import animate, require_gl, split
 
         folder = open_case(case, tell)
         if folder.built is None:
             right = f"a case with a machine; or: thermoscope show picture {folder.settings.path} curves"
             raise InputError("has a network declared by hand, and so no geometry", folder.case.name, right)
+        require_gl()  # before anything is run
         nodes, test, earlier = split(folder.built.mesh), by_interest(folder)[0], before_last(folder)
         file = out or Path("out") / f"{folder.case.name}.gif"
         runs = {} if earlier is None else {before(folder): earlier}
