@@ -224,7 +224,7 @@ def _losses(s: Subject, png: Path) -> None:
     from viz import sankey_of_losses
 
     flows, _, when = s.heat()
-    sankey_of_losses(flows, title=when, png=png)
+    sankey_of_losses(flows, title=f"{when}: losses, and where they go", png=png)
 
 
 def _curves(s: Subject, png: Path) -> None:
