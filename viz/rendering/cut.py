@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_matrix, identity, vstack
 
+from geom.description.identity import Identity
 from geom.description.roles import Role
 from geom.errors import InputError
 from viz.rendering.nodes import SplitMesh, repeated
@@ -63,8 +64,8 @@ class Surface:
     def framed(self) -> Array:
         """(n, 3) m that a picture of the machine must hold."""
         identities = self.nodes.identities
-        known = [identities.get(part) for part in self.nodes.parts]
-        base = np.array([one is not None and one.role is Role.BASE for one in known], bool)[self.owner]
+        parts = [identities.get(part, Identity()) for part in self.nodes.parts]
+        base = np.array([part.role is Role.BASE for part in parts], bool)[self.owner]
         return framed(self.points[~base], self.points[base])
 
     @cached_property

@@ -35,10 +35,10 @@ def anchors(surface: Surface, view: View, room: Room, points: Array | None = Non
     depth = np.abs(p.get_image_depth())
     eye = np.array(p.camera.position)
     p.close()
-    column = np.arange(SIZE[0]) / SIZE[0]
-    beside, places = (column >= room.left) & (column <= 1 - room.right), {}
+    across = np.arange(SIZE[0]) / SIZE[0]
+    free, places = (across >= room.left) & (across <= 1 - room.right), {}
     for part in np.unique(seen[seen >= 0]):
-        inside = distance_transform_edt(np.pad(seen == part, 1))[1:-1, 1:-1] * beside
+        inside = distance_transform_edt(np.pad(seen == part, 1))[1:-1, 1:-1] * free
         row, column = np.unravel_index(np.argmax(inside), inside.shape)
         if inside[row, column] >= SMALLEST and np.isfinite(depth[row, column]):
             places[int(part)] = eye + depth[row, column] * _ray(int(row), int(column), view)
