@@ -479,7 +479,9 @@ GUESS = """(share) => {  // the pointer on the section, that share of the machin
 
 COLUMN = """(share) => {  // of the picture's height that is drawn over at that share of its width
   const c = $("over"), x = Math.round(share * c.width) - 1;
-  const rows = c.getContext("2d").getImageData(x, 0, 2, c.height).data;
+  const copy = new OffscreenCanvas(2, c.height).getContext("2d", { willReadFrequently: true });
+  copy.drawImage(c, -x, 0);
+  const rows = copy.getImageData(0, 0, 2, c.height).data;
   let drawn = 0;
   for (let i = 3; i < rows.length; i += 8) drawn += rows[i] > 60 || rows[i + 4] > 60;
   return drawn / c.height;
