@@ -11,7 +11,7 @@ import numpy as np
 
 from thermoscope.case_folder.folder import load_case
 from thermoscope.case_folder.runs import before_last, by_interest, fields, temperature_range
-from thermoscope.commands.show.film import before, largest, misses, now
+from thermoscope.commands.show.film import before, misses, now, title
 from viz.appearance.moving import moving
 from viz.rendering.nodes import split
 
@@ -31,7 +31,7 @@ def draw(case: Path, gif: Path) -> None:
         rows = misses(folder, model, test, times, limit_K)
         T.append(values)
         seen += rows
-        titles += [f"{t / 60:.0f} min, {words}{largest(row)}" for t, row in zip(times, rows, strict=True)]
+        titles += [title(test, t, words, row) for t, row in zip(times, rows, strict=True)]
     moving(folder.built.machine, nodes, np.concatenate(T), gif, titles=titles, sensors=seen,
            limits=temperature_range(folder, nodes), width=WIDTH, frames_per_second=PER_SECOND,
            tell=lambda k: print(f"\r{k}", end=""))  # fmt: skip

@@ -33,7 +33,8 @@ def token_for(token: str | None) -> str:
 def application(folder: Folder, access: AccessControl, tell: Progress, largest_drop: int = LARGEST) -> web.Application:
     """The pages of a case, for those who have access.  largest_drop : of files dropped on a page (bytes)"""
     os.environ["TRAME_ARGS"] = "--server"  # trame would read our command line as its own
-    tabs = Tabs(bench(folder, tell), largest_drop)
+    opened = bench(folder, tell)
+    tabs = Tabs(opened, largest_drop)
     prepare()
     app = web.Application(middlewares=[access.middleware])
     app.router.add_get("/", tabs.new)
@@ -48,9 +49,12 @@ def application(folder: Folder, access: AccessControl, tell: Progress, largest_d
                 await tabs.sweep()
 
         task = asyncio.create_task(sweep())
+        if folder.built is not None:
+            opened.machines.drawing(folder)  # while the first page is loaded
         yield
         task.cancel()
         await tabs.close()
+        opened.machines.stop()
 
     app.cleanup_ctx.append(sweeping)
     return app

@@ -16,7 +16,7 @@ from thermoscope.commands.stored_diagnosis import current_diagnosis, save_diagno
 from thermoscope.workbench import revisions as ledger
 from thermoscope.workbench import steps
 from thermoscope.workbench.appearance import Appearance
-from thermoscope.workbench.application import Bench, at
+from thermoscope.workbench.application import Bench, Drawing, at
 from thermoscope.workbench.display import Display
 from thermoscope.workbench.dropped import Dropped
 from thermoscope.workbench.jobs import FailedError, Job, StoppedError
@@ -38,7 +38,7 @@ class Session:
         self.viewer_page = ""
         self._refused: Revision | None = None
         self._job: Job | None = None
-        self._drawing: Job | None = None
+        self._drawing: Drawing | None = None
         self._known: list[tuple[Revision, Appearance]] = [(self.history.last, bench.first)]
 
     @property
@@ -155,24 +155,30 @@ class Session:
         if self.bench.folder.built is None:
             return
         history, page = self.history, self.bench.machines.find(self.history)
-        if self._drawing is not None:
-            self._drawing.stop()
+        self._leave()
         if page is None:
-            self._drawing = Job(steps.viewed, self.folder)
+            mine = self._drawing = self.bench.machines.drawing(self.folder)
             try:
-                page = await self._drawing.run(self._preparing)
+                page = await mine.page(self._preparing)
             except StoppedError:
                 return  # another model was to be drawn
             except FailedError as fault:
                 self._complain(str(fault))
                 return
             finally:
-                self._preparing("")
-            self.bench.machines.store(history, page)
-        if history == self.history:
+                if self._drawing is mine:
+                    self._leave()
+        if history == self.history and page is not self.viewer_page:
             self.viewer_page = page
             with self.state:
                 self.state.viewer = f"viewer.html?{time.time_ns()}#bench"
+
+    def _leave(self) -> None:
+        """Wait for no machine any more."""
+        if self._drawing is not None:
+            self._drawing.leave(self._preparing)
+            self._drawing = None
+            self._preparing("")
 
     def paper(self) -> None:
         """From light to dark and back."""
@@ -185,8 +191,7 @@ class Session:
 
     def close(self) -> None:
         self.stop()
-        if self._drawing is not None:
-            self._drawing.stop()
+        self._leave()
 
     def _write(self, new: History, look: Appearance | None = None) -> bool:
         """To model.toml, unless somebody else has written there; then show it."""

@@ -62,13 +62,6 @@ def new_case(dropped: Dropped, settings: Settings, network: Network, tell: Progr
     return folder, appearance(folder, tell)
 
 
-def viewed(folder: Folder, tell: Progress) -> str:
-    """The page that plays the model on the machine in the browser's own GL."""
-    from thermoscope.commands.show.viewer import viewer_page
-
-    return viewer_page(folder, tell)
-
-
 def reported(folder: Folder, tell: Progress) -> Path:
     """Write out/report.html with the last diagnosis there was."""
     from thermoscope.commands.show.pages import write_page

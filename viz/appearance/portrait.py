@@ -20,6 +20,7 @@ from viz.appearance.ground import shadow
 from viz.colours import LIGHT, Theme, heat
 from viz.rendering import scene
 from viz.rendering.cut import QUARTER, Wedge
+from viz.rendering.cut import framed as near
 from viz.rendering.nodes import SplitMesh, on_nodes
 from viz.rendering.scale import rounded
 from viz.rendering.scene import NOTE, TITLE, Room, View
@@ -30,7 +31,6 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 NEAREST = 4  # nodes of the meshed part whose temperatures a point of the picture mixes
 CAPTION = "details are for the eye only: the mesh has none of them"
-NEAR = 0.22  # of the machine's size: further away a base may leave the picture
 VIEW = View(direction=(-1.0, 0.45, 0.85), angle=18.0, margin=1.1)
 
 
@@ -81,10 +81,8 @@ def staged(
 def framed(machine: Machine, bodies: Sequence[Body]) -> Array:
     """(n, 3) m that the picture must hold: all, of a long base only what is near the machine."""
     bases = {part.name for part in machine.parts if part.identity and part.identity.role is Role.BASE}
-    inner = np.concatenate([b.shape.points for b in bodies if b.part not in bases])
-    low, high = inner.min(axis=0) - NEAR * np.ptp(inner, axis=0), inner.max(axis=0) + NEAR * np.ptp(inner, axis=0)
-    outer = [np.clip(b.shape.points, low, high) for b in bodies if b.part in bases]
-    return np.concatenate([inner, *outer])
+    inner, outer = ([b.shape.points for b in bodies if (b.part in bases) is base] for base in (False, True))
+    return near(np.concatenate(inner), np.concatenate([np.empty((0, 3)), *outer]))
 
 
 class Warm:

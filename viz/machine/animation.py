@@ -64,12 +64,14 @@ def animate(
     scene.colour_bar(p, field.UNIT, theme)
     scene.look(p, surface.points, view, Room(right=0.12, top=scene.TITLE))
     pictures, pulses = [], Pulses(p, surface, sensors[0]) if sensors else None
-    for number, (words, values) in enumerate(zip(titles or _minutes(times), T, strict=True), 1):
+    words_of = titles or _minutes(times)
+    letters = max(map(len, words_of))
+    for number, (words, values) in enumerate(zip(words_of, T, strict=True), 1):
         tell(number)
         if pulses is not None:
             pulses.show(sensors[number - 1], number / frames_per_second)
         data.point_data["T"] = surface.values(values)
-        scene.headline(p, words, theme)
+        scene.headline(p, words, theme, letters)
         pictures.append(np.asarray(p.screenshot(return_img=True)))
     p.close()
     path.parent.mkdir(parents=True, exist_ok=True)

@@ -49,10 +49,10 @@ def regions(
     scene.headline(p, title, theme)
     wide = beside(nodes.parts, LETTERS, 0.2)
     room = Room(wide, wide, TITLE if title else 0.0)
-    scene.look(p, surface.points, view, room)
-    seen = anchors(surface, view, room)
+    scene.look(p, surface.framed, view, room)
+    seen = anchors(surface, view, room, surface.framed)
     labels = [Label(tuple(xyz), nodes.parts[i], LIGHT.ink) for i, xyz in seen.items()]  # type: ignore[arg-type]
-    callouts(p, labels, surface.points, view, theme, size=LETTERS)
+    callouts(p, labels, surface.framed, view, theme, size=LETTERS)
     scene.save(p, png)
     return p
 

@@ -12,6 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_matrix, identity, vstack
 
+from geom.description.identity import Identity
+from geom.description.roles import Role
 from geom.errors import InputError
 from viz.rendering.nodes import SplitMesh, repeated
 
@@ -37,6 +39,7 @@ class Wedge:
         return first, last
 
 
+NEAR = 0.22  # of the machine's size: further away a base may leave the picture
 QUARTER = Wedge(90.0, 90.0)  # the upper quadrant that faces the default camera
 HALF = Wedge(90.0, 180.0)
 
@@ -56,6 +59,14 @@ class Surface:
     @cached_property
     def points(self) -> Array:
         return self.weights @ self.nodes.points
+
+    @cached_property
+    def framed(self) -> Array:
+        """(n, 3) m that a picture of the machine must hold."""
+        identities = self.nodes.identities
+        parts = [identities.get(part, Identity()) for part in self.nodes.parts]
+        base = np.array([part.role is Role.BASE for part in parts], bool)[self.owner]
+        return framed(self.points[~base], self.points[base])
 
     @cached_property
     def owner(self) -> Index:
@@ -102,6 +113,13 @@ class Surface:
         triangles = joined.reshape(-1)[flat.reshape(-1, 3)]
         solid = (np.diff(np.sort(triangles, axis=1), axis=1) > 0).all(axis=1)
         return Surface(self.nodes, weights[first], triangles[solid], self.part[solid])
+
+
+def framed(machine: Array, bases: Array) -> Array:
+    """Points (n, 3) m that a picture must hold: of the machine all, of a long base only what is near it."""
+    low, high = machine.min(axis=0), machine.max(axis=0)
+    more = NEAR * (high - low)
+    return np.concatenate([machine, np.clip(bases, low - more, high + more)])
 
 
 def exposed(nodes: SplitMesh, contacts: bool = False) -> Surface:

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 SIZE = (1280, 800)  # pixels
 MARK, GAP = 9, 8  # letters of a colour bar's numbers; pixels between them and the bar
+HEADLINE, LETTER = 14, 1.06  # size of a headline; pixels that one of its letters is wide, of that size
 FEATURE_ANGLE = 35.0  # degrees between facets from which an edge is drawn
 
 
@@ -137,10 +138,11 @@ def colour_bar(p: pyvista.Plotter, title: str, theme: Theme = LIGHT, **options: 
         _line(p, title, (x, y + tall + 2 * gap[1]), MARK, theme, f"title {title}")
 
 
-def headline(p: pyvista.Plotter, text: str, theme: Theme = LIGHT) -> None:
-    """One line above the picture."""
+def headline(p: pyvista.Plotter, text: str, theme: Theme = LIGHT, letters: int = 0) -> None:
+    """One line above the picture, as large as fits.  letters : of the longest of a film, so that all are as large"""
     if text:
-        _line(p, text, (0.02, 0.94), 14, theme, "headline")
+        fits = int(0.97 * p.renderer.GetSize()[0] / (LETTER * max(len(text), letters)))
+        _line(p, text, (0.02, 0.94), min(HEADLINE, fits), theme, "headline")
 
 
 def footnote(p: pyvista.Plotter, text: str, theme: Theme = LIGHT) -> None:

@@ -18,8 +18,11 @@ SLACK = 0.006  # m: a thermocouple this deep still counts as lying on the surfac
 SMALLEST = 1.5  # pixels from the middle of a patch to its border below which a part counts as hidden
 
 
-def anchors(surface: Surface, view: View, room: Room) -> dict[int, Array]:
-    """Part -> the visible point (m) that lies deepest inside what is seen of it; hidden parts are left out."""
+def anchors(surface: Surface, view: View, room: Room, points: Array | None = None) -> dict[int, Array]:
+    """Part -> the visible point (m) that lies deepest inside what is seen of it; hidden parts are left out.
+
+    points : (n, 3) m that the picture holds, if not the whole surface
+    """
     import pyvista
 
     p = pyvista.Plotter(off_screen=True, window_size=list(SIZE), lighting="none")
@@ -27,14 +30,15 @@ def anchors(surface: Surface, view: View, room: Room) -> dict[int, Array]:
     data = scene.polydata(surface)
     data.cell_data["number"] = _as_colour(surface.part + 1)
     p.add_mesh(data, scalars="number", rgb=True, lighting=False)
-    scene.look(p, surface.points, view, room)
+    scene.look(p, surface.points if points is None else points, view, room)
     seen = _as_number(np.asarray(p.screenshot(return_img=True))) - 1
     depth = np.abs(p.get_image_depth())
     eye = np.array(p.camera.position)
     p.close()
-    places = {}
+    across = np.arange(SIZE[0]) / SIZE[0]
+    free, places = (across >= room.left) & (across <= 1 - room.right), {}
     for part in np.unique(seen[seen >= 0]):
-        inside = distance_transform_edt(np.pad(seen == part, 1))[1:-1, 1:-1]
+        inside = distance_transform_edt(np.pad(seen == part, 1))[1:-1, 1:-1] * free
         row, column = np.unravel_index(np.argmax(inside), inside.shape)
         if inside[row, column] >= SMALLEST and np.isfinite(depth[row, column]):
             places[int(part)] = eye + depth[row, column] * _ray(int(row), int(column), view)

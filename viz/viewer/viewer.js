@@ -607,7 +607,7 @@ class Viewer {
     const at = [...sensor.xyz, 1], q = this.rows.map((row) => row.reduce((sum, v, k) => sum + v * at[k], 0));
     return [(q[0] / q[3] + 1) / 2 * $("gl").width, (1 - q[1] / q[3]) / 2 * $("gl").height];
   }
-  labelled() { return [...this.sensors].sort((a, b) => b.weight - a.weight).slice(0, 6); }  // the chosen one, and those furthest beyond their uncertainty
+  labelled() { return [...this.sensors].sort((a, b) => b.weight - a.weight).slice(0, $("gl").clientWidth < SMALL ? 3 : 6); }  // the chosen one, and those furthest beyond their uncertainty
   hidden(s) {  // does a triangle of what is drawn lie between the eye and the sensor? Cuts across the mesh are not asked: there always
     const solid = this.solid;
     if (!solid.edges) return true;
@@ -643,6 +643,7 @@ class Viewer {
     const taken = this.sensors.map(place).map((p) => [p[0] - d, p[1] - d, 2 * d, 2 * d]);
     c.width = Math.round($("gl").width * by); c.height = Math.round($("gl").height * by);
     x.font = `${13 * scale}px "DejaVu Sans", system-ui, sans-serif`; x.textBaseline = "middle";
+    this.divided(x, scale);
     for (const s of this.labelled()) {
       const at = place(s);
       const text = `${s.name}  ${signed(s.residual)} K`, wide = x.measureText(text).width + 12 * scale, tall = 22 * scale;
@@ -658,6 +659,17 @@ class Viewer {
       x.fillStyle = `rgb(${TINTS[s.verdict].map((v) => 255 * v)})`; x.fillRect(left, top, wide, tall);
       x.fillStyle = "#fff"; x.fillText(text, left + 6 * scale, top + tall / 2);
     }
+  }
+  divided(x, scale) {  // the line between two revisions, and which stands on either side of it
+    const share = $("wipe").value / 1000, { width, height } = $("over");
+    if (this.test.states.length < 2 || $("layer").value === "1" || share <= 0 || share >= 1) return;
+    x.strokeStyle = x.fillStyle = getComputedStyle(document.body).color; x.lineWidth = 1.5 * scale; x.beginPath();
+    x.moveTo(share * width, 0.08 * height); x.lineTo(share * width, height); x.stroke();
+    for (const [state, side] of [[this.left, -1], [this.right, 1]]) {
+      x.textAlign = side < 0 ? "right" : "left";
+      x.fillText(data.revisions[state], share * width + 8 * side * scale, height - 40 * scale);
+    }
+    x.textAlign = "left";
   }
   pick(x, y) {  // part and value under the pointer, read back from one pixel
     const gl = this.gl, c = $("gl"), p = this.picked, scale = c.width / c.clientWidth;
@@ -744,6 +756,7 @@ const REST = 200;  // ms without a movement until the picture is smooth
 const CREASE = 0.77;  // cosine of 40 degrees
 const WINDOW = 22, ABOVE = 0.01;  // pixels around a labelled sensor in which what hides it is ghosted; of the machine's size
 const NEAR = 12, STILL = 4;  // pixels from a dot that mean its sensor; that a pointer moves in a click
+const SMALL = 560;  // pixels of a picture below which three sensors have labels: six would cover the machine
 const WIDE = 1100;  // pixels from which machine and network stand side by side
 const TINTS = data.tints;  // within, hot, cold, unknown: red, green, blue from 0 to 1
 const signed = (v) => v === null ? "–" : (v < 0 ? "−" : "+") + Math.abs(v).toFixed(1);

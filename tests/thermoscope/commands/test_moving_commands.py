@@ -1,11 +1,12 @@
 """thermoscope show viewer, show film: one message for what they cannot do, and nothing written."""
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from geom.errors import InputError
-from thermoscope.commands.show.film import film, largest
+from thermoscope.commands.show.film import film, largest, title
 from thermoscope.commands.show.viewer import viewer
 from viz import Sensor
 
@@ -32,3 +33,6 @@ def test_a_title_names_the_sensor_that_is_missed_most():
     ]
     assert largest(row) == ": shaft +2.0 K"
     assert largest(row[1:]) == ""
+    assert title(SimpleNamespace(name="road-2"), 3120.0, "the model now", row) == (
+        "road-2 at 52 min, the model now: shaft +2.0 K"
+    )

@@ -21,7 +21,7 @@ pytestmark = [
     pytest.mark.heavy,
     pytest.mark.skipif(BROWSER is None, reason="needs a browser: apt-get install -y chromium"),
 ]
-SERVER = Path(__file__).with_name("motor_case.py")
+SERVER = Path(__file__).parents[2] / "shared" / "motor_case.py"
 LONG = 400_000  # ms; a shared computer may be slow
 
 

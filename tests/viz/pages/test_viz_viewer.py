@@ -482,6 +482,37 @@ GUESS = """(share) => {  // the pointer on the section, that share of the machin
 }"""
 
 
+COLUMN = """(share) => {  // of the picture's height that is drawn over at that share of its width
+  const c = $("over"), x = Math.round(share * c.width) - 1;
+  const copy = new OffscreenCanvas(2, c.height).getContext("2d", { willReadFrequently: true });
+  copy.drawImage(c, -x, 0);
+  const rows = copy.getImageData(0, 0, 2, c.height).data;
+  let drawn = 0;
+  for (let i = 3; i < rows.length; i += 8) drawn += rows[i] > 60 || rows[i + 4] > 60;
+  return drawn / c.height;
+}"""
+
+
+@pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
+def test_a_line_stands_between_two_revisions_and_three_labels_on_a_small_page(tmp_path):
+    text = render(document("motor", NODES, [recorded()], PLACE, revisions=["2: a", "1: b"]))
+    (tmp_path / "v.html").write_text(text, encoding="utf-8")
+    with drawn_by_a_browser(tmp_path / "v.html", 900, 600) as (page, said):
+        column = []
+        for place in (0, 300, 700):
+            page.evaluate("(place) => { $('wipe').value = place; $('wipe').oninput(); }", place)
+            page.wait_for_function("!viewer.dirty && viewer.smooth")
+            column.append([page.evaluate(COLUMN, share) for share in (0.3, 0.7)])
+        assert all(share < 0.5 for share in column[0])
+        assert column[1][0] > 0.85 > 0.5 > column[1][1]
+        assert column[2][1] > 0.85 > 0.5 > column[2][0]
+        page.evaluate("viewer.sensors = Array(9).fill(viewer.sensors[0])")
+        assert page.evaluate("viewer.labelled().length") == 6
+        page.set_viewport_size({"width": 400, "height": 600})
+        assert page.evaluate("viewer.labelled().length") == 3
+    assert said == []
+
+
 @pytest.mark.skipif(shutil.which("node") is None, reason="no node")
 @pytest.mark.parametrize(("left", "right"), [(1, 0), (2, 1), (0, 2)])
 def test_any_two_revisions_stand_left_and_right_of_the_line(tmp_path, left, right):

@@ -29,12 +29,13 @@ def film(case: str, out: Path | None, target: str | None) -> int:
     if out is not None and (out.suffix not in SUFFIXES or out.is_dir()):
         raise InputError("is no name of a film", f"--out {out}", "a file NAME.gif or NAME.mp4")
     with progress() as tell:
-        from viz import animate, split
+        from viz import animate, require_gl, split
 
         folder = open_case(case, tell)
         if folder.built is None:
             right = f"a case with a machine; or: thermoscope show picture {folder.settings.path} curves"
             raise InputError("has a network declared by hand, and so no geometry", folder.case.name, right)
+        require_gl()  # before anything is run
         nodes, test, earlier = split(folder.built.mesh), by_interest(folder)[0], before_last(folder)
         file = out or Path("out") / f"{folder.case.name}.gif"
         runs = {} if earlier is None else {before(folder): earlier}
@@ -43,8 +44,8 @@ def film(case: str, out: Path | None, target: str | None) -> int:
         played = {words: fields(model, test, nodes, FRAMES) for words, model in models.items()}
         limit_K = folder.limits(test)
         seen = [row for w, model in models.items() for row in misses(folder, model, test, played[w][0], limit_K)]
-        words = [f"{test.name} at {t / 60:.0f} min, {w}" for w, (times, _) in played.items() for t in times]
-        titles = [f"{w}{largest(row)}" for w, row in zip(words, seen, strict=True)]
+        when = [(t, w) for w, (times, _) in played.items() for t in times]
+        titles = [title(test, t, w, row) for (t, w), row in zip(when, seen, strict=True)]
         T = np.concatenate([values for _, values in played.values()])
         animate(nodes, [t for times, _ in played.values() for t in times], T, file, titles=titles,
                 sensors=seen, limits=temperature_range(folder, nodes),
@@ -63,6 +64,11 @@ def now(folder: Folder) -> str:
     """The model as it is, in words."""
     last = folder.history.last
     return f"with {last.effect}" if folder.history.revisions and last.action == "add" else "the model now"
+
+
+def title(test: Test, time: float, words: str, sensors: Sequence[Sensor]) -> str:
+    """Which test, which instant (s), which model, and what that misses most."""
+    return f"{test.name} at {time / 60:.0f} min, {words}{largest(sensors)}"
 
 
 def largest(sensors: Sequence[Sensor]) -> str:

@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from viz.rendering.nodes import SplitMesh
 
 FRAMES = 61  # instants of a test that a page can step through
+NO_PDF = "No PDF: WeasyPrint or Chromium prints it; thermoscope check says how to install one."
 LIKELY = 0.5  # probability from which an event is drawn
 
 
@@ -54,7 +55,7 @@ def report(case: str, out: Path | None, target: str | None) -> int:
         tell("printing")
         pdf = write_pdf(path)
     document = {"case": folder.case.name, "revision": folder.case.model.revision, "report": str(path)}
-    printed = [f"As PDF: {pdf}"] if pdf else []
+    printed = [f"As PDF: {pdf}" if pdf else NO_PDF]
     if not (folder.settings.out / "diagnosis.json").exists():
         printed.append(f"It has no diagnosis yet: thermoscope explain diagnose {case}")
     give({**document, "pdf": pdf and str(pdf)}, target, lambda: Answer(f"The report is {path}.", printed))

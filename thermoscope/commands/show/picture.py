@@ -51,6 +51,8 @@ def picture(case: str, what: str, out: Path | None, target: str | None) -> int:
         raise InputError("is no name of a picture", f"--out {out}", "a file NAME.png")
     with progress() as tell:
         subject = Subject(open_case(case, tell), tell)
+        if what in PICTURES and what not in FLAT:
+            subject.require_drawing()
         file = out or Path("out") / f"{subject.folder.case.name}-{what}.png"
         tell(f"drawing {file}")
         pictures[what](subject, file)
@@ -79,6 +81,13 @@ class Subject:
             right = f"a case with a machine, or one of: {', '.join(FLAT)}"
             raise InputError("has a network declared by hand, and so no geometry", self.folder.case.name, right)
         return self.folder.built
+
+    def require_drawing(self) -> None:
+        """InputError without geometry, MissingDependency without OpenGL: said before anything is run."""
+        from viz import require_gl
+
+        _ = self.built
+        require_gl()
 
     @cached_property
     def nodes(self) -> SplitMesh:
@@ -215,7 +224,7 @@ def _losses(s: Subject, png: Path) -> None:
     from viz import sankey_of_losses
 
     flows, _, when = s.heat()
-    sankey_of_losses(flows, title=when, png=png)
+    sankey_of_losses(flows, title=f"{when}: losses, and where they go", png=png)
 
 
 def _curves(s: Subject, png: Path) -> None:

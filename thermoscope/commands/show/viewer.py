@@ -76,12 +76,13 @@ def viewer_page(folder: Folder, tell: Progress) -> str:
         return replace(run, error_map=between, network=network_run(folder.case, test, run.times))
 
     tell("running every test")
+    limits = temperature_range(folder, nodes)  # first: the last two runs of a test are remembered
     tests = side_by_side(played, by_interest(folder))
     conductivity = {part.name: folder.built.machine.conductivity(part.name) for part in folder.built.machine.parts}
     names = [f"{r.number}: {r.effect or (r.action if r.number else 'as it was')}" for r in revisions(folder)]
     return render(document(
         folder.case.name, nodes, tests, folder.positions, conductivity, names or ["now"], folder.built.mesh,
-        temperature_range(folder, nodes), folder.built.machine,
+        limits, folder.built.machine,
     ))  # fmt: skip
 
 

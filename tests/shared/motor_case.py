@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 
 HERE = Path(__file__).resolve().parent
-sys.path += [str(HERE), str(HERE.parents[1] / "shared")]
+sys.path.append(str(HERE))
 
 from small_case import small_case  # noqa: E402
 from small_motor import machine, motor  # noqa: E402
