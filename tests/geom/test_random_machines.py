@@ -105,8 +105,8 @@ def test_random_invalid_values_are_refused_with_key_value_and_range(family, data
     assert "\n" not in message
 
 
-@pytest.mark.parametrize(("poles", "arc", "bent"), [(4, 0.65, False), (4, 0.85, True), (2, 0.6, True), (2, 0.75, True)])
-def test_no_shoe_cuts_the_face_of_its_pole(poles, arc, bent):
+@pytest.mark.parametrize(("poles", "arc", "rounded"), [(4, 0.65, False), (4, 0.85, True), (2, 0.6, True), (2, 0.75, True)])
+def test_no_shoe_cuts_the_face_of_its_pole(poles, arc, rounded):
     """A straight back from the tips of a wide shoe to a slender body would pass nearer to the axis than the face."""
     stator = {"stator.poles": poles, "stator.pole_arc": arc, "stator.tip_mm": 3.0, "stator.body_width_mm": 60.0}
     machine = build(families()["series-dc"], {**FEW["series-dc"], **stator})
@@ -117,5 +117,5 @@ def test_no_shoe_cuts_the_face_of_its_pole(poles, arc, bent):
     assert shape.area == pytest.approx(pole.area, rel=1e-4)
     assert shapely.Point(0, 0).distance(shape) == pytest.approx(face, rel=1e-4)
     back = shapely.LineString([pole.outer[1][:2], *(v[:2] for v in pole.outer[2:4])])
-    assert (len(pole.outer) > 8) == bent
-    assert shapely.Point(0, 0).distance(back) > (0.9 if bent else 0.999) * tips
+    assert (len(pole.outer) > 8) == rounded
+    assert shapely.Point(0, 0).distance(back) > (0.9 if rounded else 0.999) * tips

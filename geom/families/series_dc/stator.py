@@ -49,15 +49,15 @@ def _pole(g: Geometry, r: Radii) -> Profile:
     back, tips = math.hypot(r.shoe_back, r.body), r.bore + g.stator.tip
     leaves = math.atan2(r.body, r.shoe_back) + math.acos(min(tips / back, 1.0))  # where a tangent leaves the circle
     around = shapes.bulge_of(tip - leaves)
-    bent = leaves < tip and tips < back
+    rounded = leaves < tip and tips < back
     return Profile((
         shapes.polar(r.bore, -tip),
-        *((shapes.polar(tips, -tip, around), shapes.polar(tips, -leaves)) if bent else (shapes.polar(tips, -tip),)),
+        *((shapes.polar(tips, -tip, around), shapes.polar(tips, -leaves)) if rounded else (shapes.polar(tips, -tip),)),
         (r.shoe_back, -r.body, 0.0),
         (root, -r.body, shapes.bulge_of(2 * math.asin(r.body / r.yoke0))),
         (root, r.body, 0.0),
         (r.shoe_back, r.body, 0.0),
-        *((shapes.polar(tips, leaves, around),) if bent else ()),
+        *((shapes.polar(tips, leaves, around),) if rounded else ()),
         shapes.polar(tips, tip),
         shapes.polar(r.bore, tip, -shapes.bulge_of(2 * tip)),
     ))  # fmt: skip
