@@ -105,7 +105,9 @@ def test_random_invalid_values_are_refused_with_key_value_and_range(family, data
     assert "\n" not in message
 
 
-@pytest.mark.parametrize(("poles", "arc", "rounded"), [(4, 0.65, False), (4, 0.85, True), (2, 0.6, True), (2, 0.75, True)])
+@pytest.mark.parametrize(
+    ("poles", "arc", "rounded"), [(4, 0.65, False), (4, 0.85, True), (2, 0.6, True), (2, 0.75, True)]
+)
 def test_no_shoe_cuts_the_face_of_its_pole(poles, arc, rounded):
     """A straight back from the tips of a wide shoe to a slender body would pass nearer to the axis than the face."""
     stator = {"stator.poles": poles, "stator.pole_arc": arc, "stator.tip_mm": 3.0, "stator.body_width_mm": 60.0}
