@@ -6,11 +6,8 @@ from collections.abc import Sequence
 from math import floor, log10
 from typing import Any
 
-SPACE, DIGITS, DECIMALS = (
-    "  ",
-    3,
-    2,
-)  # between columns; digits of a number, more than a model is sure of; decimals, a hundredth of a kelvin
+# Between columns; digits of a number, more than a model is sure of; decimals, a hundredth of a kelvin.
+SPACE, DIGITS, DECIMALS = ("  ", 3, 2)
 
 
 def table(headers: Sequence[str], rows: Sequence[Sequence[object]]) -> str:

@@ -110,10 +110,14 @@ def prepared(
 def meshed(machine: Machine, how: Meshing, progress: Progress = silent) -> Prepared:
     """Mesh and conduction on a mesh of given fineness."""
     progress("mesh")
-    plain = build_mesh(machine, how.size_m, how.segments, how.across, how.axial_m, cache_folder())
-    mesh = with_cells(machine, plain)
+    mesh = with_cells(machine, plain_mesh(machine, how))
     progress(f"conduction on {len(mesh.points)} points")
     return Prepared(machine, mesh, field_of(machine, mesh), *coefficients_on(machine, mesh), how)
+
+
+def plain_mesh(machine: Machine, how: Meshing) -> NamedMesh:
+    """The mesh alone, from the cache where it was made before."""
+    return build_mesh(machine, how.size_m, how.segments, how.across, how.axial_m, cache_folder())
 
 
 def coefficients_on(machine: Machine, mesh: NamedMesh) -> tuple[dict[str, float], dict[str, float]]:

@@ -20,11 +20,8 @@ from geom.meshing.triangulate import triangulate
 from geom.meshing.voids import filled
 
 COARSE: dict[str, Any] = {"size_m": 0.06, "segments": 44, "across": 1}  # for a first look and for tests
-FINE: dict[str, Any] = {
-    "size_m": 0.012,
-    "segments": 72,
-    "across": 4,
-}  # a fifth of it: finer moves no temperature that is read
+# A fifth of it: finer moves no temperature that is read.
+FINE: dict[str, Any] = {"size_m": 0.012, "segments": 72, "across": 4}
 
 
 def build_mesh(

@@ -10,9 +10,8 @@ from lumped.correlations.info import Info
 from lumped.transfer.laws import FILMS, FIRST_C, STEP_K, FilmTable, Table
 from lumped.transfer.ranges import within_silence
 
-STILL_AIR_K = tuple(
-    float(d) for d in np.concatenate([[0.0], np.geomspace(0.1, 300.0, 48)])
-)  # a fifth apart: between two a film of the power 1/4 is straight to 0.1 %
+# A fifth apart: between two a film of the power 1/4 is straight to 0.1 %.
+STILL_AIR_K = tuple(float(d) for d in np.concatenate([[0.0], np.geomspace(0.1, 300.0, 48)]))
 
 
 def film_tabulated(

@@ -38,9 +38,8 @@ class Precision(NamedTuple):
     every_sample: bool
 
 
-RUN = Precision(
-    1e-2, 1e-4, False
-)  # a hundredth of a kelvin and of a per cent: a tenth of what a good sensor is sure of
+# A hundredth of a kelvin and of a per cent: a tenth of what a good sensor is sure of.
+RUN = Precision(1e-2, 1e-4, False)
 READINGS = RUN._replace(every_sample=True)
 FIT = Precision(5e-2, 5e-4, True)  # a run then moves by 0.002 K (rms) at most, a quarter to a third of the steps go
 

@@ -28,9 +28,8 @@ from lumped.transfer.properties import air
 from lumped.transfer.shaft_fan import shaft_fan
 
 SURFACES = ("horizontal cylinder", "vertical plate", "horizontal plate", "radial fins")
-STILL_AIR_K = tuple(
-    np.concatenate([[0.0], [0.5], np.geomspace(1.0, 200.0, 30)])
-)  # a fifth apart: straight between them to 0.1 %; no frame is hotter
+# A fifth apart: straight between them to 0.1 %; no frame is hotter.
+STILL_AIR_K = tuple(np.concatenate([[0.0], [0.5], np.geomspace(1.0, 200.0, 30)]))
 BLOWN_C = 40.0  # film temperature at which tables over speed are made
 CROWDED = 0.8  # still air along axial fins, over the bare cylinder's film (assumed)
 END_SHIELD = 0.35  # a turned body shorter than this share of its diameter is a vertical plate

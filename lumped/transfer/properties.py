@@ -10,9 +10,8 @@ from geom.errors import InputError, MissingDependency
 
 GAS_CONSTANT_AIR = 287.0528  # J/kg/K
 CP_AIR = 1005.7  # J/kg/K, dry air, within 0.3 % from -20 to 120 degC (Lemmon et al. 2000)
-TABULATED_C = tuple(
-    float(T) for T in range(-40, 161, 5)
-)  # where films that follow a coolant are tabulated: no coolant goes beyond
+# Where films that follow a coolant are tabulated: no coolant goes beyond.
+TABULATED_C = tuple(float(T) for T in range(-40, 161, 5))
 
 
 @dataclass(frozen=True)

@@ -25,9 +25,8 @@ from validation.optimisation.space import Variable
 Progress = Callable[[str], None]
 HALVINGS = 6  # of the way to a bound; nearer, a variable says nothing
 SIZE_M, ACROSS = 0.12, 0.5  # elements twice as large as those of a case; temperatures differ by 2 % of the rise
-COARSE = Recipe(
-    tolerance=0.03, max_states=110, shifts=(1 / 20, 1 / 700), random_points=1
-)  # fewer snapshots than a case's: enough to rank designs
+# Fewer snapshots than a case's: enough to rank designs.
+COARSE = Recipe(tolerance=0.03, max_states=110, shifts=(1 / 20, 1 / 700), random_points=1)
 
 
 def coarse_network(machine: Machine, progress: Progress) -> Network:

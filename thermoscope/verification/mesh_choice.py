@@ -11,13 +11,13 @@ from typing import Any
 
 import numpy as np
 
-from geom import Machine, build_mesh
+from geom import Machine
 from geom.disk_cache import recalled
 from lumped.condensation.reduction import Recipe
 from lumped.machine.bases import on_every_base
 from thermoscope.caches import cache_folder
 from thermoscope.case_folder.files import write_whole
-from thermoscope.pipeline import Meshing, Prepared, Progress, means_network, meshed, reduced
+from thermoscope.pipeline import Meshing, Prepared, Progress, means_network, meshed, plain_mesh, reduced
 from thermoscope.verification.crosscheck import FLOOR
 from thermoscope.verification.fixed_coefficients import FixedCoefficients, rated
 
@@ -108,8 +108,8 @@ def _choice(
 
 
 def _points(machine: Machine, how: Meshing) -> int:
-    """Of a mesh that is kept on disk: nothing is assembled on it."""
-    return len(build_mesh(machine, how.size_m, how.segments, how.across, how.axial_m, cache_folder()).points)
+    """Nothing is assembled on the mesh, which stays on disk."""
+    return len(plain_mesh(machine, how).points)
 
 
 def _report(progress: Progress, message: str) -> None:

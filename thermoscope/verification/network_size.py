@@ -17,9 +17,8 @@ from thermoscope.pipeline import ACROSS, AXIAL, Built, Meshing, Progress, prepar
 from thermoscope.verification.load_cases import load_cases
 from thermoscope.verification.mesh_choice import MeshChoice, chosen_mesh
 
-FINE = Recipe(
-    tolerance=0.01, random_points=8, local_points=12, local_states=16
-)  # finer than a case's own: every accuracy that may be asked is cut out of it
+# Finer than a case's own: every accuracy that may be asked is cut out of it.
+FINE = Recipe(tolerance=0.01, random_points=8, local_points=12, local_states=16)
 ROUNDS = 3  # of learning: each solves the field at new points
 POINTS_EACH = 3  # random ones and extreme ones: each costs a solve of the field, and errors of a kind are alike
 CONTACT_FACTORS = (0.2, 5.0)  # times all contacts at once: about the spread of one contact in the tables

@@ -33,18 +33,8 @@ from validation.effects.build import copy_link, copy_source
 Array = NDArray[np.float64]
 REFERENCE_RISE_K = 40.0  # a usual rise: there an exponent moves no coefficient
 REFERENCE_DEGC = 40.0  # a usual temperature of a bearing
-KNOTS = (
-    0.0,
-    1.0,
-    2.0,
-    5.0,
-    10.0,
-    20.0,
-    40.0,
-    80.0,
-    160.0,
-    320.0,
-)  # K, each about twice the last: the logarithm of a rise is nearly straight between two
+# K, each about twice the last: the logarithm of a rise is nearly straight between two.
+KNOTS = (0.0, 1.0, 2.0, 5.0, 10.0, 20.0, 40.0, 80.0, 160.0, 320.0)
 FARTHEST = np.log(10.0)  # of a rise over the reference: beyond a decade nothing is known of an exponent
 EXACT_LOSSES = ("copper", "measured")  # losses whose law is not in doubt
 

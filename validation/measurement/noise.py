@@ -73,10 +73,8 @@ def _matern(time: bytes, ell: float) -> Array:
     return np.asarray((1.0 + d) * np.exp(-d))
 
 
-FASTS = (
-    (0.0, TAU),
-    *product((1.0, 10.0, 100.0), (60.0, 240.0)),
-)  # variance over the white one, and s: decades, as the evidence turns slowly with either
+# Variance over the white one, and s: decades, as the evidence turns slowly with either.
+FASTS = ((0.0, TAU), *product((1.0, 10.0, 100.0), (60.0, 240.0)))
 ELLS = (ELL, 600.0, 2400.0)  # s, of the slow part: the usual one, a shorter and a longer
 SLOWS = np.array([0.0, 1.0, 10.0, 100.0, 1000.0, 10000.0])  # variance over the white one, by decades
 _AT = [(f, e, b) for f, e, b in product(range(len(FASTS)), range(len(ELLS)), range(len(SLOWS))) if b or ELLS[e] == ELL]

@@ -69,9 +69,9 @@ def distance(obstacle: Any, points: Array) -> Array:
     from vtkmodules.vtkCommonCore import mutable
 
     def nearest(at: Array) -> float:
-        nearest, cell, sub = [0.0] * 3, mutable(0), mutable(0)
+        point, cell, sub = [0.0] * 3, mutable(0), mutable(0)
         squared: Any = mutable(0.0)
-        obstacle.FindClosestPoint(at, nearest, cell, sub, squared)
+        obstacle.FindClosestPoint(at, point, cell, sub, squared)
         return float(np.sqrt(float(squared)))
 
     return np.array([nearest(at) for at in points], float)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError
 from thermoscope.case_folder.folder import Folder
-from thermoscope.case_folder.runs import before_last, by_interest, fields, readings, temperature_range
+from thermoscope.case_folder.runs import at_instant, before_last, by_interest, fields, readings, temperature_range
 from thermoscope.commands.open_case import open_case
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import give, progress
@@ -68,7 +68,7 @@ def now(folder: Folder) -> str:
 
 def title(test: Test, time: float, words: str, sensors: Sequence[Sensor]) -> str:
     """Which test, which instant (s), which model, and what that misses most."""
-    return f"{test.name} at {time / 60:.0f} min, {words}{largest(sensors)}"
+    return f"{at_instant(test, time)}, {words}{largest(sensors)}"
 
 
 def largest(sensors: Sequence[Sensor]) -> str:

@@ -18,6 +18,7 @@ from lumped.schemas.reader import suggestion
 from thermoscope.case_folder.error_field import error_field
 from thermoscope.case_folder.folder import Folder, Progress
 from thermoscope.case_folder.runs import (
+    at_instant,
     before_last,
     by_interest,
     comparison_of,
@@ -112,7 +113,7 @@ class Subject:
         network, values = heat_model(working(case)[0], case.model.values)
         heat = balance(network, test, values)
         step = last_running_step(network, heat)
-        when = f"{self.test.name} at {heat.time[step + 1] / 60:.0f} min"
+        when = at_instant(self.test, heat.time[step + 1])
         means = dict(zip([*network.states, *network.boundaries], heat.z[step + 1].tolist(), strict=True))
         return heat_flows(network, heat, step), means, when
 

@@ -26,11 +26,8 @@ K_AIR = 0.028  # W/m/K, air near 50 degC
 AIR_K = 0.026  # W/m/K
 K1, K2, K3 = SCHUBERT
 WALL = 0.3  # share of the rotor's tip speed that passes a wall at rest
-COPPER_SHARE = {
-    "winding": 0.45,
-    "winding.left": 0.35,
-    "winding.right": 0.35,
-}  # of their space (assumed): end turns lie looser than wires in slots
+# Of their space (assumed): end turns lie looser than wires in slots.
+COPPER_SHARE = {"winding": 0.45, "winding.left": 0.35, "winding.right": 0.35}
 JOINTS = {"base": 500.0, "foot": 1000.0, "endcap": 1000.0, "shaft": 4000.0, "bearing": 150.0, "seat": 1500.0,
           "magnets": 520.0, "gap": 5000.0, "wire": 1000.0}  # fmt: skip
 BANDS = 5  # of a base plate, from foot to rim; chosen
