@@ -144,7 +144,8 @@ def compiled(
     every, signals = assembly(network), inputs if isinstance(inputs, Signals) else Signals(inputs, time.size)
     acting, slope = multipliers(network, values), slopes(network, values, tangents)
     m = np.array([acting.get(name, 1.0) for name in every.names])
-    factors = [signals.factor(p.name, p.law) for p in every.patterns]
+    curves = [signals.curve(p.name, p.law) for p in every.patterns]
+    factors = [c.value for c in curves]
     steady = ~every.bends & np.array([f.ndim == 0 for f in factors], bool)
     watched = {target for d in slope for target in d}
     live = all_terms | np.array([name in watched for name in every.names], bool) | ~(steady | (m == 0.0))
@@ -155,7 +156,9 @@ def compiled(
     moving = (m[live] != 0.0) & ~steady[live]
     stiff = moving & (terms.kind[:, STIFF] == 1)
     bends = bool(np.any(terms.kind[stiff, BENDS]))
-    driven = forcing(time, u, signals, patterns, moving, stiff, bends, precision.every_sample)
+    driven = forcing(
+        time, u, signals, patterns, [curves[k] for k in alive], moving, stiff, bends, precision.every_sample
+    )
     return Compiled(
         network.C * capacity_multipliers(network, acting),
         every.matrix(m * constant),

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from lumped.numerics.knots import halfway, moved
 from lumped.transfer.ranges import within_silence
 
 Array = NDArray[np.float64]
@@ -17,6 +18,7 @@ SMALL = 1e-2  # of the largest factor of a record: less than that counts as that
 FLAT, FAR = 1e-4, 0.02  # a factor that bends less, over inputs that move less, is a parabola without another look
 FINEST = 1e-3  # of an interval
 QUARTERS = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
+ROUNDED = 1e-12  # of the largest factor: a smaller bulge comes from rounding
 
 
 class Curve(NamedTuple):
@@ -41,36 +43,45 @@ def between(x: Array, at: Array) -> Array:
 
 
 class Moves(NamedTuple):
-    """at_all, far (nt - 1,) : whether an input moves between two samples, and whether by more than FAR of its largest
+    """left : the samples after which an input moves;  far (nt - 1,) : whether by more than FAR of its largest
 
     extremes : the samples at which an input is least or largest
     """
 
-    at_all: NDArray[np.bool_]
+    left: NDArray[np.int64]
     far: NDArray[np.bool_]
     extremes: Array
+
+    @property
+    def positions(self) -> Array:
+        """Of the samples, then of the middles of the intervals in which an input moves."""
+        return np.concatenate([np.arange(self.far.size + 1.0), self.left + 0.5])
+
+    def at_positions(self, x: Array) -> Array:
+        """An input (nt,) there."""
+        return np.concatenate([x, 0.5 * (x[self.left] + x[self.left + 1])])
 
 
 def moving(inputs: Iterable[Array], nt: int) -> Moves:
     """From inputs (nt,) that are straight lines between the samples."""
-    inputs = list(inputs)
-    ends = [float(at(x)) for x in inputs for at in (np.argmin, np.argmax)]
-    out = Moves(np.zeros(nt - 1, bool), np.zeros(nt - 1, bool), np.unique(ends))
+    at_all, far, ends = np.zeros(nt - 1, bool), np.zeros(nt - 1, bool), []
     for x in inputs:
-        step = np.abs(np.diff(x))
-        np.logical_or(out.at_all, step > 0.0, out=out.at_all)
-        np.logical_or(out.far, step > FAR * np.abs(x).max(), out=out.far)
-    return out
+        moved(x, FAR, at_all, far)
+        ends += [float(x.argmin()), float(x.argmax())]
+    return Moves(np.flatnonzero(at_all), far, np.unique(ends))
 
 
 class Between(Mapping[str, Array]):
-    """Inputs at positions, made when they are read."""
+    """Inputs at some positions, each made when it is first read.  at : from an input at its samples to these"""
 
-    def __init__(self, inputs: Mapping[str, Array], at: Array) -> None:
+    def __init__(self, inputs: Mapping[str, Array], at: Callable[[Array], Array]) -> None:
         self.inputs, self.at = inputs, at
+        self._made: dict[str, Array] = {}
 
     def __getitem__(self, name: str) -> Array:
-        return between(self.inputs[name], self.at)
+        if name not in self._made:
+            self._made[name] = self.at(self.inputs[name])
+        return self._made[name]
 
     def __iter__(self) -> Iterator[str]:
         return iter(self.inputs)
@@ -92,31 +103,32 @@ def straight(value: Array) -> Curve:
 
 
 def curve(
-    factor: Callable[[Array], Array], nt: int, moves: Moves, turns: Array = NONE, skip: NDArray[np.bool_] | None = None
-) -> Curve:
-    """From a factor at any positions; () where it never changes.  turns : positions at which it may have a corner
+    every: Array, factor: Callable[[Array], Array], moves: Moves, turns: Array = NONE,
+    skip: NDArray[np.bool_] | None = None,
+) -> Curve:  # fmt: skip
+    """From a factor, () where it never changes.  every : the factor at moves.positions;  factor : at any positions
 
-    moves : where its inputs move between samples;  skip (nt,) : the intervals that end there are not to be cut
+    moves : where its inputs move between samples;  turns : positions at which it may have a corner
+    skip (nt,) : the intervals that end there are not to be cut
     """
-    samples, left = np.arange(nt, dtype=float), np.flatnonzero(moves.at_all)
-    every = factor(np.concatenate([samples, left + 0.5]))
-    if every.ndim == 0 or np.all(every == every[0]):
-        return straight(every if every.ndim == 0 else every[0])
-    value, scale = every[:nt], float(np.abs(every).max())
-    bulge = np.zeros(nt)
-    bulge[1 + left] = every[nt:] - 0.5 * (value[left] + value[left + 1])
-    bulge[np.abs(bulge) <= 1e-12 * scale] = 0.0  # rounding
+    if every.ndim == 0:
+        return straight(every)
+    nt = moves.far.size + 1
+    bulge, looked, limits = np.zeros(nt), np.empty(nt, np.int64), np.array([ROUNDED, FLAT, SMALL, 0.0])
+    count = halfway(every, moves.left, moves.far, limits, bulge, looked)
+    if count < 0:
+        return straight(every[0])
+    near = looked[:count]
 
     def again(at: Array) -> Array:
         """Beside the extremes, for laws that look for the largest of what they are given."""
         return factor(np.concatenate([moves.extremes, at]))[moves.extremes.size :]
 
-    looked = moves.far | (np.abs(bulge[1:]) > FLAT * np.maximum(np.abs(value[1:]), SMALL * scale))
     if skip is not None:
-        looked &= ~skip[1:]
+        near = near[~skip[near + 1]]
     with within_silence():  # what is out of range was said of the samples
-        inserted = _cut(again, np.flatnonzero(looked).astype(float), turns, SMALL * scale)
-    return Curve(value, bulge, inserted)
+        inserted = _cut(again, near.astype(float), turns, SMALL * limits[3])
+    return Curve(every[:nt], bulge, inserted)
 
 
 def _cut(factor: Callable[[Array], Array], left: Array, turns: Array, small: float) -> Array:

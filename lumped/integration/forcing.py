@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError
 from lumped.integration.assembly import Pattern
-from lumped.integration.curve import SMALL, Curve, between, straight
+from lumped.integration.curve import NONE, SMALL, Curve, between, straight
 from lumped.integration.signals import Signals
 from lumped.model.network import Network
-from lumped.numerics.knots import needed
+from lumped.numerics.knots import needed, placed
 from lumped.numerics.terms import Forcing
 
 Array = NDArray[np.float64]
@@ -48,15 +48,14 @@ def boundary_table(network: Network, boundaries: Mapping[str, Array | float], nt
 
 
 def forcing(
-    time: Array, u: Array, signals: Signals, patterns: Sequence[Pattern], acting: Mask, stiff: Mask, bends: bool,
-    every_sample: bool = False,
+    time: Array, u: Array, signals: Signals, patterns: Sequence[Pattern], curves: Sequence[Curve], acting: Mask,
+    stiff: Mask, bends: bool, every_sample: bool = False,
 ) -> Forcing:  # fmt: skip
-    """u (nt, nb) boundaries;  patterns : the live terms, of which those `acting` set the knots
+    """u (nt, nb) boundaries;  patterns, curves : the live terms, of which those `acting` set the knots
 
     stiff : which acting terms touch the matrix;  bends : whether one of these follows temperature
     every_sample : to have a knot at every sample, whether a run needs it or not
     """
-    curves = [signals.curve(p.name, p.law) for p in patterns]
     at, sample = _knots(time, [c for c, acts in zip(curves, acting, strict=True) if acts])
     t, source = time, signals
     if at.size > time.size:
@@ -64,7 +63,7 @@ def forcing(
         curves = [source.curve(p.name, p.law) for p in patterns]
         t, u = between(time, at), np.stack([between(x, at) for x in u.T], axis=1).reshape(at.size, -1)
     ends = [straight(x) for x in u.T]
-    chosen, wholes = np.arange(t.size), [np.empty(0)] * (len(curves) + len(ends))
+    chosen, wholes = np.arange(t.size), [NONE] * (len(curves) + len(ends))
     if not every_sample:
         chosen, wholes = _needed(t, curves, ends, list(source.values()))
     factor, bulge = _between(t, chosen, curves, wholes[: len(curves)])
@@ -86,20 +85,24 @@ def _needed(
     """
     curves = [*((c, PARABOLA, 0.0) for c in heats), *((c, 0.0, PARABOLA_K) for c in ends),
               *((straight(x), PARABOLA, 0.0) for x in inputs)]  # fmt: skip
-    varying = [i for i, x in enumerate(curves) if _varies(x[0])]
+    varying = {i: k for k, i in enumerate(i for i, x in enumerate(curves) if _varies(x[0]))}
     value, bulge, whole = np.empty((3, len(varying), time.size))
     allowed = np.empty((len(varying), 2))
-    for k, i in enumerate(varying):
+    for i, k in varying.items():
         c, share, most = curves[i]
         value[k], bulge[k] = c.value, c.bulge
-        allowed[k] = max(most, share * SMALL * float(np.abs(c.value).max())), share
+        allowed[k] = max(most, share * SMALL * _largest(c.value)), share
     out = np.empty(time.size, np.int64)
-    count, row = needed(time, value, bulge, allowed, whole, np.empty(3), out), {i: k for k, i in enumerate(varying)}
-    return out[:count], [whole[row[i]] if i in row else np.empty(0) for i in range(len(heats) + len(ends))]
+    count = needed(time, value, bulge, allowed, whole, np.empty(4), out)
+    return out[:count], [whole[varying[i]] if i in varying else NONE for i in range(len(heats) + len(ends))]
 
 
 def _varies(c: Curve) -> bool:
-    return c.value.ndim > 0 and (bool(np.any(c.value != c.value[0])) or bool(np.any(c.bulge)))
+    return c.value.ndim > 0 and (bool((c.value != c.value[0]).any()) or bool(c.bulge.any()))
+
+
+def _largest(x: Array) -> float:
+    return max(float(x.max()), -float(x.min()))
 
 
 def _between(time: Array, chosen: Ints, curves: Sequence[Curve], wholes: Sequence[Array]) -> tuple[Array, Array]:
@@ -108,28 +111,26 @@ def _between(time: Array, chosen: Ints, curves: Sequence[Curve], wholes: Sequenc
     wholes : the integrals of the curves from the first knot
     """
     value, bulge = np.zeros((2, chosen.size, len(curves)))
+    value[:] = [c.value if c.value.ndim == 0 else 0.0 for c in curves]
     starts = 1 + np.flatnonzero(np.diff(chosen) > 1)
     left, right = chosen[starts - 1], chosen[starts]
-    for e, (c, whole) in enumerate(zip(curves, wholes, strict=True)):
-        value[:, e] = c.value if c.value.ndim == 0 else c.value[chosen]
+    for e, c in enumerate(curves):
         if c.value.ndim == 0:
             continue
-        bulge[:, e] = c.bulge if c.bulge.ndim == 0 else c.bulge[chosen]
-        if starts.size and whole.size:
-            mean = (whole[right] - whole[left]) / (time[right] - time[left])
+        value[:, e], bulge[:, e] = c.value[chosen], c.bulge if c.bulge.ndim == 0 else c.bulge[chosen]
+        if starts.size and wholes[e].size:
+            mean = (wholes[e][right] - wholes[e][left]) / (time[right] - time[left])
             off = 1.5 * (mean - 0.5 * (c.value[left] + c.value[right]))
-            off[np.abs(off) <= ROUNDING * np.abs(c.value).max()] = 0.0
+            off[np.abs(off) <= ROUNDING * _largest(c.value)] = 0.0
             bulge[starts, e] = off
     return value, bulge
 
 
 def _samples(time: Array, knot_time: Array, chosen: Ints, at: Ints) -> tuple[Ints, Array]:
     """first (nk + 1,) and share (nt,) of Forcing.  at (nt,) : which of all knots each sample is"""
-    j = np.searchsorted(chosen, at)
-    before, share = np.maximum(j - 1, 0), np.ones(time.size)
-    inner = chosen[j] != at
-    share[inner] = ((time - knot_time[before]) / np.where(inner, knot_time[j] - knot_time[before], 1.0))[inner]
-    return np.append(0, np.searchsorted(at, chosen, "right")), share
+    first, share = np.empty(knot_time.size + 1, np.int64), np.empty(time.size)
+    placed(time, knot_time, chosen, at, first, share)
+    return first, share
 
 
 def _knots(time: Array, curves: Sequence[Curve]) -> tuple[Array, NDArray[np.int64]]:

@@ -28,13 +28,22 @@ class Source(NamedTuple):
 
     def between(self, at: Array) -> Between:
         """The recorded inputs at positions of ours (index plus share)."""
-        return Between(self.signals, np.interp(between(self.at, at), self.time, np.arange(self.time.size)))
+        own = np.interp(between(self.at, at), self.time, np.arange(self.time.size))
+        return Between(self.signals, lambda x: between(x, own))
 
     def part(self, at: Array) -> Source:
         """The recorded samples from before the first to after the last of some times, with these as ours."""
         first, last = np.searchsorted(self.time, [at[0], at[-1]], "right") - 1
         some = slice(max(int(first), 0), min(int(last) + 2, self.time.size))
         return Source(self.signals.part(some), self.time[some], at)
+
+
+class Reading(NamedTuple):
+    """Inputs that laws read: where they move between samples, at moves.positions, and where they pass through zero."""
+
+    moves: Moves
+    halfway: Mapping[str, Array]
+    turns: Array
 
 
 class Signals(dict[str, Array]):
@@ -53,6 +62,7 @@ class Signals(dict[str, Array]):
         self.source: Source | None = None
         self._are_cut = False  # what lies between two of them need not be cut again
         self._known: dict[int, tuple[ref[Law], Curve]] = {}
+        self._readings: dict[tuple[str, ...], Reading] = {}
         self._finer: dict[bytes, Signals] = {}
 
     @classmethod
@@ -81,7 +91,7 @@ class Signals(dict[str, Array]):
 
     def _at(self, at: Array) -> Signals:
         source = self.source
-        out = Signals(dict(source.between(at) if source else Between(self, at)), at.size)
+        out = Signals(dict(self._between(at)), at.size)
         out._are_cut, out._around, out.source = True, (self, at), source and source._replace(at=between(source.at, at))
         return out
 
@@ -127,8 +137,13 @@ class Signals(dict[str, Array]):
         source = self.source
         if not law.looks_at_all:
             full = np.ones(self.nt, bool) if self._are_cut else crowded(source.at, source.time) if source else None
-            moves = self._moves(law)
-            near = curve(lambda at: self._factor(name, law, at), self.nt, moves, self._turns(law.reads), full)
+            read = self._reading(law.reads)
+            every = self._factor(name, law, read.halfway, self.nt + read.moves.left.size)
+
+            def factor(at: Array) -> Array:
+                return self._factor(name, law, self._between(at), at.size)
+
+            near = curve(every, factor, read.moves, read.turns, full)
             return projected(near, source.at, source.signals.curve(name, law), source.time) if source else near
         if self._around:
             whole, at = self._around
@@ -137,15 +152,28 @@ class Signals(dict[str, Array]):
         if source:
             value = source.signals.factor(name, law)
             return straight(value if value.ndim == 0 else np.interp(source.at, source.time, value))
-        value = self._factor(name, law, None)
+        value = self._factor(name, law, self, self.nt)
         constant = value.ndim == 1 and bool(np.all(value == value[0]))
         return straight(np.asarray(value[0]) if constant else value)
 
-    def _moves(self, law: Law) -> Moves:
+    def _reading(self, names: tuple[str, ...]) -> Reading:
+        """How some inputs run between the samples, worked out once for all laws that read the same."""
+        reading = self._readings.get(names)
+        if reading is None:
+            moves = self._moves(names)
+            halfway = self._between(moves.positions) if self.source else Between(self, moves.at_positions)
+            reading = Reading(moves, halfway, self._turns(names))
+            if self.nt <= LONG:
+                self._readings[names] = reading
+        return reading
+
+    def _between(self, at: Array) -> Between:
+        return self.source.between(at) if self.source else Between(self, lambda x: between(x, at))
+
+    def _moves(self, names: Iterable[str]) -> Moves:
         if self.source:
-            every = np.ones(self.nt - 1, bool)
-            return Moves(every, every, np.arange(self.nt, dtype=float))
-        return moving([self[name] for name in law.reads], self.nt)
+            return Moves(np.arange(self.nt - 1), np.ones(self.nt - 1, bool), np.arange(self.nt, dtype=float))
+        return moving([self[name] for name in names], self.nt)
 
     def _turns(self, names: Iterable[str]) -> Array:
         """Positions at which one of the inputs passes through zero between two samples."""
@@ -155,12 +183,10 @@ class Signals(dict[str, Array]):
             out.append(left + x[left] / (x[left] - x[left + 1]))
         return np.concatenate(out)
 
-    def _factor(self, name: str, law: Law, at: Array | None) -> Array:
-        """The factor at positions, or at the samples of the whole record."""
-        size = self.nt if at is None else at.size
-        signals = self if at is None else self.source.between(at) if self.source else Between(self, at)
+    def _factor(self, name: str, law: Law, inputs: Mapping[str, Array], size: int) -> Array:
+        """The factor where the inputs are."""
         with np.errstate(all="ignore"):  # what comes of it is looked at
-            value = np.asarray(law.factor(signals), float)
+            value = np.asarray(law.factor(inputs), float)
         if value.shape not in ((), (size,)):
             raise InputError(f"the input factor has shape {value.shape}", f"'{name}'", f"() or ({size},)")
         if not np.all(np.isfinite(value)):

@@ -9,7 +9,7 @@ from lumped.numerics.jit import entry, inner, inner_finite, pasted
 def _missed(time, value, bulge, line):
     """The most that a parabola from the first knot to the last misses of a curve, at all knots and halfway between.
 
-    line (3,) : of the parabola its value at the first knot, its rise from there to the last, its bulge
+    line (4,) : of the parabola its value at the first knot, its rise from there to the last, its bulge
     """
     last = time.size - 1
     most, first, over, f0, rise, four = 0.0, time[0], 1.0 / (time[last] - time[0]), line[0], line[1], 4.0 * line[2]
@@ -25,13 +25,18 @@ def _missed(time, value, bulge, line):
 
 @inner
 def _follows(time, value, bulge, whole, allowed, line, i, j):
-    """Whether parabolas from knot i to knot j that keep all integrals are where every curve is."""
-    span = time[j] - time[i]
-    for c in range(len(value)):
+    """Whether parabolas from knot i to knot j that keep all integrals are where every curve is.
+
+    line[3] : the curve that was missed last, which is looked at first
+    """
+    span, count, last = time[j] - time[i], len(value), int(line[3])
+    for k in range(count):
+        c = (last + k) % count
         f0, f1 = value[c, i], value[c, j]
         line[0], line[1], line[2] = f0, f1 - f0, 1.5 * ((whole[c, j] - whole[c, i]) / span - 0.5 * (f0 + f1))
         limit = max(allowed[c, 0], allowed[c, 1] * max(abs(f0), abs(f1)))
         if _missed(time[i : j + 1], value[c, i : j + 1], bulge[c, i : j + 1], line) > limit:
+            line[3] = c
             return False
     return True
 
@@ -79,11 +84,11 @@ def needed(time, value, bulge, allowed, whole, line, knot):
 
     time (nk,) s;  value (nc, nk) curves at the knots;  bulge (nc, nk) how far each is above the mean of both ends in
     the middle before a knot;  allowed (nc, 2) what a parabola may miss: at all, as a share
-    whole (nc, nk) : their integrals from the first knot, filled here;  line (3,) scratch
+    whole (nc, nk) : their integrals from the first knot, filled here;  line (4,) scratch
     """
     _integrated(time, value, bulge, whole)
     i, count, width, jump = 0, 1, 2, 1
-    knot[0] = 0
+    knot[0], line[3] = 0, 0.0
     while i < time.size - 1:
         while jump < time.size and (jump <= i or time[jump] > time[jump - 1]):
             jump += 1
@@ -92,3 +97,65 @@ def needed(time, value, bulge, allowed, whole, line, knot):
         knot[count] = j
         count += 1
     return count
+
+
+@entry
+def halfway(every, left, far, limits, bulge, looked):
+    """How far a factor bulges halfway between samples, into bulge; the intervals worth a closer look, into looked.
+
+    How many these are, or -1 where the factor never changes.
+    every : the factor at the samples, then halfway after those in `left`;  far (nt - 1,) whether an input moves far
+    limits (4,) : of the largest factor what is rounding, of an interval's what is flat, what counts at least; and the
+    largest factor, filled here;  bulge, looked (nt,)
+    """
+    nt, scale, least, most = bulge.size, 0.0, every[0], every[0]
+    for i in range(every.size):
+        least = every[i] if every[i] < least else least
+        most = every[i] if every[i] > most else most
+    if least == most:
+        return -1
+    scale = max(abs(least), abs(most))
+    for k in range(left.size):
+        off = every[nt + k] - 0.5 * (every[left[k]] + every[left[k] + 1])
+        if abs(off) > limits[0] * scale:
+            bulge[left[k] + 1] = off
+    count, small = 0, limits[2] * scale
+    for i in range(1, nt):
+        if far[i - 1] or abs(bulge[i]) > limits[1] * max(abs(every[i]), small):
+            looked[count] = i - 1
+            count += 1
+    limits[3] = scale
+    return count
+
+
+@entry
+def moved(x, far, at_all, is_far):
+    """Where an input moves between samples, and where by more than a share `far` of its largest, beside what is there.
+
+    at_all, is_far (nt - 1,) : filled here
+    """
+    most = 0.0
+    for i in range(x.size):
+        most = max(most, abs(x[i]))
+    for i in range(x.size - 1):
+        step = abs(x[i + 1] - x[i])
+        at_all[i] |= step > 0.0
+        is_far[i] |= step > far * most
+
+
+@entry
+def placed(time, knot, chosen, at, first, share):
+    """Which samples end in the interval before every knot, into first (nk + 1,), and where in it, into share (nt,).
+
+    time (nt,), knot (nk,) s;  at (nt,), chosen (nk,) : which of all knots they are
+    """
+    j = 0
+    first[0] = 0
+    for t in range(time.size):
+        while chosen[j] < at[t]:
+            j += 1
+            first[j] = t
+        share[t] = 1.0 if chosen[j] == at[t] else (time[t] - knot[j - 1]) / (knot[j] - knot[j - 1])
+    while j < knot.size:
+        j += 1
+        first[j] = time.size
