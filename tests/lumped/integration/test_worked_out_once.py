@@ -2,7 +2,12 @@
 
 import gc
 
+import numpy as np
+
+from lumped.integration import signals
+from lumped.integration.signals import Signals
 from lumped.model.once import once
+from lumped.transfer.laws import InputPower
 
 
 class Thing:
@@ -31,3 +36,16 @@ def test_what_has_gone_is_not_mistaken_for_what_took_its_place():
     for k in range(50):
         assert size(Thing(k)) == k
         gc.collect(0)
+
+
+def test_laws_of_the_same_input_share_how_it_runs_between_the_samples(monkeypatch):
+    looked, moving = [], signals.moving
+    monkeypatch.setattr(signals, "moving", lambda inputs, nt: looked.append(nt) or moving(inputs, nt))
+    time = np.linspace(0.0, 1.0, 50)
+    given = Signals({"current_A": 10.0 + 90.0 * time, "speed_rpm": 100.0 * time}, time.size)
+    squares = [InputPower(watts, (("current_A", 10.0, 2.0),)) for watts in (1.0, 3.0)]
+    first, second = (given.curve("copper", law) for law in squares)
+    given.curve("iron", InputPower(1.0, (("speed_rpm", 100.0, 1.5),)))
+    assert looked == [50, 50]
+    np.testing.assert_allclose(first.bulge[1:], -0.25 * (9.0 / 49.0) ** 2, rtol=1e-9)  # of a square
+    np.testing.assert_allclose(second.bulge[1:], 3.0 * first.bulge[1:], rtol=1e-9)

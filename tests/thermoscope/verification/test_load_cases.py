@@ -7,7 +7,7 @@ from bare_networks import means_only
 
 from geom import load_machine
 from lumped.condensation.zone import Zone
-from thermoscope.pipeline import prepared
+from thermoscope.pipeline import heated, prepared
 from thermoscope.verification.load_cases import fluid_rises, rated_watts
 
 MACHINE = load_machine("ipmsm-48s8p-jacket")
@@ -39,3 +39,12 @@ def test_rises_are_proportional_to_losses(jacketed):
     twice = fluid_rises(MACHINE, reduction, network, {zone: 2.0 * watts for zone, watts in rated.items()})
     assert twice == pytest.approx({fluid: 2.0 * rise for fluid, rise in once.items()})
     assert set(fluid_rises(MACHINE, reduction, network, {}).values()) == {0.0}
+
+
+def test_ends_of_a_winding_are_heated_though_its_loss_is_named_after_the_middle(jacketed):
+    _, network = jacketed
+    parts = heated(MACHINE, network)
+    ends = {"winding.left", "winding.right"}
+    assert {"winding", "stator.core", *ends} <= parts
+    assert ends.isdisjoint(source.place for source in network.sources)
+    assert parts.isdisjoint({"housing", "shaft"})
