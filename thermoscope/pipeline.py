@@ -15,8 +15,7 @@ from geom import Machine, NamedMesh, build_mesh
 from geom.description.materials import Material
 from lumped.condensation.reduction import Recipe, Reduction, reduce
 from lumped.condensation.zone import Zone
-from lumped.machine.losses import loss_watts, place_of
-from lumped.machine.motor import boundaries, fluids, motor_network, nominal_coefficients, rated_inputs
+from lumped.machine.motor import boundaries, fluids, motor_network, nominal_coefficients
 from lumped.machine.path import path_of
 from lumped.machine.shapes import wound
 from lumped.model.network import Network
@@ -158,7 +157,7 @@ def build(
 
 def networks_of(machine: Machine, reduction: Reduction, recipe: Recipe) -> tuple[Network, Network]:
     """The network of a recipe, and the small one for many runs."""
-    favour = dict.fromkeys(heated(machine, means_network(machine, reduction)), recipe.favour)
+    favour = dict.fromkeys(means_network(machine, reduction).heated, recipe.favour)
     large = reduction.network(recipe.tolerance, recipe.max_states, favour)
     small = reduction.network(recipe.tolerance, FEW, favour)
     return motor_network(machine, large), motor_network(machine, small)
@@ -167,11 +166,6 @@ def networks_of(machine: Machine, reduction: Reduction, recipe: Recipe) -> tuple
 def means_network(machine: Machine, reduction: Reduction) -> Network:
     """A mean per part and no shapes: enough for losses, fluids and streams."""
     return motor_network(machine, reduction.network(max_states=len(reduction.field.blocks)))
-
-
-def heated(machine: Machine, network: Network) -> set[str]:
-    """The parts that losses heat, by whatever share."""
-    return {place_of(network, place).part for place in loss_watts(machine, network, rated_inputs(machine))}
 
 
 MOST_BUILT = 2  # machines: a command works on one, `carry` on pairs

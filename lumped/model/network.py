@@ -236,6 +236,14 @@ class Network:
         return {name for item in items for name in item.law.reads}
 
     @property
+    def heated(self) -> tuple[str, ...]:
+        """Nodes into which some source puts heat, by whatever share, in the order of the states."""
+        fed = np.zeros(self.size, bool)
+        for source in self.sources:
+            fed[source.index[source.weights != 0.0]] = True
+        return tuple(dict.fromkeys(name.partition("#")[0] for name, heat in zip(self.states, fed) if heat))
+
+    @property
     def size(self) -> int:
         return len(self.states) + len(self.boundaries)
 

@@ -185,7 +185,7 @@ def hot_spots(network: Network, z: Array) -> dict[str, Row]:
     """
     parts = network.recovery.parts if isinstance(network.recovery, Shapes) else {}
     out = {}
-    for name in dict.fromkeys(s.place for s in network.sources if s.place in parts):
+    for name in (n for n in network.heated if n in parts):
         shape = parts[name]
         x = z[int(np.argmax(z[:, shape.states] @ (shape.weights @ shape.V))), shape.states]
         out[f"{HOT}{name}"] = Row(shape.states, shape.V[int(np.argmax(shape.V @ x))])

@@ -7,7 +7,7 @@ from bare_networks import means_only
 
 from geom import load_machine
 from lumped.condensation.zone import Zone
-from thermoscope.pipeline import heated, prepared
+from thermoscope.pipeline import prepared
 from thermoscope.verification.load_cases import fluid_rises, rated_watts
 
 MACHINE = load_machine("ipmsm-48s8p-jacket")
@@ -43,7 +43,7 @@ def test_rises_are_proportional_to_losses(jacketed):
 
 def test_ends_of_a_winding_are_heated_though_its_loss_is_named_after_the_middle(jacketed):
     _, network = jacketed
-    parts = heated(MACHINE, network)
+    parts = set(network.heated)
     ends = {"winding.left", "winding.right"}
     assert {"winding", "stator.core", *ends} <= parts
     assert ends.isdisjoint(source.place for source in network.sources)

@@ -104,7 +104,7 @@ def unmeasured(folder: Folder, result: revise.Revision) -> list[dict[str, Any]]:
     """
     test, network = by_interest(folder)[0], folder.case.model.network
     read = {c.place for t in folder.case.tests for c in t.channels}
-    heated = {s.place for s in network.sources}
+    heated = set(network.heated)
     names = [n for n in mean_rows(network) if n in heated - read and network.places[n].kind in ("part", "node")]
     before, after = (ends(case, test, names) for case in (folder.case, replace(folder.case, model=result.model)))
     out = [{"place": n, "test": test.name, "before_C": a, "after_C": b}
