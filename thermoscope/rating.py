@@ -77,15 +77,15 @@ def places(
 ) -> dict[str, float]:  # fmt: skip
     """Every place by its name; a role (winding, magnet, bearing, ...) stands for all places that have it.
 
-    what : name -> its role; a place of that very name goes before a role
+    what : name -> its role. "winding" limits the ends of a winding beside the place of that name: they may be hotter.
     """
+    roles = {n: i.role.value for n, i in what.items() if i.role is not None}
     out: dict[str, float] = {}
-    for name, T in limits.items():
-        roles = {n: i.role.value for n, i in what.items() if i.role is not None}
-        mine = [name] if name in rows else [n for n in rows if roles.get(n) == name]
+    for name in sorted(limits, key=lambda n: n not in roles.values()):  # a place has the last word
+        mine = [n for n in rows if n == name or roles.get(n) == name]
         if not mine:
             raise InputError(f"no temperature '{name}' to limit", "--limit", suggestion(name, rows))
-        out |= dict.fromkeys(mine, T)
+        out |= dict.fromkeys(mine, limits[name])
     return out
 
 

@@ -99,6 +99,13 @@ def test_a_role_stands_for_its_places():
         places({"magnet": 120.0}, rows, what)
 
 
+@pytest.mark.parametrize("asked", [{"winding": 155.0, "end": 140.0}, {"end": 140.0, "winding": 155.0}])
+def test_ends_of_a_winding_are_limited_with_the_place_that_is_called_so(asked):
+    rows = dict.fromkeys(("winding", "end", "head", "yoke"), Row(np.array([0]), np.ones(1)))
+    what = dict.fromkeys(("winding", "end", "head"), Identity(Role.WINDING))
+    assert places(asked, rows, what) == {"winding": 155.0, "end": 140.0, "head": 155.0}
+
+
 def test_a_cycle_and_a_map(thermoscope, tmp_path):
     """Half of the time under load: the share of the cycle's load is larger than that of its peak for ever."""
     case = small_case(tmp_path)
