@@ -20,7 +20,7 @@ from validation.case import AddedEffect, Case, Model, Test
 from validation.comparison.compare import Comparison, errors
 from validation.effects import Effect, effect
 from validation.effects.during import During
-from validation.effects.time_window import checked
+from validation.effects.time_window import checked, lasts
 from validation.measurement.faults import broken_channels, without
 from validation.measurement.operators import of_measurement
 from validation.revision.acceptance import Check, checks, failures
@@ -119,10 +119,12 @@ def add(case: Case, name: str, progress: Progress = no_progress) -> Revision:
 
 
 def inside(one: Effect, case: Case) -> None:
-    """An event lies inside the records of its tests."""
+    """An event lies inside the records of its tests; one of a boundary lasts as long as they do."""
     if isinstance(one, During) and one.event:
         for test in [t for t in case.tests if t.name in one.event.spans]:
             checked(one.event, test.name, float(test.time[0]), float(test.time[-1]), f"effect '{one.name}'")
+            if one.mapping == "offset" and not lasts(one.condition, test):
+                raise one.lasting("a boundary in a whole test")
 
 
 def remove(case: Case, name: str, progress: Progress = no_progress) -> Revision:

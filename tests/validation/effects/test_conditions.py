@@ -21,6 +21,7 @@ from validation.effects import Scene, effect, extended, kinds
 from validation.effects.during import During
 from validation.effects.time_window import Event, checked, event, holds, share
 from validation.inference.evidence import calibrated_case, candidates, scored
+from validation.revision.revise import add
 
 ONE = Event.of({"day": [(600.0, 900.0)]})
 SEVEN = Event.of({"day one": [(600.0 * k, 600.0 * k + 90.25) for k in range(1, 8)], "night.2": [(0.0, 60.0)]})
@@ -103,6 +104,29 @@ def test_a_boundary_offset_in_one_test():
     for name, step in (("day", 2.0), ("night", 0.0)):
         y = predict(held, measured(name), {held.parameters[-1].name: 2.0}).y - predict(bare, measured(name), {}).y
         assert y[-1, 0] == pytest.approx(step, abs=1e-3)
+
+
+BOTH = Event.of({n: [(measured(n).time[0], measured(n).time[-1])] for n in ("day", "dusk")})
+
+
+def test_a_boundary_offset_in_several_tests_is_one_in_each_of_them():
+    """As the name of an event says it, which rounds its times; with its tangent."""
+    bare = one_node()
+    several = effect(f"ambient.offset@ambient in {BOTH.name}").extend(bare)
+    for name, one in ((n, effect(f"ambient.offset@ambient in {n}").extend(bare)) for n in ("day", "dusk", "night")):
+        test, want, got = measured(name), one.parameters[-1], several.parameters[-1]
+        alone, both = predict(one, test, {want.name: 2.0}, [want]), predict(several, test, {got.name: 2.0}, [got])
+        acts = name != "night"
+        assert both.y == pytest.approx(alone.y if acts else predict(bare, test, {}).y)
+        assert pytest.approx(alone.J if acts else np.zeros_like(alone.J)) == both.J
+        assert np.abs(alone.J).max() > 0.9
+
+
+def test_a_boundary_offset_for_a_part_of_a_test_is_refused():
+    """It would change nothing."""
+    case = Case("one", Model(one_node()), (measured("day"),))
+    with pytest.raises(InputError, match=r"'ambient\.offset@ambient' cannot hold for a while; a boundary in a whole"):
+        add(case, "ambient.offset@ambient in day:600-900s")
 
 
 def test_masses_and_joints_hold_for_no_while():
