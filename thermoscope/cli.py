@@ -12,7 +12,7 @@ import typer
 from geom.errors import ThermoscopeError
 from thermoscope.case_folder.files import checked_out, checked_target, message_of, printable
 from thermoscope.console.answer import LINES, within
-from thermoscope.console.groups import grouped, old_name
+from thermoscope.console.groups import grouped, narrowed, old_name
 from thermoscope.console.terminal import ranges_as_notes
 from thermoscope.extras import explained
 
@@ -519,7 +519,7 @@ def main() -> None:
         print(f"note: {note}", file=sys.stderr)
     try:
         with within(None if "--all" in sys.argv else LINES), explained(), ranges_as_notes():
-            code = app(arguments, prog_name="thermoscope", standalone_mode=False)
+            code = narrowed(app, arguments)(arguments, prog_name="thermoscope", standalone_mode=False)
     except (ThermoscopeError, OSError, UsageError) as fault:
         if "--debug" in sys.argv:
             raise
