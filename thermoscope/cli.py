@@ -10,11 +10,11 @@ from typing import Annotated, Any
 import typer
 
 from geom.errors import ThermoscopeError
-from thermoscope.case_folder.files import checked_out, checked_target, message_of, printable
 from thermoscope.console.answer import LINES, within
 from thermoscope.console.groups import grouped, narrowed, old_name
 from thermoscope.console.terminal import ranges_as_notes
 from thermoscope.extras import explained
+from thermoscope.files import checked_out, checked_target, message_of, printable
 
 app = typer.Typer(
     help="See where your motor's thermal model is wrong, and why.",
@@ -282,7 +282,7 @@ def serve(
     port: Annotated[int, typer.Option(min=0, max=65535, help="0 takes a free one.")] = 8710,
 ) -> None:
     """The workbench in the browser: the machine, its sensors, what is missing, add it and see the error fall."""
-    from thermoscope.commands.show.serve import serve as run
+    from thermoscope.workbench.command import serve as run
 
     raise typer.Exit(run(case, host, port))
 

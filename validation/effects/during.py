@@ -69,7 +69,7 @@ class During(Effect):
 
     def _in_test(self, parameter: Parameter) -> tuple[tuple[str, float], ...]:
         """A boundary alone can be off in a test, and all through it (`lasts`); no sensor, and no clock."""
-        if not all(target.startswith("boundary:") for target, _ in parameter.targets):
+        if not self.base.of_tests:
             raise self.lasting("a film, a flow or a loss; a boundary in a whole test")
         return tuple((f"{target}{IN}{self.condition}", factor) for target, factor in parameter.targets)
 

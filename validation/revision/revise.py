@@ -15,7 +15,6 @@ from validation.calibration.calibrate import Fit, no_progress, with_model_error
 from validation.calibration.intervals import Estimate, Profile, estimates
 from validation.calibration.profile import profiles
 from validation.calibration.staged_fit import Search, belongs, merged, staged_fit
-from validation.calibration.unknowns import FREE, scene_of, working
 from validation.case import AddedEffect, Case, Model, Test
 from validation.comparison.compare import Comparison, errors
 from validation.effects import Effect, effect
@@ -23,6 +22,7 @@ from validation.effects.during import During
 from validation.effects.time_window import checked, lasts
 from validation.measurement.faults import broken_channels, without
 from validation.measurement.operators import of_measurement
+from validation.parameters.unknowns import FREE, scene_of, working
 from validation.revision.acceptance import Check, checks, failures
 from validation.threads import one_blas_thread
 

@@ -36,10 +36,10 @@ from lumped.transfer.laws import (
 )
 from lumped.transfer.reversal import Direction, OneWay
 from thermoscope.export.tables import ExponentRatio
-from validation.calibration.model_form import ExponentError
 from validation.effects.build import Shaped
 from validation.effects.sensors.input_factor import Slope
 from validation.effects.sensors.input_offset import Shift
+from validation.parameters.model_form import ExponentError
 
 
 def inputs(time):

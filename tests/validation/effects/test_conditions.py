@@ -16,11 +16,11 @@ from validation.comparison.predict import predict
 from validation.conditions.hat_functions import Path, hat_scores
 from validation.conditions.refine import repeats
 from validation.conditions.windows import best_stretch, joined, pulses
-from validation.diagnosis.missing_heat import scan
 from validation.effects import Scene, effect, extended, kinds
 from validation.effects.during import During
 from validation.effects.time_window import Event, checked, event, holds, share
 from validation.inference.evidence import calibrated_case, candidates, scored
+from validation.inference.missing_heat import scan
 from validation.revision.revise import add
 
 ONE = Event.of({"day": [(600.0, 900.0)]})
@@ -212,8 +212,8 @@ def test_nothing_is_no_event():
 
 def test_an_answer_counts_as_its_odds_of_being_right():
     from validation.conditions.question import answered, information
+    from validation.diagnosis.diagnose import infer
     from validation.doubt import USUAL
-    from validation.inference.diagnose import infer
     from validation.inference.posterior import probabilities
 
     post = infer(bench((("noon", ((0.0, 5980.0),)),), 0.6), ["convection.constant"])
