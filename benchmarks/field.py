@@ -28,8 +28,8 @@ import numpy as np
 
 from fem.matrices.assembly import FieldModel
 from fem.matrices.grids import ring
-from fem.matrices.streams import Stream, cut, flowing
 from fem.solvers.solve import Fluids, Solver
+from fem.solvers.streams import Stream, cut, flowing
 from fem.solvers.transient import transient
 from geom import build_mesh, load_machine
 from lumped.machine.motor import nominal_coefficients

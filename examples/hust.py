@@ -20,14 +20,14 @@ from pathlib import Path
 
 import numpy as np
 
-from thermoscope.case_folder.files import write_whole
 from thermoscope.case_folder.folder import find_case, load_case
 from thermoscope.case_folder.history import History, load_history, save_history
 from thermoscope.commands.model.revise import recorded
+from thermoscope.files import write_whole
 from validation import diagnose
-from validation.calibration.unknowns import with_model
 from validation.case import Case
 from validation.comparison.compare import Comparison
+from validation.parameters.unknowns import with_model
 from validation.revision import revise
 from validation.revision.improvement import Step, Supervisor, best, improve
 

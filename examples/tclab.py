@@ -14,8 +14,8 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
-from thermoscope.case_folder.files import write_whole
 from thermoscope.case_folder.folder import find_case, load_case
+from thermoscope.files import write_whole
 from validation.revision.improvement import Improvement, Step, Supervisor, best, improve, leading
 
 

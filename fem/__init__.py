@@ -6,11 +6,11 @@ found = steady(Solver(field), films, contacts, field.losses(watts), only_fixed(a
 
 from fem.matrices.assembly import FieldModel, assemble
 from fem.matrices.material import Conductivity, LoopWound, isotropic, laminated, wound
-from fem.matrices.streams import Stream, cut, flowing
 from fem.matrices.terms import CopperLoss, Radiation, Term, VaryingConductivity
 from fem.matrices.winding import bundle, homogenised, unit_cell
 from fem.solvers.newton import NonlinearSolution, solve_nonlinear
 from fem.solvers.solve import Fluids, Iterative, Solver, Steady, only_fixed, steady
+from fem.solvers.streams import Stream, cut, flowing
 from fem.solvers.transient import transient
 
 __all__ = [

@@ -33,8 +33,8 @@ if TYPE_CHECKING:
     from thermoscope.interface.case import Case, effects, open
     from thermoscope.interface.machine import Field, Machine, build, machines
     from validation.comparison.compare import Comparison
-    from validation.diagnosis.result import Candidate, Diagnosis
     from validation.effects.base import Effect
+    from validation.inference.result import Candidate, Diagnosis
     from validation.revision.revise import Revision
 
 _HOME = {
@@ -46,8 +46,8 @@ _HOME = {
     "Machine": "thermoscope.interface.machine",
     "Field": "thermoscope.interface.machine",
     "Comparison": "validation.comparison.compare",
-    "Diagnosis": "validation.diagnosis.result",
-    "Candidate": "validation.diagnosis.result",
+    "Diagnosis": "validation.inference.result",
+    "Candidate": "validation.inference.result",
     "Revision": "validation.revision.revise",
     "Effect": "validation.effects.base",
     "Network": "lumped.model.network",

@@ -20,9 +20,9 @@ from lumped.integration.simulate import Record
 from lumped.model.network import Network, Row
 from lumped.transfer.laws import CLOCK
 from thermoscope.caches import cache_folder
-from thermoscope.case_folder.files import write_whole
 from thermoscope.case_folder.folder import Folder, Progress
 from thermoscope.case_folder.runs import named_rows
+from thermoscope.files import write_whole
 from validation.bands import Bands, ParameterPosterior, Place, at_end, bands, parameter_posterior
 from validation.bands.posterior import rows_read
 from validation.case import RUNNING, Recorded, Test

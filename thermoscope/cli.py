@@ -10,11 +10,11 @@ from typing import Annotated, Any
 import typer
 
 from geom.errors import ThermoscopeError
-from thermoscope.case_folder.files import checked_out, checked_target, message_of, printable
 from thermoscope.console.answer import LINES, within
-from thermoscope.console.groups import grouped, old_name
+from thermoscope.console.groups import grouped, narrowed, old_name
 from thermoscope.console.terminal import ranges_as_notes
 from thermoscope.extras import explained
+from thermoscope.files import checked_out, checked_target, message_of, printable
 
 app = typer.Typer(
     help="See where your motor's thermal model is wrong, and why.",
@@ -282,7 +282,7 @@ def serve(
     port: Annotated[int, typer.Option(min=0, max=65535, help="0 takes a free one.")] = 8710,
 ) -> None:
     """The workbench in the browser: the machine, its sensors, what is missing, add it and see the error fall."""
-    from thermoscope.commands.show.serve import serve as run
+    from thermoscope.workbench.command import serve as run
 
     raise typer.Exit(run(case, host, port))
 
@@ -519,7 +519,7 @@ def main() -> None:
         print(f"note: {note}", file=sys.stderr)
     try:
         with within(None if "--all" in sys.argv else LINES), explained(), ranges_as_notes():
-            code = app(arguments, prog_name="thermoscope", standalone_mode=False)
+            code = narrowed(app, arguments)(arguments, prog_name="thermoscope", standalone_mode=False)
     except (ThermoscopeError, OSError, UsageError) as fault:
         if "--debug" in sys.argv:
             raise

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 from fem.matrices.assembly import FieldModel, HasTensor, assemble
 from fem.matrices.material import Conductivity, LoopWound
-from fem.matrices.streams import cut
 from fem.matrices.winding import homogenised
+from fem.solvers.streams import cut
 from geom import Machine, NamedMesh, build_mesh
 from geom.description.materials import Material
 from lumped.condensation.reduction import Recipe, Reduction, reduce

@@ -12,9 +12,9 @@ from geom.lazy import loaded_when_used
 if TYPE_CHECKING:
     from validation.case import AddedEffect, Case, Channel, Model, Test
     from validation.comparison.compare import Comparison, compare
-    from validation.diagnosis.result import Diagnosis
+    from validation.diagnosis.diagnose import diagnose
     from validation.effects import Effect, Scene, catalogue, effect, kinds
-    from validation.inference.diagnose import diagnose
+    from validation.inference.result import Diagnosis
     from validation.revision.revise import Revision, add, calibrate, remove
 
 _HOME = {
@@ -22,7 +22,7 @@ _HOME = {
     "Case": "validation.case",
     "Channel": "validation.case",
     "Comparison": "validation.comparison.compare",
-    "Diagnosis": "validation.diagnosis.result",
+    "Diagnosis": "validation.inference.result",
     "Effect": "validation.effects",
     "Model": "validation.case",
     "Revision": "validation.revision.revise",
@@ -32,7 +32,7 @@ _HOME = {
     "calibrate": "validation.revision.revise",
     "catalogue": "validation.effects",
     "compare": "validation.comparison.compare",
-    "diagnose": "validation.inference.diagnose",
+    "diagnose": "validation.diagnosis.diagnose",
     "effect": "validation.effects",
     "kinds": "validation.effects",
     "remove": "validation.revision.revise",

@@ -10,7 +10,7 @@ from html import escape
 from geom.description.machine import Machine
 from lumped.model.network import Network
 from validation.comparison.compare import Comparison as Compared
-from validation.diagnosis.result import Diagnosis
+from validation.inference.result import Diagnosis
 from validation.revision.revise import Revision
 from viz.data import Comparison
 from viz.figures import candidates, curves

@@ -26,7 +26,7 @@ _MEASURED = (
     "bounds, with any of the parameters above, make a machine that fits; a length that does not fit is refused with "
     "its key and what it must be. The message ends with one length out of proportion and a value for it: with that the "
     "machine fits, or, where it says *is a beginning*, after others. "
-    "`geom.description.random_geometry.random_geometry` draws machines, `benchmarks/families.py` checks them.",
+    "`geom.families.random_geometry.random_geometry` draws machines, `benchmarks/families.py` checks them.",
     "",
 )
 

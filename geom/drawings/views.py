@@ -8,9 +8,9 @@ from functools import cached_property
 from html import escape
 from typing import TYPE_CHECKING, Any
 
+from geom.description.palette import colour
 from geom.description.part import Part
 from geom.description.profile import ArcGrid, Loop, Profile, edges
-from geom.drawings.palette import colour
 
 if TYPE_CHECKING:
     from geom.description.machine import Machine

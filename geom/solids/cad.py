@@ -13,9 +13,9 @@ import numpy as np
 
 from geom.description.identity import Identity
 from geom.description.machine import Machine
+from geom.description.palette import colour
 from geom.description.part import Part, Prism
 from geom.disk_cache import atomic_write, cache_file, recalled
-from geom.drawings.palette import colour
 from geom.errors import InputError
 from geom.solids.carved import carved
 from geom.solids.glb import write_glb

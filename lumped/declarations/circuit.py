@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from lumped.circuits.circuit import PER_M3S, Circuit, Cooler, Pass
+from lumped.circuits.hydraulics import Duct
 from lumped.declarations.coolant import read_coolant
 from lumped.schemas.reader import Table, suggestion
-from lumped.transfer.circuit import PER_M3S, Circuit, Cooler, Pass
 from lumped.transfer.exchanger import ARRANGEMENTS, Flow
-from lumped.transfer.hydraulics import Duct
 from lumped.transfer.properties import air
 
 AIR_AT_C = 30.0  # where a flow in m3/h becomes W/K; 10 K more carry 3 % less

@@ -24,7 +24,7 @@ from lumped.transfer.laws import Law, Scaled
 from lumped.transfer.reversal import Direction, OneWay
 
 if TYPE_CHECKING:
-    from lumped.transfer.circuit import Circuit
+    from lumped.circuits.circuit import Circuit
 
 NAMED = ("nodes", "surfaces", "means", "links", "streams", "losses", "circuits", "parameters")
 RIGHT = "a network.toml (docs/network-toml.md)"

@@ -72,6 +72,7 @@ class Assembly:
         self._flat = ints(p.row[p.to] * (size + 1) + p.cols for p in self.patterns)
         self._vals = floats(p.vals for p in self.patterns)
         self._packed: dict[bytes, Terms] = {}
+        self._eliminated: dict[bytes, tuple[NDArray[np.int64], Structure]] = {}
 
     def matrix(self, coefficient: Array) -> Array:
         """(n, size + 1): the sum of all patterns, each by its coefficient (ne,); zeros change nothing, to the bit."""
@@ -80,16 +81,25 @@ class Assembly:
             n, width
         )
 
-    @cached_property
-    def elimination(self) -> tuple[NDArray[np.int64], Structure]:
-        """(n,) the order in which the fewest zeros fill in, whichever terms act, and what does."""
-        n = self._shape[0]
+    def elimination(self, acting: Mask) -> tuple[NDArray[np.int64], Structure]:
+        """(n,) the order in which the fewest zeros fill in, and what does.
+
+        acting (ne,) : terms whose multiplier is not zero; the others change no sum, not by the order of adding either.
+        """
+        key = acting.tobytes()
+        if key not in self._eliminated:
+            self._eliminated[key] = self._eliminating(
+                [p for p, acts in zip(self.patterns, acting, strict=True) if acts]
+            )
+        return self._eliminated[key]
+
+    def _eliminating(self, patterns: Iterable[Pattern]) -> tuple[NDArray[np.int64], Structure]:
         touches = np.zeros(self._shape, bool)
-        for p in self.patterns:
+        for p in patterns:
             touches[np.ix_(p.row, p.cols)] = True
             for side in (p.hot, p.cold) if p.bends else ():
                 touches[np.ix_(p.row, side.index)] = True
-        return least_fill(touches[:, :n])
+        return least_fill(touches[:, : self._shape[0]])
 
     def packed(self, live: Mask, steady: Mask) -> Terms:
         """The live terms without multipliers and factors; a steady one stands in the constant matrix (dynamic 0)."""

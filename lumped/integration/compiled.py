@@ -168,7 +168,7 @@ def compiled(
         _pack_tangents(network, slope, names, shifts),
         pack_rows(rows, network.size),
         control(network, every, m, factors, precision),
-        *every.elimination,
+        *every.elimination(m != 0.0),
     )
 
 

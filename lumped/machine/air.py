@@ -15,6 +15,7 @@ import numpy as np
 
 from geom.description.geometry import Duct, Features
 from geom.description.machine import Machine
+from lumped.circuits.hydraulics import parallel_shares
 from lumped.correlations.air_gap import taylor_film
 from lumped.correlations.ducts import duct_film
 from lumped.correlations.end_space import end_space
@@ -22,7 +23,6 @@ from lumped.machine.laws import Interpolated, film_over
 from lumped.machine.settings import Fan, Films
 from lumped.machine.shapes import Gap, gap_fluid
 from lumped.model.network import Link, Network, Row
-from lumped.transfer.hydraulics import parallel_shares
 from lumped.transfer.laws import InputPower, Law
 from lumped.transfer.properties import air
 from lumped.transfer.reversal import OneWay

@@ -1,7 +1,7 @@
 """The way a liquid takes through its jacket, cut into cells that warm one after the other.
 
 A cell's node is the temperature at which the liquid leaves it, and its film, h (e^N - 1) / N with N = h A / (m cp), is
-such that walls of one temperature warm the liquid by the exact exponential (fem.matrices.streams has the same cells).
+such that walls of one temperature warm the liquid by the exact exponential (fem.solvers.streams has the same cells).
 """
 
 from __future__ import annotations

@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 from lumped.integration.simulate import simulate
 from scripts.papers.machines import m1
 from scripts.papers.page import Row, Section
-from validation.calibration.unknowns import working
 from validation.comparison.compare import physical
 from validation.comparison.predict import record, thermal
+from validation.parameters.unknowns import working
 from validation.procedure.measuring.protocol import STEPS
 
 Array = NDArray[np.float64]

@@ -16,8 +16,8 @@ from scripts.papers.page import Row, Section
 from thermoscope.case_folder.folder import Folder, load_case
 from thermoscope.case_folder.runs import readings
 from validation.calibration.calibrate import calibrated
-from validation.calibration.unknowns import working
 from validation.case import Case, Test
+from validation.parameters.unknowns import working
 from validation.procedure.measuring.repeats import Repeats, normalised_error, pooled_curves, repeats
 from validation.procedure.reduction.base_heat import BaseHeat, base_heat
 from validation.procedure.reduction.transfer import Transfer, end_errors, transferred

@@ -8,8 +8,8 @@ import pytest
 
 from lumped.integration.simulate import Record, simulate
 from thermoscope.case_folder.folder import load_case
-from validation.calibration.unknowns import with_model
 from validation.comparison.compare import compare
+from validation.parameters.unknowns import with_model
 from validation.revision.revise import add, calibrate
 
 HELD_OUT = {"id_5", "id_8", "id_11", "id_15"}

@@ -9,10 +9,10 @@ import pytest
 from lumped.integration.simulate import simulate
 from thermoscope.case_folder.folder import load_case
 from validation.calibration.calibrate import minimise
-from validation.calibration.unknowns import with_model, working
 from validation.case import AddedEffect
 from validation.comparison.compare import compare
 from validation.comparison.predict import record
+from validation.parameters.unknowns import with_model, working
 from validation.revision.revise import start
 
 COOLED = (AddedEffect("convection.constant", "heater1"), AddedEffect("convection.constant", "heater2"))

@@ -8,7 +8,7 @@ from typing import get_args
 import printed_words
 import pytest
 
-from validation.diagnosis.result import Decided, Verdict
+from validation.inference.result import Decided, Verdict
 
 # Words of everyday English, units alone, and letters of a formula whose title says them.
 PLAIN = {

@@ -22,10 +22,10 @@ from lumped.transfer.reversal import Direction, OneWay
 from thermoscope.export.expansion import Unknown, expanded
 from thermoscope.export.products import value
 from thermoscope.export.tables import factors
-from validation.calibration.model_form import ExponentError, exponent_derivative
 from validation.effects.build import Shaped
 from validation.effects.losses.iron_pwm import Ripple
 from validation.effects.streams.fouling import hours
+from validation.parameters.model_form import ExponentError, exponent_derivative
 
 
 def film(speed):

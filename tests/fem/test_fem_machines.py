@@ -6,10 +6,10 @@ from distinct_machines import DISTINCT
 
 from fem.matrices.assembly import assemble
 from fem.matrices.material import Conductivity
-from fem.matrices.streams import Stream, cut, flowing
 from fem.matrices.terms import CopperLoss, Radiation
 from fem.solvers.newton import solve_nonlinear
 from fem.solvers.solve import Solver, steady
+from fem.solvers.streams import Stream, cut, flowing
 from geom import build_mesh, load_machine
 
 pytestmark = pytest.mark.heavy

@@ -1,18 +1,23 @@
 """Radiation, conductivity and copper loss that depend on temperature: closed forms, Newton's order, energy."""
 
+from importlib import import_module
+from inspect import getmembers, isclass
+from pkgutil import walk_packages
+
 import numpy as np
 import pytest
 from named_grids import bar, named
 from scipy.optimize import brentq
 
+import fem
 from fem.matrices.assembly import assemble
 from fem.matrices.grids import box
 from fem.matrices.material import isotropic
-from fem.matrices.terms import CopperLoss, Radiation, VaryingConductivity
+from fem.matrices.terms import CopperLoss, Radiation, Term, VaryingConductivity
 from fem.solvers.newton import solve_nonlinear
 from fem.solvers.solve import Iterative, Solver, only_fixed
 from fem.solvers.transient import transient
-from geom.constants import SIGMA, ZERO_C
+from geom.constants import ALPHA_CU, SIGMA, ZERO_C
 from geom.errors import InputError
 
 GIVEN = 1e9  # a film so good that its fluid's temperature is the wall's, W/m2/K
@@ -151,18 +156,44 @@ def test_unphysical_terms_are_refused():
         falling.heat(field, np.full(field.n, 2.0))
 
 
-def test_slopes_are_derivatives():
-    """Of every kind of term, against central differences."""
+TERMS = [
+    Radiation("bar.left", 0.7, 30.0), CopperLoss("bar", 3.0),
+    VaryingConductivity("bar", lambda T: 1 + 1e-5 * T**2, lambda T: 2e-5 * T),
+]  # fmt: skip
+
+
+def test_every_term_is_tried():
+    """What takes heat out and has a slope, in any module of the room."""
+    modules = [import_module(m.name) for m in walk_packages(fem.__path__, "fem.")]
+    found = {c for m in modules for _, c in getmembers(m, isclass) if c.__module__ == m.__name__
+             and c is not Term and hasattr(c, "heat") and hasattr(c, "slope")}  # fmt: skip
+    assert found == {type(term) for term in TERMS}
+
+
+@pytest.mark.parametrize("term", TERMS, ids=lambda term: type(term).__name__)
+def test_a_slope_is_the_derivative(term):
+    """Against a central difference."""
     field = assemble(bar(0.1, 3, across=2), {"bar": isotropic(2.0)}, {"bar": 1.0})
     T, d = np.random.default_rng(0).uniform(20, 90, (2, field.n))
-    for term in (
-        Radiation("bar.left", 0.7, 30.0),
-        CopperLoss("bar", 3.0),
-        VaryingConductivity("bar", lambda T: 1 + 1e-5 * T**2, lambda T: 2e-5 * T),
-    ):
-        e = 1e-4
-        difference = (term.heat(field, T + e * d) - term.heat(field, T - e * d)) / (2 * e)
-        assert difference == pytest.approx(term.slope(field, T) @ d, abs=1e-7 * np.abs(difference).max())
+    e = 1e-4
+    difference = (term.heat(field, T + e * d) - term.heat(field, T - e * d)) / (2 * e)
+    assert np.abs(difference).max() > 0.0
+    assert difference == pytest.approx(term.slope(field, T) @ d, abs=1e-7 * np.abs(difference).max())
+
+
+@pytest.mark.parametrize(
+    ("term", "watts"),
+    [
+        (TERMS[0], 0.7 * SIGMA * 1e-4 * (333.15**4 - 303.15**4)),
+        (TERMS[1], -3.0 * (1 + ALPHA_CU * 40.0)),
+        (TERMS[2], 0.0),
+    ],
+    ids=lambda x: type(x).__name__,
+)
+def test_a_term_takes_what_it_says_at_one_temperature(term, watts):
+    """60 degC throughout: what a face radiates, what a winding makes; conduction moves nothing."""
+    field = assemble(bar(0.1, 3, 0.01), {"bar": isotropic(2.0)}, {"bar": 1.0})
+    assert term.heat(field, np.full(field.n, 60.0)).sum() == pytest.approx(watts, rel=1e-12, abs=1e-12)
 
 
 def cooled_by_radiation(step, steps):

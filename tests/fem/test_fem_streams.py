@@ -6,8 +6,8 @@ from named_grids import bar
 
 from fem.matrices.assembly import assemble
 from fem.matrices.material import isotropic
-from fem.matrices.streams import Stream, cut, flowing
 from fem.solvers.solve import Solver, only_fixed, steady
+from fem.solvers.streams import Stream, cut, flowing
 from geom.errors import InputError
 
 L = 0.3

@@ -39,9 +39,15 @@ def test_the_architecture_is_one_picture_and_six_sentences(root):
     assert len(re.findall(r"\.(?:\s|$)", text)) == SENTENCES
 
 
-def test_the_page_of_rooms_names_every_room(root):
+def rows_of(root):
+    """Room -> its row on the page."""
     page = (root / "docs/rooms.md").read_text(encoding="utf-8").partition("## What passes")[0]
-    rows = {name: row for name, row in re.findall(r"^\| `(\w+)` \| (.*) \|$", page, re.MULTILINE) if name in ROOMS}
+    return {name: row for name, row in re.findall(r"^\| `(\w+)` \| (.*) \|$", page, re.MULTILINE) if name in ROOMS}
+
+
+def test_the_page_of_rooms_names_every_room(root):
+    rows = rows_of(root)
+    assert set(rows) == set(ROOMS)
     missing = {
         f"{room}/{d.name}"
         for room in ROOMS
@@ -54,6 +60,44 @@ def test_the_page_of_rooms_names_every_room(root):
 def test_modules_import_each_other_one_way(root):
     known = modules(root)
     assert circle({name: set(imports(ast.parse(file.read_text()), known)) for name, file in known.items()}) == []
+
+
+def test_folders_import_each_other_one_way(root):
+    """At every depth: of all that stands in one folder, files and folders, each uses only what comes before it."""
+    known = modules(root)
+    every = {name: set(imports(ast.parse(file.read_text()), known)) for name, file in known.items()}
+    folders = {name.rpartition(".")[0] for name in known if "." in name}
+    assert {"validation", "lumped", "validation.effects"} <= folders
+    assert {f: ring for f in sorted(folders) if (ring := circle(children(every, f)))} == {}
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_the_page_names_folders_after_those_they_use(root, room):
+    known = modules(root)
+    uses = children({name: set(imports(ast.parse(file.read_text()), known)) for name, file in known.items()}, room)
+    order = [name for name in re.findall(r"`(\w+)`", rows_of(root)[room]) if (root / room / name).is_dir()]
+    late = {(name, used) for k, name in enumerate(order) for used in uses.get(name, set()) & set(order[k + 1 :])}
+    assert late == set()
+
+
+def children(graph, folder):
+    """What the files and folders of one folder use of each other."""
+    out = {}
+    for name in (n for n in graph if n.startswith(f"{folder}.")):
+        used = {_child(m, folder) for m in graph[name] if m.startswith(f"{folder}.")}
+        out.setdefault(_child(name, folder), set()).update(used - {_child(name, folder)})
+    return out
+
+
+def _child(name, folder):
+    return name.removeprefix(f"{folder}.").partition(".")[0]
+
+
+def test_the_check_sees_folders_that_use_each_other():
+    """Though no two of their modules do."""
+    graph = {"r.a.one": {"r.b.one"}, "r.b.one": set(), "r.b.two": {"r.a.two"}, "r.a.two": set()}
+    assert not circle(graph)
+    assert circle(children(graph, "r"))
 
 
 def test_no_room_is_deeper_than_it_was(root):

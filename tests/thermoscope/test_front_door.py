@@ -187,7 +187,7 @@ def test_effects_are_the_catalogue(case):
 
 
 def test_best_says_why_there_is_none(case):
-    from validation.diagnosis.result import Diagnosis
+    from validation.inference.result import Diagnosis
 
     nothing = Diagnosis("adequate", "the model explains all.", (), (), (), (), (), (), 0.1, 0.1, 3.0)
     with pytest.raises(ts.InputError, match="the model explains all"):

@@ -11,9 +11,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from geom.errors import InputError
-from thermoscope.case_folder.files import write_whole
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.settings import Entry
+from thermoscope.files import write_whole
 from thermoscope.recordings.formats import stem_of
 from validation.effects import effect
 from validation.effects.during import During

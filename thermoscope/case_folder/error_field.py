@@ -13,11 +13,11 @@ from lumped.integration.simulate import simulate
 from lumped.model.network import Parameter
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.runs import readings
-from validation.calibration.unknowns import working
+from validation.calibration.model_error import with_doubts
 from validation.case import Channel, Test
 from validation.comparison.interpolation import Interpolated, interpolated
 from validation.comparison.predict import heat_model, record
-from validation.inference.model_error import with_doubts
+from validation.parameters.unknowns import working
 
 if TYPE_CHECKING:
     from viz.rendering.nodes import SplitMesh
@@ -37,7 +37,7 @@ def error_gain(folder: Folder, test: Test, nodes: SplitMesh) -> tuple[tuple[Chan
     """Sensors that read at the end of a test, and what each kelvin that one of them is off by tells elsewhere.
 
     Its mean is (n_nodes, n_channels) K/K. Doubts: every parameter within its interval, where it has one, else its
-    prior, as if apart from the others; and the model error of validation.inference.model_error.
+    prior, as if apart from the others; and the model error of validation.calibration.model_error.
     """
     case, intervals = folder.case, folder.history.last.intervals if folder.history.revisions else {}
     network, values = heat_model(working(case)[0], case.model.values)

@@ -22,9 +22,9 @@ from thermoscope.recordings.formats import recording
 from thermoscope.recordings.readings import read_test, rows_of
 from thermoscope.recordings.sheet import Sheet, load_sheet
 from thermoscope.recordings.tables import Samples, load_table
-from validation.calibration.unknowns import matching, working
 from validation.case import AddedEffect, Case, LowFidelity, Model, Test
 from validation.measurement.sampling import SampleStep
+from validation.parameters.unknowns import matching, working
 
 if TYPE_CHECKING:
     from geom import Machine
@@ -256,8 +256,8 @@ def _model(network: Network, history: History) -> Model:
 def _checked(case: Case, history: History, settings: Settings) -> Case:
     """The model's effects can sit where model.toml has them, its values belong to parameters, as what tests free."""
     from validation.calibration.staged_fit import fit_stages
-    from validation.calibration.unknowns import scene_of, working
     from validation.effects import effect
+    from validation.parameters.unknowns import scene_of, working
 
     where = f"{settings.model_file} revision {history.last.number}"
     try:

@@ -13,7 +13,7 @@ from geom.description.toml_file import read_toml
 from geom.errors import InputError
 from lumped.model.network import Parameter
 from lumped.schemas.reader import Table, suggestion
-from thermoscope.case_folder.files import locked, write_whole
+from thermoscope.files import locked, write_whole
 
 ACTIONS = ("calibrate", "add", "remove", "answer", "step back")
 HEADER = "Written by thermoscope: one [[revision]] per step, the last one counts. Delete this file to start again."

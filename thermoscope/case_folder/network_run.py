@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.integration.balance import balance
-from validation.calibration.unknowns import working
 from validation.case import Case, Test
 from validation.comparison.predict import heat_model, record
+from validation.parameters.unknowns import working
 
 if TYPE_CHECKING:
     from viz.viewer.network import NetworkRun

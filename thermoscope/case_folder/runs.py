@@ -17,11 +17,11 @@ from lumped.model.network import Network, Row
 from lumped.model.once import once
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import Revision
-from validation.calibration.unknowns import effects_of, to_value, working
 from validation.case import AddedEffect, Case, Channel, Test
 from validation.comparison.compare import physical
 from validation.comparison.predict import heat_model, predict, record
 from validation.effects.during import During
+from validation.parameters.unknowns import effects_of, to_value, working
 
 if TYPE_CHECKING:
     from viz.data import Comparison

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from thermoscope.case_folder.files import write_whole
+from thermoscope.files import write_whole
 from thermoscope.recordings.data_table import csv_text, rows_of
 
 if TYPE_CHECKING:

@@ -9,10 +9,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from thermoscope.case_folder.files import checked_result, write_whole
 from thermoscope.case_folder.folder import Folder
 from thermoscope.commands.open_case import PACKAGE
 from thermoscope.console.terminal import notes, plain
+from thermoscope.files import checked_result, write_whole
 from thermoscope.recordings.csv_file import LARGEST
 
 NAME = "diagnosis.json"

@@ -12,9 +12,9 @@ from contextvars import ContextVar
 from pathlib import Path
 from typing import Any
 
-from thermoscope.case_folder.files import write_whole
 from thermoscope.console.answer import Answer, Grid, printed
 from thermoscope.console.progress_bar import Progress, progress
+from thermoscope.files import write_whole
 
 STDOUT = "-"
 __all__ = [

@@ -15,7 +15,7 @@ from geom.errors import InputError
 from lumped.transfer.laws import Inputs, Law
 from thermoscope.export.expansion import Unknown, expanded
 from thermoscope.export.products import Mapped, Product, Sum, Tabulated
-from validation.calibration.model_form import FARTHEST, ExponentError
+from validation.parameters.model_form import FARTHEST, ExponentError
 
 Array = NDArray[np.float64]
 Ranges = Mapping[str, tuple[float, float]]

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
-from thermoscope.case_folder.files import abandoned, locked, within_inputs, write_whole
+from thermoscope.files import abandoned, locked, within_inputs, write_whole
 from thermoscope.importing.aligned import Recording
 from thermoscope.importing.draft import Draft, sample_of
 from thermoscope.importing.guess import Guess

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from lumped.model.network import Network
     from validation.case import Test
     from validation.comparison.compare import Comparison
-    from validation.diagnosis.result import Diagnosis
     from validation.effects.base import Effect
+    from validation.inference.result import Diagnosis
     from validation.revision.revise import Revision
 
 Progress = Callable[[str], None]
@@ -63,7 +63,7 @@ class Case:
     @property
     def network(self) -> Network:
         """The network with the effects that were added."""
-        from validation.calibration.unknowns import working
+        from validation.parameters.unknowns import working
 
         return working(self.folder.case)[0]
 
@@ -79,8 +79,8 @@ class Case:
 
     def candidates(self) -> tuple[Effect, ...]:
         """Every effect at every place of this network where it can sit."""
-        from validation.calibration.unknowns import scene_of
         from validation.effects import catalogue
+        from validation.parameters.unknowns import scene_of
 
         return catalogue(scene_of(self.folder.case), self.folder.settings.kinds)
 

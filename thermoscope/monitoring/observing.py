@@ -17,8 +17,8 @@ from lumped.schemas.reader import suggestion
 from lumped.transfer.laws import CLOCK, RUNNING
 from thermoscope.bands import case_key
 from thermoscope.caches import cache_folder
-from thermoscope.case_folder.files import write_whole
 from thermoscope.case_folder.folder import Folder, Progress
+from thermoscope.files import write_whole
 from thermoscope.monitoring.live_rows import Rows
 from thermoscope.verification.error_budget import model_of
 from validation.case import Channel

@@ -15,9 +15,9 @@ import numpy as np
 
 from fem.matrices.assembly import FieldModel
 from geom import Machine
-from geom.description.areas import PartRow, part_table
 from geom.description.part import Prism
 from geom.description.profile import Loop
+from geom.meshing.areas import PartRow, part_table
 from lumped.correlations.windings import mellor
 from lumped.machine.path import stem
 from thermoscope.verification.crosscheck import CrossCheck

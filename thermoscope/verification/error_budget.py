@@ -15,9 +15,9 @@ from lumped.condensation.error_budget import ErrorBudget, PlaceError
 from lumped.condensation.recovery import Shapes
 from lumped.integration.simulate import Record, simulate
 from lumped.model.network import Array, Network, Row
-from validation.calibration.unknowns import working
 from validation.case import Channel, Test
 from validation.comparison.predict import heat_model, record
+from validation.parameters.unknowns import working
 
 if TYPE_CHECKING:
     from thermoscope.case_folder.folder import Folder, Progress

@@ -16,7 +16,7 @@ from geom.disk_cache import recalled
 from lumped.condensation.reduction import Recipe
 from lumped.machine.bases import on_every_base
 from thermoscope.caches import cache_folder
-from thermoscope.case_folder.files import write_whole
+from thermoscope.files import write_whole
 from thermoscope.pipeline import Meshing, Prepared, Progress, means_network, meshed, plain_mesh, reduced
 from thermoscope.verification.crosscheck import FLOOR
 from thermoscope.verification.fixed_coefficients import FixedCoefficients, rated

@@ -17,7 +17,7 @@ from lumped.condensation.recovery import PartShape, Shapes, locate
 from lumped.machine.bases import on_every_base
 from lumped.model.network import Array, Network, Row
 from thermoscope.caches import cache_folder
-from thermoscope.case_folder.files import write_whole
+from thermoscope.files import write_whole
 from thermoscope.pipeline import Built, coefficients_on, meshed
 from thermoscope.verification.fixed_coefficients import FixedCoefficients, rated
 

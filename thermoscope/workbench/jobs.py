@@ -14,7 +14,7 @@ from geom.errors import ThermoscopeError
 
 Tell = Callable[[str], None]
 PRELOAD = [
-    "thermoscope.workbench.steps", "thermoscope.commands.model.revise", "validation.inference.diagnose",
+    "thermoscope.workbench.steps", "thermoscope.commands.model.revise", "validation.diagnosis.diagnose",
     "validation.revision.revise",
 ]  # fmt: skip
 

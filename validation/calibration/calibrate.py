@@ -13,12 +13,12 @@ from numpy.typing import NDArray
 from geom.errors import NoSolution
 from lumped.model.multipliers import parameter_values
 from lumped.model.network import Network
-from validation.calibration.unknowns import Unknowns
+from validation.calibration.model_error import ModelError, model_error
 from validation.case import Test
 from validation.comparison.linearisation import Segment, segments
 from validation.doubt import USUAL, Doubt
-from validation.inference.model_error import ModelError, model_error
 from validation.measurement.noise import Noise, first_noise, fit_noise
+from validation.parameters.unknowns import Unknowns
 
 Array = NDArray[np.float64]
 Progress = Callable[[str], None]

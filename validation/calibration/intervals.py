@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from geom.constants import NORMAL_95
 from lumped.model.network import Parameter
 from validation.calibration.calibrate import Fit
-from validation.calibration.unknowns import to_value
 from validation.measurement.operators import of_measurement
+from validation.parameters.unknowns import to_value
 
 Array = NDArray[np.float64]
 UNINFORMED = 0.9  # of its prior sd: a parameter that data narrow by less than a tenth was not seen

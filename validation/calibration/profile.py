@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from geom.constants import NORMAL_95
 from validation.calibration.calibrate import CachedSegments, Fit, Progress, minimise, no_progress
 from validation.calibration.intervals import Profile
-from validation.calibration.unknowns import Unknowns, to_value
 from validation.case import Test
+from validation.parameters.unknowns import Unknowns, to_value
 
 Array = NDArray[np.float64]
 CLOSE = 0.03  # of the deviance of a 95 % interval: moves its end by less than 2 %

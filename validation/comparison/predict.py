@@ -17,6 +17,7 @@ from lumped.integration.simulate import Record, Run, Stand, simulate
 from lumped.model.network import Network, Parameter
 from lumped.model.once import once
 from validation.case import Test
+from validation.effects.time_window import IN, lasts
 from validation.measurement.operators import (
     OPERATORS,
     SHIFTS,
@@ -72,15 +73,17 @@ def record(test: Test, shift: Mapping[str, float]) -> Record:
 def stretch_of_record(test: Test, shift: Mapping[str, float], some: slice) -> Record:
     """The samples of the record from some.start to some.stop, beginning as the whole does."""
     air = {n: np.broadcast_to(np.asarray(u, float), test.time.shape)[some] for n, u in test.boundaries.items()}
-    boundaries = {n: u + shift.get(f"boundary:{n}", 0.0) + shift.get(here(test, n), 0.0) for n, u in air.items()}
+    boundaries = {n: u + sum(a for target, a in shift.items() if moves(target, n, test)) for n, u in air.items()}
     move, initial = shift.get(f"initial:{test.name}", 0.0), test.initial
     start = {k: v + move for k, v in initial.items()} if isinstance(initial, Mapping) else initial + move
     return Record(test.time[some], test.signals.part(some), boundaries, start)
 
 
-def here(test: Test, boundary: str) -> str:
-    """What acts on a boundary in one test alone."""
-    return f"boundary:{boundary} in {test.name}"
+def moves(target: str, boundary: str, test: Test) -> bool:
+    """Does what acts on a target offset this boundary, in every test or all through this one?"""
+    everywhere = f"boundary:{boundary}"
+    here = target.startswith(f"{everywhere}{IN}") and lasts(target.removeprefix(f"{everywhere}{IN}"), test)
+    return target == everywhere or here
 
 
 @once
@@ -160,7 +163,7 @@ class Watch:
         (bare, heat), self.heads = heat_model(network, values), [head(p) for p in tangents]
         each = list(enumerate(zip(tangents, self.heads, strict=True)))
         hot = [i for i, (_, kind) in each if kind == "thermal"]
-        moved_by = {i: _shift(test, p) for i, (p, kind) in each if kind in SHIFTS and _felt(network, test, p)}
+        moved_by = {i: _shift(network, test, p) for i, (p, kind) in each if kind in SHIFTS and _felt(network, test, p)}
         self.hot = [*hot, *moved_by]
         moving = [tangents[i] for i in hot], list(moved_by.values())
         self.course = Course(bare, test, heat, self.now, *moving, precision)
@@ -223,14 +226,12 @@ def softened(T: Array, spread: float) -> Array:
     return out
 
 
-def _shift(test: Test, p: Parameter) -> str | None:
+def _shift(network: Network, test: Test, p: Parameter) -> str | None:
     """The boundary that a parameter offsets, None for the start."""
-    kind, name = p.targets[0][0].split(":", 1)
-    return name.removesuffix(f" in {test.name}") if kind == "boundary" else None
+    return next((b for b in network.boundaries if moves(p.targets[0][0], b, test)), None)
 
 
 def _felt(network: Network, test: Test, p: Parameter) -> bool:
     """Is the boundary one of the network's and of this test's, or the start this test's?"""
-    target = p.targets[0][0]
-    both = [b for b in network.boundaries if b in test.boundaries]
-    return target in {f"initial:{test.name}", *(f"boundary:{b}" for b in both), *(here(test, b) for b in both)}
+    target, both = p.targets[0][0], [b for b in network.boundaries if b in test.boundaries]
+    return target == f"initial:{test.name}" or any(moves(target, b, test) for b in both)

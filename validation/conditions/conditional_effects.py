@@ -15,21 +15,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validation.calibration.calibrate import no_progress
-from validation.calibration.unknowns import scene_of
 from validation.case import Case, Test
 from validation.conditions.candidate_conditions import single_test_effects, temporary_effects
 from validation.conditions.hat_functions import Interval, hat_scores
 from validation.conditions.refine import TimedEvent, columns, refined, repeats
 from validation.conditions.windows import ALIKE, distinct, stretches, worth
-from validation.diagnosis.missing_heat import MissingHeat, Scan
 from validation.doubt import FORM, PRIOR, USUAL
 from validation.effects import Effect, extended
 from validation.effects.during import During
 from validation.effects.sites import neighbours
 from validation.effects.time_window import Event, event
 from validation.inference.evidence import Evidence, extended_prior, projected
+from validation.inference.missing_heat import MissingHeat, Scan
 from validation.inference.posterior import log_bayes_of
 from validation.inference.score import Score, per_test, score, total
+from validation.parameters.unknowns import scene_of
 from validation.threads import side_by_side
 
 Array = NDArray[np.float64]

@@ -16,11 +16,11 @@ from scipy.special import ndtri
 
 from lumped.model.network import Network, Parameter
 from validation.calibration.calibrate import Fit
-from validation.calibration.unknowns import to_value
 from validation.case import Test
 from validation.inference.evidence import extended_prior, projected
 from validation.inference.score import per_test, score
 from validation.measurement.operators import head
+from validation.parameters.unknowns import to_value
 
 Array = NDArray[np.float64]
 FALSE = 0.05  # share of consistent cases in which some parameter of some test seems to differ

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from validation.conditions.windows import ALIKE
-from validation.diagnosis.result import PossibleEvent
 from validation.effects.during import During
 from validation.effects.time_window import Event
 from validation.inference.posterior import Posterior, probabilities
+from validation.inference.result import PossibleEvent
 
 
 def possible_events(posterior: Posterior) -> tuple[PossibleEvent, ...]:

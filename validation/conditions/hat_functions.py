@@ -12,13 +12,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from validation.calibration.model_error import nodes
 from validation.case import Test
-from validation.diagnosis.missing_heat import Scan
 from validation.doubt import FORM, SIZES, USUAL
 from validation.effects.build import conductance_scale, power_scale
 from validation.effects.time_window import Event, Span
 from validation.inference.evidence import Evidence, extended_prior, projected
-from validation.inference.model_error import nodes
+from validation.inference.missing_heat import Scan
 from validation.inference.score import Score, one_size, per_test, score
 
 Array = NDArray[np.float64]

@@ -7,7 +7,6 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from validation.calibration.model_form import EXACT_LOSSES, is_film
 from validation.conditions.refine import columns
 from validation.doubt import PRIOR, RARE
 from validation.effects import extended
@@ -15,6 +14,7 @@ from validation.effects.above import KIND, Above
 from validation.inference.evidence import Evidence, extended_prior, projected
 from validation.inference.posterior import log_bayes_of
 from validation.inference.score import score, total
+from validation.parameters.model_form import EXACT_LOSSES, is_film
 
 Array = NDArray[np.float64]
 LEVELS = (0.5, 0.75)  # quantiles of an input at which its law may turn

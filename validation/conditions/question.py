@@ -12,7 +12,6 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from validation.diagnosis.result import Question
 from validation.doubt import USUAL
 from validation.effects import Effect
 from validation.effects.during import During
@@ -20,6 +19,7 @@ from validation.effects.time_window import event
 from validation.inference.decision import SURE
 from validation.inference.evidence import Evidence
 from validation.inference.posterior import Hypothesis, Posterior, probabilities
+from validation.inference.result import Question
 
 Array = NDArray[np.float64]
 WORTH = 0.1  # nats: an answer that tells less is not worth a question

@@ -19,7 +19,7 @@ from validation.comparison.linearisation import segments
 from validation.conditions.refine import GRID_POINTS, around, joined
 from validation.effects import Effect, extended
 from validation.effects.during import During
-from validation.effects.time_window import Event, Span
+from validation.effects.time_window import Event, Span, lasts
 from validation.inference.evidence import Evidence, extended_prior, projected, replaced
 from validation.inference.posterior import Hypothesis, probabilities
 from validation.inference.refits import REPORTED, to_the_end
@@ -67,8 +67,7 @@ def moved(evidence: Evidence, hypotheses: Sequence[Hypothesis], reach_s: Mapping
 
 def throughout(evidence: Evidence, event: Event) -> bool:
     """Does it last all of its tests?  Then it has no ends."""
-    tests = {t.name: (float(t.time[0]), float(t.time[-1])) for t in evidence.tests}
-    return all(own == (tests[t],) for t, own in event.spans.items())
+    return all(lasts(event.name, t) for t in evidence.tests if t.name in event.spans)
 
 
 def with_ends(effect: During, event: Event) -> During:

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validation.conditions.hat_functions import HatScores, Interval, Path, log_bayes, overlap
-from validation.diagnosis.missing_heat import MissingHeat
 from validation.effects.time_window import Event, Span
+from validation.inference.missing_heat import MissingHeat
 
 Array = NDArray[np.float64]
 Pulse = tuple[Span, float]  # when, and its level (W) against what is usual in the test

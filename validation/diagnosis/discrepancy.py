@@ -6,7 +6,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from validation.calibration.calibrate import no_progress
-from validation.calibration.unknowns import working
 from validation.case import Case
 from validation.comparison.compare import physical
 from validation.comparison.linearisation import segments
@@ -14,9 +13,10 @@ from validation.comparison.residuals import Pattern, patterns
 from validation.conditions.contradiction import Contradiction, contradiction
 from validation.conditions.robust import quiet_fit
 from validation.conditions.windows import pulses
-from validation.diagnosis.missing_heat import MissingHeat, missing_heat
 from validation.inference.evidence import calibrated_case, diagnosing
+from validation.inference.missing_heat import MissingHeat, missing_heat
 from validation.inference.multifidelity import at_low_fidelity
+from validation.parameters.unknowns import working
 from validation.threads import one_blas_thread
 
 

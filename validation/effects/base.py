@@ -44,6 +44,7 @@ class Effect(ABC):
     needs : quantities of the machine that must be recorded for it to act ("speed", "current", "time")
     fault : True when it is a fault of the measurement, not heat
     whole : True when it happens entirely or not at all, with parameter 1 (two plugs exchanged)
+    of_tests : True when it may be off in whole tests alone, though it is an offset
     empirical : True when it follows a correlation that scatters, as films and losses do; not conduction, nor a sensor
     """
 
@@ -67,6 +68,7 @@ class Effect(ABC):
     needs: ClassVar[tuple[str, ...]] = ()
     fault: ClassVar[bool] = False
     whole: ClassVar[bool] = False
+    of_tests: ClassVar[bool] = False
     empirical: ClassVar[bool] = False
 
     @property

@@ -11,9 +11,8 @@ from lumped.transfer.laws import CLOCK, Law
 from validation.doubt import USUAL
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import Shaped, copy_link, copy_source
-from validation.effects.time_window import Event, TimeWindow, event
+from validation.effects.time_window import IN, Event, TimeWindow, event
 
-IN = " in "
 SAME = ("kind", "title", "unit", "at", "source", "isolating_test", "typical", "sign", "prior_sd", "low", "high",
         "neutral", "confused_with", "needs", "fault", "empirical")  # fmt: skip
 
@@ -69,7 +68,14 @@ class During(Effect):
         return self._copied(network, own)
 
     def _in_test(self, parameter: Parameter) -> tuple[tuple[str, float], ...]:
+        """A boundary alone can be off in a test, and all through it (`lasts`); no sensor, and no clock."""
+        if not self.base.of_tests:
+            raise self.lasting("a film, a flow or a loss; a boundary in a whole test")
         return tuple((f"{target}{IN}{self.condition}", factor) for target, factor in parameter.targets)
+
+    def lasting(self, right: str) -> InputError:
+        """What to raise where it can hold for no while."""
+        return InputError(f"'{self.base.name}' cannot hold for a while", f"effect '{self.name}'", right)
 
     def _law(self, law: Law, factor: float = 1.0) -> Law:
         return Shaped(law, TimeWindow(self.condition, factor), law.temperature, (CLOCK,))
@@ -100,7 +106,7 @@ class During(Effect):
         names = []
         for target, exponent in parameter.targets:
             if target not in links and target not in sources:
-                raise InputError(f"'{self.base.name}' cannot hold for a while", self.name, "a film, a flow or a loss")
+                raise self.lasting("a film, a flow or a loss")
             if gated((links if target in links else sources)[target].law):
                 continue
             names.append(f"{self.name}:{target}")

@@ -14,8 +14,8 @@ from geom.plugins import plugins
 from lumped.model.network import Network
 from validation.effects.above import KIND, Above
 from validation.effects.base import Effect, Scene
-from validation.effects.during import IN, During
-from validation.effects.time_window import event
+from validation.effects.during import During
+from validation.effects.time_window import IN, event
 
 HERE = Path(__file__).parent
 
@@ -58,6 +58,8 @@ def effect(name: str, scene: Scene | None = None) -> Effect:
     cls = _of(kind, kinds(), f"effect '{name}'")
     base, separator, condition = place.rpartition(IN)
     if separator:
+        if cls.mapping == "offset" and scene is not None and condition in scene.inputs:
+            raise InputError(f"'{kind}' follows no input", f"effect '{name}'", f"{kind}@{base}{IN}TEST")
         return During.of(cls(base), _checked_condition(condition, scene, name))
     if scene is not None and place not in (places := cls.places(scene)):
         needs = ", ".join(cls.needs)

@@ -22,6 +22,7 @@ Span = tuple[float, float]
 NUMBER = r"\d+(?:\.\d+)?"
 PIECE = re.compile(rf"(.+):({NUMBER}-{NUMBER}(?:,{NUMBER}-{NUMBER})*)s")
 AND = " & "
+IN = " in "  # between an effect or a boundary and the condition it holds in
 
 
 @dataclass(frozen=True)
@@ -117,6 +118,14 @@ class TimeWindow:
             return self.factor * np.asarray(inputs.get(f"{RUNNING}{self.name}", np.zeros_like(time)), float)
         here = [own for test, own in timed.spans.items() if f"{RUNNING}{test}" in inputs]
         return self.factor * share(time, here[0]) if here else np.zeros_like(time)
+
+
+def lasts(condition: str, test: Test) -> bool:
+    """Is a condition this test, or an event from its first sample to its last?  An event's name rounds its times."""
+    timed, slack = event(condition), 0.5 * test.step_s
+    spans = timed.spans.get(test.name, ()) if timed else ()
+    first, last = float(test.time[0]) + slack, float(test.time[-1]) - slack
+    return condition == test.name or any(a <= first and b >= last for a, b in spans)
 
 
 def holds(name: str, test: Test) -> Array:

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from validation.diagnosis.result import Verdict
 from validation.doubt import COSTS
 from validation.inference.evidence import Evidence
 from validation.inference.posterior import Hypothesis, inclusion, probabilities
+from validation.inference.result import Verdict
 
 Array = NDArray[np.float64]
 SURE = 1.0 - COSTS["abstain"].share / COSTS["wrong"].share  # probability from which a name costs less than a group

@@ -24,12 +24,12 @@ from validation.calibration.calibrate import (
     no_progress,
     with_model_error,
 )
-from validation.calibration.unknowns import Unknowns, at_level, scene_of, widened, working
 from validation.case import Case, Test
 from validation.comparison.linearisation import Segment, reach, segments
 from validation.effects import Effect, catalogue, extended
 from validation.inference.score import Gram, Score, gram, grams, score, total
 from validation.measurement.noise import Noise, fit_noise
+from validation.parameters.unknowns import Unknowns, at_level, scene_of, widened, working
 
 Array = NDArray[np.float64]
 TWIN = 0.9995  # cosine from which a calibrated parameter does the same as an effect

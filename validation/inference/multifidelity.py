@@ -19,12 +19,12 @@ from numpy.typing import NDArray
 
 from lumped.model.network import Network
 from validation.calibration.calibrate import calibrated, no_progress
-from validation.calibration.unknowns import working
 from validation.case import Case, Test
 from validation.comparison.predict import predict
 from validation.effects import extended
 from validation.inference.evidence import with_members
 from validation.inference.posterior import Posterior
+from validation.parameters.unknowns import working
 from validation.threads import side_by_side
 
 Array = NDArray[np.float64]

@@ -20,12 +20,12 @@ from numpy.typing import NDArray
 from scipy.special import logsumexp
 
 from validation.calibration.calibrate import Fit
-from validation.diagnosis.missing_heat import MissingHeat
 from validation.doubt import PRIOR, RARE, SIZES, temper
 from validation.effects import Effect
 from validation.effects.above import Above
 from validation.effects.during import During
 from validation.inference.evidence import Evidence
+from validation.inference.missing_heat import MissingHeat
 from validation.inference.score import Score, log_sign_gain, one_size
 
 if TYPE_CHECKING:

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from validation.calibration.calibrate import Fit, InnerProduct
 from validation.comparison.linearisation import Segment
-from validation.diagnosis.result import Remainder
 from validation.inference.decision import Decision
 from validation.inference.posterior import Hypothesis, Posterior, probabilities
 from validation.inference.refits import REPORTED
+from validation.inference.result import Remainder
 
 OFF = 2.0  # deviations of what a sensor and a good model allow, from which a record is called off
 MOST = 3  # are told, worst first

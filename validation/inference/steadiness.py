@@ -10,10 +10,10 @@ from dataclasses import replace
 
 from lumped.model.multipliers import values_of
 from validation.calibration.calibrate import CachedSegments, Fit, minimise
+from validation.calibration.model_error import ModelError
 from validation.comparison.linearisation import Segment
 from validation.inference.decision import Decision
 from validation.inference.evidence import Evidence
-from validation.inference.model_error import ModelError
 from validation.inference.posterior import Posterior
 from validation.inference.refits import log_bayes
 

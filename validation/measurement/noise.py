@@ -18,13 +18,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import product
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from validation.comparison.linearisation import Segment
 from validation.doubt import FORM, USUAL
+
+if TYPE_CHECKING:
+    from validation.comparison.linearisation import Segment
 
 Array = NDArray[np.float64]
 TAU, ELL = FORM["fast time"], FORM["slow time"]

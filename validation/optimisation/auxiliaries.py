@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from geom.constants import L_MIN
 from geom.description.machine import Machine
+from lumped.circuits.hydraulics import pressure_drop, pumping_power
 from lumped.machine.coolant import FLOW, INLET, Cooling, channel_of
 from lumped.machine.films import surroundings
-from lumped.transfer.hydraulics import pressure_drop, pumping_power
 from lumped.transfer.properties import air
 
 EFFICIENCY = 0.5  # of pump or fan with its motor: small wet-rotor pumps and axial fans reach 0.4 to 0.6

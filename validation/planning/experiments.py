@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from geom.errors import ThermoscopeError
 from validation.comparison.linearisation import segments
-from validation.diagnosis.result import Experiment
 from validation.inference.evidence import Evidence
+from validation.inference.result import Experiment
 from validation.inference.score import gram
 from validation.planning.candidate_tests import candidate_tests
 from validation.planning.competing_models import CompetingModels

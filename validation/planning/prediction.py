@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from lumped.model.multipliers import values_of
 from validation.calibration.calibrate import CachedSegments, Fit, minimise
-from validation.calibration.unknowns import Unknowns, nuisances
+from validation.calibration.model_error import ModelError, model_error
 from validation.case import Test
 from validation.comparison.linearisation import segments
 from validation.comparison.predict import predict
 from validation.inference.evidence import Evidence, with_members
-from validation.inference.model_error import ModelError, model_error
+from validation.parameters.unknowns import Unknowns, nuisances
 from validation.planning.competing_models import CompetingModels, deviance_difference
 from validation.planning.separability import GAP, Gaps
 

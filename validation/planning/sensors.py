@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from lumped.model.network import Network, Place
 from validation.case import Channel, Test
 from validation.comparison.linearisation import Segment, segments
-from validation.diagnosis.result import Experiment
 from validation.effects.sites import outside, turns
 from validation.inference.evidence import Evidence
+from validation.inference.result import Experiment
 from validation.inference.score import Gram
 from validation.measurement.noise import Noise
 from validation.planning.competing_models import CompetingModels

@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validation.calibration.calibrate import Fit
-from validation.calibration.unknowns import to_value
 from validation.comparison.linearisation import Segment
 from validation.inference.score import Gram, gram
+from validation.parameters.unknowns import to_value
 
 Array = NDArray[np.float64]
 FELT = 1e-6  # of the largest trace in a test: below it the effect does not act there

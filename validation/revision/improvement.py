@@ -6,12 +6,12 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from validation.calibration.calibrate import no_progress
-from validation.calibration.unknowns import with_model
 from validation.case import Case
 from validation.comparison.compare import Comparison, errors
-from validation.diagnosis.result import Candidate, Diagnosis
+from validation.diagnosis.diagnose import diagnose
 from validation.effects import effect
-from validation.inference.diagnose import diagnose
+from validation.inference.result import Candidate, Diagnosis
+from validation.parameters.unknowns import with_model
 from validation.revision.revise import Revision, add, calibrate
 
 Progress = Callable[[str], None]

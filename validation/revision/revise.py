@@ -15,14 +15,14 @@ from validation.calibration.calibrate import Fit, no_progress, with_model_error
 from validation.calibration.intervals import Estimate, Profile, estimates
 from validation.calibration.profile import profiles
 from validation.calibration.staged_fit import Search, belongs, merged, staged_fit
-from validation.calibration.unknowns import FREE, scene_of, working
 from validation.case import AddedEffect, Case, Model, Test
 from validation.comparison.compare import Comparison, errors
 from validation.effects import Effect, effect
 from validation.effects.during import During
-from validation.effects.time_window import checked
+from validation.effects.time_window import checked, lasts
 from validation.measurement.faults import broken_channels, without
 from validation.measurement.operators import of_measurement
+from validation.parameters.unknowns import FREE, scene_of, working
 from validation.revision.acceptance import Check, checks, failures
 from validation.threads import one_blas_thread
 
@@ -119,10 +119,12 @@ def add(case: Case, name: str, progress: Progress = no_progress) -> Revision:
 
 
 def inside(one: Effect, case: Case) -> None:
-    """An event lies inside the records of its tests."""
+    """An event lies inside the records of its tests; one of a boundary lasts as long as they do."""
     if isinstance(one, During) and one.event:
         for test in [t for t in case.tests if t.name in one.event.spans]:
             checked(one.event, test.name, float(test.time[0]), float(test.time[-1]), f"effect '{one.name}'")
+            if one.mapping == "offset" and not lasts(one.condition, test):
+                raise one.lasting("a boundary in a whole test")
 
 
 def remove(case: Case, name: str, progress: Progress = no_progress) -> Revision:

@@ -15,7 +15,7 @@ from viz.labels import end_labels
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from validation.planning.predicted_curves import PredictedCurves
+    from validation.revision.predicted_curves import PredictedCurves
 
 COLOURS = (BLUE, VERMILION, GREEN, PURPLE, ORANGE)
 SENSORS = 4  # panels that a page holds side by side

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from geom.errors import InputError
-from validation.diagnosis.missing_heat import is_located
+from validation.inference.missing_heat import is_located
 from viz.colours import BLUE, LIGHT, VERMILION, Theme, missing
 from viz.labels import signed
 from viz.rendering import scene

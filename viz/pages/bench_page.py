@@ -13,7 +13,7 @@ from viz.figures.experiment import SENSORS, predicted
 from viz.pages import html
 
 if TYPE_CHECKING:
-    from validation.planning.predicted_curves import PredictedCurves
+    from validation.revision.predicted_curves import PredictedCurves
 
 BLANK = "\u2007" * 6  # room for a pen
 DECISIVE = 2.0  # one-sigma distances from which a reading speaks for one of two

@@ -9,6 +9,14 @@ import pytest
 from numpy.testing import assert_allclose
 
 from geom.errors import InputError, MissingDependency
+from lumped.circuits.hydraulics import (
+    Duct,
+    friction,
+    helical_friction,
+    parallel_shares,
+    pressure_drop,
+    pumping_power,
+)
 from lumped.declarations.circuit import read_circuits
 from lumped.declarations.network import read_network
 from lumped.integration.balance import balance
@@ -17,14 +25,6 @@ from lumped.integration.steady import steady
 from lumped.schemas.reader import Table
 from lumped.transfer.coolant import coolant, glycol
 from lumped.transfer.exchanger import counterflow, crossflow, parallel_flow
-from lumped.transfer.hydraulics import (
-    Duct,
-    friction,
-    helical_friction,
-    parallel_shares,
-    pressure_drop,
-    pumping_power,
-)
 from lumped.transfer.properties import oil, water
 
 CHANNEL = {"wall": "housing", "width_mm": 20, "height_mm": 6, "length_m": 1.2, "bends": 2}

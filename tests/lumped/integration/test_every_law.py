@@ -1,118 +1,44 @@
-"""Heat is conserved under every law there is: in a link, as a source, along a stream. One without a case fails here."""
+"""What every law claims: heat is conserved, a neutral one changes nothing, tangents are differences, limits are right.
 
-import importlib
-import inspect
-from pkgutil import walk_packages
+Each is tried in a link, as a source and along a stream. A law without a case fails here.
+"""
 
 import numpy as np
 import pytest
-from numpy.testing import assert_allclose
-
-import lumped
-import thermoscope
-import validation
-from lumped.declarations.separated import FilmOver, Share
-from lumped.integration.balance import balance
-from lumped.integration.simulate import Record
-from lumped.machine.bases import Switched
-from lumped.machine.laws import Interpolated
-from lumped.model.build import bare_network, node_link, node_source, stream
-from lumped.sources.loss_map import MapLoss
-from lumped.sources.loss_measured import MeasuredLoss
-from lumped.sources.losses import BrushLoss, CopperLoss, IronLoss, PowerLoss, RippleLoss
-from lumped.transfer.exchanger import CellFilm, Exchanger, Flow, Rate
-from lumped.transfer.laws import (
-    CLOCK,
-    CONSTANT,
-    FILMS,
-    Constant,
-    FilmTable,
-    Fixed,
-    InputPower,
-    Law,
-    Linear,
-    Power,
-    Radiation,
-    Scaled,
-    Table,
-    TemperatureLaw,
-    WithTemperature,
+from law_cases import (
+    LAWS,
+    LIMITS,
+    LOSSES,
+    NAMES,
+    RECORD,
+    TEMPERATURE_LIMITS,
+    TEMPERATURES,
+    TIME,
+    every,
+    inputs,
 )
-from lumped.transfer.reversal import Direction, OneWay
-from thermoscope.export.tables import ExponentRatio
-from validation.calibration.model_form import ExponentError
-from validation.effects.build import Shaped
-from validation.effects.sensors.input_factor import Slope
-from validation.effects.sensors.input_offset import Shift
+from numpy.testing import assert_allclose, assert_array_equal
+
+from lumped.integration.balance import balance
+from lumped.integration.simulate import Record, simulate
+from lumped.integration.steady import steady
+from lumped.model.build import bare_network, node_link, node_source, stream
+from lumped.model.network import Parameter
+from lumped.numerics.terms import SMOOTH
+from lumped.transfer.laws import Constant, Fixed, Law, Linear, Power, TemperatureLaw
+from lumped.transfer.reversal import Direction
+from lumped.transfer.terms_value import temperature_value
 
 CLOSES = 1e-4  # of the heat: a hundredth of a kelvin of a rise of 100 K
-FORCED = InputPower(0.6, (("speed_rpm", 1000.0, 0.8),))
-BY_FLOW = Flow(2.0, "flow")
+WRONG = 1e-4  # K: a hundredth of what a step may be wrong by
+FLOWS = [law for law in LOSSES if isinstance(law.temperature, Constant) and np.min(law.factor(inputs(TIME))) >= 0.0]
 
 
-def grid(value):
-    return tuple(v * f for f in np.linspace(1.0, 1.2, FILMS) for v in value)
+def kinds(laws):
+    return [f"{type(law).__name__} {i}" for i, law in enumerate(laws)]
 
 
-LAWS = [
-    Fixed(0.8), FORCED, Interpolated("speed_rpm", (0.0, 500.0, 2000.0), (0.3, 0.5, 0.9)),
-    Switched(FORCED, "switch", True), Switched(FORCED, "switch", False),
-    FilmOver("speed_rpm", lambda x: (0.3 + 0.01 * np.sqrt(x), None), 4000.0),
-    Share(FilmOver("speed_rpm", lambda x: (0.3, None), 4000.0), (0.0, 4000.0), (0.3, 0.7)),
-    Scaled(Fixed(0.4), -1.0), MeasuredLoss(((1.0, ("electrical_W",)), (-np.pi / 30.0, ("torque_Nm", "speed_rpm")))),
-    MapLoss((0.0, 4000.0), (0.0, 5.0), ((1.0, 2.0), (3.0, 5.0))), CopperLoss(0.02, ("current_A",)),
-    PowerLoss(((2.0, (("speed_rpm", 1000.0, 1.5),)),)), IronLoss(1.0, 0.5, "speed_rpm", 1000.0, "current_A", 10.0),
-    BrushLoss(0.2, "current_A", 0.5, "speed_rpm", 1000.0), RippleLoss(48.0, "voltage_V", 1e-3, 1e4, 0.05),
-    Rate(BY_FLOW), Exchanger(1.0, BY_FLOW, Flow(3.0)), CellFilm((0.0, 2.0), (4.0, 9.0), BY_FLOW, 0.1, 0.2),
-    OneWay(FORCED, "flow", "here", "so"), Direction(FORCED, "to_and_fro", 1), Direction(FORCED, "to_and_fro", -1),
-    Shaped(FORCED, lambda u: np.asarray(u["current_A"]) / 20.0, CONSTANT, ("current_A",)),
-    WithTemperature(FORCED, Power(0.25)),
-    ExponentError(FORCED, "speed_rpm", {"speed_rpm": 1500.0}), 
-    ExponentRatio(ExponentError(FORCED, "speed_rpm", {"speed_rpm": 1500.0})),
-    Slope(FORCED, "speed_rpm"), Shift(IronLoss(1.0, 0.5, "speed_rpm", 1000.0), "speed_rpm"),
-]  # fmt: skip
-TEMPERATURES = [
-    CONSTANT, Power(0.25), Radiation(), Linear(0.004, 20.0), Table((0.0, 10.0, 80.0), (1.0, 1.3, 1.8)),
-    FilmTable((0.0, 5.0, 80.0), grid((1.0, 1.4, 2.0))),
-]  # fmt: skip
-LAWS += [Fixed(0.5, temperature) for temperature in TEMPERATURES]
-NAMES = [f"{type(law).__name__}{f' {type(law.temperature).__name__}' * (type(law) is Fixed)} {i}"
-         for i, law in enumerate(LAWS)]  # fmt: skip
-LOSSES = [law for law in LAWS if isinstance(law.temperature, Constant | Linear)]
-
-
-def every(base):
-    """All classes that can be made, of all modules of the rooms with laws."""
-    for room in (lumped, validation, thermoscope):
-        for module in walk_packages(room.__path__, f"{room.__name__}."):
-            if not module.name.endswith("__main__"):
-                importlib.import_module(module.name)
-    found, left = set(), [base]
-    while left:
-        one = left.pop()
-        left += one.__subclasses__()
-        ours = one.__module__.split(".")[0] in ("lumped", "validation", "thermoscope")
-        if ours and one is not base and not inspect.isabstract(one):
-            found.add(one)
-    return found
-
-
-def inputs(time):
-    """As they come: varying, with a stop, one that turns round, one that is switched."""
-    return {
-        "speed_rpm": 1500.0 + 1400.0 * np.sin(time / 250.0) * (time < 900),
-        "current_A": 10.0 + 4.0 * np.sin(time / 130.0),
-        "flow": 1.5 + np.cos(time / 170.0), "to_and_fro": np.sin(time / 200.0), "switch": 1.0 * (time > 400.0),
-        "electrical_W": 900.0 + time / 9.0, "torque_Nm": 2.0 + np.sin(time / 99.0), "voltage_V": 20.0 + time / 90.0,
-        CLOCK: time,
-    }  # fmt: skip
-
-
-TIME = np.arange(0.0, 1300.0, 10.0)
-RECORD = Record(TIME, {n: u for n, u in inputs(TIME).items() if n != CLOCK}, {"ambient": 18.0, "inlet": 25.0}, 60.0)
-
-
-def around(*links, sources=()):
+def around(*links, sources=(), parameters=()):
     """Two masses, heat into the first, a way out from the second; and two cells that a stream may pass."""
     net = bare_network("one law", {"a": 300.0, "b": 500.0, "cell1": 40.0, "cell2": 40.0}, ("ambient", "inlet"))
     built = [
@@ -122,40 +48,146 @@ def around(*links, sources=()):
         node_link(net, "to cell 2", "link", "b", "cell2", Fixed(1.0)),
     ]  # fmt: skip
     heat = node_source(net, "heat", "iron", {"a": 1.0}, Fixed(60.0))
-    return net.extended([*built, *(make(net) for make in links)], [heat, *(make(net) for make in sources)])
+    return net.extended([*built, *(make(net) for make in links)], [heat, *(make(net) for make in sources)], parameters)
 
 
-@pytest.mark.parametrize("law", LAWS, ids=NAMES)
-def test_a_link_gives_at_one_end_what_it_takes_at_the_other(law):
-    net = around(lambda n: node_link(n, "law", "film", "a", "b", law))
-    heat = balance(net, RECORD)
-    assert np.abs(heat.through["law"]).max() > 0.0
-    assert np.abs(heat.residual).max() < CLOSES
+def linked(law):
+    return {"links": (lambda n: node_link(n, "law", "film", "a", "b", law),)}
 
 
-@pytest.mark.parametrize("law", LOSSES, ids=lambda law: type(law).__name__)
-def test_a_loss_is_found_again(law):
-    net = around(sources=(lambda n: node_source(n, "law", "iron", {"b": 1.0}, law),))
-    heat = balance(net, RECORD)
-    assert np.abs(heat.residual).max() < CLOSES
-    if isinstance(law.temperature, Constant):
-        fine = np.linspace(0.0, TIME[-1], 200_001)
-        u = {n: np.interp(fine, TIME, v) for n, v in inputs(TIME).items()}
-        declared = np.trapezoid(np.broadcast_to(law.factor(u), fine.shape), fine)
-        turns = np.count_nonzero(np.diff(np.sign(u[law.column]))) if isinstance(law, Direction) else 0
-        within_a_sample = turns * np.diff(TIME).max() * np.max(law.factor(u))  # when a flow turns round is not recorded
-        assert_allclose(heat.injected["law"][-1], declared, rtol=1e-3, atol=within_a_sample)
+def injected(law):
+    return {"sources": (lambda n: node_source(n, "law", "iron", {"b": 1.0}, law),)}
 
 
-FLOWS = [law for law in LOSSES if isinstance(law.temperature, Constant) and np.min(law.factor(inputs(TIME))) >= 0.0]
+def streaming(law):
+    return {"links": (lambda n: stream(n, "law", ("inlet", "cell1", "cell2"), law),)}
 
 
-@pytest.mark.parametrize("law", FLOWS, ids=lambda law: type(law).__name__)
-def test_a_stream_carries_away_what_it_is_given(law):
-    net = around(lambda n: stream(n, "stream:law", ("inlet", "cell1", "cell2"), law))
-    assert np.abs(balance(net, RECORD).residual).max() < CLOSES
+PARTS = {"link": (linked, LAWS), "source": (injected, LOSSES), "stream": (streaming, FLOWS)}
+EACH = [pytest.param(put(law), id=f"{part} {name}")
+        for part, (put, laws) in PARTS.items() for law, name in zip(laws, kinds(laws), strict=True)]  # fmt: skip
+
+
+def built(parts, parameters=()):
+    return around(*parts.get("links", ()), sources=parts.get("sources", ()), parameters=parameters)
 
 
 def test_every_law_has_a_case():
     assert {c.__name__ for c in every(Law) - {type(law) for law in LAWS}} == set()
     assert {c.__name__ for c in every(TemperatureLaw) - {type(law) for law in TEMPERATURES}} == set()
+    assert set(LIMITS) == {type(law) for law in LAWS}
+    assert set(TEMPERATURE_LIMITS) == {type(law) for law in TEMPERATURES}
+
+
+@pytest.mark.parametrize("law", LAWS, ids=NAMES)
+def test_a_link_gives_at_one_end_what_it_takes_at_the_other(law):
+    heat = balance(built(linked(law)), RECORD)
+    assert np.abs(heat.through["law"]).max() > 0.0
+    assert np.abs(heat.residual).max() < CLOSES
+
+
+@pytest.mark.parametrize("law", LAWS, ids=NAMES)
+def test_two_bodies_alone_keep_their_heat_and_the_warmer_one_cools(law):
+    """By the temperatures of a run alone. Where the coefficient is positive throughout, they meet and do not cross."""
+    net = bare_network("alone", {"a": 300.0, "b": 500.0}, ("ambient",))
+    net = net.extended([node_link(net, "law", "film", "a", "b", law)])
+    start = {"a": 80.0, "b": 30.0}
+    T = simulate(net, Record(TIME, RECORD.inputs, {"ambient": 18.0}, start), keep_states=True).z[:, :2]
+    moved = np.abs(T[:, 0] - T[0, 0]).max()
+    assert moved > 0.01
+    assert_allclose(T @ net.C, 80.0 * 300.0 + 30.0 * 500.0, atol=1e-9 * 300.0 * moved + 1e-8)
+    if np.min(law.factor(inputs(TIME))) >= 0.0:
+        assert np.all(np.diff(T[:, 0]) <= WRONG)
+        assert np.all(T[:, 0] >= T[:, 1] - WRONG)
+
+
+@pytest.mark.parametrize("law", LOSSES, ids=kinds(LOSSES))
+def test_a_loss_is_found_again(law):
+    heat = balance(built(injected(law)), RECORD)
+    assert np.abs(heat.residual).max() < CLOSES
+    if isinstance(law.temperature, Constant):
+        declared, unsure = declared_heat(law)
+        assert_allclose(heat.injected["law"][-1], declared, rtol=1e-3, atol=unsure)
+
+
+def declared_heat(law):
+    """Integral of the factor over the record, and what of it is not recorded: when within a sample a flow turns."""
+    fine = np.linspace(0.0, TIME[-1], 200_001)
+    u = {n: np.interp(fine, TIME, v) for n, v in inputs(TIME).items()}
+    turns = np.count_nonzero(np.diff(np.sign(u[law.column]))) if isinstance(law, Direction) else 0
+    return np.trapezoid(np.broadcast_to(law.factor(u), fine.shape), fine), (
+        turns * np.diff(TIME).max() * np.max(law.factor(u))
+    )
+
+
+@pytest.mark.parametrize("law", LOSSES, ids=kinds(LOSSES))
+def test_a_loss_warms_what_it_is_said_to_warm_and_nothing_else(law):
+    """Bodies that nothing joins, against the closed form; with F the declared heat and a the coefficient (1/K),
+    1 + a (T - reference) grows by exp(a F / C), and what is not heated stays as it is."""
+    net = bare_network("alone", {"a": 3e4, "b": 5e4, "c": 5e4}, ("ambient",))
+    net = net.extended(sources=[node_source(net, "law", "iron", {"a": 0.4, "b": 0.6}, law, "b")])
+    T = simulate(net, Record(TIME, RECORD.inputs, {"ambient": 18.0}, 60.0), keep_states=True).z[:, :3]
+    (F, unsure), alpha = declared_heat(law), 0.0
+    if isinstance(law.temperature, Linear):
+        alpha = law.temperature.alpha
+    above = 1.0 + alpha * (60.0 - law.temperature.reference) if alpha else 1.0
+    rise = above * (np.expm1(0.6 * alpha * F / net.C[1]) / alpha if alpha else 0.6 * F / net.C[1])
+    assert_allclose(T[-1, 1] - 60.0, rise, rtol=1e-3, atol=0.6 * unsure / net.C[1])
+    assert_allclose((T[:, 0] - 60.0) * net.C[0] / 0.4, (T[:, 1] - 60.0) * net.C[1] / 0.6, rtol=1e-9, atol=1e-7)
+    assert_array_equal(T[:, 2], 60.0)
+
+
+@pytest.mark.parametrize("law", FLOWS, ids=kinds(FLOWS))
+def test_a_stream_carries_away_what_it_is_given(law):
+    assert np.abs(balance(built(streaming(law)), RECORD).residual).max() < CLOSES
+
+
+@pytest.mark.parametrize("parts", EACH)
+def test_at_amplitude_zero_nothing_changes_to_the_bit(parts):
+    amplitude = Parameter("size", (("law", 1.0),), 0.0, mapping="amplitude", neutral=0.0)
+    y = simulate(built(parts, [amplitude]), RECORD, keep_states=True).z
+    assert_array_equal(y, simulate(around(), RECORD, keep_states=True).z)
+
+
+@pytest.mark.parametrize("parts", EACH)
+def test_the_tangent_is_the_difference(parts):
+    """Of the discrete scheme on the same steps; fourth order, so that rounding and truncation are both near 1e-9."""
+    net, h = built(parts, [Parameter("size", (("law", 1.0),))]), 1e-3
+    rows = [net.place(node).mean for node in net.states]
+    run = simulate(net, RECORD, None, rows, net.parameters)
+    up, down, far, near = (
+        simulate(net, RECORD, {"size": np.exp(k * h)}, rows, steps=run.steps).y for k in (1, -1, 2, -2)
+    )
+    dy = run.dy[:, :, 0]
+    assert np.abs(dy).max() > 1e-4
+    assert_allclose(dy, (8 * (up - down) - far + near) / (12 * h), atol=1e-6 * np.abs(dy).max())
+
+
+@pytest.mark.parametrize(("law", "at", "value"), [
+    pytest.param(*case, id=f"{kind.__name__} {i}") for kind, cases in LIMITS.items() for i, case in enumerate(cases)
+])  # fmt: skip
+def test_a_law_has_its_limits(law, at, value):
+    samples = {n: np.full(3, u) for n, u in at.items()}
+    assert_allclose(np.broadcast_to(law.factor(samples), 3), value, rtol=1e-6, atol=1e-12)
+
+
+@pytest.mark.parametrize(("law", "hot", "cold", "value"), [
+    pytest.param(*case, id=f"{kind.__name__} {i}")
+    for kind, cases in TEMPERATURE_LIMITS.items() for i, case in enumerate(cases)
+])  # fmt: skip
+def test_a_temperature_law_has_its_limits(law, hot, cold, value):
+    assert temperature_value(law, hot, cold) == pytest.approx(value, rel=1e-12)
+
+
+@pytest.mark.parametrize("watts", [-30.0, -1.0, 1e-3, 1.0, 40.0, 300.0])
+@pytest.mark.parametrize("temperature", TEMPERATURES, ids=lambda law: type(law).__name__)
+def test_the_compiled_law_is_the_law(temperature, watts):
+    """A node rests where g (T - 20) is the heat; the kernel rounds the corner of a power at equal temperatures."""
+    g, near = 3.0 / temperature_value(temperature, 60.0, 20.0), SMOOTH if isinstance(temperature, Power) else 1e-6
+    net = bare_network("one", {"a": 300.0}, ("ambient",))
+    links = [node_link(net, "law", "film", "a", "ambient", Fixed(g, temperature))]
+    sources = [node_source(net, "heat", "iron", {"a": 1.0}, Fixed(watts))]
+    T = steady(net.extended(links, sources), {}, {"ambient": 20.0})["a"]
+    low, high = (g * temperature_value(temperature, x, 20.0) * (x - 20.0) for x in (T - near, T + near))
+    assert low <= watts <= high
+    assert np.sign(T - 20.0) == np.sign(watts)

@@ -10,12 +10,12 @@ from geom import Machine, load_machine
 from geom.description.geometry import NO_FEATURES
 from geom.errors import InputError
 from geom.machine_file import machine_from
+from lumped.circuits.hydraulics import pressure_drop
 from lumped.integration.steady import steady
 from lumped.machine.air import AIR_HEAT, fan_shares
 from lumped.machine.films import surroundings
 from lumped.machine.motor import operating_point
 from lumped.model.network import Network
-from lumped.transfer.hydraulics import pressure_drop
 from lumped.transfer.properties import air
 from thermoscope.pipeline import prepared
 from thermoscope.verification.crosscheck import coefficients

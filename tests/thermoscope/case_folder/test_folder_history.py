@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from geom.errors import InputError
-from thermoscope.case_folder.files import write_whole
 from thermoscope.case_folder.history import History, Revision, load_history, save_history
+from thermoscope.files import write_whole
 
 FIRST = Revision(0, "calibrate", values={"link.a": 1.25}, intervals={"link.a": (1.0, 1.5)}, rmse_K={"t": (3.0, 2.0)})
 SECOND = Revision(

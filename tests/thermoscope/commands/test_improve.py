@@ -9,7 +9,7 @@ from small_case import small_case
 from thermoscope.case_folder.history import load_history
 from thermoscope.cli import app
 from thermoscope.commands.explain import improve as command
-from validation.diagnosis.result import Candidate, Diagnosis
+from validation.inference.result import Candidate, Diagnosis
 from validation.revision.improvement import offered, singletons
 
 

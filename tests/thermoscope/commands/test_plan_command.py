@@ -11,7 +11,7 @@ from geom.errors import InputError
 from thermoscope.case_folder.folder import load_case
 from thermoscope.commands.show.plan import plan
 from validation.planning.candidate_tests import Experiment
-from validation.planning.predicted_curves import UNCHANGED, PredictedCurves, predicted_curves, schedule
+from validation.revision.predicted_curves import UNCHANGED, PredictedCurves, predicted_curves, schedule
 from viz.figures.experiment import predicted
 
 RIVALS = ("convection@flange", "radiation@flange")

@@ -6,7 +6,7 @@ import pytest
 from typer.testing import CliRunner
 
 from thermoscope.cli import app, main
-from thermoscope.console.groups import GROUPS, HOME, old_name
+from thermoscope.console.groups import GROUPS, HOME, narrowed, old_name
 
 RUN = CliRunner()
 TOP = {"demo", "check"}
@@ -29,6 +29,20 @@ def test_help_is_whole_and_narrow(words):
     assert done.exit_code == 0
     assert not re.search(r"[a-z]\.\.\.", done.output)
     assert max(map(len, done.output.splitlines())) <= 80
+
+
+@pytest.mark.parametrize("words", [[HOME[n], n] for n in sorted(HOME) if n in known()], ids="-".join)
+def test_the_app_of_one_command_says_what_the_whole_says(words):
+    one = narrowed(app, [*words, "case"])
+    assert [len(g.typer_instance.registered_commands) for g in one.registered_groups] == [1]
+    for tail in (["--help"], ["--no-such-option"]):
+        few, every = (RUN.invoke(x, [*words, *tail], prog_name="thermoscope", terminal_width=80) for x in (one, app))
+        assert (few.exit_code, few.output) == (every.exit_code, every.output)
+
+
+@pytest.mark.parametrize("words", [[], ["test"], ["test", "nothing"], ["compare"], ["demo"], ["--help"]], ids=str)
+def test_what_is_no_command_of_a_group_is_left_to_the_whole_app(words):
+    assert narrowed(app, words) is app
 
 
 def test_old_and_new_names_do_the_same(case, monkeypatch, capsys):

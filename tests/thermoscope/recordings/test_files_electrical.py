@@ -78,7 +78,7 @@ def test_saturation_curve_in_a_sheet(tmp_path):
 
 def test_compare_and_calibrate_take_them(tmp_path):
     from validation.calibration.calibrate import calibrated
-    from validation.calibration.unknowns import working
+    from validation.parameters.unknowns import working
 
     case = load_case(electrical_case(tmp_path)).case
     rows = {c.channel: c for c in compare(case).tests[0].channels}

@@ -14,8 +14,8 @@ from small_case import small_case
 from yarl import URL
 
 from geom.errors import InputError
-from thermoscope.commands.show.serve import serve
 from thermoscope.workbench.access_control import AccessControl, loopback, served
+from thermoscope.workbench.command import serve
 from thermoscope.workbench.serve import application, token_for
 from thermoscope.workbench.tabs import MOST
 from viz.viewer.page import script as viewer_script

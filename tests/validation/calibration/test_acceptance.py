@@ -10,11 +10,11 @@ from playground import Truth, wind
 
 from lumped.model.network import Parameter
 from validation.calibration.calibrate import minimise
-from validation.calibration.unknowns import Unknowns
 from validation.case import AddedEffect
 from validation.comparison.linearisation import segments
 from validation.effects import effect
 from validation.inference.evidence import diagnosing
+from validation.parameters.unknowns import Unknowns
 from validation.revision.acceptance import checks, predicted_without
 from validation.revision.revise import staged_fit, start
 

@@ -7,9 +7,9 @@ import pytest
 from playground import Truth, network
 
 from lumped.transfer.laws import Fixed, InputPower, Power, WithTemperature
-from validation.calibration.model_form import ExponentError, exponent_derivative, levels, shares, with_model_form
 from validation.comparison.predict import predict
 from validation.effects import effect, extended
+from validation.parameters.model_form import ExponentError, exponent_derivative, levels, shares, with_model_form
 
 
 @pytest.fixture(scope="module")

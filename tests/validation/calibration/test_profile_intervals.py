@@ -12,8 +12,8 @@ from validation.calibration.calibrate import minimise
 from validation.calibration.intervals import estimates
 from validation.calibration.profile import profiles
 from validation.calibration.staged_fit import Search, fit_stages
-from validation.calibration.unknowns import Unknowns, working
 from validation.case import Case, Model
+from validation.parameters.unknowns import Unknowns, working
 from validation.revision.revise import calibrate
 
 

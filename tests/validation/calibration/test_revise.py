@@ -9,8 +9,8 @@ from playground import Truth, wind
 
 from geom.errors import InputError
 from validation import add, calibrate, compare, remove
-from validation.calibration.unknowns import working
 from validation.comparison.linearisation import rmse, segments
+from validation.parameters.unknowns import working
 from validation.revision.revise import Change, judge
 
 EFFECT = "convection@flange.right"

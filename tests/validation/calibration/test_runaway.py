@@ -9,9 +9,9 @@ from playground import Truth, network
 from geom.errors import NoSolution
 from validation.calibration import calibrate
 from validation.calibration.calibrate import calibrated
-from validation.calibration.unknowns import working
 from validation.inference import refits
 from validation.inference.posterior import Hypothesis, weights
+from validation.parameters.unknowns import working
 
 
 @pytest.fixture

@@ -8,9 +8,9 @@ from everything import machine, warm_test
 from one_body import measured, one_node
 
 from lumped.model.network import Parameter
-from validation.calibration.unknowns import nuisances
 from validation.comparison.predict import Watch, predict
 from validation.measurement.operators import lag
+from validation.parameters.unknowns import nuisances
 
 TIME = np.arange(0.0, 600.0, 10.0)
 

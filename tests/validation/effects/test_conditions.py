@@ -16,11 +16,12 @@ from validation.comparison.predict import predict
 from validation.conditions.hat_functions import Path, hat_scores
 from validation.conditions.refine import repeats
 from validation.conditions.windows import best_stretch, joined, pulses
-from validation.diagnosis.missing_heat import scan
 from validation.effects import Scene, effect, extended, kinds
 from validation.effects.during import During
 from validation.effects.time_window import Event, checked, event, holds, share
 from validation.inference.evidence import calibrated_case, candidates, scored
+from validation.inference.missing_heat import scan
+from validation.revision.revise import add
 
 ONE = Event.of({"day": [(600.0, 900.0)]})
 SEVEN = Event.of({"day one": [(600.0 * k, 600.0 * k + 90.25) for k in range(1, 8)], "night.2": [(0.0, 60.0)]})
@@ -103,6 +104,29 @@ def test_a_boundary_offset_in_one_test():
     for name, step in (("day", 2.0), ("night", 0.0)):
         y = predict(held, measured(name), {held.parameters[-1].name: 2.0}).y - predict(bare, measured(name), {}).y
         assert y[-1, 0] == pytest.approx(step, abs=1e-3)
+
+
+BOTH = Event.of({n: [(measured(n).time[0], measured(n).time[-1])] for n in ("day", "dusk")})
+
+
+def test_a_boundary_offset_in_several_tests_is_one_in_each_of_them():
+    """As the name of an event says it, which rounds its times; with its tangent."""
+    bare = one_node()
+    several = effect(f"ambient.offset@ambient in {BOTH.name}").extend(bare)
+    for name, one in ((n, effect(f"ambient.offset@ambient in {n}").extend(bare)) for n in ("day", "dusk", "night")):
+        test, want, got = measured(name), one.parameters[-1], several.parameters[-1]
+        alone, both = predict(one, test, {want.name: 2.0}, [want]), predict(several, test, {got.name: 2.0}, [got])
+        acts = name != "night"
+        assert both.y == pytest.approx(alone.y if acts else predict(bare, test, {}).y)
+        assert pytest.approx(alone.J if acts else np.zeros_like(alone.J)) == both.J
+        assert np.abs(alone.J).max() > 0.9
+
+
+def test_a_boundary_offset_for_a_part_of_a_test_is_refused():
+    """It would change nothing."""
+    case = Case("one", Model(one_node()), (measured("day"),))
+    with pytest.raises(InputError, match=r"'ambient\.offset@ambient' cannot hold for a while; a boundary in a whole"):
+        add(case, "ambient.offset@ambient in day:600-900s")
 
 
 def test_masses_and_joints_hold_for_no_while():
@@ -188,8 +212,8 @@ def test_nothing_is_no_event():
 
 def test_an_answer_counts_as_its_odds_of_being_right():
     from validation.conditions.question import answered, information
+    from validation.diagnosis.diagnose import infer
     from validation.doubt import USUAL
-    from validation.inference.diagnose import infer
     from validation.inference.posterior import probabilities
 
     post = infer(bench((("noon", ((0.0, 5980.0),)),), 0.6), ["convection.constant"])

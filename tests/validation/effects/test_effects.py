@@ -1,5 +1,6 @@
 """Claims that every effect of the catalogue makes, tested for all."""
 
+from functools import partial
 from pkgutil import walk_packages
 
 import numpy as np
@@ -8,24 +9,17 @@ from everything import machine, scene, warm_test
 
 import validation.effects as folder
 from geom.errors import InputError
+from lumped.integration.balance import balance
+from lumped.model.network import Source
 from lumped.transfer.laws import InputPower
-from validation.comparison.predict import predict
+from validation.comparison.predict import heat_model, predict, record
 from validation.effects import catalogue, effect, kinds
+from validation.effects.above import Above
+from validation.effects.during import During
+from validation.effects.sensors.input_fault import InputFault
+from validation.measurement.operators import setting
 
 KINDS = kinds()
-COOLING = [
-    "convection",
-    "convection.constant",
-    "convection.fan",
-    "convection.buoyant",
-    "radiation",
-    "conduction.bench",
-    "coolant",
-    "conduction.shaft",
-    "conduction.cable",
-]
-HEATING = ["iron", "windage", "bearing.friction", "brush.drop", "brush.friction", "loss.winding", "loss.rotor",
-           "loss.constant", "iron.pwm", "copper.ac", "copper.feedback"]  # fmt: skip
 SHARED = {
     f"validation.effects.{name}"
     for name in (
@@ -45,9 +39,50 @@ def before(net):
     return predict(net, warm_test(net), {}).y
 
 
+WHILE = "warm:300-600s"  # some of the test
+WHOLE = ("ambient.offset",)  # in a whole test only
+
+
 def first(kind, net):
     places = KINDS[kind].places(scene(net))
     return KINDS[kind]("flange.right" if "flange.right" in places else places[0])
+
+
+LASTING = [k for k, cls in KINDS.items() if k == "mass" or (cls.__module__.startswith("validation.effects.sensors.")
+           and not issubclass(cls, InputFault))]  # fmt: skip
+
+
+def every_effect():
+    """Name and maker of one of every kind, of one of every kind that holds for a while, and of laws above a level."""
+    yield from ((kind, partial(first, kind)) for kind in KINDS)
+    for kind in (k for k in KINDS if k not in LASTING):
+        condition = "warm" if kind in WHOLE else WHILE
+        yield f"{kind} in", lambda net, kind=kind, condition=condition: During.of(first(kind, net), condition)
+    for target in ("loss:copper.winding.armature", "loss:iron.rotor", "film:housing", "film:poles:fan"):
+        yield f"law {target}", lambda net, target=target: Above(f"{target}|current_A>150")
+
+
+EVERY = [pytest.param(make, id=name) for name, make in every_effect()]
+
+
+def size(parameter):
+    """A usual one, to the side that physics allows."""
+    return parameter.neutral + parameter.prior_sd * (parameter.sign or 1)
+
+
+@pytest.mark.parametrize("kind", LASTING)
+def test_what_cannot_hold_for_a_while_says_so(kind, net):
+    with pytest.raises(InputError, match="cannot hold for a while"):
+        During.of(first(kind, net), WHILE).extend(net)
+
+
+def test_an_offset_of_a_boundary_follows_no_input(net):
+    with pytest.raises(InputError, match=r"follows no input.*ambient\.offset@ambient in TEST"):
+        effect("ambient.offset@ambient in speed_rpm", scene(net))
+
+
+def added(bigger, net):
+    return [*bigger.links[len(net.links) :], *bigger.sources[len(net.sources) :]]
 
 
 def grown(one, net):
@@ -69,18 +104,26 @@ def test_declares_itself(kind):
     assert cls.sign == 0 or cls.sign * min(cls.typical, key=abs) > 0
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_neutral_is_identical_to_the_bit(kind, net, before):
-    bigger, parameter = grown(first(kind, net), net)
-    assert parameter.name == first(kind, net).name
+@pytest.mark.parametrize("make", EVERY)
+def test_neutral_is_identical_to_the_bit(make, net, before):
+    bigger, parameter = grown(make(net), net)
+    assert parameter.name == make(net).name
     np.testing.assert_array_equal(predict(bigger, warm_test(net), {parameter.name: parameter.neutral}).y, before)
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_derivative_is_that_of_the_answer(kind, net, before):
+def test_neutral_is_identical_at_every_place(kind, net, before):
+    for place in KINDS[kind].places(scene(net)):
+        bigger, parameter = grown(KINDS[kind](place), net)
+        y = predict(bigger, warm_test(net), {parameter.name: parameter.neutral}).y
+        np.testing.assert_array_equal(y, before, err_msg=place)
+
+
+@pytest.mark.parametrize("make", EVERY)
+def test_derivative_is_that_of_the_answer(make, net, before):
     """Against a one-sided difference; 1 % covers its own error where the answer is curved, a microkelvin what the two
     runs' own time steps differ by."""
-    bigger, p = grown(first(kind, net), net)
+    bigger, p = grown(make(net), net)
     step = 1e-4 * p.prior_sd * (p.sign or 1)
     J = predict(bigger, warm_test(net), {}, [p]).J[:, :, 0]
     difference = (predict(bigger, warm_test(net), {p.name: p.neutral + step}).y - before) / step
@@ -89,25 +132,78 @@ def test_derivative_is_that_of_the_answer(kind, net, before):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_heat_is_conserved(kind, net):
+def test_patterns_conserve_heat_at_every_place(kind, net):
     """A new link carries nothing at uniform temperature and takes at one end what it gives at the other."""
-    bigger, _ = grown(first(kind, net), net)
-    n = len(bigger.states)
-    for link in bigger.links[len(net.links) :]:
-        P = np.zeros((bigger.size, bigger.size))
-        np.add.at(P, (link.rows, link.cols), link.vals)
-        np.testing.assert_allclose(P.sum(axis=1), 0.0, atol=1e-12)
-        inner = P[:n, :n].sum(axis=0) + P[:n, n:].sum(axis=1)
-        np.testing.assert_allclose(inner.sum(), 0.0, atol=1e-12)
-    for source in bigger.sources[len(net.sources) :]:
-        assert source.weights.sum() == pytest.approx(1.0)
+    n, places = len(net.states), KINDS[kind].places(scene(net))
+    assert places
+    for bigger in (KINDS[kind](place).extend(net) for place in places):
+        for link in bigger.links[len(net.links) :]:
+            P = np.zeros((bigger.size, bigger.size))
+            np.add.at(P, (link.rows, link.cols), link.vals)
+            np.testing.assert_allclose(P.sum(axis=1), 0.0, atol=1e-12)
+            inner = P[:n, :n].sum(axis=0) + P[:n, n:].sum(axis=1)
+            np.testing.assert_allclose(inner.sum(), 0.0, atol=1e-12)
+        for source in bigger.sources[len(net.sources) :]:
+            assert source.weights.sum() == pytest.approx(1.0)
 
 
-@pytest.mark.parametrize(("kind", "way"), [(k, -1) for k in COOLING] + [(k, 1) for k in HEATING])
-def test_cooling_cools_and_heating_heats(kind, way, net):
+@pytest.mark.parametrize("make", EVERY)
+def test_heat_is_conserved_at_a_usual_size(make, net):
+    """In - out - stored along the run; what the effect adds carries some of it."""
+    bigger, p = grown(make(net), net)
+    test, values = warm_test(net), {p.name: size(p)}
+    heat = balance(*heat_record(bigger, test, values))
+    assert np.abs(heat.residual).max() < 1e-4
+    for one in added(bigger, net):
+        carried = heat.through if one.name in heat.through else heat.injected
+        assert np.abs(carried[one.name]).max() > 0.0
+
+
+def heat_record(network, test, values):
+    """What of an effect acts on heat, and the record with what acts on its boundaries."""
+    bare, heat = heat_model(network, values)
+    return bare, record(test, setting(network.parameters, values)), heat
+
+
+def way(one, net):
+    """+1 where an effect can only heat the machine, -1 where it can only cool it, 0 where it may do either: where its
+    amplitude has either sign, or what it acts on is between two parts, or is no heat."""
+    bigger, p = grown(one, net)
+    names = [name for name, _ in p.targets]
+    acted = [x for x in (*bigger.links, *bigger.sources) if x.name in names]
+    signs = {p.sign * _heats(x, net) for x in acted}
+    return signs.pop() if len(signs) == 1 else 0
+
+
+def _heats(one, net):
+    factor = np.broadcast_to(one.law.factor(warm_test(net).signals), warm_test(net).time.shape)
+    sign = int(factor.min() >= 0.0) - int(factor.max() <= 0.0)
+    if isinstance(one, Source):
+        return sign
+    return -sign * (one.kind == "stream" or bool(set(one.places) & set(net.boundaries)))
+
+
+ONE_WAY = [k for k in KINDS if way(first(k, machine()), machine())]
+
+
+def test_what_has_a_sign_heats_or_cools_unless_it_is_between_parts_or_no_heat():
+    left = {k for k, cls in KINDS.items() if k not in ONE_WAY and cls.sign and not cls.fault}
+    assert left == {"contact", "coupling", "gap.convection", "end.mixing", "mass", "copper.feedback"}
+
+
+@pytest.mark.parametrize("kind", ONE_WAY)
+def test_cooling_cools_and_heating_heats(kind, net):
     bigger, p = grown(first(kind, net), net)
+    late = predict(bigger, warm_test(net), {}, [p]).J[-1, :, 0] * p.sign
+    assert way(first(kind, net), net) * late[np.argmax(np.abs(late))] > 0
+
+
+def test_a_warmer_winding_loses_more(net):
+    """With the feedback of copper that the network lacks, above the reference of 20 degC."""
+    bigger, p = grown(first("copper.feedback", net), net)
     late = predict(bigger, warm_test(net), {}, [p]).J[-1, :, 0]
-    assert way * late[np.argmax(np.abs(late))] > 0
+    assert late.max() > 0.0
+    assert late.min() > -1e-6 * late.max()
 
 
 INPUT = {"rpm": ("speed_rpm", 1.0), "A": ("current_A", 1.0), "m/s": ("vehicle_speed_mps", 1.0),
@@ -123,7 +219,8 @@ def condition(at):
 @pytest.mark.parametrize("kind", [k for k, cls in KINDS.items() if cls.at and k != "convection.buoyant"])
 def test_an_amplitude_is_what_the_effect_amounts_to_at_its_condition(kind, net):
     bigger, p = grown(first(kind, net), net)
-    new = [*bigger.links[len(net.links) :], *bigger.sources[len(net.sources) :]]
+    new = added(bigger, net)
+    assert new
     at = condition(KINDS[kind].at)
     assert [float(one.law.factor(at)) for one in new] == pytest.approx([1.0] * len(new))
     assert p.unit.endswith(f" at {KINDS[kind].at}")
@@ -139,8 +236,7 @@ def test_natural_convection_is_its_amplitude_at_the_rise_it_says(net):
 @pytest.mark.parametrize("kind", [k for k, cls in KINDS.items() if not cls.at])
 def test_what_scales_with_an_input_says_at_which(kind, net):
     bigger, _ = grown(first(kind, net), net)
-    new = [*bigger.links[len(net.links) :], *bigger.sources[len(net.sources) :]]
-    assert not [one.name for one in new if isinstance(one.law, InputPower)]
+    assert not [one.name for one in added(bigger, net) if isinstance(one.law, InputPower)]
 
 
 def test_place_of_a_part_with_faces_is_its_name(net):

@@ -8,10 +8,10 @@ from everything import machine, warm_test
 
 from lumped.model.network import Parameter
 from lumped.transfer.laws import InputPower
-from validation.calibration.unknowns import at_level
 from validation.comparison.predict import predict
 from validation.effects import effect
 from validation.effects.build import heat
+from validation.parameters.unknowns import at_level
 
 
 def with_loss(reference: float):

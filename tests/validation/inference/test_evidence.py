@@ -7,9 +7,9 @@ import pytest
 from playground import Truth, wind
 
 from validation.calibration.calibrate import CachedSegments, calibrated, minimise, residual_noise
-from validation.calibration.unknowns import working
 from validation.effects import effect
 from validation.inference.evidence import calibrated_case, converged, scored, under
+from validation.parameters.unknowns import working
 
 NAMES = ("convection@flange.right", "loss.constant@yoke", "sensor.bias@yoke", "mass@yoke")
 

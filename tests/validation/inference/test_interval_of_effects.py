@@ -3,9 +3,9 @@
 import pytest
 
 from geom.constants import NORMAL_95
+from validation.diagnosis.tables import interval
 from validation.doubt import TABLE
 from validation.effects.registry import kinds
-from validation.inference.tables import interval
 
 
 def test_what_is_exact_is_as_wide_as_the_refit_says():

@@ -9,8 +9,8 @@ from scipy.stats import multivariate_normal
 from lumped.model.multipliers import values_of
 from validation.calibration.calibrate import minimise
 from validation.comparison.linearisation import segments
+from validation.diagnosis.diagnose import sharpened
 from validation.effects import effect, extended
-from validation.inference.diagnose import sharpened
 from validation.inference.evidence import (
     calibrated_case,
     projected,

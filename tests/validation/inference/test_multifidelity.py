@@ -10,13 +10,13 @@ from playground import Truth, network, wind
 
 from lumped.transfer.laws import Fixed
 from validation import diagnose
-from validation.calibration.unknowns import working
 from validation.case import LowFidelity
 from validation.comparison.linearisation import segments
+from validation.diagnosis.diagnose import infer
 from validation.effects import extended
-from validation.inference.diagnose import infer
 from validation.inference.evidence import with_members
 from validation.inference.multifidelity import at_low_fidelity, corrected, fidelity_error
+from validation.parameters.unknowns import working
 
 pytestmark = pytest.mark.heavy
 WIND = 16.0  # W/K at 10 m/s

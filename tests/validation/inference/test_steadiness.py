@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from playground import Truth, wind
 
+from validation.diagnosis.tables import unsteady
 from validation.effects import effect
 from validation.inference.decision import Decision, decide
 from validation.inference.evidence import calibrated_case, scored
 from validation.inference.posterior import Hypothesis, Posterior, probabilities, singles
 from validation.inference.refits import laplace
 from validation.inference.steadiness import at_every_second, steady, united
-from validation.inference.tables import unsteady
 
 NAMES = ("convection@flange.right", "brush.drop@commutator", "mass@shaft")
 

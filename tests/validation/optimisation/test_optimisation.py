@@ -9,11 +9,11 @@ from numpy.testing import assert_allclose
 
 from geom.errors import InputError, MissingDependency
 from geom.machine_file import load_machine
+from lumped.circuits.hydraulics import Duct, pressure_drop, pumping_power
 from lumped.drives.drive import Controller, SeriesMachine, Vehicle
 from lumped.integration.simulate import Record, simulate
 from lumped.model.build import bare_network, node_link, node_source
 from lumped.model.network import Row
-from lumped.transfer.hydraulics import Duct, pressure_drop, pumping_power
 from lumped.transfer.laws import Fixed, InputPower, Linear
 from lumped.transfer.properties import ethylene_glycol
 from validation.optimisation.auxiliaries import auxiliary_power, way_of

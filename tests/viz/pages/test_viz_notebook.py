@@ -5,7 +5,7 @@ from fictional import comparison, documents
 import viz.notebook
 from lumped.model.build import bare_network
 from validation.comparison.compare import ChannelError, Comparison, TestError
-from validation.diagnosis.result import Candidate, Diagnosis
+from validation.inference.result import Candidate, Diagnosis
 from validation.revision.revise import Change, Revision
 from viz import Report
 

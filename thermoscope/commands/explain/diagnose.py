@@ -17,7 +17,7 @@ from thermoscope.console.terminal import Progress, give, notes, progress, value_
 
 if TYPE_CHECKING:
     from thermoscope.case_folder.folder import Folder
-    from validation.diagnosis.result import Diagnosis
+    from validation.inference.result import Diagnosis
 
 RIVALS = 3  # named in a sentence
 ODDS, ROWS = 5, 10  # shown of hypotheses and of candidates

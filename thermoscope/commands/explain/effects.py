@@ -20,8 +20,8 @@ PLACES = 4  # named in a row of the table; all in --json
 def effects(case: str | None, target: str | None) -> int:
     """Every kind of effect: what it needs, and in a case where it could sit or what is missing."""
     from thermoscope.commands.open_case import open_case
-    from validation.calibration.unknowns import scene_of
     from validation.effects.registry import kinds
+    from validation.parameters.unknowns import scene_of
 
     scene = None
     if case is not None:

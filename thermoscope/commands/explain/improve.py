@@ -20,7 +20,7 @@ from thermoscope.console.terminal import give, progress, value_with_interval
 from viz.pages.next_tests import deciding
 
 if TYPE_CHECKING:
-    from validation.diagnosis.result import Candidate, Diagnosis
+    from validation.inference.result import Candidate, Diagnosis
     from validation.revision.revise import Revision
 
 

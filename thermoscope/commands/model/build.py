@@ -84,7 +84,7 @@ def built_from(
 
 def described_as(built: Built, solids: list[CadCheck]) -> dict[str, Any]:
     """The document of the command; surfaces, mesh and formula volumes in m3, areas in m2."""
-    from geom.description.areas import part_table
+    from geom.meshing.areas import part_table
 
     meshed = mesh_volumes(built.mesh)
     rows = {row.name: row for row in part_table(built.machine)}

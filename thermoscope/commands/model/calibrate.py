@@ -50,7 +50,7 @@ def calibrate(
 
 def _profilable(folder: Folder, globs: Sequence[str]) -> None:
     """InputError for a glob that means no free parameter."""
-    from validation.calibration.unknowns import working
+    from validation.parameters.unknowns import working
 
     names = working(folder.case)[1].names
     for glob in globs:

@@ -11,10 +11,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from geom.errors import ThermoscopeError
-from thermoscope.case_folder.files import write_whole
 from thermoscope.case_folder.folder import load_machine_file
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import give, plain, progress
+from thermoscope.files import write_whole
 
 if TYPE_CHECKING:
     from thermoscope.console.terminal import Progress

@@ -31,9 +31,9 @@ from thermoscope.case_folder.runs import (
 from thermoscope.commands.open_case import open_case
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import give, progress
-from validation.calibration.unknowns import working
 from validation.case import Case, Test
 from validation.comparison.predict import heat_model, record
+from validation.parameters.unknowns import working
 
 if TYPE_CHECKING:
     from thermoscope.pipeline import Built

@@ -18,7 +18,7 @@ MOST = 3  # effects of a diagnosis that are compared: each costs a calibration
 
 def plan(case: str, effects: Sequence[str], test: str | None, out: Path | None, target: str | None) -> int:
     """A page to pin on the bench: what to drive next, and what each hypothesis predicts for it."""
-    from validation.planning.predicted_curves import hypotheses, predicted_curves, schedule
+    from validation.revision.predicted_curves import hypotheses, predicted_curves, schedule
     from viz.pages.bench_page import BenchPage, write_bench_page
 
     if out is not None and (out.suffix != ".html" or out.is_dir()):

@@ -13,10 +13,10 @@ import numpy as np
 
 from geom.errors import InputError
 from lumped.machine.losses import ASSUMED
-from thermoscope.case_folder.files import write_whole
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import Progress, give, notes, progress
 from thermoscope.extras import message as missing_extra
+from thermoscope.files import write_whole
 from thermoscope.importing.aligned import Recording, common, grouped, shift
 from thermoscope.importing.cells import number
 from thermoscope.importing.clock import Clock, clock_of

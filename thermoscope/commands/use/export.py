@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any
 from geom.constants import ZERO_C
 from geom.errors import InputError, MissingDependency, ThermoscopeError
 from lumped.schemas.reader import suggestion
-from thermoscope.case_folder.files import write_whole
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.workbook import tables, write_csvs, write_xlsx
 from thermoscope.commands.open_case import open_case
 from thermoscope.commands.pairs import read_pairs
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import Progress, give, plain, progress
+from thermoscope.files import write_whole
 
 if TYPE_CHECKING:
     from thermoscope.export.model import Model

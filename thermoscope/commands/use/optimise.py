@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from geom.errors import InputError
-from thermoscope.case_folder.files import write_whole
 from thermoscope.commands.use.export import read_limits
 from thermoscope.commands.use.rate import case_or_machine, once, read_at
 from thermoscope.console.answer import Answer, Grid
@@ -20,6 +19,7 @@ from thermoscope.console.terminal import give, notes, progress
 from thermoscope.design.condensations import Condensations
 from thermoscope.design.design_problem import DesignRequest, design_problem
 from thermoscope.design.machine_keys import MachineFile, machine_file_text, short_key
+from thermoscope.files import write_whole
 from validation.optimisation.problem import AUXILIARY, COPPER, PEAK, SETTLING, Problem
 from validation.optimisation.search import METHODS, Design, Effort, pareto_set
 

@@ -19,7 +19,6 @@ from lumped.integration.simulate import simulate as integrated
 from lumped.model.network import Network, Row
 from thermoscope.bands import along, documents, posterior_of, wanted
 from thermoscope.case_folder.cycle import Cycle, find_cycle, load_cycle
-from thermoscope.case_folder.files import write_whole
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.runs import HOT, hot_spots, named_rows, sensors
 from thermoscope.commands.model.error_budget import budget, in_short
@@ -27,6 +26,7 @@ from thermoscope.commands.open_case import PACKAGE, open_case
 from thermoscope.commands.use.simulate_readings import readings, short_of
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import Progress, give, notes, progress
+from thermoscope.files import write_whole
 from validation.bands import Bands, ParameterPosterior
 
 Array = NDArray[np.float64]
@@ -56,8 +56,8 @@ def _out(folder: Folder) -> Path:
 
 def _model(folder: Folder) -> tuple[Network, dict[str, float]]:
     """The network with the effects added, and the values of the parameters that act on heat."""
-    from validation.calibration.unknowns import working
     from validation.comparison.predict import thermal
+    from validation.parameters.unknowns import working
 
     network = working(folder.case)[0]
     mine = {p.name for p in thermal(network).parameters}

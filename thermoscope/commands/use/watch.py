@@ -15,12 +15,12 @@ from geom.constants import NORMAL_95
 from geom.errors import InputError
 from lumped.integration.record import Record
 from lumped.integration.simulate import initial_state
-from thermoscope.case_folder.files import write_whole
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.runs import mean_rows
 from thermoscope.commands.open_case import PACKAGE, open_case
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import STDOUT, give, progress, say
+from thermoscope.files import write_whole
 from thermoscope.monitoring.live_rows import PIPE, TOGETHER, Rows, open_stream, table_of, together
 from thermoscope.monitoring.observing import chosen, designed, joined, record_of, started
 from thermoscope.recordings.formats import stem_of

@@ -24,6 +24,7 @@ class AmbientOffset(Effect):
     mapping = "offset"
     confused_with = ("sensor.bias", "loss.constant")
     fault = True
+    of_tests = True
 
     @classmethod
     def candidate_places(cls, scene: Scene) -> tuple[str, ...]:

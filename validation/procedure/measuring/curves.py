@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
-from validation.calibration.unknowns import working
 from validation.case import Case, Channel, Test
 from validation.comparison.compare import physical
 from validation.comparison.predict import predict
 from validation.effects.sites import ambient
+from validation.parameters.unknowns import working
 from validation.procedure.measuring.assemblies import Assembly, assemblies, worst
 from validation.procedure.measuring.repeats import Repeats, repeats
 from validation.procedure.measuring.warming import Equilibrium, Warming, equilibrium, fit_eq8

@@ -13,10 +13,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from geom.constants import RPM
-from geom.description.areas import PartRow, part_table
 from geom.description.geometry import Group
 from geom.description.machine import Machine
 from geom.description.materials import winding_conductivity
+from geom.meshing.areas import PartRow, part_table
 from lumped.correlations.end_space import SCHUBERT
 from lumped.declarations.network import read_network
 from lumped.model.network import Network

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from validation.calibration.unknowns import with_model, working
 from validation.case import Case
 from validation.comparison.compare import physical
 from validation.comparison.predict import predict
+from validation.parameters.unknowns import with_model, working
 
 COVERAGE = 2.0  # standard uncertainties: 95 %
 LIMITS = np.sqrt(6.0)  # of a sum of two even errors of one size, both at their limit, over its standard deviation

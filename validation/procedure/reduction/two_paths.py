@@ -17,10 +17,10 @@ from geom.errors import InputError, ThermoscopeError
 from lumped.integration.steady import Steady, steady
 from lumped.model.network import Network, Source
 from lumped.transfer.laws import Constant, Linear
-from validation.calibration.unknowns import working
 from validation.case import Case, Test
 from validation.comparison.compare import physical
 from validation.comparison.predict import heat_model
+from validation.parameters.unknowns import working
 
 
 @dataclass(frozen=True)

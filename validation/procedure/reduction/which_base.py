@@ -17,8 +17,8 @@ from geom.errors import InputError
 from lumped.machine.bases import Switched
 from lumped.model.network import Network
 from validation.calibration.calibrate import Fit, calibrated, no_progress
-from validation.calibration.unknowns import working
 from validation.case import Case, Test
+from validation.parameters.unknowns import working
 from validation.procedure.reduction.base_heat import BaseHeat, base_heat
 
 NONE = "none"

@@ -17,9 +17,8 @@ from validation.conditions.question import answered
 from validation.conditions.refine import joined
 from validation.conditions.retime import retimed
 from validation.conditions.robust import quiet
-from validation.diagnosis.missing_heat import MissingHeat, Scan, scan
 from validation.diagnosis.numerical_error import signal_to_error
-from validation.diagnosis.result import Diagnosis
+from validation.diagnosis.tables import tabulate
 from validation.effects.above import KIND
 from validation.inference.decision import Decision, decide
 from validation.inference.evidence import (
@@ -33,6 +32,7 @@ from validation.inference.evidence import (
     under,
     with_noise,
 )
+from validation.inference.missing_heat import MissingHeat, Scan, scan
 from validation.inference.multifidelity import at_low_fidelity, fidelity_error
 from validation.inference.posterior import (
     Hypothesis,
@@ -45,9 +45,9 @@ from validation.inference.posterior import (
     weights,
 )
 from validation.inference.refits import NOWHERE, Begun, finely, noise_of_refits, refitted
+from validation.inference.result import Diagnosis
 from validation.inference.several import further
 from validation.inference.steadiness import steady
-from validation.inference.tables import tabulate
 from validation.measurement.faults import PlainFaults, broken_channels, without
 from validation.measurement.noise import Noise
 from validation.procedure.reduction.which_base import base_hypotheses, wrong_bases

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError, ThermoscopeError
 from validation.calibration.calibrate import no_progress
-from validation.calibration.unknowns import working
 from validation.case import Case, Model, Test
 from validation.comparison.predict import predict
+from validation.parameters.unknowns import working
 from validation.planning.candidate_tests import Experiment, candidate_tests
 from validation.revision.revise import add
 

@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from lumped.model.network import Network, Parameter
 from lumped.model.once import once
 from lumped.transfer.laws import Law
-from validation.calibration.model_form import levels, with_model_form
 from validation.case import Case, Channel, Model, Test
 from validation.doubt import USUAL, Doubt
 from validation.effects import Effect, Scene, effect, extended
 from validation.effects.sensors.input_offset import Shift
+from validation.parameters.model_form import levels, with_model_form
 
 Array = NDArray[np.float64]
 FREE = 30.0  # prior deviations of what the data alone shall say: wide enough to leave no trace

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Literal
 
 from geom.errors import InputError
 from geom.text import table
-from validation.diagnosis.missing_heat import MissingHeat
+from validation.inference.missing_heat import MissingHeat
 
 if TYPE_CHECKING:
     from validation.conditions.contradiction import Contradiction

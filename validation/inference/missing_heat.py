@@ -20,12 +20,12 @@ from scipy.special import logsumexp
 from lumped.model.network import Network, Parameter
 from lumped.transfer.laws import Fixed, Inputs
 from validation.calibration.calibrate import Fit
+from validation.calibration.model_error import ModelError, nodes
 from validation.case import Test
 from validation.comparison.linearisation import Segment, segments
 from validation.doubt import FORM
 from validation.effects.build import Shaped, heat, power_scale
 from validation.effects.sites import solids
-from validation.inference.model_error import ModelError, nodes
 from validation.inference.score import Gram, gram
 from validation.measurement.blocks import INSTANTS
 from validation.measurement.noise import Noise

@@ -15,7 +15,6 @@ from validation.case import Case, Test
 from validation.comparison.linearisation import Segment, rmse, segments
 from validation.conditions.events import possible_events
 from validation.conditions.question import best_question
-from validation.diagnosis.result import Candidate, Decided, DetectionLimit, Diagnosis, Odds, Verdict
 from validation.doubt import USUAL
 from validation.effects.above import Above
 from validation.effects.during import During
@@ -25,6 +24,7 @@ from validation.inference.evidence import Evidence, deviance
 from validation.inference.posterior import Hypothesis, Posterior, inclusion, probabilities, tempered_by
 from validation.inference.refits import laplace
 from validation.inference.remainder import remainder
+from validation.inference.result import Candidate, Decided, DetectionLimit, Diagnosis, Odds, Verdict
 from validation.measurement.faults import PlainFaults
 from validation.planning.competing_models import CompetingModels
 from validation.planning.experiments import next_tests

@@ -19,13 +19,13 @@ from lumped.model.network import Link, Network, Parameter, Place, Row, Source
 from lumped.model.quantities import AIR, LIQUID
 from lumped.model.topology import FRICTION
 from lumped.transfer.laws import CONSTANT, Constant, Fixed, Inputs, WithTemperature
-from validation.calibration.model_form import EXACT_LOSSES, KNOTS, REFERENCE_RISE_K, Table, is_film
 from validation.case import Channel, Test
 from validation.comparison.linearisation import Segment, segments
 from validation.comparison.predict import heat_model, record
 from validation.doubt import USUAL, Doubt
 from validation.effects.build import Shaped, copy_link, copy_source, exchange, heat
 from validation.measurement.operators import lag, setting
+from validation.parameters.model_form import EXACT_LOSSES, KNOTS, REFERENCE_RISE_K, Table, is_film
 from validation.threads import side_by_side
 
 Array = NDArray[np.float64]

@@ -16,12 +16,12 @@ import numpy as np
 
 from geom.constants import L_MIN, M3_H
 from geom.errors import InputError
+from lumped.circuits.hydraulics import Duct, parallel_shares, pressure_drop, pumping_power
 from lumped.correlations.ducts import duct_film, schmidt_helical, staton_rectangle
 from lumped.model.build import node_row
 from lumped.model.network import Link, Network, Row
 from lumped.transfer.coolant import Coolant
 from lumped.transfer.exchanger import BACKWARDS, CellFilm, Effectiveness, Exchanger, Flow, Rate
-from lumped.transfer.hydraulics import Duct, parallel_shares, pressure_drop, pumping_power
 from lumped.transfer.laws import Law, Table
 from lumped.transfer.properties import TABULATED_C
 from lumped.transfer.reversal import Direction, OneWay

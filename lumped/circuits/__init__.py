@@ -1,0 +1,1 @@
+"""Coolant circuits and the pressure that drives them."""

@@ -1,0 +1,198 @@
+"""One case for every law of a coefficient and every law of temperature, on inputs as they come."""
+
+import importlib
+import inspect
+from pkgutil import walk_packages
+
+import numpy as np
+
+import fem
+import lumped
+import thermoscope
+import validation
+import viz
+from lumped.declarations.separated import FilmOver, Share
+from lumped.integration.simulate import Record
+from lumped.machine.bases import Switched
+from lumped.machine.laws import Interpolated
+from lumped.sources.loss_map import MapLoss
+from lumped.sources.loss_measured import MeasuredLoss
+from lumped.sources.losses import BrushLoss, CopperLoss, IronLoss, PowerLoss, RippleLoss
+from lumped.transfer.exchanger import CellFilm, Exchanger, Flow, Rate, counterflow
+from lumped.transfer.laws import (
+    CLOCK,
+    CONSTANT,
+    FILMS,
+    Constant,
+    FilmTable,
+    Fixed,
+    InputPower,
+    Linear,
+    Power,
+    Radiation,
+    Scaled,
+    Table,
+    WithTemperature,
+)
+from lumped.transfer.reversal import Direction, OneWay
+from thermoscope.export.tables import ExponentRatio
+from validation.effects.build import Shaped
+from validation.effects.sensors.input_factor import Slope
+from validation.effects.sensors.input_offset import Shift
+from validation.parameters.model_form import ExponentError
+
+
+def inputs(time):
+    """As they come: varying, with a stop, one that turns round, one that is switched."""
+    return {
+        "speed_rpm": 1500.0 + 1400.0 * np.sin(time / 250.0) * (time < 900),
+        "current_A": 10.0 + 4.0 * np.sin(time / 130.0),
+        "flow": 1.5 + np.cos(time / 170.0), "to_and_fro": np.sin(time / 200.0), "switch": 1.0 * (time > 400.0),
+        "electrical_W": 900.0 + time / 9.0, "torque_Nm": 2.0 + np.sin(time / 99.0), "voltage_V": 20.0 + time / 90.0,
+        CLOCK: time,
+    }  # fmt: skip
+
+
+TIME = np.arange(0.0, 1300.0, 10.0)
+RECORD = Record(TIME, {n: u for n, u in inputs(TIME).items() if n != CLOCK}, {"ambient": 18.0, "inlet": 25.0}, 60.0)
+
+
+FORCED = InputPower(0.6, (("speed_rpm", 1000.0, 0.8),))
+BY_FLOW = Flow(2.0, "flow")
+
+
+def grid(value):
+    return tuple(v * f for f in np.linspace(1.0, 1.2, FILMS) for v in value)
+
+
+LAWS = [
+    Fixed(0.8), FORCED, Interpolated("speed_rpm", (0.0, 500.0, 2000.0), (0.3, 0.5, 0.9)),
+    Switched(FORCED, "switch", True), Switched(FORCED, "switch", False),
+    FilmOver("speed_rpm", lambda x: (0.3 + 0.01 * np.sqrt(x), None), 4000.0),
+    Share(FilmOver("speed_rpm", lambda x: (0.3, None), 4000.0), (0.0, 4000.0), (0.3, 0.7)),
+    Scaled(Fixed(0.4), -1.0), MeasuredLoss(((1.0, ("electrical_W",)), (-np.pi / 30.0, ("torque_Nm", "speed_rpm")))),
+    MapLoss((0.0, 4000.0), (0.0, 5.0), ((1.0, 2.0), (3.0, 5.0))), CopperLoss(0.02, ("current_A",)),
+    PowerLoss(((2.0, (("speed_rpm", 1000.0, 1.5),)),)), IronLoss(1.0, 0.5, "speed_rpm", 1000.0, "current_A", 10.0),
+    BrushLoss(0.2, "current_A", 0.5, "speed_rpm", 1000.0), RippleLoss(48.0, "voltage_V", 1e-3, 1e4, 0.05),
+    Rate(BY_FLOW), Exchanger(1.0, BY_FLOW, Flow(3.0)), CellFilm((0.0, 2.0), (4.0, 9.0), BY_FLOW, 0.1, 0.2),
+    OneWay(FORCED, "flow", "here", "so"), Direction(FORCED, "to_and_fro", 1), Direction(FORCED, "to_and_fro", -1),
+    Shaped(FORCED, lambda u: np.asarray(u["current_A"]) / 20.0, CONSTANT, ("current_A",)),
+    WithTemperature(FORCED, Power(0.25)),
+    ExponentError(FORCED, "speed_rpm", {"speed_rpm": 1500.0}), 
+    ExponentRatio(ExponentError(FORCED, "speed_rpm", {"speed_rpm": 1500.0})),
+    Slope(FORCED, "speed_rpm"), Shift(IronLoss(1.0, 0.5, "speed_rpm", 1000.0), "speed_rpm"),
+]  # fmt: skip
+TEMPERATURES = [
+    CONSTANT, Power(0.25), Radiation(), Linear(0.004, 20.0), Table((0.0, 10.0, 80.0), (1.0, 1.3, 1.8)),
+    FilmTable((0.0, 5.0, 80.0), grid((1.0, 1.4, 2.0))),
+]  # fmt: skip
+LAWS += [Fixed(0.5, temperature) for temperature in TEMPERATURES]
+NAMES = [f"{type(law).__name__}{f' {type(law.temperature).__name__}' * (type(law) is Fixed)} {i}"
+         for i, law in enumerate(LAWS)]  # fmt: skip
+LOSSES = [law for law in LAWS if isinstance(law.temperature, Constant | Linear)]
+
+
+ROOMS = (fem, lumped, validation, viz, thermoscope)
+
+
+def every(base):
+    """All classes that can be made, of all modules of the rooms with laws."""
+    for room in ROOMS:
+        for module in walk_packages(room.__path__, f"{room.__name__}."):
+            if not module.name.endswith("__main__"):
+                importlib.import_module(module.name)
+    found, left = set(), [base]
+    while left:
+        one = left.pop()
+        left += one.__subclasses__()
+        ours = one.__module__.split(".")[0] in {room.__name__ for room in ROOMS}
+        if ours and one is not base and not inspect.isabstract(one):
+            found.add(one)
+    return found
+
+
+def _film(x):
+    return 0.3 + 0.01 * np.sqrt(x), None
+
+
+STEEP = ExponentError(InputPower(2.0, (("speed_rpm", 1000.0, 1.0),)), "speed_rpm", {"speed_rpm": 1000.0})
+TABLED = Interpolated("speed_rpm", (100.0, 2000.0), (0.3, 0.9))
+# law -> [(law, inputs, its factor there)]: at rest, at its ends, beyond them, where its formula is known by heart
+LIMITS = {
+    Fixed: [(Fixed(0.8), {}, 0.8)],
+    InputPower: [
+        (FORCED, {"speed_rpm": 0.0}, 0.0), (FORCED, {"speed_rpm": -1000.0}, 0.6),
+        (InputPower(0.7, ()), {}, 0.7),
+    ],
+    Interpolated: [(TABLED, {"speed_rpm": 0.0}, 0.3), (TABLED, {"speed_rpm": -1e9}, 0.9)],
+    Switched: [
+        (Switched(Fixed(2.0), "on", True), {"on": 1.0}, 2.0), (Switched(Fixed(2.0), "on", True), {"on": 0.0}, 0.0),
+        (Switched(Fixed(2.0), "on", False), {"on": 1.0}, 0.0), (Switched(Fixed(2.0), "on", False), {"on": 0.0}, 2.0),
+    ],
+    FilmOver: [(FilmOver("v", _film, 4.0), {"v": 0.0}, 0.3), (FilmOver("v", _film, 4.0), {"v": -4.0}, 0.32)],
+    Share: [(Share(FilmOver("v", _film, 4.0), (0.0, 4.0), (0.3, 0.7)), {"v": -9.0}, 0.7)],
+    Scaled: [(Scaled(Fixed(0.4), -1.0), {}, -0.4), (Scaled(Fixed(0.4), 0.0), {}, 0.0)],
+    MeasuredLoss: [  # what goes in leaves at the shaft
+        (MeasuredLoss(((1.0, ("P",)), (-np.pi / 30.0, ("M", "n")))), {"P": 100.0 * np.pi, "M": 2.0, "n": 1500.0}, 0.0),
+    ],
+    MapLoss: [
+        (MapLoss((0.0, 10.0), (0.0, 1.0), ((1.0, 2.0), (3.0, 5.0))), {"speed_rpm": 10.0, "torque_Nm": -1.0}, 5.0),
+        (MapLoss((0.0, 10.0), (0.0, 1.0), ((1.0, 2.0), (3.0, 5.0))), {"speed_rpm": 0.0, "torque_Nm": 0.0}, 1.0),
+    ],
+    CopperLoss: [
+        (CopperLoss(0.02, ("I",)), {"I": 0.0}, 0.0), (CopperLoss(0.02, ("I",), 3.0), {"I": -10.0}, 6.0),
+    ],
+    PowerLoss: [(PowerLoss(((2.0, (("n", 10.0, 1.5),)), (1.0, ()))), {"n": 0.0}, 1.0)],
+    IronLoss: [
+        (IronLoss(1.0, 0.5, "n", 100.0, "I", 10.0), {"n": 0.0, "I": 10.0}, 0.0),
+        (IronLoss(1.0, 0.5, "n", 100.0, "I", 10.0), {"n": 100.0, "I": 0.0}, 0.0),
+        (IronLoss(1.0, 0.5, "n", 100.0, "I", 10.0, excess=0.25), {"n": -100.0, "I": -10.0}, 1.75),
+    ],
+    BrushLoss: [(BrushLoss(2.0, "I", 9.0, "n", 100.0), {"I": -3.0, "n": 0.0}, 6.0)],
+    RippleLoss: [
+        (RippleLoss(48.0, "V", 1e-3, 1e4, 0.05), {"V": 0.0}, 0.0),
+        (RippleLoss(48.0, "V", 1e-3, 1e4, 0.05), {"V": 60.0}, 0.0),
+    ],
+    Rate: [(Rate(BY_FLOW), {"flow": 0.0}, 0.0), (Rate(BY_FLOW), {"flow": -3.0}, 6.0)],
+    Exchanger: [  # nothing flows; endless plates bring the lesser stream all the way; small ones are UA
+        (Exchanger(1.0, BY_FLOW, Flow(3.0)), {"flow": 0.0}, 0.0),
+        (Exchanger(1e5, BY_FLOW, Flow(3.0), counterflow), {"flow": 1.0}, 2.0),
+        (Exchanger(1e-7, BY_FLOW, Flow(3.0)), {"flow": 1.0}, 1e-7),
+    ],
+    CellFilm: [  # without flow h A (e - 1), in a torrent h A
+        (CellFilm((0.0, 2.0), (4.0, 4.0), BY_FLOW, 0.1, 0.2), {"flow": 0.0}, 0.4 * (np.e - 1.0)),
+        (CellFilm((0.0, 2.0), (4.0, 4.0), BY_FLOW, 0.1, 0.2), {"flow": 1e7}, 0.4),
+    ],
+    OneWay: [(OneWay(FORCED, "flow", "here", "so"), {"speed_rpm": 1000.0, "flow": 0.0}, 0.6)],
+    Direction: [
+        (Direction(Fixed(3.0), "q", 1), {"q": -1.0}, 0.0), (Direction(Fixed(3.0), "q", -1), {"q": -1.0}, 3.0),
+        (Direction(Fixed(3.0), "q", 1), {"q": 0.0}, 0.0), (Direction(Fixed(3.0), "q", -1), {"q": 0.0}, 0.0),
+    ],
+    Shaped: [(Shaped(Fixed(3.0), lambda u: u["x"]), {"x": 0.0}, 0.0)],
+    WithTemperature: [(WithTemperature(Fixed(3.0), Power(0.25)), {}, 3.0)],
+    ExponentError: [(STEEP, {"speed_rpm": 1000.0}, 0.0), (STEEP, {"speed_rpm": 2000.0}, 4.0 * np.log(2.0))],
+    ExponentRatio: [
+        (ExponentRatio(STEEP), {"speed_rpm": 1000.0}, 0.0), (ExponentRatio(STEEP), {"speed_rpm": 2000.0}, np.log(2.0)),
+    ],
+    Slope: [
+        (Slope(FORCED, "speed_rpm"), {"speed_rpm": 0.0}, 0.0),
+        (Slope(STEEP.base, "speed_rpm"), {"speed_rpm": 1000.0}, 2.0),
+    ],
+    Shift: [(Shift(STEEP.base, "speed_rpm"), {"speed_rpm": 1000.0}, 2e-3)],
+}  # fmt: skip
+FILM = TEMPERATURES[-1]
+# temperature law -> [(law, hot, cold, its value)] in degC
+TEMPERATURE_LIMITS = {
+    Constant: [(CONSTANT, 90.0, 20.0, 1.0)],
+    Power: [(Power(0.25), 20.0, 20.0, 0.0), (Power(0.25), 36.0, 20.0, 2.0), (Power(0.25), 20.0, 36.0, 2.0)],
+    Radiation: [  # near equal temperatures 4 sigma T^3; against nothing sigma T^3
+        (Radiation(), 20.0, 20.0, 4 * 5.670374419e-8 * 293.15**3),
+        (Radiation(), 20.0, -273.15, 5.670374419e-8 * 293.15**3),
+    ],
+    Linear: [(Linear(0.004, 20.0), 20.0, 99.0, 1.0), (Linear(0.004, 20.0), 270.0, 99.0, 2.0)],
+    Table: [
+        (Table((0.0, 10.0), (1.0, 3.0)), 20.0, 20.0, 1.0), (Table((0.0, 10.0), (1.0, 3.0)), 20.0, 99.0, 3.0),
+        (Table((-5.0, 10.0), (1.0, 3.0)), 20.0, 99.0, 1.0),
+    ],
+    FilmTable: [(FILM, -300.0, -300.0, 1.0), (FILM, 500.0, 500.0, 1.2), (FILM, 590.0, 410.0, 2.4)],
+}  # fmt: skip
