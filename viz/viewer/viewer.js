@@ -272,6 +272,14 @@ class Viewer {
     this.recolour();
     this.move(this.time);
   }
+  flows(network) {  // the network and its panel, as soon as they are known
+    $("networked").parentNode.hidden = !network;
+    if (!network) return;
+    data.network = network;
+    this.network = new Network($("network"), network);
+    $("networked").checked = innerWidth >= WIDE;
+    this.beside($("networked").checked);
+  }
   told(errors) {  // what residuals tell between the sensors
     data.errors = errors; $("layer").options[3].disabled = false;
     this.sure();
@@ -836,14 +844,11 @@ function wired(v) {
     if (k >= 0 && k !== v.number) { $("test").value = k; v.choose(k); }
     if (said.dark !== undefined) document.documentElement.dataset.theme = said.dark ? "dark" : "light";
     if (said.sensor) v.pin(said.sensor);
+    if (said.rest) opened(said.rest).then(({ errors, network }) => { v.flows(network); if (errors) v.told(errors); });
     again();
   };
-  if (data.network) {
-    v.network = new Network($("network"), data.network);
-    $("networked").onchange = (e) => v.beside(e.target.checked);
-    $("networked").checked = innerWidth >= WIDE;
-    v.beside($("networked").checked);
-  } else $("networked").parentNode.hidden = true;
+  $("networked").onchange = (e) => v.beside(e.target.checked);
+  v.flows(data.network);
   onresize = () => { again(); if (v.network && !$("beside").hidden) v.network.place(); };
   matchMedia("(prefers-color-scheme: dark)").onchange = again;
 }
