@@ -71,8 +71,8 @@ def flux_arrows(
     scene.colour_bar(p, UNIT, theme)  # of what was added last, so before the arrows
     _arrows(p, at, flux, float(np.ptp(nodes.points[:, 2])), theme)
     largest = float(np.linalg.norm(flux, axis=1).max(initial=0.0))
-    scene.headline(p, f"{title}  longest arrow {largest / 1000:.1f} kW/m²".strip(), theme)
-    scene.look(p, surface.points, view, Room(0.0, 0.1, TITLE))
+    scene.headline(p, f"{title} longest arrow {largest / 1000:.3g} kW/m²".strip(), theme)
+    scene.look(p, surface.framed, view, Room(0.0, 0.1, TITLE))
     scene.save(p, png)
     return p
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from viz.colours import LIGHT, Theme, heat, missing, power
 from viz.data import Sensor
-from viz.machine.thermocouples import LABELS, Marked, label_texts, marked
+from viz.machine.thermocouples import LABELS, Marked, framed, label_texts, marked
 from viz.rendering import scene
 from viz.rendering.callouts import beside, on_top
 from viz.rendering.cut import QUARTER, Surface, Wedge, cut_away
@@ -80,7 +80,7 @@ def cut_open(
 ) -> tuple[pyvista.Plotter, Surface, Marked]:
     """A scene that looks at the machine with a wedge taken out, what is left of it, its sensors as they are seen."""
     p, surface = scene.plotter(theme), cut_away(nodes, wedge)
-    scene.look(p, surface.points, view, room)
+    scene.look(p, framed(surface, sensors), view, room)
     return p, surface, marked(surface, sensors, labels, np.array(p.camera.position))
 
 
@@ -102,7 +102,7 @@ def difference(
     paint(p, surface, change, (-most, most), theme, colours=missing())
     scene.colour_bar(p, "K", theme)
     scene.headline(p, title, theme)
-    scene.look(p, surface.points, view, room_for([], title))
+    scene.look(p, surface.framed, view, room_for([], title))
     scene.save(p, png)
     return p
 
@@ -128,7 +128,7 @@ def pair(
         p.subplot(0, i)
         paint(p, surface, field, limits, theme)
         scene.headline(p, titles[i], theme)
-        scene.look(p, surface.points, view, Room(0.0, 0.16))
+        scene.look(p, surface.framed, view, Room(0.0, 0.16))
     scene.colour_bar(p, UNIT, theme, position_x=0.84, width=0.034)
     scene.save(p, png)
     return p

@@ -82,7 +82,7 @@ def network_in_machine(
     scene.colour_bar(p, "°C", theme, mapper=p.actors["nodes"].mapper)
     if "link 0" in p.actors:
         scene.colour_bar(p, "", theme, mapper=p.actors["link 0"].mapper, **BELOW)
-    scene.headline(p, f"{title}  widest line {float(f'{widest:.2g}'):g} W/K".strip(), theme)
+    scene.headline(p, f"{title} widest line {float(f'{widest:.2g}'):g} W/K".strip(), theme)
     callouts(p, names, frame, SIDE, theme, size=LETTERS, dots=False)
     renderer: Any = p.renderer
     renderer.ResetCameraClippingRange()  # the camera stood before lines and nodes were there
