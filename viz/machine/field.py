@@ -42,6 +42,7 @@ def cutaway(
     limits: tuple[float, float] | None = None,
     colours: Colormap | None = None,
     unit: str = UNIT,
+    note: str = "",
     view: View | None = None,
     theme: Theme = LIGHT,
     png: str | Path | None = None,
@@ -51,6 +52,7 @@ def cutaway(
     T : (n_nodes,) per node of every part, or one per point of the conformal mesh
     labels : of so many sensors, those furthest beyond their uncertainty first; the others are dots
     limits : colour scale (degC), from the field itself if not given; widened to round numbers
+    note : what the sensors' labels say
     """
     view = view or View()
     p, surface, seen = cut_open(
@@ -59,20 +61,23 @@ def cutaway(
     paint_cut(p, surface, seen.cut, on_nodes(nodes, T), limits, theme, colours)
     scene.colour_bar(p, unit, theme)
     scene.headline(p, title, theme)
-    seen.draw(p, surface, view, theme)
+    seen.draw(p, surface, view, theme, note)
     scene.save(p, png)
     return p
 
 
 def uncertainty(
-    nodes: SplitMesh, half95: Array, *, sensors: Sequence[Sensor] = (), title: str = "", png: str | Path | None = None
-) -> pyvista.Plotter:
+    nodes: SplitMesh, half95: Array, *, sensors: Sequence[Sensor] = (), title: str = "", note: str = "",
+    png: str | Path | None = None,
+) -> pyvista.Plotter:  # fmt: skip
     """Half the width of the 95 % band (K), the darker the less sure; the scale begins at zero.
 
     half95 : (n_nodes,) K;  sensors : where it was measured
     """
     limits = 0.0, float(np.max(half95))
-    return cutaway(nodes, half95, sensors=sensors, title=title, limits=limits, colours=power(), unit="± K", png=png)
+    return cutaway(
+        nodes, half95, sensors=sensors, title=title, limits=limits, colours=power(), unit="± K", note=note, png=png
+    )
 
 
 def cut_open(

@@ -60,9 +60,14 @@ def _key(machine: Machine, nodes: SplitMesh, wedge: Wedge) -> str:
     content = hashlib.sha256(repr((machine, nodes.parts, wedge)).encode())
     for array in (nodes.points, nodes.owner):
         content.update(np.ascontiguousarray(array).tobytes())
-    for file in [Path(__file__), *sorted(Path(__file__).parents[1].joinpath("appearance").glob("*.py"))]:
-        content.update(file.read_bytes())
+    content.update(drawing_code())
     return content.hexdigest()[:20]
+
+
+def drawing_code() -> bytes:
+    """What decides how a machine looks: the text of this module and of those that shape it."""
+    here = Path(__file__)
+    return b"".join(file.read_bytes() for file in [here, *sorted(here.parents[1].joinpath("appearance").glob("*.py"))])
 
 
 def _packed(machine: Machine, nodes: SplitMesh, wedge: Wedge) -> dict[str, Any]:

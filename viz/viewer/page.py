@@ -75,7 +75,7 @@ def document(
 
 
 def analysis_document(tests: Sequence[Recorded], nodes: SplitMesh, mesh: NamedMesh | None) -> dict[str, Any]:
-    """What can follow: residuals between the sensors; heat flows of the network, whose nodes have places in the mesh."""
+    """What can follow: residuals between the sensors; heat flows of the network, its nodes placed in the mesh."""
     runs = [t.network for t in tests if t.network is not None]
     network = _network(mesh, nodes, runs) if len(runs) == len(tests) else None
     return {"errors": _errors(tests, nodes), "network": network}
@@ -189,7 +189,8 @@ def _sensors(test: Recorded, positions: Mapping[str, Sequence[float]]) -> dict[s
     known = zip(comparison.channels, places, strict=True)
     return {
         "sensors": [
-            {"channel": c.name, "name": short(c.name), "xyz": xyz, "limit": comparison.limits.get(c.name)} for c, xyz in known
+            {"channel": c.name, "name": short(c.name), "xyz": xyz, "limit": comparison.limits.get(c.name)}
+            for c, xyz in known
         ],
         "measured": _columns([c.y for c in comparison.channels], at),
         "models": [_columns([of[c.name] for c in comparison.channels], at) for of in models],

@@ -145,6 +145,7 @@ def _pictures(folder: Folder, into: Path, diagnosis: Mapping[str, Any] | None) -
     if folder.built is None:
         return {}
     from viz import cutaway, pair, require_gl, sensors, split
+    from viz.data import LATE
 
     try:
         require_gl()
@@ -157,7 +158,7 @@ def _pictures(folder: Folder, into: Path, diagnosis: Mapping[str, Any] | None) -
     seen = sensors(comparison_of(folder, test), folder.positions)
     title = f"{end_of(test)}: temperature of the model"
     limits = temperature_range(folder, nodes)
-    cutaway(nodes, now, sensors=seen, title=title, limits=limits, png=file)
+    cutaway(nodes, now, sensors=seen, title=title, limits=limits, note=LATE, png=file)
     out = {f"Temperature at the end of {test.name}; labels: measured minus modelled.": file}
     out |= _missing_heat(diagnosis, nodes, into)
     earlier = before_last(folder)
