@@ -87,8 +87,8 @@ def comparison_of(folder: Folder, test: Test, limits: Mapping[str, float] | None
 
     earlier = before_last(folder)
     before = None if earlier is None else readings(earlier, test)
-    agreed = folder.limits(test) if limits is None else limits
-    return Comparison(test, readings(folder.case, test), agreed, before, accepted(folder.case, test))
+    agreement = folder.limits(test) if limits is None else limits
+    return Comparison(test, readings(folder.case, test), agreement, before, accepted(folder.case, test))
 
 
 def accepted(case: Case, test: Test) -> tuple[tuple[float, float], ...]:

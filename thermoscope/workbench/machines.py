@@ -20,7 +20,7 @@ Document = dict[str, Any]
 
 def drawing_job(folder: Folder) -> Job:
     """What draws the machine of a model."""
-    return Job(steps.drawn, folder)
+    return Job(steps.machine_documents, folder)
 
 
 class Drawing:

@@ -41,7 +41,7 @@ class Session:
         self._refused: Revision | None = None
         self._job: Job | None = None
         self._drawing: Drawing | None = None
-        self._drawn: History | None = None
+        self._on_screen: History | None = None
         self._known: list[tuple[Revision, Appearance]] = [(self.history.last, bench.first)]
 
     @property
@@ -158,7 +158,7 @@ class Session:
         if self.bench.folder.built is None:
             return
         self._leave()
-        if self._drawn == self.history:
+        if self._on_screen == self.history:
             return
         document = self.bench.machines.find(self.history)
         if document is not None:
@@ -184,7 +184,7 @@ class Session:
         """Another machine in the browser, judged by the errors that are shown."""
         from viz.viewer.page import render, with_limits
 
-        self._drawn = self.history
+        self._on_screen = self.history
         self.viewer_page = render(with_limits(document, self.shown.look.limits))
         with self.state:
             self.state.viewer, self.state.viewer_rest = f"viewer.html?{time.time_ns()}#bench", ""

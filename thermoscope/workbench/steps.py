@@ -24,11 +24,11 @@ def appearance(folder: Folder, tell: Progress) -> Appearance:
     return appearance_of(folder)
 
 
-def drawn(folder: Folder, tell: Progress) -> Iterator[dict[str, Any]]:
+def machine_documents(folder: Folder, tell: Progress) -> Iterator[dict[str, Any]]:
     """The machine for the browser to draw, in two parts; limits of its sensors are known where errors are."""
     from thermoscope.commands.show.viewer import viewer_documents
 
-    return viewer_documents(folder, tell, judged=False)
+    return viewer_documents(folder, tell, agreement=False)
 
 
 def searched(folder: Folder, tell: Progress) -> Mapping[str, Any]:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from viz.colours import LIGHT, Theme, heat, missing, power
 from viz.data import Sensor
-from viz.machine.thermocouples import LABELS, Marked, framed, label_texts, marked
+from viz.machine.thermocouples import LABELS, Marked, frame_points, label_texts, marked
 from viz.rendering import scene
 from viz.rendering.callouts import beside, on_top
 from viz.rendering.cut import QUARTER, Surface, Wedge, cut_away
@@ -85,7 +85,7 @@ def cut_open(
 ) -> tuple[pyvista.Plotter, Surface, Marked]:
     """A scene that looks at the machine with a wedge taken out, what is left of it, its sensors as they are seen."""
     p, surface = scene.plotter(theme), cut_away(nodes, wedge)
-    scene.look(p, framed(surface, sensors), view, room)
+    scene.look(p, frame_points(surface, sensors), view, room)
     return p, surface, marked(surface, sensors, labels, np.array(p.camera.position))
 
 

@@ -30,7 +30,7 @@ def counted(folder, tell):
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    monkeypatch.setattr("thermoscope.workbench.steps.drawn", counted)
+    monkeypatch.setattr("thermoscope.workbench.steps.machine_documents", counted)
     return SimpleNamespace(history=History(), log=str(tmp_path / "log"), seconds=0.5, fault="", built="a machine")
 
 

@@ -215,12 +215,13 @@ def assumptions(folder: Folder) -> list[str]:
     kind = "a network declared by hand" if s.machine is None else "a network condensed from the machine's field"
     roles = {role: [t.name for t in case.tests if t.role == role] for role in ORDER}
     used = "; ".join(f"{role}: {', '.join(names)}" for role, names in roles.items() if names)
-    sigma = sorted({c.sigma_K for t in case.tests for c in t.channels})
+    sigma = sorted({f"{c.sigma_K:g}" for t in case.tests for c in t.channels}, key=float)
+    spread = " to ".join(sigma[:: max(1, len(sigma) - 1)])
     return [
         f"The model is {kind} with {len(case.model.network.parameters)} adjustable parameters.",
         f"Tests by role: {used}.",
         *([f"Sample steps: {sampled(folder.steps)}."] if folder.steps else []),
-        f"Sensors are taken to be right within {sigma[0]:g} to {sigma[-1]:g} K (one standard deviation).",
+        f"Sensors are taken to be right within {spread} K (one standard deviation).",
         *folder.notes,
     ]
 

@@ -61,10 +61,10 @@ def viewer_page(folder: Folder, tell: Progress) -> str:
     return render({key: value for part in viewer_documents(folder, tell) for key, value in part.items()})
 
 
-def viewer_documents(folder: Folder, tell: Progress, judged: bool = True) -> Iterator[dict[str, Any]]:
+def viewer_documents(folder: Folder, tell: Progress, agreement: bool = True) -> Iterator[dict[str, Any]]:
     """What the page draws: first the machine, temperatures and readings, then the rest, which takes longer.
 
-    judged : with the largest errors that count as agreement, for which the model runs many times more
+    agreement : with the largest errors that count as agreement, for which the model runs many times more
     """
     from viz import split
     from viz.viewer.error_map import ErrorMap
@@ -80,9 +80,9 @@ def viewer_documents(folder: Folder, tell: Progress, judged: bool = True) -> Ite
         times, now = fields(folder.case, test, nodes, FRAMES)
         before = None if earlier is None else fields(earlier, test, nodes, FRAMES)[1]
         rest = tuple(Earlier(fields(case, test, nodes, FRAMES)[1], readings(case, test)) for case in others)
-        return Recorded(comparison_of(folder, test, None if judged else {}), times, now, before, rest)
+        return Recorded(comparison_of(folder, test, None if agreement else {}), times, now, before, rest)
 
-    def analysed(run: Recorded) -> Recorded:
+    def analysis(run: Recorded) -> Recorded:
         test = run.comparison.test
         channels, gain = error_gain(folder, test, nodes)
         between = ErrorMap(tuple(c.name for c in channels), gain.mean, gain.explained)
@@ -99,7 +99,7 @@ def viewer_documents(folder: Folder, tell: Progress, judged: bool = True) -> Ite
         cache_folder(),
     )  # fmt: skip
     tell("residuals between the sensors, and heat flows")
-    yield analysis_document(side_by_side(analysed, tests), nodes, folder.built.mesh)
+    yield analysis_document(side_by_side(analysis, tests), nodes, folder.built.mesh)
 
 
 def revisions(folder: Folder) -> list[Revision]:
